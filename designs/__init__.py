@@ -1,0 +1,1 @@
+"""Families of membranes: one file each, whose header is its manual page."""

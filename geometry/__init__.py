@@ -1,0 +1,1 @@
+"""Bodies, meshes, moulds and files."""

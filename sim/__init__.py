@@ -1,0 +1,1 @@
+"""Contact, light and their measures."""

@@ -1,0 +1,1 @@
+"""Quasi-static contact by a cell-wise total-Lagrangian material point method."""

@@ -1,0 +1,1 @@
+"""From LEDs to pixels."""

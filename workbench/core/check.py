@@ -1,0 +1,56 @@
+"""Checks at the public edge: array shapes, and numbers inside their limits."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from workbench.core.errors import DesignError
+
+
+def expect(array: np.ndarray, shape: str, *, name: str = "array") -> np.ndarray:
+    """Return the array if it has the stated shape, for example `"N 3"`.
+
+    Letters are free sizes that must agree with themselves, numbers are exact.
+
+    Raises:
+        ValueError: If the shape differs; this is a bug of the caller, not of the designer.
+    """
+    wanted = shape.split()
+    sizes: dict[str, int] = {}
+    fits = array.ndim == len(wanted) and all(
+        int(want) == size if want.isdigit() else sizes.setdefault(want, size) == size
+        for want, size in zip(wanted, array.shape, strict=False)
+    )
+    if not fits:
+        raise ValueError(f"{name} has shape {array.shape}, expected ({', '.join(wanted)})")
+    return array
+
+
+def within(
+    value: float,
+    low: float,
+    high: float,
+    *,
+    what: str,
+    unit: str,
+    at: str,
+    hint: str = "",
+) -> float:
+    """Return the value if it is a finite number in [low, high].
+
+    Raises:
+        DesignError: Naming value, limits and unit, if it is not.
+    """
+    number = isinstance(value, (int, float)) and not isinstance(value, bool)
+    if not number or not math.isfinite(value):
+        raise DesignError(f"{what} is {value!r}, which is not a finite number", hint=hint, at=at)
+    if not low <= value <= high:
+        unit_text = f" {unit}" if unit else ""
+        raise DesignError(
+            f"{what} {value:g}{unit_text} is outside {low:g} to {high:g}{unit_text}",
+            hint=hint or f"choose a value from {low:g} to {high:g}{unit_text}",
+            at=at,
+        )
+    return value

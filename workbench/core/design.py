@@ -1,0 +1,310 @@
+"""What the designer chooses: the dataclasses of a sensor design.
+
+Scalars carry their unit in the name. Sensor frame: origin at the centre of the base, +Z to the
+tip. Camera frame (OpenCV): +Z forward, +X right, +Y down. Every class validates itself and raises
+`DesignError` with `at`, the dotted name of the field.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import enum
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from workbench.core.check import within
+from workbench.core.errors import DesignError
+
+SCHEMA = 1
+"""Number of the design format; raised when a field changes its meaning."""
+
+
+class LightModel(enum.StrEnum):
+    """How light travels from an LED to a point of the skin."""
+
+    LINEAR = "linear"
+    """A straight line (the paper's linear light field)."""
+    PLANE_TARGET = "plane_target"
+    """Along the skin, in the plane of light, target and target normal (the paper's text)."""
+    DIRECT = "direct"
+    """A straight line with 1/r2, the LED's cosine, cast shadows and a GGX coating."""
+
+
+class LensModel(enum.StrEnum):
+    """How a direction becomes a pixel."""
+
+    PINHOLE = "pinhole"
+    EQUIDISTANT = "equidistant"
+    """Fisheye, r = f theta: the wide-angle lens of finger-shaped sensors."""
+
+
+class LedMount(enum.StrEnum):
+    """Where the LEDs sit."""
+
+    CAVITY = "cavity"
+    """In the air inside the support shell."""
+    SHELL = "shell"
+    """At the base edge of the transparent support, feeding light into it."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Layers:
+    """Thickness of each layer through the wall, from inside to outside."""
+
+    support_mm: float = field(
+        default=1.0,
+        metadata={"min": 0.4, "max": 5.0, "step": 0.1, "hint": "Rigid transparent inner shell"},
+    )
+    """Rigid transparent shell that carries the elastomer [mm]."""
+    elastomer_mm: float = field(
+        default=2.0,
+        metadata={"min": 0.8, "max": 6.0, "step": 0.1, "hint": "Soft wall: the sensing skin"},
+    )
+    """Elastomer wall [mm]. Source: GelTip, outer radius 15, inner 13 (SimTac, Supplementary)."""
+
+    def __post_init__(self) -> None:
+        at = "layers.support_mm"
+        within(self.support_mm, 0.2, 20.0, what="support thickness", unit="mm", at=at)
+        at = "layers.elastomer_mm"
+        within(self.elastomer_mm, 0.2, 20.0, what="elastomer wall", unit="mm", at=at)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Elastomer:
+    """A neo-Hookean silicone: C10 = mu / 2, D1 = 2 / K."""
+
+    young_MPa: float = 0.145
+    """Young's modulus [MPa]. Source: SimTac, 1.45e5 Pa (the paper prints kPa)."""
+    poisson: float = 0.45
+    """Poisson's ratio. Source: SimTac, Supplementary."""
+    density_g_cm3: float = 1.0
+    """Density [g/cm3]; statics do not use it, the casting recipe does."""
+    friction: float = 0.3
+    """Coulomb coefficient against the indenter. Source: SimTac, FEM model."""
+    source: str = field(default="SimTac, Supplementary", metadata={"cosmetic": True})
+
+    def __post_init__(self) -> None:
+        hint = "silicones for tactile skins have 0.03 to 3 MPa"
+        at = "material.young_MPa"
+        within(self.young_MPa, 1e-4, 1e3, what="Young's modulus", unit="MPa", at=at, hint=hint)
+        hint = "use 0.45 to 0.49 for silicone; 0.5 cannot be simulated"
+        at = "material.poisson"
+        within(self.poisson, 0.0, 0.495, what="Poisson's ratio", unit="", at=at, hint=hint)
+        at = "material.friction"
+        within(self.friction, 0.0, 2.0, what="friction coefficient", unit="", at=at)
+        at = "material.density_g_cm3"
+        within(self.density_g_cm3, 0.1, 10.0, what="density", unit="g/cm3", at=at)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Camera:
+    """One camera inside the sensor."""
+
+    width_px: int = 640
+    height_px: int = 480
+    fov_x_deg: float = 100.0
+    """Horizontal field of view [degree]; the only field of view there is.
+
+    Source: a 1.5 mm lens on an OV5640 sees about 101 degrees across.
+    """
+    lens: LensModel = LensModel.PINHOLE
+    position_mm: tuple[float, float, float] = (0.0, 0.0, 0.3)
+    """Optical centre [mm], sensor frame."""
+    wxyz: tuple[float, float, float, float] = (1.0, 0.0, 0.0, 0.0)
+    """Rotation camera to sensor as a unit quaternion; identity looks along +Z."""
+
+    def __post_init__(self) -> None:
+        for name in ("width_px", "height_px"):
+            at = f"optics.camera.{name}"
+            within(getattr(self, name), 16, 4096, what=name, unit="px", at=at)
+        widest = 175.0 if self.lens is LensModel.PINHOLE else 220.0
+        hint = "a pinhole lens cannot see 180 degrees: choose lens = 'equidistant'"
+        at = "optics.camera.fov_x_deg"
+        within(self.fov_x_deg, 5.0, widest, what="field of view", unit="degree", at=at, hint=hint)
+        if not 0.99 < sum(q * q for q in self.wxyz) < 1.01:
+            raise DesignError(
+                f"camera quaternion {self.wxyz} has length {sum(q * q for q in self.wxyz) ** 0.5:.3f}",
+                hint="give w, x, y, z of length 1; (1, 0, 0, 0) looks along +Z",
+                at="optics.camera.wxyz",
+            )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class LedRing:
+    """LEDs evenly spaced on a circle about +Z, coloured in equal sectors."""
+
+    count: int = 9
+    radius_mm: float = 9.0
+    height_mm: float = 0.5
+    """Height of the LEDs above the base [mm]."""
+    phase_deg: float = 50.0
+    """Azimuth of the first LED from +X toward +Y [degree]."""
+    tilt_deg: float = 0.0
+    """Tilt of the emission axis from +Z outward [degree]."""
+    power: float = 1.0
+    """Relative power of each LED; exposure follows it, so only ratios matter."""
+    emission_exponent: float = 1.0
+    """Radiant intensity falls as cos(angle)^exponent; 1 is Lambertian."""
+    colours: tuple[str, ...] = ("#ff0000", "#00ff00", "#0000ff")
+    """Linear RGB of each sector as #rrggbb."""
+    mount: LedMount = LedMount.CAVITY
+
+    def __post_init__(self) -> None:
+        at = "optics.ring"
+        within(self.count, 1, 64, what="LED count", unit="", at=f"{at}.count")
+        within(self.radius_mm, 0.0, 200.0, what="LED ring radius", unit="mm", at=f"{at}.radius_mm")
+        within(self.height_mm, 0.0, 200.0, what="LED height", unit="mm", at=f"{at}.height_mm")
+        within(self.tilt_deg, -90.0, 180.0, what="LED tilt", unit="degree", at=f"{at}.tilt_deg")
+        within(self.power, 0.0, 1e3, what="LED power", unit="", at=f"{at}.power")
+        exponent = self.emission_exponent
+        within(
+            exponent, 0.0, 100.0, what="emission exponent", unit="", at=f"{at}.emission_exponent"
+        )
+        for colour in self.colours:
+            if len(colour) != 7 or colour[0] != "#" or not _is_hex(colour[1:]):
+                raise DesignError(
+                    f"LED colour {colour!r} is not of the form #rrggbb",
+                    hint="for example #ff0000 for red",
+                    at=f"{at}.colours",
+                )
+        if not self.colours:
+            raise DesignError(
+                "the LED ring has no colour", hint="name at least one #rrggbb", at=f"{at}.colours"
+            )
+
+
+def _is_hex(text: str) -> bool:
+    return all(letter in "0123456789abcdefABCDEF" for letter in text)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Coating:
+    """How the skin's inner face reflects light."""
+
+    albedo: float = 0.6
+    """Diffuse reflectance in [0, 1], grey."""
+    specular: float = 0.04
+    """Reflectance at normal incidence of the glossy lobe; 0.04 is a dielectric of index 1.5."""
+    roughness: float = 0.35
+    """GGX alpha in (0, 1]; used by the `direct` model."""
+    phong_diffuse: float = 0.6
+    """k_d of the paper's Eq. 4; used by the paper's fields."""
+    phong_specular: float = 0.2
+    """k_s of the paper's Eq. 4."""
+    phong_exponent: float = 8.0
+    """alpha of the paper's Eq. 4."""
+
+    def __post_init__(self) -> None:
+        at = "optics.coating"
+        for name in ("albedo", "specular", "phong_diffuse", "phong_specular"):
+            within(getattr(self, name), 0.0, 1.0, what=name, unit="", at=f"{at}.{name}")
+        within(self.roughness, 0.01, 1.0, what="roughness", unit="", at=f"{at}.roughness")
+        exponent = self.phong_exponent
+        within(exponent, 1.0, 1e3, what="Phong exponent", unit="", at=f"{at}.phong_exponent")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Markers:
+    """Dots printed on the skin that move with it."""
+
+    visible: bool = False
+    spacing_mm: float = 3.0
+    diameter_mm: float = 0.8
+
+    def __post_init__(self) -> None:
+        at = "optics.markers"
+        within(self.spacing_mm, 0.5, 50.0, what="marker spacing", unit="mm", at=f"{at}.spacing_mm")
+        widest = self.spacing_mm
+        at = f"{at}.diameter_mm"
+        within(self.diameter_mm, 0.1, widest, what="marker diameter", unit="mm", at=at)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Optics:
+    """Camera, light, coating and markers."""
+
+    camera: Camera = field(default_factory=Camera)
+    ring: LedRing = field(default_factory=LedRing)
+    coating: Coating = field(default_factory=Coating)
+    markers: Markers = field(default_factory=Markers)
+    refractive_index: float = 1.41
+    """Index of elastomer and support [1]. Source: silicone, 1.40-1.43."""
+    light_model: LightModel = LightModel.DIRECT
+
+    def __post_init__(self) -> None:
+        at = "optics.refractive_index"
+        within(self.refractive_index, 1.0, 2.5, what="refractive index", unit="", at=at)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Meshing:
+    """How finely the body is divided."""
+
+    hex_mm: float = 0.4
+    """Edge of a hexahedron and of a skin triangle [mm]."""
+
+    def __post_init__(self) -> None:
+        hint = "0.4 mm suits walls of 1 mm and more"
+        at = "meshing.hex_mm"
+        within(self.hex_mm, 0.1, 5.0, what="mesh spacing", unit="mm", at=at, hint=hint)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class MouldOptions:
+    """How the casting mould is made."""
+
+    wall_mm: float = 6.0
+    """Thickness of the mould around the part [mm]."""
+    shrink_percent: float = 0.2
+    """Linear shrinkage of the silicone while curing [%]; the cavity is larger by it."""
+    clearance_mm: float = 0.15
+    """Gap between mating printed faces [mm]."""
+    gate_diameter_mm: float = 8.0
+    """Diameter of the pouring funnel's mouth [mm]."""
+    vent_count: int = 3
+
+    def __post_init__(self) -> None:
+        at = "mould"
+        within(self.wall_mm, 3.0, 50.0, what="mould wall", unit="mm", at=f"{at}.wall_mm")
+        within(
+            self.shrink_percent, 0.0, 10.0, what="shrinkage", unit="%", at=f"{at}.shrink_percent"
+        )
+        within(self.clearance_mm, 0.0, 1.0, what="clearance", unit="mm", at=f"{at}.clearance_mm")
+        widest = 30.0
+        at = f"{at}.gate_diameter_mm"
+        within(self.gate_diameter_mm, 1.0, widest, what="gate diameter", unit="mm", at=at)
+        within(self.vent_count, 1, 12, what="vent count", unit="", at="mould.vent_count")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SensorDesign:
+    """A whole sensor. `shape` holds the family's own parameters by name."""
+
+    name: str = field(default="untitled", metadata={"cosmetic": True})
+    family: str = "finger"
+    shape: Mapping[str, Any] = field(default_factory=dict)
+    layers: Layers = field(default_factory=Layers)
+    material: Elastomer = field(default_factory=Elastomer)
+    optics: Optics = field(default_factory=Optics)
+    meshing: Meshing = field(default_factory=Meshing)
+    mould: MouldOptions = field(default_factory=MouldOptions)
+    schema: int = field(default=SCHEMA, metadata={"cosmetic": True})
+
+    def replace(self, dotted: str, value: Any) -> SensorDesign:
+        """A copy with one field changed, for example `optics.camera.fov_x_deg`.
+
+        Raises:
+            DesignError: If there is no such field or the value is refused.
+        """
+        return _replace(self, dotted.split("."), value, dotted)
+
+
+def _replace(owner: Any, path: list[str], value: Any, dotted: str) -> Any:
+    head, *rest = path
+    if isinstance(owner, Mapping):
+        return {**owner, head: value}
+    if head not in {f.name for f in dataclasses.fields(owner)}:
+        raise DesignError(f"there is no field {dotted!r}", hint="see the README", at=dotted)
+    inner = _replace(getattr(owner, head), rest, value, dotted) if rest else value
+    return dataclasses.replace(owner, **{head: inner})

@@ -1,0 +1,104 @@
+"""Errors raised on purpose: each says what is wrong (value, limit, unit), what to do, and where.
+
+`at` names the field, for example `layers.elastomer_mm`, so that the browser can show the message
+beside the widget and the command line can print it.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+
+class WorkbenchError(Exception):
+    """Base of every error we raise on purpose."""
+
+    exit_code = 3
+    """Process exit status of the command line: 2 bad input, 3 failed computation or device."""
+
+    def __init__(self, message: str, *, hint: str = "", at: str = "") -> None:
+        super().__init__(message)
+        self.message = message
+        self.hint = hint
+        self.at = at
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Exceptions with keyword fields lose them across a process boundary unless told how.
+        return _rebuild, (type(self), self.message, self.hint, self.at, dict(vars(self)))
+
+    def as_dict(self) -> dict[str, str]:
+        """The error as the command line prints it with `--json`."""
+        return {
+            "error": type(self).__name__,
+            "message": self.message,
+            "hint": self.hint,
+            "at": self.at,
+        }
+
+
+def _rebuild(
+    cls: type[WorkbenchError], message: str, hint: str, at: str, state: dict[str, Any]
+) -> WorkbenchError:
+    error = cls(message, hint=hint, at=at)
+    vars(error).update(state)
+    return error
+
+
+class DesignError(WorkbenchError):
+    """A value the designer chose is outside what can be built or simulated."""
+
+    exit_code = 2
+
+
+class GeometryError(WorkbenchError):
+    """The CAD kernel did not return the body that was asked for."""
+
+
+class MeshingError(WorkbenchError):
+    """No usable mesh came out of a valid body."""
+
+
+class OpticsError(WorkbenchError):
+    """An image cannot be formed."""
+
+
+class SolveError(WorkbenchError):
+    """The contact solver did not reach equilibrium.
+
+    Attributes:
+        frame: Frame that failed, counted from 0.
+        residual: Relative residual that was reached.
+        last_good: Last frame that settled, -1 when none did.
+    """
+
+    def __init__(
+        self,
+        message: str,
+        *,
+        hint: str = "",
+        at: str = "",
+        frame: int = -1,
+        residual: float = float("nan"),
+        last_good: int = -1,
+    ) -> None:
+        super().__init__(message, hint=hint, at=at)
+        self.frame = frame
+        self.residual = residual
+        self.last_good = last_good
+
+
+class DeviceError(WorkbenchError):
+    """A compute device is missing or ran out of memory."""
+
+
+class StoreError(WorkbenchError):
+    """A result could not be written or read (disk full, read-only, damaged)."""
+
+
+class LaneError(WorkbenchError):
+    """A worker process ended while it was computing."""
+
+
+class Cancelled(WorkbenchError):
+    """The user asked to stop."""
+
+    exit_code = 130
