@@ -1,1 +1,1 @@
-"""Types, errors, units and hashing that every layer shares; imports the standard library and numpy only."""
+"""Types, errors, units and hashing that every layer shares; imports only numpy."""

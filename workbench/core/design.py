@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import dataclasses
 import enum
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -124,7 +125,7 @@ class Camera:
         within(self.fov_x_deg, 5.0, widest, what="field of view", unit="degree", at=at, hint=hint)
         if not 0.99 < sum(q * q for q in self.wxyz) < 1.01:
             raise DesignError(
-                f"camera quaternion {self.wxyz} has length {sum(q * q for q in self.wxyz) ** 0.5:.3f}",
+                f"camera quaternion {self.wxyz} has length {math.hypot(*self.wxyz):.3f}, not 1",
                 hint="give w, x, y, z of length 1; (1, 0, 0, 0) looks along +Z",
                 at="optics.camera.wxyz",
             )

@@ -29,7 +29,7 @@ class IndenterKind(enum.StrEnum):
 
 DEFAULT_SIZE_MM = 6.0
 DEFAULT_EDGE_RADIUS_MM = 0.45
-"""Rounding of edges [mm]: sharper than a grid cell cannot be resolved. Same as the FEM reference."""
+"""Rounding of edges [mm]: sharper than a grid cell cannot be resolved. Same as in the FEM."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -67,7 +67,7 @@ class Indenter:
             within(self.edge_radius_mm, 0.0, widest, what="edge radius", unit="mm", at=at)
         if (self.kind is IndenterKind.MESH) != (self.mesh is not None):
             raise DesignError(
-                f"an indenter of kind {self.kind} {'needs' if self.mesh is None else 'has no'} mesh",
+                f"indenter kind {self.kind} {'needs a' if self.mesh is None else 'takes no'} mesh",
                 hint="load an STL file, or choose a primitive",
                 at="indenter.mesh",
             )

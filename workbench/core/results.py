@@ -102,7 +102,7 @@ class MembraneMesh:
     inner: Skin
     """The face bonded to the rigid support."""
     cavity: Skin
-    """Inner face of the support, where light enters from the air; normals point out of the sensor."""
+    """Inner face of the support, where light leaves the air; normals point out of the sensor."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -179,9 +179,9 @@ class LightField:
     model: str
     """Name of the `LightModel`."""
     direction: np.ndarray
-    """Unit vector from the vertex to the light along its path, shape (L, V, 3), float32."""
+    """Unit vector from vertex to light along its path, shape (L, V, 3), float32."""
     irradiance: np.ndarray
-    """Perpendicular irradiance at the undeformed vertex, shadows included, shape (L, V), float32."""
+    """Perpendicular irradiance of the undeformed vertex, shadowed, shape (L, V), float32."""
     led_mm: np.ndarray
     """LED positions [mm], shape (L, 3), float64."""
     led_axis: np.ndarray
@@ -197,7 +197,7 @@ class TactileFrames:
     rgb: np.ndarray
     """sRGB images, shape (1 + K, H, W, 3), uint8."""
     depth_z_mm: np.ndarray
-    """Depth along the optical axis [mm] (not the range), shape (1 + K, H, W), float32; NaN misses."""
+    """Depth along the optical axis [mm], not the range; (1 + K, H, W), float32, NaN misses."""
     normal: np.ndarray
     """Unit normals facing the camera, sensor frame, shape (1 + K, H, W, 3), float16."""
     moved: np.ndarray
@@ -244,3 +244,19 @@ class Metrics:
     """Scalars of a variant by name; each name ends in its unit."""
 
     values: dict[str, float]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Shot:
+    """What the camera saw during a press, and the measures of it."""
+
+    frames: TactileFrames
+    metrics: Metrics
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Picture:
+    """A rendered picture."""
+
+    png: np.ndarray
+    """Bytes of a PNG file, shape (bytes,), uint8."""

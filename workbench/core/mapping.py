@@ -1,0 +1,93 @@
+"""Plain tables (as TOML holds them) to validated dataclasses, and back.
+
+Every complaint names the dotted field, so that a designer who edits a file by hand is told where.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import difflib
+import enum
+import typing
+from collections.abc import Mapping
+from typing import Any, cast
+
+from workbench.core.errors import DesignError
+
+
+def from_table(cls: type[Any], table: Any, *, at: str = "") -> Any:
+    """Build a dataclass from a table; missing fields keep their defaults.
+
+    Raises:
+        DesignError: For an unknown field, a wrong type or a refused value, with `at`.
+    """
+    if not isinstance(table, Mapping):
+        raise DesignError(
+            f"{at or 'the design'} is {table!r}, expected a table of fields",
+            hint="write it as [table] in TOML",
+            at=at,
+        )
+    hints = typing.get_type_hints(cls)
+    names = {f.name for f in dataclasses.fields(cls)}
+    values: dict[str, Any] = {}
+    for name, raw in cast("Mapping[str, Any]", table).items():
+        where = f"{at}.{name}" if at else name
+        if name not in names:
+            raise DesignError(f"there is no field {where!r}", hint=suggest(name, names), at=where)
+        values[name] = _convert(hints[name], raw, where)
+    return cls(**values)
+
+
+def to_table(value: Any) -> Any:
+    """A dataclass as nested plain tables, lists, numbers and strings."""
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        return {f.name: to_table(getattr(value, f.name)) for f in dataclasses.fields(value)}
+    if isinstance(value, enum.Enum):
+        return value.value
+    if isinstance(value, Mapping):
+        return {name: to_table(v) for name, v in cast("Mapping[str, Any]", value).items()}
+    if isinstance(value, (tuple, list)):
+        return [to_table(item) for item in cast("tuple[Any, ...]", value)]
+    return value
+
+
+def suggest(name: str, known: typing.Iterable[str]) -> str:
+    """A remedy for a misspelt name: the nearest known one, else all of them."""
+    choices = sorted(known)
+    near = difflib.get_close_matches(name, choices, n=1)
+    return f"did you mean {near[0]!r}?" if near else f"known: {', '.join(choices)}"
+
+
+def _convert(hint: Any, raw: Any, at: str) -> Any:
+    origin = typing.get_origin(hint)
+    if dataclasses.is_dataclass(hint):
+        return from_table(cast("type[Any]", hint), raw, at=at)
+    if isinstance(hint, type) and issubclass(hint, enum.Enum):
+        values = [str(member.value) for member in hint]
+        if raw not in values:
+            raise DesignError(f"{at} is {raw!r}", hint=suggest(str(raw), values), at=at)
+        return hint(raw)
+    if origin is tuple:
+        return _tuple(typing.get_args(hint), raw, at)
+    if hint is float and isinstance(raw, int) and not isinstance(raw, bool):
+        return float(raw)
+    if isinstance(hint, type) and (
+        not isinstance(raw, hint)
+        or (hint is int and raw in (True, False) and isinstance(raw, bool))
+    ):
+        raise DesignError(
+            f"{at} is {raw!r}, expected {hint.__name__}", hint="see the README", at=at
+        )
+    return raw
+
+
+def _tuple(parts: tuple[Any, ...], raw: Any, at: str) -> tuple[Any, ...]:
+    items = cast("list[Any]", raw) if isinstance(raw, (list, tuple)) else None
+    open_ended = len(parts) == 2 and parts[1] is Ellipsis
+    if items is None or (not open_ended and len(items) != len(parts)):
+        count = "values" if open_ended else f"{len(parts)} values"
+        raise DesignError(
+            f"{at} is {raw!r}, expected a list of {count}", hint="see the README", at=at
+        )
+    kinds = [parts[0]] * len(items) if open_ended else list(parts)
+    return tuple(_convert(k, item, at) for k, item in zip(kinds, items, strict=True))

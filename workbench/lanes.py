@@ -1,0 +1,214 @@
+"""Worker processes that can be killed: the only safe home for meshing, CAD and solvers.
+
+Some libraries hold the interpreter for minutes and cannot be interrupted, so heavy work runs in a
+*lane*: one spawned process that executes one call at a time. A soft cancel makes the stage's next
+`monitor` call raise `Cancelled`; after `GRACE_S` the process is killed and a new one takes its
+place. Results travel through the store, never through the pipe.
+"""
+
+from __future__ import annotations
+
+import importlib
+import itertools
+import multiprocessing
+import os
+import signal
+import threading
+import time
+import traceback
+from collections.abc import Callable
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import Any
+
+from workbench.core.errors import Cancelled, LaneError, WorkbenchError
+from workbench.core.monitor import Monitor
+from workbench.stages import STAGES, Call, Outcome, run
+from workbench.store import Store
+
+GRACE_S = 2.0
+"""Time a stage has to notice a cancel before its process is killed [s]."""
+REPORT_S = 0.05
+"""Shortest time between two progress messages [s]."""
+WARM_UP = {
+    "cad": ("designs.finger", "geometry.solid", "build123d", "manifold3d", "embreex"),
+    "sim": ("sim.contact.solver", "sim.optics.render", "embreex", "scipy.ndimage"),
+}
+"""What each lane imports before its first job, so that the first click is warm."""
+
+
+class Lane:
+    """One worker process; `run` blocks the calling thread until the call is done."""
+
+    def __init__(self, name: str, store: Store) -> None:
+        self.name = name
+        self.store = store
+        self._context = multiprocessing.get_context("spawn")
+        self._cancelled = self._context.Value("q", -1)
+        self._turn = threading.Lock()
+        self._numbers = itertools.count()
+        self._current = -1
+        self._closed = False
+        self._start()
+
+    def _start(self) -> None:
+        self._pipe, child = self._context.Pipe()
+        self._process = self._context.Process(
+            target=_serve,
+            args=(self.name, self.store.root, child, self._cancelled),
+            name=f"workbench-{self.name}",
+            daemon=True,
+        )
+        self._process.start()
+        child.close()
+
+    def run(self, call: Call, monitor: Monitor) -> Outcome:
+        """Execute a call in the worker, one at a time.
+
+        Raises:
+            Cancelled: If the monitor raised it, or the lane was closed.
+            LaneError: If the process ended by itself.
+            WorkbenchError: Whatever the stage raised.
+        """
+        while not self._turn.acquire(timeout=0.1):
+            monitor(0.0, f"waiting for the {self.name} worker")
+        try:
+            return self._run(call, monitor)
+        finally:
+            self._turn.release()
+
+    def _run(self, call: Call, monitor: Monitor) -> Outcome:
+        if self._closed:
+            raise Cancelled("the workbench is closing")
+        if not self._process.is_alive():
+            self._start()
+        number = next(self._numbers)
+        self._pipe.send((number, call))
+        asked: float | None = None
+        fraction, note = 0.0, ""
+        while True:
+            try:
+                if self._pipe.poll(0.05):
+                    kind, value = self._pipe.recv()
+                    if kind == "progress":
+                        fraction, note = value
+                    elif kind == "done":
+                        return value
+                    else:
+                        raise value
+            except (EOFError, OSError):
+                raise self._ended(asked) from None
+            if asked is None:
+                try:
+                    monitor(fraction, note)
+                except Cancelled:
+                    asked = time.monotonic()
+                    self._cancelled.value = number
+            elif time.monotonic() - asked > GRACE_S:
+                self._kill()
+                raise Cancelled(f"{call.stage} was stopped", hint="run it again when ready")
+
+    def _ended(self, asked: float | None) -> WorkbenchError:
+        self._process.join(1.0)
+        code = self._process.exitcode
+        self._kill()
+        if asked is not None or self._closed:
+            return Cancelled("stopped")
+        how = f"signal {-code}" if code is not None and code < 0 else f"exit status {code}"
+        return LaneError(
+            f"the {self.name} process ended ({how})",
+            hint="it was started again; finished results are kept, so run once more. If it "
+            "repeats, the machine may be out of memory: use a coarser mesh or grid",
+            at=self.name,
+        )
+
+    def _kill(self) -> None:
+        self._process.kill()
+        self._process.join(1.0)
+        self._pipe.close()
+        if not self._closed:
+            self._start()
+
+    def close(self) -> None:
+        """End the process; a running call raises `Cancelled`."""
+        self._closed = True
+        self._process.kill()
+        self._process.join(1.0)
+
+
+class LaneRunner:
+    """Runs each call in the lane its stage names; stored results do not leave this process."""
+
+    def __init__(self, store: Store) -> None:
+        self.store = store
+        self.lanes = {name: Lane(name, store) for name in WARM_UP}
+
+    def run(self, call: Call, monitor: Monitor) -> Outcome:
+        """Compute the call in its lane unless it is stored."""
+        if self.store.has(call.stage, call.key):
+            return Outcome(stage=call.stage, key=call.key, cached=True, seconds=0.0)
+        return self.lanes[STAGES[call.stage].lane].run(call, monitor)
+
+    def close(self) -> None:
+        """End all worker processes."""
+        for lane in self.lanes.values():
+            lane.close()
+
+
+def _serve(name: str, root: Path, pipe: Connection, cancelled: Any) -> None:
+    """Main loop of a worker process."""
+    # Ctrl-C in a terminal reaches the whole group; the parent decides when a lane stops.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    os.environ.setdefault("ENABLE_TAICHI_HEADER_PRINT", "0")
+    _follow_parent()
+    for module in WARM_UP[name]:
+        importlib.import_module(module)
+    store = Store(root)
+    while True:
+        try:
+            number, call = pipe.recv()
+        except EOFError:
+            return
+        pipe.send(_answer(store, call, _reporter(pipe, cancelled, number)))
+
+
+def _answer(store: Store, call: Call, monitor: Monitor) -> tuple[str, Any]:
+    try:
+        return "done", run(store, call, monitor)
+    except WorkbenchError as error:
+        return "error", error
+    except MemoryError:
+        return "error", LaneError(
+            f"{call.stage} ran out of memory", hint="use a coarser mesh or grid", at=call.stage
+        )
+    except Exception as error:
+        # A bug: the traceback must reach the log of the server, which writes the crash file.
+        text = "".join(traceback.format_exception(error))
+        return "error", LaneError(f"{call.stage} failed: {error!r}", hint=text, at=call.stage)
+
+
+def _reporter(pipe: Connection, cancelled: Any, number: int) -> Callable[..., None]:
+    last = 0.0
+
+    def monitor(fraction: float, note: str = "") -> None:
+        nonlocal last
+        if cancelled.value == number:
+            raise Cancelled("cancelled by the user")
+        now = time.monotonic()
+        if now - last >= REPORT_S:
+            last = now
+            pipe.send(("progress", (fraction, note)))
+
+    return monitor
+
+
+def _follow_parent() -> None:
+    """Leave no orphan: end this process when the server dies, whatever it is doing."""
+    parent = multiprocessing.parent_process()
+
+    def watch() -> None:
+        if parent is not None:
+            parent.join()
+            os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()

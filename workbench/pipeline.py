@@ -1,0 +1,131 @@
+"""From a design and a press to every result: used by the command line and the browser alike.
+
+`plan` names all calls and keys without computing anything; `evaluate` runs them in order through a
+runner (in this process, or in worker lanes) and yields each outcome.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+from workbench.core.design import SensorDesign
+from workbench.core.monitor import Monitor, silent
+from workbench.core.press import ContactSettings, Indenter, Press
+from workbench.stages import Call, Outcome, run
+from workbench.store import Store
+
+EVERYTHING = ("build", "mesh", "lattice", "bake", "press", "shoot", "mould", "picture")
+"""All stages in the order in which they run."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class PressCase:
+    """What is pressed, where, and how it is computed."""
+
+    indenter: Indenter = field(default_factory=Indenter)
+    press: Press = field(default_factory=Press)
+    settings: ContactSettings = field(default_factory=ContactSettings)
+
+
+class Runner(Protocol):
+    """Executes calls somewhere."""
+
+    def run(self, call: Call, monitor: Monitor) -> Outcome:
+        """Compute the call unless it is stored."""
+        ...
+
+
+class InlineRunner:
+    """Runs calls in this process."""
+
+    def __init__(self, store: Store) -> None:
+        self.store = store
+
+    def run(self, call: Call, monitor: Monitor) -> Outcome:
+        """Compute the call here unless it is stored."""
+        return run(self.store, call, monitor)
+
+
+class StageMonitor(Protocol):
+    """Progress of one named stage."""
+
+    def __call__(self, stage: str, fraction: float, note: str) -> None:
+        """Report that `fraction` of `stage` is done."""
+        ...
+
+
+def plan(design: SensorDesign, case: PressCase) -> dict[str, Call]:
+    """Every call of the chain by stage name, in the order of `EVERYTHING`.
+
+    Raises:
+        DesignError: If the family is unknown or refuses the shape.
+    """
+    from designs.family import family, resolve_shape
+
+    shape = resolve_shape(design.family, design.shape)
+    family(design.family).check(shape, design.layers)
+    build = Call("build", (design.family, shape, design.layers))
+    mesh = Call("mesh", (build.ref, design.meshing))
+    lattice = Call("lattice", (build.ref, case.settings.grid_mm))
+    bake = Call("bake", (mesh.ref, design.optics.ring, design.optics.light_model))
+    press = Call(
+        "press",
+        (mesh.ref, lattice.ref, design.material, case.indenter, case.press, case.settings),
+    )
+    shoot = Call("shoot", (mesh.ref, bake.ref, design.optics, press.ref))
+    mould = Call("mould", (build.ref, design.mould))
+    picture = Call("picture", (mould.ref,))
+    calls = (build, mesh, lattice, bake, press, shoot, mould, picture)
+    return {call.stage: call for call in calls}
+
+
+def needed(calls: dict[str, Call], wanted: Iterable[str]) -> list[str]:
+    """The wanted stages and all they depend on, in order."""
+    todo: set[str] = set()
+
+    def visit(name: str) -> None:
+        todo.add(name)
+        for value in calls[name].inputs:
+            stage = getattr(value, "stage", None)
+            if stage in calls:
+                visit(stage)
+
+    for name in wanted:
+        visit(name)
+    return [name for name in calls if name in todo]
+
+
+def evaluate(
+    design: SensorDesign,
+    case: PressCase,
+    runner: Runner,
+    *,
+    wanted: Iterable[str] = EVERYTHING,
+    monitor: StageMonitor | None = None,
+) -> Iterator[Outcome]:
+    """Run the wanted stages and what they need; yield each outcome as it comes.
+
+    Raises:
+        WorkbenchError: From the first stage that fails; earlier results stay stored.
+    """
+    calls = plan(design, case)
+    for name in needed(calls, wanted):
+        yield runner.run(calls[name], stage_monitor(monitor, name))
+
+
+def stage_monitor(monitor: StageMonitor | None, stage: str) -> Monitor:
+    """A stage's own monitor that reports under its name."""
+    if monitor is None:
+        return silent
+    return lambda fraction, note="": monitor(stage, fraction, note)
+
+
+def results(store: Store, calls: dict[str, Call], names: Iterable[str]) -> dict[str, Any]:
+    """Stored results by stage name; stages that have not run are left out."""
+    return {
+        name: store.load(name, calls[name].key)
+        for name in names
+        if store.has(name, calls[name].key)
+    }

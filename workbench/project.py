@@ -1,0 +1,206 @@
+"""A project folder (store, designs, crash files) and designs as TOML with a schema number.
+
+```
+.workbench/
+  store/     results by stage and key
+  designs/   autosave.toml and saved variants
+  crash/     one file per bug that reached the edge
+```
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import tempfile
+import time
+import tomllib
+from collections.abc import Mapping
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+from workbench.core.design import SCHEMA, SensorDesign
+from workbench.core.errors import DesignError, StoreError
+from workbench.core.mapping import from_table, suggest, to_table
+from workbench.store import Store
+
+VARIABLE = "WORKBENCH_PROJECT"
+DEFAULT_FOLDER = ".workbench"
+AUTOSAVE = "autosave"
+MAX_TOML_BYTES = 1_000_000
+
+
+class Project:
+    """Where a designer's work lives."""
+
+    def __init__(self, folder: Path | str | None = None) -> None:
+        self.folder = Path(folder or os.environ.get(VARIABLE) or DEFAULT_FOLDER).resolve()
+        self.store = Store(self.folder / "store")
+
+    def design_path(self, name: str) -> Path:
+        """File of a saved design.
+
+        Raises:
+            DesignError: If the name could leave the folder.
+        """
+        if not name or name[0] in ". " or any(c in name for c in '/\\:*?"<>|\0') or len(name) > 80:
+            raise DesignError(
+                f"{name!r} cannot be a design name",
+                hint="use letters, digits, spaces and dashes, at most 80",
+                at="name",
+            )
+        return self.folder / "designs" / f"{name}.toml"
+
+    def save_design(self, name: str, design: SensorDesign, **extra: Any) -> Path:
+        """Write a design by atomic replacement; `extra` tables are kept beside it."""
+        path = self.design_path(name)
+        write_atomically(path, (design_to_toml(design, **extra)).encode())
+        return path
+
+    def saved_names(self) -> list[str]:
+        """Names of saved designs, the autosave left out."""
+        return sorted(
+            p.stem for p in (self.folder / "designs").glob("*.toml") if p.stem != AUTOSAVE
+        )
+
+    def write_crash(self, text: str) -> Path:
+        """Keep a traceback for a bug report; returns the file."""
+        path = self.folder / "crash" / f"{time.strftime('%Y%m%d-%H%M%S')}-{os.getpid()}.txt"
+        write_atomically(path, text.encode())
+        return path
+
+
+def write_atomically(path: Path, content: bytes) -> None:
+    """Replace a file so that a reader sees the old or the new one, never a part.
+
+    Raises:
+        StoreError: If the disk is full or read-only; the old file stays.
+    """
+    part = ""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, part = tempfile.mkstemp(dir=path.parent, prefix=".part-")
+        with os.fdopen(handle, "wb") as file:
+            file.write(content)
+            file.flush()
+            os.fsync(file.fileno())
+        Path(part).replace(path)
+    except OSError as error:
+        if part:
+            with contextlib.suppress(OSError):
+                Path(part).unlink()
+        raise StoreError(
+            f"cannot write {path}: {error.strerror or error}",
+            hint="free some space or choose a writable folder; the old file is kept",
+            at=str(path),
+        ) from error
+
+
+def presets() -> dict[str, str]:
+    """Name and one-line purpose of each shipped design."""
+    found = {}
+    for file in sorted(_preset_folder().iterdir(), key=lambda f: f.name):
+        if file.name.endswith(".toml"):
+            text = file.read_text()
+            found[file.name[:-5]] = text.splitlines()[0].lstrip("# ")
+    return found
+
+
+def _preset_folder() -> Any:
+    return resources.files("designs") / "presets"
+
+
+def load_design(name: str) -> SensorDesign:
+    """A preset by name, else a family with its defaults, else a TOML file.
+
+    Raises:
+        DesignError: If there is no such preset, family or file, or the file is not valid.
+    """
+    from designs.family import families
+
+    if name in presets():
+        return design_from_toml((_preset_folder() / f"{name}.toml").read_text(), source=name)
+    if name in families():
+        return SensorDesign(name=name, family=name)
+    if name.endswith(".toml") or os.sep in name:
+        return design_from_toml(_read(Path(name)), source=name)
+    raise DesignError(
+        f"there is no preset, family or TOML file named {name!r}",
+        hint=suggest(name, {*presets(), *families()}),
+        at="design",
+    )
+
+
+def _read(path: Path) -> str:
+    try:
+        size = path.stat().st_size
+        if size > MAX_TOML_BYTES:
+            raise DesignError(
+                f"{path} has {size} bytes, a design has at most {MAX_TOML_BYTES}",
+                hint="is this really a design file?",
+                at="design",
+            )
+        return path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise DesignError(
+            f"cannot read {path}: {getattr(error, 'strerror', None) or error}",
+            hint="give the path of a readable UTF-8 TOML file",
+            at="design",
+        ) from error
+
+
+def design_from_toml(text: str, *, source: str = "the file") -> SensorDesign:
+    """Parse and check a design; tables that the design does not own (`press`) are left out.
+
+    Raises:
+        DesignError: For broken TOML, a newer schema, unknown fields or refused values.
+    """
+    table = parse_toml(text, source=source)
+    design = from_table(SensorDesign, {k: v for k, v in table.items() if k != "press_case"})
+    check_design(design)
+    return design
+
+
+def parse_toml(text: str, *, source: str) -> Mapping[str, Any]:
+    """The tables of a design file, its schema checked.
+
+    Raises:
+        DesignError: For broken TOML or a newer schema.
+    """
+    try:
+        table = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise DesignError(
+            f"{source} is not valid TOML: {error}", hint="correct the line named", at="design"
+        ) from error
+    schema = table.get("schema", SCHEMA)
+    if not isinstance(schema, int) or isinstance(schema, bool) or schema < 1:
+        raise DesignError(
+            f"{source} has schema {schema!r}", hint=f"write schema = {SCHEMA}", at="schema"
+        )
+    if schema > SCHEMA:
+        raise DesignError(
+            f"{source} has schema {schema}, this program reads up to {SCHEMA}",
+            hint="update the workbench, or save the design with the older version",
+            at="schema",
+        )
+    return table
+
+
+def check_design(design: SensorDesign) -> None:
+    """Check what needs the family: its shape parameters and their fit with the layers.
+
+    Raises:
+        DesignError: Naming the field.
+    """
+    from designs.family import family, resolve_shape
+
+    family(design.family).check(resolve_shape(design.family, design.shape), design.layers)
+
+
+def design_to_toml(design: SensorDesign, **extra: Any) -> str:
+    """A design as readable TOML; `design_from_toml` gives the same design back."""
+    import tomli_w
+
+    return tomli_w.dumps({**to_table(design), **to_table(extra)})

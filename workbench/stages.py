@@ -1,0 +1,198 @@
+"""The stages: name, version, lane, narrow inputs, function. Nothing else calls geometry or sim.
+
+A stage is a pure function of dataclasses and a `Monitor`. What it reads is what its key holds:
+pass the part of the design a stage needs, never the whole, and a camera move cannot re-run
+contact. Bump `version` when the output of a stage changes.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from workbench.core.design import (
+    Elastomer,
+    Layers,
+    LedRing,
+    LightModel,
+    Meshing,
+    MouldOptions,
+    Optics,
+)
+from workbench.core.digest import digest
+from workbench.core.monitor import Monitor, part, silent
+from workbench.core.press import ContactSettings, Indenter, Press
+from workbench.core.results import (
+    Contact,
+    LightField,
+    MaterialPoints,
+    MembraneMesh,
+    MouldSet,
+    Picture,
+    Shot,
+    Solid,
+)
+from workbench.store import Store, timed
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Stage:
+    """One step of the chain."""
+
+    name: str
+    version: int
+    lane: str
+    """Worker process that runs it: `cad` or `sim`."""
+    function: Callable[..., Any]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Ref:
+    """A stored result that a later stage reads."""
+
+    stage: str
+    key: str
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """A stage with its inputs; upstream results stand as `Ref`, so keys need no computing."""
+
+    stage: str
+    inputs: tuple[Any, ...]
+
+    @property
+    def key(self) -> str:
+        """Key of the result in the store."""
+        return digest((self.stage, STAGES[self.stage].version, self.inputs))
+
+    @property
+    def ref(self) -> Ref:
+        """The result, as an input of a later stage."""
+        return Ref(stage=self.stage, key=self.key)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Outcome:
+    """A stage that is done."""
+
+    stage: str
+    key: str
+    cached: bool
+    seconds: float
+    """Time spent now [s]; for a cached result the time of the look-up."""
+
+
+def run(store: Store, call: Call, monitor: Monitor = silent) -> Outcome:
+    """Compute a call unless its result is stored, and store it.
+
+    Raises:
+        WorkbenchError: Whatever the stage raises; nothing is stored then.
+    """
+    stage = STAGES[call.stage]
+    key = call.key
+    if store.has(stage.name, key):
+        return Outcome(stage=stage.name, key=key, cached=True, seconds=0.0)
+    inputs = [store.load(i.stage, i.key) if isinstance(i, Ref) else i for i in call.inputs]
+    value, seconds = timed(stage.function, *inputs, monitor=monitor)
+    store.save(stage.name, key, value, seconds=seconds, version=stage.version)
+    return Outcome(stage=stage.name, key=key, cached=False, seconds=seconds)
+
+
+def build(family: str, shape: Any, layers: Layers, *, monitor: Monitor) -> Solid:
+    """Parameters to a labelled body."""
+    from designs.family import family as find_family
+    from geometry.solid import assemble
+
+    bodies = find_family(family).build(shape, layers)
+    monitor(0.5, "labelling faces")
+    return assemble(**{f.name: getattr(bodies, f.name) for f in dataclasses.fields(bodies)})
+
+
+def mesh(solid: Solid, meshing: Meshing, *, monitor: Monitor) -> MembraneMesh:
+    """Body to hexahedra and uniform skins."""
+    from geometry.hexmesh import mesh_membrane
+
+    return mesh_membrane(solid, meshing, monitor=monitor)
+
+
+def lattice(solid: Solid, grid_mm: float, *, monitor: Monitor) -> MaterialPoints:
+    """Body to material points on a reference lattice."""
+    from geometry.lattice import material_points
+
+    return material_points(solid.membrane, grid_mm, monitor=monitor)
+
+
+def bake(mesh: MembraneMesh, ring: LedRing, model: LightModel, *, monitor: Monitor) -> LightField:
+    """Light of each LED at each vertex of the skin."""
+    from sim.optics.bake import bake_light
+
+    return bake_light(mesh, ring, model, monitor=monitor)
+
+
+def press(
+    mesh: MembraneMesh,
+    points: MaterialPoints,
+    material: Elastomer,
+    indenter: Indenter,
+    path: Press,
+    settings: ContactSettings,
+    *,
+    monitor: Monitor,
+) -> Contact:
+    """Quasi-static contact along a press path."""
+    from sim.contact.solver import press_membrane
+    from workbench.devices import open_device
+
+    monitor(0.0, "opening the device")
+    open_device()
+    return press_membrane(mesh, points, material, indenter, path, settings, monitor=monitor)
+
+
+def shoot(
+    mesh: MembraneMesh,
+    light: LightField,
+    optics: Optics,
+    contact: Contact,
+    *,
+    monitor: Monitor,
+) -> Shot:
+    """Tactile images of all frames, the background first, and their measures."""
+    from sim.metrics import measure
+    from sim.optics.render import shoot as shoot_frames
+
+    frames = shoot_frames(
+        mesh, light, optics, contact.displacement_mm, monitor=part(monitor, 0.0, 0.9)
+    )
+    return Shot(frames=frames, metrics=measure(mesh, contact, frames, light))
+
+
+def mould(solid: Solid, options: MouldOptions, *, monitor: Monitor) -> MouldSet:
+    """Printable mould of the body."""
+    from geometry.moulds import make_mould
+
+    return make_mould(solid, options, monitor=monitor)
+
+
+def picture(moulds: MouldSet, *, monitor: Monitor) -> Picture:
+    """The exploded mould as a picture for the report."""
+    from geometry.pictures import exploded_mould
+
+    return Picture(png=exploded_mould(moulds))
+
+
+STAGES = {
+    stage.name: stage
+    for stage in (
+        Stage(name="build", version=1, lane="cad", function=build),
+        Stage(name="mesh", version=1, lane="cad", function=mesh),
+        Stage(name="lattice", version=1, lane="cad", function=lattice),
+        Stage(name="bake", version=1, lane="sim", function=bake),
+        Stage(name="press", version=1, lane="sim", function=press),
+        Stage(name="shoot", version=1, lane="sim", function=shoot),
+        Stage(name="mould", version=1, lane="cad", function=mould),
+        Stage(name="picture", version=1, lane="cad", function=picture),
+    )
+}

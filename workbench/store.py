@@ -1,0 +1,209 @@
+"""Results on disk: write-once folders `<root>/<stage>/<key>/*.npy` with a `meta.json`.
+
+A result is written into a `.part-<pid>-...` folder, synced, and renamed: whoever sees the folder
+sees all of it, and of two writers the first one wins. Arrays are memory-mapped when loaded, so the
+browser process never reads what it does not show.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import json
+import os
+import shutil
+import tempfile
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from workbench.core.codec import pack, unpack
+from workbench.core.errors import StoreError
+
+META = "meta.json"
+DEFAULT_LIMIT_BYTES = 20 * 2**30
+"""Size at which the least recently used results go."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Entry:
+    """One stored result."""
+
+    stage: str
+    key: str
+    seconds: float
+    """Time the computation took [s]."""
+    bytes: int
+
+
+class Store:
+    """A folder of results, shared by all processes of a project."""
+
+    def __init__(self, root: Path | str, *, limit_bytes: int = DEFAULT_LIMIT_BYTES) -> None:
+        self.root = Path(root)
+        self.limit_bytes = limit_bytes
+
+    def path(self, stage: str, key: str) -> Path:
+        """Folder of a result, whether it exists or not."""
+        return self.root / stage / key
+
+    def has(self, stage: str, key: str) -> bool:
+        """Whether the whole result is there."""
+        return (self.path(stage, key) / META).exists()
+
+    def entry(self, stage: str, key: str) -> Entry:
+        """What is known of a stored result."""
+        meta = self._meta(stage, key)
+        return Entry(stage=stage, key=key, seconds=meta["seconds"], bytes=meta["bytes"])
+
+    def load(self, stage: str, key: str) -> Any:
+        """The stored dataclass, arrays memory-mapped read-only.
+
+        Raises:
+            StoreError: If it is missing or damaged.
+        """
+        meta = self._meta(stage, key)
+        folder = self.path(stage, key)
+        try:
+            arrays = {
+                name: np.load(folder / f"{name}.npy", mmap_mode="r") for name in meta["arrays"]
+            }
+            value = unpack(arrays, meta["tree"])
+        except (OSError, ValueError, KeyError, TypeError) as error:
+            raise StoreError(
+                f"the stored result {stage}/{key} is damaged: {error}",
+                hint=f"delete the folder {folder} and run again",
+                at=stage,
+            ) from error
+        with contextlib.suppress(OSError):
+            os.utime(folder / META)
+        return value
+
+    def save(self, stage: str, key: str, value: Any, *, seconds: float, version: int) -> None:
+        """Write a result once; a second writer of the same key is ignored.
+
+        Raises:
+            StoreError: If the disk is full or read-only; nothing half-written is left.
+        """
+        arrays, tree = pack(value)
+        size = sum(a.nbytes for a in arrays.values())
+        meta = {
+            "stage": stage,
+            "version": version,
+            "seconds": seconds,
+            "bytes": size,
+            "arrays": sorted(arrays),
+            "tree": tree,
+        }
+        with self._writing(stage) as part:
+            for name, array in arrays.items():
+                _write(part / f"{name}.npy", lambda file, a=array: np.save(file, a))
+            _write(part / META, lambda file: file.write(json.dumps(meta).encode()))
+            # Losing a race leaves the winner's folder; contents are equal by construction.
+            with contextlib.suppress(FileExistsError):
+                _rename(part, self.path(stage, key))
+
+    @contextlib.contextmanager
+    def _writing(self, stage: str) -> Iterator[Path]:
+        part: Path | None = None
+        try:
+            folder = self.root / stage
+            folder.mkdir(parents=True, exist_ok=True)
+            part = Path(tempfile.mkdtemp(dir=folder, prefix=f".part-{os.getpid()}-"))
+            yield part
+        except OSError as error:
+            raise _disk_error(error, self.root) from error
+        finally:
+            if part is not None:
+                shutil.rmtree(part, ignore_errors=True)
+
+    def _meta(self, stage: str, key: str) -> dict[str, Any]:
+        try:
+            return json.loads((self.path(stage, key) / META).read_bytes())
+        except (OSError, ValueError) as error:
+            raise StoreError(
+                f"the stored result {stage}/{key} cannot be read: {error}",
+                hint="run the stage again; it will be recomputed",
+                at=stage,
+            ) from error
+
+    def sweep(self) -> int:
+        """Remove what dead writers left behind, then the oldest results beyond the size limit.
+
+        Returns:
+            Folders removed.
+        """
+        removed = 0
+        for part in self.root.glob("*/.part-*"):
+            if not _alive(int(part.name.split("-")[1])):
+                shutil.rmtree(part, ignore_errors=True)
+                removed += 1
+        entries: list[tuple[float, int, Path]] = []
+        for meta in self.root.glob(f"*/*/{META}"):
+            with contextlib.suppress(OSError, ValueError, KeyError):
+                size = json.loads(meta.read_bytes())["bytes"]
+                entries.append((meta.stat().st_mtime, size, meta.parent))
+        total = sum(size for _, size, _ in entries)
+        for _, size, folder in sorted(entries, key=lambda item: item[0]):
+            if total <= self.limit_bytes:
+                break
+            # The meta file goes first: a half-removed folder then counts as absent.
+            (folder / META).unlink(missing_ok=True)
+            shutil.rmtree(folder, ignore_errors=True)
+            total -= size
+            removed += 1
+        return removed
+
+
+def timed(function: Any, *args: Any, **keywords: Any) -> tuple[Any, float]:
+    """The result of a call and the seconds it took."""
+    start = time.perf_counter()
+    value = function(*args, **keywords)
+    return value, time.perf_counter() - start
+
+
+def _write(path: Path, write: Any) -> None:
+    with path.open("wb") as file:
+        write(file)
+        file.flush()
+        os.fsync(file.fileno())
+
+
+def _rename(part: Path, final: Path) -> None:
+    try:
+        part.rename(final)
+    except OSError as error:
+        if error.errno not in (errno.ENOTEMPTY, errno.EEXIST):
+            raise
+        raise FileExistsError(str(final)) from error
+
+
+def _disk_error(error: OSError, root: Path) -> StoreError:
+    if error.errno in (errno.ENOSPC, errno.EDQUOT):
+        with contextlib.suppress(OSError):
+            free_mb = shutil.disk_usage(root).free / 2**20
+            return StoreError(
+                f"the disk of {root} is full ({free_mb:.0f} MB free)",
+                hint="free some space, or choose another folder with --project; "
+                "finished results are kept",
+                at="store",
+            )
+    return StoreError(
+        f"cannot write to {root}: {error.strerror or error}",
+        hint="check the folder's permissions, or choose another one with --project",
+        at="store",
+    )
+
+
+def _alive(pid: int) -> bool:
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    except PermissionError:
+        return True
+    return True
