@@ -1,0 +1,147 @@
+"""Booleans on B-rep bodies that check what came back.
+
+The CAD kernel (OCCT) fails silently: it returns the uncut body, an empty one or one that lost a
+feature, with `is_valid` true. So every operation states what it must have done to the volume, the
+bounding box and the number of pieces, and is refused when it did not.
+
+Bodies are duck-typed (as build123d's `Shape`: `volume`, `is_valid`, `bounding_box(optimal=...)`,
+`solids()` and the operators `-`, `+`, `&`), so this module imports no CAD package.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+from workbench.core.errors import GeometryError
+
+TRIVIAL_MM3 = 1e-6
+"""Smallest change of volume that counts as one [mm3]; OCCT volumes repeat to about 1e-9."""
+BOX_SLACK_MM = 0.05
+"""Growth of a bounding box that is tolerance, not material [mm]: OCCT pads boxes of splines."""
+
+
+class Limits(NamedTuple):
+    """Open interval in which the volume of a result must lie [mm3]."""
+
+    low_mm3: float
+    high_mm3: float
+
+
+def cut(body: Any, tool: Any, *, what: str, pieces: int = 1) -> Any:
+    """The body without the tool; the volume must fall, and by no more than the tool's.
+
+    Args:
+        what: Name of the feature, for the message.
+        pieces: Solids the result must have.
+
+    Raises:
+        GeometryError: If the tool missed, the body vanished, fell apart or grew.
+    """
+    before, removed = volume(body), volume(tool)
+    limits = Limits(max(0.0, before - removed - _slack(before)), before)
+    result = body - tool
+    return _checked(result, "cut", what, (before, removed), limits, (body,), pieces)
+
+
+def fuse(body: Any, tool: Any, *, what: str, pieces: int = 1) -> Any:
+    """The body and the tool as one; the volume must grow, and by no more than the tool's.
+
+    Raises:
+        GeometryError: If nothing was added, or the result is not `pieces` solids.
+    """
+    before, added = volume(body), volume(tool)
+    limits = Limits(max(before, added), before + added + _slack(before))
+    result = body + tool
+    return _checked(result, "fuse", what, (before, added), limits, (body, tool), pieces)
+
+
+def intersect(body: Any, tool: Any, *, what: str, pieces: int = 1) -> Any:
+    """The common part of body and tool; it must not be empty, nor all of the body.
+
+    Raises:
+        GeometryError: If they do not overlap, the tool holds the whole body, or pieces differ.
+    """
+    before, other = volume(body), volume(tool)
+    limits = Limits(0.0, min(before, other + _slack(other)))
+    result = body & tool
+    return _checked(result, "intersect", what, (before, other), limits, (body,), pieces)
+
+
+def expect_volume(body: Any, expected_mm3: float, *, what: str, relative: float = 1e-6) -> Any:
+    """The body, if it is valid, one solid and has the volume known in closed form.
+
+    Raises:
+        GeometryError: If not; OCCT's volumes of revolved ellipses are good to about 1e-9.
+    """
+    found_mm3 = volume(body)
+    story = f"{what}: expected {expected_mm3:.6g} mm3, result {found_mm3:.6g} mm3"
+    if abs(found_mm3 - expected_mm3) > relative * abs(expected_mm3):
+        raise _failed(story, "the volume is wrong")
+    if not body.is_valid or len(body.solids()) != 1:
+        raise _failed(story, "the body is not one valid solid")
+    return body
+
+
+def volume(body: Any) -> float:
+    """Volume of a body or of a list of bodies [mm3]; 0 for None, which OCCT returns for empty."""
+    if body is None:
+        return 0.0
+    if isinstance(body, Iterable) and not hasattr(body, "volume"):
+        return sum(volume(item) for item in body)
+    return float(body.volume)
+
+
+def _slack(size_mm3: float) -> float:
+    return TRIVIAL_MM3 + 1e-6 * abs(size_mm3)
+
+
+def _checked(
+    result: Any,
+    operation: str,
+    what: str,
+    volumes: tuple[float, float],
+    limits: Limits,
+    within: tuple[Any, ...],
+    pieces: int,
+) -> Any:
+    after = volume(result)
+    story = (
+        f"{operation} of {what}: body {volumes[0]:.6g} mm3, tool {volumes[1]:.6g} mm3, "
+        f"result {after:.6g} mm3"
+    )
+    low_mm3, high_mm3 = limits.low_mm3 + TRIVIAL_MM3, limits.high_mm3 - TRIVIAL_MM3
+    if not low_mm3 < after < high_mm3:
+        raise _failed(story, f"expected {limits.low_mm3:.6g} to {limits.high_mm3:.6g} mm3")
+    if not result.is_valid:
+        raise _failed(story, "the body is not valid")
+    if not _inside(result, within):
+        raise _failed(story, "the body grew beyond its bounding box")
+    found = len(result.solids())
+    if found != pieces:
+        raise _failed(story, f"{found} pieces instead of {pieces}")
+    return result
+
+
+def _failed(story: str, reason: str) -> GeometryError:
+    return GeometryError(
+        f"{story}; {reason}",
+        hint="change the last parameter a little, or make the feature larger or smaller",
+        at="shape",
+    )
+
+
+def _inside(result: Any, bodies: tuple[Any, ...]) -> bool:
+    # Exact boxes of surfaces of revolution take 0.1 s each, loose ones 0.1 ms; a loose box may
+    # stand out by the control points of a trimmed surface, so only then is the exact one asked.
+    return any(_within_boxes(result, bodies, optimal=optimal) for optimal in (False, True))
+
+
+def _within_boxes(result: Any, bodies: tuple[Any, ...], *, optimal: bool) -> bool:
+    boxes = [body.bounding_box(optimal=optimal) for body in bodies]
+    inner = result.bounding_box(optimal=optimal)
+    return all(
+        getattr(inner.min, axis) >= min(getattr(box.min, axis) for box in boxes) - BOX_SLACK_MM
+        and getattr(inner.max, axis) <= max(getattr(box.max, axis) for box in boxes) + BOX_SLACK_MM
+        for axis in "XYZ"
+    )

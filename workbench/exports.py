@@ -1,0 +1,51 @@
+"""`workbench export`: bodies, mould, meshes and the design file, without a press."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from workbench.core.design import SensorDesign
+from workbench.outputs import write_moulds
+from workbench.pipeline import InlineRunner, PressCase, StageMonitor, evaluate, plan, results
+from workbench.project import design_to_toml, write_atomically
+from workbench.store import Store
+
+STAGES = ("mesh", "mould", "picture")
+
+
+def export_design(
+    design: SensorDesign, out: Path, store: Store, monitor: StageMonitor
+) -> Iterator[Path]:
+    """Write the files of a design and yield their paths.
+
+    `design.toml`, `membrane.stl`, `support.stl`, `base.stl`, `mesh.npz` (nodes, hexahedra, labels),
+    `exploded.png` and everything under `moulds/`.
+
+    Raises:
+        WorkbenchError: If a stage fails or the folder cannot be written.
+    """
+    from geometry.export import stl_bytes
+
+    for _ in evaluate(design, PressCase(), InlineRunner(store), wanted=STAGES, monitor=monitor):
+        pass
+    found = results(store, plan(design, PressCase()), ("build", *STAGES))
+    solid, hexes = found["build"], found["mesh"].hexes
+    files = {"design.toml": design_to_toml(design).encode()}
+    for name in ("membrane", "support", "base"):
+        surface = getattr(solid, name)
+        files[f"{name}.stl"] = stl_bytes(surface.points_mm, surface.faces)
+    buffer = io.BytesIO()
+    np.savez_compressed(buffer, points_mm=hexes.points_mm, cells=hexes.cells, labels=hexes.labels)
+    files["mesh.npz"] = buffer.getvalue()
+    files["exploded.png"] = found["picture"].png.tobytes()
+    for name, content in files.items():
+        write_atomically(out / name, content)
+        yield out / name
+    for entry in write_moulds(out, found["mould"]):
+        yield out / entry["file"]
+        yield (out / entry["file"]).with_suffix(".step")
+    yield out / "moulds" / "assembly.step"

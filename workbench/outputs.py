@@ -1,0 +1,169 @@
+"""What `workbench run` leaves in its folder: images, arrays, mould files, summary and report."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from workbench.core.design import SensorDesign
+from workbench.core.press import Press
+from workbench.core.results import Contact, MembraneMesh, MouldSet, Shot
+from workbench.devices import chosen_device
+from workbench.project import write_atomically
+from workbench.stages import Call, Outcome
+from workbench.store import Store
+
+SUMMARY_SCHEMA = 1
+
+
+def write_images(out: Path, shot: Shot) -> list[str]:
+    """Write `background.png` and `frame_000.png` ...; returns their names in order."""
+    names = ["background.png"]
+    names += [f"frame_{k:03d}.png" for k in range(len(shot.frames.rgb) - 1)]
+    for stale in out.glob("frame_*.png"):
+        if stale.name not in names:
+            with contextlib.suppress(OSError):
+                stale.unlink()
+    for name, rgb in zip(names, shot.frames.rgb, strict=True):
+        write_atomically(out / name, png_bytes(rgb))
+    return names
+
+
+def png_bytes(rgb: np.ndarray) -> bytes:
+    """An image (H, W, 3) uint8 sRGB as a PNG file."""
+    import cv2
+
+    return cv2.imencode(".png", np.ascontiguousarray(rgb[..., ::-1]))[1].tobytes()
+
+
+def write_contact(out: Path, mesh: MembraneMesh, contact: Contact) -> None:
+    """Write `contact.npz` with the arrays that other tools read."""
+    buffer = io.BytesIO()
+    np.savez_compressed(
+        buffer,
+        surface_points_mm=mesh.outer.points_mm,
+        surface_faces=mesh.outer.faces,
+        displacement_mm=contact.displacement_mm,
+        reaction_N=contact.reaction_N,
+        indenter_pose=contact.indenter_pose,
+        moment_Nmm=contact.moment_Nmm,
+        support_N=contact.support_N,
+        residual=contact.residual,
+        penetration_mm=contact.penetration_mm,
+        sliding=contact.sliding,
+    )
+    write_atomically(out / "contact.npz", buffer.getvalue())
+
+
+def write_moulds(out: Path, moulds: MouldSet) -> list[dict[str, Any]]:
+    """Write every part as STL and STEP, and the assembly as STEP; returns the STL entries."""
+    from geometry.export import step_file, stl_bytes
+
+    folder = out / "moulds"
+    entries = []
+    for part in moulds.parts:
+        write_atomically(folder / f"{part.name}.stl", stl_bytes(part.points_mm, part.faces))
+        step_file([part], folder / f"{part.name}.step")
+        entries.append(
+            {
+                "file": f"moulds/{part.name}.stl",
+                "watertight": part.watertight,
+                "volume_mm3": part.volume_mm3,
+            }
+        )
+    step_file(moulds.parts, folder / "assembly.step")
+    return entries
+
+
+def contact_summary(contact: Contact, path: Press, seconds: float) -> dict[str, Any]:
+    """The `contact` table of `summary.json`: last frame's force, worst residual and penetration."""
+    frames = [
+        {
+            "depth_mm": float(path.depth_mm * min(k + 1, path.frames) / path.frames),
+            "reaction_N": contact.reaction_N[k].tolist(),
+            "normal_N": float(contact.normal_N[k]),
+            "residual": float(contact.residual[k]),
+            "penetration_mm": float(contact.penetration_mm[k]),
+        }
+        for k in range(len(contact.reaction_N))
+    ]
+    return {
+        "reaction_N": contact.reaction_N[-1].tolist(),
+        "normal_N": float(contact.normal_N[-1]),
+        "moment_Nmm": contact.moment_Nmm[-1].tolist(),
+        "residual": float(contact.residual.max()),
+        "penetration_mm": float(contact.penetration_mm.max()),
+        "force_balance": force_balance(contact),
+        "particles": contact.particles,
+        "grid_mm": contact.grid_mm,
+        "substeps": contact.substeps,
+        "seconds": seconds,
+        "frames": frames,
+    }
+
+
+def force_balance(contact: Contact) -> float:
+    """|reaction - support| over |reaction| of the last frame: 0 in exact equilibrium.
+
+    The support pushes the membrane toward the indenter, so both forces are equal.
+    """
+    reaction, support = contact.reaction_N[-1], contact.support_N[-1]
+    size = float(np.linalg.norm(reaction))
+    return float(np.linalg.norm(reaction - support)) / size if size else 0.0
+
+
+def summary_table(
+    design: SensorDesign,
+    path: Press,
+    store: Store,
+    calls: dict[str, Call],
+    outcomes: Sequence[Outcome],
+) -> dict[str, Any]:
+    """Everything of `summary.json` except the files."""
+    contact: Contact = store.load("press", calls["press"].key)
+    shot: Shot = store.load("shoot", calls["shoot"].key)
+    seconds = store.entry("press", calls["press"].key).seconds
+    return {
+        "schema": SUMMARY_SCHEMA,
+        "design": design.name,
+        "family": design.family,
+        "device": chosen_device(),
+        "stages": [
+            {"stage": o.stage, "key": o.key, "cached": o.cached, "seconds": o.seconds}
+            for o in outcomes
+        ],
+        "contact": contact_summary(contact, path, seconds),
+        "metrics": dict(shot.metrics.values),
+    }
+
+
+def write_all(
+    out: Path,
+    design: SensorDesign,
+    path: Press,
+    store: Store,
+    calls: dict[str, Call],
+    outcomes: Sequence[Outcome],
+) -> dict[str, Any]:
+    """Write every file of a run; returns the summary.
+
+    Raises:
+        StoreError: If the folder cannot be written.
+    """
+    from workbench.report import report_html
+
+    load = {name: store.load(name, calls[name].key) for name in calls}
+    summary = summary_table(design, path, store, calls, outcomes)
+    summary["images"] = write_images(out, load["shoot"])
+    write_contact(out, load["mesh"], load["press"])
+    summary["moulds"] = write_moulds(out, load["mould"])
+    html = report_html(design, path, summary, load["shoot"], load["press"], load["picture"])
+    write_atomically(out / "report.html", html.encode())
+    write_atomically(out / "summary.json", json.dumps(summary, indent=1).encode())
+    return summary

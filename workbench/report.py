@@ -1,0 +1,136 @@
+"""One self-contained HTML page of a run: images, force curve, numbers, mould, every parameter."""
+
+from __future__ import annotations
+
+import base64
+import html
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from workbench.core.design import SensorDesign
+from workbench.core.mapping import to_table
+from workbench.core.press import Press
+from workbench.core.results import Contact, Picture, Shot
+from workbench.outputs import png_bytes
+
+STYLE = """
+body{font:15px/1.5 system-ui,sans-serif;max-width:1000px;margin:2em auto;padding:0 1em}
+body{color:#1b1f24}
+h1{font-size:1.6em;margin-bottom:0}h2{font-size:1.15em;margin-top:1.8em}
+.images{display:flex;flex-wrap:wrap;gap:10px}figure{margin:0}figcaption{font-size:.85em;color:#555}
+img{max-width:100%;border-radius:4px}table{border-collapse:collapse;font-size:.92em}
+td,th{padding:2px 14px 2px 0;text-align:left;border-bottom:1px solid #e3e6ea}
+td.n{text-align:right;font-variant-numeric:tabular-nums}
+"""
+
+
+def report_html(
+    design: SensorDesign,
+    path: Press,
+    summary: Mapping[str, Any],
+    shot: Shot,
+    contact: Contact,
+    picture: Picture,
+) -> str:
+    """The report as one page without outside links."""
+    force = summary["contact"]
+    title = html.escape(f"{design.name} ({design.family})")
+    pressed = (
+        f"Pressed {path.depth_mm:g} mm: <b>{force['normal_N']:.3f} N</b> along the normal, "
+        f"residual {force['residual']:.1e}, force balance {100 * force['force_balance']:.2f} %, "
+        f"penetration {1e3 * force['penetration_mm']:.0f} um; {force['particles']} material "
+        f"points on a {force['grid_mm']:g} mm grid, {force['substeps']} substeps, computed on "
+        f"{html.escape(summary['device'])} in {force['seconds']:.1f} s."
+    )
+    sections = [
+        f"<h1>{title}</h1><p>{pressed}</p>",
+        "<h2>Tactile image</h2>" + _images(shot),
+        "<h2>Force against depth</h2>" + _force_curve(path, contact),
+        "<h2>Score card</h2>" + _table(sorted(summary["metrics"].items())),
+        "<h2>Mould</h2>" + _figure(picture.png.tobytes(), "Exploded view"),
+        _table(
+            (m["file"], f"{m['volume_mm3']:.0f} mm3, {'closed' if m['watertight'] else 'OPEN'}")
+            for m in summary["moulds"]
+        ),
+        "<h2>Design</h2>" + _table(_flat(to_table(design))),
+        "<h2>Press</h2>" + _table(_flat(to_table(path))),
+        "<h2>Stages</h2>"
+        + _table(
+            (s["stage"], f"{'cached' if s['cached'] else format(s['seconds'], '.2f') + ' s'}")
+            for s in summary["stages"]
+        ),
+    ]
+    body = "\n".join(sections)
+    return (
+        f"<!doctype html><html lang='en'><meta charset='utf-8'><title>{title}</title>"
+        f"<style>{STYLE}</style><body>{body}</body></html>"
+    )
+
+
+def _images(shot: Shot) -> str:
+    rgb = shot.frames.rgb
+    change = np.abs(rgb[-1].astype(np.int16) - rgb[0].astype(np.int16)).astype(np.uint8)
+    gain = 1 if change.max() == 0 else min(8, 255 // int(change.max()))
+    pictures = [
+        (rgb[0], "Background: nothing touches"),
+        (rgb[-1], f"Frame {len(rgb) - 1} of {len(rgb) - 1}"),
+        (change * np.uint8(gain), f"Absolute difference, x {gain}"),
+    ]
+    figures = (_figure(png_bytes(p), text, width=310) for p, text in pictures)
+    return f"<div class='images'>{''.join(figures)}</div>"
+
+
+def _figure(png: bytes, caption: str, *, width: int = 640) -> str:
+    data = base64.b64encode(png).decode()
+    return (
+        f"<figure><img width='{width}' src='data:image/png;base64,{data}' "
+        f"alt='{html.escape(caption)}'><figcaption>{html.escape(caption)}</figcaption></figure>"
+    )
+
+
+def _force_curve(path: Press, contact: Contact) -> str:
+    """Normal force of the approach frames as an inline SVG with labelled axes."""
+    depth = np.r_[0.0, path.depth_mm * np.arange(1, path.frames + 1) / path.frames]
+    force = np.r_[0.0, contact.normal_N[: path.frames]]
+    width, height, left, bottom = 560, 260, 60, 40
+    top = max(float(force.max()), 1e-9)
+    across = max(path.depth_mm, 1e-9)
+    x = left + (width - left - 20) * depth / across
+    y = (height - bottom) - (height - bottom - 20) * force / top
+    points = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(x, y, strict=True))
+    dots = "".join(
+        f"<circle cx='{a:.1f}' cy='{b:.1f}' r='3'><title>{d:.3g} mm: {f:.4g} N</title></circle>"
+        for a, b, d, f in zip(x, y, depth, force, strict=True)
+    )
+    axis = height - bottom
+    return (
+        f"<svg width='{width}' height='{height}' role='img' aria-label='force against depth'>"
+        f"<path d='M{left},15 V{axis} H{width - 15}' fill='none' stroke='#888'/>"
+        f"<polyline points='{points}' fill='none' stroke='#2563eb' stroke-width='2'/>"
+        f"<g fill='#2563eb'>{dots}</g><g font-size='12' fill='#333'>"
+        f"<text x='{left - 6}' y='24' text-anchor='end'>{top:.3g} N</text>"
+        f"<text x='{left - 6}' y='{axis}' text-anchor='end'>0</text>"
+        f"<text x='{width - 20}' y='{axis + 18}' text-anchor='end'>{path.depth_mm:g} mm</text>"
+        f"<text x='{(left + width) / 2}' y='{axis + 32}' text-anchor='middle'>depth from first "
+        "touch</text></g></svg>"
+    )
+
+
+def _table(rows: Iterable[Sequence[Any]]) -> str:
+    lines = []
+    for name, value in rows:
+        number = isinstance(value, (int, float)) and not isinstance(value, bool)
+        text = f"{value:.5g}" if number else html.escape(str(value))
+        kind = " class='n'" if number else ""
+        lines.append(f"<tr><td>{html.escape(str(name))}</td><td{kind}>{text}</td></tr>")
+    return f"<table>{''.join(lines)}</table>"
+
+
+def _flat(table: Mapping[str, Any], prefix: str = "") -> Iterable[tuple[str, Any]]:
+    for name, value in table.items():
+        if isinstance(value, Mapping):
+            yield from _flat(value, f"{prefix}{name}.")
+        else:
+            yield f"{prefix}{name}", value

@@ -1,0 +1,146 @@
+"""Rows of the validation and benchmark tables, and how they are judged and printed."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Row:
+    """One measured number beside what it is compared with; what does not apply is None."""
+
+    name: str
+    case: str
+    value: float | None
+    unit: str
+    reference: float | None = None
+    null: float | None = None
+    """What the trivial method scores."""
+    ceiling: float | None = None
+    """The best score that the reference itself allows."""
+    error: float | None = None
+    error_kind: str | None = None
+    """`relative` or `absolute`."""
+    limit: float | None = None
+    """Bound on the error where there is one, else on the value."""
+    sense: str | None = None
+    """`max`: at most the limit is good; `min`: at least."""
+    ok: bool = False
+
+
+def compared(
+    name: str,
+    case: str,
+    value: float,
+    reference: float,
+    *,
+    unit: str,
+    limit: float,
+    relative: bool = True,
+    null: float | None = None,
+    ceiling: float | None = None,
+) -> Row:
+    """A value beside its reference; passes when the error is at most `limit`."""
+    error = abs(value - reference) / (abs(reference) if relative else 1.0)
+    return Row(
+        name=name,
+        case=case,
+        value=value,
+        unit=unit,
+        reference=reference,
+        null=null,
+        ceiling=ceiling,
+        error=error,
+        error_kind="relative" if relative else "absolute",
+        limit=limit,
+        sense="max",
+        ok=math.isfinite(error) and error <= limit,
+    )
+
+
+def bounded(
+    name: str,
+    case: str,
+    value: float,
+    *,
+    unit: str,
+    limit: float,
+    sense: str = "max",
+    null: float | None = None,
+) -> Row:
+    """A value that must stay on one side of a limit."""
+    good = value <= limit if sense == "max" else value >= limit
+    return Row(
+        name=name,
+        case=case,
+        value=value,
+        unit=unit,
+        null=null,
+        limit=limit,
+        sense=sense,
+        ok=math.isfinite(value) and good,
+    )
+
+
+def failed(name: str, case: str, *, unit: str = "") -> Row:
+    """A row whose measurement could not be made: never ok."""
+    return Row(name=name, case=case, value=None, unit=unit)
+
+
+Check = Callable[[], Sequence[Row]]
+
+
+def as_json(rows: Sequence[Row]) -> str:
+    """The rows as a JSON list; numbers that are not finite become null."""
+    return json.dumps([_plain(dataclasses.asdict(row)) for row in rows], indent=1)
+
+
+def _plain(row: dict[str, Any]) -> dict[str, Any]:
+    return {k: None if isinstance(v, float) and not math.isfinite(v) else v for k, v in row.items()}
+
+
+def as_text(rows: Sequence[Row]) -> str:
+    """The rows as a table for people."""
+    head = ("", "row", "case", "value", "unit", "reference", "null", "error", "limit")
+    body = [
+        (
+            "ok" if row.ok else "FAIL",
+            row.name,
+            row.case,
+            _number(row.value),
+            row.unit,
+            _number(row.reference),
+            _number(row.null),
+            _error(row),
+            _limit(row),
+        )
+        for row in rows
+    ]
+    widths = [max(len(line[i]) for line in (head, *body)) for i in range(len(head))]
+    lines = [
+        "  ".join(t.ljust(w) for t, w in zip(line, widths, strict=True)) for line in (head, *body)
+    ]
+    return "\n".join(line.rstrip() for line in lines)
+
+
+def _number(value: float | None) -> str:
+    return "-" if value is None else f"{value:.4g}"
+
+
+def _error(row: Row) -> str:
+    if row.error is None:
+        return "-"
+    return f"{100 * row.error:.2f} %" if row.error_kind == "relative" else f"{row.error:.4g}"
+
+
+def _limit(row: Row) -> str:
+    if row.limit is None:
+        return "-"
+    sign = "<=" if row.sense == "max" else ">="
+    number = f"{100 * row.limit:g} %" if row.error_kind == "relative" else f"{row.limit:g}"
+    return f"{sign} {number}"
