@@ -1,0 +1,204 @@
+"""Finger: a cylinder with a rounded tip, a soft skin over a rigid transparent shell.
+
+The shape of GelTip and of most finger-sized sensors: it feels at the tip and all around.
+
+            _.-----._        z = cylinder_mm + tip_ratio * outer_radius_mm
+          .' .---. '.
+         /  / .-. \\  \\        outside in: elastomer (soft, layers.elastomer_mm),
+        |  | |   | |  |       support (rigid, clear, layers.support_mm),
+        |  | |   | |  |       cavity (air)
+        |  | |   | |  |
+     ___|__|_|   |_|__|___   z = 0, base plane: everything above it is cast or sensed
+    |      |  cam  |      |
+    |______|_______|______|  z = -base_height_mm, the rigid foot with camera and LEDs
+           <-- R -->   lip
+
+| parameter         | meaning                                                      |
+|-------------------|--------------------------------------------------------------|
+| `outer_radius_mm` | outer radius R of the skin                                   |
+| `cylinder_mm`     | length of the straight part                                  |
+| `tip_ratio`       | tip height over R: 1 hemisphere, less is blunt, more pointed |
+| `base_height_mm`  | height of the foot                                           |
+| `base_lip_mm`     | how far the foot stands out beyond the skin                  |
+
+The tip is half an ellipsoid of revolution. The core (what is not elastomer) has radius and tip
+height smaller by the wall, so the wall is even on the cylinder and at the apex, and on all of a
+hemisphere.
+
+Source of the defaults: GelTip, outer radius 15 mm, inner 13 mm, straight part 27 mm (SimTac,
+Supplementary). Leaves out: fillets where skin meets foot, screw holes in the foot.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+from designs.bodies import Bodies
+from workbench.core.booleans import cut, expect_volume
+from workbench.core.design import Layers
+from workbench.core.errors import DesignError
+
+CAVITY_RADIUS_MM = 1.0
+"""Smallest radius of the cavity that still lets a camera look out [mm]."""
+BORE_SHARE = 0.6
+"""Radius of the camera bore over the cavity's."""
+SPHERE_MM = 1e-9
+"""Difference of radius and tip height below which the tip is a sphere [mm]."""
+GELTIP = "GelTip (SimTac, Supplementary)"
+
+
+def _slider(
+    default: float,
+    span: tuple[float, float, float],
+    unit: str,
+    label: str,
+    hint: str,
+    source: str = "",
+) -> Any:
+    """A field with its slider; `span` is minimum, maximum and step."""
+    low, high, step = span
+    about = {"min": low, "max": high, "step": step, "unit": unit, "label": label, "hint": hint}
+    return field(default=default, metadata={**about, "source": source})
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FingerShape:
+    """The finger's own parameters."""
+
+    outer_radius_mm: float = _slider(
+        15.0, (6.0, 30.0, 0.5), "mm", "Outer radius", "Radius of the skin", GELTIP
+    )
+    cylinder_mm: float = _slider(
+        27.0, (2.0, 80.0, 0.5), "mm", "Straight length", "From base to the start of the tip", GELTIP
+    )
+    tip_ratio: float = _slider(
+        1.0, (0.5, 1.6, 0.05), "", "Tip ratio", "1 is a hemisphere, less is blunt, more is pointed"
+    )
+    base_height_mm: float = _slider(
+        8.0, (2.0, 40.0, 0.5), "mm", "Foot height", "Rigid foot that carries camera and LEDs"
+    )
+    base_lip_mm: float = _slider(
+        3.0, (0.0, 15.0, 0.5), "mm", "Foot lip", "How far the foot stands out beyond the skin"
+    )
+
+    @property
+    def tip_mm(self) -> float:
+        """Height of the tip above the straight part [mm]."""
+        return self.tip_ratio * self.outer_radius_mm
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Finger:
+    """Builds fingers."""
+
+    name: str = "finger"
+    title: str = "Finger"
+    shape_type: type = FingerShape
+
+    def check(self, shape: FingerShape, layers: Layers) -> None:
+        """Refuse walls that leave no room inside.
+
+        Raises:
+            DesignError: If the elastomer fills the finger, or with the support leaves less than
+                1 mm of cavity in radius or tip height.
+        """
+        room_mm = min(shape.outer_radius_mm, shape.tip_mm)
+        room = "outer radius" if room_mm == shape.outer_radius_mm else "tip height"
+        wall_mm = layers.elastomer_mm
+        both_mm = layers.support_mm + wall_mm
+        if wall_mm >= room_mm:
+            raise DesignError(
+                f"elastomer wall {wall_mm:g} mm is not thinner than the {room} {room_mm:g} mm",
+                hint="lower layers.elastomer_mm, or raise shape.outer_radius_mm or shape.tip_ratio",
+                at="layers.elastomer_mm",
+            )
+        if both_mm >= room_mm - CAVITY_RADIUS_MM:
+            raise DesignError(
+                f"support and elastomer wall together {both_mm:g} mm leave less than "
+                f"{CAVITY_RADIUS_MM:g} mm of cavity inside the {room} {room_mm:g} mm",
+                hint="lower layers.elastomer_mm or layers.support_mm, or raise "
+                "shape.outer_radius_mm or shape.tip_ratio",
+                at="layers.elastomer_mm",
+            )
+
+    def build(self, shape: FingerShape, layers: Layers) -> Bodies:
+        """Build the five bodies.
+
+        Raises:
+            DesignError: As `check`.
+            GeometryError: If the CAD kernel returned something else than asked for.
+        """
+        self.check(shape, layers)
+        wall_mm = layers.elastomer_mm
+        both_mm = wall_mm + layers.support_mm
+        return Bodies(
+            membrane=_revolved(shape, 0.0, wall_mm, what="elastomer"),
+            outer=_revolved(shape, 0.0, None, what="outer body"),
+            core=_revolved(shape, wall_mm, None, what="core"),
+            support=_revolved(shape, wall_mm, both_mm, what="support"),
+            base=_foot(shape, layers),
+        )
+
+
+def capped_cylinder_mm3(shape: FingerShape, inset_mm: float) -> float:
+    """Volume of the body whose radius and tip height are smaller by the inset [mm3].
+
+    pi r^2 L + 2/3 pi r^2 h, with r = R - inset, h = tip - inset.
+    """
+    radius_mm, tip_mm = shape.outer_radius_mm - inset_mm, shape.tip_mm - inset_mm
+    return math.pi * radius_mm**2 * (shape.cylinder_mm + 2.0 / 3.0 * tip_mm)
+
+
+def _revolved(shape: FingerShape, outset_mm: float, inset_mm: float | None, *, what: str) -> Any:
+    """The body between two insets, or all of it below the first; checked by its volume.
+
+    Revolving the wall's section equals the outer body minus the core, and spares a boolean of two
+    ellipsoids that OCCT needs 0.3 s for.
+    """
+    from build123d import Axis, Edge, Face, Solid, Wire
+
+    outside, top = _profile(shape, outset_mm)
+    expected_mm3 = capped_cylinder_mm3(shape, outset_mm)
+    if inset_mm is None:
+        inside, bottom = [], (0.0, 0.0, 0.0)
+        start = bottom
+    else:
+        inside, bottom = _profile(shape, inset_mm)
+        start = (shape.outer_radius_mm - inset_mm, 0.0, 0.0)
+        expected_mm3 -= capped_cylinder_mm3(shape, inset_mm)
+    foot = Edge.make_line(start, (shape.outer_radius_mm - outset_mm, 0.0, 0.0))
+    edges = [foot, *outside, Edge.make_line(top, bottom), *inside]
+    body = Solid.revolve(Face(Wire(edges)), 360.0, Axis.Z)
+    return expect_volume(body, expected_mm3, what=what)
+
+
+def _profile(shape: FingerShape, inset_mm: float) -> tuple[list[Any], tuple[float, float, float]]:
+    """Half the outline in the plane y = 0, from the base up, and its apex."""
+    from build123d import Edge, Plane
+
+    radius, tip = shape.outer_radius_mm - inset_mm, shape.tip_mm - inset_mm
+    length = shape.cylinder_mm
+    section = Plane(origin=(0, 0, length), x_dir=(1, 0, 0), z_dir=(0, -1, 0))
+    # A circle gives a true sphere, which the kernel tessellates twice as fast as an ellipsoid.
+    if abs(radius - tip) < SPHERE_MM:
+        arc = Edge.make_circle(radius, section, 0.0, 90.0)
+    else:
+        arc = Edge.make_ellipse(radius, tip, section, 0.0, 90.0)
+    side = Edge.make_line((radius, 0, 0), (radius, 0, length))
+    return [side, arc], (0.0, 0.0, length + tip)
+
+
+def _foot(shape: FingerShape, layers: Layers) -> Any:
+    from build123d import Plane, Solid
+
+    height_mm = shape.base_height_mm
+    below = Plane(origin=(0, 0, -height_mm))
+    cavity_mm = shape.outer_radius_mm - layers.elastomer_mm - layers.support_mm
+    disc = Solid.make_cylinder(shape.outer_radius_mm + shape.base_lip_mm, height_mm, below)
+    bore = Solid.make_cylinder(BORE_SHARE * cavity_mm, height_mm, below)
+    return cut(disc, bore, what="camera bore from the foot")
+
+
+FAMILY = Finger()
