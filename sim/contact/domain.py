@@ -1,0 +1,239 @@
+"""The active region as arrays: cells, nodes, slots, masses, surface points.
+
+Cells within `active_radius_mm` of the target take part. Nodes that they share with material left
+out are fixed. Positions are stored from the target, so that single precision resolves nanometres.
+
+Layouts: nodes are sorted by x, y, z, so the three z-neighbours of a cell's stencil row are
+consecutive and `rows` holds only the first of each of the nine rows. Cell a owns 81 slots,
+`slot_index(a, n, c)`; a node finds its slots through `node_starts` and `node_slots`.
+
+Fictitious masses make a time step of 1 stable: one point's stiffness has the largest eigenvalue
+lambda against its own mass split by the weights, so mass = stiffness / lambda holds for every sum
+of points, and a penalty spring k adds k / lambda (element-by-element bound; Belytschko and others,
+Nonlinear Finite Elements, 2nd ed., 6.2). The step is stable below 4.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sim.contact.quadrature import SurfacePoints
+from sim.contact.stencil import gradient_table, point_weights, weight_table
+from sim.material import NeoHookean
+from workbench.core.errors import DesignError
+from workbench.core.results import MaterialPoints, MembraneMesh
+
+EIGENVALUE = 2.2
+"""Largest eigenvalue aimed at; below 4 by a margin for stiffening under load."""
+LEAST_FRACTION = 0.02
+"""Filled fraction given to empty sub-cells of cut cells: without it fringe nodes drift to NaN."""
+SLOT_BLOCK = 16
+"""Cells whose slots interleave (`kernels.BLOCK`)."""
+
+_STENCIL = np.stack(np.meshgrid(*[[-1, 0, 1]] * 3, indexing="ij"), axis=-1).reshape(27, 3)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Domain:
+    """Arrays of the active region. C cells, N nodes, P surface points, A active vertices."""
+
+    grid_mm: float
+    target_mm: np.ndarray
+    """Origin of all positions [mm], shape (3,)."""
+    node_mm: np.ndarray
+    """Node positions from the target [mm], shape (N, 3)."""
+    rows: np.ndarray
+    """First node of each of the nine z-rows of a cell, shape (C, 9), int32."""
+    volumes_mm3: np.ndarray
+    """Volume of the 8 points of a cell [mm3], shape (C, 8)."""
+    node_starts: np.ndarray
+    """Where a node's entries start in `node_slots`, shape (N + 1,), int32."""
+    node_slots: np.ndarray
+    """Index of the first of three slots of each cell that touches a node, int32."""
+    masses: np.ndarray
+    """Fictitious masses [N/mm at unit time step], shape (N,)."""
+    fixed: np.ndarray
+    """Nodes shared with material that was left out, shape (N,), bool."""
+    points: SurfacePoints
+    """Surface points in the order of their cells."""
+    point_weights: np.ndarray
+    """Node weights of the surface points, shape (P, 27)."""
+    owners: np.ndarray
+    """Cells that own surface points, shape (S,), int32."""
+    owner_starts: np.ndarray
+    """Where a cell's surface points start, shape (S + 1,), int32."""
+    vertices: np.ndarray
+    """Outer vertices in active cells, shape (A,), int64."""
+    vertex_nodes: np.ndarray
+    """Their 27 nodes, shape (A, 27)."""
+    vertex_weights: np.ndarray
+    """Their 27 weights, shape (A, 27)."""
+    particles: int
+    """Material points with volume before the floor."""
+
+
+def stencil_nodes(rows: np.ndarray) -> np.ndarray:
+    """The 27 nodes of each cell from its nine rows, (C, 9) to (C, 27)."""
+    return (rows[:, :, None] + np.arange(3)).reshape(len(rows), 27)
+
+
+def slot_index(cell: np.ndarray, node: np.ndarray | int, component: int = 0) -> np.ndarray:
+    """Index of a slot among all slots (`kernels.slot_base`)."""
+    block = (cell // SLOT_BLOCK) * (81 * SLOT_BLOCK) + cell % SLOT_BLOCK
+    return block + (3 * node + component) * SLOT_BLOCK
+
+
+def largest_point_eigenvalue(solid: NeoHookean) -> float:
+    """Largest eigenvalue [MPa] of a point's unit stiffness against its weights, unit cell edge.
+
+    K_iajb = lambda B_ia B_jb + mu (B_ib B_ja + B_ic B_jc delta_ab) of the undeformed solid.
+    """
+    slopes, weights = gradient_table()[7], weight_table()[7]
+    shear, lame = solid.shear_MPa, solid.lame_MPa
+    stiffness = lame * np.einsum("ia,jb->iajb", slopes, slopes)
+    stiffness += shear * np.einsum("ib,ja->iajb", slopes, slopes)
+    stiffness += shear * np.einsum("ic,jc,ab->iajb", slopes, slopes, np.eye(3))
+    scale = 1.0 / np.sqrt(np.repeat(weights, 3))
+    return float(np.linalg.eigvalsh(stiffness.reshape(81, 81) * np.outer(scale, scale))[-1])
+
+
+def build_domain(
+    mesh: MembraneMesh,
+    material_points: MaterialPoints,
+    surface_points: SurfacePoints,
+    solid: NeoHookean,
+    *,
+    target_mm: np.ndarray,
+    active_radius_mm: float,
+) -> Domain:
+    """Number the active region.
+
+    Args:
+        mesh: Its outer vertices receive displacements.
+        material_points: Filled fractions of all cells.
+        surface_points: Candidates; those in cells outside the region are dropped.
+        solid: Elastic constants, for the masses.
+        target_mm: Centre of the region [mm], shape (3,).
+        active_radius_mm: Radius of the region.
+
+    Raises:
+        DesignError: If no material lies in the region.
+    """
+    grid_mm = material_points.grid_mm
+    outer = mesh.outer.points_mm
+    vertex_cells = np.round(outer / grid_mm).astype(np.int64)
+    point_cells = np.round(surface_points.position_mm / grid_mm).astype(np.int64)
+    cells, fractions, left_out = _choose_cells(
+        material_points, np.concatenate([vertex_cells, point_cells]), target_mm, active_radius_mm
+    )
+    node_keys, rows = _number_nodes(cells)
+    cell_keys = _keys(cells)
+    cut = np.isin(node_keys, _keys(left_out[:, None] + _STENCIL))
+    node_mm = _coordinates(node_keys) * grid_mm - target_mm
+    volumes_mm3 = np.maximum(fractions, LEAST_FRACTION) * grid_mm**3 / 8.0
+
+    owner, found = _look_up(cell_keys, _keys(point_cells))
+    order = np.flatnonzero(found)[np.argsort(owner[found], kind="stable")]
+    points = surface_points.take(order)
+    owners, starts = np.unique(owner[order], return_index=True)
+    local = points.position_mm / grid_mm - point_cells[order]
+    weights = point_weights(local)
+
+    stiffness = largest_point_eigenvalue(solid) / grid_mm**2
+    masses = _spread(volumes_mm3 @ weight_table() * (stiffness / EIGENVALUE), rows, len(node_keys))
+    spring = weights * (points.stiffness_N_mm / EIGENVALUE)[:, None]
+    masses += _spread(spring, rows[owner[order]], len(node_keys))
+
+    vertex_owner, inside = _look_up(cell_keys, _keys(vertex_cells))
+    vertices = np.flatnonzero(inside)
+    node_starts, node_slots = _node_slots(rows, len(node_keys))
+    return Domain(
+        grid_mm=grid_mm,
+        target_mm=target_mm,
+        node_mm=node_mm,
+        rows=rows,
+        volumes_mm3=volumes_mm3,
+        node_starts=node_starts,
+        node_slots=node_slots,
+        masses=masses,
+        fixed=cut,
+        points=points,
+        point_weights=weights,
+        owners=owners.astype(np.int32),
+        owner_starts=np.append(starts, len(order)).astype(np.int32),
+        vertices=vertices,
+        vertex_nodes=stencil_nodes(rows[vertex_owner[vertices]]),
+        vertex_weights=point_weights(outer[vertices] / grid_mm - vertex_cells[vertices]),
+        particles=int(np.count_nonzero(fractions)),
+    )
+
+
+def _choose_cells(
+    material_points: MaterialPoints,
+    skin_cells: np.ndarray,
+    target_mm: np.ndarray,
+    active_radius_mm: float,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Active cells in order, their fractions, and the material cells that were left out."""
+    grid_mm = material_points.grid_mm
+    material = material_points.cells.astype(np.int64)
+
+    def near(cells: np.ndarray) -> np.ndarray:
+        return np.linalg.norm(cells * grid_mm - target_mm, axis=1) < active_radius_mm
+
+    active = near(material)
+    if not active.any():
+        raise DesignError(
+            f"no material lies within {active_radius_mm:g} mm of the target",
+            hint="raise contact.active_radius_mm or move press.target_mm",
+            at="contact.active_radius_mm",
+        )
+    bare = np.unique(_keys(skin_cells[near(skin_cells)]))
+    bare = _coordinates(bare[~np.isin(bare, _keys(material))])
+    cells = np.concatenate([material[active], bare])
+    fractions = np.concatenate([material_points.fractions[active], np.zeros((len(bare), 8))])
+    order = np.argsort(_keys(cells), kind="stable")
+    return cells[order], fractions[order].astype(np.float64), material[~active]
+
+
+def _number_nodes(cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Keys of all stencil nodes in order, and the first node of each row, shape (C, 9)."""
+    keys = _keys(cells[:, None] + _STENCIL)
+    nodes, inverse = np.unique(keys.ravel(), return_inverse=True)
+    return nodes, inverse.reshape(-1, 27)[:, ::3].astype(np.int32)
+
+
+def _node_slots(rows: np.ndarray, node_count: int) -> tuple[np.ndarray, np.ndarray]:
+    nodes = stencil_nodes(rows)
+    cell = np.repeat(np.arange(len(rows)), 27)
+    slots = slot_index(cell, np.tile(np.arange(27), len(rows)))
+    order = np.argsort(nodes.ravel(), kind="stable")
+    counts = np.bincount(nodes.ravel(), minlength=node_count)
+    starts = np.concatenate([[0], np.cumsum(counts)])
+    return starts.astype(np.int32), slots[order].astype(np.int32)
+
+
+def _spread(values: np.ndarray, rows: np.ndarray, node_count: int) -> np.ndarray:
+    return np.bincount(stencil_nodes(rows).ravel(), values.ravel(), node_count)
+
+
+# A key orders lattice points by x, y, z and fits 21 signed bits of each into one integer.
+_SPAN = 1 << 21
+_HALF = _SPAN >> 1
+
+
+def _keys(lattice: np.ndarray) -> np.ndarray:
+    x, y, z = np.moveaxis(lattice.astype(np.int64) + _HALF, -1, 0)
+    return (x * _SPAN + y) * _SPAN + z
+
+
+def _coordinates(keys: np.ndarray) -> np.ndarray:
+    return np.stack([keys // _SPAN**2, keys // _SPAN % _SPAN, keys % _SPAN], axis=-1) - _HALF
+
+
+def _look_up(sorted_keys: np.ndarray, keys: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Row of each key among sorted keys, and whether it is there."""
+    row = np.minimum(np.searchsorted(sorted_keys, keys), len(sorted_keys) - 1)
+    return row, sorted_keys[row] == keys

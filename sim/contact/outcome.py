@@ -1,0 +1,114 @@
+"""From the state of a settled frame to the numbers of `Contact`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import taichi as ti
+
+from sim.contact.approach import Approach, quaternion
+from sim.contact.domain import Domain
+from sim.contact.relaxation import Balance, Relaxation
+from workbench.core.results import Contact, Skin
+
+SLIDING_SHARE = 0.999
+"""Share of the friction cone at which a point counts as sliding."""
+LEAST_PRESSURE_SHARE = 1e-3
+"""Points that carry less than this share of the largest normal force have no friction ratio."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FrameOutcome:
+    """One frame of `Contact`; the fields have the same names and units."""
+
+    displacement_mm: np.ndarray
+    reaction_N: np.ndarray
+    moment_Nmm: np.ndarray
+    indenter_pose: np.ndarray
+    residual: float
+    penetration_mm: float
+    support_N: np.ndarray
+    friction_ratio: float
+    sliding: np.ndarray
+
+
+def frame_outcome(
+    relaxation: Relaxation, outer: Skin, approach: Approach, balance: Balance, frame: int
+) -> FrameOutcome:
+    """Read a settled frame, evaluated at its pose and not yet committed."""
+    domain = relaxation.domain
+    origin, rotation = approach.pose(frame + 1.0)
+    nodal = relaxation.displacement().astype(np.float64)
+    displacement = np.zeros(outer.points_mm.shape, np.float32)
+    displacement[domain.vertices] = np.einsum(
+        "an,anc->ac", domain.vertex_weights, nodal[domain.vertex_nodes]
+    )
+    open_points = ~domain.points.bonded
+    forces = relaxation.point_forces()[open_points].astype(np.float64)
+    place = (domain.points.position_mm + point_displacement(domain, nodal))[open_points]
+    distance, ratio = (values[open_points] for values in relaxation.point_measures())
+    friction_ratio, sliding_points = _friction(relaxation, forces, distance, ratio)
+    sliding = np.zeros(len(outer.points_mm), bool)
+    faces = domain.points.face[open_points][sliding_points]
+    sliding[outer.faces[faces].ravel()] = True
+    reaction_N = balance.reaction_N
+    fixed_N = -relaxation.node_forces()[domain.fixed].sum(axis=0, dtype=np.float64)
+    scale_N = max(float(np.linalg.norm(reaction_N)), 1e-12)
+    return FrameOutcome(
+        displacement_mm=displacement,
+        reaction_N=reaction_N,
+        moment_Nmm=-np.cross(place - origin, forces).sum(axis=0),
+        indenter_pose=np.concatenate([origin, quaternion(rotation)]),
+        residual=balance.unbalanced_N / scale_N if np.any(reaction_N) else 0.0,
+        penetration_mm=max(0.0, -float(distance.min(initial=0.0))),
+        support_N=balance.bond_N + fixed_N,
+        friction_ratio=friction_ratio,
+        sliding=sliding,
+    )
+
+
+def point_displacement(domain: Domain, nodal: np.ndarray) -> np.ndarray:
+    """Displacement of every surface point [mm], shape (P, 3)."""
+    owner = np.repeat(domain.owners, np.diff(domain.owner_starts))
+    nodes = (domain.rows[owner][:, :, None] + np.arange(3)).reshape(-1, 27)
+    return np.einsum("pn,pnc->pc", domain.point_weights, nodal[nodes])
+
+
+def _friction(
+    relaxation: Relaxation, forces: np.ndarray, distance: np.ndarray, ratio: np.ndarray
+) -> tuple[float, np.ndarray]:
+    """Largest tangential over normal force, and which points slide."""
+    size = np.linalg.norm(forces, axis=1)
+    pressed = (distance < 0) & (size > LEAST_PRESSURE_SHARE * size.max(initial=0.0))
+    largest = float(ratio[pressed].max(initial=0.0))
+    return largest, pressed & (ratio >= SLIDING_SHARE * relaxation.friction)
+
+
+def collect(
+    outcomes: list[FrameOutcome], *, approach: Approach, domain: Domain, substeps: int
+) -> Contact:
+    """All frames as one result."""
+
+    def stack(name: str) -> np.ndarray:
+        return np.stack([np.asarray(getattr(outcome, name)) for outcome in outcomes])
+
+    arch = ti.lang.impl.current_cfg().arch
+    return Contact(
+        displacement_mm=stack("displacement_mm"),
+        reaction_N=stack("reaction_N"),
+        moment_Nmm=stack("moment_Nmm"),
+        indenter_pose=stack("indenter_pose"),
+        residual=stack("residual"),
+        penetration_mm=stack("penetration_mm"),
+        support_N=stack("support_N"),
+        friction_ratio=stack("friction_ratio"),
+        sliding=stack("sliding"),
+        target_mm=approach.target_mm,
+        normal=approach.normal,
+        tangent_u=approach.tangent_u,
+        grid_mm=domain.grid_mm,
+        particles=domain.particles,
+        substeps=substeps,
+        device="cuda" if arch == ti.cuda else "cpu",
+    )

@@ -1,0 +1,132 @@
+"""The elastomer: a compressible neo-Hookean solid.
+
+    W = C10 (J^(-2/3) tr(F^T F) - 3) + (J - 1)^2 / D1,    C10 = mu / 2,    D1 = 2 / K.
+
+Source: SimTac, Supplementary (C10 = 0.025 MPa, D1 = 4.1379 / MPa for E = 0.145 MPa, nu = 0.45).
+The first Piola-Kirchhoff stress is written in the displacement gradient H = F - I, because
+F - F^-T and J - 1 cancel in single precision while H and the cofactors of H do not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from workbench.core.design import Elastomer
+
+SMALLEST_VOLUME_RATIO = 1e-3
+"""Floor of J inside J^(-2/3); only an inverted point, which a settled state has not, meets it."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class NeoHookean:
+    """Constants of the solid [MPa]."""
+
+    shear_MPa: float
+    """mu = E / (2 (1 + nu))."""
+    bulk_MPa: float
+    """K = E / (3 (1 - 2 nu))."""
+
+    @property
+    def lame_MPa(self) -> float:
+        """lambda = K - 2 mu / 3."""
+        return self.bulk_MPa - 2.0 * self.shear_MPa / 3.0
+
+    @property
+    def wave_modulus_MPa(self) -> float:
+        """Modulus of a pressure wave, K + 4 mu / 3."""
+        return self.bulk_MPa + 4.0 * self.shear_MPa / 3.0
+
+    @property
+    def c10_MPa(self) -> float:
+        """First constant of W [MPa]."""
+        return 0.5 * self.shear_MPa
+
+    @property
+    def d1_per_MPa(self) -> float:
+        """Second constant of W [1/MPa]."""
+        return 2.0 / self.bulk_MPa
+
+
+def neo_hookean(material: Elastomer) -> NeoHookean:
+    """Constants of an elastomer from Young's modulus and Poisson's ratio."""
+    young_MPa, poisson = material.young_MPa, material.poisson
+    return NeoHookean(
+        shear_MPa=young_MPa / (2.0 * (1.0 + poisson)),
+        bulk_MPa=young_MPa / (3.0 * (1.0 - 2.0 * poisson)),
+    )
+
+
+def first_piola(gradient: np.ndarray, solid: NeoHookean) -> np.ndarray:
+    """First Piola-Kirchhoff stress [MPa] of displacement gradients.
+
+    P = mu J^(-2/3) (F - tr(F^T F) / 3 F^-T) + K (J - 1) J F^-T.
+
+    Args:
+        gradient: H = du/dX, shape (..., 3, 3).
+        solid: Constants.
+
+    Returns:
+        Stress, shape (..., 3, 3).
+    """
+    rows = [[gradient[..., r, c] for c in range(3)] for r in range(3)]
+    stress = first_piola_rows(
+        rows,
+        (solid.shear_MPa, solid.bulk_MPa),
+        lambda ratio: np.maximum(ratio, SMALLEST_VOLUME_RATIO) ** (-1.0 / 3.0),
+    )
+    return np.stack([np.stack(row, axis=-1) for row in stress], axis=-2)
+
+
+def first_piola_rows(
+    gradient: list[list[Any]],
+    moduli_MPa: tuple[Any, Any],
+    inverse_cube_root: Callable[[Any], Any],
+    *,
+    keep: Callable[[Any], Any] = lambda expression: expression,
+) -> list[list[Any]]:
+    """The nine entries of the first Piola-Kirchhoff stress, in H = F - I.
+
+    With the cofactors k of H, cof F = I + E, E = k - H^T + tr(H) I and
+    J - 1 = tr(H) + tr(k) + det(H). Then, with s = mu J^(-2/3),
+    P = s (H - E) + (s (3 (J - 1) - 2 tr(H) - H:H) / (3 J) + K (J - 1)) (I + E).
+
+    Args:
+        gradient: H by rows; numbers, arrays or Taichi expressions.
+        moduli_MPa: mu and K.
+        inverse_cube_root: J to J^(-1/3), with J kept above `SMALLEST_VOLUME_RATIO`.
+        keep: Makes an expression a local variable (`stencil`).
+    """
+    shear, bulk = moduli_MPa
+    axes = range(3)
+
+    def minor(row: int, column: int) -> Any:
+        r1, r2, c1, c2 = (row + 1) % 3, (row + 2) % 3, (column + 1) % 3, (column + 2) % 3
+        return gradient[r1][c1] * gradient[r2][c2] - gradient[r1][c2] * gradient[r2][c1]
+
+    cofactor = [[keep(minor(r, c)) for c in axes] for r in axes]
+    trace = keep(gradient[0][0] + gradient[1][1] + gradient[2][2])
+    determinant = sum((gradient[0][c] * cofactor[0][c] for c in axes), 0.0)
+    dilation = keep(trace + (cofactor[0][0] + cofactor[1][1] + cofactor[2][2]) + determinant)
+    square = keep(sum((gradient[r][c] * gradient[r][c] for r in axes for c in axes), 0.0))
+    excess = [
+        [keep(cofactor[r][c] - gradient[c][r] + (trace if r == c else 0.0)) for c in axes]
+        for r in axes
+    ]
+    root = keep(inverse_cube_root(1.0 + dilation))
+    scaled = keep(shear * root * root)
+    isochoric = scaled * root * root * root * (3.0 * dilation - 2.0 * trace - square) * (1.0 / 3.0)
+    pressure = keep(isochoric + bulk * dilation)
+    return [
+        [
+            keep(
+                scaled * (gradient[r][c] - excess[r][c])
+                + pressure * (excess[r][c] + (1.0 if r == c else 0.0))
+            )
+            for c in axes
+        ]
+        for r in axes
+    ]
