@@ -14,7 +14,7 @@ from workbench.pipeline import InlineRunner, PressCase, StageMonitor, evaluate, 
 from workbench.project import design_to_toml, write_atomically
 from workbench.store import Store
 
-STAGES = ("mesh", "mould", "picture")
+STAGES = ("mesh", "mould", "package", "picture")
 
 
 def export_design(
@@ -45,7 +45,6 @@ def export_design(
     for name, content in files.items():
         write_atomically(out / name, content)
         yield out / name
-    for entry in write_moulds(out, found["mould"]):
-        yield out / entry["file"]
-        yield (out / entry["file"]).with_suffix(".step")
-    yield out / "moulds" / "assembly.step"
+    write_moulds(out, found["mould"], found["package"])
+    for name in found["package"].files:
+        yield out / "moulds" / name

@@ -16,7 +16,7 @@ import signal
 import threading
 import time
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
@@ -55,7 +55,7 @@ class Lane:
         self._pipe, child = self._context.Pipe()
         self._process = self._context.Process(
             target=_serve,
-            args=(self.name, self.store.root, child, self._cancelled),
+            args=(WARM_UP[self.name], self.store.root, child, self._cancelled),
             name=f"workbench-{self.name}",
             daemon=True,
         )
@@ -155,13 +155,13 @@ class LaneRunner:
             lane.close()
 
 
-def _serve(name: str, root: Path, pipe: Connection, cancelled: Any) -> None:
+def _serve(modules: Sequence[str], root: Path, pipe: Connection, cancelled: Any) -> None:
     """Main loop of a worker process."""
     # Ctrl-C in a terminal reaches the whole group; the parent decides when a lane stops.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     os.environ.setdefault("ENABLE_TAICHI_HEADER_PRINT", "0")
     _follow_parent()
-    for module in WARM_UP[name]:
+    for module in modules:
         importlib.import_module(module)
     store = Store(root)
     while True:

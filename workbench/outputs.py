@@ -13,7 +13,7 @@ import numpy as np
 
 from workbench.core.design import SensorDesign
 from workbench.core.press import Press
-from workbench.core.results import Contact, MembraneMesh, MouldSet, Shot
+from workbench.core.results import Bundle, Contact, MembraneMesh, MouldSet, Shot
 from workbench.devices import chosen_device
 from workbench.project import write_atomically
 from workbench.stages import Call, Outcome
@@ -61,24 +61,18 @@ def write_contact(out: Path, mesh: MembraneMesh, contact: Contact) -> None:
     write_atomically(out / "contact.npz", buffer.getvalue())
 
 
-def write_moulds(out: Path, moulds: MouldSet) -> list[dict[str, Any]]:
+def write_moulds(out: Path, moulds: MouldSet, bundle: Bundle) -> list[dict[str, Any]]:
     """Write every part as STL and STEP, and the assembly as STEP; returns the STL entries."""
-    from geometry.export import step_file, stl_bytes
-
-    folder = out / "moulds"
-    entries = []
-    for part in moulds.parts:
-        write_atomically(folder / f"{part.name}.stl", stl_bytes(part.points_mm, part.faces))
-        step_file([part], folder / f"{part.name}.step")
-        entries.append(
-            {
-                "file": f"moulds/{part.name}.stl",
-                "watertight": part.watertight,
-                "volume_mm3": part.volume_mm3,
-            }
-        )
-    step_file(moulds.parts, folder / "assembly.step")
-    return entries
+    for name, content in bundle.files.items():
+        write_atomically(out / "moulds" / name, content.tobytes())
+    return [
+        {
+            "file": f"moulds/{part.name}.stl",
+            "watertight": part.watertight,
+            "volume_mm3": part.volume_mm3,
+        }
+        for part in moulds.parts
+    ]
 
 
 def contact_summary(contact: Contact, path: Press, seconds: float) -> dict[str, Any]:
@@ -162,7 +156,7 @@ def write_all(
     summary = summary_table(design, path, store, calls, outcomes)
     summary["images"] = write_images(out, load["shoot"])
     write_contact(out, load["mesh"], load["press"])
-    summary["moulds"] = write_moulds(out, load["mould"])
+    summary["moulds"] = write_moulds(out, load["mould"], load["package"])
     html = report_html(design, path, summary, load["shoot"], load["press"], load["picture"])
     write_atomically(out / "report.html", html.encode())
     write_atomically(out / "summary.json", json.dumps(summary, indent=1).encode())

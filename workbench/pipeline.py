@@ -16,7 +16,7 @@ from workbench.core.press import ContactSettings, Indenter, Press
 from workbench.stages import Call, Outcome, run
 from workbench.store import Store
 
-EVERYTHING = ("build", "mesh", "lattice", "bake", "press", "shoot", "mould", "picture")
+EVERYTHING = ("build", "mesh", "lattice", "bake", "press", "shoot", "mould", "package", "picture")
 """All stages in the order in which they run."""
 
 
@@ -76,8 +76,9 @@ def plan(design: SensorDesign, case: PressCase) -> dict[str, Call]:
     )
     shoot = Call("shoot", (mesh.ref, bake.ref, design.optics, press.ref))
     mould = Call("mould", (build.ref, design.mould))
+    package = Call("package", (mould.ref,))
     picture = Call("picture", (mould.ref,))
-    calls = (build, mesh, lattice, bake, press, shoot, mould, picture)
+    calls = (build, mesh, lattice, bake, press, shoot, mould, package, picture)
     return {call.stage: call for call in calls}
 
 

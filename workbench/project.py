@@ -29,6 +29,8 @@ VARIABLE = "WORKBENCH_PROJECT"
 DEFAULT_FOLDER = ".workbench"
 AUTOSAVE = "autosave"
 MAX_TOML_BYTES = 1_000_000
+GUEST_TABLES = ("press_case", "variant")
+"""Tables of a design file that the design itself does not read."""
 
 
 class Project:
@@ -151,13 +153,14 @@ def _read(path: Path) -> str:
 
 
 def design_from_toml(text: str, *, source: str = "the file") -> SensorDesign:
-    """Parse and check a design; tables that the design does not own (`press`) are left out.
+    """Parse and check a design; tables that belong to a session or variant are left out.
 
     Raises:
         DesignError: For broken TOML, a newer schema, unknown fields or refused values.
     """
     table = parse_toml(text, source=source)
-    design = from_table(SensorDesign, {k: v for k, v in table.items() if k != "press_case"})
+    own = {name: value for name, value in table.items() if name not in GUEST_TABLES}
+    design = from_table(SensorDesign, own)
     check_design(design)
     return design
 

@@ -25,6 +25,7 @@ from workbench.core.digest import digest
 from workbench.core.monitor import Monitor, part, silent
 from workbench.core.press import ContactSettings, Indenter, Press
 from workbench.core.results import (
+    Bundle,
     Contact,
     LightField,
     MaterialPoints,
@@ -183,6 +184,13 @@ def picture(moulds: MouldSet, *, monitor: Monitor) -> Picture:
     return Picture(png=exploded_mould(moulds))
 
 
+def package(moulds: MouldSet, *, monitor: Monitor) -> Bundle:
+    """Every mould part as STL and STEP, and the assembly as STEP."""
+    from geometry.export import part_files
+
+    return Bundle(files=part_files(moulds.parts, monitor=monitor))
+
+
 STAGES = {
     stage.name: stage
     for stage in (
@@ -193,6 +201,7 @@ STAGES = {
         Stage(name="press", version=1, lane="sim", function=press),
         Stage(name="shoot", version=1, lane="sim", function=shoot),
         Stage(name="mould", version=1, lane="cad", function=mould),
+        Stage(name="package", version=1, lane="cad", function=package),
         Stage(name="picture", version=1, lane="cad", function=picture),
     )
 }

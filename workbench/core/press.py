@@ -32,9 +32,9 @@ DEFAULT_EDGE_RADIUS_MM = 0.45
 """Rounding of edges [mm]: sharper than a grid cell cannot be resolved. Same as in the FEM."""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class IndenterMesh:
-    """A closed triangle mesh in the indenter's body frame."""
+    """A closed triangle mesh in the indenter's body frame; compared by identity."""
 
     points_mm: np.ndarray
     """Vertices [mm], shape (N, 3), float64, centred on the bounding box."""

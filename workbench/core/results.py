@@ -260,3 +260,11 @@ class Picture:
 
     png: np.ndarray
     """Bytes of a PNG file, shape (bytes,), uint8."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Bundle:
+    """Files ready to be written or downloaded."""
+
+    files: dict[str, np.ndarray]
+    """Bytes of each file by name, shape (bytes,), uint8."""

@@ -1,0 +1,62 @@
+"""The gate: own pages pass, foreign hosts and origins do not, a token is asked for when set."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from ui.guard import COOKIE, Gate
+
+OWN = {"Host": "127.0.0.1:8080"}
+
+
+@pytest.mark.parametrize("host", ["127.0.0.1:8080", "localhost:1", "[::1]:8080", "LOCALHOST:8080"])
+def test_own_hosts_pass(host: str) -> None:
+    """Loopback names with any port are left to viser."""
+    assert Gate().decide("/", {"Host": host, "Origin": f"http://{host}"}) is None
+
+
+@pytest.mark.parametrize(
+    "headers",
+    [
+        {},
+        {"Host": "evil.example"},
+        {"Host": "127.0.0.1.evil.example:8080"},
+        {"Host": "localhost.:8080"},
+        {**OWN, "Origin": "http://evil.example"},
+        {**OWN, "Origin": "null"},
+        {**OWN, "Origin": "http://127.0.0.1.evil.example"},
+        {**OWN, "Origin": "http://127.0.0.1:8080@evil.example"},
+    ],
+)
+def test_foreign_pages_are_refused(headers: dict[str, str]) -> None:
+    """Status 403 for every foreign Host or Origin."""
+    answer = Gate().decide("/", headers)
+    assert answer is not None
+    assert answer[0] == 403
+
+
+def test_health_is_plain_json() -> None:
+    """/healthz answers 200 with ok true, to own hosts only."""
+    answer = Gate().decide("/healthz", OWN)
+    assert answer is not None
+    assert json.loads(answer[2]) == {"ok": True}
+    refused = Gate().decide("/healthz", {"Host": "evil.example"})
+    assert refused is not None
+    assert refused[0] == 403
+
+
+def test_token_link_sets_a_cookie_that_opens_the_door() -> None:
+    """No token 401, wrong token 401, right token 302 with a cookie, cookie passes."""
+    gate = Gate(token="secret")
+    for path in ("/", "/?token=", "/?token=wrong", "/?x=token=secret"):
+        answer = gate.decide(path, OWN)
+        assert answer is not None
+        assert answer[0] == 401
+    answer = gate.decide("/?token=secret", OWN)
+    assert answer is not None
+    assert answer[0] == 302
+    assert "HttpOnly" in answer[1]["Set-Cookie"]
+    assert gate.decide("/", {**OWN, "Cookie": f"a=b; {COOKIE}=secret"}) is None
+    assert gate.decide("/", {**OWN, "Cookie": f"{COOKIE}=other"}) is not None

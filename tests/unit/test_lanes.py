@@ -1,0 +1,151 @@
+"""Worker lanes: results through the store, cancel within 3 s, a dead worker is an error."""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from workbench import lanes, stages
+from workbench.core.design import Layers
+from workbench.core.errors import Cancelled, DesignError, LaneError
+from workbench.core.monitor import silent
+from workbench.forms import resolve_shape
+from workbench.lanes import Lane
+from workbench.stages import Call
+from workbench.store import Store
+
+CANCEL_LIMIT_S = 3.0
+"""The promise to the designer; the lane kills after 2 s."""
+
+
+@pytest.fixture(scope="module")
+def lane(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Lane]:
+    """A worker with the stages of `tests.unit.slow_stages` beside the real ones."""
+    folder = tmp_path_factory.mktemp("store")
+    patch = pytest.MonkeyPatch()
+    patch.setenv("PYTHONPATH", str(Path(__file__).parent))
+    patch.setitem(lanes.WARM_UP, "cad", ("slow_stages",))
+    patch.syspath_prepend(str(Path(__file__).parent))
+    import slow_stages  # noqa: F401
+
+    lane = Lane("cad", Store(folder))
+    yield lane
+    lane.close()
+    for name in ("nap", "deaf", "die"):
+        del stages.STAGES[name]
+    patch.undo()
+
+
+def finger() -> Call:
+    return Call("build", ("finger", resolve_shape("finger", {}), Layers()))
+
+
+def test_result_arrives_through_the_store(lane: Lane) -> None:
+    """The outcome names the key; the store holds a finger of 7.46 ml."""
+    call = finger()
+    outcome = lane.run(call, silent)
+    assert outcome.key == call.key
+    assert not outcome.cached
+    # pi (15^2 - 13^2) 27 + 2/3 pi (15^3 - 13^3) mm3.
+    assert lane.store.load("build", call.key).volume_mm3 == pytest.approx(7217.0, rel=1e-3)
+
+
+def test_refused_input_raises_here(lane: Lane) -> None:
+    """A DesignError of the worker keeps its field."""
+    call = Call("build", ("finger", resolve_shape("finger", {}), Layers(elastomer_mm=15.0)))
+    with pytest.raises(DesignError) as caught:
+        lane.run(call, silent)
+    assert caught.value.at == "layers.elastomer_mm"
+
+
+@pytest.mark.parametrize("stage", ["nap", "deaf"])
+def test_cancel_returns_within_3_seconds(lane: Lane, stage: str) -> None:
+    """A stage that listens stops at once; one that never listens is killed and replaced."""
+    asked: list[float] = []
+
+    def monitor(fraction: float, note: str = "") -> None:
+        if fraction > 0 or stage == "deaf":
+            asked.append(time.monotonic())
+            raise Cancelled("stop")
+
+    with pytest.raises(Cancelled):
+        lane.run(Call(stage, (60.0,)), monitor)
+    assert time.monotonic() - asked[0] < CANCEL_LIMIT_S
+    assert not lane.store.has(stage, Call(stage, (60.0,)).key)
+    assert lane.run(Call("nap", (0.01,)), silent).stage == "nap"
+
+
+def test_dead_worker_is_an_error_and_is_replaced(lane: Lane) -> None:
+    """Signal 11 in the worker is a LaneError that names it; the next call works."""
+    with pytest.raises(LaneError, match="signal 11"):
+        lane.run(Call("die", (int(signal.SIGSEGV),)), silent)
+    assert lane.run(Call("nap", (0.02,)), silent).stage == "nap"
+
+
+def test_bug_in_a_stage_brings_its_traceback(lane: Lane) -> None:
+    """An unforeseen exception is a LaneError whose hint holds the traceback."""
+    with pytest.raises(LaneError, match="TypeError") as caught:
+        lane.run(Call("nap", ("soon",)), silent)
+    assert "Traceback" in caught.value.hint
+
+
+def test_closing_ends_a_running_call(tmp_path: Path) -> None:
+    """close() while a call runs raises Cancelled in the waiting thread."""
+    patch = pytest.MonkeyPatch()
+    patch.setitem(lanes.WARM_UP, "cad", ())
+    lane = Lane("cad", Store(tmp_path))
+    patch.undo()
+    caught: list[Any] = []
+
+    def work() -> None:
+        try:
+            lane.run(finger(), silent)
+        except Cancelled as error:
+            caught.append(error)
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    time.sleep(0.3)
+    lane.close()
+    thread.join(10)
+    assert len(caught) == 1
+
+
+def test_worker_follows_a_killed_parent(tmp_path: Path) -> None:
+    """After kill -9 of the server no worker is left within a few seconds."""
+    import subprocess
+    import sys
+
+    code = (
+        "import time; from workbench.lanes import Lane, WARM_UP; from workbench.store import Store;"
+        f"WARM_UP['cad'] = (); lane = Lane('cad', Store({str(tmp_path)!r}));"
+        "print(lane._process.pid, flush=True); time.sleep(60)"
+    )
+    guarded = f"if __name__ == '__main__':\n    {code}"
+    script = tmp_path / "parent.py"
+    script.write_text(guarded)
+    with subprocess.Popen([sys.executable, str(script)], stdout=subprocess.PIPE, text=True) as run:
+        assert run.stdout is not None
+        worker = int(run.stdout.readline())
+        time.sleep(1.0)
+        run.kill()
+    deadline = time.monotonic() + 10
+    while time.monotonic() < deadline and _alive(worker):
+        time.sleep(0.1)
+    assert not _alive(worker)
+
+
+def _alive(pid: int) -> bool:
+    try:
+        state = Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0]
+    except (FileNotFoundError, ProcessLookupError):
+        return False
+    os.kill(pid, 0)
+    return state != "Z"

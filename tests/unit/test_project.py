@@ -1,0 +1,99 @@
+"""Designs as TOML: the same design comes back; what is wrong is named."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from workbench.core.errors import DesignError, StoreError
+from workbench.project import (
+    Project,
+    design_from_toml,
+    design_to_toml,
+    load_design,
+    presets,
+    write_atomically,
+)
+
+
+@pytest.mark.parametrize("name", [*presets(), "finger"])
+def test_toml_round_trip(name: str) -> None:
+    """design_from_toml(design_to_toml(d)) == d for every preset."""
+    design = load_design(name)
+    assert design_from_toml(design_to_toml(design)) == design
+
+
+BAD = {
+    "newer schema": ("schema = 99", "schema", "99"),
+    "no schema number": ("schema = 'x'", "schema", "'x'"),
+    "broken": ("name = ", "design", "not valid TOML"),
+    "unknown field": ("nmae = 'x'", "nmae", "nmae"),
+    "unknown nested field": ("[layers]\nelastomr_mm = 2.0", "layers.elastomr_mm", "elastomr_mm"),
+    "wrong type": ("[layers]\nelastomer_mm = 'thick'", "layers.elastomer_mm", "'thick'"),
+    "not a table": ("layers = 3", "layers", "3"),
+    "unknown family": ("family = 'hand'", "family", "'hand'"),
+    "unknown shape": ("[shape]\nlength = 3", "shape.length", "length"),
+    "shape out of range": ("[shape]\nouter_radius_mm = 500", "shape.outer_radius_mm", "500"),
+    "wall thicker than radius": (
+        "[shape]\nouter_radius_mm = 6.0\n[layers]\nelastomer_mm = 8.0",
+        "layers.elastomer_mm",
+        "8 mm",
+    ),
+    "wrong lens": ("[optics.camera]\nlens = 'wide'", "optics.camera.lens", "'wide'"),
+    "two numbers": (
+        "[optics.camera]\nposition_mm = [0, 1]",
+        "optics.camera.position_mm",
+        "3 values",
+    ),
+    "true as number": ("[optics.ring]\ncount = true", "optics.ring.count", "True"),
+}
+
+
+@pytest.mark.parametrize(("text", "at", "words"), BAD.values(), ids=BAD)
+def test_bad_file_is_explained(text: str, at: str, words: str) -> None:
+    """Exit code 2, the field, the value and a remedy."""
+    with pytest.raises(DesignError) as caught:
+        design_from_toml(text)
+    assert caught.value.at == at
+    assert words in caught.value.message
+    assert caught.value.hint
+    assert caught.value.exit_code == 2
+
+
+def test_unknown_preset_suggests_the_nearest() -> None:
+    """`gelti` hints at geltip."""
+    with pytest.raises(DesignError) as caught:
+        load_design("gelti")
+    assert "geltip" in caught.value.hint
+
+
+@pytest.mark.parametrize("name", ["../x", "a/b", "", ".hidden", "x" * 99, "a\0b"])
+def test_design_names_cannot_leave_the_folder(tmp_path: Path, name: str) -> None:
+    """A name that is a path is refused."""
+    with pytest.raises(DesignError):
+        Project(tmp_path).design_path(name)
+
+
+def test_missing_and_binary_files_are_explained(tmp_path: Path) -> None:
+    """A missing file and one that is not text have exit code 2."""
+    with pytest.raises(DesignError, match="cannot read"):
+        load_design(str(tmp_path / "none.toml"))
+    (tmp_path / "bin.toml").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(DesignError, match="cannot read"):
+        load_design(str(tmp_path / "bin.toml"))
+
+
+def test_failed_write_keeps_the_old_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """When the disk is full the previous content stays whole."""
+    path = tmp_path / "design.toml"
+    write_atomically(path, b"old")
+
+    def full(handle: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("os.fsync", full)
+    with pytest.raises(StoreError, match="No space left"):
+        write_atomically(path, b"new")
+    assert path.read_bytes() == b"old"
+    assert list(tmp_path.iterdir()) == [path]

@@ -1,0 +1,112 @@
+"""The session: refused edits change nothing, undo is exact, a restart finds the work."""
+
+from __future__ import annotations
+
+import random
+from pathlib import Path
+
+import pytest
+
+from ui.session import Session
+from workbench.core.errors import DesignError
+from workbench.core.press import Indenter, IndenterKind
+from workbench.project import Project, design_to_toml
+
+
+class Clock:
+    """Time that a test moves by hand."""
+
+    def __init__(self) -> None:
+        self.now = 0.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
+@pytest.fixture
+def clock() -> Clock:
+    return Clock()
+
+
+@pytest.fixture
+def session(tmp_path: Path, clock: Clock) -> Session:
+    return Session(Project(tmp_path), clock)
+
+
+def test_refused_edit_leaves_the_last_good_state(session: Session) -> None:
+    """A wall thicker than the finger raises; design and keys are as before."""
+    before = session.state
+    with pytest.raises(DesignError):
+        session.change("design.layers.elastomer_mm", 14.5)
+    assert session.state is before
+
+
+def test_a_drag_is_one_step_of_undo(session: Session, clock: Clock) -> None:
+    """Twenty quick edits of one field undo together, another field separately."""
+    start = session.state
+    for step in range(20):
+        clock.now += 0.05
+        session.change("design.layers.elastomer_mm", 2.0 + 0.05 * (step + 1))
+    dragged = session.state
+    clock.now += 0.05
+    session.change("design.optics.ring.count", 6)
+    assert session.undo()
+    assert session.state == dragged
+    assert session.undo()
+    assert session.state == start
+    assert not session.undo()
+    assert session.redo()
+    assert session.state == dragged
+
+
+def test_random_edits_undo_to_the_start_byte_for_byte(session: Session, clock: Clock) -> None:
+    """50 random edits and 50 undos give the starting TOML."""
+    start = design_to_toml(session.design)
+    random_source = random.Random(1)
+    for _ in range(50):
+        clock.now += 10.0
+        path, value = random_source.choice(
+            [
+                ("design.shape.outer_radius_mm", random_source.uniform(10, 20)),
+                ("design.optics.ring.radius_mm", random_source.uniform(2, 9)),
+                ("design.optics.camera.fov_x_deg", random_source.uniform(60, 120)),
+                ("case.press.depth_mm", random_source.uniform(0, 2)),
+            ]
+        )
+        session.change(path, value)
+    while session.undo():
+        pass
+    assert design_to_toml(session.design) == start
+
+
+def test_camera_move_makes_only_the_image_stale(session: Session) -> None:
+    """Of all keys only that of `shoot` changes."""
+    before = {name: call.key for name, call in session.calls().items()}
+    session.change("design.optics.camera.fov_x_deg", 90.0)
+    after = {name: call.key for name, call in session.calls().items()}
+    assert [name for name in before if before[name] != after[name]] == ["shoot"]
+
+
+def test_restart_finds_design_and_press(tmp_path: Path, session: Session) -> None:
+    """A new session of the same project continues with equal keys."""
+    session.change("design.shape.cylinder_mm", 20.0)
+    session.change("case.press.depth_mm", 0.7)
+    session.replace_indenter(Indenter(kind=IndenterKind.CUBE, size_mm=5.0))
+    session.autosave()
+    again = Session(Project(tmp_path))
+    again.open(None)
+    assert again.state == session.state
+    assert {n: c.key for n, c in again.calls().items()} == {
+        n: c.key for n, c in session.calls().items()
+    }
+
+
+def test_broken_autosave_gives_a_notice_and_the_example(tmp_path: Path, session: Session) -> None:
+    """A half-edited autosave does not keep the workbench from starting."""
+    session.autosave()
+    path = session.project.design_path("autosave")
+    path.write_text("schema = 99")
+    again = Session(Project(tmp_path))
+    again.open(None)
+    assert again.design.name == "geltip"
+    assert "schema 99" in again.notice

@@ -1,0 +1,142 @@
+"""The store: whole or absent, first writer wins, full disks leave nothing behind."""
+
+from __future__ import annotations
+
+import errno
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from workbench.core.design import LightModel, SensorDesign
+from workbench.core.errors import StoreError
+from workbench.core.results import Bundle, Metrics, Picture, Shot, TactileFrames
+from workbench.store import META, Store
+
+
+def picture(value: int = 1) -> Picture:
+    return Picture(png=np.full(8, value, np.uint8))
+
+
+def test_round_trip_keeps_values_types_and_nesting(tmp_path: Path) -> None:
+    """load(save(x)) == x, arrays mapped from disk."""
+    frames = TactileFrames(
+        rgb=np.zeros((1, 2, 2, 3), np.uint8),
+        depth_z_mm=np.ones((1, 2, 2), np.float32),
+        normal=np.zeros((1, 2, 2, 3), np.float16),
+        moved=np.zeros((1, 2, 2), bool),
+        marker_uv_px=np.zeros((1, 0, 2), np.float32),
+        exposure=0.5,
+    )
+    shot = Shot(frames=frames, metrics=Metrics(values={"peak_N": 1.25}))
+    store = Store(tmp_path)
+    store.save("shoot", "k", shot, seconds=1.5, version=1)
+    loaded = store.load("shoot", "k")
+    assert loaded.metrics == shot.metrics
+    assert loaded.frames.exposure == 0.5
+    assert isinstance(loaded.frames.rgb, np.memmap)
+    np.testing.assert_array_equal(loaded.frames.depth_z_mm, frames.depth_z_mm)
+    assert store.entry("shoot", "k").seconds == 1.5
+
+
+def test_round_trip_of_designs_and_file_bundles(tmp_path: Path) -> None:
+    """Enumerations, mappings and names with dots survive."""
+    store = Store(tmp_path)
+    design = SensorDesign(shape={"tip_ratio": 1.2}).replace("optics.light_model", LightModel.LINEAR)
+    store.save("a", "k", design, seconds=0.0, version=1)
+    assert store.load("a", "k") == design
+    store.save(
+        "b", "k", Bundle(files={"x.stl": np.arange(3, dtype=np.uint8)}), seconds=0, version=1
+    )
+    assert store.load("b", "k").files["x.stl"].tobytes() == b"\0\1\2"
+
+
+def test_first_writer_wins(tmp_path: Path) -> None:
+    """A second save of the same key changes nothing and raises nothing."""
+    store = Store(tmp_path)
+    store.save("s", "k", picture(1), seconds=0.0, version=1)
+    store.save("s", "k", picture(2), seconds=0.0, version=1)
+    assert store.load("s", "k").png[0] == 1
+    assert [p.name for p in (tmp_path / "s").iterdir()] == ["k"]
+
+
+@pytest.mark.parametrize("number", [errno.ENOSPC, errno.EROFS, errno.EACCES])
+def test_failed_write_leaves_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: int
+) -> None:
+    """A full or read-only disk is a StoreError (exit 3); earlier results stay readable."""
+    store = Store(tmp_path)
+    store.save("s", "old", picture(), seconds=0.0, version=1)
+
+    def full(*args: object, **keywords: object) -> None:
+        raise OSError(number, os.strerror(number))
+
+    monkeypatch.setattr(np, "save", full)
+    with pytest.raises(StoreError) as caught:
+        store.save("s", "new", picture(), seconds=0.0, version=1)
+    assert caught.value.exit_code == 3
+    assert caught.value.hint
+    assert not store.has("s", "new")
+    assert [p.name for p in (tmp_path / "s").iterdir()] == ["old"]
+    assert store.load("s", "old").png.size == 8
+
+
+def test_really_full_disk(tmp_path: Path) -> None:
+    """A 1 MB file system of its own runs full: one clear StoreError, the old result intact."""
+    import subprocess
+
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    mount = ["mount", "-t", "tmpfs", "-o", "size=1m", "tmpfs", str(disk)]
+    if subprocess.run(mount, capture_output=True, check=False).returncode:
+        pytest.skip("needs the right to mount a small file system")
+    try:
+        store = Store(disk)
+        store.save("s", "small", picture(), seconds=0.0, version=1)
+        with pytest.raises(StoreError, match="full"):
+            store.save("s", "big", Picture(png=np.zeros(2**22, np.uint8)), seconds=0, version=1)
+        assert store.load("s", "small").png.size == 8
+        assert not store.has("s", "big")
+    finally:
+        subprocess.run(["umount", str(disk)], check=True)
+
+
+def test_half_written_result_is_never_read(tmp_path: Path) -> None:
+    """A folder without its meta file, as a killed writer leaves it, counts as absent."""
+    store = Store(tmp_path)
+    part = tmp_path / "s" / ".part-999999999-x"
+    part.mkdir(parents=True)
+    (part / "value.png.npy").write_bytes(b"half")
+    assert not store.has("s", ".part-999999999-x")
+    assert store.sweep() == 1
+    assert not part.exists()
+
+
+def test_part_of_a_living_writer_is_kept(tmp_path: Path) -> None:
+    """Sweeping does not disturb a process that is writing."""
+    part = tmp_path / "s" / f".part-{os.getpid()}-x"
+    part.mkdir(parents=True)
+    assert Store(tmp_path).sweep() == 0
+    assert part.exists()
+
+
+def test_damaged_result_is_named(tmp_path: Path) -> None:
+    """A truncated array is a StoreError that names the folder to delete."""
+    store = Store(tmp_path)
+    store.save("s", "k", picture(), seconds=0.0, version=1)
+    (store.path("s", "k") / "value.png.npy").write_bytes(b"\x93NUMPY")
+    with pytest.raises(StoreError) as caught:
+        store.load("s", "k")
+    assert str(store.path("s", "k")) in caught.value.hint
+
+
+def test_sweep_removes_the_least_recently_used(tmp_path: Path) -> None:
+    """Beyond the size limit the oldest result goes, the newer one stays."""
+    store = Store(tmp_path, limit_bytes=10)
+    for i, key in enumerate(("old", "new")):
+        store.save("s", key, picture(), seconds=0.0, version=1)
+        os.utime(store.path("s", key) / META, (1000 + i, 1000 + i))
+    assert store.sweep() == 1
+    assert store.has("s", "new")
+    assert not store.has("s", "old")

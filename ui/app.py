@@ -1,0 +1,154 @@
+"""Starts the browser front: checks the port, guards the server, builds the desk, keeps it running.
+
+One server shows one desk; every tab sees the same. The server answers before the worker lanes are
+warm, so a cached design is on screen at once.
+"""
+
+from __future__ import annotations
+
+import argparse
+import errno
+import os
+import secrets
+import signal
+import socket
+import threading
+import time
+import webbrowser
+from typing import Any
+
+import viser
+
+from ui.desk import Desk
+from ui.guard import LOOPBACK, Gate, guarded
+from ui.panels.compare import ComparePanel
+from ui.panels.make import MakePanel
+from ui.panels.optics import OpticsPanel
+from ui.panels.results import ResultsPanel
+from ui.panels.shape import ShapePanel
+from ui.panels.simulate import SimulatePanel
+from ui.session import Session
+from workbench import __version__
+from workbench.conductor import Conductor
+from workbench.core.errors import DesignError
+from workbench.lanes import LaneRunner
+from workbench.project import Project
+
+BRAND = (37, 99, 235)
+
+
+def serve(options: argparse.Namespace, project: Project) -> int:
+    """Run the workbench until Ctrl-C; returns the exit code.
+
+    Raises:
+        DesignError: If the port is taken or the design cannot be read.
+    """
+    check_port(options.host, options.port)
+    session = Session(project)
+    session.open(options.design)
+    project.store.sweep()
+    token = None if options.host in LOOPBACK else secrets.token_urlsafe(16)
+    hosts = (*LOOPBACK, options.host, socket.gethostname()) if token else LOOPBACK
+    gate = Gate(hosts=hosts, token=token)
+    with guarded(gate):
+        server = viser.ViserServer(
+            host=options.host, port=options.port, label="Sensor workbench", verbose=False
+        )
+    if server.get_port() != options.port:
+        # Another program took the port between the check and the bind.
+        server.stop()
+        raise _port_taken(options.port)
+    conductor = Conductor(project.store, LaneRunner(project.store))
+    desk = build_desk(server, session, conductor, fast=options.fast_scene)
+    gate.health = lambda: {"ok": True, "version": __version__, "busy": conductor.busy}
+    link = f"http://{options.host}:{options.port}/" + (f"?token={token}" if token else "")
+    print(f"The workbench is open at {link}  (Ctrl-C ends it)", flush=True)
+    if options.open:
+        webbrowser.open(link)
+    wait_for_stop(desk)
+    conductor.close()
+    server.stop()
+    return 0
+
+
+def build_desk(server: Any, session: Session, conductor: Conductor, *, fast: bool) -> Desk:
+    """Lay out all panels and show what is stored for the design."""
+    gui = server.gui
+    gui.configure_theme(dark_mode=True, show_logo=False, show_share_button=False, brand_color=BRAND)
+    gui.main_panel.dock_left()
+    gui.main_panel.set_width(360)
+    with server.atomic():
+        desk = Desk(server, session, conductor, fast=fast)
+        tabs = gui.add_tab_group()
+        # Five labels without icons fit on one row.
+        pages = {
+            "Shape": ShapePanel,
+            "Optics": OpticsPanel,
+            "Simulate": SimulatePanel,
+            "Make": MakePanel,
+            "Compare": ComparePanel,
+        }
+        for label, panel in pages.items():
+            with tabs.add_tab(label):
+                desk.panels.append(panel(desk))
+        desk.panels.append(ResultsPanel(desk))
+    first_look(desk)
+    threading.Thread(target=desk.pump_forever, name="pump", daemon=True).start()
+    return desk
+
+
+def first_look(desk: Desk) -> None:
+    """Show stored results; a newcomer's first design is pressed in the background."""
+    fresh = desk.session.fresh()
+    desk.changed()
+    desk.show_stored()
+    if desk.session.notice:
+        desk.log(desk.session.notice)
+    if not any(fresh.values()):
+        desk.log("first start: pressing the example in the background, a minute or so")
+        desk.run("press", ("press", "shoot"))
+
+
+def wait_for_stop(desk: Desk) -> None:
+    """Sleep until Ctrl-C or a polite kill, then save the session."""
+    stop = threading.Event()
+    for name in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(name, lambda *_: stop.set())
+    while not stop.is_set():
+        time.sleep(0.2)
+    desk.session.autosave()
+
+
+def check_port(host: str, port: int) -> None:
+    """Refuse a port that is taken; viser would silently use the next one.
+
+    Raises:
+        DesignError: If the port is taken, out of range or not allowed.
+    """
+    if not 1 <= port <= 65535:
+        raise DesignError(
+            f"port {port} is outside 1 to 65535", hint="8080 is the default", at="--port"
+        )
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    with socket.socket(family, socket.SOCK_STREAM) as probe:
+        if os.name == "posix":
+            # A port in TIME_WAIT after a restart is free for a server.
+            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind((host, port))
+        except OSError as error:
+            if error.errno == errno.EADDRINUSE:
+                raise _port_taken(port) from error
+            raise DesignError(
+                f"cannot listen on {host}:{port}: {error.strerror}",
+                hint="choose another --host or a --port of 1024 and above",
+                at="--port",
+            ) from error
+
+
+def _port_taken(port: int) -> DesignError:
+    return DesignError(
+        f"port {port} is taken by another program",
+        hint=f"end that program, or run: workbench serve --port {port + 1}",
+        at="--port",
+    )

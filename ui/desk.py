@@ -1,0 +1,281 @@
+"""The desk: joins session, conductor, scene and panels; holds no widgets' details and no maths.
+
+Handlers of widgets call `edit` or `run` and return. One pump thread drains the conductor's events
+into widgets ten times a second and saves the session once edits have settled.
+"""
+
+from __future__ import annotations
+
+import html
+import sys
+import threading
+import time
+import traceback
+from collections.abc import Callable
+from typing import Any, Protocol
+
+from ui.panels.fields import Fields, read_field, whole_shape
+from ui.scene import Scene
+from ui.session import Session
+from workbench.conductor import Conductor, Event, Finished, Progress, StageDone
+from workbench.core.errors import Cancelled, WorkbenchError
+from workbench.core.units import human_seconds
+from workbench.forms import resolve_shape
+
+PUMP_S = 0.1
+AUTOSAVE_S = 1.0
+"""Quiet time after an edit before the design is written [s]."""
+NOTICE_S = 15.0
+STRIP = {
+    "build": "Shape",
+    "mesh": "Mesh",
+    "bake": "Light",
+    "press": "Contact",
+    "shoot": "Image",
+    "mould": "Mould",
+}
+"""Stages of the strip and their names for people."""
+
+
+class Panel(Protocol):
+    """A part of the front that follows state and results."""
+
+    def refresh(self) -> None:
+        """Show the state as it stands."""
+        ...
+
+    def show(self, stage: str, result: Any) -> None:
+        """Show a new result."""
+        ...
+
+
+class Desk:
+    """One server's front; all tabs of it show the same desk."""
+
+    def __init__(self, server: Any, session: Session, conductor: Conductor, *, fast: bool) -> None:
+        self.server = server
+        self.session = session
+        self.conductor = conductor
+        self.scene = Scene(server, fast=fast)
+        self.fields = Fields(server, self.read, self.edit)
+        self.panels: list[Panel] = []
+        self.log_lines: list[str] = []
+        self.frame = 0
+        self._edited: float | None = None
+        self._running: dict[str, Progress] = {}
+        self._shown: dict[str, str] = {}
+        self._lock = threading.RLock()
+        self._build_header()
+
+    def _build_header(self) -> None:
+        gui = self.server.gui
+        self.title = gui.add_markdown("")
+        self.strip = gui.add_markdown("")
+        self.banner = gui.add_markdown("", visible=False)
+        self.progress = gui.add_progress_bar(0.0, visible=False, animated=True)
+        self.progress_text = gui.add_markdown("", visible=False)
+        self.cancel_button = gui.add_button("Cancel", color="red", visible=False)
+        self.cancel_button.on_click(self.guarded(lambda event: self.conductor.cancel()))
+
+    def read(self, path: str) -> Any:
+        """Value of a field of the state; shape parameters have their defaults filled in."""
+        if path.startswith("design.shape."):
+            design = self.session.design
+            shape = resolve_shape(design.family, design.shape)
+            return whole_shape(shape)[path.rsplit(".", 1)[1]]
+        return read_field(self.session.state, path)
+
+    def guarded(self, handler: Callable[[Any], None]) -> Callable[[Any], None]:
+        """A widget callback whose errors reach the designer instead of the terminal only."""
+
+        def call(event: Any) -> None:
+            try:
+                handler(event)
+            except WorkbenchError as error:
+                self.report(error)
+            except Exception as bug:
+                self.crash(bug)
+
+        return call
+
+    def edit(self, path: str, value: Any) -> None:
+        """Change one field; a refused value is explained and leaves the last good state."""
+        with self._lock:
+            try:
+                self.session.change(path, value)
+            except WorkbenchError as error:
+                self.report(error, quiet=True)
+                return
+            self.fields.clear_complaints()
+            self.banner.visible = False
+            self.changed()
+
+    def changed(self) -> None:
+        """Follow a change of state: live view, stage strip, autosave."""
+        self._edited = time.monotonic()
+        session = self.session
+        self.scene.show_lights(session.design.optics.ring)
+        self.scene.show_camera(session.design.optics.camera)
+        call = session.calls()["build"]
+        if session.store.has("build", call.key):
+            self._show("build", call.key)
+        else:
+            self.conductor.submit("shape", session.design, session.case, ("build",))
+        self.scene.place_indenter(session.case.press)
+        self.refresh_strip()
+
+    def replaced(self) -> None:
+        """Follow a change of many fields at once: undo, a preset, an upload."""
+        with self._lock:
+            for panel in self.panels:
+                panel.refresh()
+            self.fields.refresh()
+            self.fields.clear_complaints()
+            self.banner.visible = False
+            self.changed()
+            self.show_stored()
+
+    def show_stored(self) -> None:
+        """Show every result that is stored for the state as it stands."""
+        calls = self.session.calls()
+        for stage in ("build", "press", "shoot", "mould"):
+            if self.session.store.has(stage, calls[stage].key):
+                self._show(stage, calls[stage].key)
+
+    def run(self, topic: str, wanted: tuple[str, ...]) -> None:
+        """Compute stages for the state as it stands."""
+        self.banner.visible = False
+        self.log(f"{topic}: started")
+        self.conductor.submit(topic, self.session.design, self.session.case, wanted)
+
+    def _show(self, stage: str, key: str) -> None:
+        if self._shown.get(stage) == key:
+            return
+        self._shown[stage] = key
+        result = self.session.store.load(stage, key)
+        if stage == "build":
+            # Another body: what was shown of the old one goes.
+            self._shown.pop("press", None)
+            self._shown.pop("mould", None)
+            self.scene.show_solid(result)
+            self.scene.show_indenter(self.session.case.indenter, self.session.case.press)
+            if result.notice:
+                self.notify("Shape", result.notice, color="yellow")
+        for panel in self.panels:
+            panel.show(stage, result)
+
+    def pump_forever(self) -> None:
+        """Drain events into widgets until the process ends."""
+        while True:
+            time.sleep(PUMP_S)
+            try:
+                self.pump()
+            except Exception as bug:
+                self.crash(bug)
+
+    def pump(self) -> None:
+        """Handle the events that wait, then the autosave."""
+        events: list[Event] = []
+        while not self.conductor.events.empty():
+            events.append(self.conductor.events.get())
+        with self._lock:
+            for event in events:
+                self._handle(event)
+            if events:
+                self._refresh_progress()
+                self.refresh_strip()
+            if self._edited is not None and time.monotonic() - self._edited > AUTOSAVE_S:
+                self._edited = None
+                try:
+                    self.session.autosave()
+                except WorkbenchError as error:
+                    self.report(error)
+
+    def _handle(self, event: Event) -> None:
+        if isinstance(event, Progress):
+            self._running[event.topic] = event
+        elif isinstance(event, StageDone):
+            stage, key = event.outcome.stage, event.outcome.key
+            if not event.outcome.cached:
+                self.log(f"{stage} done in {human_seconds(event.outcome.seconds)}")
+            if self.session.calls()[stage].key == key:
+                self._show(stage, key)
+        else:
+            self._finish(event)
+
+    def _finish(self, event: Finished) -> None:
+        self._running.pop(event.topic, None)
+        error = event.error
+        if error is None:
+            if event.topic != "shape":
+                self.log(f"{event.topic}: finished in {human_seconds(event.seconds)}")
+        elif isinstance(error, Cancelled):
+            self.log(f"{event.topic}: cancelled")
+            if event.topic != "shape":
+                self.notify("Cancelled", f"{event.topic} was stopped; earlier results are kept")
+        else:
+            self.report(error)
+
+    def _refresh_progress(self) -> None:
+        shown = [p for topic, p in self._running.items() if topic != "shape"]
+        visible = bool(shown)
+        for handle in (self.progress, self.progress_text, self.cancel_button):
+            if handle.visible != visible:
+                handle.visible = visible
+        if shown:
+            now = shown[-1]
+            self.progress.value = 100.0 * now.fraction
+            left = f" · about {human_seconds(now.eta_s)} left" if now.eta_s is not None else ""
+            name = STRIP.get(now.stage, now.stage)
+            self.progress_text.content = f"{name} {100 * now.fraction:.0f} %{left} · {now.note}"
+
+    def refresh_strip(self) -> None:
+        """Show which stages are done and which are stale."""
+        fresh = self.session.fresh()
+        running = {p.stage for p in self._running.values()}
+        marks = {True: "✓", False: "○"}
+        text = " · ".join(
+            f"{name} {'▶' if stage in running else marks[fresh[stage]]}"
+            for stage, name in STRIP.items()
+        )
+        if self.strip.content != text:
+            self.strip.content = text
+        design = self.session.design
+        title = f"**{html.escape(design.name)}** · {html.escape(design.family)}"
+        if self.title.content != title:
+            self.title.content = title
+
+    def report(self, error: WorkbenchError, *, quiet: bool = False) -> None:
+        """Show an error at its field, in a banner and in the log."""
+        at_field = self.fields.complain(error)
+        hint = f" {error.hint}." if error.hint and "\n" not in error.hint else ""
+        text = f"{html.escape(error.message)}.{html.escape(hint)}"
+        self.banner.content = f"<span style='color:#e5484d'>**{text}**</span>"
+        self.banner.visible = True
+        self.log(f"{type(error).__name__}: {error.message} {error.hint}")
+        if "\n" in error.hint:
+            self.session.project.write_crash(error.hint)
+        if not (quiet and at_field):
+            self.notify(type(error).__name__, f"{error.message}.{hint}", color="red")
+
+    def crash(self, bug: Exception) -> None:
+        """Keep the traceback of a bug and tell the designer where it is."""
+        text = "".join(traceback.format_exception(bug))
+        print(text, file=sys.stderr, flush=True)
+        try:
+            where = str(self.session.project.write_crash(text))
+        except WorkbenchError:
+            where = "the terminal"
+        self.log(f"internal error: {bug!r}; see {where}")
+        self.notify("Internal error", f"{bug!r}; the details are in {where}", color="red")
+
+    def notify(self, title: str, body: str, *, color: Any = None) -> None:
+        """A passing message in every tab."""
+        for client in self.server.get_clients().values():
+            client.add_notification(title, body, color=color, auto_close_seconds=NOTICE_S)
+
+    def log(self, text: str) -> None:
+        """Add a line to the log."""
+        self.log_lines = [*self.log_lines[-199:], f"{time.strftime('%H:%M:%S')} {text}"]
+        for panel in self.panels:
+            panel.show("log", self.log_lines)

@@ -1,0 +1,91 @@
+"""Who may talk to the workbench: Host and Origin checks, a token, and `/healthz`.
+
+A server on loopback is still reachable from any web page the user has open; without these checks
+such a page could drive the workbench. viser calls `websockets.asyncio.server.serve` itself, so
+that one call is wrapped while the server is being built.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import http.cookies
+import json
+import secrets
+import urllib.parse
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+LOOPBACK = ("127.0.0.1", "localhost", "[::1]")
+COOKIE = "workbench_token"
+HEALTH_PATH = "/healthz"
+
+
+@dataclass(kw_only=True)
+class Gate:
+    """The rules of one server."""
+
+    hosts: tuple[str, ...] = LOOPBACK
+    token: str | None = None
+    """Needed in a cookie, or once in the link; None on loopback."""
+    health: Callable[[], dict[str, Any]] = field(default=lambda: {"ok": True})
+
+    def decide(self, path: str, headers: Any) -> tuple[int, dict[str, str], bytes] | None:
+        """Status, headers and body of a refusal or own page; None lets viser answer."""
+        if not self._known(headers.get("Host")):
+            return 403, {}, b"this address is not one of the workbench's own (Host)\n"
+        origin = headers.get("Origin")
+        if origin is not None and not self._known(urllib.parse.urlsplit(origin).netloc):
+            return 403, {}, b"pages of other sites may not drive the workbench (Origin)\n"
+        where = urllib.parse.urlsplit(path)
+        if where.path == HEALTH_PATH:
+            return 200, {"Content-Type": "application/json"}, json.dumps(self.health()).encode()
+        if self.token is None or self._has_cookie(headers.get("Cookie", "")):
+            return None
+        given = urllib.parse.parse_qs(where.query).get("token", [""])[0]
+        if secrets.compare_digest(given.encode(), self.token.encode()):
+            cookie = f"{COOKIE}={self.token}; HttpOnly; SameSite=Strict; Path=/"
+            return 302, {"Location": "/", "Set-Cookie": cookie}, b""
+        return 401, {}, b"open the link that the workbench printed in the terminal\n"
+
+    def _known(self, netloc: str | None) -> bool:
+        if not netloc or "@" in netloc:
+            return False
+        host = netloc if netloc.endswith("]") else netloc.rsplit(":", 1)[0]
+        return host.lower() in self.hosts
+
+    def _has_cookie(self, text: str) -> bool:
+        jar: http.cookies.SimpleCookie = http.cookies.SimpleCookie()
+        with contextlib.suppress(http.cookies.CookieError):
+            jar.load(text)
+        given = jar[COOKIE].value if COOKIE in jar else ""
+        return secrets.compare_digest(given.encode(), (self.token or "").encode())
+
+
+@contextlib.contextmanager
+def guarded(gate: Gate) -> Iterator[None]:
+    """While this is open, every websocket server that is built asks the gate first."""
+    import websockets.asyncio.server as asyncio_server
+    from websockets import Headers
+    from websockets.http11 import Response
+
+    real = asyncio_server.serve
+
+    def serve(
+        handler: Any, host: Any, port: Any, *, process_request: Any = None, **rest: Any
+    ) -> Any:
+        def ask(connection: Any, request: Any) -> Any:
+            answer = gate.decide(request.path, request.headers)
+            if answer is None:
+                return process_request(connection, request) if process_request else None
+            status, headers, body = answer
+            all_headers = Headers({"Content-Length": str(len(body)), **headers})
+            return Response(status, "", all_headers, body)
+
+        return real(handler, host, port, process_request=ask, **rest)
+
+    asyncio_server.serve = serve  # pyright: ignore[reportAttributeAccessIssue]
+    try:
+        yield
+    finally:
+        asyncio_server.serve = real

@@ -1,0 +1,130 @@
+"""Compare: keep variants with their numbers and images, and set two beside each other."""
+
+from __future__ import annotations
+
+import html
+from typing import Any
+
+import numpy as np
+
+from ui.desk import Desk
+from ui.imaging import difference, placeholder
+from workbench.core.errors import DesignError, WorkbenchError
+from workbench.core.mapping import to_table
+from workbench.variants import Variant, list_variants, load_variant, save_variant
+
+NONE = "-"
+
+
+class ComparePanel:
+    """Widgets of the fifth tab."""
+
+    def __init__(self, desk: Desk) -> None:
+        self.desk = desk
+        gui = desk.server.gui
+        self.name = gui.add_text("Variant", "variant A")
+        save = gui.add_button("Save variant", hint="Keeps the design, the press and its numbers")
+        save.on_click(desk.guarded(self._save))
+        self.a = gui.add_dropdown("A", (NONE,))
+        self.b = gui.add_dropdown("B", (NONE,))
+        for handle in (self.a, self.b):
+            handle.on_update(desk.guarded(lambda event: self._compare()))
+        self.load = gui.add_button_group("Load", ("A", "B"))
+        self.load.on_click(desk.guarded(self._load))
+        self.table = gui.add_html("")
+        self.image_a = gui.add_image(placeholder(), label="A", format="jpeg", visible=False)
+        self.image_b = gui.add_image(placeholder(), label="B", format="jpeg", visible=False)
+        self.change = gui.add_image(placeholder(), label="B - A", format="jpeg", visible=False)
+        self._offer()
+
+    def _save(self, event: Any) -> None:
+        session = self.desk.session
+        shot, contact = session.result("shoot"), session.result("press")
+        if shot is None or contact is None:
+            raise DesignError(
+                "this design has not been pressed yet", hint="press Run press, then save", at="name"
+            )
+        name = self.name.value.strip()
+        save_variant(session.project, name, session.design, session.case, session.calls())
+        self.desk.log(f"variant {name} saved")
+        self._offer()
+
+    def _offer(self) -> None:
+        names = (NONE, *list_variants(self.desk.session.project))
+        for handle in (self.a, self.b):
+            now = handle.value
+            handle.options = names
+            handle.value = now if now in names else NONE
+
+    def _variant(self, handle: Any) -> Variant | None:
+        if handle.value == NONE:
+            return None
+        return load_variant(self.desk.session.project, handle.value)
+
+    def _load(self, event: Any) -> None:
+        variant = self._variant(self.a if self.load.value == "A" else self.b)
+        if variant is not None:
+            self.desk.session.replace_design(variant.design)
+            self.desk.replaced()
+
+    def _compare(self) -> None:
+        a, b = self._variant(self.a), self._variant(self.b)
+        both = a is not None and b is not None
+        for handle in (self.image_a, self.image_b, self.change):
+            handle.visible = both
+        if a is None or b is None:
+            self.table.content = ""
+            return
+        self.table.content = comparison(a, b)
+        images = [self._image(variant) for variant in (a, b)]
+        self.image_a.image, self.image_b.image = images
+        same = images[0].shape == images[1].shape
+        self.change.visible = same
+        if same:
+            self.change.image = difference(images[1], images[0])[0]
+
+    def _image(self, variant: Variant) -> np.ndarray:
+        store = self.desk.session.store
+        try:
+            return np.asarray(store.load("shoot", variant.shoot_key).frames.rgb[-1])
+        except WorkbenchError as error:
+            self.desk.report(error)
+            return placeholder()
+
+    def refresh(self) -> None:
+        """Variants do not follow the state."""
+
+    def show(self, stage: str, result: Any) -> None:
+        """Variants do not follow results."""
+
+
+def comparison(a: Variant, b: Variant) -> str:
+    """Numbers of two variants side by side, then the parameters in which they differ, as HTML."""
+    rows = [
+        (name, f"{a.metrics[name]:.4g}", f"{b.metrics[name]:.4g}")
+        for name in a.metrics
+        if name in b.metrics
+    ]
+    left, right = _flat(to_table(a.design)), _flat(to_table(b.design))
+    rows += [
+        (name, left.get(name, NONE), right.get(name, NONE))
+        for name in {**left, **right}
+        if left.get(name) != right.get(name) and name != "name"
+    ]
+    cells = "".join(
+        "<tr>"
+        + "".join(f"<td style='padding:2px 8px'>{html.escape(c)}</td>" for c in row)
+        + "</tr>"
+        for row in (("", a.name, b.name), *rows)
+    )
+    return f"<table style='font-size:12px;margin:8px'>{cells}</table>"
+
+
+def _flat(table: dict[str, Any], prefix: str = "") -> dict[str, str]:
+    flat: dict[str, str] = {}
+    for name, value in table.items():
+        if isinstance(value, dict):
+            flat |= _flat(value, f"{prefix}{name}.")
+        else:
+            flat[f"{prefix}{name}"] = str(value)
+    return flat

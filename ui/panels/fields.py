@@ -1,0 +1,141 @@
+"""Widgets bound to fields of the session: edits go in, refused ones get a message underneath."""
+
+from __future__ import annotations
+
+import dataclasses
+import html
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from workbench.core.errors import WorkbenchError
+
+
+@dataclass(kw_only=True)
+class Field:
+    """One widget and the field it edits."""
+
+    path: str
+    """Dotted field of the session's state, for example `design.layers.elastomer_mm`."""
+    handle: Any
+    to_field: Callable[[Any], Any]
+    to_widget: Callable[[Any], Any]
+    complaint: Any
+    """Hidden markdown under the widget, shown when a value is refused."""
+
+
+class Fields:
+    """All bound widgets of a desk."""
+
+    def __init__(self, server: Any, read: Callable[[str], Any], edit: Callable[..., None]) -> None:
+        self.gui = server.gui
+        self._read = read
+        self._edit = edit
+        self._fields: dict[str, Field] = {}
+
+    def slider(
+        self,
+        label: str,
+        path: str,
+        *,
+        span: tuple[float, float, float],
+        hint: str = "",
+        whole: bool = False,
+    ) -> Any:
+        """A slider with a number box; `span` is minimum, maximum and step."""
+        low, high, step = span
+        kind = int if whole else float
+        value = min(max(kind(self._read(path)), low), high)
+        handle = self.gui.add_slider(label, low, high, step, kind(value), hint=hint or None)
+        return self._bind(path, handle, kind, lambda v: min(max(kind(v), low), high))
+
+    def number(self, label: str, path: str, *, step: float, hint: str = "") -> Any:
+        """A number box without limits of its own; the design refuses what is wrong."""
+        handle = self.gui.add_number(label, float(self._read(path)), step=step, hint=hint or None)
+        return self._bind(path, handle, float, float)
+
+    def choice(self, label: str, path: str, options: Sequence[Any], *, hint: str = "") -> Any:
+        """A drop-down over the members of an enumeration."""
+        names = {str(member.value): member for member in options}
+        now = str(self._read(path).value)
+        handle = self.gui.add_dropdown(label, tuple(names), initial_value=now, hint=hint or None)
+        return self._bind(path, handle, names.__getitem__, lambda member: str(member.value))
+
+    def check(self, label: str, path: str, *, hint: str = "") -> Any:
+        """A check box."""
+        handle = self.gui.add_checkbox(label, bool(self._read(path)), hint=hint or None)
+        return self._bind(path, handle, bool, bool)
+
+    def point(self, label: str, path: str, *, step: float, hint: str = "") -> Any:
+        """Three numbers in mm."""
+        handle = self.gui.add_vector3(label, tuple(self._read(path)), step=step, hint=hint or None)
+        return self._bind(path, handle, lambda v: tuple(float(x) for x in v), tuple)
+
+    def _bind(
+        self,
+        path: str,
+        handle: Any,
+        to_field: Callable[[Any], Any],
+        to_widget: Callable[[Any], Any],
+    ) -> Any:
+        complaint = self.gui.add_markdown("", visible=False)
+        field = Field(
+            path=path, handle=handle, to_field=to_field, to_widget=to_widget, complaint=complaint
+        )
+        self._fields[path] = field
+
+        @handle.on_update
+        def _(event: Any) -> None:
+            # Values set by `refresh` come back here without a client.
+            if event.client is not None:
+                self._edit(path, to_field(handle.value))
+
+        return handle
+
+    def forget(self, prefix: str) -> None:
+        """Remove the widgets whose path begins so."""
+        for path in [p for p in self._fields if p.startswith(prefix)]:
+            field = self._fields.pop(path)
+            field.handle.remove()
+            field.complaint.remove()
+
+    def refresh(self) -> None:
+        """Show the session's values in every widget."""
+        for path, field in self._fields.items():
+            value = field.to_widget(self._read(path))
+            if field.handle.value != value:
+                field.handle.value = value
+
+    def complain(self, error: WorkbenchError) -> bool:
+        """Show an error under the widget it names; False when there is no such widget."""
+        field = self._named(error.at)
+        if field is None:
+            return False
+        text = f"<span style='color:#e5484d'>{html.escape(error.message)}"
+        text += f"; {html.escape(error.hint)}</span>" if error.hint else "</span>"
+        field.complaint.content = text
+        field.complaint.visible = True
+        return True
+
+    def clear_complaints(self) -> None:
+        """Hide the messages under all widgets."""
+        for field in self._fields.values():
+            if field.complaint.visible:
+                field.complaint.visible = False
+
+    def _named(self, at: str) -> Field | None:
+        names = (f"design.{at}", f"case.{at}", at.replace("contact.", "case.settings.", 1))
+        return next((self._fields[n] for n in names if n in self._fields), None)
+
+
+def read_field(state: Any, path: str) -> Any:
+    """Value of a dotted path through dataclasses and mappings."""
+    value = state
+    for name in path.split("."):
+        value = value[name] if isinstance(value, Mapping) else getattr(value, name)
+    return value
+
+
+def whole_shape(shape: Any) -> dict[str, Any]:
+    """All parameters of a resolved shape by name."""
+    return {f.name: getattr(shape, f.name) for f in dataclasses.fields(shape)}

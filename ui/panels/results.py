@@ -1,0 +1,145 @@
+"""The right dock: tactile image, forces, log; and the timeline that steps through the frames."""
+
+from __future__ import annotations
+
+import html
+import threading
+import time
+from typing import Any
+
+import numpy as np
+import viser
+from viser import uplot
+
+from ui.desk import Desk
+from ui.imaging import difference, legend, placeholder
+from workbench.core.results import Contact, Shot
+
+FRAME_S = 0.15
+"""Time between frames while playing [s]."""
+LOG_ROWS = 60
+
+
+class ResultsPanel:
+    """Widgets of the right dock and the timeline."""
+
+    def __init__(self, desk: Desk) -> None:
+        self.desk = desk
+        self.shot: Shot | None = None
+        self.playing = threading.Event()
+        gui = desk.server.gui
+        self.dock = gui.add_panel()
+        with self.dock.add_tab("Tactile image", viser.Icon.PHOTO):
+            self.caption = gui.add_markdown("Press *Run press* to see an image.")
+            self.image = gui.add_image(placeholder(), label="camera", format="jpeg")
+            self.difference_text = gui.add_markdown("")
+            self.difference = gui.add_image(placeholder(), label="difference", format="jpeg")
+        with self.dock.add_tab("Forces", viser.Icon.CHART_LINE):
+            self.force_text = gui.add_markdown("No press yet.")
+            self.plot = gui.add_uplot(
+                (np.zeros(2), np.zeros(2)),
+                (
+                    uplot.Series(label="depth mm"),
+                    uplot.Series(label="normal N", stroke="#3b82f6", width=2),
+                ),
+                scales={"x": uplot.Scale(time=False)},
+                title="Normal force [N] against depth [mm]",
+                aspect=1.4,
+            )
+            self.legend = gui.add_html("")
+        with self.dock.add_tab("Log", viser.Icon.LIST):
+            self.log = gui.add_html("")
+        self.dock.dock_right()
+        self.dock.set_width(350)
+        self._timeline()
+
+    def _timeline(self) -> None:
+        gui = self.desk.server.gui
+        self.timeline = panel = gui.add_panel(visible=False)
+        with panel.add_tab("Timeline", viser.Icon.CLOCK):
+            self.frame = gui.add_slider("Frame", 0, 1, 1, 0, hint="0 is the untouched skin")
+            self.play = gui.add_button("Play / pause", icon=viser.Icon.PLAYER_PLAY)
+        panel.float(x=380, y=-15, width=380)
+        self.frame.on_update(self.desk.guarded(lambda event: self._show_frame()))
+        self.play.on_click(self.desk.guarded(self._toggle))
+        command = gui.add_command("Play or pause", hotkey="P")
+        command.on_trigger(self.desk.guarded(self._toggle))
+        threading.Thread(target=self._play_forever, daemon=True).start()
+
+    def _toggle(self, event: Any) -> None:
+        if self.playing.is_set():
+            self.playing.clear()
+        else:
+            self.playing.set()
+
+    def _play_forever(self) -> None:
+        while self.playing.wait():
+            time.sleep(FRAME_S)
+            count = int(self.frame.max)
+            self.frame.value = (int(self.frame.value) + 1) % (count + 1)
+
+    def _show_frame(self) -> None:
+        number = int(self.frame.value)
+        self.desk.scene.show_frame(number)
+        self._show_image(number)
+
+    def _show_image(self, number: int) -> None:
+        if self.shot is None:
+            return
+        rgb = self.shot.frames.rgb
+        number = min(number, len(rgb) - 1)
+        change, gain = difference(np.asarray(rgb[number]), np.asarray(rgb[0]))
+        current = self.desk.session.fresh()["shoot"]
+        stale = "" if current else " · **stale**: render again"
+        what = f"frame {number} of {len(rgb) - 1}" if number else "background"
+        with self.desk.server.atomic():
+            self.caption.content = f"{what}{stale}"
+            self.image.image = np.asarray(rgb[number])
+            self.difference_text.content = f"Difference to the background, × {gain}"
+            self.difference.image = change
+
+    def refresh(self) -> None:
+        """Mark an image that no longer belongs to the state."""
+        self._show_image(int(self.frame.value))
+
+    def show(self, stage: str, result: Any) -> None:
+        """Follow results and the log."""
+        if stage == "press":
+            self._show_contact(result)
+        elif stage == "shoot":
+            self.shot = result
+            self._follow_frames(len(result.frames.rgb) - 1)
+            self._show_image(int(self.frame.value))
+            camera = self.desk.session.design.optics.camera
+            image = np.asarray(result.frames.rgb[int(self.frame.value)])
+            self.desk.scene.show_camera(camera, image[::4, ::4])
+        elif stage == "log":
+            rows = "<br>".join(html.escape(line) for line in reversed(result[-LOG_ROWS:]))
+            self.log.content = f"<div style='font:12px monospace;margin:8px'>{rows}</div>"
+
+    def _follow_frames(self, count: int) -> None:
+        if int(self.frame.max) != count:
+            self.frame.value = min(int(self.frame.value), count)
+            self.frame.max = count
+        self.frame.value = count
+        self.timeline.visible = True
+
+    def _show_contact(self, contact: Contact) -> None:
+        path = self.desk.session.case.press
+        mesh = self.desk.session.result("mesh")
+        top_mm = self.desk.scene.load_frames(mesh.outer, contact)
+        self.legend.content = legend("Displacement of the skin", 0.0, top_mm, "mm")
+        count = path.frames
+        depth_mm = np.r_[0.0, path.depth_mm * np.arange(1, count + 1) / count]
+        self.plot.data = (depth_mm, np.r_[0.0, contact.normal_N[:count]])
+        x, y, z = contact.reaction_N[-1]
+        balance = contact.reaction_N[-1] - contact.support_N[-1]
+        share = np.linalg.norm(balance) / max(np.linalg.norm(contact.reaction_N[-1]), 1e-12)
+        self.force_text.content = (
+            f"**{contact.normal_N[-1]:.3f} N** along the normal\n\n"
+            f"on the object: x {x:.3f} · y {y:.3f} · z {z:.3f} N\n\n"
+            f"residual {contact.residual.max():.1e} · force balance {100 * share:.2f} % · "
+            f"friction ratio ≤ {contact.friction_ratio.max():.3f}"
+        )
+        self._follow_frames(len(contact.reaction_N))
+        self.desk.scene.show_frame(int(self.frame.value))

@@ -1,0 +1,190 @@
+"""The state behind the browser, without a browser: design, press, undo, staleness, autosave.
+
+Widgets call `change`; a refused value raises and leaves everything as it was. Edits of one field in
+quick succession (a drag) are one step of undo.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from workbench.core.design import SensorDesign
+from workbench.core.errors import DesignError, WorkbenchError
+from workbench.core.mapping import from_table, to_table
+from workbench.core.press import ContactSettings, Indenter, IndenterKind, Press
+from workbench.pipeline import EVERYTHING, PressCase, plan
+from workbench.project import (
+    AUTOSAVE,
+    Project,
+    check_design,
+    design_from_toml,
+    load_design,
+    parse_toml,
+)
+from workbench.stages import Call
+
+COALESCE_S = 0.7
+"""Edits of the same field closer than this are one step of undo [s]."""
+UNDO_LIMIT = 200
+DEFAULT_DESIGN = "geltip"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class State:
+    """All that undo restores."""
+
+    design: SensorDesign
+    case: PressCase
+
+
+class Session:
+    """One designer's work on one design."""
+
+    def __init__(self, project: Project, clock: Callable[[], float] = time.monotonic) -> None:
+        self.project = project
+        self.store = project.store
+        self.notice = ""
+        """What happened while loading, to be shown once."""
+        self._clock = clock
+        self._past: list[State] = []
+        self._future: list[State] = []
+        self._last_edit = ("", -1e9)
+        self.state = State(design=load_design(DEFAULT_DESIGN), case=PressCase())
+
+    @property
+    def design(self) -> SensorDesign:
+        """The design as it stands."""
+        return self.state.design
+
+    @property
+    def case(self) -> PressCase:
+        """The press as it stands."""
+        return self.state.case
+
+    def open(self, name: str | None) -> None:
+        """Start from a named design, else from where the last session stopped.
+
+        Raises:
+            DesignError: If the named design does not exist; a broken autosave only leaves a notice.
+        """
+        if name is not None:
+            self.state = State(design=load_design(name), case=PressCase())
+            return
+        path = self.project.design_path(AUTOSAVE)
+        if path.exists():
+            try:
+                self.state = read_state(path.read_text(encoding="utf-8"), source=str(path))
+            except (WorkbenchError, OSError, UnicodeDecodeError) as error:
+                self.notice = f"the last session could not be read: {error}"
+
+    def change(self, dotted: str, value: Any) -> None:
+        """Set one field, for example `design.optics.ring.count` or `case.press.depth_mm`.
+
+        Raises:
+            DesignError: If the value is refused; the state is as before.
+        """
+        root, _, rest = dotted.partition(".")
+        if root == "design":
+            design = self.design.replace(rest, value)
+            check_design(design)
+            self._commit(dataclasses.replace(self.state, design=design), dotted)
+        else:
+            group, _, name = rest.partition(".")
+            part = dataclasses.replace(getattr(self.case, group), **{name: value})
+            case = dataclasses.replace(self.case, **{group: part})
+            self._commit(dataclasses.replace(self.state, case=case), dotted)
+
+    def replace_indenter(self, indenter: Indenter) -> None:
+        """Take another object."""
+        case = dataclasses.replace(self.case, indenter=indenter)
+        self._commit(dataclasses.replace(self.state, case=case), "case.indenter")
+
+    def replace_design(self, design: SensorDesign) -> None:
+        """Take a whole other design, for example a preset or an uploaded file."""
+        check_design(design)
+        self._commit(dataclasses.replace(self.state, design=design), "design")
+
+    def _commit(self, state: State, field: str) -> None:
+        if state == self.state:
+            return
+        now = self._clock()
+        name, when = self._last_edit
+        if name != field or now - when > COALESCE_S:
+            self._past = [*self._past[-UNDO_LIMIT:], self.state]
+        self._last_edit = (field, now)
+        self._future.clear()
+        self.state = state
+
+    def undo(self) -> bool:
+        """One step back; False when there is none."""
+        return self._step(self._past, self._future)
+
+    def redo(self) -> bool:
+        """One step forward again; False when there is none."""
+        return self._step(self._future, self._past)
+
+    def _step(self, source: list[State], target: list[State]) -> bool:
+        if not source:
+            return False
+        target.append(self.state)
+        self.state = source.pop()
+        self._last_edit = ("", -1e9)
+        return True
+
+    def calls(self) -> dict[str, Call]:
+        """Calls and keys of the state as it stands."""
+        return plan(self.design, self.case)
+
+    def fresh(self) -> dict[str, bool]:
+        """Whether each stage's result is stored for the state as it stands."""
+        calls = self.calls()
+        return {name: self.store.has(name, calls[name].key) for name in EVERYTHING}
+
+    def result(self, stage: str) -> Any:
+        """The stored result of a stage for the state as it stands, or None."""
+        key = self.calls()[stage].key
+        return self.store.load(stage, key) if self.store.has(stage, key) else None
+
+    def autosave(self) -> None:
+        """Keep the state for the next start.
+
+        Raises:
+            StoreError: If the project folder cannot be written.
+        """
+        self.project.save_design(AUTOSAVE, self.design, press_case=case_table(self.case))
+
+
+def case_table(case: PressCase) -> dict[str, Any]:
+    """A press as a TOML table; a mesh indenter is left out, its file is the user's."""
+    table = to_table(dataclasses.replace(case, indenter=Indenter()))
+    if case.indenter.kind is not IndenterKind.MESH:
+        indenter = to_table(case.indenter)
+        del indenter["mesh"]
+        table["indenter"] = indenter
+    else:
+        del table["indenter"]
+    return table
+
+
+def read_state(text: str, *, source: str) -> State:
+    """A design and its press from an autosave or design file.
+
+    Raises:
+        DesignError: If the text is not a valid design.
+    """
+    table = parse_toml(text, source=source).get("press_case", {})
+    if not isinstance(table, dict):
+        raise DesignError(
+            f"press_case is {table!r}, expected a table", hint="remove it", at="press_case"
+        )
+    parts = {"indenter": Indenter, "press": Press, "settings": ContactSettings}
+    known = {
+        name: from_table(parts[name], value, at=f"press_case.{name}")
+        for name, value in table.items()
+        if name in parts
+    }
+    return State(design=design_from_toml(text, source=source), case=PressCase(**known))

@@ -1,0 +1,83 @@
+"""Saved variants: a design, the keys of its results and its numbers, one TOML file each."""
+
+from __future__ import annotations
+
+import dataclasses
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from workbench.core.design import SensorDesign
+from workbench.core.errors import DesignError
+from workbench.core.results import Contact, Shot
+from workbench.pipeline import PressCase
+from workbench.project import Project, design_from_toml, design_to_toml, write_atomically
+from workbench.stages import Call
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Variant:
+    """A design as it was when it was kept."""
+
+    name: str
+    design: SensorDesign
+    shoot_key: str
+    metrics: Mapping[str, float]
+
+
+def save_variant(
+    project: Project, name: str, design: SensorDesign, case: PressCase, calls: dict[str, Call]
+) -> Path:
+    """Keep a design whose press and image are stored.
+
+    Raises:
+        DesignError: If the name cannot be a file name.
+        StoreError: If the results are missing or the folder cannot be written.
+    """
+    shot: Shot = project.store.load("shoot", calls["shoot"].key)
+    contact: Contact = project.store.load("press", calls["press"].key)
+    metrics = {
+        "normal_N": float(contact.normal_N[-1]),
+        "press_depth_mm": case.press.depth_mm,
+        **shot.metrics.values,
+    }
+    table = {"name": name, "shoot_key": calls["shoot"].key, "metrics": metrics}
+    text = design_to_toml(dataclasses.replace(design, name=name), variant=table)
+    path = _folder(project) / project.design_path(name).name
+    write_atomically(path, text.encode())
+    return path
+
+
+def list_variants(project: Project) -> list[str]:
+    """Names of all kept variants."""
+    return sorted(path.stem for path in _folder(project).glob("*.toml"))
+
+
+def load_variant(project: Project, name: str) -> Variant:
+    """Read a kept variant.
+
+    Raises:
+        DesignError: If the file is gone or was edited into nonsense.
+    """
+    path = _folder(project) / project.design_path(name).name
+    try:
+        text = path.read_text(encoding="utf-8")
+        table: dict[str, Any] = tomllib.loads(text).pop("variant")
+        metrics = {str(k): float(v) for k, v in table["metrics"].items()}
+        key = str(table["shoot_key"])
+    except (OSError, ValueError, KeyError, AttributeError, TypeError) as error:
+        raise DesignError(
+            f"variant {name!r} cannot be read: {error}", hint=f"see {path}", at="name"
+        ) from error
+    return Variant(
+        name=name,
+        design=design_from_toml(text, source=str(path)),
+        shoot_key=key,
+        metrics=metrics,
+    )
+
+
+def _folder(project: Project) -> Path:
+    return project.folder / "variants"
