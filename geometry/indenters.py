@@ -1,0 +1,174 @@
+"""Indenters: STL files in, closed meshes out, and display meshes of every kind.
+
+Body frame as in `workbench.core.press`: the origin is the shape's centre, +Z points away from the
+skin, so the -Z side meets it.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from geometry.primitives import rounded_box, rounded_revolution, sphere
+from geometry.surface import mesh_volume, open_edges
+from workbench.core.errors import DesignError
+from workbench.core.press import Indenter, IndenterKind, IndenterMesh
+
+LARGEST_FILE_MB = 64
+SMALLEST_SHARE = 1e-6
+"""Volume over that of the bounding box below which a mesh encloses nothing."""
+AT = "indenter"
+
+
+def load_stl(path: str | Path) -> IndenterMesh:
+    """Read an STL file, weld it, turn it outward and centre it on its bounding box.
+
+    Raises:
+        DesignError: If the file is missing, too large, no STL, or not a closed body.
+    """
+    file = Path(path)
+    _check_size(file)
+    data = file.read_bytes()
+    corners = _binary_corners(data)
+    if corners is None:
+        corners = _text_corners(data, file.name)
+    return _closed_mesh(corners, file.name)
+
+
+def largest_width(mesh: IndenterMesh) -> float:
+    """Longest side of the bounding box [mm]."""
+    return float(np.ptp(mesh.points_mm, axis=0).max())
+
+
+def scaled(mesh: IndenterMesh, size_mm: float) -> IndenterMesh:
+    """The mesh with its largest width made `size_mm`."""
+    factor = size_mm / largest_width(mesh)
+    return IndenterMesh(points_mm=mesh.points_mm * factor, faces=mesh.faces)
+
+
+def display_mesh(indenter: Indenter) -> tuple[np.ndarray, np.ndarray]:
+    """Closed outward mesh of any indenter in its body frame; a loaded mesh as it is.
+
+    Returns:
+        Points [mm], shape (N, 3), float64; faces, shape (M, 3), int32.
+
+    Raises:
+        DesignError: If a cone is too small for its edge radius.
+    """
+    half, radius = indenter.size_mm / 2, indenter.edge_radius_mm
+    if indenter.kind is IndenterKind.MESH and indenter.mesh is not None:
+        return indenter.mesh.points_mm, indenter.mesh.faces
+    if indenter.kind is IndenterKind.SPHERE:
+        return sphere(half)
+    if indenter.kind is IndenterKind.CUBE:
+        return rounded_box(half, radius)
+    if indenter.kind is IndenterKind.CONE:
+        # Apex down, full angle 90 degrees: as high as its base is wide in radius.
+        _check_cone(indenter)
+        return rounded_revolution([(0.0, -half / 2), (half, half / 2), (0.0, half / 2)], radius)
+    points, faces = rounded_revolution(
+        [(0.0, -half), (half, -half), (half, half), (0.0, half)], radius
+    )
+    if indenter.kind is IndenterKind.CYLINDER_SIDE:
+        # Axis from +Z to +Y: x stays, y becomes z, z becomes -y keeps the mesh right-handed.
+        points = np.column_stack([points[:, 0], points[:, 2], -points[:, 1]])
+    return points, faces
+
+
+def _check_cone(indenter: Indenter) -> None:
+    # The inscribed circle of the section, a right isosceles triangle of height size / 2.
+    limit_mm = indenter.size_mm / 2 / (1.0 + np.sqrt(2.0))
+    if indenter.edge_radius_mm >= limit_mm:
+        raise DesignError(
+            f"edge radius {indenter.edge_radius_mm:g} mm leaves nothing of a cone "
+            f"{indenter.size_mm:g} mm wide; the limit is {limit_mm:.2f} mm",
+            hint="lower indenter.edge_radius_mm or raise indenter.size_mm",
+            at="indenter.edge_radius_mm",
+        )
+
+
+def _check_size(file: Path) -> None:
+    if not file.is_file():
+        raise DesignError(
+            f"there is no file {str(file)!r}", hint="give the path of an STL file", at=AT
+        )
+    size_mb = file.stat().st_size / 1e6
+    if size_mb > LARGEST_FILE_MB:
+        raise DesignError(
+            f"{file.name} has {size_mb:,.0f} MB, more than {LARGEST_FILE_MB} MB",
+            hint="reduce the mesh to under a million triangles before loading it",
+            at=AT,
+        )
+
+
+def _binary_corners(data: bytes) -> np.ndarray | None:
+    """Triangles of a binary STL, shape (M, 3, 3), or None when its length says it is none."""
+    if len(data) < 84:
+        return None
+    count = int(np.frombuffer(data, dtype="<u4", count=1, offset=80)[0])
+    if len(data) != 84 + 50 * count:
+        return None
+    record = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("spare", "<u2")])
+    return np.frombuffer(data, dtype=record, count=count, offset=84)["corners"].astype(np.float64)
+
+
+def _text_corners(data: bytes, name: str) -> np.ndarray:
+    """Triangles of a text STL, shape (M, 3, 3)."""
+    if not data.lstrip()[:5].lower() == b"solid":
+        raise _not_stl(name)
+    words = [line.split()[1:] for line in data.splitlines() if line.split()[:1] == [b"vertex"]]
+    try:
+        corners = np.array(words, dtype=np.float64)
+        return corners.reshape(-1, 3, 3)
+    except ValueError as error:
+        raise _not_stl(name) from error
+
+
+def _not_stl(name: str) -> DesignError:
+    return DesignError(
+        f"{name} is not an STL file", hint="export the indenter as binary or text STL", at=AT
+    )
+
+
+def _closed_mesh(corners: np.ndarray, name: str) -> IndenterMesh:
+    """Weld triangles (M, 3, 3) into a closed body, refusing what is none."""
+    if not len(corners):
+        raise DesignError(f"{name} has no faces", hint="export the body, not an empty file", at=AT)
+    if not np.isfinite(corners).all():
+        bad = int((~np.isfinite(corners)).any(axis=(1, 2)).sum())
+        raise DesignError(
+            f"{name} has {bad} faces with NaN or infinite coordinates",
+            hint="repair the mesh in the program that made it",
+            at=AT,
+        )
+    # STL repeats every vertex in float32; equal ones have equal bits apart from the sign of zero.
+    points, faces = np.unique(corners.reshape(-1, 3) + 0.0, axis=0, return_inverse=True)
+    faces = faces.reshape(-1, 3)
+    faces = faces[np.all(faces != np.roll(faces, 1, axis=1), axis=1)]
+    gaps = open_edges(faces)
+    if gaps or not len(faces):
+        raise DesignError(
+            f"{name} is not watertight: {gaps} open edges",
+            hint="close the holes in the program that made it; faces must all point outward",
+            at=AT,
+        )
+    return _oriented(points, faces, name)
+
+
+def _oriented(points: np.ndarray, faces: np.ndarray, name: str) -> IndenterMesh:
+    used, faces = np.unique(faces, return_inverse=True)
+    points, faces = points[used], faces.reshape(-1, 3)
+    low, high = points.min(axis=0), points.max(axis=0)
+    volume_mm3 = mesh_volume(points, faces)
+    if abs(volume_mm3) <= SMALLEST_SHARE * float((high - low).max()) ** 3:
+        raise DesignError(
+            f"{name} encloses no volume ({abs(volume_mm3):.3g} mm3)",
+            hint="an indenter must be a solid body, not a sheet",
+            at=AT,
+        )
+    if volume_mm3 < 0.0:
+        faces = faces[:, ::-1]
+    return IndenterMesh(
+        points_mm=points - (low + high) / 2, faces=np.ascontiguousarray(faces, dtype=np.int32)
+    )
