@@ -29,7 +29,7 @@ def expect(array: np.ndarray, shape: str, *, name: str = "array") -> np.ndarray:
 
 
 def within(
-    value: float,
+    value: object,
     low: float,
     high: float,
     *,
@@ -43,8 +43,7 @@ def within(
     Raises:
         DesignError: Naming value, limits and unit, if it is not.
     """
-    number = isinstance(value, (int, float)) and not isinstance(value, bool)
-    if not number or not math.isfinite(value):
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
         raise DesignError(f"{what} is {value!r}, which is not a finite number", hint=hint, at=at)
     if not low <= value <= high:
         unit_text = f" {unit}" if unit else ""

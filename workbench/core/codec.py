@@ -68,7 +68,7 @@ def _pack(value: Any, path: str, arrays: Arrays) -> Any:
             "map": {name: _pack(item, f"{path}.{name}", arrays) for name, item in mapping.items()}
         }
     if isinstance(value, np.generic):
-        return value.item()
+        return cast("Any", value).item()
     if value is None or isinstance(value, (bool, int, float, str)):
         return value
     raise TypeError(f"cannot store {type(value).__name__} at {path}")

@@ -12,7 +12,7 @@ import enum
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, cast
 
 from workbench.core.check import within
 from workbench.core.errors import DesignError
@@ -284,7 +284,7 @@ class SensorDesign:
 
     name: str = field(default="untitled", metadata={"cosmetic": True})
     family: str = "finger"
-    shape: Mapping[str, Any] = field(default_factory=dict)
+    shape: Mapping[str, Any] = field(default_factory=lambda: dict[str, Any]())
     layers: Layers = field(default_factory=Layers)
     material: Elastomer = field(default_factory=Elastomer)
     optics: Optics = field(default_factory=Optics)
@@ -304,7 +304,7 @@ class SensorDesign:
 def _replace(owner: Any, path: list[str], value: Any, dotted: str) -> Any:
     head, *rest = path
     if isinstance(owner, Mapping):
-        return {**owner, head: value}
+        return {**cast("Mapping[str, Any]", owner), head: value}
     if head not in {f.name for f in dataclasses.fields(owner)}:
         raise DesignError(f"there is no field {dotted!r}", hint="see the README", at=dotted)
     inner = _replace(getattr(owner, head), rest, value, dotted) if rest else value

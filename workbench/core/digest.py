@@ -11,7 +11,7 @@ import dataclasses
 import enum
 import hashlib
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -39,20 +39,22 @@ def _feed(hasher: Any, value: Any) -> None:
                 _feed(hasher, getattr(value, field.name))
         hasher.update(b")")
     elif isinstance(value, np.ndarray):
-        array = np.ascontiguousarray(value)
+        array: Any = np.ascontiguousarray(cast("Any", value))
         hasher.update(f"A{array.dtype.str}{array.shape}".encode())
-        hasher.update(array.tobytes() if array.size == 0 else memoryview(array).cast("B"))
+        hasher.update(memoryview(array.reshape(-1).view(np.uint8)))
     elif isinstance(value, enum.Enum):
         hasher.update(f"E{type(value).__name__}.{value.name};".encode())
     elif isinstance(value, (tuple, list)):
-        hasher.update(f"L{len(value)}".encode())
-        for item in value:
+        items = cast("tuple[Any, ...]", value)
+        hasher.update(f"L{len(items)}".encode())
+        for item in items:
             _feed(hasher, item)
     elif isinstance(value, Mapping):
-        hasher.update(f"M{len(value)}".encode())
-        for name in sorted(value):
+        table = cast("Mapping[str, Any]", value)
+        hasher.update(f"M{len(table)}".encode())
+        for name in sorted(table):
             _feed(hasher, str(name))
-            _feed(hasher, value[name])
+            _feed(hasher, table[name])
     elif isinstance(value, float):
         hasher.update(f"F{float(value).hex()};".encode())
     elif value is None or isinstance(value, (bool, int, str)):
