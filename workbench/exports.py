@@ -41,7 +41,8 @@ def export_design(
     buffer = io.BytesIO()
     np.savez_compressed(buffer, points_mm=hexes.points_mm, cells=hexes.cells, labels=hexes.labels)
     files["mesh.npz"] = buffer.getvalue()
-    files["exploded.png"] = found["picture"].png.tobytes()
+    if not found["picture"].notice:
+        files["exploded.png"] = found["picture"].png.tobytes()
     for name, content in files.items():
         write_atomically(out / name, content)
         yield out / name

@@ -49,7 +49,7 @@ def report_html(
         "<h2>Tactile image</h2>" + _images(shot),
         "<h2>Force against depth</h2>" + _force_curve(path, contact),
         "<h2>Score card</h2>" + _table(sorted(summary["metrics"].items())),
-        "<h2>Mould</h2>" + _figure(picture.png.tobytes(), "Exploded view"),
+        "<h2>Mould</h2>" + _mould_view(picture),
         _table(
             (m["file"], f"{m['volume_mm3']:.0f} mm3, {'closed' if m['watertight'] else 'OPEN'}")
             for m in summary["moulds"]
@@ -88,6 +88,12 @@ def _figure(png: bytes, caption: str, *, width: int = 640) -> str:
         f"<figure><img width='{width}' src='data:image/png;base64,{data}' "
         f"alt='{html.escape(caption)}'><figcaption>{html.escape(caption)}</figcaption></figure>"
     )
+
+
+def _mould_view(picture: Picture) -> str:
+    if picture.notice:
+        return f"<p>No picture: {html.escape(picture.notice)}</p>"
+    return _figure(picture.png.tobytes(), "Exploded view")
 
 
 def _force_curve(path: Press, contact: Contact) -> str:

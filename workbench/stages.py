@@ -22,6 +22,7 @@ from workbench.core.design import (
     Optics,
 )
 from workbench.core.digest import digest
+from workbench.core.errors import DeviceError
 from workbench.core.monitor import Monitor, part, silent
 from workbench.core.press import ContactSettings, Indenter, Press
 from workbench.core.results import (
@@ -144,11 +145,12 @@ def press(
     monitor: Monitor,
 ) -> Contact:
     """Quasi-static contact along a press path."""
-    from sim.contact.solver import press_membrane
     from workbench.devices import open_device
 
     monitor(0.0, "opening the device")
     open_device()
+    from sim.contact.solver import press_membrane
+
     return press_membrane(mesh, points, material, indenter, path, settings, monitor=monitor)
 
 
@@ -178,10 +180,19 @@ def mould(solid: Solid, options: MouldOptions, *, monitor: Monitor) -> MouldSet:
 
 
 def picture(moulds: MouldSet, *, monitor: Monitor) -> Picture:
-    """The exploded mould as a picture for the report."""
+    """The exploded mould as a picture for the report.
+
+    A machine without any off-screen renderer still gets its report, with the reason in place of
+    the picture.
+    """
+    import numpy as np
+
     from geometry.pictures import exploded_mould
 
-    return Picture(png=exploded_mould(moulds))
+    try:
+        return Picture(png=exploded_mould(moulds))
+    except DeviceError as error:
+        return Picture(png=np.zeros(0, np.uint8), notice=f"{error.message}: {error.hint}")
 
 
 def package(moulds: MouldSet, *, monitor: Monitor) -> Bundle:

@@ -284,7 +284,7 @@ class SensorDesign:
 
     name: str = field(default="untitled", metadata={"cosmetic": True})
     family: str = "finger"
-    shape: Mapping[str, Any] = field(default_factory=lambda: dict[str, Any]())
+    shape: Mapping[str, Any] = field(default_factory=dict[str, Any])
     layers: Layers = field(default_factory=Layers)
     material: Elastomer = field(default_factory=Elastomer)
     optics: Optics = field(default_factory=Optics)

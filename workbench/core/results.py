@@ -259,7 +259,9 @@ class Picture:
     """A rendered picture."""
 
     png: np.ndarray
-    """Bytes of a PNG file, shape (bytes,), uint8."""
+    """Bytes of a PNG file, shape (bytes,), uint8; empty when nothing could render it."""
+    notice: str = ""
+    """Why there is no picture."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
