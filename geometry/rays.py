@@ -41,7 +41,8 @@ class RayCaster:
         self._edge_1 = corners[:, 1] - corners[:, 0]
         self._edge_2 = corners[:, 2] - corners[:, 0]
         self._normal = np.cross(self._edge_1, self._edge_2)
-        self._scene: Any = rtcore_scene.EmbreeScene(robust=True)
+        scene: Any = rtcore_scene
+        self._scene = scene.EmbreeScene(robust=True)
         vertices = np.ascontiguousarray(points_mm, dtype=np.float32)
         TriangleMesh(self._scene, vertices, np.ascontiguousarray(faces, dtype=np.int32))
 

@@ -5,6 +5,9 @@ the surface. A face's region is found by probing a hair outside its largest tria
 core means inner; all of it on z = 0 means base; else outer.
 """
 
+# OCP has no type stubs.
+# pyright: reportAttributeAccessIssue=false
+
 from __future__ import annotations
 
 import io
@@ -128,10 +131,10 @@ def weld(points_mm: np.ndarray, faces: np.ndarray, patch: np.ndarray) -> Tessell
     """Merge vertices nearer than `WELD_MM` and drop triangles that collapse."""
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components
-    from scipy.spatial import cKDTree
+    from scipy.spatial import KDTree
 
     count = len(points_mm)
-    pairs = cKDTree(points_mm).query_pairs(WELD_MM, output_type="ndarray")
+    pairs = KDTree(points_mm).query_pairs(WELD_MM, output_type="ndarray")
     links = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), (count, count))
     group = connected_components(links, directed=False)[1]
     kept, first = np.unique(group, return_index=True)
@@ -163,7 +166,7 @@ def part_from_brep(array: np.ndarray) -> Any:
     Raises:
         GeometryError: If the bytes are no B-rep.
     """
-    from build123d import Shape
+    from build123d.topology import Shape
     from OCP.BRep import BRep_Builder
     from OCP.BRepTools import BRepTools
     from OCP.TopoDS import TopoDS_Shape

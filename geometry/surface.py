@@ -97,21 +97,21 @@ def closest_point(
     Returns:
         Point [mm], shape (Q, 3); distance [mm], shape (Q,); face, shape (Q,), int64.
     """
-    from scipy.spatial import cKDTree
+    from scipy.spatial import KDTree
 
     expect(query_mm, "Q 3", name="query")
     query = np.asarray(query_mm, dtype=np.float64)
     corners = np.asarray(points_mm, dtype=np.float64)[faces]
     centre = corners.mean(axis=1)
     radius = np.linalg.norm(corners - centre[:, None], axis=2).max(axis=1)
-    nearest_face = cKDTree(centre).query(query)[1]
+    nearest_face = KDTree(centre).query(query)[1]
     best_point = _closest_on_triangle(query, corners[nearest_face])
     best_distance = np.linalg.norm(query - best_point, axis=1)
     best_face = np.asarray(nearest_face, dtype=np.int64)
     size_class = np.floor(np.log2(np.maximum(radius, 1e-9))).astype(int)
     for size in np.unique(size_class):
         members = np.flatnonzero(size_class == size)
-        tree = cKDTree(centre[members])
+        tree = KDTree(centre[members])
         reach = best_distance + radius[members].max()
         found = tree.query_ball_point(query, reach)
         owner = np.repeat(np.arange(len(query)), [len(item) for item in found])

@@ -10,7 +10,6 @@ Bodies are duck-typed (as build123d's `Shape`: `volume`, `is_valid`, `bounding_b
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 from workbench.core.errors import GeometryError
@@ -87,7 +86,7 @@ def volume(body: Any) -> float:
     """Volume of a body or of a list of bodies [mm3]; 0 for None, which OCCT returns for empty."""
     if body is None:
         return 0.0
-    if isinstance(body, Iterable) and not hasattr(body, "volume"):
+    if not hasattr(body, "volume"):
         return sum(volume(item) for item in body)
     return float(body.volume)
 
