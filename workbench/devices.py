@@ -7,8 +7,10 @@ environment variable `WORKBENCH_DEVICE` (`cpu` or `cuda`) overrides the choice.
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import functools
+import io
 import os
 from typing import Any
 
@@ -63,7 +65,9 @@ def open_device() -> str:
 
     options: dict[str, Any] = {"default_fp": ti.f32, "offline_cache": True, "log_level": ti.ERROR}
     try:
-        ti.init(arch=ti.cuda if name == "cuda" else ti.cpu, **options)
+        # Taichi announces its device on stdout, which belongs to the caller (`--json`).
+        with contextlib.redirect_stdout(io.StringIO()):
+            ti.init(arch=ti.cuda if name == "cuda" else ti.cpu, **options)
     except RuntimeError as error:
         raise DeviceError(
             f"the {name} device did not start: {error}",

@@ -1,0 +1,28 @@
+"""`workbench bench`: how long the parts take here, beside the promises made to the designer.
+
+Each time is the median of five runs after a warm-up, unless the case says `cold`. Machines differ:
+the limits are those of two CPU cores without a GPU.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from workbench.benchmarks import browser, contact, geometry, optics, pipeline
+from workbench.rows import Row
+
+PARTS: dict[str, Callable[[], list[Row]]] = {
+    "geometry": geometry.rows,
+    "contact": contact.rows,
+    "optics": optics.rows,
+    "pipeline": pipeline.rows,
+    "browser": browser.rows,
+}
+
+
+def everything() -> list[Row]:
+    """The rows of all rooms."""
+    return [row for rows in PARTS.values() for row in rows()]
+
+
+ROOMS = {**PARTS, "all": everything}

@@ -1,0 +1,26 @@
+"""Geometry: body, meshes, mould of the default finger."""
+
+from __future__ import annotations
+
+from workbench.benchmarks.timing import finger_solid, timed_row
+from workbench.core.design import Layers, Meshing, MouldOptions
+from workbench.core.monitor import silent
+from workbench.rows import Row
+from workbench.stages import build, lattice, mesh, mould
+
+CASE = "default finger"
+
+
+def rows() -> list[Row]:
+    """All rows of the room."""
+    from designs.family import resolve_shape
+
+    shape, solid = resolve_shape("finger", {}), finger_solid()
+    return [
+        timed_row("build", CASE, lambda: build("finger", shape, Layers(), monitor=silent), 0.25),
+        timed_row("mesh", "0.4 mm", lambda: mesh(solid, Meshing(), monitor=silent), 3.0),
+        timed_row("lattice", "0.5 mm", lambda: lattice(solid, 0.5, monitor=silent), 2.0),
+        timed_row(
+            "mould", CASE, lambda: mould(solid, MouldOptions(), monitor=silent), 10.0, runs=3
+        ),
+    ]

@@ -1,0 +1,1 @@
+"""One module per room; each returns the rows of `workbench validate ROOM`."""

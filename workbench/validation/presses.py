@@ -1,0 +1,49 @@
+"""Presses of the default finger that several rooms look at."""
+
+from __future__ import annotations
+
+import functools
+import math
+
+from workbench.benchmarks.timing import finger_mesh, finger_points
+from workbench.core.design import Elastomer
+from workbench.core.monitor import silent
+from workbench.core.press import ContactSettings, Indenter, Press
+from workbench.core.results import Contact
+from workbench.stages import press
+
+TIP_CENTRE_MM = 27.0
+RADIUS_MM = 15.0
+NAME = "finger_45: sphere R 3 mm, tip at 45 degrees, E .145 MPa, nu .45, mu .3, 1 mm deep"
+
+
+def tip_target(polar_deg: float, azimuth_deg: float) -> tuple[float, float, float]:
+    """Point of the hemispherical tip, by angle from +Z and azimuth from +X [mm]."""
+    polar, azimuth = math.radians(polar_deg), math.radians(azimuth_deg)
+    aside = RADIUS_MM * math.sin(polar)
+    return (
+        aside * math.cos(azimuth),
+        aside * math.sin(azimuth),
+        TIP_CENTRE_MM + RADIUS_MM * math.cos(polar),
+    )
+
+
+@functools.cache
+def finger_press(
+    *,
+    azimuth_deg: float = 0.0,
+    young_MPa: float = 0.145,
+    shear_mm: tuple[float, float] = (0.0, 0.0),
+    grid_mm: float = 0.5,
+    friction: float = 0.3,
+) -> Contact:
+    """The press `finger_45` of the validation, varied."""
+    return press(
+        finger_mesh(),
+        finger_points(grid_mm),
+        Elastomer(young_MPa=young_MPa, friction=friction),
+        Indenter(size_mm=6.0),
+        Press(target_mm=tip_target(45.0, azimuth_deg), shear_mm=shear_mm, frames=1),
+        ContactSettings(grid_mm=grid_mm),
+        monitor=silent,
+    )
