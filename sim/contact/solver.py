@@ -164,9 +164,10 @@ def _solve_frame(run: _Run, frame: int) -> Balance:
     """Ramp to the pose of a frame and settle there."""
     relaxation, press = run.relaxation, run.approach.press
     if frame < press.frames and press.depth_mm == 0.0:
-        run.settled = [relaxation.displacement()]
         return relaxation.evaluate(run.approach.pose(frame + 1.0))
-    rest = run.settled[-1] if run.settled else relaxation.displacement()
+    if not run.settled:
+        run.settled = [relaxation.displacement()]
+    rest = run.settled[-1]
     for attempt in range(MOST_RETRIES + 1):
         predicted = attempt == 0 and _predict(run, frame)
         _ramp(run, frame, short=predicted, gentler=2**attempt)
@@ -187,7 +188,7 @@ def _solve_frame(run: _Run, frame: int) -> Balance:
 def _predict(run: _Run, frame: int) -> bool:
     """Extrapolate the displacement of the last frames along the path; False if it turns."""
     frames = run.approach.press.frames
-    known = min(len(run.settled), frame if frame < frames else frame - frames + 1)
+    known = min(len(run.settled), frame % frames + 1)
     if known < 2:
         return False
     *older, before, last = run.settled
