@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+from typing import Any
 
 import numpy as np
 
@@ -20,6 +21,10 @@ VIRIDIS = np.array(
 """Polynomial in t of the viridis map: uniform, colour-blind safe. Source: M. Zucker, CC0."""
 
 
+REST_SHARE = 0.05
+"""Below this share of the maximum the colour of rest shows through."""
+
+
 def viridis(share: np.ndarray) -> np.ndarray:
     """Colours, shape (N, 3) uint8, of values in [0, 1], shape (N,)."""
     t = np.clip(np.nan_to_num(share), 0.0, 1.0)[:, None]
@@ -27,6 +32,35 @@ def viridis(share: np.ndarray) -> np.ndarray:
     for coefficient in VIRIDIS[::-1]:
         colour = colour * t + coefficient
     return (np.clip(colour, 0.0, 1.0) * 255).astype(np.uint8)
+
+
+def heat_colours(share: np.ndarray, rest: tuple[int, int, int]) -> np.ndarray:
+    """Viridis where something happens, the colour `rest` where nothing does, shape (N, 3) uint8."""
+    strength = np.clip(share / REST_SHARE, 0.0, 1.0)[:, None]
+    return ((1 - strength) * np.array(rest) + strength * viridis(share)).astype(np.uint8)
+
+
+def coloured_glb(points: np.ndarray, faces: np.ndarray, colours: np.ndarray) -> bytes:
+    """A mesh with a colour at each vertex as a GLB file with a matt material."""
+    import trimesh
+
+    mesh = trimesh.Trimesh(points, faces, process=False, vertex_colors=colours)
+    mesh.vertex_normals  # noqa: B018 - computed now, so that the file carries smooth normals
+
+    def matt(tree: dict[str, Any]) -> None:
+        # Without a material glTF means polished metal, which is black without an environment.
+        tree["materials"] = [
+            {
+                "pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 0.7},
+                "doubleSided": True,
+            }
+        ]
+        for part in tree["meshes"]:
+            for primitive in part["primitives"]:
+                primitive["material"] = 0
+
+    scene = trimesh.Scene(mesh)
+    return scene.export(file_type="glb", include_normals=True, tree_postprocessor=matt)  # pyright: ignore
 
 
 def difference(image: np.ndarray, background: np.ndarray) -> tuple[np.ndarray, int]:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ui.imaging import viridis
+from ui.imaging import coloured_glb, heat_colours
 from workbench.core.design import Camera, LedRing, LensModel
 from workbench.core.press import Indenter, Press
 from workbench.core.results import Contact, MouldSet, Skin, Solid
@@ -30,6 +30,7 @@ class Scene:
         self._parts: dict[str, Any] = {}
         self._explode: dict[str, np.ndarray] = {}
         self._contact: Contact | None = None
+        self._views: dict[int, tuple[Any, Any]] = {}
         self._shown = 0
         self._points = np.zeros((0, 3))
         self._normals = np.zeros((0, 3))
@@ -42,7 +43,7 @@ class Scene:
 
     def _prepare(self, fast: bool) -> None:
         camera = self.server.initial_camera
-        camera.position = (78.0, -78.0, 58.0)
+        camera.position = (84.0, 62.0, 62.0)
         camera.look_at = (0.0, 0.0, 18.0)
         camera.fov = 0.6
         if fast:
@@ -178,18 +179,14 @@ class Scene:
 
     def load_frames(self, skin: Skin, contact: Contact) -> float:
         """Prepare the coloured skin of every frame; returns the largest displacement [mm]."""
-        import trimesh
-
         self.clear_frames()
         size = np.linalg.norm(contact.displacement_mm, axis=2)
         top = max(float(size.max()), 1e-9)
         faces = np.asarray(skin.faces)
         for k, moved in enumerate(contact.displacement_mm):
             points = (np.asarray(skin.points_mm) + moved).astype(np.float32)
-            mesh = trimesh.Trimesh(points, faces, process=False)
-            mesh.visual.vertex_colors = viridis(size[k] / top)  # pyright: ignore
-            node = self.api.add_mesh_trimesh(f"/frames/{k}", mesh, visible=False)
-            self._frames.append(node)
+            glb = coloured_glb(points, faces, heat_colours(size[k] / top, SKIN_COLOUR))
+            self._frames.append(self.api.add_glb(f"/frames/{k}", glb, visible=False))
         self._contact = contact
         return top
 
@@ -243,6 +240,25 @@ class Scene:
             node.remove()
         self._parts.clear()
         self._explode.clear()
+
+    def step_back(self, moulds: MouldSet) -> None:
+        """Move every tab's camera back until the exploded mould fits; remembers where it was."""
+        points = np.concatenate(
+            [np.asarray(part.points_mm) + np.asarray(part.explode) for part in moulds.parts]
+        )
+        low, high = points.min(axis=0), points.max(axis=0)
+        centre, size = (low + high) / 2, float(np.linalg.norm(high - low))
+        for number, client in self.server.get_clients().items():
+            camera = client.camera
+            self._views.setdefault(number, (camera.position, camera.look_at))
+            camera.position = centre + size * np.array([0.8, -1.2, 0.6])
+            camera.look_at = centre
+
+    def step_forward(self) -> None:
+        """Give every tab's camera its place before `step_back` again."""
+        for number, client in self.server.get_clients().items():
+            if number in self._views:
+                client.camera.position, client.camera.look_at = self._views.pop(number)
 
     def show_sensor(self, visible: bool) -> None:
         """Show or hide everything but the mould."""

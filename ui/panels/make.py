@@ -29,7 +29,8 @@ class MakePanel:
             fields.slider("Clearance mm", "design.mould.clearance_mm", span=(0.0, 0.6, 0.05))
             fields.slider("Vents", "design.mould.vent_count", span=(1, 8, 1), whole=True)
         button = gui.add_button("Make mould", icon=viser.Icon.PRINTER)
-        button.on_click(desk.guarded(lambda event: desk.run("mould", ("mould", "package"))))
+        button.on_click(desk.guarded(self._make))
+        self.asked = False
         self.checks = gui.add_markdown("No mould yet.")
         self.view = gui.add_checkbox("Show mould", False, visible=False)
         self.view.on_update(desk.guarded(self._view))
@@ -42,6 +43,12 @@ class MakePanel:
         self.part_button.on_click(desk.guarded(self._send_part))
         self.zip_button = gui.add_button("Download all (zip)", visible=False)
         self.zip_button.on_click(desk.guarded(self._send_all))
+
+    def _make(self, event: Any) -> None:
+        self.asked = True
+        self.desk.run("mould", ("mould", "package"))
+        if self.desk.session.fresh()["mould"]:
+            self.show("mould", self._moulds())
 
     def _moulds(self) -> MouldSet | None:
         return self.desk.session.result("mould")
@@ -59,9 +66,11 @@ class MakePanel:
         if moulds is not None and self.view.value:
             self.desk.scene.show_mould(moulds, self.spread.value)
             self.desk.scene.show_sensor(False)
+            self.desk.scene.step_back(moulds)
         else:
             self.desk.scene.clear_mould()
             self.desk.scene.show_sensor(True)
+            self.desk.scene.step_forward()
 
     def _spread(self) -> None:
         self.desk.scene.spread_mould(self.spread.value)
@@ -98,7 +107,10 @@ class MakePanel:
         """Show a new mould, or forget it when the body changed."""
         if stage == "mould":
             self._offer(result)
-            self.view.value = True
+            # A stored mould stays in the drawer until somebody asks for it.
+            if self.asked:
+                self.asked = False
+                self.view.value = True
         elif stage == "build":
             self._offer(self._moulds())
 
@@ -112,7 +124,12 @@ def mould_checks(moulds: MouldSet) -> list[str]:
         (overlap <= OVERLAP_LIMIT_MM3, f"overlap {overlap:.1e} mm³ (at most {OVERLAP_LIMIT_MM3})"),
         (wall >= WALL_LIMIT_MM, f"thinnest wall {wall:.2f} mm (at least {WALL_LIMIT_MM})"),
     ]
-    lines = [f"{'🟢' if good else '🔴'} {text}" for good, text in rows]
+    lines = [_mark(good) + text for good, text in rows]
     cast_ml = moulds.cast_volume_mm3 / 1000
     lines.append(f"silicone {cast_ml:.1f} ml · split at {moulds.split_azimuth_deg:.0f}°")
     return lines
+
+
+def _mark(good: bool) -> str:
+    colour, sign = ("#30a46c", "✓") if good else ("#e5484d", "✗")
+    return f"<span style='color:{colour}'>**{sign}**</span> "
