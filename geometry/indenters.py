@@ -147,7 +147,7 @@ def _closed_mesh(corners: np.ndarray, name: str) -> IndenterMesh:
     faces = faces.reshape(-1, 3)
     faces = faces[np.all(faces != np.roll(faces, 1, axis=1), axis=1)]
     gaps = open_edges(faces)
-    if gaps or not len(faces):
+    if gaps:
         raise DesignError(
             f"{name} is not watertight: {gaps} open edges",
             hint="close the holes in the program that made it; faces must all point outward",
@@ -157,16 +157,18 @@ def _closed_mesh(corners: np.ndarray, name: str) -> IndenterMesh:
 
 
 def _oriented(points: np.ndarray, faces: np.ndarray, name: str) -> IndenterMesh:
-    used, faces = np.unique(faces, return_inverse=True)
-    points, faces = points[used], faces.reshape(-1, 3)
-    low, high = points.min(axis=0), points.max(axis=0)
-    volume_mm3 = mesh_volume(points, faces)
-    if abs(volume_mm3) <= SMALLEST_SHARE * float((high - low).max()) ** 3:
+    """The closed mesh turned outward, centred, without unused vertices."""
+    used, packed = np.unique(faces, return_inverse=True)
+    points, faces = points[used], packed.reshape(-1, 3)
+    volume_mm3 = mesh_volume(points, faces) if len(faces) else 0.0
+    width_mm = float(np.ptp(points, axis=0).max()) if len(faces) else 0.0
+    if abs(volume_mm3) <= SMALLEST_SHARE * width_mm**3:
         raise DesignError(
             f"{name} encloses no volume ({abs(volume_mm3):.3g} mm3)",
             hint="an indenter must be a solid body, not a sheet",
             at=AT,
         )
+    low, high = points.min(axis=0), points.max(axis=0)
     if volume_mm3 < 0.0:
         faces = faces[:, ::-1]
     return IndenterMesh(

@@ -63,7 +63,7 @@ def skin_field(
     """
     plotter = _plotter(size_px)
     mesh = _polydata(skin.points_mm, skin.faces)
-    legend = {"title": label, "color": "black"}
+    legend = {"title": label, "color": "black", "vertical": True, "position_x": 0.85}
     plotter.add_mesh(
         mesh,
         scalars=np.asarray(values),

@@ -1,0 +1,47 @@
+"""Bodies that several tests look at, built once."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from designs.family import family, resolve_shape
+from workbench.core.design import Layers, Meshing
+from workbench.core.results import MembraneMesh, Solid
+
+
+@pytest.fixture(scope="session")
+def build_finger() -> Callable[..., Solid]:
+    """A function that builds a finger: shape parameters by name, and `layers`."""
+    from geometry.solid import assemble
+
+    def build(layers: Layers | None = None, **shape: Any) -> Solid:
+        bodies = family("finger").build(resolve_shape("finger", shape), layers or Layers())
+        return assemble(**{f.name: getattr(bodies, f.name) for f in dataclasses.fields(bodies)})
+
+    return build
+
+
+@pytest.fixture(scope="session")
+def finger(build_finger: Callable[..., Solid]) -> Solid:
+    """The default finger: R 15, cylinder 27, wall 2, support 1 mm."""
+    return build_finger()
+
+
+@pytest.fixture(scope="session")
+def finger_mesh(finger: Solid) -> MembraneMesh:
+    """The default finger in hexahedra of 0.4 mm."""
+    from geometry.hexmesh import mesh_membrane
+
+    return mesh_membrane(finger, Meshing())
+
+
+@pytest.fixture(scope="session")
+def taichi_device() -> str:
+    """Taichi, initialised once in the thread of the tests: `cpu` or `cuda`."""
+    from workbench.devices import open_device
+
+    return open_device()
