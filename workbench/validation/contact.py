@@ -1,0 +1,89 @@
+"""Contact: closed forms, balance and penetration of the contact solver."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from workbench.core.design import Elastomer
+from workbench.core.press import ContactSettings
+from workbench.devices import open_device
+from workbench.rows import Row, bounded, compared
+from workbench.validation.presses import NAME, finger_press
+
+CELLS_PER_CONTACT_RADIUS = 4.0
+BLOCK_LIMIT = 0.07
+PENETRATION_LIMIT_CELLS = 0.02
+BALANCE_LIMIT = 0.01
+FINGER_RANGE_N = (1.20, 1.35)
+
+
+def rows() -> list[Row]:
+    """All rows of the room."""
+    open_device()
+    return [*_bonded_block(), *_finger()]
+
+
+def _bonded_block() -> list[Row]:
+    from sim.contact import checks
+
+    radius_mm = checks.BLOCK_SPHERE_MM / 2
+    # The contact radius of a bonded layer is at least Hertz's sqrt(R d), least at the least depth.
+    least_mm = math.sqrt(radius_mm * min(checks.BLOCK_DEPTHS_MM))
+    grid_mm = math.floor(1000 * least_mm / CELLS_PER_CONTACT_RADIUS) / 1000
+    material = Elastomer(friction=0.0)
+    errors = checks.bonded_block_errors(grid_mm=grid_mm)
+    found = []
+    for depth_mm, error in zip(checks.BLOCK_DEPTHS_MM, errors, strict=True):
+        exact_N = checks.bonded_layer_force_N(
+            material,
+            radius_mm=radius_mm,
+            height_mm=checks.BLOCK_HEIGHT_MM,
+            depth_mm=depth_mm,
+        )
+        half_space_N = (
+            4 / 3 * material.young_MPa / (1 - material.poisson**2) * math.sqrt(radius_mm)
+        ) * depth_mm**1.5
+        found.append(
+            compared(
+                "bonded_block_force",
+                f"depth {depth_mm:g} mm, sphere R {radius_mm:g} on {checks.BLOCK_HEIGHT_MM:g} mm, "
+                f"dx {grid_mm:g} mm <= a/4, frictionless; null: Hertz half-space",
+                exact_N * (1.0 + float(error)),
+                exact_N,
+                unit="N",
+                limit=BLOCK_LIMIT,
+                null=half_space_N,
+            )
+        )
+    return found
+
+
+def _finger() -> list[Row]:
+    contact = finger_press()
+    penalty = ContactSettings().penalty
+    reaction_N, support_N = contact.reaction_N[-1], contact.support_N[-1]
+    balance = float(np.linalg.norm(reaction_N - support_N) / np.linalg.norm(reaction_N))
+    low_N, high_N = FINGER_RANGE_N
+    middle_N = (low_N + high_N) / 2
+    return [
+        bounded(
+            "penetration",
+            f"{NAME}; penalty {penalty:g} E/dx",
+            float(contact.penetration_mm.max()) / contact.grid_mm,
+            unit="cell",
+            limit=PENETRATION_LIMIT_CELLS,
+        ),
+        bounded("force_balance", NAME, balance, unit="1", limit=BALANCE_LIMIT),
+        bounded("residual", NAME, float(contact.residual.max()), unit="1", limit=1e-3),
+        compared(
+            "finger_45",
+            f"{NAME}; 12 mm region, 0.5 mm grid; accepted {low_N:g} to {high_N:g} N",
+            float(contact.normal_N[-1]),
+            middle_N,
+            unit="N",
+            limit=high_N - middle_N + 1e-12,
+            relative=False,
+        ),
+    ]
