@@ -14,6 +14,8 @@ import traceback
 from collections.abc import Callable
 from typing import Any, Protocol
 
+import numpy as np
+
 from ui.panels.fields import Fields, read_field, whole_shape
 from ui.scene import Scene
 from ui.session import Session
@@ -56,7 +58,7 @@ class Desk:
         self.server = server
         self.session = session
         self.conductor = conductor
-        self.scene = Scene(server, fast=fast)
+        self.scene = Scene(server, fast=fast, on_aim=self.guarded(self._aim))
         self.fields = Fields(server, self.read, self.edit)
         self.panels: list[Panel] = []
         self.log_lines: list[str] = []
@@ -123,6 +125,14 @@ class Desk:
             self.conductor.submit("shape", session.design, session.case, ("build",))
         self.scene.place_indenter(session.case.press)
         self.refresh_strip()
+
+    def _aim(self, event: Any) -> None:
+        """A click on the skin moves the target there."""
+        target = self.scene.aim(np.asarray(event.ray_origin), np.asarray(event.ray_direction))
+        if target is not None:
+            self.edit("case.press.target_mm", tuple(round(x, 2) for x in target))
+            self.fields.refresh()
+            self.log(f"target {target[0]:.1f}, {target[1]:.1f}, {target[2]:.1f} mm")
 
     def replaced(self) -> None:
         """Follow a change of many fields at once: undo, a preset, an upload."""

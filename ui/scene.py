@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -22,8 +23,9 @@ FRUSTUM_MM = 5.0
 class Scene:
     """The 3D view of one design."""
 
-    def __init__(self, server: Any, *, fast: bool) -> None:
+    def __init__(self, server: Any, *, fast: bool, on_aim: Callable[[Any], None]) -> None:
         self.server = server
+        self.on_aim = on_aim
         self.api = server.scene
         self._leds: list[Any] = []
         self._frames: list[Any] = []
@@ -79,6 +81,7 @@ class Scene:
                     opacity=0.55,
                     side="double",
                 )
+                self.membrane.on_click(self.on_aim)
             else:
                 self._replace(self.membrane, vertices, faces.astype(np.uint32))
             self.membrane.visible = True
@@ -186,7 +189,9 @@ class Scene:
         for k, moved in enumerate(contact.displacement_mm):
             points = (np.asarray(skin.points_mm) + moved).astype(np.float32)
             glb = coloured_glb(points, faces, heat_colours(size[k] / top, SKIN_COLOUR))
-            self._frames.append(self.api.add_glb(f"/frames/{k}", glb, visible=False))
+            node = self.api.add_glb(f"/frames/{k}", glb, visible=False)
+            node.on_click(self.on_aim)
+            self._frames.append(node)
         self._contact = contact
         return top
 

@@ -131,7 +131,7 @@ def bake(mesh: MembraneMesh, ring: LedRing, model: LightModel, *, monitor: Monit
     """Light of each LED at each vertex of the skin."""
     from sim.optics.bake import bake_light
 
-    return bake_light(mesh, ring, model, monitor=monitor)
+    return bake_light(mesh, ring, model=model, monitor=monitor)
 
 
 def press(
@@ -167,7 +167,11 @@ def shoot(
     from sim.optics.render import shoot as shoot_frames
 
     frames = shoot_frames(
-        mesh, light, optics, contact.displacement_mm, monitor=part(monitor, 0.0, 0.9)
+        mesh,
+        light,
+        optics,
+        displacement_mm=contact.displacement_mm,
+        monitor=part(monitor, 0.0, 0.9),
     )
     return Shot(frames=frames, metrics=measure(mesh, contact, frames, light))
 

@@ -32,8 +32,8 @@ def rows() -> list[Row]:
     light = bake(mesh, optics.ring, optics.light_model, monitor=silent)
     one = dent(mesh.outer.points_mm, mesh.outer.normals)
     many = np.stack([one] * (1 + FRAMES))
-    first_s = median_s(lambda: shoot(mesh, light, optics, many[:1], monitor=silent))
-    all_s = median_s(lambda: shoot(mesh, light, optics, many, monitor=silent), runs=3)
+    first_s = median_s(lambda: shoot(mesh, light, optics, displacement_mm=many[:1]))
+    all_s = median_s(lambda: shoot(mesh, light, optics, displacement_mm=many), runs=3)
     case = f"640x480, {len(mesh.outer.faces)} triangles"
     found = [
         timed_row(
