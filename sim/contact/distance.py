@@ -1,6 +1,7 @@
 """Signed distance of a closed triangle mesh, sampled on a grid for quadratic B-splines.
 
-Exact distance in a band around the surface, carried outwards by a Euclidean distance transform.
+Exact distance in a band around the surface; beyond it a lower bound from a Euclidean distance
+transform, which is all that first touch needs.
 The sign is a vote of three winding numbers, each counted along the columns of one axis, so that a
 few missing or doubled faces do no harm. Sharp edges are rounded by about a sample.
 Left out: bodies with more than `MOST_SAMPLES` samples are sampled more coarsely than asked.
@@ -17,10 +18,10 @@ from workbench.core.press import IndenterMesh
 
 MOST_SAMPLES = 3_000_000
 """12 MB in single precision; the spacing grows with the cube root of the excess."""
-BAND_SAMPLES = 4.0
+BAND_SAMPLES = 5.0
 PADDING_SAMPLES = 6
-FAR_SHARE = 0.98
-"""Part of the transform's distance that is added beyond the band: keeps it a lower bound."""
+STAIRCASE = 3.0**0.5
+"""Samples by which the band's rim on the lattice falls short of the true rim, at most."""
 COLUMN_SHIFT = np.array([1.37e-4, 2.33e-4, 3.15e-4])
 """Shift of the columns [samples], so that none runs along an edge of a tidy mesh."""
 
@@ -68,7 +69,12 @@ def sample_mesh(mesh: IndenterMesh, *, spacing_mm: float) -> SampledDistance:
 
 
 def _distance(corners: np.ndarray, shape: np.ndarray, spacing_mm: float) -> np.ndarray:
-    """Unsigned distance of all samples [mm], exact within the band."""
+    """Unsigned distance of all samples [mm]: exact within the band, a lower bound beyond.
+
+    The straight line to the surface meets a band sample no more than half a cell diagonal aside
+    and half a diagonal inside the rim, so the distance is at least that to the nearest band
+    sample plus the band less a diagonal.
+    """
     from scipy.ndimage import distance_transform_edt
 
     from sim.contact.distance_kernels import band_distance
@@ -79,8 +85,8 @@ def _distance(corners: np.ndarray, shape: np.ndarray, spacing_mm: float) -> np.n
     band_distance(triangles, squared, float(spacing_mm), float(band_mm))
     distance = np.sqrt(squared.astype(np.float64))
     far = squared >= band_mm**2
-    beyond, nearest = distance_transform_edt(far, return_indices=True)
-    return np.where(far, distance[tuple(nearest)] + FAR_SHARE * spacing_mm * beyond, distance)
+    beyond = np.asarray(distance_transform_edt(far)) + BAND_SAMPLES - STAIRCASE
+    return np.where(far, spacing_mm * beyond, distance)
 
 
 def _inside(corners: np.ndarray, shape: np.ndarray, spacing_mm: float) -> np.ndarray:

@@ -4,6 +4,9 @@ The twin of both is in `reference`. Results do not depend on the number of threa
 samples belongs to one thread, and crossings are integer counts.
 """
 
+# Taichi reads annotations and operators in its own way.
+# pyright: reportGeneralTypeIssues=false, reportIndexIssue=false, reportOptionalCall=false
+
 import taichi as ti
 
 Samples = ti.types.ndarray(dtype=ti.f32, ndim=3)

@@ -30,7 +30,7 @@ EIGENVALUE = 3.0
 LEAST_FRACTION = 0.02
 """Filled fraction given to empty sub-cells of cut cells: without it fringe nodes drift to NaN."""
 SLOT_BLOCK = 16
-"""Cells whose slots interleave (`kernels.BLOCK`)."""
+"""Cells whose slots interleave, so that neighbouring threads write neighbouring words."""
 
 _STENCIL = np.stack(np.meshgrid(*[[-1, 0, 1]] * 3, indexing="ij"), axis=-1).reshape(27, 3)
 
@@ -176,7 +176,7 @@ def _choose_cells(
     target_mm: np.ndarray,
     active_radius_mm: float,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Active cells in order, their fractions, and the material cells that were left out."""
+    """Active cells in order, their fractions, and material cells left out beside them."""
     grid_mm = material_points.grid_mm
     material = material_points.cells.astype(np.int64)
 
@@ -195,7 +195,9 @@ def _choose_cells(
     cells = np.concatenate([material[active], bare])
     fractions = np.concatenate([material_points.fractions[active], np.zeros((len(bare), 8))])
     order = np.argsort(_keys(cells), kind="stable")
-    return cells[order], fractions[order].astype(np.float64), material[~active]
+    margin_mm = active_radius_mm + 4.0 * grid_mm
+    beside = ~active & (np.linalg.norm(material * grid_mm - target_mm, axis=1) < margin_mm)
+    return cells[order], fractions[order].astype(np.float64), material[beside]
 
 
 def _number_nodes(cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

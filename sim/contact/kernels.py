@@ -12,15 +12,17 @@ Pass 3 (a thread per node) sums the 27 slots that belong to the node and moves i
 The plain twin of each kernel is in `reference`. Layouts are described in `domain`.
 """
 
+# Taichi reads annotations and operators in its own way.
+# pyright: reportInvalidTypeForm=false, reportGeneralTypeIssues=false, reportIndexIssue=false
+
 import taichi as ti
 from taichi.lang.impl import expr_init
 
+from sim.contact.domain import SLOT_BLOCK as BLOCK
 from sim.contact.signed_distance import signed_distance
 from sim.contact.stencil import gather_gradient, scatter_gradient
 from sim.material import SMALLEST_VOLUME_RATIO, first_piola_rows
 
-BLOCK = 16
-"""Cells whose slots interleave, so that neighbouring threads write neighbouring words."""
 CHUNK = 128
 """Rows summed by one thread of a reduction; fixed, so that the order of sums is too."""
 FREE, TOUCHED, HELD = 0, 1, 2

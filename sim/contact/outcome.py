@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import taichi as ti
+from taichi.lang.impl import current_cfg
 
 from sim.contact.approach import Approach, quaternion
 from sim.contact.domain import Domain
@@ -52,6 +53,8 @@ def frame_outcome(
     sliding = np.zeros(len(outer.points_mm), bool)
     faces = domain.points.face[open_points][sliding_points]
     sliding[outer.faces[faces].ravel()] = True
+    moved_vertices = outer.points_mm[domain.vertices] + displacement[domain.vertices]
+    vertex_distance, _ = relaxation.collider.distance((moved_vertices - origin) @ rotation)
     reaction_N = balance.reaction_N
     fixed_N = -relaxation.node_forces()[domain.fixed].sum(axis=0, dtype=np.float64)
     scale_N = max(float(np.linalg.norm(reaction_N)), 1e-12)
@@ -61,7 +64,7 @@ def frame_outcome(
         moment_Nmm=-np.cross(place - origin, forces).sum(axis=0),
         indenter_pose=np.concatenate([origin, quaternion(rotation)]),
         residual=balance.unbalanced_N / scale_N if np.any(reaction_N) else 0.0,
-        penetration_mm=max(0.0, -float(distance.min(initial=0.0))),
+        penetration_mm=-float(min(distance.min(initial=0.0), vertex_distance.min(initial=0.0))),
         support_N=balance.bond_N + fixed_N,
         friction_ratio=friction_ratio,
         sliding=sliding,
@@ -93,7 +96,6 @@ def collect(
     def stack(name: str) -> np.ndarray:
         return np.stack([np.asarray(getattr(outcome, name)) for outcome in outcomes])
 
-    arch = ti.lang.impl.current_cfg().arch
     return Contact(
         displacement_mm=stack("displacement_mm"),
         reaction_N=stack("reaction_N"),
@@ -110,5 +112,5 @@ def collect(
         grid_mm=domain.grid_mm,
         particles=domain.particles,
         substeps=substeps,
-        device="cuda" if arch == ti.cuda else "cpu",
+        device="cuda" if current_cfg().arch == ti.cuda else "cpu",
     )

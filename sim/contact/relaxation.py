@@ -61,7 +61,7 @@ class Relaxation:
         self.damping = FIRST_DAMPING
         self.mass_scale = 1.0
         self.substeps = 0
-        self._collider = collider
+        self.collider = collider
         self._solid = solid
         self.friction = friction
         self._moved = False
@@ -130,7 +130,7 @@ class Relaxation:
         kernels.commit_anchors(
             self._displacement, self._rows, self._owners, self._owner_starts, self._weights,
             self._positions, self._bonded, self._anchors, self._states, self._poses, self._size,
-            self._coefficients, self._counts, 0, int(self._collider.shape), self.friction,
+            self._coefficients, self._counts, 0, int(self.collider.shape), self.friction,
         )  # fmt: skip
 
     def restart(self, displacement_mm: np.ndarray) -> None:
@@ -159,6 +159,10 @@ class Relaxation:
         distance, ratio = self._measures.to_numpy().reshape(-1, 2).T
         return distance, ratio
 
+    def contact_history(self) -> tuple[np.ndarray, np.ndarray]:
+        """Anchors in the body frame [mm], (P, 3), and states, (P,), of all surface points."""
+        return self._anchors.to_numpy().reshape(-1, 3), self._states.to_numpy()
+
     def _upload(self, poses: list[Pose]) -> None:
         table = np.zeros((BATCH, 12), np.float32)
         for row, (origin, rotation) in zip(table, poses, strict=False):
@@ -173,7 +177,7 @@ class Relaxation:
             self._powers, self._owners, self._owner_starts, self._weights, self._positions,
             self._stiffness, self._bonded, self._anchors, self._states, self._measures,
             self._point_forces, self._poses, self._size, self._coefficients, self._counts,
-            step, int(self._collider.shape), int(moving), 1.0 / grid_mm, self._solid.shear_MPa,
+            step, int(self.collider.shape), int(moving), 1.0 / grid_mm, self._solid.shear_MPa,
             self._solid.bulk_MPa, self.friction, self.mass_scale, self.damping,
             STEP_CAP * grid_mm,
         )  # fmt: skip

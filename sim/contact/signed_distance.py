@@ -4,6 +4,9 @@ Shapes and the meaning of `size` are those of `collider`, whose NumPy functions 
 Rounded shapes are a smaller sharp shape, offset outwards by the edge radius.
 """
 
+# Taichi reads annotations and operators in its own way.
+# pyright: reportInvalidTypeForm=false, reportIndexIssue=false, reportOptionalCall=false
+
 import taichi as ti
 
 from sim.contact.shapes import Shape

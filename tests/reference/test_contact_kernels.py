@@ -1,0 +1,162 @@
+"""Each Taichi kernel against its NumPy twin."""
+
+import numpy as np
+import pytest
+
+from sim.contact import reference
+from sim.contact.approach import plan_approach
+from sim.contact.collider import make_collider
+from sim.contact.domain import stencil_nodes
+from sim.contact.relaxation import STEP_CAP, Relaxation
+from sim.contact.solver import prepare
+from sim.contact.specimens import flat_block
+from sim.material import neo_hookean
+from workbench.core.design import Elastomer
+from workbench.core.press import ContactSettings, Indenter, IndenterKind, IndenterMesh, Press
+
+MATERIAL = Elastomer()
+ANALYTIC = [kind for kind in IndenterKind if kind is not IndenterKind.MESH]
+# Single precision has 6e-8; sums of 27 to 200 terms and the cancellation of the position lose
+# two digits.
+RELATIVE = 1e-5
+
+
+def box_mesh(half_mm: float = 2.0) -> IndenterMesh:
+    corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * half_mm
+    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    faces = [f for a, b, c, d in quads for f in ((a, b, c), (a, c, d))]
+    return IndenterMesh(points_mm=corners.astype(float), faces=np.array(faces, np.int32))
+
+
+def setup(indenter: Indenter, depth_mm: float = 0.4):
+    mesh, points = flat_block(width_mm=6.0, height_mm=2.0, grid_mm=0.5, skin_mm=0.5)
+    collider = make_collider(indenter, grid_mm=0.5)
+    press = Press(target_mm=(0.1, 0.2, 2.0), depth_mm=depth_mm, twist_deg=20.0, frames=1)
+    approach = plan_approach(mesh.outer, collider, press)
+    settings = ContactSettings(active_radius_mm=3.0)
+    domain = prepare(mesh, points, MATERIAL, approach, collider, settings)
+    relaxation = Relaxation(domain, collider, neo_hookean(MATERIAL), friction=0.3)
+    return domain, collider, approach, relaxation
+
+
+def wobble(domain, amplitude_mm: float = 0.02) -> np.ndarray:
+    noise = np.random.default_rng(5).uniform(-1.0, 1.0, domain.node_mm.shape)
+    return (amplitude_mm * noise).astype(np.float32)
+
+
+@pytest.mark.parametrize("kind", ANALYTIC)
+def test_forces_equal_the_twin(taichi_device: str, kind: IndenterKind) -> None:
+    """Elastic, bonding, contact and friction forces on all nodes, with a slipping contact."""
+    domain, collider, approach, relaxation = setup(Indenter(kind=kind, size_mm=4.0))
+    displacement, solid = wobble(domain), neo_hookean(MATERIAL)
+    history = reference.ContactHistory.fresh(len(domain.points.face))
+    relaxation.restart(displacement)
+    for progress in (1.0, 1.05):
+        pose = approach.pose(progress)
+        relaxation.evaluate(pose)
+        point_forces = reference.surface_forces(
+            domain, displacement.astype(float), history, collider, pose, friction=0.3
+        )
+    exact = reference.stress_forces(domain, displacement.astype(float), solid)
+    exact += reference.spread_to_nodes(domain, point_forces)
+    assert np.count_nonzero(history.states) > 5
+    bound = RELATIVE * np.abs(point_forces).max()
+    assert np.abs(relaxation.point_forces() - point_forces).max() < bound
+    assert np.abs(relaxation.node_forces() - exact).max() < RELATIVE * np.abs(exact).max()
+
+
+def test_commit_equals_the_twin(taichi_device: str) -> None:
+    """Anchors after a frame in which the indenter turned by 10 degrees; places are good to 1e-6."""
+    domain, collider, approach, relaxation = setup(Indenter(size_mm=4.0))
+    displacement = wobble(domain)
+    history = reference.ContactHistory.fresh(len(domain.points.face))
+    relaxation.restart(displacement)
+    for progress in (1.0, 1.5):
+        pose = approach.pose(progress)
+        relaxation.evaluate(pose)
+        arguments = (domain, displacement.astype(float), history, collider, pose)
+        reference.surface_forces(*arguments, friction=0.3)
+    relaxation.commit(pose)
+    reference.commit_history(*arguments, friction=0.3)
+    anchors, states = relaxation.contact_history()
+    np.testing.assert_array_equal(states, history.states)
+    held = states == reference.HELD
+    np.testing.assert_allclose(anchors[held], history.anchors[held], atol=2e-6)
+
+
+def test_step_equals_the_twin(taichi_device: str) -> None:
+    """Two damped steps from rest; the cap of 0.1 cell holds for the wildest nodes."""
+    domain, collider, approach, relaxation = setup(Indenter(size_mm=4.0))
+    displacement, solid = wobble(domain, 0.1).astype(float), neo_hookean(MATERIAL)
+    relaxation.restart(displacement)
+    history = reference.ContactHistory.fresh(len(domain.points.face))
+    velocity, pose = np.zeros_like(displacement), approach.pose(1.0)
+    for _ in range(2):
+        forces = reference.stress_forces(domain, displacement, solid)
+        forces += reference.spread_to_nodes(
+            domain,
+            reference.surface_forces(domain, displacement, history, collider, pose, friction=0.3),
+        )
+        velocity = reference.damped_step(
+            domain,
+            velocity,
+            forces,
+            damping=relaxation.damping,
+            mass_scale=1.0,
+            largest_step=STEP_CAP * domain.grid_mm,
+        )
+        displacement = displacement + velocity
+    relaxation.advance([pose, pose])
+    assert np.abs(velocity).max() <= STEP_CAP * domain.grid_mm + 1e-12
+    np.testing.assert_allclose(relaxation.displacement(), displacement, atol=2e-6)
+
+
+def test_sums_equal_numpy(taichi_device: str) -> None:
+    """Residual, reaction and net force from fixed chunks equal sums on the host."""
+    domain, _, approach, relaxation = setup(Indenter(size_mm=4.0))
+    relaxation.restart(wobble(domain))
+    balance = relaxation.evaluate(approach.pose(1.0))
+    free = relaxation.node_forces()[~domain.fixed].astype(float)
+    touching = relaxation.point_forces()[~domain.points.bonded].astype(float)
+    np.testing.assert_allclose(balance.unbalanced_N, np.linalg.norm(free), rtol=1e-12)
+    np.testing.assert_allclose(balance.net_N, free.sum(axis=0), atol=1e-12)
+    np.testing.assert_allclose(balance.reaction_N, -touching.sum(axis=0), atol=1e-12)
+
+
+def test_affine_field_has_no_interior_force(taichi_device: str) -> None:
+    """The patch test: a homogeneous deformation is in balance; 1e-6 of the stress times dx^2."""
+    domain, _, approach, relaxation = setup(Indenter(size_mm=4.0), depth_mm=0.0)
+    gradient = np.array([[0.1, 0.05, 0.0], [-0.02, -0.08, 0.03], [0.0, 0.04, 0.12]])
+    relaxation.restart(domain.node_mm @ gradient.T)
+    relaxation.evaluate(approach.pose(0.0))
+    full = np.isclose(domain.volumes_mm3.sum(axis=1), domain.grid_mm**3)
+    touches = np.bincount(stencil_nodes(domain.rows)[full].ravel(), minlength=len(domain.masses))
+    spoilt = np.zeros(len(domain.masses), bool)
+    spoilt[stencil_nodes(domain.rows[domain.owners]).ravel()] = True
+    interior = (touches == 27) & ~spoilt
+    from sim.material import first_piola
+
+    stress = first_piola(gradient[None], neo_hookean(MATERIAL))[0]
+    scale_N = np.abs(stress).max() * domain.grid_mm**2
+    assert interior.sum() >= 20
+    assert np.abs(relaxation.node_forces()[interior]).max() < 2e-6 * scale_N
+
+
+def test_mesh_distance_equals_the_twin(taichi_device: str) -> None:
+    """The sampled distance of a box: band exact to 1e-5 mm, sign exact, at every sample."""
+    from sim.contact.distance import _distance, _inside
+
+    mesh, spacing = box_mesh(1.0), 0.25
+    shape = np.array([21, 21, 21])
+    corners = mesh.points_mm[mesh.faces] + 2.5
+    places = np.stack(np.meshgrid(*[np.arange(21) * spacing] * 3, indexing="ij"), -1)
+    distance = _distance(corners, shape, spacing).ravel()
+    exact = np.sqrt(reference.squared_distances(corners, places.reshape(-1, 3)))
+    near = exact < 5 * spacing - 1e-6
+    np.testing.assert_allclose(distance[near], exact[near], atol=1e-5)
+    assert (distance <= exact + 1e-5).all()
+    inside = _inside(corners, shape, spacing).ravel()
+    nudged = places.reshape(-1, 3) + spacing * np.array([1.37e-4, 2.33e-4, 3.15e-4])
+    winding = reference.winding_along_z(corners, nudged)
+    clear = exact > 1e-3
+    np.testing.assert_array_equal(inside[clear], winding[clear] > 0)

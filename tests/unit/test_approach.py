@@ -1,0 +1,86 @@
+"""Targets, first touch and the path of the indenter."""
+
+import numpy as np
+import pytest
+
+from sim.contact.approach import plan_approach, quaternion
+from sim.contact.checks import at_45_degrees
+from sim.contact.collider import make_collider
+from sim.contact.specimens import finger, flat_block
+from workbench.core.errors import DesignError
+from workbench.core.press import Indenter, IndenterKind, Press
+
+BLOCK, _ = flat_block(width_mm=16.0, height_mm=4.0, grid_mm=1.0)
+FINGER, _ = finger(grid_mm=2.0, cylinder_mm=27.0)
+
+
+def touch_on_block(indenter: Indenter) -> float:
+    collider = make_collider(indenter, grid_mm=0.5)
+    press = Press(target_mm=(0.13, -0.07, 4.0))
+    return plan_approach(BLOCK.outer, collider, press).touch_mm
+
+
+@pytest.mark.parametrize(
+    ("kind", "height_mm"),
+    [
+        (IndenterKind.SPHERE, 3.0),
+        (IndenterKind.CYLINDER_END, 3.0),
+        (IndenterKind.CYLINDER_SIDE, 3.0),
+        (IndenterKind.CUBE, 3.0),
+        (IndenterKind.CONE, 1.5 - 0.45 * (2**0.5 - 1)),
+    ],
+)
+def test_first_touch_of_a_flat_skin_is_the_half_height(
+    kind: IndenterKind, height_mm: float
+) -> None:
+    """The origin stands at the body's half height; the limit is the brief's 1e-3 mm."""
+    assert touch_on_block(Indenter(kind=kind)) == pytest.approx(height_mm, abs=1e-3)
+
+
+def test_sphere_touches_the_finger_at_its_radius() -> None:
+    """R 3 on R 15 touches with the centre 3 mm out; 0.4 mm facets sag by 0.4^2 / 8 / 15 mm."""
+    collider = make_collider(Indenter(), grid_mm=0.5)
+    approach = plan_approach(FINGER.outer, collider, at_45_degrees(azimuth_deg=37.0))
+    sag_mm = 0.4**2 * 2 / 8 / 15
+    assert approach.touch_mm == pytest.approx(3.0, abs=2 * sag_mm)
+
+
+def test_target_is_projected_and_its_normal_is_smooth() -> None:
+    """(0, 10, 35) lies on the ray to (0, 10, 8) / 12.81 from the centre of the tip."""
+    approach = plan_approach(FINGER.outer, make_collider(Indenter(), grid_mm=0.5), Press())
+    exact = np.array([0.0, 10.0, 8.0]) / np.hypot(10.0, 8.0)
+    # A facet of 0.4 mm turns by 0.4 / 15 rad; interpolation leaves a small part of it.
+    np.testing.assert_allclose(approach.normal, exact, atol=2e-3)
+    np.testing.assert_allclose(approach.tangent_u @ approach.normal, 0.0, atol=1e-12)
+    assert approach.tangent_u[2] > 0.7
+
+
+def test_target_far_from_the_skin_is_refused() -> None:
+    """10 mm above the skin: value, limit and the nearest point are in the message."""
+    collider = make_collider(Indenter(), grid_mm=0.5)
+    with pytest.raises(DesignError, match=r"is 10\.0 mm from the skin; the limit is 5 mm") as bad:
+        plan_approach(BLOCK.outer, collider, Press(target_mm=(0.0, 0.0, 14.0)))
+    assert bad.value.at == "press.target_mm"
+    assert "4.0" in bad.value.hint
+
+
+def test_tangent_falls_back_to_x_on_top() -> None:
+    """Where n is +Z, U is +X and V is +Y."""
+    collider = make_collider(Indenter(), grid_mm=0.5)
+    approach = plan_approach(BLOCK.outer, collider, Press(target_mm=(0.0, 0.0, 4.0)))
+    np.testing.assert_allclose(approach.tangent_u, [1.0, 0.0, 0.0], atol=1e-12)
+    np.testing.assert_allclose(approach.tangent_v, [0.0, 1.0, 0.0], atol=1e-12)
+
+
+def test_path_presses_then_shears_and_twists() -> None:
+    """Depth after 5 of 10 frames is half; the last pose has all of the shear and the twist."""
+    collider = make_collider(Indenter(), grid_mm=0.5)
+    press = Press(target_mm=(0.0, 0.0, 4.0), shear_mm=(0.2, -0.1), twist_deg=30.0, frames=10)
+    approach = plan_approach(BLOCK.outer, collider, press)
+    half, _ = approach.pose(5.0)
+    np.testing.assert_allclose(half, [0.0, 0.0, 7.0 - 0.5], atol=1e-3)
+    origin, rotation = approach.pose(20.0)
+    np.testing.assert_allclose(origin, [0.2, -0.1, 6.0], atol=1e-3)
+    np.testing.assert_allclose(
+        quaternion(rotation), [np.cos(np.pi / 12), 0.0, 0.0, np.sin(np.pi / 12)], atol=1e-12
+    )
