@@ -1,0 +1,111 @@
+"""Dots printed on the skin: they move with it and show its shear.
+
+A dot is the set of skin points within half a diameter of its centre in the reference
+configuration. A pixel is darkened where the reference place of what it sees lies in a dot, so dots
+stretch, hide and refract with the skin without being projected.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sim.optics.camera import Rays, focal_px
+from sim.optics.gbuffer import GBuffer, interpolate
+from workbench.core.design import Camera, Markers
+from workbench.core.results import Skin
+
+INK_REFLECTANCE = 0.08
+"""Share of the light that ink returns, relative to the bare skin [1]; black silicone pigment."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Coverage:
+    """Ink per pixel: which dot, and how much of the pixel it covers."""
+
+    marker: np.ndarray
+    """Nearest dot of each pixel, shape (N,), int32."""
+    ink: np.ndarray
+    """Covered share of each pixel, shape (N,), float32 in [0, 1]."""
+
+
+def place_markers(skin: Skin, markers: Markers) -> np.ndarray:
+    """Dot centres on the skin [mm], shape (M, 3): vertices at least a spacing apart.
+
+    Farthest-point order from the highest vertex, until every vertex is nearer than the spacing to
+    a dot. Deterministic; no dots when they are not visible.
+    """
+    if not markers.visible:
+        return np.zeros((0, 3))
+    points = skin.points_mm
+    chosen = [int(np.argmax(points[:, 2]))]
+    nearest = np.full(len(points), np.inf)
+    while True:
+        nearest = np.minimum(nearest, np.linalg.norm(points - points[chosen[-1]], axis=1))
+        farthest = int(np.argmax(nearest))
+        if nearest[farthest] < markers.spacing_mm:
+            return points[chosen]
+        chosen.append(farthest)
+
+
+def no_ink(pixels: int) -> Coverage:
+    """Coverage of an image without dots."""
+    return Coverage(marker=np.zeros(pixels, np.int32), ink=np.zeros(pixels, np.float32))
+
+
+def ink(
+    before: Coverage,
+    changed: np.ndarray,
+    seen: GBuffer,
+    *,
+    skin: Skin,
+    centres_mm: np.ndarray,
+    diameter_mm: float,
+    camera: Camera,
+    rays: Rays,
+) -> Coverage:
+    """Coverage after some pixels changed what they see.
+
+    The edge of a dot is a smoothstep one pixel footprint wide: depth over focal length, divided by
+    the cosine of the viewing angle.
+
+    Args:
+        before: Coverage of the other pixels.
+        changed: Pixel numbers to compute anew, shape (C,).
+        seen: What those of them that see the skin see.
+        skin: The undeformed skin.
+        centres_mm: Dot centres on it [mm], shape (M, 3).
+        diameter_mm: Of a dot.
+        camera: Gives the size of a pixel.
+        rays: Gives the viewing angle.
+    """
+    marker, share = before.marker.copy(), before.ink.copy()
+    share[changed] = 0.0
+    if not len(centres_mm) or not len(seen.pixel):
+        return Coverage(marker=marker, ink=share)
+    from scipy.spatial import KDTree
+
+    place = interpolate(skin.points_mm.astype(np.float32), skin.faces, seen)
+    cosine = -np.einsum("ij,ij->i", seen.normal, rays.direction[seen.pixel])
+    footprint = np.abs(seen.depth_z_mm) / focal_px(camera) / np.maximum(cosine, 0.1)
+    reach = diameter_mm / 2.0 + float(footprint.max())
+    distance, nearest = KDTree(centres_mm).query(place, distance_upper_bound=reach)
+    step = np.clip((diameter_mm / 2.0 - distance) / footprint + 0.5, 0.0, 1.0)
+    share[seen.pixel] = step * step * (3.0 - 2.0 * step)
+    marker[seen.pixel] = np.minimum(nearest, len(centres_mm) - 1)
+    return Coverage(marker=marker, ink=share)
+
+
+def centroids(coverage: Coverage, count: int, width_px: int) -> np.ndarray:
+    """Centre of each dot's ink [px], shape (count, 2), float32; NaN for a dot nobody sees.
+
+    A dot cut by the image edge or by an occlusion reports the centre of the part in view.
+    """
+    inked = np.flatnonzero(coverage.ink > 0.0)
+    share, marker = coverage.ink[inked].astype(np.float64), coverage.marker[inked]
+    total = np.bincount(marker, share, minlength=count)
+    with np.errstate(invalid="ignore"):
+        column = np.bincount(marker, share * (inked % width_px + 0.5), minlength=count) / total
+        row = np.bincount(marker, share * (inked // width_px + 0.5), minlength=count) / total
+    return np.column_stack([column, row]).astype(np.float32).reshape(count, 2)

@@ -1,0 +1,230 @@
+"""Tactile images of a press: the camera's view of the deformed, lit skin.
+
+Composition, as in the paper: image = background + (foreground deformed - foreground undeformed).
+Where nothing moved the two foregrounds are one and the same and the image is the background,
+exactly. For `linear` and `plane_target` the background is rendered with the linear field and the
+foreground with the chosen one; `direct` renders both with its one physical model.
+Source: SimTac, "Online image rendering". Left out: noise, blur, and the shadow that a dent casts
+on skin that did not move.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sim.optics.camera import refracted_rays
+from sim.optics.display import choose_exposure, encode
+from sim.optics.gbuffer import GBuffer, Moved, View, interpolate, look, open_view
+from sim.optics.lights import check_camera
+from sim.optics.markers import INK_REFLECTANCE, Coverage, centroids, ink, no_ink, place_markers
+from sim.optics.shading import directions_to_camera, relight, shade, straight, take
+from workbench.core.check import expect
+from workbench.core.design import LightModel, Optics
+from workbench.core.errors import OpticsError
+from workbench.core.monitor import Monitor, silent
+from workbench.core.results import LightField, MembraneMesh, TactileFrames
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Scene:
+    """What all frames of one call share."""
+
+    view: View
+    light: LightField
+    model: LightModel
+    optics: Optics
+    foreground: np.ndarray
+    """Undeformed foreground radiance per vertex, shape (V, 3), float32."""
+    bare: np.ndarray
+    """Background radiance per pixel without ink, shape (N, 3), float32."""
+    marker_mm: np.ndarray
+    coverage: Coverage
+    exposure: float
+
+
+def shoot(
+    mesh: MembraneMesh,
+    light: LightField,
+    optics: Optics,
+    *,
+    displacement_mm: np.ndarray | None = None,
+    monitor: Monitor = silent,
+) -> TactileFrames:
+    """Render the background and one image per frame of displacement.
+
+    Args:
+        mesh: The undeformed skins.
+        light: Light field baked on `mesh.outer`; its model decides the rendering.
+        optics: Camera, coating, markers, refractive index.
+        displacement_mm: Of the outer vertices [mm], shape (K, V, 3); None renders the background.
+        monitor: Progress and cancellation.
+
+    Raises:
+        DesignError: If the camera is outside the cavity or sees nothing of the skin.
+        OpticsError: If no light reaches what the camera sees, or a displacement is not finite.
+    """
+    vertices = len(mesh.outer.points_mm)
+    expect(light.irradiance, f"L {vertices}", name="light field")
+    if displacement_mm is None:
+        displacement_mm = np.zeros((0, vertices, 3), dtype=np.float32)
+    expect(displacement_mm, f"K {vertices} 3", name="displacement")
+    scene = _open_scene(mesh, light, optics, monitor)
+    frames = _blank(scene, len(displacement_mm))
+    for number, displacement in enumerate(displacement_mm, start=1):
+        note = f"image {number} of {len(displacement_mm)}"
+        monitor(0.3 + 0.7 * (number - 1) / len(displacement_mm), note)
+        if not np.isfinite(displacement).all():
+            raise OpticsError(
+                f"the displacement of frame {number} is not finite",
+                hint="the contact solver diverged: press less deep",
+                at="press.depth_mm",
+            )
+        _expose(scene, look(scene.view, displacement), frames, number)
+    monitor(1.0, "images ready")
+    return frames
+
+
+def _open_scene(mesh: MembraneMesh, light: LightField, optics: Optics, monitor: Monitor) -> _Scene:
+    monitor(0.0, "camera rays")
+    check_camera(mesh, optics.camera)
+    rays = refracted_rays(optics.camera, mesh.cavity, optics.refractive_index)
+    monitor(0.1, "undeformed skin")
+    view = open_view(mesh.outer, optics.camera, rays)
+    monitor(0.2, "background")
+    model = LightModel(light.model)
+    inward, to_camera = -mesh.outer.normals, _to_camera(view, view.background, mesh.outer.points_mm)
+    foreground = shade(model, light, optics.coating, inward, to_camera)
+    behind = foreground
+    if model is LightModel.PLANE_TARGET:
+        field = straight(light, mesh.outer.points_mm)
+        behind = shade(LightModel.LINEAR, field, optics.coating, inward, to_camera)
+    bare = np.zeros((len(rays.direction), 3), dtype=np.float32)
+    seen = view.background
+    bare[seen.pixel] = interpolate(behind, mesh.outer.faces, seen)
+    bare *= rays.transmittance[:, None]
+    exposure = choose_exposure(bare[seen.pixel])
+    if exposure == 0.0:
+        raise OpticsError(
+            "no light reaches the part of the skin that the camera sees: the image would be black",
+            hint="tilt or move the LEDs so that they shine on the skin (tilt_deg 0 is up)",
+            at="optics.ring.tilt_deg",
+        )
+    marker_mm = place_markers(mesh.outer, optics.markers)
+    everywhere = np.arange(len(bare))
+    blank = no_ink(len(bare))
+    scene = _Scene(
+        view=view,
+        light=light,
+        model=model,
+        optics=optics,
+        foreground=foreground,
+        bare=bare,
+        marker_mm=marker_mm,
+        coverage=_ink(view, optics, marker_mm, blank, everywhere, seen),
+        exposure=exposure,
+    )
+    return scene
+
+
+def _ink(
+    view: View,
+    optics: Optics,
+    marker_mm: np.ndarray,
+    before: Coverage,
+    changed: np.ndarray,
+    seen: GBuffer,
+) -> Coverage:
+    return ink(
+        before,
+        changed,
+        seen,
+        skin=view.skin,
+        centres_mm=marker_mm,
+        diameter_mm=optics.markers.diameter_mm,
+        camera=optics.camera,
+        rays=view.rays,
+    )
+
+
+def _to_camera(view: View, seen: GBuffer, points_mm: np.ndarray) -> np.ndarray:
+    camera_mm = np.asarray(view.camera.position_mm)
+    return directions_to_camera(seen, view.rays, view.skin.faces, points_mm, camera_mm)
+
+
+def _blank(scene: _Scene, count: int) -> TactileFrames:
+    """Frames that all show the background."""
+    rays, seen = scene.view.rays, scene.view.background
+    shape = (rays.height_px, rays.width_px)
+    depth = np.full(len(scene.bare), np.nan, dtype=np.float32)
+    depth[seen.pixel] = seen.depth_z_mm
+    normal = np.zeros((len(scene.bare), 3), dtype=np.float16)
+    normal[seen.pixel] = seen.normal
+    rgb = encode(_inked(scene.bare, scene.coverage.ink), scene.exposure)
+    uv = centroids(scene.coverage, len(scene.marker_mm), rays.width_px)
+
+    def repeated(array: np.ndarray) -> np.ndarray:
+        return np.repeat(array[None], count + 1, axis=0)
+
+    return TactileFrames(
+        rgb=repeated(rgb.reshape(*shape, 3)),
+        depth_z_mm=repeated(depth.reshape(shape)),
+        normal=repeated(normal.reshape(*shape, 3)),
+        moved=np.zeros((count + 1, *shape), dtype=bool),
+        marker_uv_px=repeated(uv),
+        exposure=scene.exposure,
+    )
+
+
+def _inked(radiance: np.ndarray, share: np.ndarray) -> np.ndarray:
+    return radiance * (1.0 - (1.0 - INK_REFLECTANCE) * share)[:, None]
+
+
+def _expose(scene: _Scene, moved: Moved, frames: TactileFrames, number: int) -> None:
+    """Write frame `number`: only the pixels that moved differ from the background."""
+    pixels, seen = moved.pixels, moved.seen
+    if not pixels.size:
+        return
+    view = scene.view
+    before = np.zeros((len(scene.bare), 3), dtype=np.float32)
+    background = view.background
+    before[background.pixel] = interpolate(scene.foreground, view.skin.faces, background)
+    after = np.zeros_like(before)
+    after[seen.pixel] = interpolate(_moved_radiance(scene, moved), view.skin.faces, seen)
+    gain = view.rays.transmittance[pixels, None]
+    image = scene.bare[pixels] + gain * (after[pixels] - before[pixels])
+    coverage = _ink(view, scene.optics, scene.marker_mm, scene.coverage, pixels, seen)
+    image = _inked(np.maximum(image, 0.0), coverage.ink[pixels])
+    frames.rgb[number].reshape(-1, 3)[pixels] = encode(image, scene.exposure)
+    depth = frames.depth_z_mm[number].reshape(-1)
+    depth[pixels] = np.nan
+    depth[seen.pixel] = seen.depth_z_mm
+    normal = frames.normal[number].reshape(-1, 3)
+    normal[pixels] = 0.0
+    normal[seen.pixel] = seen.normal
+    frames.moved[number].reshape(-1)[pixels] = True
+    frames.marker_uv_px[number] = centroids(coverage, len(scene.marker_mm), view.rays.width_px)
+
+
+def _moved_radiance(scene: _Scene, moved: Moved) -> np.ndarray:
+    """Foreground radiance per vertex of the deformed skin, shape (V, 3)."""
+    vertices = moved.vertices
+    points, normals = moved.points_mm[vertices], moved.normals[vertices]
+    if scene.model is LightModel.DIRECT:
+        exponent = scene.optics.ring.emission_exponent
+        light = relight(
+            scene.light,
+            vertices,
+            points,
+            normals,
+            travel_mm=np.linalg.norm(points - scene.view.skin.points_mm[vertices], axis=1),
+            emission_exponent=exponent,
+            patch=moved.patch,
+        )
+    else:
+        light = take(scene.light, vertices)
+    to_camera = _to_camera(scene.view, moved.seen, moved.points_mm)[vertices]
+    radiance = scene.foreground.copy()
+    radiance[vertices] = shade(scene.model, light, scene.optics.coating, -normals, to_camera)
+    return radiance

@@ -1,0 +1,179 @@
+"""Light leaving the skin toward the camera, per vertex and colour channel.
+
+Shading at vertices and interpolating is as good as shading pixels at mesh edges of 0.4 mm, and
+faster: the moved patch has ten times fewer vertices than pixels.
+
+`phong` is the paper's Eq. 4 and 5 without the ambient term, which is the background image:
+I = sum over LEDs of kd (L . N) i + ks (R . V)^alpha i, R = 2 (L . N) N - L. Read with L toward the
+light, N toward the camera, both products clamped at zero, and no highlight where L . N <= 0.
+
+`glossy` is a diffuse base under a GGX lobe: radiance = sum of (rho (1 - F0) / pi + D G F) E (L . N)
+with D = a^2 / (pi ((N . H)^2 (a^2 - 1) + 1)^2), Smith's height-correlated G / (4 (N.L) (N.V)), and
+Schlick's F = F0 + (1 - F0) (1 - V . H)^5. Source: Walter et al., EGSR 2007; Heitz, JCGT 2014.
+Left out: light scattered from skin to skin, and the bending of light between LED and skin.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+
+from geometry.rays import RayCaster
+from sim.optics.bake import SKIN_OFFSET_MM, emitted, toward
+from sim.optics.camera import Rays
+from sim.optics.gbuffer import MOVED_MM, GBuffer
+from workbench.core.design import Coating, LightModel
+from workbench.core.results import LightField
+
+FLOOR = 1e-3
+"""Smallest cosine in a denominator [1]; at 1e-3 the surface is seen edge-on."""
+FULL_SHADOW_MM = 0.03
+"""Displacement from which a vertex takes the whole shadow of the dent [mm]. Skin that did not move
+keeps its light, so a shadow must fade toward it, or it would end at a visible edge."""
+
+
+def shade(
+    model: LightModel,
+    light: LightField,
+    coating: Coating,
+    normal: np.ndarray,
+    to_camera: np.ndarray,
+) -> np.ndarray:
+    """Linear radiance per vertex, shape (N, 3), by the reflection law that belongs to the model.
+
+    Args:
+        model: The light model; the paper's two fields use Phong.
+        light: Light at these N vertices.
+        coating: Reflectance of the skin.
+        normal: Unit normals into the sensor, shape (N, 3).
+        to_camera: Unit vectors from the vertices toward the camera along its ray, shape (N, 3).
+    """
+    reflect = glossy if model is LightModel.DIRECT else phong
+    normal, to_camera = normal.astype(np.float32), to_camera.astype(np.float32)
+    total = np.zeros((len(normal), 3), dtype=np.float32)
+    for number, rgb in enumerate(light.led_rgb.astype(np.float32)):
+        received = light.irradiance[number]
+        share = reflect(coating, light.direction[number], normal, to_camera) * received
+        total += share[:, None] * rgb
+    return total
+
+
+def phong(
+    coating: Coating, direction: np.ndarray, normal: np.ndarray, to_camera: np.ndarray
+) -> np.ndarray:
+    """Eq. 4 of the paper for one light of unit intensity, shape (N,)."""
+    facing = _dot(direction, normal)
+    mirrored = 2.0 * facing * _dot(normal, to_camera) - _dot(direction, to_camera)
+    lobe = np.maximum(mirrored, 0.0) ** np.float32(coating.phong_exponent)
+    lit = coating.phong_diffuse * facing + coating.phong_specular * lobe
+    return np.where(facing > 0.0, lit, np.float32(0.0))
+
+
+def glossy(
+    coating: Coating, direction: np.ndarray, normal: np.ndarray, to_camera: np.ndarray
+) -> np.ndarray:
+    """Radiance per perpendicular irradiance [1/sr] of diffuse plus GGX, cosine included, (N,)."""
+    cos_light = _dot(direction, normal)
+    cos_view = np.maximum(_dot(normal, to_camera), FLOOR)
+    half = direction + to_camera
+    half /= np.maximum(np.linalg.norm(half, axis=1, keepdims=True), FLOOR)
+    squared = np.float32(coating.roughness**2)
+    spread = _dot(normal, half) ** 2 * (squared - 1.0) + 1.0
+    lobe = squared / (np.pi * spread**2)
+    lit = np.maximum(cos_light, FLOOR)
+    smith_light = lit * np.sqrt(cos_view**2 * (1.0 - squared) + squared)
+    smith_view = cos_view * np.sqrt(lit**2 * (1.0 - squared) + squared)
+    fresnel = (
+        coating.specular
+        + (1.0 - coating.specular) * (1.0 - np.clip(_dot(to_camera, half), 0.0, 1.0)) ** 5
+    )
+    highlight = lobe * fresnel * 0.5 / (smith_light + smith_view)
+    base = coating.albedo * (1.0 - coating.specular) / np.pi
+    return (base + highlight) * np.maximum(cos_light, 0.0)
+
+
+def relight(
+    light: LightField,
+    vertices: np.ndarray,
+    points_mm: np.ndarray,
+    normals: np.ndarray,
+    *,
+    travel_mm: np.ndarray,
+    emission_exponent: float,
+    patch: RayCaster | None,
+) -> LightField:
+    """The `direct` light at moved vertices, from where they are now.
+
+    A vertex stays in shadow where the undeformed skin shadowed it, and falls into shadow where
+    the moved patch comes between, the more the further it moved itself.
+
+    Args:
+        light: The baked field.
+        vertices: Their numbers, shape (N,).
+        points_mm: Their deformed positions [mm], shape (N, 3).
+        normals: Their outward unit normals, shape (N, 3).
+        travel_mm: How far they moved [mm], shape (N,).
+        emission_exponent: Of the LEDs.
+        patch: Casts the moved triangles.
+    """
+    start = points_mm - SKIN_OFFSET_MM * normals
+    share = np.log(np.maximum(travel_mm, MOVED_MM) / MOVED_MM) / np.log(FULL_SHADOW_MM / MOVED_MM)
+    depth_of_shadow = np.minimum(share, 1.0)
+    direction = np.empty((len(light.led_mm), len(vertices), 3), dtype=np.float32)
+    irradiance = np.zeros((len(light.led_mm), len(vertices)), dtype=np.float32)
+    for number, led in enumerate(light.led_mm):
+        line, distance = toward(led, start)
+        direction[number] = line
+        sees = (light.irradiance[number, vertices] > 0.0) & (_dot(line, normals) < 0.0)
+        lit = np.flatnonzero(sees)
+        axis = light.led_axis[number]
+        received = emitted(line[lit], distance[lit], axis=axis, exponent=emission_exponent)
+        if patch is not None and lit.size:
+            shadow = patch.occluded(start[lit], line[lit], distance[lit])
+            received = received * (1.0 - depth_of_shadow[lit] * shadow)
+        irradiance[number, lit] = received
+    return dataclasses.replace(light, direction=direction, irradiance=irradiance)
+
+
+def take(light: LightField, vertices: np.ndarray) -> LightField:
+    """The light field of some vertices only."""
+    return dataclasses.replace(
+        light, direction=light.direction[:, vertices], irradiance=light.irradiance[:, vertices]
+    )
+
+
+def straight(light: LightField, points_mm: np.ndarray) -> LightField:
+    """The paper's linear field of the same LEDs at all vertices (V, 3): its background."""
+    direction = [toward(led, points_mm)[0] for led in light.led_mm]
+    return dataclasses.replace(
+        light,
+        model=str(LightModel.LINEAR),
+        direction=np.stack(direction).astype(np.float32),
+        irradiance=np.ones_like(light.irradiance),
+    )
+
+
+def directions_to_camera(
+    seen: GBuffer, rays: Rays, faces: np.ndarray, points_mm: np.ndarray, camera_mm: np.ndarray
+) -> np.ndarray:
+    """Unit vectors from each vertex along the bent ray to the camera, shape (V, 3), float32.
+
+    The mean of the rays that meet a vertex's triangles, weighted by how near they pass; a vertex
+    that no ray meets takes the straight line, which nobody sees.
+    """
+    count = len(points_mm)
+    corners = faces[seen.face].ravel()
+    back = -rays.direction[seen.pixel]
+    total = np.empty((count, 3))
+    for axis in range(3):
+        weighted = (seen.weights * back[:, axis : axis + 1]).ravel()
+        total[:, axis] = np.bincount(corners, weighted, minlength=count)
+    size = np.linalg.norm(total, axis=1, keepdims=True)
+    line = camera_mm - points_mm
+    line = line / np.linalg.norm(line, axis=1, keepdims=True)
+    return np.where(size > FLOOR, total / np.maximum(size, FLOOR), line).astype(np.float32)
+
+
+def _dot(left: np.ndarray, right: np.ndarray) -> np.ndarray:
+    return np.einsum("ij,ij->i", left, right)
