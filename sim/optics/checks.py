@@ -1,0 +1,170 @@
+"""Validation of the optics room: each function measures one thing and returns its number(s).
+
+Projection, Snell, Fresnel, irradiance and depth are compared with closed forms; the fields and
+the composition with the properties that define them. What a dent changes in the image is printed
+beside the null, an image of the background alone.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+
+from sim.metrics import contact_box, mean_absolute_error, peak_signal_to_noise_dB, similarity
+from sim.optics.bake import bake_light
+from sim.optics.camera import focal_px, pixel_centres, project, refracted_rays, unproject
+from sim.optics.gbuffer import open_view
+from sim.optics.lights import place_leds
+from sim.optics.refraction import refract
+from sim.optics.render import shoot
+from sim.optics.specimen import dent, finger
+from workbench.core.design import Camera, LedRing, LensModel, LightModel, Optics
+from workbench.core.results import MembraneMesh, TactileFrames
+
+DENT_MM = (15.0, 0.0, 22.0)
+"""Place of the test dent, on the cylinder at +X."""
+DENT_DEPTH_MM = 1.2
+DENT_RADIUS_MM = 4.0
+ANGLES_DEG = np.linspace(0.0, 89.0, 90)
+SILICONE_INDEX = 1.41
+
+
+def round_trip_px(lens: LensModel) -> float:
+    """Largest error [px] of pixel to point to pixel, over the image of a turned camera."""
+    camera = Camera(lens=lens, position_mm=(1.0, -2.0, 3.0), wxyz=(0.9, 0.3, -0.3, 0.1))
+    length = np.linalg.norm(camera.wxyz)
+    w, x, y, z = (float(q / length) for q in camera.wxyz)
+    camera = dataclasses.replace(camera, wxyz=(w, x, y, z))
+    centres = pixel_centres(camera)
+    range_mm = np.linspace(5.0, 50.0, len(centres))
+    points = unproject(camera, centres, range_mm=range_mm)
+    return float(np.abs(project(camera, points) - centres).max())
+
+
+def edge_angle_error_deg(lens: LensModel) -> float:
+    """Error [degree] of the angle between the image's left and right edge, against fov_x_deg."""
+    camera = Camera(lens=lens)
+    edges = np.array([[0.0, camera.height_px / 2.0], [camera.width_px, camera.height_px / 2.0]])
+    left, right = unproject(camera, edges, range_mm=np.ones(2)) - np.asarray(camera.position_mm)
+    return abs(float(np.degrees(np.arccos(left @ right))) - camera.fov_x_deg)
+
+
+def snell_error() -> float:
+    """Largest error [1] of n1 sin a = n2 sin b from 0 to 89 degrees, into and out of silicone."""
+    worst = 0.0
+    for index_from, index_to in ((1.0, SILICONE_INDEX), (SILICONE_INDEX, 1.0)):
+        sine = np.sin(np.radians(ANGLES_DEG))
+        passes = index_from * sine < index_to
+        bent, _ = _at_angles(index_from, index_to)
+        error = index_from * sine[passes] - index_to * bent[passes, 0]
+        worst = max(worst, float(np.abs(error).max()))
+    return worst
+
+
+def fresnel_error() -> float:
+    """Largest error [1] of the transmittance against the trigonometric form of Fresnel.
+
+    Rs = (sin(a - b) / sin(a + b))^2, Rp = (tan(a - b) / tan(a + b))^2, and at normal incidence
+    T = 4 n / (1 + n)^2.
+    """
+    _, transmittance = _at_angles(1.0, SILICONE_INDEX)
+    normal = 4.0 * SILICONE_INDEX / (1.0 + SILICONE_INDEX) ** 2
+    inside = np.radians(ANGLES_DEG[1:])
+    bent = np.arcsin(np.sin(inside) / SILICONE_INDEX)
+    reflect_s = (np.sin(inside - bent) / np.sin(inside + bent)) ** 2
+    reflect_p = (np.tan(inside - bent) / np.tan(inside + bent)) ** 2
+    exact = np.append(normal, 1.0 - 0.5 * (reflect_s + reflect_p))
+    return float(np.abs(transmittance - exact).max())
+
+
+def _at_angles(index_from: float, index_to: float) -> tuple[np.ndarray, np.ndarray]:
+    angle = np.radians(ANGLES_DEG)
+    direction = np.column_stack([np.sin(angle), np.zeros_like(angle), np.cos(angle)])
+    normal = np.broadcast_to([0.0, 0.0, 1.0], direction.shape)
+    return refract(direction, normal, index_from=index_from, index_to=index_to)
+
+
+def tangency_error_deg(mesh: MembraneMesh, ring: LedRing) -> float:
+    """Largest angle [degree] between the `plane_target` field and the skin's tangent plane."""
+    light = bake_light(mesh, ring, model=LightModel.PLANE_TARGET)
+    sine = np.einsum("lvi,vi->lv", light.direction, mesh.outer.normals)
+    straight = bake_light(mesh, ring, model=LightModel.LINEAR)
+    # Where the light falls along the normal there is no plane and the field is the straight line.
+    fallback = (light.direction == straight.direction).all(axis=2)
+    return float(np.degrees(np.arcsin(np.abs(sine[~fallback]).max())))
+
+
+def irradiance_error(mesh: MembraneMesh, ring: LedRing) -> float:
+    """Largest relative error of the `direct` field against (m + 1) / (2 pi) cos^m / r^2.
+
+    Valid on convex skins, where no vertex is in shadow; points behind the LED receive nothing.
+    """
+    light = bake_light(mesh, ring, model=LightModel.DIRECT)
+    leds, exponent = place_leds(ring), ring.emission_exponent
+    line = mesh.outer.points_mm[None] - leds.position_mm[:, None]
+    square = np.einsum("lvi,lvi->lv", line, line)
+    cosine = np.einsum("lvi,li->lv", line, leds.axis) / np.sqrt(square)
+    exact = (exponent + 1.0) / (2.0 * np.pi) * np.maximum(cosine, 0.0) ** exponent / square
+    # Within half a degree of the LED's own plane the cosine is rounding.
+    lit = cosine > 0.01
+    return float((np.abs(light.irradiance[lit] / exact[lit] - 1.0)).max())
+
+
+def depth_error_mm(mesh: MembraneMesh, *, radius_mm: float, cylinder_mm: float) -> float:
+    """Largest error [mm] of depth_z against the closed form of cylinder and sphere, unrefracted.
+
+    A ray o + t d meets the sphere at t^2 + 2 t (o - c).d + |o - c|^2 - R^2 = 0, and the cylinder
+    likewise in x and y; the sphere counts above the cylinder's end.
+    """
+    camera = Camera(width_px=160, height_px=120)
+    rays = refracted_rays(camera, mesh.cavity, 1.0)
+    seen = open_view(mesh.outer, camera, rays).background
+    direction = rays.direction[seen.pixel].astype(np.float64)
+    origin = np.asarray(camera.position_mm)
+    flat = np.array([1.0, 1.0, 0.0])
+    along = _far_root(direction * flat, origin * flat, radius_mm)
+    on_tip = origin[2] + along * direction[:, 2] > cylinder_mm
+    tip = _far_root(direction, origin - [0.0, 0.0, cylinder_mm], radius_mm)
+    exact = np.where(on_tip, tip, along) * direction[:, 2]
+    return float(np.abs(seen.depth_z_mm - exact).max())
+
+
+def _far_root(direction: np.ndarray, offset: np.ndarray, radius_mm: float) -> np.ndarray:
+    square = np.einsum("ij,ij->i", direction, direction)
+    middle = direction @ offset / square
+    return -middle + np.sqrt(middle**2 - (offset @ offset - radius_mm**2) / square)
+
+
+def axis_error_px() -> float:
+    """Distance [px] of the centre pixel's bent ray from the optical axis on a centred finger."""
+    camera = Camera(width_px=161, height_px=121)
+    rays = refracted_rays(camera, finger(edge_mm=0.5).cavity, SILICONE_INDEX)
+    middle = rays.direction[(camera.height_px // 2) * camera.width_px + camera.width_px // 2]
+    return float(np.hypot(middle[0], middle[1]) / middle[2] * focal_px(camera))
+
+
+def dented(model: LightModel, mesh: MembraneMesh | None = None) -> TactileFrames:
+    """Background and one image of the default sensor with the test dent."""
+    mesh = mesh or finger(edge_mm=0.5)
+    optics = Optics(light_model=model)
+    moved = dent(mesh.outer, at_mm=DENT_MM, depth_mm=DENT_DEPTH_MM, radius_mm=DENT_RADIUS_MM)
+    light = bake_light(mesh, optics.ring, model=model)
+    return shoot(mesh, light, optics, displacement_mm=moved[None])
+
+
+def unmoved_difference_grey(frames: TactileFrames) -> int:
+    """Largest difference [grey level] from the background where nothing moved; must be 0."""
+    change = frames.rgb[1:].astype(np.int16) - frames.rgb[0]
+    return int(np.abs(change[~frames.moved[1:]]).max(initial=0))
+
+
+def dent_scores(frames: TactileFrames) -> dict[str, float]:
+    """Mean change [grey level], PSNR [dB] and SSIM [1] of the null in the contact box."""
+    box = contact_box(frames.moved[1])
+    image, null = frames.rgb[1][box], frames.rgb[0][box]
+    return {
+        "change_grey": mean_absolute_error(image, null),
+        "null_psnr_dB": peak_signal_to_noise_dB(null, image),
+        "null_ssim_1": similarity(null, image),
+    }
