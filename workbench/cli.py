@@ -18,7 +18,7 @@ from typing import Any
 
 from workbench import __version__
 from workbench.core.design import LightModel
-from workbench.core.errors import DesignError, WorkbenchError
+from workbench.core.errors import DesignError, DeviceError, WorkbenchError
 from workbench.core.units import human_seconds
 from workbench.project import Project
 
@@ -143,6 +143,12 @@ def _run(options: argparse.Namespace, project: Project) -> int:
     for outcome in evaluate(design, case, runner, monitor=printer):
         printer.done(outcome)
         outcomes.append(outcome)
+    try:
+        *_, picture = evaluate(design, case, runner, wanted=("picture",), monitor=printer)
+        printer.done(picture)
+        outcomes.append(picture)
+    except DeviceError as error:
+        print(f"the report has no picture of the mould: {error.message}", file=sys.stderr)
     calls = plan(design, case)
     summary = write_all(options.out, design, case.press, project.store, calls, outcomes)
     if not options.json:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
 from collections.abc import Iterator
 from pathlib import Path
@@ -9,12 +10,13 @@ from pathlib import Path
 import numpy as np
 
 from workbench.core.design import SensorDesign
+from workbench.core.errors import DeviceError
 from workbench.outputs import write_moulds
 from workbench.pipeline import InlineRunner, PressCase, StageMonitor, evaluate, plan, results
 from workbench.project import design_to_toml, write_atomically
 from workbench.store import Store
 
-STAGES = ("mesh", "mould", "package", "picture")
+STAGES = ("mesh", "mould", "package")
 
 
 def export_design(
@@ -23,16 +25,21 @@ def export_design(
     """Write the files of a design and yield their paths.
 
     `design.toml`, `membrane.stl`, `support.stl`, `base.stl`, `mesh.npz` (nodes, hexahedra, labels),
-    `exploded.png` and everything under `moulds/`.
+    `exploded.png` (where the machine can render) and everything under `moulds/`.
 
     Raises:
         WorkbenchError: If a stage fails or the folder cannot be written.
     """
     from geometry.export import stl_bytes
 
-    for _ in evaluate(design, PressCase(), InlineRunner(store), wanted=STAGES, monitor=monitor):
+    runner = InlineRunner(store)
+    for _ in evaluate(design, PressCase(), runner, wanted=STAGES, monitor=monitor):
         pass
-    found = results(store, plan(design, PressCase()), ("build", *STAGES))
+    # A machine without an off-screen renderer still gets all files but the picture.
+    with contextlib.suppress(DeviceError):
+        for _ in evaluate(design, PressCase(), runner, wanted=("picture",), monitor=monitor):
+            pass
+    found = results(store, plan(design, PressCase()), ("build", *STAGES, "picture"))
     solid, hexes = found["build"], found["mesh"].hexes
     files = {"design.toml": design_to_toml(design).encode()}
     for name in ("membrane", "support", "base"):
@@ -41,7 +48,7 @@ def export_design(
     buffer = io.BytesIO()
     np.savez_compressed(buffer, points_mm=hexes.points_mm, cells=hexes.cells, labels=hexes.labels)
     files["mesh.npz"] = buffer.getvalue()
-    if not found["picture"].notice:
+    if "picture" in found:
         files["exploded.png"] = found["picture"].png.tobytes()
     for name, content in files.items():
         write_atomically(out / name, content)

@@ -15,6 +15,7 @@ from workbench.core.design import SensorDesign
 from workbench.core.press import Press
 from workbench.core.results import Bundle, Contact, MembraneMesh, MouldSet, Shot
 from workbench.devices import chosen_device
+from workbench.pipeline import results
 from workbench.project import write_atomically
 from workbench.stages import Call, Outcome
 from workbench.store import Store
@@ -152,12 +153,12 @@ def write_all(
     """
     from workbench.report import report_html
 
-    load = {name: store.load(name, calls[name].key) for name in calls}
+    load = results(store, calls, calls)
     summary = summary_table(design, path, store, calls, outcomes)
     summary["images"] = write_images(out, load["shoot"])
     write_contact(out, load["mesh"], load["press"])
     summary["moulds"] = write_moulds(out, load["mould"], load["package"])
-    html = report_html(design, path, summary, load["shoot"], load["press"], load["picture"])
+    html = report_html(design, path, summary, load["shoot"], load["press"], load.get("picture"))
     write_atomically(out / "report.html", html.encode())
     write_atomically(out / "summary.json", json.dumps(summary, indent=1).encode())
     return summary

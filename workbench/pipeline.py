@@ -16,8 +16,10 @@ from workbench.core.press import ContactSettings, Indenter, Press
 from workbench.stages import Call, Outcome, run
 from workbench.store import Store
 
-EVERYTHING = ("build", "mesh", "lattice", "bake", "press", "shoot", "mould", "package", "picture")
-"""All stages in the order in which they run."""
+NEEDED = ("build", "mesh", "lattice", "bake", "press", "shoot", "mould", "package")
+"""Stages of a whole run, in order."""
+EVERYTHING = (*NEEDED, "picture")
+"""All stages; a machine without an off-screen renderer cannot run the last."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -103,7 +105,7 @@ def evaluate(
     case: PressCase,
     runner: Runner,
     *,
-    wanted: Iterable[str] = EVERYTHING,
+    wanted: Iterable[str] = NEEDED,
     monitor: StageMonitor | None = None,
 ) -> Iterator[Outcome]:
     """Run the wanted stages and what they need; yield each outcome as it comes.

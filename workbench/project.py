@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import contextlib
 import os
-import tempfile
+import secrets
 import time
 import tomllib
 from collections.abc import Mapping
@@ -79,19 +79,17 @@ def write_atomically(path: Path, content: bytes) -> None:
     Raises:
         StoreError: If the disk is full or read-only; the old file stays.
     """
-    part = ""
+    part = path.with_name(f".part-{os.getpid()}-{secrets.token_hex(6)}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        handle, part = tempfile.mkstemp(dir=path.parent, prefix=".part-")
-        with os.fdopen(handle, "wb") as file:
+        with part.open("xb") as file:
             file.write(content)
             file.flush()
             os.fsync(file.fileno())
-        Path(part).replace(path)
+        part.replace(path)
     except OSError as error:
-        if part:
-            with contextlib.suppress(OSError):
-                Path(part).unlink()
+        with contextlib.suppress(OSError):
+            part.unlink()
         raise StoreError(
             f"cannot write {path}: {error.strerror or error}",
             hint="free some space or choose a writable folder; the old file is kept",

@@ -32,7 +32,7 @@ def report_html(
     summary: Mapping[str, Any],
     shot: Shot,
     contact: Contact,
-    picture: Picture,
+    picture: Picture | None,
 ) -> str:
     """The report as one page without outside links."""
     force = summary["contact"]
@@ -90,9 +90,9 @@ def _figure(png: bytes, caption: str, *, width: int = 640) -> str:
     )
 
 
-def _mould_view(picture: Picture) -> str:
-    if picture.notice:
-        return f"<p>No picture: {html.escape(picture.notice)}</p>"
+def _mould_view(picture: Picture | None) -> str:
+    if picture is None:
+        return "<p>No picture: this machine has no off-screen renderer (libegl1).</p>"
     return _figure(picture.png.tobytes(), "Exploded view")
 
 

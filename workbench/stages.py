@@ -22,7 +22,6 @@ from workbench.core.design import (
     Optics,
 )
 from workbench.core.digest import digest
-from workbench.core.errors import DeviceError
 from workbench.core.monitor import Monitor, part, silent
 from workbench.core.press import ContactSettings, Indenter, Press
 from workbench.core.results import (
@@ -184,19 +183,10 @@ def mould(solid: Solid, options: MouldOptions, *, monitor: Monitor) -> MouldSet:
 
 
 def picture(moulds: MouldSet, *, monitor: Monitor) -> Picture:
-    """The exploded mould as a picture for the report.
-
-    A machine without any off-screen renderer still gets its report, with the reason in place of
-    the picture.
-    """
-    import numpy as np
-
+    """The exploded mould as a picture for the report; a DeviceError where nothing can render."""
     from geometry.pictures import exploded_mould
 
-    try:
-        return Picture(png=exploded_mould(moulds))
-    except DeviceError as error:
-        return Picture(png=np.zeros(0, np.uint8), notice=f"{error.message}: {error.hint}")
+    return Picture(png=exploded_mould(moulds))
 
 
 def package(moulds: MouldSet, *, monitor: Monitor) -> Bundle:

@@ -259,9 +259,7 @@ class Picture:
     """A rendered picture."""
 
     png: np.ndarray
-    """Bytes of a PNG file, shape (bytes,), uint8; empty when nothing could render it."""
-    notice: str = ""
-    """Why there is no picture."""
+    """Bytes of a PNG file, shape (bytes,), uint8."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -1,0 +1,84 @@
+"""A tiny golden per stage: when the output changes, the stage's version must change with it.
+
+`WORKBENCH_UPDATE_GOLDENS=1 pytest tests/golden` writes the numbers anew.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from workbench.core.codec import pack
+from workbench.core.design import Camera, Meshing, Optics, SensorDesign
+from workbench.core.press import ContactSettings, Press
+from workbench.pipeline import InlineRunner, PressCase, evaluate, plan, results
+from workbench.stages import STAGES
+from workbench.store import Store
+
+FILE = Path(__file__).parent / "stages.json"
+DESIGN = SensorDesign(
+    shape={"outer_radius_mm": 8.0, "cylinder_mm": 8.0},
+    meshing=Meshing(hex_mm=0.8),
+    optics=Optics(camera=Camera(width_px=64, height_px=48)),
+)
+CASE = PressCase(
+    press=Press(target_mm=(0.0, 0.0, 16.0), depth_mm=0.5, frames=1),
+    settings=ContactSettings(grid_mm=0.8, active_radius_mm=6.0),
+)
+STAGES_WITH_NUMBERS = ("build", "mesh", "lattice", "bake", "press", "shoot", "mould")
+RELATIVE = 2e-3
+"""Compilers and thread counts of the libraries move the last digits; a changed method moves more."""
+SKIPPED = ("brep", "device", "seconds", "substeps", "residual")
+"""Text of the CAD kernel, names, and what depends on when the relaxation stops."""
+
+
+def summary(value: Any) -> dict[str, list[float]]:
+    """Size, mean and mean magnitude of every numeric array of a result."""
+    arrays, _ = pack(value)
+    numbers = {}
+    for name, array in sorted(arrays.items()):
+        if any(word in name for word in SKIPPED):
+            continue
+        finite = np.asarray(array, np.float64)
+        finite = finite[np.isfinite(finite)]
+        mean = float(finite.mean()) if finite.size else 0.0
+        size = float(np.abs(finite).mean()) if finite.size else 0.0
+        numbers[name] = [float(array.size), mean, size]
+    return numbers
+
+
+@pytest.fixture(scope="module")
+def computed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    """Summaries of all stages of a small coarse finger."""
+    store = Store(tmp_path_factory.mktemp("golden"))
+    for _ in evaluate(DESIGN, CASE, InlineRunner(store), wanted=STAGES_WITH_NUMBERS):
+        pass
+    found = results(store, plan(DESIGN, CASE), STAGES_WITH_NUMBERS)
+    numbers = {
+        name: {"version": STAGES[name].version, "numbers": summary(value)}
+        for name, value in found.items()
+    }
+    if os.environ.get("WORKBENCH_UPDATE_GOLDENS"):
+        FILE.write_text(json.dumps(numbers, indent=1) + "\n")
+    return numbers
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("stage", STAGES_WITH_NUMBERS)
+def test_output_changes_only_with_the_version(computed: dict[str, Any], stage: str) -> None:
+    """The summary equals the recorded one, or the version was bumped and the golden renewed."""
+    golden = json.loads(FILE.read_text())[stage]
+    message = f"output of {stage} changed: bump its version and update the goldens, or fix it"
+    assert computed[stage]["version"] == golden["version"], "update the goldens of a new version"
+    now, then = computed[stage]["numbers"], golden["numbers"]
+    assert now.keys() == then.keys(), message
+    for name, (size, mean, magnitude) in now.items():
+        assert size == pytest.approx(then[name][0], rel=RELATIVE), f"{message}: {name}"
+        scale = max(abs(then[name][2]), 1e-12)
+        assert abs(mean - then[name][1]) <= RELATIVE * scale, f"{message}: {name}"
+        assert abs(magnitude - then[name][2]) <= RELATIVE * scale, f"{message}: {name}"
