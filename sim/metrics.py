@@ -1,18 +1,22 @@
 """Scalars of a design for its score card, and image scores with their null.
 
 The null of a tactile image is the background: what a method scores that shows no contact at all.
-Scores are taken in the contact box, the smallest rectangle around the pixels that see a displaced
-part of the skin, because elsewhere both images are equal by construction.
+Scores are taken in the contact box, the smallest rectangle around the pixels whose depth changed
+clearly, because elsewhere both images are equal, or nearly, by construction.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from workbench.core.results import Contact, LightField, MembraneMesh, Metrics, TactileFrames
+from workbench.core.results import Contact, LightField, MembraneMesh, Metrics, Skin, TactileFrames
 
 PEAK = 255.0
 """Largest grey level."""
+CONTACT_SHARE = 0.1
+"""Share of the largest change of depth at which a pixel belongs to the contact [1]."""
+FEWEST_LIGHTS = 3
+"""Directions of light that determine a normal (photometric stereo)."""
 SSIM_WINDOW_PX = 11
 SSIM_SIGMA_PX = 1.5
 """Gaussian window of the structural similarity. Source: Wang and others 2004."""
@@ -29,27 +33,61 @@ def measure(
     seen = np.isfinite(frames.depth_z_mm[0])
     displacement = np.linalg.norm(contact.displacement_mm, axis=2)
     lit = light.irradiance.sum(axis=0)
+    peak = int(np.argmax(contact.normal_N))
     values = {
         "normal_force_N": float(contact.normal_N[-1]),
+        "peak_normal_force_N": float(contact.normal_N[peak]),
+        "stiffness_N_per_mm": _stiffness(contact, peak),
         "tangential_force_N": _tangential(contact),
         "displacement_max_mm": float(displacement.max()),
         "penetration_max_mm": float(contact.penetration_mm.max()),
         "image_covered_percent": 100.0 * float(seen.mean()),
         "image_evenness_p5_over_p95": _evenness(background[seen]),
         "skin_light_p5_over_p95": _ratio(lit),
+        "skin_lit_by_three_percent": 100.0 * lit_share(mesh.outer, light),
         "contact_pixels_percent": 100.0 * float(frames.moved[-1].mean()),
     }
-    box = contact_box(frames.moved[-1])
+    box = contact_box(contact_pixels(frames, -1))
     if box is not None:
         change = np.abs(image[box].astype(np.float64) - background[box])
         values["contact_change_mean_grey"] = float(change.mean())
         values["contact_change_max_grey"] = float(change.max())
-        values["contact_null_psnr_dB"] = psnr_dB(background[box], image[box])
+        values["contact_contrast_1"] = contrast(background[box], image[box])
+        # Equal images have no finite ratio, and a table of variants holds finite numbers.
+        values["contact_null_psnr_dB"] = min(psnr_dB(background[box], image[box]), 100.0)
         values["contact_null_ssim_1"] = ssim(background[box], image[box])
         values["change_per_force_grey_per_N"] = float(change.mean()) / max(
             float(contact.normal_N[-1]), 1e-12
         )
     return Metrics(values=values)
+
+
+def contact_pixels(frames: TactileFrames, number: int) -> np.ndarray:
+    """Moved pixels whose depth_z changed by a tenth of the largest change or more, (H, W) bool.
+
+    The faint rim of a dent reaches far and would dilute the scores. A pixel that gained or lost
+    the skin changed as much as any.
+    """
+    moved = frames.moved[number]
+    change = np.abs(frames.depth_z_mm[number] - frames.depth_z_mm[0])
+    change = np.where(moved, np.nan_to_num(change, nan=np.inf), 0.0)
+    largest = change[np.isfinite(change)].max(initial=0.0)
+    return moved & (change >= CONTACT_SHARE * largest)
+
+
+def lit_share(skin: Skin, light: LightField, count: int = FEWEST_LIGHTS) -> float:
+    """Share of skin vertices lit from inside by at least `count` LEDs [1]."""
+    shining = np.any(light.led_rgb > 0.0, axis=1, keepdims=True)
+    from_inside = np.einsum("lvi,vi->lv", light.direction, skin.normals) < 0.0
+    reaches = shining & from_inside & (light.irradiance > 0.0)
+    return float((reaches.sum(axis=0) >= count).mean())
+
+
+def contrast(background: np.ndarray, image: np.ndarray) -> float:
+    """Standard deviation of the change of an image over the mean of its background [1]."""
+    change = image.astype(np.float64) - background
+    level = float(background.mean())
+    return float(change.std()) / level if level > 0.0 else 0.0
 
 
 def contact_box(moved: np.ndarray) -> tuple[slice, slice] | None:
@@ -95,6 +133,12 @@ def ssim(image: np.ndarray, reference: np.ndarray) -> float:
 def _tangential(contact: Contact) -> float:
     force, normal = contact.reaction_N[-1], contact.normal
     return float(np.linalg.norm(force - (force @ normal) * normal))
+
+
+def _stiffness(contact: Contact, peak: int) -> float:
+    """Secant stiffness [N/mm]: normal force over the deepest inward displacement of that frame."""
+    deepest_mm = float((-contact.displacement_mm[peak] @ contact.normal).max())
+    return float(contact.normal_N[peak]) / deepest_mm if deepest_mm > 0.0 else 0.0
 
 
 def _evenness(pixels: np.ndarray) -> float:

@@ -11,7 +11,7 @@ import dataclasses
 
 import numpy as np
 
-from sim.metrics import contact_box, mean_absolute_error, peak_signal_to_noise_dB, similarity
+from sim.metrics import contact_box, contact_pixels, mae_grey, psnr_dB, ssim
 from sim.optics.bake import bake_light
 from sim.optics.camera import focal_px, pixel_centres, project, refracted_rays, unproject
 from sim.optics.gbuffer import open_view
@@ -20,6 +20,7 @@ from sim.optics.refraction import refract
 from sim.optics.render import shoot
 from sim.optics.specimen import dent, finger
 from workbench.core.design import Camera, LedRing, LensModel, LightModel, Optics
+from workbench.core.errors import OpticsError
 from workbench.core.results import MembraneMesh, TactileFrames
 
 DENT_MM = (15.0, 0.0, 22.0)
@@ -133,7 +134,8 @@ def depth_error_mm(mesh: MembraneMesh, *, radius_mm: float, cylinder_mm: float) 
 def _far_root(direction: np.ndarray, offset: np.ndarray, radius_mm: float) -> np.ndarray:
     square = np.einsum("ij,ij->i", direction, direction)
     middle = direction @ offset / square
-    return -middle + np.sqrt(middle**2 - (offset @ offset - radius_mm**2) / square)
+    # Rays from below may miss the whole sphere; the caller takes the cylinder for those.
+    return -middle + np.sqrt(np.maximum(middle**2 - (offset @ offset - radius_mm**2) / square, 0.0))
 
 
 def axis_error_px() -> float:
@@ -160,11 +162,17 @@ def unmoved_difference_grey(frames: TactileFrames) -> int:
 
 
 def dent_scores(frames: TactileFrames) -> dict[str, float]:
-    """Mean change [grey level], PSNR [dB] and SSIM [1] of the null in the contact box."""
-    box = contact_box(frames.moved[1])
+    """Mean change [grey level], PSNR [dB] and SSIM [1] of the null in the contact box.
+
+    Raises:
+        OpticsError: If the camera does not see the dent.
+    """
+    box = contact_box(contact_pixels(frames, 1))
+    if box is None:
+        raise OpticsError("the camera does not see the dent", hint="put it nearer to the tip")
     image, null = frames.rgb[1][box], frames.rgb[0][box]
     return {
-        "change_grey": mean_absolute_error(image, null),
-        "null_psnr_dB": peak_signal_to_noise_dB(null, image),
-        "null_ssim_1": similarity(null, image),
+        "change_grey": mae_grey(image, null),
+        "null_psnr_dB": psnr_dB(null, image),
+        "null_ssim_1": ssim(null, image),
     }
