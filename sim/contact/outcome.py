@@ -51,8 +51,7 @@ def frame_outcome(
     distance, ratio = (values[open_points] for values in relaxation.point_measures())
     friction_ratio, sliding_points = _friction(relaxation, forces, distance, ratio)
     sliding = np.zeros(len(outer.points_mm), bool)
-    faces = domain.points.face[open_points][sliding_points]
-    sliding[outer.faces[faces].ravel()] = True
+    sliding[domain.points.vertex[open_points][sliding_points]] = True
     moved_vertices = outer.points_mm[domain.vertices] + displacement[domain.vertices]
     vertex_distance, _ = relaxation.collider.distance((moved_vertices - origin) @ rotation)
     reaction_N = balance.reaction_N

@@ -1,7 +1,8 @@
 """Points that carry surface forces: contact on the outer skin, bonding on the inner skin.
 
-Each triangle is divided until its pieces are no longer than a cell; each piece is one point at its
-centroid with the piece's area. A point's spring is penalty * E / grid per area.
+The points are the skin's vertices, each with a third of the area around it: vertices lie on the
+true surface, while centroids of facets sag below it by as much as the allowed overlap. Triangles
+longer than a cell are halved first. A point's spring is penalty * E / grid per area.
 """
 
 from __future__ import annotations
@@ -23,8 +24,8 @@ class SurfacePoints:
     """Spring of the point [N/mm], shape (P,)."""
     bonded: np.ndarray
     """True: held at its place (inner skin). False: may meet the indenter. Shape (P,), bool."""
-    face: np.ndarray
-    """Triangle of its own skin, shape (P,), int64."""
+    vertex: np.ndarray
+    """Vertex of its own skin at or next to the point, shape (P,), int64."""
 
     def take(self, chosen: np.ndarray) -> SurfacePoints:
         """The chosen points, by index or mask."""
@@ -32,49 +33,57 @@ class SurfacePoints:
             position_mm=self.position_mm[chosen],
             stiffness_N_mm=self.stiffness_N_mm[chosen],
             bonded=self.bonded[chosen],
-            face=self.face[chosen],
+            vertex=self.vertex[chosen],
         )
 
 
 def skin_points(
     skin: Skin, *, stiffness_N_mm3: float, spacing_mm: float, bonded: bool, faces: np.ndarray
 ) -> SurfacePoints:
-    """Points on some triangles of a skin.
+    """Points at the vertices of some triangles of a skin.
 
     Args:
         skin: The surface.
         stiffness_N_mm3: Spring per area.
-        spacing_mm: Longest edge of a piece.
+        spacing_mm: Triangles are halved until most have no longer edge.
         bonded: Whether the points are held.
         faces: Triangles to use, by index.
     """
-    corners = skin.points_mm[skin.faces[faces]]
-    edges = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).max(axis=1)
-    divisions = np.maximum(1, np.ceil(edges / spacing_mm - 1e-9)).astype(int)
+    points, triangles = skin.points_mm, skin.faces[faces].astype(np.int64)
+    vertex = np.arange(len(points))
+    while len(faces) and np.median(_longest_edges(points[triangles])) > spacing_mm:
+        points, triangles, vertex = _halve(points, triangles, vertex)
+    corners = points[triangles]
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    area = 0.5 * np.linalg.norm(normal, axis=1)
-    positions, areas, owners = [], [], []
-    for count in np.unique(divisions):
-        chosen = np.flatnonzero(divisions == count)
-        shares = piece_centroids(int(count))
-        positions.append(np.einsum("sk,fkc->fsc", shares, corners[chosen]).reshape(-1, 3))
-        areas.append(np.repeat(area[chosen] / count**2, count**2))
-        owners.append(np.repeat(faces[chosen], count**2))
-    stiffness = stiffness_N_mm3 * np.concatenate(areas) if areas else np.empty(0)
+    third = np.repeat(np.linalg.norm(normal, axis=1) / 6.0, 3)
+    area = np.bincount(triangles.ravel(), third, len(points))
+    used = np.flatnonzero(area > 0.0)
     return SurfacePoints(
-        position_mm=np.concatenate(positions) if positions else np.empty((0, 3)),
-        stiffness_N_mm=stiffness,
-        bonded=np.full(len(stiffness), bonded),
-        face=np.concatenate(owners) if owners else np.empty(0, dtype=np.int64),
+        position_mm=points[used],
+        stiffness_N_mm=stiffness_N_mm3 * area[used],
+        bonded=np.full(len(used), bonded),
+        vertex=vertex[used],
     )
 
 
-def piece_centroids(count: int) -> np.ndarray:
-    """Barycentric centroids of a triangle cut into count^2 equal pieces, shape (count^2, 3)."""
-    up = [(i + 1 / 3, j + 1 / 3) for i in range(count) for j in range(count - i)]
-    down = [(i + 2 / 3, j + 2 / 3) for i in range(count - 1) for j in range(count - 1 - i)]
-    first, second = np.array(up + down).T / count
-    return np.stack([1.0 - first - second, first, second], axis=1)
+def _longest_edges(corners: np.ndarray) -> np.ndarray:
+    return np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).max(axis=1)
+
+
+def _halve(
+    points: np.ndarray, triangles: np.ndarray, vertex: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Each triangle as four; a midpoint is shared and belongs to the first end of its edge."""
+    edges = np.sort(np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2), axis=2)
+    ends, middle = np.unique(edges.reshape(-1, 2), axis=0, return_inverse=True)
+    a, b, c = triangles.T
+    ab, bc, ca = (middle.reshape(-1, 3) + len(points)).T
+    pieces = [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)]
+    return (
+        np.concatenate([points, points[ends].mean(axis=1)]),
+        np.concatenate([np.stack(piece, axis=1) for piece in pieces]),
+        np.concatenate([vertex, vertex[ends[:, 0]]]),
+    )
 
 
 def join(first: SurfacePoints, second: SurfacePoints) -> SurfacePoints:
@@ -83,7 +92,7 @@ def join(first: SurfacePoints, second: SurfacePoints) -> SurfacePoints:
         position_mm=np.concatenate([first.position_mm, second.position_mm]),
         stiffness_N_mm=np.concatenate([first.stiffness_N_mm, second.stiffness_N_mm]),
         bonded=np.concatenate([first.bonded, second.bonded]),
-        face=np.concatenate([first.face, second.face]),
+        vertex=np.concatenate([first.vertex, second.vertex]),
     )
 
 
@@ -91,7 +100,7 @@ def merge(points: SurfacePoints, grid_mm: float) -> SurfacePoints:
     """One point per grid cell: the stiffness-weighted mean of those in it.
 
     A bond needs no more points than the grid has freedoms; fewer points cost less per substep.
-    The face of a merged point is that of its first member.
+    The vertex of a merged point is that of its first member.
     """
     cell = np.round(points.position_mm / grid_mm).astype(np.int64)
     _, first, group = np.unique(cell, axis=0, return_index=True, return_inverse=True)
@@ -102,5 +111,5 @@ def merge(points: SurfacePoints, grid_mm: float) -> SurfacePoints:
         position_mm=centre / stiffness[:, None],
         stiffness_N_mm=stiffness,
         bonded=points.bonded[first],
-        face=points.face[first],
+        vertex=points.vertex[first],
     )

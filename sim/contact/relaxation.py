@@ -1,6 +1,6 @@
 """Adaptive dynamic relaxation: damped motion with fictitious masses until forces balance.
 
-    v <- ((2 - d) v + 2 f / m) / (2 + d),  u <- u + v,  d = 1.4 sqrt(l),  l = v.(f_old - f) / v.m v
+    v <- ((2 - d) v + 2 f / m) / (2 + d),  u <- u + v,  d = 2 sqrt(l),  l = v.(f_old - f) / v.m v
 
 with a time step of 1; l, the Rayleigh quotient of the last step, estimates the lowest frequency
 that is still moving. Source: Underwood, Dynamic relaxation, 1983; Papadrakakis, 1981.
@@ -23,8 +23,6 @@ from sim.material import NeoHookean
 STEP_CAP = 0.1
 """Largest displacement of a node in one substep and axis, in cells."""
 FIRST_DAMPING = 0.5
-DAMPING_FACTOR = 1.4
-"""Below the critical 2: the quotient overestimates the slowest frequency at first."""
 DAMPING_RANGE = (0.004, 1.5)
 BATCH = 20
 """Most substeps between two looks at the residual."""
@@ -65,7 +63,7 @@ class Relaxation:
         self._solid = solid
         self.friction = friction
         self._moved = False
-        nodes, points = len(domain.masses), len(domain.points.face)
+        nodes, points = len(domain.masses), len(domain.points.vertex)
         slots = (len(domain.rows) // kernels.BLOCK + 1) * kernels.BLOCK * 81
         self._displacement = _floats(np.zeros(3 * nodes))
         self._velocity = _floats(np.zeros(3 * nodes))
@@ -116,7 +114,7 @@ class Relaxation:
         surface = _total(self._surface_partial)
         if self._moved and inertia > 0.0:
             lowest = max(work / inertia, 0.0)
-            self.damping = float(np.clip(DAMPING_FACTOR * np.sqrt(lowest), *DAMPING_RANGE))
+            self.damping = float(np.clip(2.0 * np.sqrt(lowest), *DAMPING_RANGE))
         return Balance(
             reaction_N=-surface[:3],
             bond_N=surface[3:],

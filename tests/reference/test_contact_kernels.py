@@ -49,7 +49,7 @@ def test_forces_equal_the_twin(taichi_device: str, kind: IndenterKind) -> None:
     """Elastic, bonding, contact and friction forces on all nodes, with a slipping contact."""
     domain, collider, approach, relaxation = setup(Indenter(kind=kind, size_mm=4.0))
     displacement, solid = wobble(domain), neo_hookean(MATERIAL)
-    history = reference.ContactHistory.fresh(len(domain.points.face))
+    history = reference.ContactHistory.fresh(len(domain.points.vertex))
     relaxation.restart(displacement)
     for progress in (1.0, 1.05):
         pose = approach.pose(progress)
@@ -69,7 +69,7 @@ def test_commit_equals_the_twin(taichi_device: str) -> None:
     """Anchors after a frame in which the indenter turned by 10 degrees; places are good to 1e-6."""
     domain, collider, approach, relaxation = setup(Indenter(size_mm=4.0))
     displacement = wobble(domain)
-    history = reference.ContactHistory.fresh(len(domain.points.face))
+    history = reference.ContactHistory.fresh(len(domain.points.vertex))
     relaxation.restart(displacement)
     for progress in (1.0, 1.5):
         pose = approach.pose(progress)
@@ -89,7 +89,7 @@ def test_step_equals_the_twin(taichi_device: str) -> None:
     domain, collider, approach, relaxation = setup(Indenter(size_mm=4.0))
     displacement, solid = wobble(domain, 0.1).astype(float), neo_hookean(MATERIAL)
     relaxation.restart(displacement)
-    history = reference.ContactHistory.fresh(len(domain.points.face))
+    history = reference.ContactHistory.fresh(len(domain.points.vertex))
     velocity, pose = np.zeros_like(displacement), approach.pose(1.0)
     for _ in range(2):
         forces = reference.stress_forces(domain, displacement, solid)
