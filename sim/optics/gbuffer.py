@@ -46,6 +46,16 @@ class GBuffer:
     depth_z_mm: np.ndarray
     """Depth along the optical axis [mm], shape (P,), float32."""
 
+    def take(self, rows: np.ndarray) -> GBuffer:
+        """Some of the P pixels."""
+        return GBuffer(
+            pixel=self.pixel[rows],
+            face=self.face[rows],
+            weights=self.weights[rows],
+            normal=self.normal[rows],
+            depth_z_mm=self.depth_z_mm[rows],
+        )
+
 
 @dataclass(frozen=True, kw_only=True)
 class View:

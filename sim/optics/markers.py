@@ -20,6 +20,21 @@ INK_REFLECTANCE = 0.08
 """Share of the light that ink returns, relative to the bare skin [1]; black silicone pigment."""
 
 
+LEAST_COSINE = 0.3
+"""Smallest cosine that widens a pixel's footprint [1]: edges seen flatter stay this sharp."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Dots:
+    """Dots of one size on a skin."""
+
+    centres_mm: np.ndarray
+    """Reference positions [mm], shape (M, 3), float64."""
+    radius_mm: float
+    inked: np.ndarray
+    """Triangles that a dot or its blurred edge can reach, shape (F,), bool."""
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Coverage:
     """Ink per pixel: which dot, and how much of the pixel it covers."""
@@ -54,14 +69,31 @@ def no_ink(pixels: int) -> Coverage:
     return Coverage(marker=np.zeros(pixels, np.int32), ink=np.zeros(pixels, np.float32))
 
 
+def print_dots(skin: Skin, markers: Markers, camera: Camera) -> Dots:
+    """Dots on the skin, and the triangles that can hold their ink."""
+    centres = place_markers(skin, markers)
+    if not len(centres):
+        return Dots(centres_mm=centres, radius_mm=0.0, inked=np.zeros(len(skin.faces), dtype=bool))
+    from scipy.spatial import KDTree
+
+    corners = skin.points_mm[skin.faces]
+    middle = corners.mean(axis=1)
+    size = np.linalg.norm(corners - middle[:, None], axis=2).max(axis=1)
+    # No depth in the image exceeds the length of the body, whatever the pose of the camera.
+    longest = float(np.linalg.norm(np.ptp(skin.points_mm, axis=0)))
+    edge = 0.5 * longest / focal_px(camera) / LEAST_COSINE
+    radius = markers.diameter_mm / 2.0
+    inked = KDTree(centres).query(middle)[0] <= radius + edge + size
+    return Dots(centres_mm=centres, radius_mm=radius, inked=inked)
+
+
 def ink(
     before: Coverage,
     changed: np.ndarray,
     seen: GBuffer,
     *,
+    dots: Dots,
     skin: Skin,
-    centres_mm: np.ndarray,
-    diameter_mm: float,
     camera: Camera,
     rays: Rays,
 ) -> Coverage:
@@ -74,26 +106,26 @@ def ink(
         before: Coverage of the other pixels.
         changed: Pixel numbers to compute anew, shape (C,).
         seen: What those of them that see the skin see.
+        dots: The dots on `skin`.
         skin: The undeformed skin.
-        centres_mm: Dot centres on it [mm], shape (M, 3).
-        diameter_mm: Of a dot.
         camera: Gives the size of a pixel.
         rays: Gives the viewing angle.
     """
     marker, share = before.marker.copy(), before.ink.copy()
     share[changed] = 0.0
-    if not len(centres_mm) or not len(seen.pixel):
+    near = np.flatnonzero(dots.inked[seen.face])
+    if not near.size:
         return Coverage(marker=marker, ink=share)
     from scipy.spatial import KDTree
 
+    seen = seen.take(near)
     place = interpolate(skin.points_mm.astype(np.float32), skin.faces, seen)
     cosine = -np.einsum("ij,ij->i", seen.normal, rays.direction[seen.pixel])
-    footprint = np.abs(seen.depth_z_mm) / focal_px(camera) / np.maximum(cosine, 0.1)
-    reach = diameter_mm / 2.0 + float(footprint.max())
-    distance, nearest = KDTree(centres_mm).query(place, distance_upper_bound=reach)
-    step = np.clip((diameter_mm / 2.0 - distance) / footprint + 0.5, 0.0, 1.0)
+    footprint = np.abs(seen.depth_z_mm) / focal_px(camera) / np.maximum(cosine, LEAST_COSINE)
+    distance, nearest = KDTree(dots.centres_mm).query(place)
+    step = np.clip((dots.radius_mm - distance) / footprint + 0.5, 0.0, 1.0)
     share[seen.pixel] = step * step * (3.0 - 2.0 * step)
-    marker[seen.pixel] = np.minimum(nearest, len(centres_mm) - 1)
+    marker[seen.pixel] = nearest
     return Coverage(marker=marker, ink=share)
 
 

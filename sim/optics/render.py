@@ -18,7 +18,7 @@ from sim.optics.camera import refracted_rays
 from sim.optics.display import choose_exposure, encode
 from sim.optics.gbuffer import GBuffer, Moved, View, interpolate, look, open_view
 from sim.optics.lights import check_camera
-from sim.optics.markers import INK_REFLECTANCE, Coverage, centroids, ink, no_ink, place_markers
+from sim.optics.markers import INK_REFLECTANCE, Coverage, Dots, centroids, ink, no_ink, print_dots
 from sim.optics.shading import directions_to_camera, relight, shade, straight, take
 from workbench.core.check import expect
 from workbench.core.design import LightModel, Optics
@@ -39,7 +39,10 @@ class _Scene:
     """Undeformed foreground radiance per vertex, shape (V, 3), float32."""
     bare: np.ndarray
     """Background radiance per pixel without ink, shape (N, 3), float32."""
-    marker_mm: np.ndarray
+    remainder: np.ndarray
+    """Background minus undeformed foreground per pixel, shape (N, 3), float32: what a deformed
+    foreground is added to. Zero where both come from one field."""
+    dots: Dots
     coverage: Coverage
     exposure: float
 
@@ -92,18 +95,12 @@ def _open_scene(mesh: MembraneMesh, light: LightField, optics: Optics, monitor: 
     rays = refracted_rays(optics.camera, mesh.cavity, optics.refractive_index)
     monitor(0.1, "undeformed skin")
     view = open_view(mesh.outer, optics.camera, rays)
-    monitor(0.2, "background")
-    model = LightModel(light.model)
-    inward, to_camera = -mesh.outer.normals, _to_camera(view, view.background, mesh.outer.points_mm)
-    foreground = shade(model, light, optics.coating, inward, to_camera)
-    behind = foreground
-    if model is LightModel.PLANE_TARGET:
-        field = straight(light, mesh.outer.points_mm)
-        behind = shade(LightModel.LINEAR, field, optics.coating, inward, to_camera)
-    bare = np.zeros((len(rays.direction), 3), dtype=np.float32)
     seen = view.background
-    bare[seen.pixel] = interpolate(behind, mesh.outer.faces, seen)
-    bare *= rays.transmittance[:, None]
+    monitor(0.2, "background")
+    foreground, behind = _undeformed_radiance(view, light, optics)
+    bare, remainder = (np.zeros((len(rays.direction), 3), dtype=np.float32) for _ in range(2))
+    bare[seen.pixel] = _to_pixels(view, behind, seen)
+    remainder[seen.pixel] = bare[seen.pixel] - _to_pixels(view, foreground, seen)
     exposure = choose_exposure(bare[seen.pixel])
     if exposure == 0.0:
         raise OpticsError(
@@ -111,41 +108,41 @@ def _open_scene(mesh: MembraneMesh, light: LightField, optics: Optics, monitor: 
             hint="tilt or move the LEDs so that they shine on the skin (tilt_deg 0 is up)",
             at="optics.ring.tilt_deg",
         )
-    marker_mm = place_markers(mesh.outer, optics.markers)
-    everywhere = np.arange(len(bare))
+    dots = print_dots(mesh.outer, optics.markers, optics.camera)
     blank = no_ink(len(bare))
-    scene = _Scene(
+    return _Scene(
         view=view,
         light=light,
-        model=model,
+        model=LightModel(light.model),
         optics=optics,
         foreground=foreground,
         bare=bare,
-        marker_mm=marker_mm,
-        coverage=_ink(view, optics, marker_mm, blank, everywhere, seen),
+        remainder=remainder,
+        dots=dots,
+        coverage=ink(
+            blank, seen.pixel, seen, dots=dots, skin=mesh.outer, camera=optics.camera, rays=rays
+        ),
         exposure=exposure,
     )
-    return scene
 
 
-def _ink(
-    view: View,
-    optics: Optics,
-    marker_mm: np.ndarray,
-    before: Coverage,
-    changed: np.ndarray,
-    seen: GBuffer,
-) -> Coverage:
-    return ink(
-        before,
-        changed,
-        seen,
-        skin=view.skin,
-        centres_mm=marker_mm,
-        diameter_mm=optics.markers.diameter_mm,
-        camera=optics.camera,
-        rays=view.rays,
-    )
+def _undeformed_radiance(
+    view: View, light: LightField, optics: Optics
+) -> tuple[np.ndarray, np.ndarray]:
+    """Radiance of foreground and background per undeformed vertex, each (V, 3), float32."""
+    model, skin = LightModel(light.model), view.skin
+    to_camera = _to_camera(view, view.background, skin.points_mm)
+    foreground = shade(model, light, optics.coating, -skin.normals, to_camera)
+    if model is not LightModel.PLANE_TARGET:
+        return foreground, foreground
+    field = straight(light, skin.points_mm)
+    return foreground, shade(LightModel.LINEAR, field, optics.coating, -skin.normals, to_camera)
+
+
+def _to_pixels(view: View, radiance: np.ndarray, seen: GBuffer) -> np.ndarray:
+    """Vertex radiance (V, 3) at the pixels of a g-buffer, dimmed by the cavity wall, (P, 3)."""
+    arriving = interpolate(radiance, view.skin.faces, seen)
+    return arriving * view.rays.transmittance[seen.pixel, None]
 
 
 def _to_camera(view: View, seen: GBuffer, points_mm: np.ndarray) -> np.ndarray:
@@ -162,7 +159,7 @@ def _blank(scene: _Scene, count: int) -> TactileFrames:
     normal = np.zeros((len(scene.bare), 3), dtype=np.float16)
     normal[seen.pixel] = seen.normal
     rgb = encode(_inked(scene.bare, scene.coverage.ink), scene.exposure)
-    uv = centroids(scene.coverage, len(scene.marker_mm), rays.width_px)
+    uv = centroids(scene.coverage, len(scene.dots.centres_mm), rays.width_px)
 
     def repeated(array: np.ndarray) -> np.ndarray:
         return np.repeat(array[None], count + 1, axis=0)
@@ -187,14 +184,18 @@ def _expose(scene: _Scene, moved: Moved, frames: TactileFrames, number: int) -> 
     if not pixels.size:
         return
     view = scene.view
-    before = np.zeros((len(scene.bare), 3), dtype=np.float32)
-    background = view.background
-    before[background.pixel] = interpolate(scene.foreground, view.skin.faces, background)
-    after = np.zeros_like(before)
-    after[seen.pixel] = interpolate(_moved_radiance(scene, moved), view.skin.faces, seen)
-    gain = view.rays.transmittance[pixels, None]
-    image = scene.bare[pixels] + gain * (after[pixels] - before[pixels])
-    coverage = _ink(view, scene.optics, scene.marker_mm, scene.coverage, pixels, seen)
+    after = scene.remainder.copy()
+    after[seen.pixel] += _to_pixels(view, _moved_radiance(scene, moved), seen)
+    image = after[pixels]
+    coverage = ink(
+        scene.coverage,
+        pixels,
+        seen,
+        dots=scene.dots,
+        skin=view.skin,
+        camera=view.camera,
+        rays=view.rays,
+    )
     image = _inked(np.maximum(image, 0.0), coverage.ink[pixels])
     frames.rgb[number].reshape(-1, 3)[pixels] = encode(image, scene.exposure)
     depth = frames.depth_z_mm[number].reshape(-1)
@@ -204,7 +205,9 @@ def _expose(scene: _Scene, moved: Moved, frames: TactileFrames, number: int) -> 
     normal[pixels] = 0.0
     normal[seen.pixel] = seen.normal
     frames.moved[number].reshape(-1)[pixels] = True
-    frames.marker_uv_px[number] = centroids(coverage, len(scene.marker_mm), view.rays.width_px)
+    frames.marker_uv_px[number] = centroids(
+        coverage, len(scene.dots.centres_mm), view.rays.width_px
+    )
 
 
 def _moved_radiance(scene: _Scene, moved: Moved) -> np.ndarray:

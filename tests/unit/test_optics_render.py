@@ -10,8 +10,10 @@ import numpy as np
 import pytest
 
 from sim.optics.bake import bake_light
+from sim.optics.camera import refracted_rays
 from sim.optics.checks import unmoved_difference_grey
-from sim.optics.markers import place_markers
+from sim.optics.gbuffer import open_view
+from sim.optics.markers import ink, no_ink, place_markers, print_dots
 from sim.optics.render import shoot
 from sim.optics.specimen import dent, finger
 from workbench.core.design import (
@@ -203,3 +205,26 @@ def test_markers_follow_the_skin(mesh: MembraneMesh) -> None:
     focal = 160 / (2 * np.tan(np.radians(50.0)))
     # A dot 2.5 px wide is located by its inked pixels to about a twentieth of its width.
     assert shift == pytest.approx([focal / 41.7, 0.0], abs=0.15)
+
+
+def test_skipping_triangles_without_ink_changes_nothing(mesh: MembraneMesh) -> None:
+    """Coverage with all triangles searched equals coverage with the marked ones only."""
+    markers = Markers(visible=True, spacing_mm=2.0)
+    view = open_view(mesh.outer, SMALL, refracted_rays(SMALL, mesh.cavity, 1.41))
+    dots = print_dots(mesh.outer, markers, SMALL)
+    everywhere = dataclasses.replace(dots, inked=np.ones_like(dots.inked))
+    seen = view.background
+    few, all_of_them = (
+        ink(
+            no_ink(160 * 120),
+            seen.pixel,
+            seen,
+            dots=each,
+            skin=mesh.outer,
+            camera=SMALL,
+            rays=view.rays,
+        ).ink
+        for each in (dots, everywhere)
+    )
+    assert np.array_equal(few, all_of_them)
+    assert 0.0 < few.mean() < 0.3 and dots.inked.mean() < 0.9
