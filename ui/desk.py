@@ -15,6 +15,7 @@ from collections.abc import Callable
 from typing import Any, Protocol
 
 import numpy as np
+import viser
 
 from ui.panels.fields import Fields, read_field, whole_shape
 from ui.scene import Scene
@@ -28,6 +29,8 @@ PUMP_S = 0.1
 AUTOSAVE_S = 1.0
 """Quiet time after an edit before the design is written [s]."""
 NOTICE_S = 15.0
+AIM_LIMIT_MM = 4.0
+"""Distance from target to skin at which the target follows; the solver refuses beyond 5 mm."""
 STRIP = {
     "build": "Shape",
     "mesh": "Mesh",
@@ -74,10 +77,14 @@ class Desk:
         self.title = gui.add_markdown("")
         self.strip = gui.add_markdown("")
         self.banner = gui.add_markdown("", visible=False)
-        self.progress = gui.add_progress_bar(0.0, visible=False, animated=True)
-        self.progress_text = gui.add_markdown("", visible=False)
-        self.cancel_button = gui.add_button("Cancel", color="red", visible=False)
-        self.cancel_button.on_click(self.guarded(lambda event: self.conductor.cancel()))
+        # A panel of its own: widgets must not move under the mouse when a job starts or ends.
+        self.job = gui.add_panel(visible=False)
+        with self.job.add_tab("Running", viser.Icon.LOADER):
+            self.progress = gui.add_progress_bar(0.0, animated=True)
+            self.progress_text = gui.add_markdown("")
+            cancel = gui.add_button("Cancel", color="red")
+            cancel.on_click(self.guarded(lambda event: self.conductor.cancel()))
+        self.job.float(x=380, y=15, width=330)
 
     def read(self, path: str) -> Any:
         """Value of a field of the state; shape parameters have their defaults filled in."""
@@ -168,11 +175,23 @@ class Desk:
             self._shown.pop("press", None)
             self._shown.pop("mould", None)
             self.scene.show_solid(result)
+            self._keep_aim()
             self.scene.show_indenter(self.session.case.indenter, self.session.case.press)
             if result.notice:
                 self.notify("Shape", result.notice, color="yellow")
         for panel in self.panels:
             panel.show(stage, result)
+
+    def _keep_aim(self) -> None:
+        """Bring a target that a change of shape left in the air back to the skin, and say so."""
+        point, distance_mm = self.scene.nearest(self.session.case.press.target_mm)
+        if distance_mm > AIM_LIMIT_MM:
+            x, y, z = (round(float(c), 2) for c in point)
+            self.session.change("case.press.target_mm", (x, y, z))
+            self.fields.refresh()
+            self.log(
+                f"the skin moved {distance_mm:.1f} mm from the target: it is now at {x}, {y}, {z}"
+            )
 
     def pump_forever(self) -> None:
         """Drain events into widgets until the process ends."""
@@ -229,9 +248,8 @@ class Desk:
     def _refresh_progress(self) -> None:
         shown = [p for topic, p in self._running.items() if topic != "shape"]
         visible = bool(shown)
-        for handle in (self.progress, self.progress_text, self.cancel_button):
-            if handle.visible != visible:
-                handle.visible = visible
+        if self.job.visible != visible:
+            self.job.visible = visible
         if shown:
             now = shown[-1]
             self.progress.value = 100.0 * now.fraction
@@ -258,7 +276,9 @@ class Desk:
     def report(self, error: WorkbenchError, *, quiet: bool = False) -> None:
         """Show an error at its field, in a banner and in the log."""
         at_field = self.fields.complain(error)
-        hint = f" {error.hint}." if error.hint and "\n" not in error.hint else ""
+        hint = ""
+        if error.hint and "\n" not in error.hint:
+            hint = f" {error.hint[0].upper()}{error.hint[1:]}."
         text = f"{html.escape(error.message)}.{html.escape(hint)}"
         self.banner.content = f"<span style='color:#e5484d'>**{text}**</span>"
         self.banner.visible = True

@@ -180,6 +180,12 @@ class Scene:
         x, y, z = self._points[best]
         return (float(x), float(y), float(z)) if np.isfinite(aside[best]) else None
 
+    def nearest(self, target_mm: tuple[float, float, float]) -> tuple[np.ndarray, float]:
+        """The skin vertex nearest to a point and its distance [mm]."""
+        distance = np.linalg.norm(self._points - np.asarray(target_mm), axis=1)
+        best = int(np.argmin(distance))
+        return self._points[best], float(distance[best])
+
     def load_frames(self, skin: Skin, contact: Contact) -> float:
         """Prepare the coloured skin of every frame; returns the largest displacement [mm]."""
         self.clear_frames()
