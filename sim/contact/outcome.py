@@ -88,7 +88,12 @@ def _friction(
 
 
 def collect(
-    outcomes: list[FrameOutcome], *, approach: Approach, domain: Domain, substeps: int
+    outcomes: list[FrameOutcome],
+    *,
+    approach: Approach,
+    domain: Domain,
+    radius_mm: float,
+    substeps: int,
 ) -> Contact:
     """All frames as one result."""
 
@@ -109,6 +114,7 @@ def collect(
         normal=approach.normal,
         tangent_u=approach.tangent_u,
         grid_mm=domain.grid_mm,
+        active_radius_mm=radius_mm,
         particles=domain.particles,
         substeps=substeps,
         device="cuda" if current_cfg().arch == ti.cuda else "cpu",

@@ -20,6 +20,7 @@ from sim.contact.collider import Collider, make_collider
 from sim.contact.domain import Domain, build_domain
 from sim.contact.outcome import FrameOutcome, collect, frame_outcome
 from sim.contact.quadrature import SurfacePoints, join, merge, skin_points
+from sim.contact.region import region_radius_mm
 from sim.contact.relaxation import BATCH, Balance, Relaxation
 from sim.material import neo_hookean
 from workbench.core.design import Elastomer
@@ -76,7 +77,8 @@ def press_membrane(
     monitor(0.0, "placing the indenter")
     collider = make_collider(indenter, grid_mm=points.grid_mm)
     approach = plan_approach(mesh.outer, collider, press)
-    domain = prepare(mesh, points, material, approach, collider, settings)
+    radius_mm = region_radius_mm(mesh, approach, collider, settings)
+    domain = prepare(mesh, points, material, approach, collider, settings, radius_mm=radius_mm)
     relaxation = Relaxation(domain, collider, neo_hookean(material), friction=material.friction)
     run = _Run(relaxation=relaxation, approach=approach, settings=settings, monitor=monitor)
     outcomes: list[FrameOutcome] = []
@@ -85,7 +87,13 @@ def press_membrane(
         outcomes.append(frame_outcome(relaxation, mesh.outer, approach, balance, frame))
         relaxation.commit(approach.pose(frame + 1.0))
     monitor(1.0, "settled")
-    return collect(outcomes, approach=approach, domain=domain, substeps=relaxation.substeps)
+    return collect(
+        outcomes,
+        approach=approach,
+        domain=domain,
+        radius_mm=radius_mm,
+        substeps=relaxation.substeps,
+    )
 
 
 def prepare(
@@ -95,6 +103,8 @@ def prepare(
     approach: Approach,
     collider: Collider,
     settings: ContactSettings,
+    *,
+    radius_mm: float,
 ) -> Domain:
     """Surface points that may take part, and the active region around them."""
     grid_mm = points.grid_mm
@@ -102,7 +112,7 @@ def prepare(
 
     def near(skin_points_mm: np.ndarray) -> np.ndarray:
         distance = np.linalg.norm(skin_points_mm - approach.target_mm, axis=1)
-        return distance < settings.active_radius_mm + 2.0 * grid_mm
+        return distance < radius_mm + 2.0 * grid_mm
 
     outer_centre = mesh.outer.points_mm[mesh.outer.faces].mean(axis=1)
     inner_centre = mesh.inner.points_mm[mesh.inner.faces].mean(axis=1)
@@ -127,7 +137,7 @@ def prepare(
         join(touching, merge(bonded, grid_mm)),
         neo_hookean(material),
         target_mm=approach.target_mm,
-        active_radius_mm=settings.active_radius_mm,
+        active_radius_mm=radius_mm,
     )
 
 

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from workbench.core.codec import pack
-from workbench.core.design import Camera, Meshing, Optics, SensorDesign
+from workbench.core.design import Camera, LedRing, Meshing, Optics, SensorDesign
 from workbench.core.press import ContactSettings, Press
 from workbench.pipeline import InlineRunner, PressCase, evaluate, plan, results
 from workbench.stages import STAGES
@@ -24,7 +24,7 @@ FILE = Path(__file__).parent / "stages.json"
 DESIGN = SensorDesign(
     shape={"outer_radius_mm": 8.0, "cylinder_mm": 8.0},
     meshing=Meshing(hex_mm=0.8),
-    optics=Optics(camera=Camera(width_px=64, height_px=48)),
+    optics=Optics(camera=Camera(width_px=64, height_px=48), ring=LedRing(radius_mm=3.0)),
 )
 CASE = PressCase(
     press=Press(target_mm=(0.0, 0.0, 16.0), depth_mm=0.5, frames=1),
@@ -32,7 +32,7 @@ CASE = PressCase(
 )
 STAGES_WITH_NUMBERS = ("build", "mesh", "lattice", "bake", "press", "shoot", "mould")
 RELATIVE = 2e-3
-"""Compilers and thread counts of the libraries move the last digits; a changed method moves more."""
+"""Libraries and compilers move the last digits; a changed method moves more."""
 SKIPPED = ("brep", "device", "seconds", "substeps", "residual")
 """Text of the CAD kernel, names, and what depends on when the relaxation stops."""
 

@@ -60,6 +60,7 @@ def make_contact(displacement: np.ndarray) -> Contact:
         normal=np.array([1.0, 0.0, 0.0]),
         tangent_u=np.array([0.0, 0.0, 1.0]),
         grid_mm=0.5,
+        active_radius_mm=9.0,
         particles=1,
         substeps=1,
         device="cpu",

@@ -50,7 +50,8 @@ class SimulatePanel:
             self.shear.on_update(desk.guarded(self._shear))
         with gui.add_folder("Solver", expand_by_default=False):
             fields.slider("Grid mm", "case.settings.grid_mm", span=(0.25, 1.5, 0.05))
-            fields.slider("Region mm", "case.settings.active_radius_mm", span=(6.0, 40.0, 1.0))
+            hint = "Radius of the simulated region; 0: chosen from contact and wall"
+            fields.number("Region mm", "case.settings.active_radius_mm", step=1.0, hint=hint)
         button = gui.add_button("Run press", icon=viser.Icon.PLAYER_PLAY, hint="Contact, image (R)")
         button.on_click(desk.guarded(self._run))
         command = gui.add_command("Run press", hotkey="R")

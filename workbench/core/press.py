@@ -122,8 +122,8 @@ class ContactSettings:
 
     grid_mm: float = 0.5
     """Edge of a background grid cell [mm]; a quarter of a 2 mm wall."""
-    active_radius_mm: float = 12.0
-    """Cells within this distance of the target take part [mm]."""
+    active_radius_mm: float = 0.0
+    """Cells within this distance of the target take part [mm]; 0 lets patch and wall decide."""
     penalty: float = 100.0
     """Contact stiffness per area in units of E / grid_mm [1]."""
     tolerance: float = 1e-3
@@ -135,7 +135,10 @@ class ContactSettings:
         at = "contact.grid_mm"
         within(self.grid_mm, 0.1, 3.0, what="grid spacing", unit="mm", at=at)
         at = "contact.active_radius_mm"
-        within(self.active_radius_mm, 3.0, 200.0, what="active radius", unit="mm", at=at)
+        if self.active_radius_mm != 0.0:
+            hint = "or 0, and the contact patch and the wall decide"
+            radius_mm = self.active_radius_mm
+            within(radius_mm, 3.0, 200.0, what="active radius", unit="mm", at=at, hint=hint)
         within(self.penalty, 1.0, 1e4, what="contact penalty", unit="", at="contact.penalty")
         within(self.tolerance, 1e-6, 0.1, what="tolerance", unit="", at="contact.tolerance")
         at = "contact.max_substeps"

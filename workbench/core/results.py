@@ -160,6 +160,8 @@ class Contact:
     tangent_u: np.ndarray
     """Unit U: +Z projected on the tangent plane, shape (3,), float64."""
     grid_mm: float
+    active_radius_mm: float
+    """Radius of the region that took part, about the target [mm]."""
     particles: int
     """Material points in the active region."""
     substeps: int

@@ -14,6 +14,7 @@ from workbench.stages import press
 
 TIP_CENTRE_MM = 27.0
 RADIUS_MM = 15.0
+REGION_MM = 12.0
 NAME = "finger_45: sphere R 3 mm, tip at 45 degrees, E .145 MPa, nu .45, mu .3, 1 mm deep"
 
 
@@ -44,6 +45,6 @@ def finger_press(
         Elastomer(young_MPa=young_MPa, friction=friction),
         Indenter(size_mm=6.0),
         Press(target_mm=tip_target(45.0, azimuth_deg), shear_mm=shear_mm, frames=1),
-        ContactSettings(grid_mm=grid_mm),
+        ContactSettings(grid_mm=grid_mm, active_radius_mm=REGION_MM),
         monitor=silent,
     )

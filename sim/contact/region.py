@@ -1,0 +1,42 @@
+"""How far from the target a press reaches: the radius of the active region.
+
+Strains of a bonded layer die out within a few thicknesses of the contact patch, so only the patch
+and a margin of `MARGIN_WALLS` walls take part. Measured on the default finger against a 20 mm
+region: see `tests/convergence/test_contact_region.py`.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sim.contact.approach import Approach
+from sim.contact.collider import Collider
+from workbench.core.press import ContactSettings
+from workbench.core.results import MembraneMesh
+
+MARGIN_WALLS = 3.4
+"""Margin around the patch over the thickness of the wall."""
+LEAST_MARGIN_MM = 4.0
+POSES = 12
+"""Poses of the path at which the patch is looked at."""
+
+
+def region_radius_mm(
+    mesh: MembraneMesh, approach: Approach, collider: Collider, settings: ContactSettings
+) -> float:
+    """The designer's radius [mm], or with 0 the one that patch and wall ask for.
+
+    The patch is the part of the undeformed skin inside the indenter anywhere on its path, so any
+    shape, shear and twist are covered.
+    """
+    if settings.active_radius_mm > 0.0:
+        return settings.active_radius_mm
+    from_target = np.linalg.norm(mesh.outer.points_mm - approach.target_mm, axis=1)
+    patch_mm = 0.0
+    count = approach.press.frame_count
+    for progress in np.linspace(0.0, count, min(count, POSES) + 1):
+        origin, rotation = approach.pose(float(progress))
+        inside = collider.distance((mesh.outer.points_mm - origin) @ rotation)[0] < 0.0
+        patch_mm = max(patch_mm, float(from_target[inside].max(initial=0.0)))
+    to_support = np.linalg.norm(mesh.inner.points_mm - approach.target_mm, axis=1)
+    return patch_mm + max(LEAST_MARGIN_MM, MARGIN_WALLS * float(to_support.min()))

@@ -1,0 +1,63 @@
+"""The region that takes part: large enough for the force, and it follows the patch."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from sim.contact import checks, specimens
+from sim.contact.approach import plan_approach
+from sim.contact.collider import make_collider
+from sim.contact.region import MARGIN_WALLS, region_radius_mm
+from sim.contact.solver import press_membrane
+from workbench.core.design import Elastomer
+from workbench.core.press import ContactSettings, Indenter, IndenterKind, Press
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("taichi_device")
+@pytest.mark.parametrize("kind", [IndenterKind.SPHERE, IndenterKind.CUBE])
+def test_chosen_region_gives_the_force_of_a_large_one(kind: IndenterKind) -> None:
+    """Force within 0.5 % and displacement within 3 % of the depth of a 16 mm region."""
+    mesh, points = specimens.finger(grid_mm=0.5)
+    indenter = Indenter(kind=kind, size_mm=6.0)
+    chosen, large = (
+        press_membrane(
+            mesh,
+            points,
+            Elastomer(),
+            indenter,
+            checks.at_45_degrees(),
+            ContactSettings(active_radius_mm=radius_mm),
+        )
+        for radius_mm in (0.0, 16.0)
+    )
+    assert chosen.active_radius_mm < 12.0
+    # Measured 0.2 % and 12 um; two settled frames differ by a few residuals of 1e-3.
+    assert chosen.normal_N[-1] == pytest.approx(large.normal_N[-1], rel=5e-3)
+    apart_mm = np.abs(chosen.displacement_mm - large.displacement_mm).max()
+    assert apart_mm < 0.03
+
+
+def radius_mm(indenter: Indenter, press: Press, *, fixed_mm: float = 0.0) -> float:
+    mesh, _ = specimens.finger(grid_mm=1.0)
+    collider = make_collider(indenter, grid_mm=1.0)
+    settings = ContactSettings(active_radius_mm=fixed_mm)
+    return region_radius_mm(mesh, plan_approach(mesh.outer, collider, press), collider, settings)
+
+
+def test_region_follows_size_and_shear() -> None:
+    """A larger object, and shear, widen the region; a fixed radius is kept."""
+    press = checks.at_45_degrees()
+    small = radius_mm(Indenter(size_mm=4.0), press)
+    assert radius_mm(Indenter(size_mm=20.0), press) > small + 1.0
+    sheared = checks.at_45_degrees(shear_mm=(0.0, 3.0))
+    assert radius_mm(Indenter(size_mm=4.0), sheared) > small + 2.0
+    assert radius_mm(Indenter(), press, fixed_mm=5.0) == 5.0
+
+
+def test_region_without_touch_is_the_margin() -> None:
+    """At depth 0 the patch is empty: 3.4 walls of 2 mm remain."""
+    press = checks.at_45_degrees(depth_mm=0.0)
+    # The nearest skin vertices lie up to half a millimetre beside the target.
+    assert radius_mm(Indenter(), press) == pytest.approx(MARGIN_WALLS * 2.0, abs=0.5)
