@@ -33,8 +33,7 @@ def setup(indenter: Indenter, depth_mm: float = 0.4):
     collider = make_collider(indenter, grid_mm=0.5)
     press = Press(target_mm=(0.1, 0.2, 2.0), depth_mm=depth_mm, twist_deg=20.0, frames=1)
     approach = plan_approach(mesh.outer, collider, press)
-    settings = ContactSettings(active_radius_mm=3.0)
-    domain = prepare(mesh, points, MATERIAL, approach, collider, settings)
+    domain = prepare(mesh, points, MATERIAL, approach, collider, ContactSettings(), radius_mm=3.0)
     relaxation = Relaxation(domain, collider, neo_hookean(MATERIAL), friction=0.3)
     return domain, collider, approach, relaxation
 
