@@ -47,8 +47,9 @@ def serve(options: argparse.Namespace, project: Project) -> int:
     session = Session(project)
     session.open(options.design)
     project.store.sweep()
-    token = None if options.host in LOOPBACK else secrets.token_urlsafe(16)
-    hosts = (*LOOPBACK, options.host, socket.gethostname()) if token else LOOPBACK
+    local = options.host in (*LOOPBACK, "::1")
+    token = None if local else secrets.token_urlsafe(16)
+    hosts = LOOPBACK if local else (*LOOPBACK, options.host, socket.gethostname())
     gate = Gate(hosts=hosts, token=token)
     with guarded(gate):
         server = viser.ViserServer(
@@ -59,15 +60,19 @@ def serve(options: argparse.Namespace, project: Project) -> int:
         server.stop()
         raise _port_taken(options.port)
     conductor = Conductor(project.store, LaneRunner(project.store))
-    desk = build_desk(server, session, conductor, fast=options.fast_scene)
+    build_desk(server, session, conductor, fast=options.fast_scene)
     gate.health = lambda: {"ok": True, "version": __version__, "busy": conductor.busy}
-    link = f"http://{options.host}:{options.port}/" + (f"?token={token}" if token else "")
+    name = f"[{options.host}]" if ":" in options.host else options.host
+    link = f"http://{name}:{options.port}/" + (f"?token={token}" if token else "")
     print(f"The workbench is open at {link}  (Ctrl-C ends it)", flush=True)
     if options.open:
         webbrowser.open(link)
-    wait_for_stop(desk)
-    conductor.close()
-    server.stop()
+    try:
+        wait_for_stop()
+        session.autosave()
+    finally:
+        conductor.close()
+        server.stop()
     return 0
 
 
@@ -109,14 +114,13 @@ def first_look(desk: Desk) -> None:
         desk.run("press", ("press", "shoot"))
 
 
-def wait_for_stop(desk: Desk) -> None:
-    """Sleep until Ctrl-C or a polite kill, then save the session."""
+def wait_for_stop() -> None:
+    """Sleep until Ctrl-C or a polite kill."""
     stop = threading.Event()
     for name in (signal.SIGINT, signal.SIGTERM):
         signal.signal(name, lambda *_: stop.set())
     while not stop.is_set():
         time.sleep(0.2)
-    desk.session.autosave()
 
 
 def check_port(host: str, port: int) -> None:

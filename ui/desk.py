@@ -6,6 +6,7 @@ into widgets ten times a second and saves the session once edits have settled.
 
 from __future__ import annotations
 
+import contextlib
 import html
 import sys
 import threading
@@ -99,7 +100,10 @@ class Desk:
 
         def call(event: Any) -> None:
             try:
-                handler(event)
+                # viser calls from a pool of threads; the lock is re-entrant, because a value set
+                # by a handler runs that widget's own handler at once.
+                with self._lock:
+                    handler(event)
             except WorkbenchError as error:
                 self.report(error)
             except Exception as bug:
@@ -131,6 +135,9 @@ class Desk:
         else:
             self.conductor.submit("shape", session.design, session.case, ("build",))
         self.scene.place_indenter(session.case.press)
+        self.show_stored()
+        for panel in self.panels:
+            panel.refresh()
         self.refresh_strip()
 
     def _aim(self, event: Any) -> None:
@@ -144,13 +151,10 @@ class Desk:
     def replaced(self) -> None:
         """Follow a change of many fields at once: undo, a preset, an upload."""
         with self._lock:
-            for panel in self.panels:
-                panel.refresh()
             self.fields.refresh()
             self.fields.clear_complaints()
             self.banner.visible = False
             self.changed()
-            self.show_stored()
 
     def show_stored(self) -> None:
         """Show every result that is stored for the state as it stands."""
@@ -168,8 +172,8 @@ class Desk:
     def _show(self, stage: str, key: str) -> None:
         if self._shown.get(stage) == key:
             return
-        self._shown[stage] = key
         result = self.session.store.load(stage, key)
+        self._shown[stage] = key
         if stage == "build":
             # Another body: what was shown of the old one goes.
             self._shown.pop("press", None)
@@ -193,6 +197,10 @@ class Desk:
                 f"the skin moved {distance_mm:.1f} mm from the target: it is now at {x}, {y}, {z}"
             )
 
+    def current(self, stage: str) -> bool:
+        """Whether what is shown of a stage belongs to the state as it stands."""
+        return self._shown.get(stage) == self.session.calls()[stage].key
+
     def pump_forever(self) -> None:
         """Drain events into widgets until the process ends."""
         while True:
@@ -209,7 +217,12 @@ class Desk:
             events.append(self.conductor.events.get())
         with self._lock:
             for event in events:
-                self._handle(event)
+                try:
+                    self._handle(event)
+                except WorkbenchError as error:
+                    self.report(error)
+                except Exception as bug:
+                    self.crash(bug)
             if events:
                 self._refresh_progress()
                 self.refresh_strip()
@@ -283,10 +296,12 @@ class Desk:
         self.banner.content = f"<span style='color:#e5484d'>**{text}**</span>"
         self.banner.visible = True
         self.log(f"{type(error).__name__}: {error.message} {error.hint}")
-        if "\n" in error.hint:
-            self.session.project.write_crash(error.hint)
         if not (quiet and at_field):
             self.notify(type(error).__name__, f"{error.message}.{hint}", color="red")
+        if "\n" in error.hint:
+            # A traceback from a worker; a full disk must not hide the message itself.
+            with contextlib.suppress(WorkbenchError):
+                self.session.project.write_crash(error.hint)
 
     def crash(self, bug: Exception) -> None:
         """Keep the traceback of a bug and tell the designer where it is."""

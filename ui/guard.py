@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import http.cookies
+import ipaddress
 import json
 import secrets
 import urllib.parse
@@ -35,7 +36,7 @@ class Gate:
         if not self._known(headers.get("Host")):
             return 403, {}, b"this address is not one of the workbench's own (Host)\n"
         origin = headers.get("Origin")
-        if origin is not None and not self._known(urllib.parse.urlsplit(origin).netloc):
+        if origin is not None and not _same_site(origin, headers["Host"]):
             return 403, {}, b"pages of other sites may not drive the workbench (Origin)\n"
         where = urllib.parse.urlsplit(path)
         if where.path == HEALTH_PATH:
@@ -44,7 +45,7 @@ class Gate:
             return None
         given = urllib.parse.parse_qs(where.query).get("token", [""])[0]
         if secrets.compare_digest(given.encode(), self.token.encode()):
-            cookie = f"{COOKIE}={self.token}; HttpOnly; SameSite=Strict; Path=/"
+            cookie = f"{COOKIE}={self.token}; HttpOnly; SameSite=Lax; Path=/"
             return 302, {"Location": "/", "Set-Cookie": cookie}, b""
         return 401, {}, b"open the link that the workbench printed in the terminal\n"
 
@@ -52,7 +53,10 @@ class Gate:
         if not netloc or "@" in netloc:
             return False
         host = netloc if netloc.endswith("]") else netloc.rsplit(":", 1)[0]
-        return host.lower() in self.hosts
+        if host.lower() in {known.lower() for known in self.hosts}:
+            return True
+        # Behind a token any address of the machine will do; a name could be another's.
+        return self.token is not None and _is_address(host.strip("[]"))
 
     def _has_cookie(self, text: str) -> bool:
         jar: http.cookies.SimpleCookie = http.cookies.SimpleCookie()
@@ -60,6 +64,19 @@ class Gate:
             jar.load(text)
         given = jar[COOKIE].value if COOKIE in jar else ""
         return secrets.compare_digest(given.encode(), (self.token or "").encode())
+
+
+def _same_site(origin: str, host: str) -> bool:
+    """Whether a page of this origin is one of ours: same name and same port."""
+    return urllib.parse.urlsplit(origin).netloc.lower() == host.lower()
+
+
+def _is_address(text: str) -> bool:
+    try:
+        ipaddress.ip_address(text)
+    except ValueError:
+        return False
+    return True
 
 
 @contextlib.contextmanager

@@ -9,36 +9,20 @@ from __future__ import annotations
 import dataclasses
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 from workbench.core.design import SensorDesign
-from workbench.core.errors import DesignError, WorkbenchError
-from workbench.core.mapping import from_table, to_table
-from workbench.core.press import ContactSettings, Indenter, IndenterKind, Press
+from workbench.core.errors import WorkbenchError
+from workbench.core.press import Indenter
 from workbench.pipeline import EVERYTHING, PressCase, plan
-from workbench.project import (
-    AUTOSAVE,
-    Project,
-    check_design,
-    design_from_toml,
-    load_design,
-    parse_toml,
-)
+from workbench.project import AUTOSAVE, Project, check_design, load_design
 from workbench.stages import Call
+from workbench.state import State, case_table, read_state
 
 COALESCE_S = 0.7
 """Edits of the same field closer than this are one step of undo [s]."""
 UNDO_LIMIT = 200
 DEFAULT_DESIGN = "geltip"
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class State:
-    """All that undo restores."""
-
-    design: SensorDesign
-    case: PressCase
 
 
 class Session:
@@ -54,6 +38,7 @@ class Session:
         self._future: list[State] = []
         self._last_edit = ("", -1e9)
         self.state = State(design=load_design(DEFAULT_DESIGN), case=PressCase())
+        self._planned: tuple[State | None, dict[str, Call]] = (None, {})
 
     @property
     def design(self) -> SensorDesign:
@@ -77,7 +62,9 @@ class Session:
         path = self.project.design_path(AUTOSAVE)
         if path.exists():
             try:
-                self.state = read_state(path.read_text(encoding="utf-8"), source=str(path))
+                self.state = read_state(
+                    path.read_text(encoding="utf-8"), self.project, source=str(path)
+                )
             except (WorkbenchError, OSError, UnicodeDecodeError) as error:
                 self.notice = f"the last session could not be read: {error}"
 
@@ -103,10 +90,14 @@ class Session:
         case = dataclasses.replace(self.case, indenter=indenter)
         self._commit(dataclasses.replace(self.state, case=case), "case.indenter")
 
+    def replace_state(self, state: State) -> None:
+        """Take a whole other design and press, for example an uploaded file or a variant."""
+        check_design(state.design)
+        self._commit(state, "state")
+
     def replace_design(self, design: SensorDesign) -> None:
-        """Take a whole other design, for example a preset or an uploaded file."""
-        check_design(design)
-        self._commit(dataclasses.replace(self.state, design=design), "design")
+        """Take a whole other design, for example a preset; the press stays."""
+        self.replace_state(dataclasses.replace(self.state, design=design))
 
     def _commit(self, state: State, field: str) -> None:
         if state == self.state:
@@ -136,8 +127,13 @@ class Session:
         return True
 
     def calls(self) -> dict[str, Call]:
-        """Calls and keys of the state as it stands."""
-        return plan(self.design, self.case)
+        """Calls and keys of the state as it stands; planned once per state."""
+        state, calls = self._planned
+        if state is not self.state:
+            state = self.state
+            calls = plan(state.design, state.case)
+            self._planned = (state, calls)
+        return calls
 
     def fresh(self) -> dict[str, bool]:
         """Whether each stage's result is stored for the state as it stands."""
@@ -155,36 +151,6 @@ class Session:
         Raises:
             StoreError: If the project folder cannot be written.
         """
-        self.project.save_design(AUTOSAVE, self.design, press_case=case_table(self.case))
-
-
-def case_table(case: PressCase) -> dict[str, Any]:
-    """A press as a TOML table; a mesh indenter is left out, its file is the user's."""
-    table = to_table(dataclasses.replace(case, indenter=Indenter()))
-    if case.indenter.kind is not IndenterKind.MESH:
-        indenter = to_table(case.indenter)
-        del indenter["mesh"]
-        table["indenter"] = indenter
-    else:
-        del table["indenter"]
-    return table
-
-
-def read_state(text: str, *, source: str) -> State:
-    """A design and its press from an autosave or design file.
-
-    Raises:
-        DesignError: If the text is not a valid design.
-    """
-    table = parse_toml(text, source=source).get("press_case", {})
-    if not isinstance(table, dict):
-        raise DesignError(
-            f"press_case is {table!r}, expected a table", hint="remove it", at="press_case"
+        self.project.save_design(
+            AUTOSAVE, self.design, press_case=case_table(self.case, self.project)
         )
-    parts = {"indenter": Indenter, "press": Press, "settings": ContactSettings}
-    known = {
-        name: from_table(parts[name], value, at=f"press_case.{name}")
-        for name, value in table.items()
-        if name in parts
-    }
-    return State(design=design_from_toml(text, source=source), case=PressCase(**known))

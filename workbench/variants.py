@@ -9,28 +9,25 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from workbench.core.design import SensorDesign
 from workbench.core.errors import DesignError
 from workbench.core.results import Contact, Shot
-from workbench.pipeline import PressCase
-from workbench.project import Project, design_from_toml, design_to_toml, write_atomically
+from workbench.project import Project, design_to_toml, write_atomically
 from workbench.stages import Call
+from workbench.state import State, case_table, read_state
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Variant:
-    """A design as it was when it was kept."""
+    """A design and its press as they were when they were kept."""
 
     name: str
-    design: SensorDesign
+    state: State
     shoot_key: str
     metrics: Mapping[str, float]
 
 
-def save_variant(
-    project: Project, name: str, design: SensorDesign, case: PressCase, calls: dict[str, Call]
-) -> Path:
-    """Keep a design whose press and image are stored.
+def save_variant(project: Project, name: str, state: State, calls: dict[str, Call]) -> Path:
+    """Keep a design and its press, whose results are stored.
 
     Raises:
         DesignError: If the name cannot be a file name.
@@ -40,11 +37,13 @@ def save_variant(
     contact: Contact = project.store.load("press", calls["press"].key)
     metrics = {
         "normal_N": float(contact.normal_N[-1]),
-        "press_depth_mm": case.press.depth_mm,
+        "press_depth_mm": state.case.press.depth_mm,
         **shot.metrics.values,
     }
     table = {"name": name, "shoot_key": calls["shoot"].key, "metrics": metrics}
-    text = design_to_toml(dataclasses.replace(design, name=name), variant=table)
+    press_case = case_table(state.case, project)
+    named = dataclasses.replace(state.design, name=name)
+    text = design_to_toml(named, press_case=press_case, variant=table)
     path = _folder(project) / project.design_path(name).name
     write_atomically(path, text.encode())
     return path
@@ -73,7 +72,7 @@ def load_variant(project: Project, name: str) -> Variant:
         ) from error
     return Variant(
         name=name,
-        design=design_from_toml(text, source=str(path)),
+        state=read_state(text, project, source=str(path)),
         shoot_key=key,
         metrics=metrics,
     )

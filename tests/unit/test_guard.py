@@ -28,6 +28,9 @@ def test_own_hosts_pass(host: str) -> None:
         {**OWN, "Origin": "null"},
         {**OWN, "Origin": "http://127.0.0.1.evil.example"},
         {**OWN, "Origin": "http://127.0.0.1:8080@evil.example"},
+        {**OWN, "Origin": "http://127.0.0.1:3000"},
+        {**OWN, "Origin": "http://localhost:8080"},
+        {"Host": "192.168.1.5:8080"},
     ],
 )
 def test_foreign_pages_are_refused(headers: dict[str, str]) -> None:
@@ -60,3 +63,14 @@ def test_token_link_sets_a_cookie_that_opens_the_door() -> None:
     assert "HttpOnly" in answer[1]["Set-Cookie"]
     assert gate.decide("/", {**OWN, "Cookie": f"a=b; {COOKIE}=secret"}) is None
     assert gate.decide("/", {**OWN, "Cookie": f"{COOKIE}=other"}) is not None
+
+
+def test_addresses_pass_behind_a_token_but_foreign_names_do_not() -> None:
+    """With a token any IP address of the machine is a Host; `evil.example` is still refused."""
+    gate = Gate(hosts=("Lab-PC",), token="secret")
+    cookie = {"Cookie": f"{COOKIE}=secret"}
+    for host in ("192.168.1.5:8080", "[fe80::1]:8080", "lab-pc:8080"):
+        assert gate.decide("/", {"Host": host, **cookie}) is None
+    refused = gate.decide("/", {"Host": "evil.example", **cookie})
+    assert refused is not None
+    assert refused[0] == 403

@@ -45,7 +45,7 @@ class ComparePanel:
                 "this design has not been pressed yet", hint="press Run press, then save", at="name"
             )
         name = self.name.value.strip()
-        save_variant(session.project, name, session.design, session.case, session.calls())
+        save_variant(session.project, name, session.state, session.calls())
         self.desk.log(f"variant {name} saved")
         self._offer()
 
@@ -64,7 +64,7 @@ class ComparePanel:
     def _load(self, event: Any) -> None:
         variant = self._variant(self.a if self.load.value == "A" else self.b)
         if variant is not None:
-            self.desk.session.replace_design(variant.design)
+            self.desk.session.replace_state(variant.state)
             self.desk.replaced()
 
     def _compare(self) -> None:
@@ -105,7 +105,7 @@ def comparison(a: Variant, b: Variant) -> str:
         for name in a.metrics
         if name in b.metrics
     ]
-    left, right = _flat(to_table(a.design)), _flat(to_table(b.design))
+    left, right = _parameters(a), _parameters(b)
     rows += [
         (name, left.get(name, NONE), right.get(name, NONE))
         for name in {**left, **right}
@@ -118,6 +118,11 @@ def comparison(a: Variant, b: Variant) -> str:
         for row in (("", a.name, b.name), *rows)
     )
     return f"<table style='font-size:12px;margin:8px'>{cells}</table>"
+
+
+def _parameters(variant: Variant) -> dict[str, str]:
+    state = variant.state
+    return {**_flat(to_table(state.design)), **_flat(to_table(state.case.press), "press.")}
 
 
 def _flat(table: dict[str, Any], prefix: str = "") -> dict[str, str]:

@@ -31,6 +31,7 @@ class MakePanel:
         button = gui.add_button("Make mould", icon=viser.Icon.PRINTER)
         button.on_click(desk.guarded(self._make))
         self.asked = False
+        self.offered = ""
         self.checks = gui.add_markdown("No mould yet.")
         self.view = gui.add_checkbox("Show mould", False, visible=False)
         self.view.on_update(desk.guarded(self._view))
@@ -93,6 +94,10 @@ class MakePanel:
         self._offer(self._moulds())
 
     def _offer(self, moulds: MouldSet | None) -> None:
+        key = self.desk.session.calls()["mould"].key if moulds is not None else ""
+        if key == self.offered:
+            return
+        self.offered = key
         made = moulds is not None
         for handle in (self.view, self.spread, self.part, self.part_button, self.zip_button):
             handle.visible = made

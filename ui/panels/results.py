@@ -26,6 +26,7 @@ class ResultsPanel:
     def __init__(self, desk: Desk) -> None:
         self.desk = desk
         self.shot: Shot | None = None
+        self.forces = ""
         self.playing = threading.Event()
         gui = desk.server.gui
         self.dock = gui.add_panel()
@@ -89,18 +90,28 @@ class ResultsPanel:
         rgb = self.shot.frames.rgb
         number = min(number, len(rgb) - 1)
         change, gain = difference(np.asarray(rgb[number]), np.asarray(rgb[0]))
-        current = self.desk.session.fresh()["shoot"]
-        stale = "" if current else " · **stale**: render again"
-        what = f"frame {number} of {len(rgb) - 1}" if number else "background"
+        self._caption(number)
         with self.desk.server.atomic():
-            self.caption.content = f"{what}{stale}"
             self.image.image = np.asarray(rgb[number])
             self.difference_text.content = f"Difference to the background, × {gain}"
             self.difference.image = change
 
+    def _caption(self, number: int) -> None:
+        if self.shot is None:
+            return
+        last = len(self.shot.frames.rgb) - 1
+        what = f"frame {min(number, last)} of {last}" if number else "background"
+        stale = "" if self.desk.current("shoot") else " · **stale**: render again"
+        if self.caption.content != f"{what}{stale}":
+            self.caption.content = f"{what}{stale}"
+
     def refresh(self) -> None:
-        """Mark an image that no longer belongs to the state."""
-        self._show_image(int(self.frame.value))
+        """Mark an image and a force that no longer belong to the state."""
+        self._caption(int(self.frame.value))
+        stale = not self.desk.current("press") and self.forces
+        text = f"**stale**: run the press again\n\n{self.forces}" if stale else self.forces
+        if text and self.force_text.content != text:
+            self.force_text.content = text
 
     def show(self, stage: str, result: Any) -> None:
         """Follow results and the log."""
@@ -135,11 +146,12 @@ class ResultsPanel:
         x, y, z = contact.reaction_N[-1]
         balance = contact.reaction_N[-1] - contact.support_N[-1]
         share = np.linalg.norm(balance) / max(np.linalg.norm(contact.reaction_N[-1]), 1e-12)
-        self.force_text.content = (
+        self.forces = (
             f"**{contact.normal_N[-1]:.3f} N** along the normal\n\n"
             f"on the object: x {x:.3f} · y {y:.3f} · z {z:.3f} N\n\n"
             f"residual {contact.residual.max():.1e} · force balance {100 * share:.2f} % · "
             f"friction ratio ≤ {contact.friction_ratio.max():.3f}"
         )
+        self.force_text.content = self.forces
         self._follow_frames(len(contact.reaction_N))
         self.desk.scene.show_frame(int(self.frame.value))

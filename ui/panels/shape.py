@@ -7,10 +7,10 @@ from typing import Any
 import viser
 
 from ui.desk import Desk
-from ui.session import read_state
 from workbench.core.errors import DesignError
 from workbench.forms import choices, load_design, sliders
 from workbench.project import MAX_TOML_BYTES, design_to_toml
+from workbench.state import case_table, read_state
 
 
 class ShapePanel:
@@ -95,8 +95,10 @@ class ShapePanel:
             self.desk.replaced()
 
     def _download(self, event: Any) -> None:
-        design = self.desk.session.design
-        content = design_to_toml(design).encode()
+        session = self.desk.session
+        design = session.design
+        press_case = case_table(session.case, session.project)
+        content = design_to_toml(design, press_case=press_case).encode()
         event.client.send_file_download(f"{design.name}.toml", content, save_immediately=True)
 
     def _load(self, event: Any) -> None:
@@ -113,7 +115,8 @@ class ShapePanel:
             raise DesignError(
                 f"{file.name} is not UTF-8 text", hint="choose a TOML file", at="design"
             ) from error
-        self.desk.session.replace_design(read_state(text, source=file.name).design)
+        session = self.desk.session
+        session.replace_state(read_state(text, session.project, source=file.name))
         self.desk.replaced()
 
     def refresh(self) -> None:
