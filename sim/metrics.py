@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from workbench.core.design import LightModel
 from workbench.core.results import Contact, LightField, MembraneMesh, Metrics, Skin, TactileFrames
 
 PEAK = 255.0
@@ -32,7 +33,6 @@ def measure(
     background, image = frames.rgb[0], frames.rgb[-1]
     seen = np.isfinite(frames.depth_z_mm[0])
     displacement = np.linalg.norm(contact.displacement_mm, axis=2)
-    lit = light.irradiance.sum(axis=0)
     peak = int(np.argmax(contact.normal_N))
     values = {
         "normal_force_N": float(contact.normal_N[-1]),
@@ -43,10 +43,12 @@ def measure(
         "penetration_max_mm": float(contact.penetration_mm.max()),
         "image_covered_percent": 100.0 * float(seen.mean()),
         "image_evenness_p5_over_p95": _evenness(background[seen]),
-        "skin_light_p5_over_p95": _ratio(lit),
-        "skin_lit_by_three_percent": 100.0 * lit_share(mesh.outer, light),
-        "contact_pixels_percent": 100.0 * float(frames.moved[-1].mean()),
+        "contact_pixels_percent": 100.0 * float(contact_pixels(frames, -1).mean()),
     }
+    if light.model == LightModel.DIRECT:
+        # The other fields hold directions along the skin and no falloff: nothing to score there.
+        values["skin_light_p5_over_p95"] = _ratio(light.irradiance.sum(axis=0))
+        values["skin_lit_by_three_percent"] = 100.0 * lit_share(mesh.outer, light)
     box = contact_box(contact_pixels(frames, -1))
     if box is not None:
         change = np.abs(image[box].astype(np.float64) - background[box])

@@ -13,7 +13,7 @@ import numpy as np
 
 from sim.optics.camera import Rays, focal_px
 from sim.optics.gbuffer import GBuffer, interpolate
-from workbench.core.design import Camera, Markers
+from workbench.core.design import Camera, LensModel, Markers
 from workbench.core.results import Skin
 
 INK_REFLECTANCE = 0.08
@@ -99,8 +99,8 @@ def ink(
 ) -> Coverage:
     """Coverage after some pixels changed what they see.
 
-    The edge of a dot is a smoothstep one pixel footprint wide: depth over focal length, divided by
-    the cosine of the viewing angle.
+    The edge of a dot is a smoothstep one pixel footprint wide: depth (fisheye: range) over focal
+    length, divided by the cosine of the viewing angle.
 
     Args:
         before: Coverage of the other pixels.
@@ -121,7 +121,11 @@ def ink(
     seen = seen.take(near)
     place = interpolate(skin.points_mm.astype(np.float32), skin.faces, seen)
     cosine = -np.einsum("ij,ij->i", seen.normal, rays.direction[seen.pixel])
-    footprint = np.abs(seen.depth_z_mm) / focal_px(camera) / np.maximum(cosine, LEAST_COSINE)
+    # A pixel of a pinhole spans a length over depth_z, one of a fisheye an angle over the range.
+    away = np.abs(seen.depth_z_mm)
+    if camera.lens is LensModel.EQUIDISTANT:
+        away = np.linalg.norm(place - np.asarray(camera.position_mm, np.float32), axis=1)
+    footprint = away / focal_px(camera) / np.maximum(cosine, LEAST_COSINE)
     distance, nearest = KDTree(dots.centres_mm).query(place)
     step = np.clip((dots.radius_mm - distance) / footprint + 0.5, 0.0, 1.0)
     share[seen.pixel] = step * step * (3.0 - 2.0 * step)

@@ -26,6 +26,8 @@ from sim.optics.gbuffer import MOVED_MM, GBuffer
 from workbench.core.design import Coating, LightModel
 from workbench.core.results import LightField
 
+EDGE_ON = 1e-6
+"""Cosine below which light grazes the skin: single-precision rounding of a tangential field."""
 FLOOR = 1e-3
 """Smallest cosine in a denominator [1]; at 1e-3 the surface is seen edge-on."""
 FULL_SHADOW_MM = 0.03
@@ -67,7 +69,8 @@ def phong(
     mirrored = 2.0 * facing * _dot(normal, to_camera) - _dot(direction, to_camera)
     lobe = np.maximum(mirrored, 0.0) ** np.float32(coating.phong_exponent)
     lit = coating.phong_diffuse * facing + coating.phong_specular * lobe
-    return np.where(facing > 0.0, lit, np.float32(0.0))
+    # A field along the skin meets a flat skin edge-on; the sign of its rounding decides nothing.
+    return np.where(facing > EDGE_ON, lit, np.float32(0.0))
 
 
 def glossy(
