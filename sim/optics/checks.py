@@ -155,6 +155,22 @@ def dented(model: LightModel, mesh: MembraneMesh | None = None) -> TactileFrames
     return shoot(mesh, light, optics, displacement_mm=moved[None])
 
 
+def recast_error_mm(edge_mm: float = 0.5) -> float:
+    """Largest depth difference [mm] between a frame and a full cast of the deformed skin.
+
+    A frame casts only what moved; casting all of the deformed skin anew must see the same.
+    """
+    mesh, optics = finger(edge_mm=edge_mm), Optics()
+    moved = dent(mesh.outer, at_mm=DENT_MM, depth_mm=DENT_DEPTH_MM, radius_mm=DENT_RADIUS_MM)
+    light = bake_light(mesh, optics.ring, model=LightModel.LINEAR)
+    frames = shoot(mesh, light, optics, displacement_mm=moved[None])
+    deformed = dataclasses.replace(mesh.outer, points_mm=mesh.outer.points_mm + moved)
+    rays = refracted_rays(optics.camera, mesh.cavity, optics.refractive_index)
+    seen = open_view(deformed, optics.camera, rays).background
+    depth_z_mm = frames.depth_z_mm[1].ravel()[seen.pixel]
+    return float(np.abs(depth_z_mm - seen.depth_z_mm).max())
+
+
 def unmoved_difference_grey(frames: TactileFrames) -> int:
     """Largest difference [grey level] from the background where nothing moved; must be 0."""
     change = frames.rgb[1:].astype(np.int16) - frames.rgb[0]
