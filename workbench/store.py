@@ -11,6 +11,7 @@ import contextlib
 import errno
 import json
 import os
+import secrets
 import shutil
 import tempfile
 import time
@@ -103,9 +104,7 @@ class Store:
             for name, array in arrays.items():
                 _write(part / f"{name}.npy", lambda file, a=array: np.save(file, a))
             _write(part / META, lambda file: file.write(json.dumps(meta).encode()))
-            # Losing a race leaves the winner's folder; contents are equal by construction.
-            with contextlib.suppress(FileExistsError):
-                _rename(part, self.path(stage, key))
+            _publish(part, self.path(stage, key))
 
     @contextlib.contextmanager
     def _writing(self, stage: str) -> Iterator[Path]:
@@ -151,11 +150,10 @@ class Store:
         for _, size, folder in sorted(entries, key=lambda item: item[0]):
             if total <= self.limit_bytes:
                 break
-            # The meta file goes first: a half-removed folder then counts as absent.
-            (folder / META).unlink(missing_ok=True)
-            shutil.rmtree(folder, ignore_errors=True)
-            total -= size
-            removed += 1
+            with contextlib.suppress(OSError):
+                _discard(folder)
+                total -= size
+                removed += 1
         return removed
 
 
@@ -171,6 +169,26 @@ def _write(path: Path, write: Any) -> None:
         write(file)
         file.flush()
         os.fsync(file.fileno())
+
+
+def _publish(part: Path, final: Path) -> None:
+    """Give a finished folder its name; of two writers the first one wins."""
+    try:
+        _rename(part, final)
+    except FileExistsError:
+        # Contents are equal by construction, unless an interrupted removal left a husk.
+        if not (final / META).exists():
+            with contextlib.suppress(FileNotFoundError):
+                _discard(final)
+            with contextlib.suppress(FileExistsError):
+                _rename(part, final)
+
+
+def _discard(folder: Path) -> None:
+    """Remove a result: one rename makes it absent, whatever interrupts the rest."""
+    aside = folder.with_name(f".part-{os.getpid()}-{secrets.token_hex(6)}")
+    folder.rename(aside)
+    shutil.rmtree(aside, ignore_errors=True)
 
 
 def _rename(part: Path, final: Path) -> None:

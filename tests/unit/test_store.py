@@ -140,3 +140,42 @@ def test_sweep_removes_the_least_recently_used(tmp_path: Path) -> None:
     assert store.sweep() == 1
     assert store.has("s", "new")
     assert not store.has("s", "old")
+
+
+def test_interrupted_eviction_never_blocks_a_key(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """An eviction whose removal is interrupted leaves the key free for the next save."""
+    store = Store(tmp_path, limit_bytes=1)
+    store.save("s", "k", picture(1), seconds=0.0, version=1)
+    with monkeypatch.context() as patch:
+        patch.setattr("shutil.rmtree", lambda *args, **keywords: None)
+        store.sweep()
+    assert not store.path("s", "k").exists()
+    store.save("s", "k", picture(2), seconds=0.0, version=1)
+    assert store.load("s", "k").png[0] == 2
+
+
+def test_husk_without_meta_is_replaced(tmp_path: Path) -> None:
+    """A folder that lost its meta file does not keep its key from being stored again."""
+    store = Store(tmp_path)
+    store.save("s", "k", picture(1), seconds=0.0, version=1)
+    (store.path("s", "k") / META).unlink()
+    store.save("s", "k", picture(2), seconds=0.0, version=1)
+    assert store.load("s", "k").png[0] == 2
+    assert [p.name for p in (tmp_path / "s").iterdir()] == ["k"]
+
+
+def test_result_that_cannot_be_evicted_stops_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A sweep that may not rename removes 0 results and raises nothing."""
+    store = Store(tmp_path, limit_bytes=1)
+    store.save("s", "k", picture(), seconds=0.0, version=1)
+
+    def refused(self: Path, target: Path) -> None:
+        raise PermissionError(errno.EACCES, "refused")
+
+    monkeypatch.setattr(Path, "rename", refused)
+    assert store.sweep() == 0
+    assert store.has("s", "k")
