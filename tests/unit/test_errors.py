@@ -39,6 +39,7 @@ def test_exit_codes() -> None:
     assert errors.Cancelled.exit_code == 130
 
 
+NAN = float("nan")
 BAD = [
     (lambda: Layers(elastomer_mm=0.0), "layers.elastomer_mm", "0 mm is outside 0.2 to 20 mm"),
     (lambda: Elastomer(poisson=0.5), "material.poisson", "0.5 is outside 0 to 0.495"),
@@ -46,6 +47,11 @@ BAD = [
     (lambda: Camera(fov_x_deg=0), "optics.camera.fov_x_deg", "0 degree is outside 5 to 175"),
     (lambda: Camera(fov_x_deg=200), "optics.camera.fov_x_deg", "200 degree is outside"),
     (lambda: Camera(wxyz=(2.0, 0.0, 0.0, 0.0)), "optics.camera.wxyz", "length 2.000"),
+    (lambda: Camera(wxyz=(NAN, 0.0, 0.0, 0.0)), "optics.camera.wxyz", "length nan"),
+    (lambda: Camera(position_mm=(0.0, NAN, 0.0)), "optics.camera.position_mm", "not a finite"),
+    (lambda: Camera(position_mm=(0.0, 0.0, 900.0)), "optics.camera.position_mm", "900 mm"),
+    (lambda: LedRing(phase_deg=NAN), "optics.ring.phase_deg", "not a finite number"),
+    (lambda: LedRing(tilt_deg=NAN), "optics.ring.tilt_deg", "not a finite number"),
     (lambda: LedRing(count=0), "optics.ring.count", "0 is outside 1 to 64"),
     (lambda: LedRing(colours=("red",)), "optics.ring.colours", "'red'"),
     (lambda: Meshing(hex_mm=float("nan")), "meshing.hex_mm", "not a finite number"),

@@ -32,6 +32,13 @@ BAD = {
     "unknown nested field": ("[layers]\nelastomr_mm = 2.0", "layers.elastomr_mm", "elastomr_mm"),
     "wrong type": ("[layers]\nelastomer_mm = 'thick'", "layers.elastomer_mm", "'thick'"),
     "not a table": ("layers = 3", "layers", "3"),
+    "shape is no table": ("shape = 3", "shape", "expected a table"),
+    "huge number": ("[layers]\nelastomer_mm = 1" + "0" * 400, "layers.elastomer_mm", "401 digits"),
+    "camera nowhere": (
+        "[optics.camera]\nposition_mm = [0.0, nan, 0.0]",
+        "optics.camera.position_mm",
+        "not a finite number",
+    ),
     "unknown family": ("family = 'hand'", "family", "'hand'"),
     "unknown shape": ("[shape]\nlength = 3", "shape.length", "length"),
     "shape out of range": ("[shape]\nouter_radius_mm = 500", "shape.outer_radius_mm", "500"),

@@ -123,6 +123,10 @@ class Camera:
         hint = "a pinhole lens cannot see 180 degrees: choose lens = 'equidistant'"
         at = "optics.camera.fov_x_deg"
         within(self.fov_x_deg, 5.0, widest, what="field of view", unit="degree", at=at, hint=hint)
+        hint = "give x, y, z in mm from the centre of the base, each from -500 to 500"
+        at = "optics.camera.position_mm"
+        for axis_mm in self.position_mm:
+            within(axis_mm, -500.0, 500.0, what="camera position", unit="mm", at=at, hint=hint)
         if not 0.99 < sum(q * q for q in self.wxyz) < 1.01:
             raise DesignError(
                 f"camera quaternion {self.wxyz} has length {math.hypot(*self.wxyz):.3f}, not 1",
@@ -156,7 +160,13 @@ class LedRing:
         within(self.count, 1, 64, what="LED count", unit="", at=f"{at}.count")
         within(self.radius_mm, 0.0, 200.0, what="LED ring radius", unit="mm", at=f"{at}.radius_mm")
         within(self.height_mm, 0.0, 200.0, what="LED height", unit="mm", at=f"{at}.height_mm")
-        within(self.tilt_deg, -90.0, 180.0, what="LED tilt", unit="degree", at=f"{at}.tilt_deg")
+        for name, low, high in (("phase_deg", -360.0, 360.0), ("tilt_deg", -90.0, 180.0)):
+            what, hint = (
+                f"LED {name.removesuffix('_deg')}",
+                f"choose from {low:g} to {high:g} degree",
+            )
+            value = getattr(self, name)
+            within(value, low, high, what=what, unit="degree", at=f"{at}.{name}", hint=hint)
         within(self.power, 0.0, 1e3, what="LED power", unit="", at=f"{at}.power")
         exponent = self.emission_exponent
         within(

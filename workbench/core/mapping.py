@@ -14,6 +14,9 @@ from typing import Any, cast
 
 from workbench.core.errors import DesignError
 
+LARGEST_INTEGER = 2**53
+"""Beyond it a float no longer holds every integer, and far beyond none at all."""
+
 
 def from_table(cls: type[Any], table: Any, *, at: str = "") -> Any:
     """Build a dataclass from a table; missing fields keep their defaults.
@@ -69,6 +72,14 @@ def _convert(hint: Any, raw: Any, at: str) -> Any:
         return hint(raw)
     if origin is tuple:
         return _tuple(typing.get_args(hint), raw, at)
+    if origin is Mapping:
+        return _table(raw, at)
+    if isinstance(raw, int) and abs(raw) > LARGEST_INTEGER:
+        raise DesignError(
+            f"{at} is an integer of {len(str(raw))} digits, beyond 2^53",
+            hint="see the README for the range of each field",
+            at=at,
+        )
     if hint is float and isinstance(raw, int) and not isinstance(raw, bool):
         return float(raw)
     if isinstance(hint, type) and (
@@ -79,6 +90,14 @@ def _convert(hint: Any, raw: Any, at: str) -> Any:
             f"{at} is {raw!r}, expected {hint.__name__}", hint="see the README", at=at
         )
     return raw
+
+
+def _table(raw: Any, at: str) -> Mapping[str, Any]:
+    if not isinstance(raw, Mapping):
+        raise DesignError(
+            f"{at} is {raw!r}, expected a table", hint=f"write it as [{at}] in TOML", at=at
+        )
+    return cast("Mapping[str, Any]", raw)
 
 
 def _tuple(parts: tuple[Any, ...], raw: Any, at: str) -> tuple[Any, ...]:
