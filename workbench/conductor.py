@@ -13,13 +13,29 @@ import time
 import traceback
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 from workbench.core.design import SensorDesign
 from workbench.core.errors import Cancelled, WorkbenchError
-from workbench.lanes import LaneRunner
+from workbench.core.monitor import Monitor
 from workbench.pipeline import PressCase, evaluate
-from workbench.stages import Outcome
+from workbench.stages import Call, Outcome
 from workbench.store import Store
+
+LIVE = "shape"
+"""The topic that follows the sliders: Cancel is not meant for it."""
+
+
+class Runner(Protocol):
+    """Where stages run: the lanes, or a stand-in of a test."""
+
+    def run(self, call: Call, monitor: Monitor) -> Outcome:
+        """Compute the call unless it is stored."""
+        ...
+
+    def close(self) -> None:
+        """End what runs."""
+        ...
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -59,6 +75,8 @@ class Finished:
     request: Request
     error: WorkbenchError | None
     seconds: float
+    superseded: bool = False
+    """Whether it was stopped for a newer request, which is nothing to tell the designer."""
 
 
 Event = Progress | StageDone | Finished
@@ -67,7 +85,7 @@ Event = Progress | StageDone | Finished
 class Conductor:
     """Keeps one thread per topic and the lanes they share."""
 
-    def __init__(self, store: Store, runner: LaneRunner) -> None:
+    def __init__(self, store: Store, runner: Runner) -> None:
         self.store = store
         self.events: queue.Queue[Event] = queue.Queue()
         self.runner = runner
@@ -77,27 +95,41 @@ class Conductor:
     def submit(
         self, topic: str, design: SensorDesign, case: PressCase, wanted: Sequence[str]
     ) -> None:
-        """Ask for stages; a request of the same topic that has not begun is replaced."""
+        """Ask for stages; a request of the same topic that has not begun is replaced.
+
+        One that runs is stopped, except in the live topic: it is done before a person could wait
+        for it, and a slider that moves on would otherwise never see a body.
+        """
         with self._guard:
             if topic not in self._topics:
                 self._topics[topic] = _Topic(topic, self)
             self._topics[topic].submit(Request(design=design, case=case, wanted=tuple(wanted)))
 
-    def cancel(self) -> None:
-        """Stop what runs and forget what waits, in every topic."""
+    def cancel(self, *, live: bool = False) -> None:
+        """Stop what runs and forget what waits; the live topic only when asked to."""
         with self._guard:
             for topic in self._topics.values():
-                topic.cancel()
+                if live or topic.name != LIVE:
+                    topic.cancel()
 
     @property
     def busy(self) -> bool:
         """Whether anything runs or waits."""
-        return any(topic.busy for topic in list(self._topics.values()))
+        with self._guard:
+            return any(topic.busy for topic in self._topics.values())
 
     def close(self) -> None:
         """Stop everything and end the worker processes."""
-        self.cancel()
+        self.cancel(live=True)
         self.runner.close()
+
+
+class _Stop:
+    """Asks one running request to end."""
+
+    def __init__(self) -> None:
+        self.asked = False
+        self.superseded = False
 
 
 class _Topic:
@@ -106,35 +138,62 @@ class _Topic:
     def __init__(self, name: str, conductor: Conductor) -> None:
         self.name = name
         self.conductor = conductor
-        self.busy = False
         self._next: Request | None = None
+        self._stop: _Stop | None = None
         self._wake = threading.Condition()
-        self._stop = threading.Event()
         threading.Thread(target=self._loop, name=f"topic-{name}", daemon=True).start()
+
+    @property
+    def busy(self) -> bool:
+        """Whether a request runs or waits."""
+        with self._wake:
+            return self._next is not None or self._stop is not None
 
     def submit(self, request: Request) -> None:
         with self._wake:
             self._next = request
-            self.busy = True
+            if self.name != LIVE and self._stop is not None and not self._stop.asked:
+                self._stop.superseded = True
+                self._stop.asked = True
             self._wake.notify()
 
     def cancel(self) -> None:
         with self._wake:
-            self._next = None
-            self._stop.set()
+            waiting, self._next = self._next, None
+            if self._stop is not None:
+                self._stop.asked = True
+            if waiting is not None:
+                error = Cancelled("cancelled before it began")
+                self._finished(waiting, error, seconds=0.0)
 
     def _loop(self) -> None:
         while True:
             with self._wake:
                 self._wake.wait_for(lambda: self._next is not None)
                 request, self._next = self._next, None
-                self._stop.clear()
+                self._stop = stop = _Stop()
             if request is not None:
-                self._work(request)
-            with self._wake:
-                self.busy = self._next is not None
+                self._work(request, stop)
 
-    def _work(self, request: Request) -> None:
+    def _finished(
+        self,
+        request: Request,
+        error: WorkbenchError | None,
+        *,
+        seconds: float,
+        superseded: bool = False,
+    ) -> None:
+        self.conductor.events.put(
+            Finished(
+                topic=self.name,
+                request=request,
+                error=error,
+                seconds=seconds,
+                superseded=superseded,
+            )
+        )
+
+    def _work(self, request: Request, stop: _Stop) -> None:
         started = time.monotonic()
         error: WorkbenchError | None = None
         events = self.conductor.events
@@ -144,7 +203,7 @@ class _Topic:
                 request.case,
                 self.conductor.runner,
                 wanted=request.wanted,
-                monitor=_Reporter(self.name, events, self._stop),
+                monitor=_Reporter(self.name, events, stop),
             ):
                 events.put(StageDone(topic=self.name, outcome=outcome, request=request))
         except WorkbenchError as raised:
@@ -152,14 +211,18 @@ class _Topic:
         except Exception as bug:
             # The thread must outlive a bug, and the designer must hear of it.
             error = WorkbenchError(f"internal error: {bug!r}", hint=traceback.format_exc())
+        superseded = stop.superseded and isinstance(error, Cancelled)
         seconds = time.monotonic() - started
-        events.put(Finished(topic=self.name, request=request, error=error, seconds=seconds))
+        with self._wake:
+            # Together, so that whoever reads the event finds the topic free.
+            self._stop = None
+            self._finished(request, error, seconds=seconds, superseded=superseded)
 
 
 class _Reporter:
     """Turns a stage's progress into events with an estimate of the time left."""
 
-    def __init__(self, topic: str, events: queue.Queue[Event], stop: threading.Event) -> None:
+    def __init__(self, topic: str, events: queue.Queue[Event], stop: _Stop) -> None:
         self.topic = topic
         self.events = events
         self.stop = stop
@@ -168,8 +231,9 @@ class _Reporter:
         self.sent = 0.0
 
     def __call__(self, stage: str, fraction: float, note: str) -> None:
-        if self.stop.is_set():
-            raise Cancelled("cancelled by the user")
+        if self.stop.asked:
+            newer = "superseded by a newer request"
+            raise Cancelled(newer if self.stop.superseded else "cancelled by the user")
         now = time.monotonic()
         if stage != self.stage:
             self.stage, self.began, self.sent = stage, now, 0.0

@@ -1,0 +1,129 @@
+"""The conductor: newest request wins, every ended request is told once, busy is exact."""
+
+from __future__ import annotations
+
+import queue
+import threading
+import time
+
+import pytest
+
+from workbench.conductor import LIVE, Conductor, Finished
+from workbench.core.design import SensorDesign
+from workbench.core.errors import Cancelled
+from workbench.core.monitor import Monitor
+from workbench.pipeline import PressCase
+from workbench.stages import Call, Outcome
+from workbench.store import Store
+
+WAIT_S = 5.0
+"""Far beyond what a thread needs to wake."""
+
+
+class Slow:
+    """A runner whose calls last until they are stopped, or released one by one."""
+
+    def __init__(self) -> None:
+        self.begun: queue.Queue[Call] = queue.Queue()
+        self.release = threading.Event()
+
+    def run(self, call: Call, monitor: Monitor) -> Outcome:
+        self.begun.put(call)
+        while not self.release.wait(0.005):
+            monitor(0.1)
+        return Outcome(stage=call.stage, key=call.key, cached=False, seconds=0.0)
+
+    def close(self) -> None:
+        self.release.set()
+
+
+@pytest.fixture
+def slow() -> Slow:
+    return Slow()
+
+
+@pytest.fixture
+def conductor(tmp_path_factory: pytest.TempPathFactory, slow: Slow) -> Conductor:
+    return Conductor(Store(tmp_path_factory.mktemp("store")), slow)
+
+
+def design(name: str) -> SensorDesign:
+    return SensorDesign(name=name)
+
+
+def submit(conductor: Conductor, topic: str, name: str) -> None:
+    conductor.submit(topic, design(name), PressCase(), ("build",))
+
+
+def finished(conductor: Conductor) -> Finished:
+    """The next request that ended."""
+    while True:
+        event = conductor.events.get(timeout=WAIT_S)
+        if isinstance(event, Finished):
+            return event
+
+
+def test_newer_press_stops_the_running_one(conductor: Conductor, slow: Slow) -> None:
+    """The first ends as superseded, the second runs to its end; busy until then."""
+    submit(conductor, "press", "first")
+    slow.begun.get(timeout=WAIT_S)
+    submit(conductor, "press", "second")
+    stopped = finished(conductor)
+    assert stopped.request.design.name == "first"
+    assert stopped.superseded
+    assert isinstance(stopped.error, Cancelled)
+    assert conductor.busy
+    slow.begun.get(timeout=WAIT_S)
+    slow.release.set()
+    done = finished(conductor)
+    assert (done.request.design.name, done.error, done.superseded) == ("second", None, False)
+    assert not conductor.busy
+
+
+def test_live_body_is_not_stopped_by_the_next(conductor: Conductor, slow: Slow) -> None:
+    """Of three slider positions the first and the last are computed, both without an error."""
+    submit(conductor, LIVE, "first")
+    slow.begun.get(timeout=WAIT_S)
+    submit(conductor, LIVE, "second")
+    submit(conductor, LIVE, "third")
+    slow.release.set()
+    ends = [finished(conductor), finished(conductor)]
+    assert [(e.request.design.name, e.error) for e in ends] == [("first", None), ("third", None)]
+
+
+def test_cancel_leaves_the_live_body_alone(conductor: Conductor, slow: Slow) -> None:
+    """Cancel ends the press and not the body; closing ends both."""
+    submit(conductor, LIVE, "body")
+    submit(conductor, "press", "press")
+    for _ in range(2):
+        slow.begun.get(timeout=WAIT_S)
+    conductor.cancel()
+    end = finished(conductor)
+    assert (end.topic, end.superseded) == ("press", False)
+    assert isinstance(end.error, Cancelled)
+    assert conductor.busy
+    conductor.cancel(live=True)
+    assert finished(conductor).topic == LIVE
+    assert not conductor.busy
+
+
+def test_cancelled_waiting_request_is_told(conductor: Conductor, slow: Slow) -> None:
+    """A request cancelled before it began ends once, as cancelled, and nothing stays busy."""
+    submit(conductor, LIVE, "running")
+    slow.begun.get(timeout=WAIT_S)
+    submit(conductor, LIVE, "waiting")
+    conductor.cancel(live=True)
+    names = {(e.request.design.name, type(e.error)) for e in (finished(conductor) for _ in "ab")}
+    assert names == {("running", Cancelled), ("waiting", Cancelled)}
+    assert not conductor.busy
+
+
+def test_cancel_at_once_never_leaves_a_topic_busy(conductor: Conductor) -> None:
+    """Wherever the thread stands when Cancel comes, each request ends once and all is free."""
+    for number in range(20):
+        submit(conductor, "press", str(number))
+        time.sleep(0.0005 * (number % 4))
+        conductor.cancel()
+        assert isinstance(finished(conductor).error, Cancelled)
+        assert not conductor.busy
+    assert conductor.events.empty()
