@@ -44,8 +44,8 @@ check: .venv/dev.stamp ## Lint, format, types, fast tests
 	$(BIN)/pyright
 	$(BIN)/python -m pytest -q -m "not slow and not ui and not gpu"
 
-bench: setup ## Print the benchmark table
-	@$(BIN)/workbench bench all
+bench: .venv/dev.stamp browser ## Print the benchmark table
+	@CHROMIUM="$$(bash .ci/chromium)" $(BIN)/workbench bench all
 
 browser:
 	@bash .ci/chromium >/dev/null
