@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from workbench.core.frames import quaternion, tangent
 from workbench.core.press import Indenter
-from workbench.core.results import LabelledSurface
-
-OUTER = 1
-"""Bit of `Label.OUTER`."""
+from workbench.core.results import Label, LabelledSurface
 
 
 def indenter_shape(indenter: Indenter) -> tuple[np.ndarray, np.ndarray]:
@@ -20,7 +18,7 @@ def indenter_shape(indenter: Indenter) -> tuple[np.ndarray, np.ndarray]:
 
 def outer_faces(surface: LabelledSurface) -> tuple[np.ndarray, np.ndarray]:
     """The sensing side of a body: its vertices [mm] (N, 3) and triangles (M, 3)."""
-    faces = surface.faces[(surface.labels & OUTER) != 0]
+    faces = surface.faces[(surface.labels & Label.OUTER) != 0]
     used, packed = np.unique(faces, return_inverse=True)
     return np.asarray(surface.points_mm)[used], packed.reshape(faces.shape)
 
@@ -49,26 +47,6 @@ def standing_pose(
     """
     nearest = int(np.argmin(((points_mm - np.asarray(target_mm)) ** 2).sum(axis=1)))
     normal = normals[nearest]
-    up = np.array([0.0, 0.0, 1.0]) if abs(normal[2]) < 0.999 else np.array([1.0, 0.0, 0.0])
-    u = up - normal * (up @ normal)
-    u /= np.linalg.norm(u)
-    rotation = np.stack([u, np.cross(normal, u), normal], axis=1)
+    tangent_u = tangent(normal)
+    rotation = np.stack([tangent_u, np.cross(normal, tangent_u), normal], axis=1)
     return np.r_[points_mm[nearest] + normal * lowest_mm, quaternion(rotation)]
-
-
-def quaternion(rotation: np.ndarray) -> np.ndarray:
-    """Unit quaternion w, x, y, z of a rotation matrix (Shepperd 1978)."""
-    trace = np.trace(rotation)
-    choice = int(np.argmax([trace, *np.diag(rotation)]))
-    if choice == 0:
-        parts = rotation[[2, 0, 1], [1, 2, 0]] - rotation[[1, 2, 0], [2, 0, 1]]
-        raw = np.r_[1.0 + trace, parts]
-    else:
-        i = choice - 1
-        j, k = (i + 1) % 3, (i + 2) % 3
-        raw = np.zeros(4)
-        raw[0] = rotation[k, j] - rotation[j, k]
-        raw[1 + i] = 1.0 + rotation[i, i] - rotation[j, j] - rotation[k, k]
-        raw[1 + j] = rotation[j, i] + rotation[i, j]
-        raw[1 + k] = rotation[k, i] + rotation[i, k]
-    return raw / np.linalg.norm(raw)

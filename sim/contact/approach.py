@@ -16,6 +16,7 @@ import numpy as np
 from geometry.surface import closest_point
 from sim.contact.collider import Collider
 from workbench.core.errors import DesignError
+from workbench.core.frames import tangent
 from workbench.core.press import Press
 from workbench.core.results import Skin
 from workbench.core.units import radians
@@ -69,7 +70,8 @@ def plan_approach(skin: Skin, collider: Collider, press: Press) -> Approach:
     query = np.array([press.target_mm], dtype=np.float64)
     points, distances, faces = closest_point(skin.points_mm, skin.faces, query)
     if distances[0] > FARTHEST_TARGET_MM:
-        nearest = ", ".join(f"{x:.1f}" for x in points[0])
+        # Adding zero turns the minus zero of a rounded coordinate into zero.
+        nearest = ", ".join(f"{x:.1f}" for x in np.round(points[0], 1) + 0.0)
         raise DesignError(
             f"target {tuple(press.target_mm)} mm is {distances[0]:.1f} mm from the skin; "
             f"the limit is {FARTHEST_TARGET_MM:g} mm",
@@ -100,16 +102,6 @@ def smooth_normal(skin: Skin, face: int, point: np.ndarray) -> np.ndarray:
     )
     normal = np.clip(shares, 0.0, 1.0) @ skin.normals[skin.faces[face]]
     return normal / np.linalg.norm(normal)
-
-
-def tangent(normal: np.ndarray) -> np.ndarray:
-    """Unit U: +Z projected on the tangent plane; +X where the normal is parallel to +Z."""
-    for axis in (np.array([0.0, 0.0, 1.0]), np.array([1.0, 0.0, 0.0])):
-        projected = axis - (axis @ normal) * normal
-        length = np.linalg.norm(projected)
-        if length > 1e-3:
-            return projected / length
-    raise ValueError(f"normal {normal} is not a unit vector")
 
 
 def first_touch(skin: Skin, collider: Collider, target: np.ndarray, rotation: np.ndarray) -> float:
@@ -153,21 +145,3 @@ def _subdivide(corners: np.ndarray) -> np.ndarray:
     ab, bc, ca = (a + b) / 2, (b + c) / 2, (c + a) / 2
     pieces = [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)]
     return np.concatenate([np.stack(piece, axis=1) for piece in pieces])
-
-
-def quaternion(rotation: np.ndarray) -> np.ndarray:
-    """Unit quaternion w, x, y, z with w >= 0 of a rotation matrix, shape (4,).
-
-    The eigenvector of the largest eigenvalue of Bar-Itzhack's matrix (J. Guidance 23, 2000).
-    """
-    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = rotation
-    matrix = np.array(
-        [
-            [xx + yy + zz, zy - yz, xz - zx, yx - xy],
-            [zy - yz, xx - yy - zz, xy + yx, xz + zx],
-            [xz - zx, xy + yx, yy - xx - zz, yz + zy],
-            [yx - xy, xz + zx, yz + zy, zz - xx - yy],
-        ]
-    )
-    result = np.linalg.eigh(matrix)[1][:, -1]
-    return result if result[0] >= 0 else -result

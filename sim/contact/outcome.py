@@ -8,9 +8,10 @@ import numpy as np
 import taichi as ti
 from taichi.lang.impl import current_cfg
 
-from sim.contact.approach import Approach, quaternion
+from sim.contact.approach import Approach
 from sim.contact.domain import Domain
 from sim.contact.relaxation import Balance, Relaxation
+from workbench.core.frames import quaternion
 from workbench.core.results import Contact, Skin
 
 SLIDING_SHARE = 0.999

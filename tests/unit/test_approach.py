@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 
-from sim.contact.approach import plan_approach, quaternion
+from sim.contact.approach import plan_approach
 from sim.contact.checks import at_45_degrees
 from sim.contact.collider import make_collider
 from sim.contact.specimens import finger, flat_block
 from workbench.core.errors import DesignError
+from workbench.core.frames import quaternion
 from workbench.core.press import Indenter, IndenterKind, Press
 
 BLOCK, _ = flat_block(width_mm=16.0, height_mm=4.0, grid_mm=1.0)
