@@ -44,10 +44,10 @@ class Lane:
         self.name = name
         self.store = store
         self._context = multiprocessing.get_context("spawn")
-        self._cancelled = self._context.Value("q", -1)
+        # Without a lock: a worker killed while it holds one would block this process for ever.
+        self._cancelled = self._context.RawValue("q", -1)
         self._turn = threading.Lock()
         self._numbers = itertools.count()
-        self._current = -1
         self._closed = False
         self._start()
 
@@ -55,19 +55,21 @@ class Lane:
         self._pipe, child = self._context.Pipe()
         self._process = self._context.Process(
             target=_serve,
-            args=(WARM_UP[self.name], self.store.root, child, self._cancelled),
+            args=(self.name, WARM_UP[self.name], self.store.root, child, self._cancelled),
             name=f"workbench-{self.name}",
             daemon=True,
         )
         self._process.start()
         child.close()
+        if self._closed:
+            self._process.kill()
 
     def run(self, call: Call, monitor: Monitor) -> Outcome:
         """Execute a call in the worker, one at a time.
 
         Raises:
             Cancelled: If the monitor raised it, or the lane was closed.
-            LaneError: If the process ended by itself.
+            LaneError: If the process ended by itself, or could not be made ready.
             WorkbenchError: Whatever the stage raised.
         """
         while not self._turn.acquire(timeout=0.1):
@@ -83,30 +85,45 @@ class Lane:
         if not self._process.is_alive():
             self._start()
         number = next(self._numbers)
-        self._pipe.send((number, call))
         asked: float | None = None
         fraction, note = 0.0, ""
+        try:
+            self._pipe.send((number, call))
+        except OSError:
+            raise self._ended(asked) from None
         while True:
-            try:
-                if self._pipe.poll(0.05):
-                    kind, value = self._pipe.recv()
-                    if kind == "progress":
-                        fraction, note = value
-                    elif kind == "done":
-                        return value
-                    else:
-                        raise value
-            except (EOFError, OSError):
-                raise self._ended(asked) from None
+            reply = self._reply(number, asked)
+            if reply is not None:
+                kind, value = reply
+                if kind == "done":
+                    return value
+                if kind == "error":
+                    raise value
+                fraction, note = value
             if asked is None:
                 try:
                     monitor(fraction, note)
                 except Cancelled:
                     asked = time.monotonic()
                     self._cancelled.value = number
+                except BaseException:
+                    # The caller is lost, and its job must not hold up the next one.
+                    self._kill()
+                    raise
             elif time.monotonic() - asked > GRACE_S:
                 self._kill()
                 raise Cancelled(f"{call.stage} was stopped", hint="run it again when ready")
+
+    def _reply(self, number: int, asked: float | None) -> tuple[str, Any] | None:
+        """The next message about a job, if one comes soon; those of other jobs are dropped."""
+        try:
+            if self._pipe.poll(0.05):
+                answered, kind, value = self._pipe.recv()
+                if answered == number:
+                    return kind, value
+        except (EOFError, OSError):
+            raise self._ended(asked) from None
+        return None
 
     def _ended(self, asked: float | None) -> WorkbenchError:
         self._process.join(1.0)
@@ -155,21 +172,38 @@ class LaneRunner:
             lane.close()
 
 
-def _serve(modules: Sequence[str], root: Path, pipe: Connection, cancelled: Any) -> None:
+def _serve(name: str, modules: Sequence[str], root: Path, pipe: Connection, cancelled: Any) -> None:
     """Main loop of a worker process."""
     # Ctrl-C in a terminal reaches the whole group; the parent decides when a lane stops.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     os.environ.setdefault("ENABLE_TAICHI_HEADER_PRINT", "0")
     _follow_parent()
-    for module in modules:
-        importlib.import_module(module)
+    unready = _warm_up(name, modules)
     store = Store(root)
     while True:
         try:
             number, call = pipe.recv()
         except EOFError:
             return
-        pipe.send(_answer(store, call, _reporter(pipe, cancelled, number)))
+        # What was missing may have been installed since.
+        unready = unready and _warm_up(name, modules)
+        monitor = _reporter(pipe, cancelled, number)
+        pipe.send((number, *(("error", unready) if unready else _answer(store, call, monitor))))
+
+
+def _warm_up(name: str, modules: Sequence[str]) -> LaneError | None:
+    """Import what the jobs need; an error to answer them with where that fails."""
+    for module in modules:
+        try:
+            importlib.import_module(module)
+        except Exception as error:
+            text = "".join(traceback.format_exception(error))
+            return LaneError(
+                f"the {name} process cannot import {module}: {error!r}",
+                hint=f"run workbench doctor to see what is missing\n{text}",
+                at=name,
+            )
+    return None
 
 
 def _answer(store: Store, call: Call, monitor: Monitor) -> tuple[str, Any]:
@@ -197,7 +231,7 @@ def _reporter(pipe: Connection, cancelled: Any, number: int) -> Callable[..., No
         now = time.monotonic()
         if now - last >= REPORT_S:
             last = now
-            pipe.send(("progress", (fraction, note)))
+            pipe.send((number, "progress", (fraction, note)))
 
     return monitor
 

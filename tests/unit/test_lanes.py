@@ -24,6 +24,9 @@ from workbench.store import Store
 CANCEL_LIMIT_S = 3.0
 """The promise to the designer; the lane kills after 2 s."""
 
+START_LIMIT_S = 10.0
+"""A new process imports for a second or two; two noisy cores stretch it."""
+
 
 @pytest.fixture(scope="module")
 def lane(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Lane]:
@@ -94,6 +97,69 @@ def test_bug_in_a_stage_brings_its_traceback(lane: Lane) -> None:
     with pytest.raises(LaneError, match="TypeError") as caught:
         lane.run(Call("nap", ("soon",)), silent)
     assert "Traceback" in caught.value.hint
+
+
+def test_monitor_that_breaks_frees_the_lane(lane: Lane) -> None:
+    """A bug in the monitor is raised as it is, and the next call neither waits nor mixes up."""
+
+    def broken(fraction: float, note: str = "") -> None:
+        raise ZeroDivisionError("bug")
+
+    with pytest.raises(ZeroDivisionError):
+        lane.run(Call("deaf", (60.0,)), broken)
+    start = time.monotonic()
+    assert lane.run(Call("nap", (0.03,)), silent).key == Call("nap", (0.03,)).key
+    assert time.monotonic() - start < START_LIMIT_S
+
+
+def test_reply_to_another_job_is_dropped(lane: Lane, monkeypatch: pytest.MonkeyPatch) -> None:
+    """An answer that carries an older number is not taken for this job's."""
+    call = Call("nap", (0.04,))
+    pipe = lane._pipe
+    replies = [(-7, "done", "foreign")]
+
+    class Mixed:
+        """The lane's pipe, with a foreign answer in front."""
+
+        send = staticmethod(pipe.send)
+
+        def poll(self, seconds: float) -> bool:
+            return bool(replies) or pipe.poll(seconds)
+
+        def recv(self) -> Any:
+            return replies.pop() if replies else pipe.recv()
+
+    monkeypatch.setattr(lane, "_pipe", Mixed())
+    assert lane.run(call, silent).key == call.key
+
+
+def test_process_that_died_before_the_call_is_an_error(
+    lane: Lane, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A pipe that broke before the call was sent is a LaneError, not a crash."""
+    lane._process.kill()
+    lane._process.join()
+    with monkeypatch.context() as patch:
+        patch.setattr(lane._process, "is_alive", lambda: True)
+        with pytest.raises(LaneError, match="signal 9"):
+            lane.run(Call("nap", (0.05,)), silent)
+    assert lane.run(Call("nap", (0.05,)), silent).stage == "nap"
+
+
+def test_failed_warm_up_names_the_missing_module(tmp_path: Path) -> None:
+    """A library that cannot be imported is named in a LaneError; the process lives on."""
+    patch = pytest.MonkeyPatch()
+    patch.setitem(lanes.WARM_UP, "cad", ("no_such_library",))
+    lane = Lane("cad", Store(tmp_path))
+    patch.undo()
+    try:
+        for _ in range(2):
+            with pytest.raises(LaneError, match="cannot import no_such_library") as caught:
+                lane.run(finger(), silent)
+            assert "workbench doctor" in caught.value.hint
+        assert lane._process.is_alive()
+    finally:
+        lane.close()
 
 
 def test_closing_ends_a_running_call(tmp_path: Path) -> None:
