@@ -1,8 +1,9 @@
-"""The README is kept honest: every command, option and file key it must name is in it."""
+"""The README is kept honest: every command, option, room and file key is in it."""
 
 from __future__ import annotations
 
 import argparse
+import importlib
 import re
 from pathlib import Path
 
@@ -17,8 +18,12 @@ KEYS = (
     "schema design family device stages stage key cached seconds contact reaction_N normal_N "
     "residual penetration_mm particles grid_mm substeps images moulds file watertight volume_mm3 "
     "metrics surface_points_mm surface_faces displacement_mm indenter_pose background.png "
-    "frame_000.png contact.npz report.html summary.json"
+    "frame_000.png contact.npz report.html summary.json "
+    "name case value unit reference null ceiling error error_kind limit sense ok"
 ).split()
+PROSE = re.sub(r"^```.*?^```$", "", README, flags=re.MULTILINE | re.DOTALL)
+CODE = " ".join(re.findall(r"`([^`]+)`", PROSE))
+"""All that stands between single backticks; the tables of keys and options are among it."""
 
 
 def commands() -> dict[str, argparse.ArgumentParser]:
@@ -26,24 +31,44 @@ def commands() -> dict[str, argparse.ArgumentParser]:
     return dict(action.choices)
 
 
+def command_row(name: str) -> str:
+    """The row of a command in the README's table."""
+    (row,) = re.findall(rf"^\| `workbench {name}\b.*$", README, flags=re.MULTILINE)
+    return row
+
+
+def section(title: str) -> str:
+    """The text under a heading, up to the next one."""
+    return re.split(r"^#+ ", README.split(f"# {title}\n")[1], flags=re.MULTILINE)[0]
+
+
 @pytest.mark.parametrize("name", commands())
-def test_every_command_is_documented(name: str) -> None:
-    """`workbench NAME` stands in the README."""
-    assert f"workbench {name}" in README
+def test_every_option_of_every_command_is_documented(name: str) -> None:
+    """Each long option stands in the command's row, those of `run` in its own table."""
+    text = section("`workbench run`") if name == "run" else command_row(name)
+    documented = set(re.findall(r"(?<![\w-])--[a-z-]+", text)) | {"--help", "--project"}
+    options = {o for a in commands()[name]._actions for o in a.option_strings if o[:2] == "--"}
+    assert options <= documented, options - documented
 
 
-def test_every_option_of_run_is_documented() -> None:
-    """Each long option of `run` has a row."""
-    for action in commands()["run"]._actions:
-        for option in action.option_strings:
-            if option.startswith("--") and option != "--help":
-                assert option in README, option
+def test_the_project_folder_is_documented_once_for_all_commands() -> None:
+    """Every command takes `--project DIR`."""
+    assert "--project DIR" in CODE
+    assert all("--project" in c.format_help() for c in commands().values())
+
+
+@pytest.mark.parametrize("name", ["validate", "bench"])
+def test_every_room_is_documented(name: str) -> None:
+    """The row of the command lists exactly the rooms there are."""
+    rooms = importlib.import_module(f"workbench.{name}").ROOMS
+    code = re.findall(r"`([^`]+)`", command_row(name))[1:]
+    assert " ".join(code).split() == list(rooms)
 
 
 @pytest.mark.parametrize("key", KEYS)
 def test_every_contract_key_is_documented(key: str) -> None:
-    """Other tools read these names."""
-    assert key in README
+    """Other tools read these names: each stands in the README as code, a whole word."""
+    assert key in re.findall(r"[\w.]+", CODE)
 
 
 def test_links_lead_somewhere() -> None:
