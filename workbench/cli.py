@@ -7,18 +7,22 @@ Exit codes: 0 done, 2 bad input (a busy port included), 3 failed computation, fu
 from __future__ import annotations
 
 import argparse
+import contextlib
+import errno
 import json
 import os
+import signal
 import sys
+import threading
 import time
 import traceback
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 from workbench import __version__
 from workbench.core.design import LightModel
-from workbench.core.errors import DesignError, DeviceError, WorkbenchError
+from workbench.core.errors import Cancelled, DesignError, DeviceError, StoreError, WorkbenchError
 from workbench.core.units import human_seconds
 from workbench.project import Project
 
@@ -32,22 +36,61 @@ def main(arguments: Sequence[str] | None = None) -> int:
     words = list(sys.argv[1:] if arguments is None else arguments)
     options = parser().parse_args(_join_negative(words))
     project = Project(options.project)
+    as_json = getattr(options, "json", False)
     try:
-        return options.handler(options, project)
+        with _terminable():
+            return options.handler(options, project)
     except WorkbenchError as error:
-        _print_error(error, as_json=getattr(options, "json", False))
-        return error.exit_code
+        return _print_error(error, as_json=as_json)
     except KeyboardInterrupt:
-        print("cancelled; finished results are kept", file=sys.stderr)
-        return 130
+        _complain("cancelled; finished results are kept")
+        return Cancelled.exit_code
+    except MemoryError:
+        return _print_error(
+            WorkbenchError(
+                "this machine ran out of memory", hint="use a coarser mesh or grid, or fewer frames"
+            ),
+            as_json=as_json,
+        )
+    except Exception as bug:
+        if isinstance(bug, OSError) and bug.errno in (errno.ENOSPC, errno.EDQUOT):
+            full = StoreError(f"the disk is full: {bug}", hint="free some space and run again")
+            return _print_error(full, as_json=as_json)
+        return _print_bug(project)
+
+
+@contextlib.contextmanager
+def _terminable() -> Iterator[None]:
+    """Treat SIGTERM as Ctrl-C while a command runs."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def _say(text: object) -> None:
+    """Print a line of the answer; a reader that went away (`| head -1`) changes nothing else."""
+    _write(sys.stdout, f"{text}\n")
+
+
+def _complain(text: str, *, end: str = "\n") -> None:
+    """Print a line for people beside the answer."""
+    _write(sys.stderr, text + end)
+
+
+def _write(stream: TextIO, text: str) -> None:
+    try:
+        stream.write(text)
+        stream.flush()
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 0
-    except Exception:
-        crash = project.write_crash(traceback.format_exc())
-        traceback.print_exc()
-        print(f"this is a bug; please report it with {crash}", file=sys.stderr)
-        return 1
+        # What is still buffered would raise again when the interpreter flushes it at exit.
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, stream.fileno())
+        os.close(nowhere)
 
 
 def _join_negative(words: list[str]) -> list[str]:
@@ -61,14 +104,26 @@ def _join_negative(words: list[str]) -> list[str]:
     return joined
 
 
-def _print_error(error: WorkbenchError, *, as_json: bool) -> None:
+def _print_error(error: WorkbenchError, *, as_json: bool) -> int:
     if as_json:
-        print(json.dumps(error.as_dict()), flush=True)
-    print(f"error: {error.message}", file=sys.stderr)
+        _say(json.dumps(error.as_dict()))
+    _complain(f"error: {error.message}")
     if error.at:
-        print(f"   at: {error.at}", file=sys.stderr)
+        _complain(f"   at: {error.at}")
     if error.hint:
-        print(f" hint: {error.hint}", file=sys.stderr)
+        _complain(f" hint: {error.hint}")
+    return error.exit_code
+
+
+def _print_bug(project: Project) -> int:
+    """Show the traceback of the exception being handled, and keep it where that is possible."""
+    text = traceback.format_exc()
+    _complain(text, end="")
+    try:
+        _complain(f"this is a bug; please report it with {project.write_crash(text)}")
+    except WorkbenchError as error:
+        _complain(f"this is a bug; please report it with the lines above ({error.message})")
+    return 1
 
 
 def parser() -> argparse.ArgumentParser:
@@ -128,7 +183,7 @@ def _run_options(sub: argparse.ArgumentParser) -> None:
 
 
 def _run(options: argparse.Namespace, project: Project) -> int:
-    from workbench.outputs import write_all
+    from workbench.outputs import prepare, write_all
     from workbench.pipeline import InlineRunner, evaluate, plan
     from workbench.project import load_design
 
@@ -136,6 +191,8 @@ def _run(options: argparse.Namespace, project: Project) -> int:
     if options.light_model:
         design = design.replace("optics.light_model", LightModel(options.light_model))
     case = press_case(options)
+    calls = plan(design, case)
+    prepare(options.out)
     project.store.sweep()
     printer = _Progress(as_json=options.json)
     runner = InlineRunner(project.store)
@@ -148,16 +205,15 @@ def _run(options: argparse.Namespace, project: Project) -> int:
         printer.done(picture)
         outcomes.append(picture)
     except DeviceError as error:
-        print(f"the report has no picture of the mould: {error.message}", file=sys.stderr)
-    calls = plan(design, case)
+        _complain(f"the report has no picture of the mould: {error.message}")
     summary = write_all(options.out, design, case.press, project.store, calls, outcomes)
     if not options.json:
         force = summary["contact"]
-        print(
+        _say(
             f"{force['normal_N']:.3f} N along the normal at {case.press.depth_mm:g} mm; "
             f"residual {force['residual']:.1e}, penetration {1e3 * force['penetration_mm']:.0f} um"
         )
-        print(f"open {options.out / 'report.html'}")
+        _say(f"open {options.out / 'report.html'}")
     return 0
 
 
@@ -222,10 +278,10 @@ class _Progress:
         eta_s = elapsed * (1 - fraction) / fraction if fraction > 0.02 else None
         if self.as_json:
             line = {"stage": stage, "fraction": fraction, "note": note, "eta_s": eta_s}
-            print(json.dumps(line), flush=True)
+            _say(json.dumps(line))
         elif sys.stderr.isatty():
             left = f", {human_seconds(eta_s)} left" if eta_s is not None else ""
-            print(f"\r\x1b[K{stage} {100 * fraction:.0f} %{left} {note}", end="", file=sys.stderr)
+            _complain(f"\r\x1b[K{stage} {100 * fraction:.0f} %{left} {note}", end="")
 
     def done(self, outcome: Any) -> None:
         if self.as_json:
@@ -235,11 +291,11 @@ class _Progress:
                 "cached": outcome.cached,
                 "seconds": outcome.seconds,
             }
-            print(json.dumps(line), flush=True)
+            _say(json.dumps(line))
         else:
             state = "cached" if outcome.cached else human_seconds(outcome.seconds)
             end = "\r\x1b[K" if sys.stderr.isatty() else ""
-            print(f"{end}{outcome.stage:8} {outcome.key[:12]}  {state}", file=sys.stderr)
+            _complain(f"{end}{outcome.stage:8} {outcome.key[:12]}  {state}")
 
 
 def _export(options: argparse.Namespace, project: Project) -> int:
@@ -248,7 +304,7 @@ def _export(options: argparse.Namespace, project: Project) -> int:
 
     printer = _Progress(as_json=options.json)
     for path in export_design(load_design(options.design), options.out, project.store, printer):
-        print(json.dumps({"file": str(path)}) if options.json else path)
+        _say(json.dumps({"file": str(path)}) if options.json else path)
     return 0
 
 
@@ -259,7 +315,7 @@ def _presets(options: argparse.Namespace, project: Project) -> int:
     rows = [{"name": n, "kind": "preset", "purpose": p} for n, p in presets().items()]
     rows += [{"name": n, "kind": "family", "purpose": f.title} for n, f in families().items()]
     for row in rows:
-        print(
+        _say(
             json.dumps(row)
             if options.json
             else f"{row['name']:12} {row['kind']:7} {row['purpose']}"
@@ -281,14 +337,14 @@ def _bench(options: argparse.Namespace, project: Project) -> int:
 
 def _print_rows(options: argparse.Namespace, rooms: dict[str, Any]) -> int:
     from workbench.core.mapping import suggest
-    from workbench.rows import as_json, as_text
+    from workbench.rows import as_json, as_text, gathered
 
     if options.room not in rooms:
         raise DesignError(
             f"there is no room {options.room!r}", hint=suggest(options.room, rooms), at="room"
         )
-    rows = rooms[options.room]()
-    print(as_json(rows) if options.json else as_text(rows), flush=True)
+    rows = gathered(options.room, rooms[options.room])
+    _say(as_json(rows) if options.json else as_text(rows))
     return 0 if all(row.ok for row in rows) else 1
 
 
@@ -296,7 +352,7 @@ def _doctor(options: argparse.Namespace, project: Project) -> int:
     from workbench.doctor import report
 
     lines, healthy = report(project.folder)
-    print("\n".join(lines))
+    _say("\n".join(lines))
     return 0 if healthy else 3
 
 

@@ -7,9 +7,11 @@ import importlib.util
 import os
 import platform
 import shutil
+import tempfile
 from pathlib import Path
 
 from workbench import __version__
+from workbench.core.errors import DeviceError
 from workbench.devices import chosen_device, cuda_count, torch_build
 
 REQUIRED = (
@@ -25,6 +27,9 @@ REQUIRED = (
     "manifold3d",
     "scipy",
     "numpy",
+    "shapely",
+    "tomli-w",
+    "websockets",
 )
 OPTIONAL = {
     "pymeshlab": "isotropic remeshing (GPL-3.0)",
@@ -33,6 +38,8 @@ OPTIONAL = {
     "distributed": "sweeps on a cluster, extra [cluster]",
 }
 
+UNUSABLE = "UNUSABLE"
+
 
 def report(project: Path) -> tuple[list[str], bool]:
     """Lines for people, and whether everything needed is there."""
@@ -40,26 +47,43 @@ def report(project: Path) -> tuple[list[str], bool]:
         f"workbench   {__version__}",
         f"python      {platform.python_version()} on {platform.system()} {platform.machine()}",
         f"processors  {os.cpu_count()}",
-        f"compute     {chosen_device()} ({cuda_count()} CUDA devices)",
     ]
     healthy = True
+    try:
+        lines.append(f"compute     {chosen_device()} ({cuda_count()} CUDA devices)")
+    except DeviceError as error:
+        lines.append(f"compute     {error.message}: {error.hint}")
+        healthy = False
     for name in REQUIRED:
         version = _version(name)
         healthy = healthy and version is not None
         lines.append(f"{name:24}{version or 'MISSING: run make setup'}")
     if _version("torch"):
-        lines.append(f"{'torch build':24}{torch_build()}")
+        try:
+            lines.append(f"{'torch build':24}{torch_build()}")
+        except (ImportError, OSError) as error:
+            lines.append(f"{'torch build':24}DOES NOT LOAD: {error}")
+            healthy = False
     for name, purpose in OPTIONAL.items():
         lines.append(f"{name:24}{_version(name) or 'not installed'} - optional: {purpose}")
-    folder = next(p for p in (project, *project.parents) if p.exists())
-    free_gb = shutil.disk_usage(folder).free / 2**30
-    writable = os.access(folder, os.W_OK)
-    healthy = healthy and writable
-    state = "" if writable else ", NOT WRITABLE: choose another with --project"
-    lines.append(f"{'project':24}{project} ({free_gb:.0f} GB free{state})")
+    state = _folder_state(project)
+    healthy = healthy and not state.startswith(UNUSABLE)
+    lines.append(f"{'project':24}{project} ({state})")
     browser = os.environ.get("CHROMIUM") or shutil.which("chromium") or "none (only tests need one)"
     lines.append(f"{'browser for tests':24}{browser}")
     return lines, healthy
+
+
+def _folder_state(project: Path) -> str:
+    """Free space for a project folder, or why it cannot be used."""
+    try:
+        folder = next(p for p in (project, *project.parents) if p.exists())
+        # Permission bits do not tell of read-only and virtual file systems: write something.
+        with tempfile.TemporaryFile(dir=folder):
+            free_gb = shutil.disk_usage(folder).free / 2**30
+    except OSError as error:
+        return f"{UNUSABLE}: {error.strerror or error}; choose another with --project"
+    return f"{free_gb:.0f} GB free"
 
 
 def _version(name: str) -> str | None:

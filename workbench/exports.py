@@ -11,7 +11,7 @@ import numpy as np
 
 from workbench.core.design import SensorDesign
 from workbench.core.errors import DeviceError
-from workbench.outputs import write_moulds
+from workbench.outputs import prepare, write_moulds
 from workbench.pipeline import InlineRunner, PressCase, StageMonitor, evaluate, plan, results
 from workbench.project import design_to_toml, write_atomically
 from workbench.store import Store
@@ -32,6 +32,7 @@ def export_design(
     """
     from geometry.export import stl_bytes
 
+    prepare(out)
     runner = InlineRunner(store)
     for _ in evaluate(design, PressCase(), runner, wanted=STAGES, monitor=monitor):
         pass

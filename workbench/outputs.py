@@ -5,16 +5,16 @@ from __future__ import annotations
 import contextlib
 import io
 import json
-from collections.abc import Sequence
+from collections.abc import Container, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from workbench.core.design import SensorDesign
+from workbench.core.errors import DesignError, StoreError
 from workbench.core.press import Press
 from workbench.core.results import Bundle, Contact, MembraneMesh, MouldSet, Shot
-from workbench.devices import chosen_device
 from workbench.pipeline import results
 from workbench.project import write_atomically
 from workbench.stages import Call, Outcome
@@ -23,17 +23,49 @@ from workbench.store import Store
 SUMMARY_SCHEMA = 1
 
 
+def prepare(out: Path) -> None:
+    """Make the folder and check that it can be written, before anything is computed.
+
+    The summary of an earlier run goes: a run that fails must not leave another one's.
+
+    Raises:
+        DesignError: If a file has that name.
+        StoreError: If the folder cannot be made or written.
+    """
+    if out.exists() and not out.is_dir():
+        raise DesignError(
+            f"{out} is a file, the results need a folder", hint="name another folder", at="--out"
+        )
+    probe = out / ".probe"
+    write_atomically(probe, b"")
+    for stale in (probe, out / "summary.json"):
+        try:
+            stale.unlink(missing_ok=True)
+        except OSError as error:
+            raise StoreError(
+                f"cannot remove {stale}: {error.strerror or error}",
+                hint="remove it yourself, or name another folder",
+                at="--out",
+            ) from error
+
+
 def write_images(out: Path, shot: Shot) -> list[str]:
     """Write `background.png` and `frame_000.png` ...; returns their names in order."""
     names = ["background.png"]
     names += [f"frame_{k:03d}.png" for k in range(len(shot.frames.rgb) - 1)]
-    for stale in out.glob("frame_*.png"):
-        if stale.name not in names:
-            with contextlib.suppress(OSError):
-                stale.unlink()
+    _remove_stale(out, ("frame_*.png",), keep=names)
     for name, rgb in zip(names, shot.frames.rgb, strict=True):
         write_atomically(out / name, png_bytes(rgb))
     return names
+
+
+def _remove_stale(folder: Path, patterns: Iterable[str], *, keep: Container[str]) -> None:
+    """Remove files of an earlier run that this one does not replace."""
+    for pattern in patterns:
+        for path in folder.glob(pattern):
+            if path.name not in keep:
+                with contextlib.suppress(OSError):
+                    path.unlink()
 
 
 def png_bytes(rgb: np.ndarray) -> bytes:
@@ -64,6 +96,7 @@ def write_contact(out: Path, mesh: MembraneMesh, contact: Contact) -> None:
 
 def write_moulds(out: Path, moulds: MouldSet, bundle: Bundle) -> list[dict[str, Any]]:
     """Write every part as STL and STEP, and the assembly as STEP; returns the STL entries."""
+    _remove_stale(out / "moulds", ("*.stl", "*.step"), keep=bundle.files)
     for name, content in bundle.files.items():
         write_atomically(out / "moulds" / name, content.tobytes())
     return [
@@ -129,7 +162,7 @@ def summary_table(
         "schema": SUMMARY_SCHEMA,
         "design": design.name,
         "family": design.family,
-        "device": chosen_device(),
+        "device": contact.device,
         "stages": [
             {"stage": o.stage, "key": o.key, "cached": o.cached, "seconds": o.seconds}
             for o in outcomes

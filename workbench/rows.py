@@ -5,9 +5,12 @@ from __future__ import annotations
 import dataclasses
 import json
 import math
+from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, overload
+
+from workbench.core.errors import WorkbenchError
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -33,19 +36,27 @@ class Row:
     ok: bool = False
 
 
+Measurement = float | Callable[[], float]
+"""A number, or a function that finds it; one that raises a WorkbenchError makes a failed row."""
+
+
 def compared(
     name: str,
     case: str,
-    value: float,
-    reference: float,
+    value: Measurement,
+    reference: Measurement,
     *,
     unit: str,
     limit: float,
     relative: bool = True,
-    null: float | None = None,
+    null: Measurement | None = None,
     ceiling: float | None = None,
 ) -> Row:
     """A value beside its reference; passes when the error is at most `limit`."""
+    try:
+        value, reference, null = _measure(value), _measure(reference), _measure(null)
+    except WorkbenchError as problem:
+        return failed(name, case, unit=unit, why=problem.message)
     error = abs(value - reference) / (abs(reference) if relative else 1.0)
     return Row(
         name=name,
@@ -66,7 +77,7 @@ def compared(
 def bounded(
     name: str,
     case: str,
-    value: float,
+    value: Measurement,
     *,
     unit: str,
     limit: float,
@@ -74,6 +85,10 @@ def bounded(
     null: float | None = None,
 ) -> Row:
     """A value that must stay on one side of a limit."""
+    try:
+        value = _measure(value)
+    except WorkbenchError as problem:
+        return failed(name, case, unit=unit, why=problem.message)
     good = value <= limit if sense == "max" else value >= limit
     return Row(
         name=name,
@@ -87,17 +102,44 @@ def bounded(
     )
 
 
-def failed(name: str, case: str, *, unit: str = "") -> Row:
+@overload
+def _measure(value: Measurement) -> float: ...
+@overload
+def _measure(value: Measurement | None) -> float | None: ...
+def _measure(value: Measurement | None) -> float | None:
+    return value() if callable(value) else value
+
+
+def failed(name: str, case: str, *, unit: str = "", why: str = "") -> Row:
     """A row whose measurement could not be made: never ok."""
-    return Row(name=name, case=case, value=None, unit=unit)
+    return Row(
+        name=name, case=f"{case}; not measured: {why}" if why else case, value=None, unit=unit
+    )
 
 
-Check = Callable[[], Sequence[Row]]
+def gathered(room: str, rows: Callable[[], Sequence[Row]]) -> Sequence[Row]:
+    """The rows of a room, or one failed row where the room could not even begin."""
+    try:
+        return rows()
+    except WorkbenchError as error:
+        return [failed(room, "the whole room", why=error.message)]
 
 
 def as_json(rows: Sequence[Row]) -> str:
-    """The rows as a JSON list; numbers that are not finite become null."""
+    """The rows as a JSON list; numbers that are not finite become null.
+
+    Raises:
+        ValueError: If two rows have the same name and case; who reads them could not tell.
+    """
+    _expect_unique(rows)
     return json.dumps([_plain(dataclasses.asdict(row)) for row in rows], indent=1)
+
+
+def _expect_unique(rows: Sequence[Row]) -> None:
+    counts = Counter((row.name, row.case) for row in rows)
+    twice = [row for row, count in counts.items() if count > 1]
+    if twice:
+        raise ValueError(f"rows with the same name and case: {twice}")
 
 
 def _plain(row: dict[str, Any]) -> dict[str, Any]:
@@ -105,7 +147,12 @@ def _plain(row: dict[str, Any]) -> dict[str, Any]:
 
 
 def as_text(rows: Sequence[Row]) -> str:
-    """The rows as a table for people."""
+    """The rows as a table for people.
+
+    Raises:
+        ValueError: If two rows have the same name and case.
+    """
+    _expect_unique(rows)
     head = ("", "row", "case", "value", "unit", "reference", "null", "error", "limit")
     body = [
         (
