@@ -10,7 +10,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from workbench.core.results import MaterialPoints, MembraneMesh, Skin, VolumeMesh
+from sim.specimens import finger_skin, skins_only
+from workbench.core.results import MaterialPoints, MembraneMesh, Skin
 
 SAMPLES = 4
 """Samples per axis of a sub-cell."""
@@ -37,7 +38,7 @@ def flat_block(
     top = np.stack([u.ravel(), v.ravel(), np.full(u.size, height_mm)], axis=1)
     outer = Skin(points_mm=top, faces=faces, normals=up)
     inner = Skin(points_mm=top * [1.0, 1.0, 0.0], faces=faces, normals=up)
-    return _membrane(outer, inner), fill(distance, low, high, grid_mm)
+    return skins_only(outer=outer, inner=inner, cavity=inner), fill(distance, low, high, grid_mm)
 
 
 def finger(
@@ -60,9 +61,9 @@ def finger(
 
     low = np.array([-radius_mm, -radius_mm, 0.0])
     high = np.array([radius_mm, radius_mm, cylinder_mm + radius_mm])
-    outer = _finger_skin(radius_mm, cylinder_mm, skin_mm)
-    inner = _finger_skin(radius_mm - wall_mm, cylinder_mm, skin_mm)
-    return _membrane(outer, inner), fill(distance, low, high, grid_mm)
+    outer = finger_skin(radius_mm, cylinder_mm, skin_mm)
+    inner = finger_skin(radius_mm - wall_mm, cylinder_mm, skin_mm)
+    return skins_only(outer=outer, inner=inner, cavity=inner), fill(distance, low, high, grid_mm)
 
 
 def fill(distance: Distance, low: np.ndarray, high: np.ndarray, grid_mm: float) -> MaterialPoints:
@@ -94,53 +95,12 @@ def fill(distance: Distance, low: np.ndarray, high: np.ndarray, grid_mm: float) 
     )
 
 
-def grid_faces(rows: int, columns: int, *, closed: bool = False) -> np.ndarray:
-    """Triangles of a (rows + 1) x (columns + 1) vertex grid; `closed` joins the last column."""
-    width = columns if closed else columns + 1
+def grid_faces(rows: int, columns: int) -> np.ndarray:
+    """Triangles of a (rows + 1) x (columns + 1) vertex grid."""
     i, j = np.meshgrid(np.arange(rows), np.arange(columns), indexing="ij")
-    following = (j + 1) % width
-    a, b = i * width + j, (i + 1) * width + j
-    c, d = (i + 1) * width + following, i * width + following
+    a = i * (columns + 1) + j
+    b, d = a + columns + 1, a + 1
+    c = b + 1
     return np.concatenate(
         [np.stack([a, b, c], axis=-1).reshape(-1, 3), np.stack([a, c, d], axis=-1).reshape(-1, 3)]
     ).astype(np.int32)
-
-
-def _finger_skin(radius_mm: float, cylinder_mm: float, skin_mm: float) -> Skin:
-    around = round(2.0 * np.pi * radius_mm / skin_mm)
-    up = round(cylinder_mm / skin_mm)
-    over = round(0.5 * np.pi * radius_mm / skin_mm)
-    polar = np.linspace(0.5 * np.pi, 0.0, over + 1)[1:-1]
-    radius = np.concatenate([np.full(up + 1, radius_mm), radius_mm * np.sin(polar)])
-    height = np.concatenate(
-        [np.linspace(0.0, cylinder_mm, up + 1), cylinder_mm + radius_mm * np.cos(polar)]
-    )
-    azimuth = 2.0 * np.pi * np.arange(around) / around
-    ring = np.stack([np.cos(azimuth), np.sin(azimuth)], axis=-1)
-    points = np.concatenate(
-        [
-            radius[:, None, None] * ring,
-            np.broadcast_to(height[:, None, None], (len(radius), around, 1)),
-        ],
-        axis=-1,
-    ).reshape(-1, 3)
-    apex = len(points)
-    points = np.vstack([points, [0.0, 0.0, cylinder_mm + radius_mm]])
-    faces = grid_faces(len(radius) - 1, around, closed=True)[:, ::-1]
-    last = apex - around + np.arange(around)
-    fan = np.stack([last, np.roll(last, -1), np.full(around, apex)], axis=1)
-    normals = points - np.array([0.0, 0.0, 1.0]) * np.minimum(points[:, 2:], cylinder_mm)
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    return Skin(points_mm=points, faces=np.vstack([faces, fan]).astype(np.int32), normals=normals)
-
-
-def _membrane(outer: Skin, inner: Skin) -> MembraneMesh:
-    hexes = VolumeMesh(
-        points_mm=np.zeros((0, 3)),
-        cells=np.zeros((0, 8), np.int32),
-        labels=np.zeros(0, np.uint8),
-        quality=np.zeros(0, np.float32),
-        layers=0,
-        volume_mm3=0.0,
-    )
-    return MembraneMesh(hexes=hexes, outer=outer, inner=inner, cavity=inner)
