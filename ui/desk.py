@@ -192,6 +192,7 @@ class Desk:
         if distance_mm > AIM_LIMIT_MM:
             x, y, z = (round(float(c), 2) for c in point)
             self.session.change("case.press.target_mm", (x, y, z))
+            self._edited = time.monotonic()
             self.fields.refresh()
             self.log(
                 f"the skin moved {distance_mm:.1f} mm from the target: it is now at {x}, {y}, {z}"
@@ -248,7 +249,9 @@ class Desk:
     def _finish(self, event: Finished) -> None:
         self._running.pop(event.topic, None)
         error = event.error
-        if error is None:
+        if event.superseded:
+            self.log(f"{event.topic}: replaced by a newer request")
+        elif error is None:
             if event.topic != "shape":
                 self.log(f"{event.topic}: finished in {human_seconds(event.seconds)}")
         elif isinstance(error, Cancelled):
