@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from workbench.benchmarks import browser, contact, geometry, optics, pipeline
-from workbench.rows import Row
+from workbench.rows import Row, gathered
 
 PARTS: dict[str, Callable[[], list[Row]]] = {
     "geometry": geometry.rows,
@@ -22,7 +22,7 @@ PARTS: dict[str, Callable[[], list[Row]]] = {
 
 def everything() -> list[Row]:
     """The rows of all rooms."""
-    return [row for rows in PARTS.values() for row in rows()]
+    return [row for room, rows in PARTS.items() for row in gathered(room, rows)]
 
 
 ROOMS = {**PARTS, "all": everything}

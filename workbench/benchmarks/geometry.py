@@ -15,12 +15,16 @@ def rows() -> list[Row]:
     """All rows of the room."""
     from designs.family import resolve_shape
 
-    shape, solid = resolve_shape("finger", {}), finger_solid()
+    shape = resolve_shape("finger", {})
     return [
         timed_row("build", CASE, lambda: build("finger", shape, Layers(), monitor=silent), 0.25),
-        timed_row("mesh", "0.4 mm", lambda: mesh(solid, Meshing(), monitor=silent), 3.0),
-        timed_row("lattice", "0.5 mm", lambda: lattice(solid, 0.5, monitor=silent), 2.0),
+        timed_row("mesh", "0.4 mm", lambda: mesh(finger_solid(), Meshing(), monitor=silent), 3.0),
+        timed_row("lattice", "0.5 mm", lambda: lattice(finger_solid(), 0.5, monitor=silent), 2.0),
         timed_row(
-            "mould", CASE, lambda: mould(solid, MouldOptions(), monitor=silent), 10.0, runs=3
+            "mould",
+            CASE,
+            lambda: mould(finger_solid(), MouldOptions(), monitor=silent),
+            10.0,
+            runs=3,
         ),
     ]

@@ -2,52 +2,60 @@
 
 from __future__ import annotations
 
+import dataclasses
+import functools
 import json
-import os
+import statistics
 import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from workbench.core.design import Layers
-from workbench.core.errors import Cancelled
+from workbench.core.errors import Cancelled, WorkbenchError
 from workbench.rows import Row, bounded
 from workbench.stages import Call
 from workbench.store import Store
 
 DESIGN = 'name = "bench"\nfamily = "finger"\n[optics.camera]\nfov_x_deg = {fov}\n'
+STEPS = {"cold": 100.0, "warm": 100.0, "moved": 90.0}
+"""Horizontal field of view of each run [degree]."""
 
 
 def rows() -> list[Row]:
     """All rows of the room."""
     with tempfile.TemporaryDirectory() as text:
-        folder = Path(text)
-        cold_s, _ = _run(folder, fov=100.0)
-        warm_s, stages = _run(folder, fov=100.0)
-        moved_s, after_move = _run(folder, fov=90.0)
-    redone = [stage for stage, cached in after_move.items() if not cached]
-    return [
-        bounded("demo", "cold, all stages", cold_s, unit="s", limit=120.0),
-        bounded("demo", "nothing changed", warm_s, unit="s", limit=15.0),
-        bounded("demo", "camera moved", moved_s, unit="s", limit=30.0),
-        bounded(
-            "cached_stages",
-            "nothing changed",
-            float(sum(stages.values())),
-            unit="1",
-            limit=len(stages),
-            sense="min",
-        ),
-        bounded(
-            "rerun_stages",
-            f"camera moved: {', '.join(redone)}",
-            float(len(redone)),
-            unit="1",
-            limit=1.0,
-        ),
-        bounded("cancel", "inside a call that does not listen", _cancel_s(), unit="s", limit=3.0),
-    ]
+        # Asked for in this order, each run once: the later ones find what the first one stored.
+        step = functools.cache(lambda name: _run(Path(text), fov=STEPS[name]))
+        return [
+            bounded("demo", "cold, all stages", lambda: step("cold")[0], unit="s", limit=120.0),
+            bounded("demo", "nothing changed", lambda: step("warm")[0], unit="s", limit=15.0),
+            bounded("demo", "camera moved", lambda: step("moved")[0], unit="s", limit=30.0),
+            bounded(
+                "cached_stages",
+                "nothing changed, share of all stages",
+                lambda: statistics.mean(step("warm")[1].values()),
+                unit="1",
+                limit=1.0,
+                sense="min",
+            ),
+            rerun_row(lambda: step("moved")[1]),
+            bounded("cancel", "inside a call that does not listen", _cancel_s, unit="s", limit=3.0),
+        ]
+
+
+def rerun_row(cached: Callable[[], Mapping[str, bool]]) -> Row:
+    """Stages that a camera move ran again: passes for exactly `shoot`, not for any other one."""
+    redone: list[str] = []
+
+    def count() -> float:
+        redone.extend(stage for stage, found in cached().items() if not found)
+        return float(len(redone))
+
+    row = bounded("rerun_stages", "camera moved, shoot and no other", count, unit="1", limit=1.0)
+    return dataclasses.replace(row, ok=row.ok and redone == ["shoot"])
 
 
 def _run(folder: Path, *, fov: float) -> tuple[float, dict[str, bool]]:
@@ -56,8 +64,10 @@ def _run(folder: Path, *, fov: float) -> tuple[float, dict[str, bool]]:
     command = [sys.executable, "-m", "workbench.cli", "run", str(design)]
     command += ["--project", str(folder / "project"), "--out", str(folder / "out")]
     start = time.perf_counter()
-    subprocess.run(command, check=True, capture_output=True, env=os.environ)
+    done = subprocess.run(command, check=False, capture_output=True, text=True)
     seconds = time.perf_counter() - start
+    if done.returncode:
+        raise WorkbenchError(f"workbench run exited with {done.returncode}: {done.stderr[-300:]}")
     summary = json.loads((folder / "out" / "summary.json").read_text())
     return seconds, {s["stage"]: s["cached"] for s in summary["stages"]}
 

@@ -32,7 +32,7 @@ def timed_row(
     name: str, case: str, function: Callable[[], Any], limit_s: float, *, runs: int = RUNS
 ) -> Row:
     """A row with the median time of a call and its limit."""
-    return bounded(name, case, median_s(function, runs=runs), unit="s", limit=limit_s)
+    return bounded(name, case, lambda: median_s(function, runs=runs), unit="s", limit=limit_s)
 
 
 @functools.cache

@@ -15,47 +15,40 @@ ROTATION_LIMIT = 0.02
 """The grid is not isotropic; a quarter-wall grid scatters the force by about 1 %."""
 SETTLED = 5e-3
 """Frames settle to a residual of 1e-3; two of them differ by a few times that."""
+SHEAR_MM = (0.0, 0.5)
 
 
 def rows() -> list[Row]:
     """All rows of the room."""
-    base = finger_press()
-    force_N = float(base.normal_N[-1])
-    double_N = float(finger_press(young_MPa=0.29).normal_N[-1])
-    mirrored = finger_press(azimuth_deg=180.0).reaction_N[-1] * [-1.0, 1.0, 1.0]
-    apart = float(np.linalg.norm(mirrored - base.reaction_N[-1]))
-    smooth = finger_press(friction=0.0)
-    lever = float(np.linalg.norm(smooth.moment_Nmm[-1]) / (3.0 * smooth.normal_N[-1]))
-    sheared = finger_press(shear_mm=(0.0, 0.5))
     found = [
         compared(
             "stiffness_doubled",
             "force at 2 E over force at E",
-            double_N / force_N,
+            lambda: _force_N(young_MPa=0.29) / _force_N(),
             2.0,
             unit="1",
             limit=SETTLED,
             null=1.0,
         ),
-        bounded("mirror", "azimuth 180 against 0", apart / force_N, unit="1", limit=SETTLED),
+        bounded("mirror", "azimuth 180 against 0", _mirror_error, unit="1", limit=SETTLED),
         bounded(
             "moment_of_smooth_sphere",
             "moment about its centre over force times radius",
-            lever,
+            _lever,
             unit="1",
             limit=0.01,
         ),
         bounded(
             "friction_cone",
             "largest pointwise tangential over normal force, mu 0.3, sheared 0.5 mm",
-            float(sheared.friction_ratio.max()),
+            lambda: float(finger_press(shear_mm=SHEAR_MM).friction_ratio.max()),
             unit="1",
             limit=0.3 * (1 + 1e-4),
         ),
         bounded(
             "shear_resists",
             "tangential force against 0.5 mm of shear along V",
-            -float(sheared.reaction_N[-1] @ np.cross(sheared.normal, sheared.tangent_u)),
+            _shear_force_N,
             unit="N",
             limit=0.0,
             sense="min",
@@ -65,11 +58,33 @@ def rows() -> list[Row]:
         compared(
             "rotation",
             f"azimuth {azimuth_deg:g} against 0 degrees",
-            float(finger_press(azimuth_deg=azimuth_deg).normal_N[-1]),
-            force_N,
+            lambda azimuth_deg=azimuth_deg: _force_N(azimuth_deg=azimuth_deg),
+            _force_N,
             unit="N",
             limit=ROTATION_LIMIT,
         )
         for azimuth_deg in (22.5, 37.0)
     ]
     return found
+
+
+def _force_N(*, azimuth_deg: float = 0.0, young_MPa: float = 0.145) -> float:
+    return float(finger_press(azimuth_deg=azimuth_deg, young_MPa=young_MPa).normal_N[-1])
+
+
+def _mirror_error() -> float:
+    """Distance of the mirrored reaction from the other one, over the force [1]."""
+    mirrored = finger_press(azimuth_deg=180.0).reaction_N[-1] * [-1.0, 1.0, 1.0]
+    return float(np.linalg.norm(mirrored - finger_press().reaction_N[-1])) / _force_N()
+
+
+def _lever() -> float:
+    """Moment of a smooth sphere about its centre, over force times radius [1]."""
+    smooth = finger_press(friction=0.0)
+    return float(np.linalg.norm(smooth.moment_Nmm[-1]) / (3.0 * smooth.normal_N[-1]))
+
+
+def _shear_force_N() -> float:
+    """Tangential force that resists a shear along V [N]."""
+    sheared = finger_press(shear_mm=SHEAR_MM)
+    return -float(sheared.reaction_N[-1] @ np.cross(sheared.normal, sheared.tangent_u))
