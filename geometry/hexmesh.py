@@ -57,9 +57,10 @@ def _stack(inside: np.ndarray, outside: np.ndarray, grid: RayGrid, meshing: Mesh
     cells = np.concatenate([grid.quads + level, grid.quads + level + sheet], axis=2)
     cells = cells.reshape(-1, 8)
     quality = scaled_jacobian(points, cells)
-    if quality.min() <= 0.0:
+    good = quality > 0.0
+    if not good.all():
         raise MeshingError(
-            f"{np.count_nonzero(quality <= 0.0)} of {len(quality)} cells are inverted "
+            f"{np.count_nonzero(~good)} of {len(quality)} cells are inverted "
             f"(scaled Jacobian {quality.min():.3f})",
             hint="make the shape smoother or the wall more even",
             at="shape",
