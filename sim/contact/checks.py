@@ -22,6 +22,7 @@ from workbench.core.results import Contact
 BLOCK_HEIGHT_MM = 5.0
 BLOCK_WIDTH_MM = 16.0
 BLOCK_SPHERE_MM = 12.0
+BLOCK_REGION_MM = 11.0
 BLOCK_DEPTHS_MM = (0.3, 0.4, 0.5)
 FINGER_SPHERE_MM = 6.0
 
@@ -64,7 +65,7 @@ def bonded_block_errors(*, grid_mm: float = 0.4, poisson: float = 0.45) -> np.nd
             material,
             Indenter(size_mm=BLOCK_SPHERE_MM),
             Press(target_mm=(0.0, 0.0, BLOCK_HEIGHT_MM), depth_mm=depth_mm, frames=1),
-            ContactSettings(active_radius_mm=9.0),
+            ContactSettings(active_radius_mm=BLOCK_REGION_MM),
         )
         exact_N = bonded_layer_force_N(
             material,
@@ -122,8 +123,8 @@ def finger_45_sheared(*, shear_mm: float = 0.5) -> np.ndarray:
 
 
 def penetration_and_balance(contact: Contact) -> tuple[float, float]:
-    """Deepest overlap in cells, and |reaction - support| over the reaction, of the last frame."""
+    """Deepest overlap in cells, and |reaction - support - cut| / |reaction|, of the last frame."""
     reaction_N = contact.reaction_N[-1]
-    imbalance_N = float(np.linalg.norm(reaction_N - contact.support_N[-1]))
+    imbalance_N = float(np.linalg.norm(reaction_N - contact.support_N[-1] - contact.cut_N[-1]))
     overlap = float(contact.penetration_mm[-1]) / contact.grid_mm
     return overlap, imbalance_N / float(np.linalg.norm(reaction_N))

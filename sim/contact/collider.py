@@ -12,6 +12,9 @@ from workbench.core.press import Indenter
 SAMPLES_PER_CELL = 2.5
 """Distance samples of a mesh per grid cell: h = 0.4 cell loses 0.12 % of the force."""
 
+SHARPEST_MESH_CELLS = 2.4
+"""Least radius taken for a mesh, whose edges are not known, in cells."""
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Collider:
@@ -26,6 +29,8 @@ class Collider:
     """Radius about the origin that holds the whole body."""
     half_height_mm: float
     """Distance from the origin to the lowest point."""
+    least_radius_mm: float
+    """Radius of the sharpest part: the ball or the edge; `SHARPEST_MESH_CELLS` for a mesh."""
 
     def distance(self, position_mm: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Signed distances [mm], (N,), and gradients, (N, 3), at body positions, (N, 3)."""
@@ -47,13 +52,17 @@ def make_collider(indenter: Indenter, *, grid_mm: float) -> Collider:
         size[:3], size[3] = field.origin_mm, 1.0 / field.spacing_mm
         reach_mm = float(np.linalg.norm(indenter.mesh.points_mm, axis=1).max())
         samples = field.coefficients
+        least_radius_mm = SHARPEST_MESH_CELLS * grid_mm
     else:
         size, samples = analytic_size(indenter), np.zeros((1, 1, 1))
-        reach_mm = indenter.size_mm * (0.5 if shape is Shape.SPHERE else 0.5 * 3.0**0.5)
+        ball = shape is Shape.SPHERE
+        reach_mm = indenter.size_mm * (0.5 if ball else 0.5 * 3.0**0.5)
+        least_radius_mm = 0.5 * indenter.size_mm if ball else indenter.edge_radius_mm
     return Collider(
         shape=shape,
         size=size,
         samples=samples,
         reach_mm=reach_mm,
         half_height_mm=half_height_mm(indenter),
+        least_radius_mm=least_radius_mm,
     )

@@ -125,7 +125,6 @@ def _surface_force(
     bonded: ti.template(),
     anchors: ti.template(),
     states: ti.template(),
-    measures: ti.template(),
     poses: ti.template(),
     step,
     shape,
@@ -144,7 +143,6 @@ def _surface_force(
         rotation = _body_rotation(poses, step)
         place = rotation.transpose() @ place
         distance, gradient = signed_distance(place, shape, size, coefficients, counts)
-        ratio = 0.0
         if distance < 0.0:
             anchor = place
             if states[point] == FREE:
@@ -155,12 +153,9 @@ def _surface_force(
                 anchor[c] = anchors[3 * point + c]
             limit = -friction * distance * gradient.norm()
             slip = _tangent_slip(place, gradient, anchor, limit)
-            ratio = slip.norm() / (-distance * gradient.norm())
             force = -stiffness[point] * (rotation @ (distance * gradient + slip))
         elif states[point] == TOUCHED:
             states[point] = FREE
-        measures[2 * point] = distance
-        measures[2 * point + 1] = ratio
     return force
 
 
@@ -177,7 +172,6 @@ def surface_pass(
     bonded: ti.template(),
     anchors: ti.template(),
     states: ti.template(),
-    measures: ti.template(),
     point_forces: ti.template(),
     poses: ti.template(),
     step,
@@ -193,7 +187,7 @@ def surface_pass(
         for point in range(starts[owner], starts[owner + 1]):
             moved = _point_displacement(displacement, rows, weights, cell, point)
             force = _surface_force(
-                point, moved, positions, stiffness, bonded, anchors, states, measures,
+                point, moved, positions, stiffness, bonded, anchors, states,
                 poses, step, shape, size, coefficients, counts, friction,
             )  # fmt: skip
             for c in ti.static(range(3)):
@@ -265,7 +259,6 @@ def substep(
     bonded: Integers,
     anchors: Floats,
     states: Integers,
-    measures: Floats,
     point_forces: Floats,
     poses: Floats,
     size: Floats,
@@ -286,7 +279,7 @@ def substep(
     stress_pass(displacement, rows, volumes, slots, inverse_edge, shear, bulk)
     surface_pass(
         displacement, rows, slots, owners, starts, weights, positions, stiffness, bonded,
-        anchors, states, measures, point_forces, poses, step, shape, size, coefficients,
+        anchors, states, point_forces, poses, step, shape, size, coefficients,
         counts, friction,
     )  # fmt: skip
     node_pass(

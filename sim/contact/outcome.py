@@ -9,6 +9,7 @@ import taichi as ti
 from taichi.lang.impl import current_cfg
 
 from sim.contact.approach import Approach
+from sim.contact.collider import Collider
 from sim.contact.domain import Domain
 from sim.contact.relaxation import Balance, Relaxation
 from workbench.core.frames import quaternion
@@ -16,6 +17,8 @@ from workbench.core.results import Contact, Skin
 
 SLIDING_SHARE = 0.999
 """Share of the friction cone at which a point counts as sliding."""
+LEAST = 1e-12
+"""Guards quotients of vanishing forces and slopes."""
 LEAST_PRESSURE_SHARE = 1e-3
 """Points that carry less than this share of the largest normal force have no friction ratio."""
 
@@ -31,14 +34,30 @@ class FrameOutcome:
     residual: float
     penetration_mm: float
     support_N: np.ndarray
+    cut_N: np.ndarray
     friction_ratio: float
     sliding: np.ndarray
 
 
 def frame_outcome(
-    relaxation: Relaxation, outer: Skin, approach: Approach, balance: Balance, frame: int
+    relaxation: Relaxation,
+    outer: Skin,
+    approach: Approach,
+    balance: Balance,
+    frame: int,
+    *,
+    scale_N: float,
 ) -> FrameOutcome:
-    """Read a settled frame, evaluated at its pose and not yet committed."""
+    """Read a settled frame, evaluated at its pose and not yet committed.
+
+    Args:
+        relaxation: The state.
+        outer: The skin whose displacement and overlap are wanted.
+        approach: The path.
+        balance: Forces of the state.
+        frame: Which frame.
+        scale_N: Force that the residual is relative to, the same as for the stop test.
+    """
     domain = relaxation.domain
     origin, rotation = approach.pose(frame + 1.0)
     nodal = relaxation.displacement().astype(np.float64)
@@ -49,23 +68,22 @@ def frame_outcome(
     open_points = ~domain.points.bonded
     forces = relaxation.point_forces()[open_points].astype(np.float64)
     place = (domain.points.position_mm + point_displacement(domain, nodal))[open_points]
-    distance, ratio = (values[open_points] for values in relaxation.point_measures())
-    friction_ratio, sliding_points = _friction(relaxation, forces, distance, ratio)
+    distance, gradient = relaxation.collider.distance((place - origin) @ rotation)
+    normal = gradient @ rotation.T
+    friction_ratio, sliding_points = _friction(forces, normal, friction=relaxation.friction)
     sliding = np.zeros(len(outer.points_mm), bool)
     sliding[domain.points.vertex[open_points][sliding_points]] = True
-    moved_vertices = outer.points_mm[domain.vertices] + displacement[domain.vertices]
-    vertex_distance, _ = relaxation.collider.distance((moved_vertices - origin) @ rotation)
-    reaction_N = balance.reaction_N
-    fixed_N = -relaxation.node_forces()[domain.fixed].sum(axis=0, dtype=np.float64)
-    scale_N = max(float(np.linalg.norm(reaction_N)), 1e-12)
+    vertex_mm = outer.points_mm + displacement
+    overlap_mm = deepest_overlap_mm(vertex_mm, relaxation.collider, origin, rotation)
     return FrameOutcome(
         displacement_mm=displacement,
-        reaction_N=reaction_N,
+        reaction_N=balance.reaction_N,
         moment_Nmm=-np.cross(place - origin, forces).sum(axis=0),
         indenter_pose=np.concatenate([origin, quaternion(rotation)]),
-        residual=balance.unbalanced_N / scale_N if np.any(reaction_N) else 0.0,
-        penetration_mm=-float(min(distance.min(initial=0.0), vertex_distance.min(initial=0.0))),
-        support_N=balance.bond_N + fixed_N,
+        residual=balance.unbalanced_N / scale_N,
+        penetration_mm=max(overlap_mm, -float(distance.min(initial=0.0))),
+        support_N=balance.bond_N,
+        cut_N=-relaxation.node_forces()[domain.fixed].sum(axis=0, dtype=np.float64),
         friction_ratio=friction_ratio,
         sliding=sliding,
     )
@@ -78,14 +96,30 @@ def point_displacement(domain: Domain, nodal: np.ndarray) -> np.ndarray:
     return np.einsum("pn,pnc->pc", domain.point_weights, nodal[nodes])
 
 
+def deepest_overlap_mm(
+    places_mm: np.ndarray, collider: Collider, origin: np.ndarray, rotation: np.ndarray
+) -> float:
+    """How deep the deepest of some places, (N, 3), lies inside the indenter [mm]; 0 if none."""
+    body = places_mm - origin
+    body = body[np.einsum("nc,nc->n", body, body) < collider.reach_mm**2]
+    distance, _ = collider.distance(body @ rotation)
+    return -float(distance.min(initial=0.0))
+
+
 def _friction(
-    relaxation: Relaxation, forces: np.ndarray, distance: np.ndarray, ratio: np.ndarray
+    forces: np.ndarray, normal: np.ndarray, *, friction: float
 ) -> tuple[float, np.ndarray]:
-    """Largest tangential over normal force, and which points slide."""
+    """Largest tangential over normal force, and which points slide.
+
+    Taken from the forces and the indenter's surface, not from the solver's own return to the cone.
+    """
+    normal = normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), LEAST)
+    pressing = np.einsum("pc,pc->p", forces, normal)
+    aside = np.linalg.norm(forces - pressing[:, None] * normal, axis=1)
     size = np.linalg.norm(forces, axis=1)
-    pressed = (distance < 0) & (size > LEAST_PRESSURE_SHARE * size.max(initial=0.0))
-    largest = float(ratio[pressed].max(initial=0.0))
-    return largest, pressed & (ratio >= SLIDING_SHARE * relaxation.friction)
+    pressed = size > LEAST_PRESSURE_SHARE * size.max(initial=0.0)
+    ratio = aside / np.maximum(pressing, LEAST)
+    return float(ratio[pressed].max(initial=0.0)), pressed & (ratio >= SLIDING_SHARE * friction)
 
 
 def collect(
@@ -109,6 +143,7 @@ def collect(
         residual=stack("residual"),
         penetration_mm=stack("penetration_mm"),
         support_N=stack("support_N"),
+        cut_N=stack("cut_N"),
         friction_ratio=stack("friction_ratio"),
         sliding=stack("sliding"),
         target_mm=approach.target_mm,

@@ -2,7 +2,8 @@
 
 The points are the skin's vertices, each with a third of the area around it: vertices lie on the
 true surface, while centroids of facets sag below it by as much as the allowed overlap. Triangles
-longer than a cell are halved first. A point's spring is penalty * E / grid per area.
+longer than a cell are halved first, and more under a sharp indenter (`refinement`). A point's
+spring is penalty * E / grid per area.
 """
 
 from __future__ import annotations
@@ -37,23 +38,68 @@ class SurfacePoints:
         )
 
 
-def skin_points(
-    skin: Skin, *, stiffness_N_mm3: float, spacing_mm: float, bonded: bool, faces: np.ndarray
-) -> SurfacePoints:
-    """Points at the vertices of some triangles of a skin.
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Facets:
+    """Triangles of a skin, whole or in pieces."""
+
+    points_mm: np.ndarray
+    """Corners [mm], shape (N, 3)."""
+    triangles: np.ndarray
+    """Corners of each triangle, shape (T, 3), int64."""
+    vertex: np.ndarray
+    """Vertex of the skin at or next to each corner, shape (N,)."""
+
+    def corners_mm(self) -> np.ndarray:
+        """Corners of each triangle [mm], shape (T, 3, 3)."""
+        return self.points_mm[self.triangles]
+
+    def longest_edges_mm(self) -> np.ndarray:
+        """Longest edge of each triangle [mm], shape (T,)."""
+        corners = self.corners_mm()
+        return np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).max(axis=1)
+
+    def halve(self, chosen: np.ndarray) -> Facets:
+        """The chosen triangles as four; a midpoint belongs to the first end of its edge.
+
+        Neighbours that are kept whole do not learn of the midpoints: areas stay exact.
+        """
+        triangles = self.triangles[chosen]
+        edges = np.sort(np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2), axis=2)
+        ends, middle = np.unique(edges.reshape(-1, 2), axis=0, return_inverse=True)
+        a, b, c = triangles.T
+        ab, bc, ca = (middle.reshape(-1, 3) + len(self.points_mm)).T
+        pieces = [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)]
+        quarters = [np.stack(piece, axis=1) for piece in pieces]
+        whole = np.delete(self.triangles, chosen, axis=0)
+        return Facets(
+            points_mm=np.concatenate([self.points_mm, self.points_mm[ends].mean(axis=1)]),
+            triangles=np.concatenate([whole, *quarters]),
+            vertex=np.concatenate([self.vertex, self.vertex[ends[:, 0]]]),
+        )
+
+
+def facets_of(skin: Skin, faces: np.ndarray, *, spacing_mm: float) -> Facets:
+    """Some triangles of a skin, by index, halved until most have no longer edge."""
+    facets = Facets(
+        points_mm=skin.points_mm,
+        triangles=skin.faces[faces].astype(np.int64),
+        vertex=np.arange(len(skin.points_mm)),
+    )
+    while len(faces) and np.median(facets.longest_edges_mm()) > spacing_mm:
+        facets = facets.halve(np.arange(len(facets.triangles)))
+    return facets
+
+
+def corner_points(facets: Facets, *, stiffness_N_mm3: float, bonded: bool) -> SurfacePoints:
+    """Points at the corners of triangles.
 
     Args:
-        skin: The surface.
+        facets: The triangles.
         stiffness_N_mm3: Spring per area.
-        spacing_mm: Triangles are halved until most have no longer edge.
         bonded: Whether the points are held.
-        faces: Triangles to use, by index.
     """
-    points, triangles = skin.points_mm, skin.faces[faces].astype(np.int64)
-    vertex = np.arange(len(points))
-    while len(faces) and np.median(_longest_edges(points[triangles])) > spacing_mm:
-        points, triangles, vertex = _halve(points, triangles, vertex)
-    corners = points[triangles]
+    points, triangles = facets.points_mm, facets.triangles
+    corners = facets.corners_mm()
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     third = np.repeat(np.linalg.norm(normal, axis=1) / 6.0, 3)
     area = np.bincount(triangles.ravel(), third, len(points))
@@ -62,27 +108,7 @@ def skin_points(
         position_mm=points[used],
         stiffness_N_mm=stiffness_N_mm3 * area[used],
         bonded=np.full(len(used), bonded),
-        vertex=vertex[used],
-    )
-
-
-def _longest_edges(corners: np.ndarray) -> np.ndarray:
-    return np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).max(axis=1)
-
-
-def _halve(
-    points: np.ndarray, triangles: np.ndarray, vertex: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Each triangle as four; a midpoint is shared and belongs to the first end of its edge."""
-    edges = np.sort(np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2), axis=2)
-    ends, middle = np.unique(edges.reshape(-1, 2), axis=0, return_inverse=True)
-    a, b, c = triangles.T
-    ab, bc, ca = (middle.reshape(-1, 3) + len(points)).T
-    pieces = [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)]
-    return (
-        np.concatenate([points, points[ends].mean(axis=1)]),
-        np.concatenate([np.stack(piece, axis=1) for piece in pieces]),
-        np.concatenate([vertex, vertex[ends[:, 0]]]),
+        vertex=facets.vertex[used],
     )
 
 

@@ -11,12 +11,15 @@ import numpy as np
 
 from sim.contact.approach import Approach
 from sim.contact.collider import Collider
+from workbench.core.errors import DesignError
 from workbench.core.press import ContactSettings
 from workbench.core.results import MembraneMesh
 
 MARGIN_WALLS = 3.4
 """Margin around the patch over the thickness of the wall."""
 LEAST_MARGIN_MM = 4.0
+LEAST_MARGIN_WALLS = 1.5
+"""Margin that a radius chosen by hand must leave around the patch, in walls."""
 POSES = 12
 """Poses of the path at which the patch is looked at."""
 
@@ -28,9 +31,29 @@ def region_radius_mm(
 
     The patch is the part of the undeformed skin inside the indenter anywhere on its path, so any
     shape, shear and twist are covered.
+
+    Raises:
+        DesignError: If the designer's radius leaves less than 1.5 walls around the patch.
     """
-    if settings.active_radius_mm > 0.0:
-        return settings.active_radius_mm
+    to_support = np.linalg.norm(mesh.inner.points_mm - approach.target_mm, axis=1)
+    wall_mm = float(to_support.min())
+    patch_mm = _patch_radius_mm(mesh, approach, collider)
+    chosen_mm = settings.active_radius_mm
+    if chosen_mm == 0.0:
+        return patch_mm + max(LEAST_MARGIN_MM, MARGIN_WALLS * wall_mm)
+    least_mm = patch_mm + LEAST_MARGIN_WALLS * wall_mm
+    if chosen_mm < least_mm:
+        raise DesignError(
+            f"active radius {chosen_mm:g} mm is smaller than the contact: patch and "
+            f"{LEAST_MARGIN_WALLS:g} walls need {least_mm:.1f} mm",
+            hint="raise contact.active_radius_mm, or 0, and the contact patch and the wall decide",
+            at="contact.active_radius_mm",
+        )
+    return chosen_mm
+
+
+def _patch_radius_mm(mesh: MembraneMesh, approach: Approach, collider: Collider) -> float:
+    """Farthest skin vertex from the target that the indenter covers on its path."""
     from_target = np.linalg.norm(mesh.outer.points_mm - approach.target_mm, axis=1)
     patch_mm = 0.0
     count = approach.press.frame_count
@@ -38,5 +61,4 @@ def region_radius_mm(
         origin, rotation = approach.pose(float(progress))
         inside = collider.distance((mesh.outer.points_mm - origin) @ rotation)[0] < 0.0
         patch_mm = max(patch_mm, float(from_target[inside].max(initial=0.0)))
-    to_support = np.linalg.norm(mesh.inner.points_mm - approach.target_mm, axis=1)
-    return patch_mm + max(LEAST_MARGIN_MM, MARGIN_WALLS * float(to_support.min()))
+    return patch_mm

@@ -46,7 +46,8 @@ class Balance:
     @property
     def finite(self) -> bool:
         """Whether no force has overflowed."""
-        return bool(np.isfinite(self.unbalanced_N) and np.isfinite(self.reaction_N).all())
+        forces = [self.unbalanced_N, *self.reaction_N, *self.bond_N, *self.net_N]
+        return bool(np.isfinite(forces).all())
 
 
 class Relaxation:
@@ -84,7 +85,6 @@ class Relaxation:
         self._bonded = _integers(domain.points.bonded)
         self._anchors = _floats(np.zeros(3 * points))
         self._states = _integers(np.zeros(points))
-        self._measures = _floats(np.zeros(2 * points))
         self._point_forces = _floats(np.zeros(3 * points))
         self._poses = _floats(np.zeros(12 * BATCH))
         self._size = _floats(collider.size)
@@ -152,11 +152,6 @@ class Relaxation:
         """Force on the membrane at every surface point [N], shape (P, 3), float32."""
         return self._point_forces.to_numpy().reshape(-1, 3)
 
-    def point_measures(self) -> tuple[np.ndarray, np.ndarray]:
-        """Signed distance [mm] and tangential over normal force of every point, shape (P,)."""
-        distance, ratio = self._measures.to_numpy().reshape(-1, 2).T
-        return distance, ratio
-
     def contact_history(self) -> tuple[np.ndarray, np.ndarray]:
         """Anchors in the body frame [mm], (P, 3), and states, (P,), of all surface points."""
         return self._anchors.to_numpy().reshape(-1, 3), self._states.to_numpy()
@@ -173,7 +168,7 @@ class Relaxation:
             self._displacement, self._velocity, self._forces, self._slots, self._rows,
             self._volumes, self._node_starts, self._node_slots, self._masses, self._fixed,
             self._powers, self._owners, self._owner_starts, self._weights, self._positions,
-            self._stiffness, self._bonded, self._anchors, self._states, self._measures,
+            self._stiffness, self._bonded, self._anchors, self._states,
             self._point_forces, self._poses, self._size, self._coefficients, self._counts,
             step, int(self.collider.shape), int(moving), 1.0 / grid_mm, self._solid.shear_MPa,
             self._solid.bulk_MPa, self.friction, self.mass_scale, self.damping,

@@ -19,9 +19,11 @@ from sim.contact.approach import Approach, plan_approach
 from sim.contact.collider import Collider, make_collider
 from sim.contact.domain import Domain, build_domain
 from sim.contact.outcome import FrameOutcome, collect, frame_outcome
-from sim.contact.quadrature import SurfacePoints, join, merge, skin_points
+from sim.contact.quadrature import corner_points, facets_of, join, merge
+from sim.contact.refinement import LONGEST_EDGE, path_distance_mm, reach_mm, refine
 from sim.contact.region import region_radius_mm
 from sim.contact.relaxation import BATCH, Balance, Relaxation
+from sim.contact.verdict import check_depth, check_frame
 from sim.material import neo_hookean
 from workbench.core.design import Elastomer
 from workbench.core.errors import SolveError
@@ -43,8 +45,6 @@ LEAST_OF_PEAK = 0.01
 PATIENCE = 300
 """Substeps without a lower residual before the fictitious masses are doubled."""
 MOST_RETRIES = 4
-POINT_SPACING = 1.2
-"""Longest edge between surface points, in cells."""
 BOND_PENALTY = 100.0
 """Stiffness of the bond to the support per area, in units of E / grid."""
 
@@ -71,12 +71,15 @@ def press_membrane(
         monitor: Told the frame and residual; raises `Cancelled` to stop.
 
     Raises:
-        DesignError: If the target is off the skin or the indenter cannot be made.
-        SolveError: If a frame does not settle; carries frame, residual and last good frame.
+        DesignError: If the target is off the skin, the indenter cannot be made or would reach the
+            support, or the region is too small.
+        SolveError: If a frame does not settle or is not sound; carries frame, residual and last
+            good frame.
     """
     monitor(0.0, "placing the indenter")
     collider = make_collider(indenter, grid_mm=points.grid_mm)
     approach = plan_approach(mesh.outer, collider, press)
+    check_depth(mesh.inner, approach, collider)
     radius_mm = region_radius_mm(mesh, approach, collider, settings)
     domain = prepare(mesh, points, material, approach, collider, settings, radius_mm=radius_mm)
     relaxation = Relaxation(domain, collider, neo_hookean(material), friction=material.friction)
@@ -84,7 +87,10 @@ def press_membrane(
     outcomes: list[FrameOutcome] = []
     for frame in range(press.frame_count):
         balance = _solve_frame(run, frame)
-        outcomes.append(frame_outcome(relaxation, mesh.outer, approach, balance, frame))
+        scale_N = run.scale_N(balance)
+        outcome = frame_outcome(relaxation, mesh.outer, approach, balance, frame, scale_N=scale_N)
+        check_frame(outcome, relaxation, approach, frame)
+        outcomes.append(outcome)
         relaxation.commit(approach.pose(frame + 1.0))
     monitor(1.0, "settled")
     return collect(
@@ -116,21 +122,15 @@ def prepare(
 
     outer_centre = mesh.outer.points_mm[mesh.outer.faces].mean(axis=1)
     inner_centre = mesh.inner.points_mm[mesh.inner.faces].mean(axis=1)
-    touching = skin_points(
-        mesh.outer,
-        stiffness_N_mm3=settings.penalty * unit,
-        spacing_mm=POINT_SPACING * grid_mm,
-        bonded=False,
-        faces=np.flatnonzero(near(outer_centre)),
-    )
-    bonded = skin_points(
-        mesh.inner,
-        stiffness_N_mm3=BOND_PENALTY * unit,
-        spacing_mm=POINT_SPACING * grid_mm,
-        bonded=True,
-        faces=np.flatnonzero(near(inner_centre)),
-    )
-    touching = touching.take(_within_reach(touching, approach, collider, grid_mm))
+    spacing_mm = LONGEST_EDGE * grid_mm
+    facets = facets_of(mesh.outer, np.flatnonzero(near(outer_centre)), spacing_mm=spacing_mm)
+    facets = refine(facets, approach, collider, grid_mm=grid_mm)
+    touching = corner_points(facets, stiffness_N_mm3=settings.penalty * unit, bonded=False)
+    gap_mm = path_distance_mm(touching.position_mm, approach, collider)
+    # Only points that the indenter comes near get contact springs and their mass.
+    touching = touching.take(gap_mm < reach_mm(approach, grid_mm))
+    facets = facets_of(mesh.inner, np.flatnonzero(near(inner_centre)), spacing_mm=spacing_mm)
+    bonded = corner_points(facets, stiffness_N_mm3=BOND_PENALTY * unit, bonded=True)
     return build_domain(
         mesh,
         points,
@@ -139,20 +139,6 @@ def prepare(
         target_mm=approach.target_mm,
         active_radius_mm=radius_mm,
     )
-
-
-def _within_reach(
-    candidates: SurfacePoints, approach: Approach, collider: Collider, grid_mm: float
-) -> np.ndarray:
-    """Points that the indenter comes near: only they get contact springs and their mass."""
-    press = approach.press
-    reach_mm = 2.0 * grid_mm + 0.5 * press.depth_mm + 0.5 * math.hypot(*press.shear_mm)
-    nearest = np.full(len(candidates.vertex), np.inf)
-    for progress in np.linspace(0.0, press.frame_count, min(press.frame_count, 12) + 1):
-        origin, rotation = approach.pose(float(progress))
-        place = (candidates.position_mm - origin) @ rotation
-        nearest = np.minimum(nearest, collider.distance(place)[0])
-    return nearest < reach_mm
 
 
 @dataclass(kw_only=True, slots=True)
@@ -232,6 +218,13 @@ def _ramp(run: _Run, frame: int, *, short: bool, gentler: int) -> None:
         run.monitor(frame / press.frame_count, f"frame {frame + 1} of {press.frame_count}")
 
 
+def _balanced(run: _Run, balance: Balance) -> bool:
+    """Whether residual and net force are within their tolerances."""
+    scale_N = run.scale_N(balance)
+    net_N = float(np.linalg.norm(balance.net_N))
+    return balance.unbalanced_N < run.settings.tolerance * scale_N and net_N < NET_FORCE * scale_N
+
+
 def _settle(run: _Run, frame: int) -> Balance | None:
     """Relax at the pose of a frame until forces balance; None if they overflow."""
     relaxation, settings, press = run.relaxation, run.settings, run.approach.press
@@ -247,9 +240,13 @@ def _settle(run: _Run, frame: int) -> Balance | None:
         residual = balance.unbalanced_N / scale_N
         change = float(np.linalg.norm(balance.reaction_N - before_N)) / scale_N
         before_N = balance.reaction_N
-        net = float(np.linalg.norm(balance.net_N)) / scale_N
-        if residual < settings.tolerance and change < FORCE_CHANGE and net < NET_FORCE:
-            return relaxation.evaluate(pose)
+        if change < FORCE_CHANGE and _balanced(run, balance):
+            # The balance is from before the last move: what counts is where the nodes are now.
+            final = relaxation.evaluate(pose)
+            if not (final.finite and np.isfinite(relaxation.displacement()).all()):
+                return None
+            if _balanced(run, final):
+                return final
         if residual < lowest:
             lowest, lowest_at = residual, spent
         elif spent - lowest_at > PATIENCE and run.retries < MOST_RETRIES:

@@ -53,7 +53,7 @@ def test_region_follows_size_and_shear() -> None:
     assert radius_mm(Indenter(size_mm=20.0), press) > small + 1.0
     sheared = checks.at_45_degrees(shear_mm=(0.0, 3.0))
     assert radius_mm(Indenter(size_mm=4.0), sheared) > small + 2.0
-    assert radius_mm(Indenter(), press, fixed_mm=5.0) == 5.0
+    assert radius_mm(Indenter(), press, fixed_mm=6.0) == 6.0
 
 
 def test_region_without_touch_is_the_margin() -> None:

@@ -19,7 +19,7 @@ pytestmark = pytest.mark.usefixtures("taichi_device")
 
 BLOCK = flat_block(width_mm=10.0, height_mm=2.0, grid_mm=0.5, skin_mm=0.4)
 PRESS = Press(target_mm=(0.0, 0.0, 2.0), depth_mm=0.4, frames=2)
-SETTINGS = ContactSettings(active_radius_mm=5.0)
+SETTINGS = ContactSettings(active_radius_mm=6.0)
 
 
 def press_block(
@@ -76,7 +76,7 @@ def test_pressing_pushes_the_indenter_out(pressed: Contact) -> None:
 
 def test_nothing_moves_outside_the_active_region(pressed: Contact) -> None:
     """Vertices whose cell is out of reach have a displacement of exactly 0."""
-    outside = np.linalg.norm(BLOCK[0].outer.points_mm - [0.0, 0.0, 2.0], axis=1) > 5.5
+    outside = np.linalg.norm(BLOCK[0].outer.points_mm - [0.0, 0.0, 2.0], axis=1) > 6.5
     assert outside.any()
     assert not pressed.displacement_mm[:, outside].any()
 
@@ -101,10 +101,11 @@ def test_friction_cone_holds_at_every_point() -> None:
 
 
 def test_frictionless_contact_has_no_tangential_force() -> None:
-    """With mu = 0 the pointwise ratio is exactly 0 and the twisted sphere feels no moment."""
+    """With mu = 0 the pointwise ratio is 0 to rounding and the twisted sphere feels no moment."""
     press = dataclasses.replace(PRESS, twist_deg=30.0, frames=1)
     contact = press_block(press, friction=0.0)
-    assert contact.friction_ratio.max() == 0.0
+    # Forces are in single precision and normals come from places in single precision.
+    assert contact.friction_ratio.max() < 1e-5
     assert np.abs(contact.moment_Nmm[-1]).max() < 1e-3
 
 

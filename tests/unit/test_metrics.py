@@ -54,6 +54,7 @@ def make_contact(displacement: np.ndarray) -> Contact:
         residual=np.full(frames, 1e-4),
         penetration_mm=np.full(frames, 0.002),
         support_N=force,
+        cut_N=np.zeros((frames, 3)),
         friction_ratio=np.zeros(frames),
         sliding=np.zeros((frames, vertices), dtype=bool),
         target_mm=np.array([15.0, 0.0, 22.0]),

@@ -144,11 +144,16 @@ class Contact:
     indenter_pose: np.ndarray
     """x, y, z [mm], qw, qx, qy, qz of the indenter's body frame, shape (K, 7), float64."""
     residual: np.ndarray
-    """Out-of-balance force over the reaction, shape (K,), float64."""
+    """Out-of-balance force over the larger of reaction and 1 % of the peak reaction, shape (K,)."""
     penetration_mm: np.ndarray
     """Deepest overlap of skin and indenter [mm], shape (K,), float64."""
     support_N: np.ndarray
     """Force of the rigid support on the membrane [N], shape (K, 3), float64."""
+    cut_N: np.ndarray
+    """Force of elastomer left out of the region on the part that took part [N], shape (K, 3).
+
+    reaction = support + cut, to within the residual.
+    """
     friction_ratio: np.ndarray
     """Largest pointwise tangential over normal contact force, shape (K,), float64."""
     sliding: np.ndarray
