@@ -2,13 +2,25 @@
 
 from __future__ import annotations
 
+import errno
 import json
+import os
+import signal
 import socket
+import subprocess
+import sys
+import tomllib
 from pathlib import Path
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
+from workbench import bench, doctor, outputs, validate
+from workbench.benchmarks.pipeline import rerun_row
 from workbench.cli import main, parser, press_case
+from workbench.core.errors import SolveError
+from workbench.rows import Row, as_json, as_text, bounded, compared, failed
 
 
 def run(tmp_path: Path, *words: str) -> int:
@@ -110,3 +122,219 @@ def test_ctrl_c_exits_130(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setattr("workbench.project.presets", interrupted)
     assert run(tmp_path, "presets") == 130
     assert not (tmp_path / "p" / "crash").exists()
+
+
+def test_crash_file_that_cannot_be_written_keeps_the_traceback(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """With a project folder that is a file the bug itself is still what one reads."""
+
+    def broken() -> None:
+        raise ZeroDivisionError("bug")
+
+    (tmp_path / "p").write_text("a file")
+    monkeypatch.setattr("workbench.project.presets", broken)
+    assert run(tmp_path, "presets") == 1
+    assert "ZeroDivisionError: bug" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "problem", [MemoryError(), OSError(errno.ENOSPC, "No space left on device")], ids=repr
+)
+def test_full_memory_and_disk_exit_3(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    problem: Exception,
+) -> None:
+    """Neither is a bug: one message, exit code 3, no crash file."""
+
+    def exhausted() -> None:
+        raise problem
+
+    monkeypatch.setattr("workbench.project.presets", exhausted)
+    assert run(tmp_path, "presets") == 3
+    assert capsys.readouterr().err.startswith("error: ")
+    assert not (tmp_path / "p" / "crash").exists()
+
+
+def test_termination_exits_130(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """SIGTERM is Ctrl-C, and the handler of before is back afterwards."""
+    before = signal.getsignal(signal.SIGTERM)
+    monkeypatch.setattr("workbench.project.presets", lambda: signal.raise_signal(signal.SIGTERM))
+    assert run(tmp_path, "presets") == 130
+    assert signal.getsignal(signal.SIGTERM) is before
+
+
+@pytest.mark.parametrize("ok", [True, False])
+def test_closed_reader_changes_no_exit_code(tmp_path: Path, ok: bool) -> None:
+    """Rows printed to a closed pipe still exit 0 or 1, and Python adds no complaint at exit."""
+    code = (
+        "import sys, workbench.validate; from workbench.cli import main;"
+        "from workbench.rows import bounded;"
+        f"row = bounded('r', 'c', {0 if ok else 2}.0, unit='1', limit=1.0);"
+        "workbench.validate.ROOMS['one'] = lambda: [row];"
+        f"sys.exit(main(['validate', '--project', {str(tmp_path)!r}, 'one', '--json']))"
+    )
+    reader, writer = os.pipe()
+    os.close(reader)
+    try:
+        command = [sys.executable, "-c", code]
+        done = subprocess.run(
+            command, stdout=writer, stderr=subprocess.PIPE, text=True, check=False
+        )
+    finally:
+        os.close(writer)
+    assert (done.returncode, done.stderr) == (0 if ok else 1, "")
+
+
+def test_output_folder_is_probed_before_anything_is_computed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A file in the way exits 2, a folder below a file exits 3; no stage has begun."""
+
+    def computed(*args: object, **keywords: object) -> None:
+        raise AssertionError("a stage ran")
+
+    monkeypatch.setattr("workbench.pipeline.evaluate", computed)
+    file = tmp_path / "file"
+    file.write_text("mine")
+    assert run(tmp_path, "run", "geltip", "--out", str(file)) == 2
+    assert "is a file" in capsys.readouterr().err
+    assert run(tmp_path, "run", "geltip", "--out", str(file / "out")) == 3
+    assert "cannot write" in capsys.readouterr().err
+    assert file.read_text() == "mine"
+
+
+def test_failed_run_leaves_no_summary_of_an_earlier_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """After exit 3 the folder has no summary.json, and nothing of the probe."""
+
+    def unsettled(*args: object, **keywords: object) -> None:
+        raise SolveError("did not settle")
+
+    monkeypatch.setattr("workbench.pipeline.evaluate", unsettled)
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "summary.json").write_text("{}")
+    assert run(tmp_path, "run", "geltip", "--out", str(out)) == 3
+    assert list(out.iterdir()) == []
+
+
+def test_parts_of_another_mould_are_removed(tmp_path: Path) -> None:
+    """moulds/ holds the files of this run and what is not ours, nothing of the one before."""
+    moulds = tmp_path / "moulds"
+    moulds.mkdir()
+    for name in ("old.stl", "old.step", "mine.txt"):
+        (moulds / name).write_text("old")
+    bundle = SimpleNamespace(files={"half_a.stl": np.zeros(3, np.uint8)})
+    outputs.write_moulds(tmp_path, SimpleNamespace(parts=()), bundle)  # type: ignore[arg-type]
+    assert sorted(path.name for path in moulds.iterdir()) == ["half_a.stl", "mine.txt"]
+
+
+def unmeasurable() -> float:
+    raise SolveError("did not settle")
+
+
+def test_row_that_cannot_be_measured_fails_alone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Value null and ok false for it, the other row as measured, valid JSON, exit 1."""
+    rows = [
+        compared("a", "x", unmeasurable, 1.0, unit="N", limit=0.1),
+        bounded("b", "x", unmeasurable, unit="N", limit=0.1),
+        compared("c", "x", lambda: 1.05, lambda: 1.0, unit="N", limit=0.1),
+    ]
+    monkeypatch.setitem(validate.ROOMS, "fem", lambda: rows)
+    assert run(tmp_path, "validate", "fem", "--json") == 1
+    printed = json.loads(capsys.readouterr().out)
+    assert [(row["value"], row["ok"]) for row in printed] == [
+        (None, False),
+        (None, False),
+        (1.05, True),
+    ]
+    assert all("did not settle" in row["case"] for row in printed[:2])
+    assert run(tmp_path, "validate", "fem") == 1
+
+
+@pytest.mark.parametrize("command", ["validate", "bench"])
+def test_room_that_cannot_begin_is_a_failed_row(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    command: str,
+) -> None:
+    """Still a JSON list, with one row that is not ok."""
+    rooms = {"validate": validate.ROOMS, "bench": bench.ROOMS}[command]
+    monkeypatch.setitem(rooms, "contact", unmeasurable)
+    assert run(tmp_path, command, "contact", "--json") == 1
+    (row,) = json.loads(capsys.readouterr().out)
+    assert (row["name"], row["value"], row["ok"]) == ("contact", None, False)
+
+
+@pytest.mark.parametrize("show", [as_json, as_text])
+def test_rows_are_told_apart_by_name_and_case(show: object) -> None:
+    """Two rows of one name and case are refused."""
+    with pytest.raises(ValueError, match="same name and case"):
+        show([failed("a", "x"), failed("a", "x")])  # type: ignore[operator]
+
+
+@pytest.mark.parametrize(
+    ("redone", "ok"), [(["shoot"], True), (["press"], False), ([], False), (["press", "shoot"], 0)]
+)
+def test_camera_move_may_rerun_shoot_only(redone: list[str], ok: bool) -> None:
+    """One other stage, none, or two do not pass; the case never changes."""
+    cached = {stage: stage not in redone for stage in ("build", "press", "shoot")}
+    row: Row = rerun_row(lambda: cached)
+    assert row.ok is bool(ok)
+    assert row.case == rerun_row(lambda: {}).case
+    assert row.value == len(redone)
+
+
+def test_doctor_knows_every_dependency() -> None:
+    """What pyproject.toml requires is in one of doctor's lists."""
+    text = (Path(__file__).parents[2] / "pyproject.toml").read_text()
+    wanted = {
+        line.split(">")[0].split("=")[0] for line in tomllib.loads(text)["project"]["dependencies"]
+    }
+    assert wanted <= {*doctor.REQUIRED, *doctor.OPTIONAL}
+
+
+def test_doctor_finds_an_unusable_project(tmp_path: Path) -> None:
+    """A file, and a folder below a file, are not healthy; a folder that can be made is."""
+    file = tmp_path / "file"
+    file.write_text("")
+    assert doctor.report(tmp_path / "new" / "project")[1]
+    for project in (file, file / "below"):
+        lines, healthy = doctor.report(project)
+        assert not healthy
+        assert any(doctor.UNUSABLE in line for line in lines)
+
+
+def test_doctor_reports_a_missing_device(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """WORKBENCH_DEVICE=cuda without one is a line of the report, exit 3."""
+    monkeypatch.setenv("WORKBENCH_DEVICE", "cuda")
+    monkeypatch.setattr("workbench.devices.cuda_count", lambda: 0)
+    assert run(tmp_path, "doctor") == 3
+    printed = capsys.readouterr().out
+    assert "0 CUDA devices" in printed
+    assert "viser" in printed
+
+
+def test_summary_names_the_device_that_computed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A contact stored by a GPU is not called a CPU result on another day."""
+    contact = SimpleNamespace(device="cuda")
+    shot = SimpleNamespace(metrics=SimpleNamespace(values={}))
+    store = SimpleNamespace(
+        load=lambda stage, key: {"press": contact, "shoot": shot}[stage],
+        entry=lambda stage, key: SimpleNamespace(seconds=1.0),
+    )
+    monkeypatch.setenv("WORKBENCH_DEVICE", "cpu")
+    monkeypatch.setattr(outputs, "contact_summary", lambda *args: {})
+    calls = {name: SimpleNamespace(key="k") for name in ("press", "shoot")}
+    design = SimpleNamespace(name="n", family="f")
+    summary = outputs.summary_table(design, None, store, calls, [])  # type: ignore[arg-type]
+    assert summary["device"] == "cuda"
