@@ -279,13 +279,13 @@ def test_full_disk_during_a_stage_keeps_the_stages_before(
 ) -> None:
     """`shoot` cannot be stored: exit 3, no half-written folder, the press stays cached."""
 
-    def full(descriptor: int) -> None:
+    def full(path: Path, write: Any) -> None:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     wider = tmp_path / "wider.toml"
     wider.write_text(coarse.read_text() + "fov_x_deg = 90.0\n")
     with monkeypatch.context() as patch:
-        patch.setattr(os, "fsync", full)
+        patch.setattr("workbench.store._write", full)
         failed = workbench("run", wider, *OPTIONS, "--out", tmp_path / "out")
     assert failed.code == 3
     assert "is full" in failed.stderr.splitlines()[0]
