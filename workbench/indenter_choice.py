@@ -33,6 +33,9 @@ def choose_indenter(
     primitives = [k.value for k in IndenterKind if k is not IndenterKind.MESH]
     if kind in primitives:
         size = DEFAULT_SIZE_MM if size_mm is None else size_mm
+        if kind == IndenterKind.SPHERE:
+            # It has no edge; a value here would only split one press into two keys.
+            return Indenter(kind=IndenterKind.SPHERE, size_mm=size)
         edge = min(DEFAULT_EDGE_RADIUS_MM, size / 4) if edge_radius_mm is None else edge_radius_mm
         return Indenter(kind=IndenterKind(kind), size_mm=size, edge_radius_mm=max(edge, 0.0))
     if name.lower().endswith(".stl") or Path(name).exists():
