@@ -8,6 +8,7 @@ place. Results travel through the store, never through the pipe.
 
 from __future__ import annotations
 
+import contextlib
 import importlib
 import itertools
 import multiprocessing
@@ -21,8 +22,10 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
+from workbench.core.design import Elastomer
 from workbench.core.errors import Cancelled, LaneError, WorkbenchError
-from workbench.core.monitor import Monitor
+from workbench.core.monitor import Monitor, silent
+from workbench.core.press import ContactSettings, Indenter, Press
 from workbench.stages import STAGES, Call, Outcome, run
 from workbench.store import Store
 
@@ -35,6 +38,8 @@ WARM_UP = {
     "sim": ("sim.contact.solver", "sim.optics.render", "embreex", "scipy.ndimage"),
 }
 """What each lane imports before its first job, so that the first click is warm."""
+IDLE_S = 3.0
+"""A simulation lane without a job for so long gets ready for its first press [s]."""
 
 
 class Lane:
@@ -180,6 +185,8 @@ def _serve(name: str, modules: Sequence[str], root: Path, pipe: Connection, canc
     _follow_parent()
     unready = _warm_up(name, modules)
     store = Store(root)
+    if name == "sim" and unready is None and not pipe.poll(IDLE_S):
+        _rehearse()
     while True:
         try:
             number, call = pipe.recv()
@@ -204,6 +211,18 @@ def _warm_up(name: str, modules: Sequence[str]) -> LaneError | None:
                 at=name,
             )
     return None
+
+
+def _rehearse() -> None:
+    """Press a small block: loading the solver's kernels takes seconds that no designer need see."""
+    from sim.contact.specimens import flat_block
+    from workbench.stages import press
+
+    block = flat_block(width_mm=8.0, height_mm=2.0, grid_mm=0.5)
+    path = Press(target_mm=(0.0, 0.0, 2.0), depth_mm=0.05, frames=1)
+    # What fails here fails again in the first press, which reports it.
+    with contextlib.suppress(WorkbenchError, RuntimeError):
+        press(*block, Elastomer(), Indenter(), path, ContactSettings(), monitor=silent)
 
 
 def _answer(store: Store, call: Call, monitor: Monitor) -> tuple[str, Any]:

@@ -215,3 +215,18 @@ def _alive(pid: int) -> bool:
         return False
     os.kill(pid, 0)
     return state != "Z"
+
+
+@pytest.mark.slow
+def test_rehearsal_is_a_press_that_settles(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The block pushes back, so the kernels loaded are those of a real press."""
+    pressed: list[Any] = []
+    real = stages.press
+
+    def recorded(*inputs: Any, monitor: Any) -> Any:
+        pressed.append(real(*inputs, monitor=monitor))
+
+    monkeypatch.setattr(stages, "press", recorded)
+    lanes._rehearse()
+    (contact,) = pressed
+    assert contact.normal_N[-1] > 0
