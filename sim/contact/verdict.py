@@ -48,7 +48,7 @@ def check_depth(inner: Skin, approach: Approach, collider: Collider) -> None:
             fits_mm = middle_mm
     raise DesignError(
         f"at a depth of {press.depth_mm:g} mm the indenter reaches the support; the largest depth "
-        f"that fits is {math.floor(100.0 * fits_mm) / 100.0:.2f} mm",
+        f"that fits is {math.floor(10.0 * fits_mm) / 10.0:.1f} mm",
         hint="lower press.depth_mm or raise layers.elastomer_mm",
         at="press.depth_mm",
     )

@@ -11,6 +11,7 @@ from sim.contact.collider import make_collider
 from sim.contact.region import MARGIN_WALLS, region_radius_mm
 from sim.contact.solver import press_membrane
 from workbench.core.design import Elastomer
+from workbench.core.errors import DesignError
 from workbench.core.press import ContactSettings, Indenter, IndenterKind, Press
 
 
@@ -61,3 +62,12 @@ def test_region_without_touch_is_the_margin() -> None:
     press = checks.at_45_degrees(depth_mm=0.0)
     # The nearest skin vertices lie up to half a millimetre beside the target.
     assert radius_mm(Indenter(), press) == pytest.approx(MARGIN_WALLS * 2.0, abs=0.5)
+
+
+def test_region_smaller_than_the_contact_is_refused() -> None:
+    """A flat end 20 mm wide cannot be solved within 6 mm; value, limit and remedy are told."""
+    end = Indenter(kind=IndenterKind.CYLINDER_END, size_mm=20.0)
+    with pytest.raises(DesignError, match=r"active radius 6 mm .* need \d+\.\d mm") as raised:
+        radius_mm(end, checks.at_45_degrees(), fixed_mm=6.0)
+    assert raised.value.at == "contact.active_radius_mm"
+    assert "or 0" in raised.value.hint

@@ -3,13 +3,14 @@
 import numpy as np
 import pytest
 
-from sim.contact.approach import plan_approach
+from sim.contact.approach import first_touch, plan_approach
 from sim.contact.checks import at_45_degrees
 from sim.contact.collider import make_collider
 from sim.contact.specimens import finger, flat_block
 from workbench.core.errors import DesignError
 from workbench.core.frames import quaternion
 from workbench.core.press import Indenter, IndenterKind, Press
+from workbench.core.results import Skin
 
 BLOCK, _ = flat_block(width_mm=16.0, height_mm=4.0, grid_mm=1.0)
 FINGER, _ = finger(grid_mm=2.0, cylinder_mm=27.0)
@@ -85,3 +86,27 @@ def test_path_presses_then_shears_and_twists() -> None:
     np.testing.assert_allclose(
         quaternion(rotation), [np.cos(np.pi / 12), 0.0, 0.0, np.sin(np.pi / 12)], atol=1e-12
     )
+
+
+def test_object_that_passes_beside_the_skin_is_refused() -> None:
+    """A ball 1 mm beside the edge of a block 16 mm wide never touches, near or far."""
+    collider = make_collider(Indenter(), grid_mm=0.5)
+    for beside_mm in (4.0, 40.0):
+        target = np.array([8.0 + beside_mm, 0.0, 4.0])
+        with pytest.raises(DesignError, match="passes beside the skin") as raised:
+            first_touch(BLOCK.outer, collider, target, np.eye(3))
+        assert raised.value.at == "press.target_mm"
+
+
+def test_object_that_meets_an_overhang_first_is_refused() -> None:
+    """A plate 20 mm above the target and 2 mm aside stops the ball; the limit is 3 + 3 mm."""
+    plate = BLOCK.outer.points_mm * [0.1, 0.1, 0.0] + [2.0, 0.0, 24.0]
+    both = Skin(
+        points_mm=np.vstack([BLOCK.outer.points_mm, plate]),
+        faces=np.vstack([BLOCK.outer.faces, BLOCK.outer.faces + len(plate)]),
+        normals=np.vstack([BLOCK.outer.normals] * 2),
+    )
+    collider = make_collider(Indenter(), grid_mm=0.5)
+    with pytest.raises(DesignError, match=r"elsewhere first, 20\..* limit is 6\.0 mm") as raised:
+        plan_approach(both, collider, Press(target_mm=(0.0, 0.0, 4.0)))
+    assert raised.value.at == "press.target_mm"
