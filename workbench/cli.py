@@ -36,6 +36,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     words = list(sys.argv[1:] if arguments is None else arguments)
     options = parser().parse_args(_join_negative(words))
     project = Project(options.project)
+    # Taichi greets on stdout when it is imported, which belongs to the answer (`--json`).
+    os.environ.setdefault("ENABLE_TAICHI_HEADER_PRINT", "0")
     as_json = getattr(options, "json", False)
     try:
         with _terminable():

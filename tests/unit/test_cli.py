@@ -338,3 +338,14 @@ def test_summary_names_the_device_that_computed(monkeypatch: pytest.MonkeyPatch)
     design = SimpleNamespace(name="n", family="f")
     summary = outputs.summary_table(design, None, store, calls, [])  # type: ignore[arg-type]
     assert summary["device"] == "cuda"
+
+
+def test_solver_import_prints_nothing_into_the_answer(tmp_path: Path) -> None:
+    """A room that imports Taichi before it opens a device still prints JSON and nothing else."""
+    code = (
+        "import sys, workbench.validate; from workbench.cli import main;"
+        "workbench.validate.ROOMS['one'] = lambda: __import__('taichi') and [];"
+        f"sys.exit(main(['validate', '--project', {str(tmp_path)!r}, 'one', '--json']))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert json.loads(done.stdout) == []
