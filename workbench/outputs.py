@@ -87,6 +87,7 @@ def write_contact(out: Path, mesh: MembraneMesh, contact: Contact) -> None:
         indenter_pose=contact.indenter_pose,
         moment_Nmm=contact.moment_Nmm,
         support_N=contact.support_N,
+        cut_N=contact.cut_N,
         residual=contact.residual,
         penetration_mm=contact.penetration_mm,
         sliding=contact.sliding,
@@ -138,13 +139,14 @@ def contact_summary(contact: Contact, path: Press, seconds: float) -> dict[str, 
 
 
 def force_balance(contact: Contact) -> float:
-    """|reaction - support| over |reaction| of the last frame: 0 in exact equilibrium.
+    """What is missing between reaction, support and left-out elastomer, over the reaction.
 
-    The support pushes the membrane toward the indenter, so both forces are equal.
+    The support, and the elastomer beyond the region that took part, push the membrane toward the
+    indenter; in exact equilibrium of the last frame both together equal the reaction.
     """
-    reaction, support = contact.reaction_N[-1], contact.support_N[-1]
+    reaction, held = contact.reaction_N[-1], contact.support_N[-1] + contact.cut_N[-1]
     size = float(np.linalg.norm(reaction))
-    return float(np.linalg.norm(reaction - support)) / size if size else 0.0
+    return float(np.linalg.norm(reaction - held)) / size if size else 0.0
 
 
 def summary_table(

@@ -14,6 +14,7 @@ from viser import uplot
 from ui.desk import Desk
 from ui.imaging import difference, legend, placeholder
 from workbench.core.results import Contact, Shot
+from workbench.outputs import force_balance
 
 FRAME_S = 0.15
 """Time between frames while playing [s]."""
@@ -144,12 +145,11 @@ class ResultsPanel:
         depth_mm = np.r_[0.0, path.depth_mm * np.arange(1, count + 1) / count]
         self.plot.data = (depth_mm, np.r_[0.0, contact.normal_N[:count]])
         x, y, z = contact.reaction_N[-1]
-        balance = contact.reaction_N[-1] - contact.support_N[-1]
-        share = np.linalg.norm(balance) / max(np.linalg.norm(contact.reaction_N[-1]), 1e-12)
         self.forces = (
             f"**{contact.normal_N[-1]:.3f} N** along the normal\n\n"
             f"on the object: x {x:.3f} · y {y:.3f} · z {z:.3f} N\n\n"
-            f"residual {contact.residual.max():.1e} · force balance {100 * share:.2f} % · "
+            f"residual {contact.residual.max():.1e} · force balance "
+            f"{100 * force_balance(contact):.2f} % · "
             f"friction ratio ≤ {contact.friction_ratio.max():.3f}"
         )
         self.force_text.content = self.forces

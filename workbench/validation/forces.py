@@ -16,16 +16,20 @@ ROTATION_LIMIT = 0.02
 SETTLED = 5e-3
 """Frames settle to a residual of 1e-3; two of them differ by a few times that."""
 SHEAR_MM = (0.0, 0.5)
+FEM_SHEAR_N = 0.2669
+"""Recorded with the finite-element figures of the room `fem`; CalculiX gives 0.2746 N."""
+SHEAR_LIMIT = 0.1
+"""A grid of a quarter wall and one frame of shear read up to 7 % low."""
 
 
 def rows() -> list[Row]:
     """All rows of the room."""
     found = [
         compared(
-            "stiffness_doubled",
-            "force at 2 E over force at E",
-            lambda: _force_N(young_MPa=0.29) / _force_N(),
-            2.0,
+            "stiffness_tripled",
+            "force at 3 E over force at E",
+            lambda: _force_N(young_MPa=0.435) / _force_N(),
+            3.0,
             unit="1",
             limit=SETTLED,
             null=1.0,
@@ -45,13 +49,14 @@ def rows() -> list[Row]:
             unit="1",
             limit=0.3 * (1 + 1e-4),
         ),
-        bounded(
-            "shear_resists",
-            "tangential force against 0.5 mm of shear along V",
+        compared(
+            "shear_force",
+            "tangential force at 0.5 mm of shear along V, against recorded FEM (0.3 mm hexahedra)",
             _shear_force_N,
+            FEM_SHEAR_N,
             unit="N",
-            limit=0.0,
-            sense="min",
+            limit=SHEAR_LIMIT,
+            null=0.0,
         ),
     ]
     found += [

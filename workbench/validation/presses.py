@@ -37,6 +37,7 @@ def finger_press(
     shear_mm: tuple[float, float] = (0.0, 0.0),
     grid_mm: float = 0.5,
     friction: float = 0.3,
+    region_mm: float = REGION_MM,
 ) -> Contact:
     """The press `finger_45` of the validation, varied."""
     return press(
@@ -45,6 +46,6 @@ def finger_press(
         Elastomer(young_MPa=young_MPa, friction=friction),
         Indenter(size_mm=6.0),
         Press(target_mm=tip_target(45.0, azimuth_deg), shear_mm=shear_mm, frames=1),
-        ContactSettings(grid_mm=grid_mm, active_radius_mm=REGION_MM),
+        ContactSettings(grid_mm=grid_mm, active_radius_mm=region_mm),
         monitor=silent,
     )
