@@ -65,6 +65,8 @@ class Desk:
         self.scene = Scene(server, fast=fast, on_aim=self.guarded(self._aim))
         self.fields = Fields(server, self.read, self.edit)
         self.panels: list[Panel] = []
+        self.put_mould_away: Callable[[], None] = lambda: None
+        """Set by the panel that shows the mould."""
         self.log_lines: list[str] = []
         self.frame = 0
         self._edited: float | None = None
@@ -121,7 +123,12 @@ class Desk:
                 return
             self.fields.clear_complaints()
             self.banner.visible = False
+            if not path.startswith("design.mould"):
+                self.put_mould_away()
             self.changed()
+            if path.startswith("design.optics"):
+                # The pressed skin is opaque; the one at rest shows LEDs and camera.
+                self.scene.show_frame(0)
 
     def changed(self) -> None:
         """Follow a change of state: live view, stage strip, autosave."""
@@ -134,8 +141,13 @@ class Desk:
             self._show("build", call.key)
         else:
             self.conductor.submit("shape", session.design, session.case, ("build",))
-        self.scene.place_indenter(session.case.press)
         self.show_stored()
+        self._keep_aim()
+        if not self.current("press"):
+            # What was pressed was another press: the skin is at rest again.
+            self._shown.pop("press", None)
+            self.scene.clear_frames()
+            self.scene.place_indenter(session.case.press)
         for panel in self.panels:
             panel.refresh()
         self.refresh_strip()
@@ -166,6 +178,8 @@ class Desk:
     def run(self, topic: str, wanted: tuple[str, ...]) -> None:
         """Compute stages for the state as it stands."""
         self.banner.visible = False
+        if topic != "mould":
+            self.put_mould_away()
         self.log(f"{topic}: started")
         self.conductor.submit(topic, self.session.design, self.session.case, wanted)
 
@@ -191,7 +205,7 @@ class Desk:
         point, distance_mm = self.scene.nearest(self.session.case.press.target_mm)
         if distance_mm > AIM_LIMIT_MM:
             x, y, z = (round(float(c), 2) for c in point)
-            self.session.change("case.press.target_mm", (x, y, z))
+            self.session.amend("case.press.target_mm", (x, y, z))
             self._edited = time.monotonic()
             self.fields.refresh()
             self.log(
@@ -240,7 +254,8 @@ class Desk:
         elif isinstance(event, StageDone):
             stage, key = event.outcome.stage, event.outcome.key
             if not event.outcome.cached:
-                self.log(f"{stage} done in {human_seconds(event.outcome.seconds)}")
+                name = STRIP.get(stage, stage)
+                self.log(f"{name} done in {human_seconds(event.outcome.seconds)}")
             if self.session.calls()[stage].key == key:
                 self._show(stage, key)
         else:
@@ -269,19 +284,20 @@ class Desk:
         if shown:
             now = shown[-1]
             self.progress.value = 100.0 * now.fraction
-            left = f" · about {human_seconds(now.eta_s)} left" if now.eta_s is not None else ""
+            left = f"about {human_seconds(now.eta_s)} left" if now.eta_s is not None else ""
             name = STRIP.get(now.stage, now.stage)
-            self.progress_text.content = f"{name} {100 * now.fraction:.0f} %{left} · {now.note}"
+            parts = (f"{name} {100 * now.fraction:.0f} %", left, now.note)
+            self.progress_text.content = " · ".join(part for part in parts if part)
 
     def refresh_strip(self) -> None:
         """Show which stages are done and which are stale."""
         fresh = self.session.fresh()
         running = {p.stage for p in self._running.values()}
         marks = {True: "✓", False: "○"}
-        text = " · ".join(
+        text = " &nbsp;".join(
             f"{name} {'▶' if stage in running else marks[fresh[stage]]}"
             for stage, name in STRIP.items()
-        )
+        ).replace(" ✓", "&nbsp;✓")
         if self.strip.content != text:
             self.strip.content = text
         design = self.session.design
@@ -290,17 +306,19 @@ class Desk:
             self.title.content = title
 
     def report(self, error: WorkbenchError, *, quiet: bool = False) -> None:
-        """Show an error at its field, in a banner and in the log."""
+        """Show an error at its field; in a banner too, unless it answers an edit there."""
         at_field = self.fields.complain(error)
+        words = self.fields.in_words(error.message)
         hint = ""
         if error.hint and "\n" not in error.hint:
-            hint = f" {error.hint[0].upper()}{error.hint[1:]}."
-        text = f"{html.escape(error.message)}.{html.escape(hint)}"
-        self.banner.content = f"<span style='color:#e5484d'>**{text}**</span>"
-        self.banner.visible = True
-        self.log(f"{type(error).__name__}: {error.message} {error.hint}")
+            hint = self.fields.in_words(f" {error.hint[0].upper()}{error.hint[1:]}.")
+        self.log(f"{type(error).__name__}: {words} {error.hint}")
         if not (quiet and at_field):
-            self.notify(type(error).__name__, f"{error.message}.{hint}", color="red")
+            text = html.escape(f"{words}.{hint}")
+            self.banner.content = f"<span style='color:#e5484d'>**{text}**</span>"
+            self.banner.visible = True
+        if not at_field:
+            self.notify("Not possible", f"{words}.{hint}", color="red")
         if "\n" in error.hint:
             # A traceback from a worker; a full disk must not hide the message itself.
             with contextlib.suppress(WorkbenchError):

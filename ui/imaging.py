@@ -64,10 +64,13 @@ def coloured_glb(points: np.ndarray, faces: np.ndarray, colours: np.ndarray) -> 
 
 
 def difference(image: np.ndarray, background: np.ndarray) -> tuple[np.ndarray, int]:
-    """The change about mid grey, and the factor that makes it visible (at most 8)."""
+    """The change about mid grey, and the factor that makes it visible (at most 8).
+
+    The brightest twentieth of the changed pixels may saturate, as one sparkle would hide the rest.
+    """
     change = image.astype(np.int16) - background.astype(np.int16)
-    largest = int(np.abs(change).max())
-    gain = max(1, min(8, 127 // largest)) if largest else 1
+    size = np.abs(change[change != 0])
+    gain = max(1, min(8, int(127 // np.percentile(size, 95)))) if size.size else 1
     return np.clip(128 + gain * change, 0, 255).astype(np.uint8), gain
 
 
@@ -76,13 +79,13 @@ def placeholder(width_px: int = 320, height_px: int = 240) -> np.ndarray:
     return np.full((height_px, width_px, 3), 70, np.uint8)
 
 
-def legend(title: str, low: float, high: float, unit: str) -> str:
-    """A colour bar as HTML."""
-    stops = viridis(np.linspace(0, 1, 9))
+def legend(title: str, high: float, unit: str, rest: tuple[int, int, int]) -> str:
+    """A colour bar from 0 as HTML, in the colours of `heat_colours`."""
+    stops = heat_colours(np.r_[0.0, 0.025, np.linspace(0.05, 1, 20)], rest)
     colours = ", ".join(f"rgb({r},{g},{b})" for r, g, b in stops)
     return (
         f"<div style='font-size:12px;margin:4px 12px'>{html.escape(title)}"
         f"<div style='height:10px;border-radius:3px;background:linear-gradient(90deg,{colours})'>"
-        f"</div><div style='display:flex;justify-content:space-between'><span>{low:.3g}</span>"
+        f"</div><div style='display:flex;justify-content:space-between'><span>0</span>"
         f"<span>{high:.3g} {html.escape(unit)}</span></div></div>"
     )

@@ -32,6 +32,7 @@ class Scene:
         self._parts: dict[str, Any] = {}
         self._explode: dict[str, np.ndarray] = {}
         self._contact: Contact | None = None
+        self._hidden = False
         self._views: dict[int, tuple[Any, Any]] = {}
         self._shown = 0
         self._points = np.zeros((0, 3))
@@ -208,12 +209,17 @@ class Scene:
         self._frames.clear()
         self._contact = None
         self._shown = 0
+        if self.membrane is not None and not self._hidden:
+            self.membrane.visible = True
 
     def show_frame(self, number: int) -> None:
         """Show frame `number` of the press, 0 for the untouched skin."""
         if self._contact is None or self.membrane is None:
             return
         number = min(number, len(self._frames))
+        self._shown = number
+        if self._hidden:
+            return
         with self.server.atomic():
             for k, node in enumerate(self._frames, start=1):
                 if (k == number) != node.visible:
@@ -221,7 +227,6 @@ class Scene:
             self.membrane.visible = number == 0
             if self.indenter is not None:
                 self._pose(self._contact.indenter_pose[max(number, 1) - 1])
-        self._shown = number
 
     def show_mould(self, moulds: MouldSet, spread: float) -> None:
         """Show the parts of a mould, moved apart by `spread` in [0, 1]."""
@@ -273,6 +278,7 @@ class Scene:
 
     def show_sensor(self, visible: bool) -> None:
         """Show or hide everything but the mould."""
+        self._hidden = not visible
         nodes = [self.membrane, self.foot, self.camera, self.indenter, *self._leds]
         with self.server.atomic():
             for node in nodes:

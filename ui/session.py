@@ -85,6 +85,13 @@ class Session:
             case = dataclasses.replace(self.case, **{group: part})
             self._commit(dataclasses.replace(self.state, case=case), dotted)
 
+    def amend(self, dotted: str, value: Any) -> None:
+        """Change a press field as part of the last edit: undo takes both back together."""
+        state, past, future = self.state, self._past, list(self._future)
+        self.change(dotted, value)
+        if self.state is not state:
+            self._past, self._future = past, future
+
     def replace_indenter(self, indenter: Indenter) -> None:
         """Take another object."""
         case = dataclasses.replace(self.case, indenter=indenter)

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from workbench.core.errors import DesignError
-from workbench.core.results import Contact, Shot
+from workbench.core.results import Shot
 from workbench.project import Project, design_to_toml, write_atomically
 from workbench.stages import Call
 from workbench.state import State, case_table, read_state
@@ -34,9 +34,7 @@ def save_variant(project: Project, name: str, state: State, calls: dict[str, Cal
         StoreError: If the results are missing or the folder cannot be written.
     """
     shot: Shot = project.store.load("shoot", calls["shoot"].key)
-    contact: Contact = project.store.load("press", calls["press"].key)
     metrics = {
-        "normal_N": float(contact.normal_N[-1]),
         "press_depth_mm": state.case.press.depth_mm,
         **shot.metrics.values,
     }

@@ -59,6 +59,18 @@ def test_a_drag_is_one_step_of_undo(session: Session, clock: Clock) -> None:
     assert session.state == dragged
 
 
+def test_an_amendment_is_undone_with_the_edit_it_follows(session: Session, clock: Clock) -> None:
+    """A target that followed the shape goes back together with the shape, and redo stays."""
+    start = session.state
+    session.change("design.shape.outer_radius_mm", 10.0)
+    session.amend("case.press.target_mm", (0.0, 7.0, 33.0))
+    assert session.undo()
+    assert session.state == start
+    session.amend("case.press.target_mm", (0.0, 9.0, 35.0))
+    assert session.redo()
+    assert session.design.shape["outer_radius_mm"] == 10.0
+
+
 def test_random_edits_undo_to_the_start_byte_for_byte(session: Session, clock: Clock) -> None:
     """50 random edits and 50 undos give the starting TOML."""
     start = design_to_toml(session.design)

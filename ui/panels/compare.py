@@ -22,7 +22,7 @@ class ComparePanel:
     def __init__(self, desk: Desk) -> None:
         self.desk = desk
         gui = desk.server.gui
-        self.name = gui.add_text("Variant", "variant A")
+        self.name = gui.add_text("Variant", next_name(list_variants(desk.session.project)))
         save = gui.add_button("Save variant", hint="Keeps the design, the press and its numbers")
         save.on_click(desk.guarded(self._save))
         self.a = gui.add_dropdown("A", (NONE,))
@@ -31,10 +31,10 @@ class ComparePanel:
             handle.on_update(desk.guarded(lambda event: self._compare()))
         self.load = gui.add_button_group("Load", ("A", "B"))
         self.load.on_click(desk.guarded(self._load))
-        self.table = gui.add_html("")
         self.image_a = gui.add_image(placeholder(), label="A", format="jpeg", visible=False)
         self.image_b = gui.add_image(placeholder(), label="B", format="jpeg", visible=False)
         self.change = gui.add_image(placeholder(), label="B - A", format="jpeg", visible=False)
+        self.table = gui.add_html("")
         self._offer()
 
     def _save(self, event: Any) -> None:
@@ -47,7 +47,12 @@ class ComparePanel:
         name = self.name.value.strip()
         save_variant(session.project, name, session.state, session.calls())
         self.desk.log(f"variant {name} saved")
+        self.desk.notify("Saved", f"{name}: design, press and numbers", color="green")
         self._offer()
+        empty = [handle for handle in (self.a, self.b) if handle.value == NONE]
+        if empty:
+            empty[0].value = name
+        self.name.value = next_name(list_variants(session.project))
 
     def _offer(self) -> None:
         names = (NONE, *list_variants(self.desk.session.project))
@@ -98,18 +103,24 @@ class ComparePanel:
         """Variants do not follow results."""
 
 
+def next_name(taken: list[str]) -> str:
+    """The first free name of variant A, B, ... Z, else one with a number."""
+    letters = (f"variant {letter}" for letter in "ABCDEFGHIJKLMNOPQRSTUVWXYZ")
+    return next((name for name in letters if name not in taken), f"variant {len(taken) + 1}")
+
+
 def comparison(a: Variant, b: Variant) -> str:
-    """Numbers of two variants side by side, then the parameters in which they differ, as HTML."""
-    rows = [
-        (name, f"{a.metrics[name]:.4g}", f"{b.metrics[name]:.4g}")
-        for name in a.metrics
-        if name in b.metrics
-    ]
+    """Parameters in which two variants differ, then their numbers, side by side as HTML."""
     left, right = _parameters(a), _parameters(b)
-    rows += [
+    rows = [
         (name, left.get(name, NONE), right.get(name, NONE))
         for name in {**left, **right}
         if left.get(name) != right.get(name) and name != "name"
+    ]
+    rows += [
+        (name, f"{a.metrics[name]:.4g}", f"{b.metrics[name]:.4g}")
+        for name in a.metrics
+        if name in b.metrics
     ]
     cells = "".join(
         "<tr>"

@@ -17,6 +17,7 @@ class Field:
 
     path: str
     """Dotted field of the session's state, for example `design.layers.elastomer_mm`."""
+    label: str
     handle: Any
     to_field: Callable[[Any], Any]
     to_widget: Callable[[Any], Any]
@@ -80,7 +81,12 @@ class Fields:
     ) -> Any:
         complaint = self.gui.add_markdown("", visible=False)
         field = Field(
-            path=path, handle=handle, to_field=to_field, to_widget=to_widget, complaint=complaint
+            path=path,
+            label=handle.label,
+            handle=handle,
+            to_field=to_field,
+            to_widget=to_widget,
+            complaint=complaint,
         )
         self._fields[path] = field
 
@@ -111,11 +117,24 @@ class Fields:
         field = self._named(error.at)
         if field is None:
             return False
-        text = f"<span style='color:#e5484d'>{html.escape(error.message)}"
-        text += f"; {html.escape(error.hint)}</span>" if error.hint else "</span>"
+        parts = [self.in_words(error.message), self.in_words(error.hint)]
+        kept = field.to_widget(self._read(field.path))
+        if isinstance(kept, (int, float)) and kept != field.handle.value:
+            parts.append(f"still using {kept:g}")
+        words = html.escape("; ".join(part for part in parts if part))
+        text = f"<span style='color:#e5484d'>{words}</span>"
         field.complaint.content = text
         field.complaint.visible = True
         return True
+
+    def in_words(self, text: str) -> str:
+        """A message with the labels of widgets in place of the names of fields."""
+        for path, field in sorted(self._fields.items(), key=lambda item: -len(item[0])):
+            short = path.split(".", 1)[1].replace("settings.", "contact.", 1)
+            text = text.replace(
+                short, f"\N{LEFT DOUBLE QUOTATION MARK}{field.label}\N{RIGHT DOUBLE QUOTATION MARK}"
+            )
+        return text
 
     def clear_complaints(self) -> None:
         """Hide the messages under all widgets."""

@@ -35,6 +35,7 @@ class MakePanel:
         self.checks = gui.add_markdown("No mould yet.")
         self.view = gui.add_checkbox("Show mould", False, visible=False)
         self.view.on_update(desk.guarded(self._view))
+        desk.put_mould_away = self._put_away
         self.spread = gui.add_slider("Explode", 0.0, 1.0, 0.05, 1.0, visible=False)
         self.spread.on_update(desk.guarded(lambda event: self._spread()))
         self.part = gui.add_dropdown("Part", ("-",), visible=False)
@@ -50,6 +51,10 @@ class MakePanel:
         self.desk.run("mould", ("mould", "package"))
         if self.desk.session.fresh()["mould"]:
             self.show("mould", self._moulds())
+
+    def _put_away(self) -> None:
+        if self.view.value:
+            self.view.value = False
 
     def _moulds(self) -> MouldSet | None:
         return self.desk.session.result("mould")

@@ -13,6 +13,7 @@ from viser import uplot
 
 from ui.desk import Desk
 from ui.imaging import difference, legend, placeholder
+from ui.scene import SKIN_COLOUR
 from workbench.core.results import Contact, Shot
 from workbench.outputs import force_balance
 
@@ -27,7 +28,7 @@ class ResultsPanel:
     def __init__(self, desk: Desk) -> None:
         self.desk = desk
         self.shot: Shot | None = None
-        self.forces = ""
+        self.contact: Contact | None = None
         self.playing = threading.Event()
         gui = desk.server.gui
         self.dock = gui.add_panel()
@@ -48,7 +49,6 @@ class ResultsPanel:
                 title="Normal force [N] against depth [mm]",
                 aspect=1.4,
             )
-            self.legend = gui.add_html("")
         with self.dock.add_tab("Log", viser.Icon.LIST):
             self.log = gui.add_html("")
         self.dock.dock_right()
@@ -61,6 +61,7 @@ class ResultsPanel:
         with panel.add_tab("Timeline", viser.Icon.CLOCK):
             self.frame = gui.add_slider("Frame", 0, 1, 1, 0, hint="0 is the untouched skin")
             self.play = gui.add_button("Play / pause", icon=viser.Icon.PLAYER_PLAY)
+            self.legend = gui.add_html("")
         panel.float(x=380, y=-15, width=380)
         self.frame.on_update(self.desk.guarded(lambda event: self._show_frame()))
         self.play.on_click(self.desk.guarded(self._toggle))
@@ -84,6 +85,7 @@ class ResultsPanel:
         number = int(self.frame.value)
         self.desk.scene.show_frame(number)
         self._show_image(number)
+        self._show_forces(number)
 
     def _show_image(self, number: int) -> None:
         if self.shot is None:
@@ -101,7 +103,8 @@ class ResultsPanel:
         if self.shot is None:
             return
         last = len(self.shot.frames.rgb) - 1
-        what = f"frame {min(number, last)} of {last}" if number else "background"
+        phase = "" if number <= self.desk.session.case.press.frames else ", shear and twist"
+        what = f"frame {min(number, last)} of {last}{phase}" if number else "background"
         stale = "" if self.desk.current("shoot") else " · **stale**: render again"
         if self.caption.content != f"{what}{stale}":
             self.caption.content = f"{what}{stale}"
@@ -109,10 +112,7 @@ class ResultsPanel:
     def refresh(self) -> None:
         """Mark an image and a force that no longer belong to the state."""
         self._caption(int(self.frame.value))
-        stale = not self.desk.current("press") and self.forces
-        text = f"**stale**: run the press again\n\n{self.forces}" if stale else self.forces
-        if text and self.force_text.content != text:
-            self.force_text.content = text
+        self._show_forces(int(self.frame.value))
 
     def show(self, stage: str, result: Any) -> None:
         """Follow results and the log."""
@@ -122,6 +122,7 @@ class ResultsPanel:
             self.shot = result
             self._follow_frames(len(result.frames.rgb) - 1)
             self._show_image(int(self.frame.value))
+            self.desk.scene.show_frame(int(self.frame.value))
             camera = self.desk.session.design.optics.camera
             image = np.asarray(result.frames.rgb[int(self.frame.value)])
             self.desk.scene.show_camera(camera, image[::4, ::4])
@@ -140,18 +141,33 @@ class ResultsPanel:
         path = self.desk.session.case.press
         mesh = self.desk.session.result("mesh")
         top_mm = self.desk.scene.load_frames(mesh.outer, contact)
-        self.legend.content = legend("Displacement of the skin", 0.0, top_mm, "mm")
+        self.legend.content = legend("Displacement of the skin", top_mm, "mm", SKIN_COLOUR)
         count = path.frames
         depth_mm = np.r_[0.0, path.depth_mm * np.arange(1, count + 1) / count]
         self.plot.data = (depth_mm, np.r_[0.0, contact.normal_N[:count]])
-        x, y, z = contact.reaction_N[-1]
-        self.forces = (
-            f"**{contact.normal_N[-1]:.3f} N** along the normal\n\n"
-            f"on the object: x {x:.3f} · y {y:.3f} · z {z:.3f} N\n\n"
-            f"residual {contact.residual.max():.1e} · force balance "
-            f"{100 * force_balance(contact):.2f} % · "
-            f"friction ratio ≤ {contact.friction_ratio.max():.3f}"
-        )
-        self.force_text.content = self.forces
+        self.contact = contact
         self._follow_frames(len(contact.reaction_N))
+        self._show_forces(int(self.frame.value))
         self.desk.scene.show_frame(int(self.frame.value))
+
+    def _show_forces(self, number: int) -> None:
+        """The force of the frame on show; of the last one at frame 0."""
+        contact = self.contact
+        if contact is None:
+            return
+        count = len(contact.reaction_N)
+        k = (number or count) - 1
+        if k >= count:
+            return
+        x, y, z = contact.reaction_N[k]
+        text = (
+            f"**{contact.normal_N[k]:.3f} N** along the normal, frame {k + 1} of {count}\n\n"
+            f"on the object: x {x:.3f} · y {y:.3f} · z {z:.3f} N\n\n"
+            f"peak {contact.normal_N.max():.3f} N · residual {contact.residual.max():.1e} · force "
+            f"balance {100 * force_balance(contact):.2f} % · friction ratio "
+            f"≤ {contact.friction_ratio.max():.3f}"
+        )
+        if not self.desk.current("press"):
+            text = f"**stale**: run the press again\n\n{text}"
+        if self.force_text.content != text:
+            self.force_text.content = text

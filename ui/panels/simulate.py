@@ -41,7 +41,8 @@ class SimulatePanel:
             fields.point("Target mm", "case.press.target_mm", step=0.5, hint=hint)
             hint = "From first touch, along the inward normal"
             fields.slider("Depth mm", "case.press.depth_mm", span=(0.0, 3.0, 0.05), hint=hint)
-            fields.slider("Frames", "case.press.frames", span=(1, 40, 1), whole=True)
+            hint = "Of the approach; shear and twist take as many again"
+            fields.slider("Frames", "case.press.frames", span=(1, 40, 1), whole=True, hint=hint)
             fields.slider("Twist deg", "case.press.twist_deg", span=(-45.0, 45.0, 1.0))
             hint = "U is +Z along the skin, V is across"
             self.shear = gui.add_vector2(
@@ -57,6 +58,7 @@ class SimulatePanel:
         command = gui.add_command("Run press", hotkey="R")
         command.on_trigger(desk.guarded(self._run))
         self.numbers = gui.add_markdown("")
+        self.found = ""
 
     def _run(self, event: Any) -> None:
         self.desk.run("press", ("press", "shoot"))
@@ -112,12 +114,17 @@ class SimulatePanel:
             self.size.value = size_mm
         if tuple(self.shear.value) != case.press.shear_mm:
             self.shear.value = case.press.shear_mm
+        stale = self.found and not self.desk.current("press")
+        text = f"**stale** · {self.found}" if stale else self.found
+        if self.numbers.content != text:
+            self.numbers.content = text
 
     def show(self, stage: str, result: Any) -> None:
         """Show the force of the last frame, with its residual and penetration beside it."""
         if stage == "press":
-            self.numbers.content = (
+            self.found = (
                 f"**{result.normal_N[-1]:.3f} N** along the normal · residual "
                 f"{result.residual.max():.1e} · penetration "
                 f"{1e3 * result.penetration_mm.max():.0f} µm · {result.substeps} substeps"
             )
+            self.numbers.content = self.found
