@@ -81,7 +81,7 @@ def build_desk(server: Any, session: Session, conductor: Conductor, *, fast: boo
     gui = server.gui
     gui.configure_theme(dark_mode=True, show_logo=False, show_share_button=False, brand_color=BRAND)
     gui.main_panel.dock_left()
-    gui.main_panel.set_width(360)
+    gui.main_panel.set_width(385)
     with server.atomic():
         desk = Desk(server, session, conductor, fast=fast)
         tabs = gui.add_tab_group()

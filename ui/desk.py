@@ -87,7 +87,7 @@ class Desk:
             self.progress_text = gui.add_markdown("")
             cancel = gui.add_button("Cancel", color="red")
             cancel.on_click(self.guarded(lambda event: self.conductor.cancel()))
-        self.job.float(x=380, y=15, width=330)
+        self.job.float(x=405, y=15, width=330)
 
     def read(self, path: str) -> Any:
         """Value of a field of the state; shape parameters have their defaults filled in."""
@@ -142,7 +142,8 @@ class Desk:
         else:
             self.conductor.submit("shape", session.design, session.case, ("build",))
         self.show_stored()
-        self._keep_aim()
+        if self.current("build"):
+            self._keep_aim()
         if not self.current("press"):
             # What was pressed was another press: the skin is at rest again.
             self._shown.pop("press", None)

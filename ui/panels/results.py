@@ -62,7 +62,7 @@ class ResultsPanel:
             self.frame = gui.add_slider("Frame", 0, 1, 1, 0, hint="0 is the untouched skin")
             self.play = gui.add_button("Play / pause", icon=viser.Icon.PLAYER_PLAY)
             self.legend = gui.add_html("")
-        panel.float(x=380, y=-15, width=380)
+        panel.float(x=405, y=-15, width=380)
         self.frame.on_update(self.desk.guarded(lambda event: self._show_frame()))
         self.play.on_click(self.desk.guarded(self._toggle))
         command = gui.add_command("Play or pause", hotkey="P")
