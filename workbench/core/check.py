@@ -43,13 +43,11 @@ def within(
     Raises:
         DesignError: Naming value, limits and unit, if it is not.
     """
+    span = f"{low:g} to {high:g} {unit}".strip()
+    hint = hint or f"choose a value from {span}"
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
         raise DesignError(f"{what} is {value!r}, which is not a finite number", hint=hint, at=at)
     if not low <= value <= high:
-        unit_text = f" {unit}" if unit else ""
-        raise DesignError(
-            f"{what} {value:g}{unit_text} is outside {low:g} to {high:g}{unit_text}",
-            hint=hint or f"choose a value from {low:g} to {high:g}{unit_text}",
-            at=at,
-        )
+        given = f"{value:g} {unit}".strip()
+        raise DesignError(f"{what} {given} is outside {span}", hint=hint, at=at)
     return value
