@@ -12,7 +12,7 @@ import sys
 import threading
 import time
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, Protocol
 
 import numpy as np
@@ -134,13 +134,14 @@ class Desk:
         """Follow a change of state: live view, stage strip, autosave."""
         self._edited = time.monotonic()
         session = self.session
-        self.scene.show_lights(session.design.optics.ring)
-        self.scene.show_camera(session.design.optics.camera)
         call = session.calls()["build"]
         if session.store.has("build", call.key):
             self._show("build", call.key)
         else:
+            # First of all: the worker builds while the widgets follow.
             self.conductor.submit("shape", session.design, session.case, ("build",))
+        self.scene.show_lights(session.design.optics.ring)
+        self.scene.show_camera(session.design.optics.camera)
         self.show_stored()
         if self.current("build"):
             self._keep_aim()
@@ -220,17 +221,14 @@ class Desk:
     def pump_forever(self) -> None:
         """Drain events into widgets until the process ends."""
         while True:
-            time.sleep(PUMP_S)
             try:
-                self.pump()
+                # Wakes at once for an event, and regularly for the autosave.
+                self.pump(self.conductor.wait(PUMP_S))
             except Exception as bug:
                 self.crash(bug)
 
-    def pump(self) -> None:
-        """Handle the events that wait, then the autosave."""
-        events: list[Event] = []
-        while not self.conductor.events.empty():
-            events.append(self.conductor.events.get())
+    def pump(self, events: Sequence[Event]) -> None:
+        """Handle events, then the autosave."""
         with self._lock:
             for event in events:
                 try:

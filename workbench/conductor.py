@@ -7,6 +7,7 @@ a widget, and nothing heavy runs in these threads: they wait for the lanes.
 
 from __future__ import annotations
 
+import contextlib
 import queue
 import threading
 import time
@@ -104,6 +105,15 @@ class Conductor:
             if topic not in self._topics:
                 self._topics[topic] = _Topic(topic, self)
             self._topics[topic].submit(Request(design=design, case=case, wanted=tuple(wanted)))
+
+    def wait(self, seconds: float) -> list[Event]:
+        """All events that have come, after at most that time without any [s]."""
+        found: list[Event] = []
+        with contextlib.suppress(queue.Empty):
+            found.append(self.events.get(timeout=seconds))
+            while True:
+                found.append(self.events.get_nowait())
+        return found
 
     def cancel(self, *, live: bool = False) -> None:
         """Stop what runs and forget what waits; the live topic only when asked to."""

@@ -203,7 +203,7 @@ STAGES = {
         Stage(name="mesh", version=1, lane="cad", function=mesh),
         Stage(name="lattice", version=1, lane="cad", function=lattice),
         Stage(name="bake", version=1, lane="sim", function=bake),
-        Stage(name="press", version=3, lane="sim", function=press),
+        Stage(name="press", version=4, lane="sim", function=press),
         Stage(name="shoot", version=2, lane="sim", function=shoot),
         Stage(name="mould", version=1, lane="cad", function=mould),
         Stage(name="package", version=1, lane="cad", function=package),

@@ -1,8 +1,9 @@
 """How far from the target a press reaches: the radius of the active region.
 
 Strains of a bonded layer die out within a few thicknesses of the contact patch, so only the patch
-and a margin of `MARGIN_WALLS` walls take part. Measured on the default finger against a 20 mm
-region: see `tests/convergence/test_contact_region.py`.
+and a margin of `MARGIN_WALLS` walls take part. On the default press that is 8.3 mm; against a
+region of 20 mm the force then reads 0.3 % high and a displacement of 1 mm is off by at most 0.016
+mm (12 mm: 0.03 % and 0.003 mm). See `tests/convergence/test_contact_region.py`.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from workbench.core.errors import DesignError
 from workbench.core.press import ContactSettings
 from workbench.core.results import MembraneMesh
 
-MARGIN_WALLS = 3.4
+MARGIN_WALLS = 3.1
 """Margin around the patch over the thickness of the wall."""
 LEAST_MARGIN_MM = 4.0
 LEAST_MARGIN_WALLS = 1.5

@@ -58,7 +58,7 @@ def test_region_follows_size_and_shear() -> None:
 
 
 def test_region_without_touch_is_the_margin() -> None:
-    """At depth 0 the patch is empty: 3.4 walls of 2 mm remain."""
+    """At depth 0 the patch is empty: 3.1 walls of 2 mm remain."""
     press = checks.at_45_degrees(depth_mm=0.0)
     # The nearest skin vertices lie up to half a millimetre beside the target.
     assert radius_mm(Indenter(), press) == pytest.approx(MARGIN_WALLS * 2.0, abs=0.5)

@@ -27,7 +27,7 @@ def rows() -> list[Row]:
             monitor=silent,
         )
 
-    case = f"6 mm sphere, 1 mm deep, 0.5 mm grid, default region (8.9 mm), {device}"
+    case = f"6 mm sphere, 1 mm deep, 0.5 mm grid, default region (8.3 mm), {device}"
     return [
         timed_row("one_frame", case, lambda: run(1), 3.0),
         timed_row("ten_frames", case, lambda: run(10), 8.0),
