@@ -20,9 +20,9 @@ from pathlib import Path
 
 from playwright.sync_api import Page, sync_playwright
 
+from workbench.benchmarks.browser import FLAGS
+
 FOLDER = Path(__file__).parent
-FLAGS = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox"]
-FLAGS += ["--ignore-gpu-blocklist", "--disable-background-networking"]
 PRESSED_S = 300
 
 
@@ -59,7 +59,7 @@ def main() -> None:
         server = subprocess.Popen([*command, "--project", project, "--fast-scene"])
         try:
             wait_for_server(f"http://127.0.0.1:{port}")
-            browser = playwright.chromium.launch(executable_path=program, args=FLAGS)
+            browser = playwright.chromium.launch(executable_path=program, args=list(FLAGS))
             page = browser.new_page(viewport={"width": 1440, "height": 860})
             page.goto(f"http://127.0.0.1:{port}/")
             page.get_by_text("Image ✓").wait_for(timeout=PRESSED_S * 1000)

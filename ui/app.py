@@ -106,7 +106,6 @@ def first_look(desk: Desk) -> None:
     """Show stored results; a newcomer's first design is pressed in the background."""
     fresh = desk.session.fresh()
     desk.changed()
-    desk.show_stored()
     if desk.session.notice:
         desk.log(desk.session.notice)
     if not any(fresh.values()):

@@ -68,7 +68,6 @@ class Desk:
         self.put_mould_away: Callable[[], None] = lambda: None
         """Set by the panel that shows the mould."""
         self.log_lines: list[str] = []
-        self.frame = 0
         self._edited: float | None = None
         self._running: dict[str, Progress] = {}
         self._shown: dict[str, str] = {}
@@ -134,10 +133,7 @@ class Desk:
         """Follow a change of state: live view, stage strip, autosave."""
         self._edited = time.monotonic()
         session = self.session
-        call = session.calls()["build"]
-        if session.store.has("build", call.key):
-            self._show("build", call.key)
-        else:
+        if not session.store.has("build", session.calls()["build"].key):
             # First of all: the worker builds while the widgets follow.
             self.conductor.submit("shape", session.design, session.case, ("build",))
         self.scene.show_lights(session.design.optics.ring)
@@ -172,10 +168,11 @@ class Desk:
 
     def show_stored(self) -> None:
         """Show every result that is stored for the state as it stands."""
-        calls = self.session.calls()
         for stage in ("build", "press", "shoot", "mould"):
-            if self.session.store.has(stage, calls[stage].key):
-                self._show(stage, calls[stage].key)
+            # Asked anew each time: showing a body may move the target, and with it later keys.
+            key = self.session.calls()[stage].key
+            if self.session.store.has(stage, key):
+                self._show(stage, key)
 
     def run(self, topic: str, wanted: tuple[str, ...]) -> None:
         """Compute stages for the state as it stands."""

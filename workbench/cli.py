@@ -23,6 +23,7 @@ from typing import Any, TextIO
 from workbench import __version__
 from workbench.core.design import LightModel
 from workbench.core.errors import Cancelled, DesignError, DeviceError, StoreError, WorkbenchError
+from workbench.core.monitor import seconds_left
 from workbench.core.units import human_seconds
 from workbench.project import Project
 
@@ -277,7 +278,7 @@ class _Progress:
             return
         self.shown = now
         elapsed = now - self.started
-        eta_s = elapsed * (1 - fraction) / fraction if fraction > 0.02 else None
+        eta_s = seconds_left(elapsed, fraction)
         if self.as_json:
             line = {"stage": stage, "fraction": fraction, "note": note, "eta_s": eta_s}
             _say(json.dumps(line))

@@ -18,7 +18,7 @@ from typing import Protocol
 
 from workbench.core.design import SensorDesign
 from workbench.core.errors import Cancelled, WorkbenchError
-from workbench.core.monitor import Monitor
+from workbench.core.monitor import Monitor, seconds_left
 from workbench.pipeline import PressCase, evaluate
 from workbench.stages import Call, Outcome
 from workbench.store import Store
@@ -250,7 +250,7 @@ class _Reporter:
         if now - self.sent < 0.1:
             return
         self.sent = now
-        left = (now - self.began) * (1 - fraction) / fraction if fraction > 0.02 else None
+        left = seconds_left(now - self.began, fraction)
         self.events.put(
             Progress(topic=self.topic, stage=stage, fraction=fraction, note=note, eta_s=left)
         )

@@ -3,7 +3,9 @@
 ```
 .workbench/
   store/     results by stage and key
-  designs/   autosave.toml and saved variants
+  designs/   autosave.toml
+  variants/  kept designs with their press and numbers
+  indenters/ meshes of STL indenters by key
   crash/     one file per bug that reached the edge
 ```
 """
@@ -59,12 +61,6 @@ class Project:
         path = self.design_path(name)
         write_atomically(path, (design_to_toml(design, **extra)).encode())
         return path
-
-    def saved_names(self) -> list[str]:
-        """Names of saved designs, the autosave left out."""
-        return sorted(
-            p.stem for p in (self.folder / "designs").glob("*.toml") if p.stem != AUTOSAVE
-        )
 
     def write_crash(self, text: str) -> Path:
         """Keep a traceback for a bug report; returns the file."""

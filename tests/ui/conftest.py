@@ -18,17 +18,8 @@ from typing import Any
 
 import pytest
 
-FLAGS = (
-    "--use-angle=swiftshader",
-    "--enable-unsafe-swiftshader",
-    "--ignore-gpu-blocklist",
-    "--no-sandbox",
-    "--disable-dev-shm-usage",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--no-first-run",
-)
+from workbench.benchmarks.browser import FLAGS
+
 START_LIMIT_S = 60
 
 

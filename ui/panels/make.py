@@ -11,6 +11,7 @@ import viser
 from ui.desk import Desk
 from workbench.core.errors import WorkbenchError
 from workbench.core.results import Bundle, MouldSet
+from workbench.core.units import volume_ml
 
 OVERLAP_LIMIT_MM3 = 1e-3
 WALL_LIMIT_MM = 0.8
@@ -135,7 +136,7 @@ def mould_checks(moulds: MouldSet) -> list[str]:
         (wall >= WALL_LIMIT_MM, f"thinnest wall {wall:.2f} mm (at least {WALL_LIMIT_MM})"),
     ]
     lines = [_mark(good) + text for good, text in rows]
-    cast_ml = moulds.cast_volume_mm3 / 1000
+    cast_ml = volume_ml(moulds.cast_volume_mm3)
     lines.append(f"silicone {cast_ml:.1f} ml · split at {moulds.split_azimuth_deg:.0f}°")
     return lines
 

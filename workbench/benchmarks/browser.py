@@ -25,9 +25,13 @@ FLAGS = (
     "--enable-unsafe-swiftshader",
     "--ignore-gpu-blocklist",
     "--no-sandbox",
+    "--disable-dev-shm-usage",
     "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
     "--no-first-run",
 )
+"""How Chromium runs without a display, a GPU or a network, here and in the browser tests."""
 ROWS = {
     "healthz": ("finger cached", 10.0),
     "gui_usable": ("finger cached, software rendering", 20.0),

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from workbench.benchmarks.timing import finger_mesh, finger_points, timed_row
+from workbench.benchmarks.timing import timed_row
 from workbench.core.design import Elastomer
 from workbench.core.monitor import silent
 from workbench.core.press import ContactSettings, Indenter, Press
 from workbench.rows import Row
+from workbench.specimens import finger_mesh, finger_points
 from workbench.stages import press
 
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from workbench.benchmarks.timing import finger_solid, timed_row
+from workbench.benchmarks.timing import timed_row
 from workbench.core.design import Layers, Meshing, MouldOptions
 from workbench.core.monitor import silent
 from workbench.rows import Row
+from workbench.specimens import finger_solid
 from workbench.stages import build, lattice, mesh, mould
 
 CASE = "default finger"

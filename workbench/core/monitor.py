@@ -8,6 +8,9 @@ from __future__ import annotations
 
 from typing import Protocol
 
+LEAST_FRACTION = 0.02
+"""Share of the work below which its pace says nothing."""
+
 
 class Monitor(Protocol):
     """Reports progress; raises `Cancelled` when the work should stop."""
@@ -19,6 +22,11 @@ class Monitor(Protocol):
 
 def silent(fraction: float, note: str = "") -> None:
     """A monitor that nobody watches."""
+
+
+def seconds_left(elapsed_s: float, fraction: float) -> float | None:
+    """Time that remains at the pace so far [s]; None while too little is done to tell."""
+    return elapsed_s * (1 - fraction) / fraction if fraction > LEAST_FRACTION else None
 
 
 def part(monitor: Monitor, start: float, stop: float) -> Monitor:

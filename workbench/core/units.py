@@ -4,21 +4,12 @@ from __future__ import annotations
 
 import math
 
-MM_PER_M = 1e3
-MM_PER_INCH = 25.4
-MPA_PER_PA = 1e-6
-TONNE_PER_MM3_PER_G_PER_CM3 = 1e-9
 ML_PER_MM3 = 1e-3
 
 
 def radians(angle_deg: float) -> float:
     """Angle [rad] of an angle [degree]."""
     return math.radians(angle_deg)
-
-
-def density_t_mm3(density_g_cm3: float) -> float:
-    """Density [tonne/mm3] of a density [g/cm3]; 1 g/cm3 is 1e-9 tonne/mm3."""
-    return density_g_cm3 * TONNE_PER_MM3_PER_G_PER_CM3
 
 
 def volume_ml(volume_mm3: float) -> float:

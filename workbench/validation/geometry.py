@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import functools
 
-from workbench.benchmarks.timing import finger_mesh, finger_points, finger_solid
 from workbench.core.design import MouldOptions
 from workbench.core.monitor import silent
 from workbench.core.results import Label, MouldSet
 from workbench.rows import Row, bounded, compared
+from workbench.specimens import finger_mesh, finger_points, finger_solid
 from workbench.stages import mould
 
 CASE = "finger R 15, wall 2, cylinder 27 mm"

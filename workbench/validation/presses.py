@@ -5,11 +5,11 @@ from __future__ import annotations
 import functools
 import math
 
-from workbench.benchmarks.timing import finger_mesh, finger_points
 from workbench.core.design import Elastomer
 from workbench.core.monitor import silent
 from workbench.core.press import ContactSettings, Indenter, Press
 from workbench.core.results import Contact
+from workbench.specimens import finger_mesh, finger_points
 from workbench.stages import press
 
 TIP_CENTRE_MM = 27.0
