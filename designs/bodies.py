@@ -1,9 +1,14 @@
-"""The B-rep bodies that a family builds."""
+"""What a family builds: B-rep bodies, or the same sensor as signed distance fields.
+
+Both carry the same marks, so whoever turns them into triangles labels them in one way.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import Any
+
+from workbench.core.marks import NO_MARKS, Field, Marks
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -20,3 +25,22 @@ class Bodies:
     """The rigid transparent shell inside the core."""
     base: Any
     """The rigid foot below z = 0 that carries camera and LEDs."""
+    marks: Marks = NO_MARKS
+    notice: str = ""
+    """What had to be changed to build it, for the designer."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Fields:
+    """The same sensor as signed distance fields: what is meshed when the CAD kernel fails."""
+
+    outer: Field
+    core: Field
+    cavity: Field
+    """Air inside the support: the support is the core outside it."""
+    base: Any
+    """The foot as a build123d part: plain enough never to fail."""
+    low_mm: tuple[float, float, float]
+    high_mm: tuple[float, float, float]
+    """Box around the outer body [mm]; z = 0 is the base plane, which the fields need not cut."""
+    marks: Marks = NO_MARKS

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from typing import Any, Protocol, runtime_checkable
 
 import designs
-from designs.bodies import Bodies
+from designs.bodies import Bodies, Fields
 from workbench.core.design import Layers
 from workbench.core.errors import DesignError
 
@@ -39,8 +39,24 @@ class Family(Protocol):
         """Raise DesignError if the parameters contradict each other; takes microseconds."""
         ...
 
+    def target(self, shape: Any, layers: Layers) -> tuple[float, float, float]:
+        """Point near the skin where a first press makes sense [mm]."""
+        ...
+
     def build(self, shape: Any, layers: Layers) -> Bodies:
-        """Build the B-rep bodies."""
+        """Build the B-rep bodies.
+
+        Raises:
+            GeometryError: If the CAD kernel returned something else than asked for.
+        """
+        ...
+
+    def soften(self, shape: Any) -> Any | None:
+        """The shape with smaller fillets, tried once when `build` fails; None if it has none."""
+        ...
+
+    def fields(self, shape: Any, layers: Layers) -> Fields:
+        """The same sensor as signed distance fields, for when the CAD kernel fails."""
         ...
 
 

@@ -32,13 +32,17 @@ Supplementary). Leaves out: fillets where skin meets foot, screw holes in the fo
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
-from designs.bodies import Bodies
+import numpy as np
+
+from designs.bodies import Bodies, Fields
+from designs.sliders import slider
 from workbench.core.booleans import cut, expect_volume
 from workbench.core.design import Layers
 from workbench.core.errors import DesignError
+from workbench.core.marks import Field
 
 CAVITY_RADIUS_MM = 1.0
 """Smallest radius of the cavity that still lets a camera look out [mm]."""
@@ -49,37 +53,23 @@ SPHERE_MM = 1e-9
 GELTIP = "GelTip (SimTac, Supplementary)"
 
 
-def _slider(
-    default: float,
-    span: tuple[float, float, float],
-    unit: str,
-    label: str,
-    hint: str,
-    source: str = "",
-) -> Any:
-    """A field with its slider; `span` is minimum, maximum and step."""
-    low, high, step = span
-    about = {"min": low, "max": high, "step": step, "unit": unit, "label": label, "hint": hint}
-    return field(default=default, metadata={**about, "source": source})
-
-
 @dataclass(frozen=True, kw_only=True, slots=True)
 class FingerShape:
     """The finger's own parameters."""
 
-    outer_radius_mm: float = _slider(
+    outer_radius_mm: float = slider(
         15.0, (6.0, 30.0, 0.5), "mm", "Outer radius", "Radius of the skin", GELTIP
     )
-    cylinder_mm: float = _slider(
+    cylinder_mm: float = slider(
         27.0, (2.0, 80.0, 0.5), "mm", "Straight length", "From base to the start of the tip", GELTIP
     )
-    tip_ratio: float = _slider(
+    tip_ratio: float = slider(
         1.0, (0.5, 1.6, 0.05), "", "Tip ratio", "1 is a hemisphere, less is blunt, more is pointed"
     )
-    base_height_mm: float = _slider(
+    base_height_mm: float = slider(
         8.0, (2.0, 40.0, 0.5), "mm", "Foot height", "Rigid foot that carries camera and LEDs"
     )
-    base_lip_mm: float = _slider(
+    base_lip_mm: float = slider(
         3.0, (0.0, 15.0, 0.5), "mm", "Foot lip", "How far the foot stands out beyond the skin"
     )
 
@@ -123,6 +113,11 @@ class Finger:
                 at="layers.elastomer_mm",
             )
 
+    def target(self, shape: FingerShape, layers: Layers) -> tuple[float, float, float]:
+        """On the tip, 34 degrees off its axis toward +Y: (0, 10, 35) on the default finger."""
+        y = 2.0 / 3.0 * shape.outer_radius_mm
+        return 0.0, y, shape.cylinder_mm + shape.tip_mm * 8.0 / 15.0
+
     def build(self, shape: FingerShape, layers: Layers) -> Bodies:
         """Build the five bodies.
 
@@ -140,6 +135,41 @@ class Finger:
             support=_revolved(shape, wall_mm, both_mm, what="support"),
             base=_foot(shape, layers),
         )
+
+    def soften(self, shape: FingerShape) -> None:
+        """There is no fillet to make smaller."""
+        return None
+
+    def fields(self, shape: FingerShape, layers: Layers) -> Fields:
+        """Capsules with an ellipsoidal end as signed distance fields."""
+        self.check(shape, layers)
+        wall_mm = layers.elastomer_mm
+        radius, top = shape.outer_radius_mm, shape.cylinder_mm + shape.tip_mm
+        return Fields(
+            outer=_field(shape, 0.0),
+            core=_field(shape, wall_mm),
+            cavity=_field(shape, wall_mm + layers.support_mm),
+            base=_foot(shape, layers),
+            low_mm=(-radius, -radius, 0.0),
+            high_mm=(radius, radius, top),
+        )
+
+
+def _field(shape: FingerShape, inset_mm: float) -> Field:
+    """Distance to the body whose radius and tip height are smaller by the inset, first order.
+
+    f = k (k - 1) / |grad k| with k the ellipsoid's norm: exact on the surface and its slope.
+    """
+    radius, tip = shape.outer_radius_mm - inset_mm, shape.tip_mm - inset_mm
+
+    def distance(points_mm: np.ndarray) -> np.ndarray:
+        across = np.hypot(points_mm[:, 0], points_mm[:, 1])
+        above = np.maximum(points_mm[:, 2] - shape.cylinder_mm, 0.0)
+        norm = np.hypot(across / radius, above / tip)
+        slope = np.hypot(across / radius**2, above / tip**2)
+        return norm * (norm - 1.0) / np.maximum(slope, 1e-9)
+
+    return distance
 
 
 def capped_cylinder_mm3(shape: FingerShape, inset_mm: float) -> float:

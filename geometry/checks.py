@@ -10,11 +10,11 @@ import math
 import numpy as np
 
 from geometry.surface import face_areas, is_watertight, mesh_volume
+from workbench.core.fabrication import MouldSet
 from workbench.core.results import (
     Label,
     LabelledSurface,
     MaterialPoints,
-    MouldSet,
     Skin,
     Solid,
     VolumeMesh,
@@ -46,7 +46,7 @@ def watertight(solid: Solid) -> bool:
 
 def region_area_mm2(surface: LabelledSurface, label: Label) -> float:
     """Area of the faces with a label [mm2]."""
-    return float(face_areas(surface.points_mm, surface.faces[surface.labels == label]).sum())
+    return float(face_areas(surface.points_mm, surface.faces[surface.has(label)]).sum())
 
 
 def surface_volume_ratio(solid: Solid) -> float:

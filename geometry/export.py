@@ -11,8 +11,8 @@ import numpy as np
 
 from geometry.solid import part_from_brep
 from workbench.core.errors import StoreError
+from workbench.core.fabrication import FabricationPart
 from workbench.core.monitor import Monitor, silent
-from workbench.core.results import MouldPart
 
 ASSEMBLY = "mould_assembly"
 HEADER = b"binary STL in millimetres"
@@ -29,7 +29,7 @@ def stl_bytes(points_mm: np.ndarray, faces: np.ndarray) -> bytes:
     return HEADER.ljust(80, b"\0") + np.array(len(faces), dtype="<u4").tobytes() + rows.tobytes()
 
 
-def step_file(parts: Sequence[MouldPart], path: Path) -> None:
+def step_file(parts: Sequence[FabricationPart], path: Path) -> None:
     """Write a STEP assembly in which every part has its name.
 
     Raises:
@@ -45,7 +45,7 @@ def step_file(parts: Sequence[MouldPart], path: Path) -> None:
     _write_step(Compound(label=ASSEMBLY, children=bodies), path)
 
 
-def step_part(part: MouldPart, path: Path) -> None:
+def step_part(part: FabricationPart, path: Path) -> None:
     """Write one part as a STEP file.
 
     Raises:
@@ -56,7 +56,9 @@ def step_part(part: MouldPart, path: Path) -> None:
     _write_step(body, path)
 
 
-def part_files(parts: Sequence[MouldPart], monitor: Monitor = silent) -> dict[str, np.ndarray]:
+def part_files(
+    parts: Sequence[FabricationPart], monitor: Monitor = silent
+) -> dict[str, np.ndarray]:
     """Every part as STL and STEP, and all as one STEP assembly.
 
     Returns:

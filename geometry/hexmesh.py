@@ -88,7 +88,7 @@ def _cavity(support: LabelledSurface) -> Skin:
 
 
 def _faces(surface: LabelledSurface, label: Label) -> np.ndarray:
-    faces = surface.faces[surface.labels == label]
+    faces = surface.faces[surface.has(label)]
     if not len(faces):
         raise MeshingError(
             f"the body has no {label.name} face",

@@ -23,8 +23,9 @@ from geometry.surface import is_watertight
 from workbench.core.booleans import cut
 from workbench.core.design import MouldOptions
 from workbench.core.errors import GeometryError
+from workbench.core.fabrication import FabricationPart, MouldSet, PartGroup
 from workbench.core.monitor import Monitor, silent
-from workbench.core.results import Label, LabelledSurface, MouldPart, MouldSet, Solid
+from workbench.core.results import Label, LabelledSurface, Solid
 
 ANGLE_RAD = 0.15
 """Printed parts need no finer facets; the distance tolerance stays 0.02 mm."""
@@ -45,7 +46,7 @@ def make_mould(solid: Solid, options: MouldOptions, monitor: Monitor = silent) -
         GeometryError: If a part is not one closed body, or parts overlap.
     """
     monitor(0.0, "looking for the best split")
-    outer_faces = solid.membrane.faces[solid.membrane.labels == Label.OUTER]
+    outer_faces = solid.membrane.faces[solid.membrane.has(Label.OUTER)]
     azimuth_deg, _ = best_split_deg(solid.membrane.points_mm, outer_faces)
     outer, core = _enlarged(solid, options, azimuth_deg)
     box = outer.bounding_box()
@@ -97,7 +98,7 @@ def _checked_set(
 
 def _part(
     name: str, body: Any, mesh: Tessellation, explode: tuple[float, float, float]
-) -> MouldPart:
+) -> FabricationPart:
     # As a slicer sees it: STL keeps float32 and no indices, so vertices are welded anew.
     reloaded = _reloaded(mesh)
     pieces = piece_count(*reloaded)
@@ -107,8 +108,9 @@ def _part(
             hint="raise mould.wall_mm or lower mould.gate_diameter_mm",
             at="mould",
         )
-    return MouldPart(
+    return FabricationPart(
         name=name,
+        group=PartGroup.MOULD,
         points_mm=mesh.points_mm,
         faces=mesh.faces,
         brep=brep_bytes(body),
@@ -170,7 +172,7 @@ def _annulus(solid: Solid, options: MouldOptions, azimuth_deg: float) -> Ring:
 
 def _radii(surface: LabelledSurface, label: Label, azimuths: np.ndarray) -> np.ndarray:
     """Distance from the axis to a region just above the base [mm], shape (A,)."""
-    caster = RayCaster(surface.points_mm, surface.faces[surface.labels == label])
+    caster = RayCaster(surface.points_mm, surface.faces[surface.has(label)])
     # A hair off, because rays exactly through a vertex may slip between its triangles.
     turned = azimuths + 1e-4
     directions = np.column_stack([np.cos(turned), np.sin(turned), np.zeros(len(turned))])

@@ -16,7 +16,8 @@ from typing import Any
 import numpy as np
 
 from workbench.core.errors import DeviceError
-from workbench.core.results import MouldSet, Skin
+from workbench.core.fabrication import MouldSet
+from workbench.core.results import Skin
 
 SIZE_PX = (1200, 900)
 WINDOW = "VTK_DEFAULT_OPENGL_WINDOW"

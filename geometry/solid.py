@@ -15,8 +15,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from geometry.regions import mark_regions
 from geometry.surface import face_areas, mesh_volume, open_edges
 from workbench.core.errors import GeometryError, MeshingError
+from workbench.core.marks import NO_MARKS, Marks
 from workbench.core.results import Label, LabelledSurface, Solid
 
 TOLERANCE_MM = 0.02
@@ -44,21 +46,34 @@ class Tessellation(NamedTuple):
 
 
 def assemble(
-    *, membrane: Any, outer: Any, core: Any, support: Any, base: Any, notice: str = ""
+    *,
+    membrane: Any,
+    outer: Any,
+    core: Any,
+    support: Any,
+    base: Any,
+    marks: Marks = NO_MARKS,
+    notice: str = "",
 ) -> Solid:
     """Turn the B-rep bodies of a family into arrays.
 
     Raises:
-        MeshingError: If a surface is not watertight.
+        MeshingError: If a surface is not watertight, or a marked region is empty.
     """
     coarse = {"tolerance_mm": COARSE_TOLERANCE_MM, "angle_rad": COARSE_ANGLE_RAD}
     return Solid(
-        membrane=label_surface(membrane, core),
+        membrane=mark_regions(label_surface(membrane, core), marks.regions),
         support=label_surface(support, core, **coarse),
         base=label_surface(base, None, **coarse),
         outer_brep=brep_bytes(outer),
         core_brep=brep_bytes(core),
+        membrane_brep=brep_bytes(membrane),
+        support_brep=brep_bytes(support),
+        base_brep=brep_bytes(base),
         volume_mm3=float(membrane.volume),
+        tips_mm=np.asarray(marks.tips_mm, dtype=np.float64).reshape(-1, 3),
+        tip_radius_mm=marks.tip_radius_mm,
+        backing_mm=marks.backing_mm,
         notice=notice,
     )
 
@@ -66,7 +81,7 @@ def assemble(
 def label_surface(
     part: Any, core: Any, *, tolerance_mm: float = TOLERANCE_MM, angle_rad: float = ANGLE_RAD
 ) -> LabelledSurface:
-    """Tessellate a body and label its faces.
+    """Tessellate a body and label its faces outer, inner or base.
 
     Args:
         part: build123d body.
@@ -84,10 +99,11 @@ def label_surface(
     inside = _classifier(core)
     for number in np.unique(patch):
         members = np.flatnonzero(patch == number)
-        if np.abs(points[faces[members], 2]).max() < FLAT_MM:
-            labels[number] = Label.BASE
-        elif inside(_probe(points[faces[members[np.argmax(areas[members])]]], tolerance_mm)):
+        # Inner before base: a pad's bonded face may lie in a plane that others call their base.
+        if inside(_probe(points[faces[members[np.argmax(areas[members])]]], tolerance_mm)):
             labels[number] = Label.INNER
+        elif np.abs(points[faces[members], 2]).max() < FLAT_MM:
+            labels[number] = Label.BASE
     return LabelledSurface(points_mm=points, faces=faces, labels=labels[patch])
 
 

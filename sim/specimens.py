@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from workbench.core.results import MembraneMesh, Skin, VolumeMesh
+from workbench.core.results import MembraneMesh, Skin
 
 
 def finger_skin(radius_mm: float, cylinder_mm: float, edge_mm: float) -> Skin:
@@ -43,12 +43,4 @@ def _revolved_faces(rings: int, around: int) -> np.ndarray:
 
 def skins_only(*, outer: Skin, inner: Skin, cavity: Skin) -> MembraneMesh:
     """A membrane without hexahedra: neither light nor material points look at them."""
-    empty = VolumeMesh(
-        points_mm=np.zeros((0, 3)),
-        cells=np.zeros((0, 8), dtype=np.int32),
-        labels=np.zeros(0, dtype=np.uint8),
-        quality=np.zeros(0, dtype=np.float32),
-        layers=0,
-        volume_mm3=0.0,
-    )
-    return MembraneMesh(hexes=empty, outer=outer, inner=inner, cavity=cavity)
+    return MembraneMesh(hexes=None, outer=outer, inner=inner, cavity=cavity)

@@ -10,8 +10,9 @@ import numpy as np
 
 from ui.imaging import coloured_glb, heat_colours
 from workbench.core.design import Camera, LedRing, LensModel
+from workbench.core.fabrication import MouldSet
 from workbench.core.press import Indenter, Press
-from workbench.core.results import Contact, MouldSet, Skin, Solid
+from workbench.core.results import Contact, Skin, Solid
 from workbench.previews import corner_normals, indenter_shape, outer_faces, standing_pose
 
 SKIN_COLOUR = (196, 206, 220)

@@ -46,9 +46,16 @@ def export_design(
     for name in ("membrane", "support", "base"):
         surface = getattr(solid, name)
         files[f"{name}.stl"] = stl_bytes(surface.points_mm, surface.faces)
-    buffer = io.BytesIO()
-    np.savez_compressed(buffer, points_mm=hexes.points_mm, cells=hexes.cells, labels=hexes.labels)
-    files["mesh.npz"] = buffer.getvalue()
+    if hexes is not None:
+        buffer = io.BytesIO()
+        np.savez_compressed(
+            buffer,
+            points_mm=hexes.points_mm,
+            cells=hexes.cells,
+            labels=hexes.labels,
+            numbers=hexes.numbers,
+        )
+        files["mesh.npz"] = buffer.getvalue()
     if "picture" in found:
         files["exploded.png"] = found["picture"].png.tobytes()
     for name, content in files.items():

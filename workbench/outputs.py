@@ -13,8 +13,9 @@ import numpy as np
 
 from workbench.core.design import SensorDesign
 from workbench.core.errors import DesignError, StoreError
+from workbench.core.fabrication import MouldSet
 from workbench.core.press import Press
-from workbench.core.results import Bundle, Contact, MembraneMesh, MouldSet, Shot
+from workbench.core.results import Bundle, Contact, MembraneMesh, Shot
 from workbench.pipeline import results
 from workbench.project import write_atomically
 from workbench.stages import Call, Outcome

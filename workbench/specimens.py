@@ -5,8 +5,9 @@ from __future__ import annotations
 import functools
 
 from workbench.core.design import Layers, Meshing
+from workbench.core.errors import MeshingError
 from workbench.core.monitor import silent
-from workbench.core.results import MaterialPoints, MembraneMesh, Solid
+from workbench.core.results import MaterialPoints, MembraneMesh, Solid, VolumeMesh
 from workbench.stages import build, lattice, mesh
 
 
@@ -22,6 +23,18 @@ def finger_solid() -> Solid:
 def finger_mesh() -> MembraneMesh:
     """The default finger at 0.4 mm."""
     return mesh(finger_solid(), Meshing(), monitor=silent)
+
+
+def finger_hexes() -> VolumeMesh:
+    """Its hexahedra.
+
+    Raises:
+        MeshingError: If there are none.
+    """
+    hexes = finger_mesh().hexes
+    if hexes is None:
+        raise MeshingError("the finger has no hexahedra", hint=finger_mesh().notice, at="shape")
+    return hexes
 
 
 @functools.cache

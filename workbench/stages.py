@@ -22,6 +22,7 @@ from workbench.core.design import (
     Optics,
 )
 from workbench.core.digest import digest
+from workbench.core.fabrication import MouldSet
 from workbench.core.monitor import Monitor, part, silent
 from workbench.core.press import ContactSettings, Indenter, Press
 from workbench.core.results import (
@@ -30,7 +31,6 @@ from workbench.core.results import (
     LightField,
     MaterialPoints,
     MembraneMesh,
-    MouldSet,
     Picture,
     Shot,
     Solid,
@@ -199,13 +199,13 @@ def package(moulds: MouldSet, *, monitor: Monitor) -> Bundle:
 STAGES = {
     stage.name: stage
     for stage in (
-        Stage(name="build", version=1, lane="cad", function=build),
-        Stage(name="mesh", version=1, lane="cad", function=mesh),
-        Stage(name="lattice", version=1, lane="cad", function=lattice),
+        Stage(name="build", version=2, lane="cad", function=build),
+        Stage(name="mesh", version=2, lane="cad", function=mesh),
+        Stage(name="lattice", version=2, lane="cad", function=lattice),
         Stage(name="bake", version=1, lane="sim", function=bake),
-        Stage(name="press", version=4, lane="sim", function=press),
+        Stage(name="press", version=5, lane="sim", function=press),
         Stage(name="shoot", version=2, lane="sim", function=shoot),
-        Stage(name="mould", version=1, lane="cad", function=mould),
+        Stage(name="mould", version=2, lane="cad", function=mould),
         Stage(name="package", version=1, lane="cad", function=package),
         Stage(name="picture", version=1, lane="cad", function=picture),
     )

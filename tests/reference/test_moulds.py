@@ -19,7 +19,8 @@ from geometry.primitives import rounded_box, sphere
 from geometry.surface import is_watertight, mesh_volume
 from workbench.core.design import MouldOptions
 from workbench.core.errors import DesignError, GeometryError, StoreError
-from workbench.core.results import MouldSet, Solid
+from workbench.core.fabrication import MouldSet
+from workbench.core.results import Solid
 
 
 @pytest.fixture(scope="module")

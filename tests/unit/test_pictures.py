@@ -10,7 +10,8 @@ from geometry import pictures
 from geometry.primitives import rounded_box, sphere
 from geometry.surface import vertex_normals
 from workbench.core.errors import DeviceError
-from workbench.core.results import MouldPart, MouldSet, Skin
+from workbench.core.fabrication import FabricationPart, MouldSet, PartGroup
+from workbench.core.results import Skin
 
 SMALL = (240, 180)
 
@@ -25,7 +26,8 @@ def decoded(png: np.ndarray) -> np.ndarray:
 def test_mould_and_field_are_drawn(capfd: pytest.CaptureFixture[str]) -> None:
     """White ground, something coloured on it, nothing on stderr."""
     points, faces = rounded_box(5.0, 0.5)
-    part = MouldPart(
+    part = FabricationPart(
+        group=PartGroup.MOULD,
         name="half_a",
         points_mm=points,
         faces=faces,

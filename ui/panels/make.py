@@ -10,7 +10,8 @@ import viser
 
 from ui.desk import Desk
 from workbench.core.errors import WorkbenchError
-from workbench.core.results import Bundle, MouldSet
+from workbench.core.fabrication import MouldSet
+from workbench.core.results import Bundle
 from workbench.core.units import volume_ml
 
 OVERLAP_LIMIT_MM3 = 1e-3

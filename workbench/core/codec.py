@@ -14,7 +14,12 @@ from typing import Any, cast
 
 import numpy as np
 
-_MODULES = ("workbench.core.results", "workbench.core.design", "workbench.core.press")
+_MODULES = (
+    "workbench.core.results",
+    "workbench.core.fabrication",
+    "workbench.core.design",
+    "workbench.core.press",
+)
 
 Arrays = dict[str, np.ndarray]
 

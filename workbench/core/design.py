@@ -16,6 +16,7 @@ from typing import Any, cast
 
 from workbench.core.check import within
 from workbench.core.errors import DesignError
+from workbench.core.making import Casting, Housing, MouldOptions
 
 SCHEMA = 1
 """Number of the design format; raised when a field changes its meaning."""
@@ -262,33 +263,6 @@ class Meshing:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class MouldOptions:
-    """How the casting mould is made."""
-
-    wall_mm: float = 6.0
-    """Thickness of the mould around the part [mm]."""
-    shrink_percent: float = 0.2
-    """Linear shrinkage of the silicone while curing [%]; the cavity is larger by it."""
-    clearance_mm: float = 0.15
-    """Gap between mating printed faces [mm]."""
-    gate_diameter_mm: float = 8.0
-    """Diameter of the pouring funnel's mouth [mm]."""
-    vent_count: int = 3
-
-    def __post_init__(self) -> None:
-        at = "mould"
-        within(self.wall_mm, 3.0, 50.0, what="mould wall", unit="mm", at=f"{at}.wall_mm")
-        within(
-            self.shrink_percent, 0.0, 10.0, what="shrinkage", unit="%", at=f"{at}.shrink_percent"
-        )
-        within(self.clearance_mm, 0.0, 1.0, what="clearance", unit="mm", at=f"{at}.clearance_mm")
-        widest = 30.0
-        at = f"{at}.gate_diameter_mm"
-        within(self.gate_diameter_mm, 1.0, widest, what="gate diameter", unit="mm", at=at)
-        within(self.vent_count, 1, 12, what="vent count", unit="", at="mould.vent_count")
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
 class SensorDesign:
     """A whole sensor. `shape` holds the family's own parameters by name."""
 
@@ -300,6 +274,8 @@ class SensorDesign:
     optics: Optics = field(default_factory=Optics)
     meshing: Meshing = field(default_factory=Meshing)
     mould: MouldOptions = field(default_factory=MouldOptions)
+    housing: Housing = field(default_factory=Housing)
+    casting: Casting = field(default_factory=Casting)
     schema: int = field(default=SCHEMA, metadata={"cosmetic": True})
 
     def replace(self, dotted: str, value: Any) -> SensorDesign:

@@ -5,10 +5,11 @@ from __future__ import annotations
 import functools
 
 from workbench.core.design import MouldOptions
+from workbench.core.fabrication import MouldSet
 from workbench.core.monitor import silent
-from workbench.core.results import Label, MouldSet
+from workbench.core.results import Label
 from workbench.rows import Row, bounded, compared
-from workbench.specimens import finger_mesh, finger_points, finger_solid
+from workbench.specimens import finger_hexes, finger_mesh, finger_points, finger_solid
 from workbench.stages import mould
 
 CASE = "finger R 15, wall 2, cylinder 27 mm"
@@ -65,7 +66,7 @@ def rows() -> list[Row]:
         compared(
             "hex_volume",
             f"{CASE}, 0.4 mm",
-            lambda: checks.hex_volume_ratio(finger_mesh().hexes, finger_solid()),
+            lambda: checks.hex_volume_ratio(finger_hexes(), finger_solid()),
             1.0,
             unit="1",
             limit=MESH_LIMIT,
@@ -73,7 +74,7 @@ def rows() -> list[Row]:
         bounded(
             "hex_scaled_jacobian",
             f"{CASE}, 0.4 mm",
-            lambda: checks.hex_least_quality(finger_mesh().hexes),
+            lambda: checks.hex_least_quality(finger_hexes()),
             unit="1",
             limit=0.1,
             sense="min",

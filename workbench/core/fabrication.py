@@ -1,0 +1,153 @@
+"""What leaves for the workshop: printable parts, checks of them, the casting recipe.
+
+Sensor frame; mm. Results of the stages `mould`, `housing` and `recipe`.
+"""
+
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass
+
+import numpy as np
+
+from workbench.core.check import expect
+
+
+class PartGroup(enum.StrEnum):
+    """What a part is for."""
+
+    MOULD = "mould"
+    """Shapes the silicone; not in the finished sensor."""
+    SENSOR = "sensor"
+    """Belongs to the finished sensor."""
+
+
+class Severity(enum.StrEnum):
+    """How a check came out."""
+
+    GOOD = "good"
+    WARNING = "warning"
+    """It can be made, but somebody should look."""
+    BAD = "bad"
+    """It cannot be printed, cast or assembled as it is."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FabricationPart:
+    """One printable part."""
+
+    name: str
+    """File name without ending: letters, digits, underscores."""
+    group: PartGroup
+    points_mm: np.ndarray
+    """Vertices [mm], shape (N, 3), in the assembled position."""
+    faces: np.ndarray
+    """Triangles, shape (M, 3), int32."""
+    brep: np.ndarray
+    """OCCT text of the body, shape (bytes,), uint8; empty when only triangles exist."""
+    volume_mm3: float
+    watertight: bool
+    """One closed body after a reload of its STL file."""
+    explode: tuple[float, float, float]
+    """Where the part stands in the exploded view, from its assembled place [mm]."""
+    pull: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Unit direction in which a mould part leaves the cast; zero for parts of the sensor."""
+    process: str = "3D print"
+    """How it is made, for the build sheet, for example `print in clear resin, polish`."""
+
+    def __post_init__(self) -> None:
+        expect(self.points_mm, "N 3", name="part points")
+        expect(self.faces, "M 3", name="part faces")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FabricationCheck:
+    """One number that decides whether a thing can be made, and where it is worst."""
+
+    name: str
+    """Short name in snake case, for example `undercut`."""
+    part: str
+    """Part looked at, or `cast`."""
+    value: float
+    unit: str
+    limit: float
+    sense: str
+    """`max`: at most the limit is good; `min`: at least."""
+    severity: Severity
+    place_mm: tuple[float, float, float]
+    """Where it is worst, in the assembled position [mm]."""
+    message: str
+    """One sentence with value, limit, unit and remedy."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class MouldSet:
+    """All parts of a casting mould and what was measured on them."""
+
+    parts: tuple[FabricationPart, ...]
+    split_azimuth_deg: float
+    """Azimuth of the pull direction of the first outer part [degree]."""
+    overlap_mm3: float
+    """Largest pairwise overlap of parts, and of parts with the cast body [mm3]."""
+    thinnest_wall_mm: float
+    cast_volume_mm3: float
+    """Silicone in the cavity [mm3], compensated for shrinkage and draft."""
+    checks: tuple[FabricationCheck, ...] = ()
+    notice: str = ""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class HousingSet:
+    """The rigid parts of the finished sensor, and clearances around LEDs and camera."""
+
+    parts: tuple[FabricationPart, ...]
+    checks: tuple[FabricationCheck, ...] = ()
+    notice: str = ""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class LedItem:
+    """One LED of the bill of materials."""
+
+    number: int
+    colour: str
+    """`#rrggbb`."""
+    position_mm: tuple[float, float, float]
+    axis: tuple[float, float, float]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class PrintItem:
+    """One print of the bill of materials."""
+
+    name: str
+    group: PartGroup
+    process: str
+    volume_mm3: float
+    size_mm: tuple[float, float, float]
+    """Bounding box [mm]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Recipe:
+    """What to weigh, cast, coat, solder and print."""
+
+    silicone: str
+    """Name in the table of silicones."""
+    source: str
+    """Where its numbers come from."""
+    density_g_cm3: float
+    cast_ml: float
+    """Silicone in the cavity [ml]."""
+    pour_ml: float
+    """Silicone to mix, waste included [ml]."""
+    part_a_g: float
+    part_b_g: float
+    coating_mm2: float
+    """Area of the sensing surface, to be coated [mm2]."""
+    leds: tuple[LedItem, ...]
+    prints: tuple[PrintItem, ...]
+    steps: tuple[str, ...]
+    """What to do, in order."""
+    notice: str = ""
+    """For example that no silicone of the table has the design's modulus."""
