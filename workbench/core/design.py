@@ -84,6 +84,11 @@ class Elastomer:
     """Density [g/cm3]; statics do not use it, the casting recipe does."""
     friction: float = 0.3
     """Coulomb coefficient against the indenter. Source: SimTac, FEM model."""
+    backing_MPa: float = 0.02
+    """Young's modulus of the gel behind skins with a gap [MPa]; 0 is air. Bonded skins ignore it.
+
+    Source: our choice, a very soft silicone gel (Shore 00-10 or below) as in TacTips.
+    """
     source: str = field(default="SimTac, Supplementary", metadata={"cosmetic": True})
 
     def __post_init__(self) -> None:
@@ -97,6 +102,8 @@ class Elastomer:
         within(self.friction, 0.0, 2.0, what="friction coefficient", unit="", at=at)
         at = "material.density_g_cm3"
         within(self.density_g_cm3, 0.1, 10.0, what="density", unit="g/cm3", at=at)
+        at = "material.backing_MPa"
+        within(self.backing_MPa, 0.0, 1.0, what="modulus of the backing", unit="MPa", at=at)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -194,6 +194,11 @@ class MembraneMesh:
     notice: str = ""
     """Why there are no hexahedra, for the user; empty when there are."""
 
+    @property
+    def seen(self) -> Skin:
+        """What the camera looks at: the coated outer skin, or the opaque inner one with pins."""
+        return self.inner if len(self.tips_mm) else self.outer
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class MaterialPoints:
@@ -273,8 +278,9 @@ class Contact:
     substeps: int
     """Relaxation steps of all frames together."""
     device: str
-    tips_mm: np.ndarray = field(default_factory=lambda: np.zeros((0, 0, 3), dtype=np.float32))
-    """Displacement of the tips of internal pins [mm], shape (K, T, 3), float32."""
+    inner_mm: np.ndarray = field(default_factory=lambda: np.zeros((0, 0, 3), dtype=np.float32))
+    """Displacement of the inner skin's vertices [mm], shape (K, W, 3), float32; (0, 0, 3) where
+    that skin is bonded and stays where it is."""
 
     @property
     def normal_N(self) -> np.ndarray:
