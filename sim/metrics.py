@@ -48,7 +48,7 @@ def measure(
     if light.model == LightModel.DIRECT:
         # The other fields hold directions along the skin and no falloff: nothing to score there.
         values["skin_light_p5_over_p95"] = _ratio(light.irradiance.sum(axis=0))
-        values["skin_lit_by_three_percent"] = 100.0 * lit_share(mesh.outer, light)
+        values["skin_lit_by_three_percent"] = 100.0 * lit_share(mesh.seen, light)
     box = contact_box(contact_pixels(frames, -1))
     if box is not None:
         change = np.abs(image[box].astype(np.float64) - background[box])

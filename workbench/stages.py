@@ -169,7 +169,7 @@ def shoot(
         mesh,
         light,
         optics,
-        displacement_mm=contact.displacement_mm,
+        displacement_mm=mesh.seen_displacement_mm(contact),
         monitor=part(monitor, 0.0, 0.9),
     )
     return Shot(frames=frames, metrics=measure(mesh, contact, frames, light))

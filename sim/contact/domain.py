@@ -36,6 +36,26 @@ _STENCIL = np.stack(np.meshgrid(*[[-1, 0, 1]] * 3, indexing="ij"), axis=-1).resh
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
+class Readout:
+    """How the displacement of a skin's V vertices follows from that of the nodes."""
+
+    count: int
+    """V."""
+    vertices: np.ndarray
+    """Vertices in active cells, shape (A,), int64; the others are at rest."""
+    nodes: np.ndarray
+    """Their 27 nodes, shape (A, 27)."""
+    weights: np.ndarray
+    """Their 27 weights, shape (A, 27)."""
+
+    def displacement_mm(self, nodal_mm: np.ndarray) -> np.ndarray:
+        """Displacement of all vertices, shape (V, 3), float32, from that of nodes (N, 3)."""
+        found = np.zeros((self.count, 3), np.float32)
+        found[self.vertices] = np.einsum("an,anc->ac", self.weights, nodal_mm[self.nodes])
+        return found
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
 class Domain:
     """Arrays of the active region. C cells, N nodes, P surface points, A active vertices."""
 
@@ -64,12 +84,10 @@ class Domain:
     """Cells that own surface points, shape (S,), int32."""
     owner_starts: np.ndarray
     """Where a cell's surface points start, shape (S + 1,), int32."""
-    vertices: np.ndarray
-    """Outer vertices in active cells, shape (A,), int64."""
-    vertex_nodes: np.ndarray
-    """Their 27 nodes, shape (A, 27)."""
-    vertex_weights: np.ndarray
-    """Their 27 weights, shape (A, 27)."""
+    outer: Readout
+    """Of the outer skin."""
+    inner: Readout | None
+    """Of the inner skin where it is free to move, else None."""
     particles: int
     """Material points with volume before the floor."""
 
@@ -122,11 +140,11 @@ def build_domain(
         DesignError: If no material lies in the region.
     """
     grid_mm = material_points.grid_mm
-    outer = mesh.outer.points_mm
-    vertex_cells = np.round(outer / grid_mm).astype(np.int64)
+    skins = [mesh.outer, mesh.inner] if mesh.backing_mm > 0.0 else [mesh.outer]
+    skin_cells = [np.round(skin.points_mm / grid_mm).astype(np.int64) for skin in skins]
     point_cells = np.round(surface_points.position_mm / grid_mm).astype(np.int64)
     cells, fractions, left_out = _choose_cells(
-        material_points, np.concatenate([vertex_cells, point_cells]), target_mm, active_radius_mm
+        material_points, np.concatenate([*skin_cells, point_cells]), target_mm, active_radius_mm
     )
     node_keys, rows = _number_nodes(cells)
     cell_keys = _keys(cells)
@@ -146,8 +164,10 @@ def build_domain(
     spring = weights * (points.stiffness_N_mm / EIGENVALUE)[:, None]
     masses += _spread(spring, rows[owner[order]], len(node_keys))
 
-    vertex_owner, inside = _look_up(cell_keys, _keys(vertex_cells))
-    vertices = np.flatnonzero(inside)
+    readouts = [
+        _readout(skin.points_mm / grid_mm, cells_of_skin, cell_keys, rows)
+        for skin, cells_of_skin in zip(skins, skin_cells, strict=True)
+    ]
     node_starts, node_slots = _node_slots(rows, len(node_keys))
     return Domain(
         grid_mm=grid_mm,
@@ -163,10 +183,23 @@ def build_domain(
         point_weights=weights,
         owners=owners.astype(np.int32),
         owner_starts=np.append(starts, len(order)).astype(np.int32),
-        vertices=vertices,
-        vertex_nodes=stencil_nodes(rows[vertex_owner[vertices]]),
-        vertex_weights=point_weights(outer[vertices] / grid_mm - vertex_cells[vertices]),
+        outer=readouts[0],
+        inner=readouts[1] if len(readouts) > 1 else None,
         particles=int(np.count_nonzero(fractions)),
+    )
+
+
+def _readout(
+    place: np.ndarray, place_cells: np.ndarray, cell_keys: np.ndarray, rows: np.ndarray
+) -> Readout:
+    """Readout of vertices at `place` (V, 3), in cell edges, that lie in cells `place_cells`."""
+    owner, inside = _look_up(cell_keys, _keys(place_cells))
+    vertices = np.flatnonzero(inside)
+    return Readout(
+        count=len(place),
+        vertices=vertices,
+        nodes=stencil_nodes(rows[owner[vertices]]),
+        weights=point_weights(place[vertices] - place_cells[vertices]),
     )
 
 

@@ -28,6 +28,7 @@ class FrameOutcome:
     """One frame of `Contact`; the fields have the same names and units."""
 
     displacement_mm: np.ndarray
+    inner_mm: np.ndarray
     reaction_N: np.ndarray
     moment_Nmm: np.ndarray
     indenter_pose: np.ndarray
@@ -61,10 +62,8 @@ def frame_outcome(
     domain = relaxation.domain
     origin, rotation = approach.pose(frame + 1.0)
     nodal = relaxation.displacement().astype(np.float64)
-    displacement = np.zeros(outer.points_mm.shape, np.float32)
-    displacement[domain.vertices] = np.einsum(
-        "an,anc->ac", domain.vertex_weights, nodal[domain.vertex_nodes]
-    )
+    displacement = domain.outer.displacement_mm(nodal)
+    inner = domain.inner
     open_points = ~domain.points.bonded
     forces = relaxation.point_forces()[open_points].astype(np.float64)
     place = (domain.points.position_mm + point_displacement(domain, nodal))[open_points]
@@ -77,6 +76,7 @@ def frame_outcome(
     overlap_mm = deepest_overlap_mm(vertex_mm, relaxation.collider, origin, rotation)
     return FrameOutcome(
         displacement_mm=displacement,
+        inner_mm=np.zeros((0, 3), np.float32) if inner is None else inner.displacement_mm(nodal),
         reaction_N=balance.reaction_N,
         moment_Nmm=-np.cross(place - origin, forces).sum(axis=0),
         indenter_pose=np.concatenate([origin, quaternion(rotation)]),
@@ -137,6 +137,7 @@ def collect(
 
     return Contact(
         displacement_mm=stack("displacement_mm"),
+        inner_mm=stack("inner_mm"),
         reaction_N=stack("reaction_N"),
         moment_Nmm=stack("moment_Nmm"),
         indenter_pose=stack("indenter_pose"),

@@ -11,7 +11,9 @@ from __future__ import annotations
 import numpy as np
 
 from sim.contact.approach import Approach
+from sim.contact.backing import decay_mm
 from sim.contact.collider import Collider
+from workbench.core.design import Elastomer
 from workbench.core.errors import DesignError
 from workbench.core.press import ContactSettings
 from workbench.core.results import MembraneMesh
@@ -26,12 +28,17 @@ POSES = 12
 
 
 def region_radius_mm(
-    mesh: MembraneMesh, approach: Approach, collider: Collider, settings: ContactSettings
+    mesh: MembraneMesh,
+    material: Elastomer,
+    approach: Approach,
+    collider: Collider,
+    settings: ContactSettings,
 ) -> float:
     """The designer's radius [mm], or with 0 the one that patch and wall ask for.
 
     The patch is the part of the undeformed skin inside the indenter anywhere on its path, so any
-    shape, shear and twist are covered.
+    shape, shear and twist are covered. A skin over gel bends farther than a bonded one, and over
+    air all of it takes part.
 
     Raises:
         DesignError: If the designer's radius leaves less than 1.5 walls around the patch.
@@ -41,7 +48,9 @@ def region_radius_mm(
     patch_mm = _patch_radius_mm(mesh, approach, collider)
     chosen_mm = settings.active_radius_mm
     if chosen_mm == 0.0:
-        return patch_mm + max(LEAST_MARGIN_MM, MARGIN_WALLS * wall_mm)
+        margin_mm = max(LEAST_MARGIN_MM, MARGIN_WALLS * wall_mm, decay_mm(mesh, material, wall_mm))
+        from_target = np.linalg.norm(mesh.outer.points_mm - approach.target_mm, axis=1)
+        return min(patch_mm + margin_mm, float(from_target.max()) + wall_mm)
     least_mm = patch_mm + LEAST_MARGIN_WALLS * wall_mm
     if chosen_mm < least_mm:
         raise DesignError(

@@ -16,6 +16,12 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from sim.contact.approach import Approach, plan_approach
+from sim.contact.backing import (
+    backed_faces,
+    bonded_faces,
+    foundation_N_mm3,
+    support_points_mm,
+)
 from sim.contact.collider import Collider, make_collider
 from sim.contact.domain import Domain, build_domain
 from sim.contact.outcome import FrameOutcome, collect, frame_outcome
@@ -62,7 +68,7 @@ def press_membrane(
     """Press the indenter along its path; Taichi must have been initialised in this thread.
 
     Args:
-        mesh: Skins: contact on `outer`, bond on `inner`.
+        mesh: Skins: contact on `outer`, bond or gel on `inner`.
         points: Material points; their `grid_mm` is the grid of the solution.
         material: The elastomer, with its friction against the indenter.
         indenter: The rigid object.
@@ -79,8 +85,8 @@ def press_membrane(
     monitor(0.0, "placing the indenter")
     collider = make_collider(indenter, grid_mm=points.grid_mm)
     approach = plan_approach(mesh.outer, collider, press)
-    check_depth(mesh.inner, approach, collider)
-    radius_mm = region_radius_mm(mesh, approach, collider, settings)
+    check_depth(support_points_mm(mesh), approach, collider)
+    radius_mm = region_radius_mm(mesh, material, approach, collider, settings)
     domain = prepare(mesh, points, material, approach, collider, settings, radius_mm=radius_mm)
     relaxation = Relaxation(domain, collider, neo_hookean(material), friction=material.friction)
     run = _Run(relaxation=relaxation, approach=approach, settings=settings, monitor=monitor)
@@ -129,12 +135,21 @@ def prepare(
     gap_mm = path_distance_mm(touching.position_mm, approach, collider)
     # Only points that the indenter comes near get contact springs and their mass.
     touching = touching.take(gap_mm < reach_mm(approach, grid_mm))
-    facets = facets_of(mesh.inner, np.flatnonzero(near(inner_centre)), spacing_mm=spacing_mm)
-    bonded = corner_points(facets, stiffness_N_mm3=BOND_PENALTY * unit, bonded=True)
+    held = touching
+    springs = (
+        (bonded_faces(mesh), BOND_PENALTY * unit),
+        (backed_faces(mesh), foundation_N_mm3(mesh, material)),
+    )
+    for faces, stiffness_N_mm3 in springs:
+        members = np.flatnonzero(faces & near(inner_centre))
+        if stiffness_N_mm3 > 0.0 and len(members):
+            facets = facets_of(mesh.inner, members, spacing_mm=spacing_mm)
+            bond = corner_points(facets, stiffness_N_mm3=stiffness_N_mm3, bonded=True)
+            held = join(held, merge(bond, grid_mm))
     return build_domain(
         mesh,
         points,
-        join(touching, merge(bonded, grid_mm)),
+        held,
         neo_hookean(material),
         target_mm=approach.target_mm,
         active_radius_mm=radius_mm,

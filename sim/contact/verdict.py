@@ -14,7 +14,6 @@ from sim.contact.outcome import FrameOutcome, deepest_overlap_mm
 from sim.contact.relaxation import Relaxation
 from sim.contact.stencil import gradient_table
 from workbench.core.errors import DesignError, SolveError
-from workbench.core.results import Skin
 
 POSES = 12
 """Poses of shear and twist at which the support is looked at."""
@@ -30,19 +29,24 @@ SHALLOW_MM = 1e-3
 """Depth up to which a frame may have no reaction."""
 
 
-def check_depth(inner: Skin, approach: Approach, collider: Collider) -> None:
+def check_depth(support_mm: np.ndarray, approach: Approach, collider: Collider) -> None:
     """Refuse a path on which the rigid indenter meets the rigid support.
+
+    Args:
+        support_mm: Points of the support [mm], shape (N, 3).
+        approach: The path.
+        collider: The indenter.
 
     Raises:
         DesignError: With the largest depth that fits.
     """
     press = approach.press
-    if not _meets_support(inner, approach, collider, press.depth_mm):
+    if not _meets_support(support_mm, approach, collider, press.depth_mm):
         return
     fits_mm, meets_mm = 0.0, press.depth_mm
     while meets_mm - fits_mm > 1e-3:
         middle_mm = 0.5 * (fits_mm + meets_mm)
-        if _meets_support(inner, approach, collider, middle_mm):
+        if _meets_support(support_mm, approach, collider, middle_mm):
             meets_mm = middle_mm
         else:
             fits_mm = middle_mm
@@ -54,14 +58,15 @@ def check_depth(inner: Skin, approach: Approach, collider: Collider) -> None:
     )
 
 
-def _meets_support(inner: Skin, approach: Approach, collider: Collider, depth_mm: float) -> bool:
+def _meets_support(
+    support_mm: np.ndarray, approach: Approach, collider: Collider, depth_mm: float
+) -> bool:
     press = dataclasses.replace(approach.press, depth_mm=depth_mm)
     path = dataclasses.replace(approach, press=press)
     slides = press.frame_count - press.frames
     poses = np.linspace(press.frames, press.frame_count, POSES if slides else 1)
     return any(
-        deepest_overlap_mm(inner.points_mm, collider, *path.pose(float(pose))) > 0.0
-        for pose in poses
+        deepest_overlap_mm(support_mm, collider, *path.pose(float(pose))) > 0.0 for pose in poses
     )
 
 

@@ -37,10 +37,10 @@ SKIN_OFFSET_MM = 5e-3
 def bake_light(
     mesh: MembraneMesh, ring: LedRing, *, model: LightModel, monitor: Monitor = silent
 ) -> LightField:
-    """Light field of an LED ring on the outer skin.
+    """Light field of an LED ring on the skin that the camera sees.
 
     Args:
-        mesh: The skins; light meets the outer one from inside.
+        mesh: The skins; light meets the seen one from inside.
         ring: The LEDs.
         model: How light travels.
         monitor: Progress and cancellation.
@@ -50,7 +50,7 @@ def bake_light(
     """
     check_lights(mesh, ring)
     leds = place_leds(ring)
-    points, normals = mesh.outer.points_mm, mesh.outer.normals
+    points, normals = mesh.seen.points_mm, mesh.seen.normals
     direction = np.empty((ring.count, len(points), 3), dtype=np.float32)
     irradiance = np.ones((ring.count, len(points)), dtype=np.float32)
     for number in range(ring.count):
@@ -120,12 +120,13 @@ def emitted(
 def _unshadowed(mesh: MembraneMesh, led_mm: np.ndarray, monitor: Monitor) -> np.ndarray:
     """1 where the undeformed skin lets an LED see a vertex, else 0, shape (L, V), float32.
 
-    Only the coated outer skin is opaque: light passes the cavity wall and the bonded face.
+    Only the seen skin is opaque: light passes the cavity wall and, without pins, the bonded face.
     """
     from geometry.rays import RayCaster
 
-    caster = RayCaster(mesh.outer.points_mm, mesh.outer.faces)
-    start = mesh.outer.points_mm - SKIN_OFFSET_MM * mesh.outer.normals
+    skin = mesh.seen
+    caster = RayCaster(skin.points_mm, skin.faces)
+    start = skin.points_mm - SKIN_OFFSET_MM * skin.normals
     lit = np.empty((len(led_mm), len(start)), dtype=np.float32)
     for number, light in enumerate(led_mm):
         monitor(number / len(led_mm), f"shadows of LED {number + 1} of {len(led_mm)}")

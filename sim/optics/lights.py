@@ -154,7 +154,7 @@ def _check_view(mesh: MembraneMesh, camera: Camera) -> None:
     grid = np.stack(np.meshgrid(columns, rows), axis=-1).reshape(-1, 2)
     direction = pixel_directions(camera, grid)
     origin = np.broadcast_to(np.asarray(camera.position_mm, dtype=np.float64), direction.shape)
-    _, face, _ = RayCaster(mesh.outer.points_mm, mesh.outer.faces).hits(origin, direction)
+    _, face, _ = RayCaster(mesh.seen.points_mm, mesh.seen.faces).hits(origin, direction)
     share = float(np.mean(face >= 0))
     if share < FEWEST_PIXELS:
         raise DesignError(

@@ -1,4 +1,4 @@
-"""Dots printed on the skin: they move with it and show its shear.
+"""Dots printed on the skin, or white tips of its pins: they move with it and show its shear.
 
 A dot is the set of skin points within half a diameter of its centre in the reference
 configuration. A pixel is darkened where the reference place of what it sees lies in a dot, so dots
@@ -18,7 +18,8 @@ from workbench.core.results import Skin
 
 INK_REFLECTANCE = 0.08
 """Share of the light that ink returns, relative to the bare skin [1]; black silicone pigment."""
-
+TIP_REFLECTANCE = 0.85
+"""Share of the light that a white pin tip returns [1]; titanium dioxide paint, our choice."""
 
 LEAST_COSINE = 0.3
 """Smallest cosine that widens a pixel's footprint [1]: edges seen flatter stay this sharp."""
@@ -71,7 +72,11 @@ def no_ink(pixels: int) -> Coverage:
 
 def print_dots(skin: Skin, markers: Markers, camera: Camera) -> Dots:
     """Dots on the skin, and the triangles that can hold their ink."""
-    centres = place_markers(skin, markers)
+    return dots_at(skin, place_markers(skin, markers), markers.diameter_mm / 2.0, camera)
+
+
+def dots_at(skin: Skin, centres: np.ndarray, radius_mm: float, camera: Camera) -> Dots:
+    """Dots of one radius about given points of a skin [mm], shape (M, 3)."""
     if not len(centres):
         return Dots(centres_mm=centres, radius_mm=0.0, inked=np.zeros(len(skin.faces), dtype=bool))
     from scipy.spatial import KDTree
@@ -82,9 +87,8 @@ def print_dots(skin: Skin, markers: Markers, camera: Camera) -> Dots:
     # No depth in the image exceeds the length of the body, whatever the pose of the camera.
     longest = float(np.linalg.norm(np.ptp(skin.points_mm, axis=0)))
     edge = 0.5 * longest / focal_px(camera) / LEAST_COSINE
-    radius = markers.diameter_mm / 2.0
-    inked = KDTree(centres).query(middle)[0] <= radius + edge + size
-    return Dots(centres_mm=centres, radius_mm=radius, inked=inked)
+    inked = KDTree(centres).query(middle)[0] <= radius_mm + edge + size
+    return Dots(centres_mm=centres, radius_mm=radius_mm, inked=inked)
 
 
 def ink(

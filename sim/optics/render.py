@@ -18,13 +18,26 @@ from sim.optics.camera import refracted_rays
 from sim.optics.display import choose_exposure, encode
 from sim.optics.gbuffer import GBuffer, Moved, View, interpolate, look, open_view
 from sim.optics.lights import check_camera
-from sim.optics.markers import INK_REFLECTANCE, Coverage, Dots, centroids, ink, no_ink, print_dots
+from sim.optics.markers import (
+    INK_REFLECTANCE,
+    TIP_REFLECTANCE,
+    Coverage,
+    Dots,
+    centroids,
+    dots_at,
+    ink,
+    no_ink,
+    print_dots,
+)
 from sim.optics.shading import directions_to_camera, relight, shade, straight, take
 from workbench.core.check import expect
 from workbench.core.design import LightModel, Optics
 from workbench.core.errors import OpticsError
 from workbench.core.monitor import Monitor, silent
 from workbench.core.results import LightField, MembraneMesh, TactileFrames
+
+LEAST_ALBEDO = 0.01
+"""Darkest skin that white tips are compared with [1]: carbon-black silicone returns 2 to 5 %."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,6 +56,8 @@ class _Scene:
     """Background minus undeformed foreground per pixel, shape (N, 3), float32: what a deformed
     foreground is added to. Zero where both come from one field."""
     dots: Dots
+    ink_gain: float
+    """Radiance of ink over that of the bare skin [1]."""
     coverage: Coverage
     exposure: float
 
@@ -59,16 +74,17 @@ def shoot(
 
     Args:
         mesh: The undeformed skins.
-        light: Light field baked on `mesh.outer`; its model decides the rendering.
+        light: Light field baked on `mesh.seen`; its model decides the rendering.
         optics: Camera, coating, markers, refractive index.
-        displacement_mm: Of the outer vertices [mm], shape (K, V, 3); None renders the background.
+        displacement_mm: Of the vertices of `mesh.seen` [mm], shape (K, V, 3); None renders the
+            background.
         monitor: Progress and cancellation.
 
     Raises:
         DesignError: If the camera is outside the cavity or sees nothing of the skin.
         OpticsError: If no light reaches what the camera sees, or a displacement is not finite.
     """
-    vertices = len(mesh.outer.points_mm)
+    vertices = len(mesh.seen.points_mm)
     expect(light.irradiance, f"L {vertices}", name="light field")
     if displacement_mm is None:
         displacement_mm = np.zeros((0, vertices, 3), dtype=np.float32)
@@ -94,22 +110,32 @@ def _open_scene(mesh: MembraneMesh, light: LightField, optics: Optics, monitor: 
     check_camera(mesh, optics.camera)
     rays = refracted_rays(optics.camera, mesh.cavity, optics.refractive_index)
     monitor(0.1, "undeformed skin")
-    view = open_view(mesh.outer, optics.camera, rays)
+    view = open_view(mesh.seen, optics.camera, rays)
     seen = view.background
     monitor(0.2, "background")
     foreground, behind = _undeformed_radiance(view, light, optics)
     bare, remainder = (np.zeros((len(rays.direction), 3), dtype=np.float32) for _ in range(2))
     bare[seen.pixel] = _to_pixels(view, behind, seen)
     remainder[seen.pixel] = bare[seen.pixel] - _to_pixels(view, foreground, seen)
-    exposure = choose_exposure(bare[seen.pixel])
+    dots, gain = _dots(mesh, LightModel(light.model), optics)
+    coverage = ink(
+        no_ink(len(bare)),
+        seen.pixel,
+        seen,
+        dots=dots,
+        skin=mesh.seen,
+        camera=optics.camera,
+        rays=rays,
+    )
+    # White tips on black skin are what must not be overexposed; black dots never are.
+    shown = _inked(bare, coverage.ink, gain) if gain > 1.0 else bare
+    exposure = choose_exposure(shown[seen.pixel])
     if exposure == 0.0:
         raise OpticsError(
             "no light reaches the part of the skin that the camera sees: the image would be black",
             hint="tilt or move the LEDs so that they shine on the skin (tilt_deg 0 is up)",
             at="optics.ring.tilt_deg",
         )
-    dots = print_dots(mesh.outer, optics.markers, optics.camera)
-    blank = no_ink(len(bare))
     return _Scene(
         view=view,
         light=light,
@@ -119,11 +145,20 @@ def _open_scene(mesh: MembraneMesh, light: LightField, optics: Optics, monitor: 
         bare=bare,
         remainder=remainder,
         dots=dots,
-        coverage=ink(
-            blank, seen.pixel, seen, dots=dots, skin=mesh.outer, camera=optics.camera, rays=rays
-        ),
+        ink_gain=gain,
+        coverage=coverage,
         exposure=exposure,
     )
+
+
+def _dots(mesh: MembraneMesh, model: LightModel, optics: Optics) -> tuple[Dots, float]:
+    """What is printed on the seen skin: tips of pins, else markers; and its gain."""
+    if len(mesh.tips_mm):
+        coating = optics.coating
+        albedo = coating.albedo if model is LightModel.DIRECT else coating.phong_diffuse
+        dots = dots_at(mesh.seen, mesh.tips_mm, mesh.tip_radius_mm, optics.camera)
+        return dots, TIP_REFLECTANCE / max(albedo, LEAST_ALBEDO)
+    return print_dots(mesh.seen, optics.markers, optics.camera), INK_REFLECTANCE
 
 
 def _undeformed_radiance(
@@ -158,7 +193,7 @@ def _blank(scene: _Scene, count: int) -> TactileFrames:
     depth[seen.pixel] = seen.depth_z_mm
     normal = np.zeros((len(scene.bare), 3), dtype=np.float16)
     normal[seen.pixel] = seen.normal
-    rgb = encode(_inked(scene.bare, scene.coverage.ink), scene.exposure)
+    rgb = encode(_inked(scene.bare, scene.coverage.ink, scene.ink_gain), scene.exposure)
     uv = centroids(scene.coverage, len(scene.dots.centres_mm), rays.width_px)
 
     def repeated(array: np.ndarray) -> np.ndarray:
@@ -174,8 +209,8 @@ def _blank(scene: _Scene, count: int) -> TactileFrames:
     )
 
 
-def _inked(radiance: np.ndarray, share: np.ndarray) -> np.ndarray:
-    return radiance * (1.0 - (1.0 - INK_REFLECTANCE) * share)[:, None]
+def _inked(radiance: np.ndarray, share: np.ndarray, gain: float) -> np.ndarray:
+    return radiance * (1.0 + (gain - 1.0) * share)[:, None]
 
 
 def _expose(scene: _Scene, moved: Moved, frames: TactileFrames, number: int) -> None:
@@ -196,7 +231,7 @@ def _expose(scene: _Scene, moved: Moved, frames: TactileFrames, number: int) -> 
         camera=view.camera,
         rays=view.rays,
     )
-    image = _inked(np.maximum(image, 0.0), coverage.ink[pixels])
+    image = _inked(np.maximum(image, 0.0), coverage.ink[pixels], scene.ink_gain)
     frames.rgb[number].reshape(-1, 3)[pixels] = encode(image, scene.exposure)
     depth = frames.depth_z_mm[number].reshape(-1)
     depth[pixels] = np.nan

@@ -44,7 +44,8 @@ def radius_mm(indenter: Indenter, press: Press, *, fixed_mm: float = 0.0) -> flo
     mesh, _ = specimens.finger(grid_mm=1.0)
     collider = make_collider(indenter, grid_mm=1.0)
     settings = ContactSettings(active_radius_mm=fixed_mm)
-    return region_radius_mm(mesh, plan_approach(mesh.outer, collider, press), collider, settings)
+    approach = plan_approach(mesh.outer, collider, press)
+    return region_radius_mm(mesh, Elastomer(), approach, collider, settings)
 
 
 def test_region_follows_size_and_shear() -> None:

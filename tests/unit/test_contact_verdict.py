@@ -98,9 +98,9 @@ def test_depth_that_reaches_the_support_is_refused() -> None:
     """A wall of 2 mm takes at most 2.0 mm; a shear alone does not change that of a flat block."""
     approach, collider = plan(dataclasses.replace(PRESS, depth_mm=2.5, shear_mm=(0.5, 0.0)))
     with pytest.raises(DesignError, match=r"2\.5 mm .* that fits is 2\.0 mm") as raised:
-        check_depth(MESH.inner, approach, collider)
+        check_depth(MESH.inner.points_mm, approach, collider)
     assert raised.value.at == "press.depth_mm"
-    check_depth(MESH.inner, *plan(dataclasses.replace(PRESS, depth_mm=1.9)))
+    check_depth(MESH.inner.points_mm, *plan(dataclasses.replace(PRESS, depth_mm=1.9)))
 
 
 @pytest.mark.parametrize(

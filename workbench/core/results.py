@@ -199,6 +199,10 @@ class MembraneMesh:
         """What the camera looks at: the coated outer skin, or the opaque inner one with pins."""
         return self.inner if len(self.tips_mm) else self.outer
 
+    def seen_displacement_mm(self, contact: Contact) -> np.ndarray:
+        """Displacement of the vertices of `seen` in each frame [mm], shape (K, V, 3)."""
+        return contact.inner_mm if len(self.tips_mm) else contact.displacement_mm
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class MaterialPoints:
@@ -279,8 +283,8 @@ class Contact:
     """Relaxation steps of all frames together."""
     device: str
     inner_mm: np.ndarray = field(default_factory=lambda: np.zeros((0, 0, 3), dtype=np.float32))
-    """Displacement of the inner skin's vertices [mm], shape (K, W, 3), float32; (0, 0, 3) where
-    that skin is bonded and stays where it is."""
+    """Displacement of the inner skin's vertices [mm], shape (K, W, 3), float32; W = 0 where that
+    skin is bonded and stays where it is."""
 
     @property
     def normal_N(self) -> np.ndarray:
