@@ -10,6 +10,7 @@ Bodies are duck-typed (as build123d's `Shape`: `volume`, `is_valid`, `bounding_b
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 from workbench.core.errors import GeometryError
@@ -65,6 +66,39 @@ def intersect(body: Any, tool: Any, *, what: str, pieces: int = 1) -> Any:
     limits = Limits(0.0, min(before, other + _slack(other)))
     result = body & tool
     return _checked(result, "intersect", what, (before, other), limits, (body,), pieces)
+
+
+def fillet(
+    body: Any,
+    radius_mm: float,
+    edges: Sequence[Any],
+    *,
+    what: str,
+    removes_mm3: tuple[float, float],
+) -> Any:
+    """The body with convex edges rounded; the volume must fall by an amount between two bounds.
+
+    Args:
+        radius_mm: Radius of the rounding.
+        edges: Edges of the body, at least one.
+        removes_mm3: Least and most volume the rounding may remove; (1 - pi/4) r^2 times the
+            length of the edges is the amount for right angles.
+
+    Raises:
+        GeometryError: If the kernel gave up, or the volume, the box or the number of pieces is
+            wrong.
+    """
+    before, most = volume(body), removes_mm3[1]
+    limits = Limits(before - most, before - removes_mm3[0])
+    name = f"{what} {radius_mm:g} mm"
+    if not edges:
+        raise _failed(f"fillet of {name}", "there is no edge to round")
+    try:
+        result = body.fillet(radius_mm, edges)
+    # build123d turns the kernel's refusal into a ValueError; OCCT's own are RuntimeErrors.
+    except (ValueError, RuntimeError) as error:
+        raise _failed(f"fillet of {name}", f"the kernel gave up ({error})") from error
+    return _checked(result, "fillet", name, (before, most), limits, (body,), 1)
 
 
 def expect_volume(body: Any, expected_mm3: float, *, what: str, relative: float = 1e-6) -> Any:

@@ -1,0 +1,111 @@
+"""Upright prisms with a rounded top rim, on any smooth outline: cores and bodies of families.
+
+With area A and perimeter P of the outline, height H and rim radius r, the rounding removes the
+corner (1 - pi/4) r^2 along the outline moved inward to the corner's centroid, so by Pappus
+
+    volume = A H - (1 - pi/4) r^2 (P - 2 pi c r),   c = (5/6 - pi/4) / (1 - pi/4) = 0.2234.
+
+It holds for any closed outline whose convex bends are wider than r, so a fillet that went wrong
+shows in the volume. Leaves out: outlines with corners.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from workbench.core.booleans import expect_volume, fillet
+
+CORNER = 1.0 - math.pi / 4.0
+"""Area between a square corner and its rounding, over r^2."""
+CENTROID = (5.0 / 6.0 - math.pi / 4.0) / CORNER
+"""Distance of that area's centroid from either side of the corner, over r."""
+
+
+def rounded_prism_mm3(area_mm2: float, perimeter_mm: float, top_mm: float, rim_mm: float) -> float:
+    """Volume of a prism on z = 0 with a rounded top rim [mm3]; see the module docstring."""
+    lost = CORNER * rim_mm**2 * (perimeter_mm - 2.0 * math.pi * CENTROID * rim_mm)
+    return area_mm2 * top_mm - lost
+
+
+def rim_limits(perimeter_mm: float, rim_mm: float, *, slack: float) -> tuple[float, float]:
+    """Least and most volume that a rim fillet may remove [mm3], for `booleans.fillet`."""
+    lost = rounded_prism_mm3(0.0, perimeter_mm, 0.0, rim_mm)
+    return -lost * (1.0 - slack), -lost * (1.0 + slack)
+
+
+def prism(outline: Any, top_mm: float) -> Any:
+    """The prism over a closed edge in the plane z = 0."""
+    from build123d import Face, Solid, Vector, Wire
+
+    return Solid.extrude(Face(Wire([outline])), Vector(0, 0, top_mm))
+
+
+def rounded_prism(
+    outline: Any,
+    *,
+    area_mm2: float,
+    perimeter_mm: float,
+    top_mm: float,
+    rim_mm: float,
+    what: str,
+    relative: float = 1e-3,
+) -> Any:
+    """A prism on z = 0 with a rounded top rim, checked by its closed form.
+
+    Args:
+        outline: Closed build123d edge in the plane z = 0.
+        relative: Tolerance of the volume; fillets of splines are approximated by the kernel.
+
+    Raises:
+        GeometryError: If the kernel could not round the rim.
+    """
+    block = prism(outline, top_mm)
+    edges = [edge for edge in block.edges() if edge.bounding_box().min.Z > top_mm - 1e-3]
+    least, most = rim_limits(perimeter_mm, rim_mm, slack=0.05)
+    body = fillet(block, rim_mm, edges, what=what, removes_mm3=(least, most))
+    expected = rounded_prism_mm3(area_mm2, perimeter_mm, top_mm, rim_mm)
+    return expect_volume(body, expected, what=what, relative=relative)
+
+
+def ellipse_area_mm2(half_x_mm: float, half_y_mm: float) -> float:
+    """Area of an ellipse [mm2]."""
+    return math.pi * half_x_mm * half_y_mm
+
+
+def ellipse_perimeter_mm(half_x_mm: float, half_y_mm: float) -> float:
+    """Perimeter of an ellipse [mm], by the trapezium rule, which converges exponentially."""
+    turn = np.linspace(0.0, 2.0 * np.pi, 256, endpoint=False)
+    speed = np.hypot(half_x_mm * np.sin(turn), half_y_mm * np.cos(turn))
+    return float(speed.mean() * 2.0 * np.pi)
+
+
+def ellipse_edge(half_x_mm: float, half_y_mm: float) -> Any:
+    """The ellipse as a closed edge in the plane z = 0; its seam lies on the +X side."""
+    from build123d import Edge, Plane
+
+    if half_x_mm >= half_y_mm:
+        return Edge.make_ellipse(half_x_mm, half_y_mm, Plane.XY)
+    turned = Plane(origin=(0, 0, 0), x_dir=(0, 1, 0), z_dir=(0, 0, 1))
+    return Edge.make_ellipse(half_y_mm, half_x_mm, turned)
+
+
+def elliptic_foot(
+    half_mm: tuple[float, float], cavity_mm: float, height_mm: float, lip_mm: float
+) -> Any:
+    """A foot below z = 0 on an ellipse wider by a lip, with a bore for the camera.
+
+    Args:
+        half_mm: Half axes of the skin at the base.
+        cavity_mm: Smallest half width of the cavity above the foot.
+    """
+    from build123d import Pos
+
+    from designs.plates import bored_plate
+
+    half_x, half_y = half_mm[0] + lip_mm, half_mm[1] + lip_mm
+    block = prism(ellipse_edge(half_x, half_y), height_mm)
+    expect_volume(block, ellipse_area_mm2(half_x, half_y) * height_mm, what="foot")
+    return bored_plate(Pos(0, 0, -height_mm) * block, cavity_mm, height_mm)

@@ -1,0 +1,312 @@
+"""Trunk: the tip of an elephant's trunk, two finger-like lobes over a saddle.
+
+It feels what lies in the saddle while the lobes close on it from both sides.
+
+       lobe 1          lobe 0
+        .--.            .--.        z = valley_mm + lobe_mm
+       /    `.        .'    \\
+      |       `-.__.-'       |      z = valley_mm, the saddle
+      |  __________________  |      roof: layers.elastomer_mm under the saddle
+      | |  ______________  | |      support (rigid, clear), flat top
+      | | |              | | |
+      | | |    cavity    | | |
+    __|_|_|______________|_|_|__    z = 0, base plane
+    |          | cam |          |
+    |__________|_____|__________|   z = -base_height_mm, the rigid foot
+      <------ 2 half_y ------>  +Y to the right, the section is the same along X
+
+| parameter        | meaning                                                       |
+|------------------|---------------------------------------------------------------|
+| `width_mm`       | size along X                                                  |
+| `depth_mm`       | size along Y, across the two lobes                            |
+| `valley_mm`      | height of the saddle above the base                           |
+| `lobe_mm`        | height of the lobes above the saddle                          |
+| `lobe_ratio`     | where the lobes are highest, over half the depth              |
+| `rim_mm`         | radius of the rounded top rim                                 |
+| `base_height_mm` | height of the foot                                            |
+| `base_lip_mm`    | how far the foot stands out beyond the skin                   |
+
+An upright elliptic prism under the roof z(y) = valley + lobe (1 - cos(pi y / peak)) / 2, with
+peak = lobe_ratio depth / 2, its rim rounded. The core is an elliptic prism with a flat top, less
+by the wall all around. The upper halves of the lobes are the actuators 0 (+Y) and 1 (-Y).
+
+Source of the defaults: SimTac, trunk sensor, 34 x 26 x 50 mm overall with its housing; heights of
+valley and lobes read off its figures. Leaves out: wrinkles, nostrils, screw holes in the foot.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from designs import distance
+from designs.bodies import Bodies, Fields
+from designs.prisms import (
+    CORNER,
+    ellipse_area_mm2,
+    ellipse_edge,
+    ellipse_perimeter_mm,
+    elliptic_foot,
+    prism,
+    rounded_prism,
+)
+from designs.shells import hollow
+from designs.sliders import slider
+from workbench.core.booleans import cut, expect_volume, fillet
+from workbench.core.design import Layers
+from workbench.core.errors import DesignError
+from workbench.core.marks import Field, Marks, Region
+from workbench.core.results import Label
+
+CAVITY_MM = 4.0
+"""Smallest half width and height of the cavity: room for camera and LEDs [mm]."""
+ACTUATED_SHARE = 0.5
+"""Height above the saddle from which a lobe is driven, over the lobe's height."""
+CORE_RIM_SHARE = 0.3
+"""Most of the core's smallest bend that its rim radius may take."""
+ROOF_POINTS = 41
+"""Points through which the roof's cosine is drawn: good to 1e-5 of the volume."""
+SIMTAC = "SimTac, trunk sensor"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class TrunkShape:
+    """The trunk's own parameters."""
+
+    width_mm: float = slider(
+        34.0, (24.0, 50.0, 0.5), "mm", "Width", "Size along X, along the saddle", SIMTAC
+    )
+    depth_mm: float = slider(
+        26.0, (20.0, 40.0, 0.5), "mm", "Depth", "Size along Y, from lobe to lobe", SIMTAC
+    )
+    valley_mm: float = slider(
+        30.0, (14.0, 50.0, 0.5), "mm", "Saddle height", "From the base to the saddle", SIMTAC
+    )
+    lobe_mm: float = slider(
+        6.0, (2.0, 12.0, 0.25), "mm", "Lobe height", "How far the lobes stand above the saddle"
+    )
+    lobe_ratio: float = slider(
+        0.7, (0.6, 0.9, 0.05), "", "Lobe place", "Where lobes are highest, over half the depth"
+    )
+    rim_mm: float = slider(
+        2.0, (0.5, 3.0, 0.1), "mm", "Rim radius", "Rounding of the top rim and of the core's"
+    )
+    base_height_mm: float = slider(
+        14.0, (2.0, 40.0, 0.5), "mm", "Foot height", "Rigid foot that carries camera and LEDs"
+    )
+    base_lip_mm: float = slider(
+        0.0, (0.0, 15.0, 0.5), "mm", "Foot lip", "How far the foot stands out beyond the skin"
+    )
+
+    def half_mm(self, inset_mm: float) -> tuple[float, float]:
+        """Half axes of the ellipse less by an inset [mm]."""
+        return self.width_mm / 2 - inset_mm, self.depth_mm / 2 - inset_mm
+
+    def roof_mm(self, y_mm: np.ndarray) -> np.ndarray:
+        """Height of the roof over y [mm]."""
+        return self.valley_mm + self.lobe_mm / 2 * (1.0 - np.cos(np.pi * y_mm / self.peak_mm))
+
+    def roof_slope(self, y_mm: np.ndarray) -> np.ndarray:
+        """Slope dz/dy of the roof."""
+        turn = np.pi / self.peak_mm
+        return self.lobe_mm / 2 * turn * np.sin(turn * y_mm)
+
+    @property
+    def peak_mm(self) -> float:
+        """Distance of the lobes' highest points from the plane between them [mm]."""
+        return self.lobe_ratio * self.depth_mm / 2
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Trunk:
+    """Builds trunks."""
+
+    name: str = "trunk"
+    title: str = "Elephant trunk"
+    shape_type: type = TrunkShape
+
+    def check(self, shape: TrunkShape, layers: Layers) -> None:
+        """Refuse walls that leave no room inside.
+
+        Raises:
+            DesignError: If skin and support leave less than 4 mm of cavity in any half width or
+                in height.
+        """
+        both_mm = layers.elastomer_mm + layers.support_mm
+        for what, room_mm in (
+            ("half depth", shape.depth_mm / 2),
+            ("half width", shape.width_mm / 2),
+            ("saddle height", shape.valley_mm),
+        ):
+            if room_mm - both_mm < CAVITY_MM:
+                raise DesignError(
+                    f"support and elastomer wall together {both_mm:g} mm leave less than "
+                    f"{CAVITY_MM:g} mm of cavity inside the {what} {room_mm:g} mm",
+                    hint="lower layers.elastomer_mm or layers.support_mm, or raise "
+                    "shape.width_mm, shape.depth_mm or shape.valley_mm",
+                    at="layers.elastomer_mm",
+                )
+
+    def soften(self, shape: TrunkShape) -> TrunkShape:
+        """The trunk with half the rim radius."""
+        return replace(shape, rim_mm=shape.rim_mm / 2)
+
+    def target(self, shape: TrunkShape, layers: Layers) -> tuple[float, float, float]:
+        """The middle of the saddle."""
+        return 0.0, 0.0, shape.valley_mm
+
+    def build(self, shape: TrunkShape, layers: Layers) -> Bodies:
+        """Build the five bodies.
+
+        Raises:
+            DesignError: As `check`.
+            GeometryError: If the CAD kernel returned something else than asked for.
+        """
+        self.check(shape, layers)
+        both_mm = layers.elastomer_mm + layers.support_mm
+        outer = _saddle(shape)
+        core = _core(shape, layers.elastomer_mm, what="core")
+        cavity = _core(shape, both_mm, what="cavity")
+        return Bodies(
+            membrane=hollow(outer, core, what="elastomer"),
+            outer=outer,
+            core=core,
+            support=hollow(core, cavity, what="support"),
+            base=_foot(shape, layers),
+            marks=_marks(shape),
+        )
+
+    def fields(self, shape: TrunkShape, layers: Layers) -> Fields:
+        """Elliptic prisms under the roof as signed distance fields."""
+        self.check(shape, layers)
+        half_x, half_y = shape.half_mm(0.0)
+        return Fields(
+            outer=_outer_field(shape),
+            core=_core_field(shape, layers.elastomer_mm),
+            cavity=_core_field(shape, layers.elastomer_mm + layers.support_mm),
+            base=_foot(shape, layers),
+            low_mm=(-half_x, -half_y, 0.0),
+            high_mm=(half_x, half_y, shape.valley_mm + shape.lobe_mm),
+            marks=_marks(shape),
+        )
+
+
+def saddle_mm3(shape: TrunkShape) -> float:
+    """Volume of the outer body before its rim is rounded [mm3]: the roof over the ellipse.
+
+    Gauss quadrature of z(y) 2 a sqrt(1 - y^2 / b^2) over y = b sin t, which is smooth in t.
+    """
+    half_x, half_y = shape.half_mm(0.0)
+    node, weight = np.polynomial.legendre.leggauss(60)
+    turn = np.pi / 2 * node
+    strip = shape.roof_mm(half_y * np.sin(turn)) * 2 * half_x * np.cos(turn)
+    return float(weight @ (strip * half_y * np.cos(turn))) * np.pi / 2
+
+
+def _saddle(shape: TrunkShape) -> Any:
+    """The elliptic prism cut by what is above the roof, its rim rounded."""
+    from build123d import Edge, Face, Solid, Vector, Wire
+
+    half_x, half_y = shape.half_mm(0.0)
+    top_mm = shape.valley_mm + shape.lobe_mm + 2.0
+    reach, side = half_y + 1.0, -half_x - 2.0
+    y = np.linspace(-reach, reach, ROOF_POINTS)
+    slope = float(shape.roof_slope(np.array([reach]))[0])
+    roof = Edge.make_spline(
+        [(side, *spot) for spot in zip(y.tolist(), shape.roof_mm(y).tolist(), strict=True)],
+        tangents=[(0.0, 1.0, -slope), (0.0, 1.0, slope)],
+    )
+    corners = [(side, reach, top_mm), (side, -reach, top_mm)]
+    ends = [roof.position_at(1), *corners, roof.position_at(0)]
+    lines = [Edge.make_line(a, b) for a, b in zip(ends, ends[1:], strict=False)]
+    above = Solid.extrude(Face(Wire([roof, *lines])), Vector(2 * half_x + 4.0, 0, 0))
+    block = prism(ellipse_edge(half_x, half_y), top_mm - 1.0)
+    body = cut(block, above, what="saddle")
+    # The kernel integrates faces with curved borders to some 2e-4 only; the saddle is 20 %.
+    expect_volume(body, saddle_mm3(shape), what="saddle", relative=1e-3)
+    edges = [edge for edge in body.edges() if edge.bounding_box().min.Z > shape.valley_mm / 2]
+    length_mm = sum(edge.length for edge in edges)
+    right_mm3 = CORNER * shape.rim_mm**2 * length_mm
+    # Over a slope the corner is sharper or blunter than square: by at most these factors here.
+    return fillet(
+        body, shape.rim_mm, edges, what="top rim", removes_mm3=(0.3 * right_mm3, 3 * right_mm3)
+    )
+
+
+def _rim_mm(shape: TrunkShape, inset_mm: float) -> float:
+    """Rim radius of an inset core: the trunk's, as far as its narrow ends allow."""
+    half_x, half_y = shape.half_mm(inset_mm)
+    bend_mm = min(half_x, half_y) ** 2 / max(half_x, half_y)
+    return min(shape.rim_mm, CORE_RIM_SHARE * bend_mm)
+
+
+def _core(shape: TrunkShape, inset_mm: float, *, what: str) -> Any:
+    half = shape.half_mm(inset_mm)
+    return rounded_prism(
+        ellipse_edge(*half),
+        area_mm2=ellipse_area_mm2(*half),
+        perimeter_mm=ellipse_perimeter_mm(*half),
+        top_mm=shape.valley_mm - inset_mm,
+        rim_mm=_rim_mm(shape, inset_mm),
+        what=what,
+    )
+
+
+def _foot(shape: TrunkShape, layers: Layers) -> Any:
+    half = shape.half_mm(0.0)
+    cavity_mm = min(half) - layers.elastomer_mm - layers.support_mm
+    return elliptic_foot(half, cavity_mm, shape.base_height_mm, shape.base_lip_mm)
+
+
+def _outer_field(shape: TrunkShape) -> Field:
+    half = shape.half_mm(0.0)
+
+    def outer(points_mm: np.ndarray) -> np.ndarray:
+        y = points_mm[:, 1]
+        slope = shape.roof_slope(y)
+        steep = np.sqrt(1.0 + slope**2)
+        above = (points_mm[:, 2] - shape.roof_mm(y)) / steep
+        aside = points_mm[:, :2] / np.square(half)
+        aside /= np.maximum(np.linalg.norm(aside, axis=1, keepdims=True), 1e-9)
+        cosine = -aside[:, 1] * slope / steep
+        beside = distance.ellipse(points_mm, *half)
+        return distance.rounded_both(beside, above, shape.rim_mm, cosine)
+
+    return outer
+
+
+def _core_field(shape: TrunkShape, inset_mm: float) -> Field:
+    half, rim_mm = shape.half_mm(inset_mm), _rim_mm(shape, inset_mm)
+    top_mm = shape.valley_mm - inset_mm
+
+    def core(points_mm: np.ndarray) -> np.ndarray:
+        beside = distance.ellipse(points_mm, *half)
+        return distance.rounded_both(beside, points_mm[:, 2] - top_mm, rim_mm)
+
+    return core
+
+
+def _marks(shape: TrunkShape) -> Marks:
+    """The upper part of each lobe is driven: actuator 0 at +Y, 1 at -Y."""
+    level_mm = shape.valley_mm + ACTUATED_SHARE * shape.lobe_mm
+
+    def lobe(sign: float) -> Field:
+        return lambda points_mm: np.minimum(points_mm[:, 2] - level_mm, sign * points_mm[:, 1])
+
+    return Marks(
+        regions=tuple(
+            Region(
+                label=Label.ACTUATOR,
+                number=number,
+                within=Label.OUTER,
+                inside=lobe(sign),
+                imprint=True,
+            )
+            for number, sign in enumerate((1.0, -1.0))
+        )
+    )
+
+
+FAMILY = Trunk()
