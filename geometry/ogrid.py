@@ -77,9 +77,7 @@ def ray_grid(surface: CurvedSurface, axis: Axis, spacing_mm: float) -> RayGrid:
     top_turn = np.arctan2(v, u) % (2 * np.pi)
 
     index = np.arange((count + 1) ** 2, dtype=np.int32).reshape(count + 1, count + 1)
-    border = np.concatenate(
-        [index[-1, :-1], index[::-1, -1][:-1], index[0, ::-1][:-1], index[:, 0][:-1]]
-    )
+    border = patch_border(index)
     rows = max(2, round((whole_arc - float(top_arc[border].mean())) / spacing_mm))
     share = np.linspace(0.0, 1.0, rows + 1)[1:, None]
     side_arc = (1.0 - share) * top_arc[border] + share * whole_arc
@@ -91,13 +89,32 @@ def ray_grid(surface: CurvedSurface, axis: Axis, spacing_mm: float) -> RayGrid:
     return RayGrid(
         origins=origins,
         directions=directions,
-        quads=_quads(index, np.vstack([border[None], side])),
+        quads=o_quads(index, np.vstack([border[None], side])),
         ring=side[-1],
     )
 
 
-def _quads(top: np.ndarray, side: np.ndarray) -> np.ndarray:
-    """Cells of the top patch (indices (n+1, n+1)) and of the columns (rows, 4n)."""
+def patch_border(index: np.ndarray) -> np.ndarray:
+    """Nodes around a patch of node numbers (n+1, m+1), counter-clockwise from above.
+
+    The first is at the end of the first axis and the start of the second.
+    """
+    return np.concatenate(
+        [index[-1, :-1], index[::-1, -1][:-1], index[0, ::-1][:-1], index[:, 0][:-1]]
+    )
+
+
+def on_base(points_mm: np.ndarray, grid: RayGrid) -> np.ndarray:
+    """The points, with those of the base ring put on z = 0; changed in place."""
+    points_mm[grid.ring, 2] = 0.0
+    return points_mm
+
+
+def o_quads(top: np.ndarray, side: np.ndarray) -> np.ndarray:
+    """Cells of the top patch (node numbers (n+1, m+1)) and of the rows around it (rows, 2(n+m)).
+
+    Row 0 of `side` is the patch's own border.
+    """
     patch = np.stack([top[:-1, :-1], top[1:, :-1], top[1:, 1:], top[:-1, 1:]], axis=-1)
     beside = np.roll(side, -1, axis=1)
     wall = np.stack([side[:-1], side[1:], beside[1:], beside[:-1]], axis=-1)

@@ -4,16 +4,19 @@ import numpy as np
 import pytest
 
 from geometry import hexmesh
-from geometry.ogrid import RayGrid
+from geometry.sheets import Sheets
 from workbench.core.design import Meshing
 from workbench.core.errors import MeshingError
+from workbench.core.results import Label
 
 
 def test_cell_whose_quality_is_not_a_number_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     """NaN is not above 0: one of two cells of a column is counted as inverted."""
     quads = np.array([[0, 1, 2, 3]], np.int32)
     inside = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
-    grid = RayGrid(origins=inside, directions=inside, quads=quads, ring=np.array([0]))
+    outside = np.add(inside, [0.0, 0.0, 1.0])
+    ring = np.array([0])
+    sheets = Sheets(inside=inside, outside=outside, quads=quads, ring=ring, rim=Label.BASE)
     monkeypatch.setattr(hexmesh, "scaled_jacobian", lambda *_: np.array([1.0, np.nan]))
     with pytest.raises(MeshingError, match="1 of 2 cells are inverted"):
-        hexmesh._stack(inside, np.add(inside, [0.0, 0.0, 1.0]), grid, Meshing(hex_mm=0.5))
+        hexmesh._stack(sheets, Meshing(hex_mm=0.5))

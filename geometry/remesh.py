@@ -1,0 +1,110 @@
+"""Even triangles on any closed surface: what skins are made of where there are no hexahedra.
+
+Isotropic explicit remeshing (Botsch and Kobbelt, A remeshing approach to multiresolution
+modelling, 2004) as MeshLab does it: edges are split, collapsed and flipped toward one length, and
+vertices slide on the original surface; edges of the body sharper than 35 degrees are kept. It
+runs in two passes, so that small features survive: numbered regions much smaller than the others
+(pins) and what touches them first, with a shorter edge; then all the rest.
+
+pymeshlab is GPL-3: it is called here and nowhere else, and only when this module is used.
+Leaves out: edges that grow with flatness.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from geometry.surface import face_areas, is_watertight
+from geometry.transfer import face_regions, nearest_source
+from workbench.core.errors import MeshingError
+from workbench.core.results import NO_NUMBER, LabelledSurface
+
+CREASE_DEG = 35.0
+PASSES = 6
+SPAN = 18.0
+"""A numbered region is divided at least this finely over the root of its area."""
+
+
+def remesh(surface: LabelledSurface, edge_mm: float) -> LabelledSurface:
+    """The surface in triangles with edges of about `edge_mm`, regions carried over.
+
+    Args:
+        surface: Closed surface.
+        edge_mm: Edge of a triangle; shorter on small numbered regions.
+
+    Raises:
+        MeshingError: If pymeshlab is not installed, or the result is not closed.
+    """
+    points, faces = surface.points_mm, surface.faces
+    fine_mm, small = _small_regions(surface, edge_mm)
+    if small.any():
+        touched = np.zeros(len(points), dtype=bool)
+        touched[faces[small]] = True
+        points, faces = _isotropic(
+            points, faces, fine_mm, np.flatnonzero(touched[faces].any(axis=1))
+        )
+        kept = small[nearest_source(surface, points, faces)]
+        points, faces = _isotropic(points, faces, edge_mm, np.flatnonzero(~kept))
+    else:
+        points, faces = _isotropic(points, faces, edge_mm, None)
+    if not is_watertight(faces):
+        raise MeshingError(
+            f"the surface is not closed after remeshing to {edge_mm:g} mm",
+            hint="lower meshing.hex_mm, or change the last shape parameter a little",
+            at="meshing.hex_mm",
+        )
+    labels, numbers = face_regions(surface, points, faces)
+    return LabelledSurface(points_mm=points, faces=faces, labels=labels, numbers=numbers)
+
+
+def _small_regions(surface: LabelledSurface, edge_mm: float) -> tuple[float, np.ndarray]:
+    """Edge for the smallest numbered region [mm], and the faces of those that need less."""
+    small = np.zeros(len(surface.faces), dtype=bool)
+    finest_mm = edge_mm
+    areas = face_areas(surface.points_mm, surface.faces)
+    for number in np.unique(surface.numbers[surface.numbers != NO_NUMBER]):
+        members = surface.numbers == number
+        wanted_mm = float(np.sqrt(areas[members].sum())) / SPAN
+        if wanted_mm < edge_mm:
+            small |= members
+            finest_mm = min(finest_mm, wanted_mm)
+    return finest_mm, small
+
+
+def _isotropic(
+    points_mm: np.ndarray, faces: np.ndarray, edge_mm: float, chosen: np.ndarray | None
+) -> tuple[np.ndarray, np.ndarray]:
+    """One run of the filter over the faces of those numbers, or over all."""
+    meshlab = _meshlab()
+    meshes = meshlab.MeshSet(verbose=False)
+    marks = np.zeros(len(faces))
+    marks[chosen] = 1.0
+    meshes.add_mesh(meshlab.Mesh(points_mm, faces, f_scalar_array=marks))
+    if chosen is not None:
+        meshes.compute_selection_by_condition_per_face(condselect="fq > 0.5")
+    meshes.meshing_isotropic_explicit_remeshing(
+        targetlen=meshlab.PureValue(edge_mm),
+        iterations=PASSES,
+        featuredeg=CREASE_DEG,
+        checksurfdist=False,
+        selectedonly=chosen is not None,
+    )
+    result = meshes.current_mesh()
+    points = np.array(result.vertex_matrix(), dtype=np.float64)
+    triangles = np.array(result.face_matrix(), dtype=np.int64)
+    used, compact = np.unique(triangles, return_inverse=True)
+    return points[used], compact.reshape(-1, 3).astype(np.int32)
+
+
+def _meshlab() -> Any:
+    try:
+        import pymeshlab
+    except ImportError as error:
+        raise MeshingError(
+            f"pymeshlab, which divides this shape evenly, cannot be loaded: {error}",
+            hint="install it with `pip install pymeshlab`, or choose a shape that hexahedra suit",
+            at="meshing.hex_mm",
+        ) from error
+    return pymeshlab
