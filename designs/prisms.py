@@ -12,6 +12,7 @@ shows in the volume. Leaves out: outlines with corners.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -36,15 +37,15 @@ def rim_limits(perimeter_mm: float, rim_mm: float, *, slack: float) -> tuple[flo
     return -lost * (1.0 - slack), -lost * (1.0 + slack)
 
 
-def prism(outline: Any, top_mm: float) -> Any:
-    """The prism over a closed edge in the plane z = 0."""
+def prism(outline: Sequence[Any], top_mm: float) -> Any:
+    """The prism over edges in the plane z = 0 that close."""
     from build123d import Face, Solid, Vector, Wire
 
-    return Solid.extrude(Face(Wire([outline])), Vector(0, 0, top_mm))
+    return Solid.extrude(Face(Wire(outline)), Vector(0, 0, top_mm))
 
 
 def rounded_prism(
-    outline: Any,
+    outline: Sequence[Any],
     *,
     area_mm2: float,
     perimeter_mm: float,
@@ -56,7 +57,7 @@ def rounded_prism(
     """A prism on z = 0 with a rounded top rim, checked by its closed form.
 
     Args:
-        outline: Closed build123d edge in the plane z = 0.
+        outline: build123d edges in the plane z = 0 that close.
         relative: Tolerance of the volume; fillets of splines are approximated by the kernel.
 
     Raises:
@@ -82,14 +83,14 @@ def ellipse_perimeter_mm(half_x_mm: float, half_y_mm: float) -> float:
     return float(speed.mean() * 2.0 * np.pi)
 
 
-def ellipse_edge(half_x_mm: float, half_y_mm: float) -> Any:
-    """The ellipse as a closed edge in the plane z = 0; its seam lies on the +X side."""
+def ellipse_edge(half_x_mm: float, half_y_mm: float) -> list[Any]:
+    """The ellipse as a closed edge in the plane z = 0."""
     from build123d import Edge, Plane
 
     if half_x_mm >= half_y_mm:
-        return Edge.make_ellipse(half_x_mm, half_y_mm, Plane.XY)
+        return [Edge.make_ellipse(half_x_mm, half_y_mm, Plane.XY)]
     turned = Plane(origin=(0, 0, 0), x_dir=(0, 1, 0), z_dir=(0, 0, 1))
-    return Edge.make_ellipse(half_y_mm, half_x_mm, turned)
+    return [Edge.make_ellipse(half_y_mm, half_x_mm, turned)]
 
 
 def elliptic_foot(

@@ -37,6 +37,7 @@ suckers, the muscle ring inside a sucker, screw holes in the foot.
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -259,7 +260,7 @@ def _check_suckers(shape: TentacleShape) -> None:
         )
     # Bent toward each other, rims come nearer than roots: both ends are compared.
     gaps = [_lowest_mm(shape, suckers[0])]
-    for one, two in zip(suckers, suckers[1:], strict=False):
+    for one, two in itertools.pairwise(suckers):
         for out_mm in (0.0, shape.sucker_mm):
             apart = two.centre_mm + out_mm * two.axis - one.centre_mm - out_mm * one.axis
             gaps.append(float(np.linalg.norm(apart)) - one.radius_mm - two.radius_mm)

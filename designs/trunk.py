@@ -220,7 +220,7 @@ def _saddle(shape: TrunkShape) -> Any:
     )
     corners = [(side, reach, top_mm), (side, -reach, top_mm)]
     ends = [roof.position_at(1), *corners, roof.position_at(0)]
-    lines = [Edge.make_line(a, b) for a, b in zip(ends, ends[1:], strict=False)]
+    lines = [Edge.make_line(a, b) for a, b in itertools.pairwise(ends)]
     above = Solid.extrude(Face(Wire([roof, *lines])), Vector(2 * half_x + 4.0, 0, 0))
     block = prism(ellipse_edge(half_x, half_y), top_mm - 1.0)
     body = cut(block, above, what="saddle")

@@ -120,9 +120,9 @@ def volume(body: Any) -> float:
     """Volume of a body or of a list of bodies [mm3]; 0 for None, which OCCT returns for empty."""
     if body is None:
         return 0.0
-    if not hasattr(body, "volume"):
-        return sum(volume(item) for item in body)
-    return float(body.volume)
+    # Asked for once: the kernel integrates anew every time, for up to 50 ms.
+    found_mm3 = getattr(body, "volume", None)
+    return sum(volume(item) for item in body) if found_mm3 is None else float(found_mm3)
 
 
 def _slack(size_mm3: float) -> float:
