@@ -36,6 +36,7 @@ valley and lobes read off its figures. Leaves out: wrinkles, nostrils, screw hol
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass, replace
 from typing import Any
 
