@@ -49,6 +49,8 @@ VOLUME_SHARE = 0.005
 """Largest relative error of volume; 0.1 % is usual at 0.4 mm."""
 REGION_SHARE = 0.1
 """Largest relative error of the area of a numbered region: it would not be the one drawn."""
+LONGEST_EDGE = 6.0
+"""Edge over the mean edge of a sheet above which rays jumped over a feature."""
 LEAST_QUALITY = 0.05
 """Scaled Jacobian below which a cell spoils any solver that uses it."""
 
@@ -187,6 +189,15 @@ def _expect_cover(
     found = float(face_areas(points_mm, np.concatenate([quads[:, :3], quads[:, [0, 2, 3]]])).sum())
     whole = float(face_areas(wanted.points_mm, wanted.faces).sum())
     _expect_near(found, whole, AREA_SHARE + chord, "area of a side", "mm2")
+    corners = points_mm[quads]
+    edges = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2)
+    if edges.max() > LONGEST_EDGE * edges.mean():
+        raise MeshingError(
+            f"layers jump over part of the body: an edge of {edges.max():.3g} mm where the mean is "
+            f"{edges.mean():.3g} mm, at most {LONGEST_EDGE:g} times that",
+            hint="use tetrahedra or material points for shapes with steps",
+            at="shape",
+        )
 
 
 def _expect_areas(skin: Skin, wanted: LabelledSurface, chord: float) -> None:

@@ -17,6 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from geometry.pointlabels import point_regions
 from workbench.core.monitor import Monitor, silent
 from workbench.core.results import LabelledSurface, MaterialPoints
 
@@ -62,12 +63,14 @@ def material_points(
         taken = np.argwhere(blocks.any(axis=-1))
         fractions.append(blocks[tuple(taken.T)])
         cells.append(taken + (frame.low + np.array([0, first, 0])) // 2)
-    cell = np.concatenate(cells)
-    order = np.lexsort(cell.T[::-1])
+    unsorted = np.concatenate(cells)
+    order = np.lexsort(unsorted.T[::-1])
+    cell = unsorted[order].astype(np.int32)
+    fraction = np.concatenate(fractions)[order].astype(np.float32)
+    monitor(1.0, "marking regions")
+    labels, numbers = point_regions(surface, cell, fraction, grid_mm)
     return MaterialPoints(
-        grid_mm=grid_mm,
-        cells=cell[order].astype(np.int32),
-        fractions=np.concatenate(fractions)[order].astype(np.float32),
+        grid_mm=grid_mm, cells=cell, fractions=fraction, labels=labels, numbers=numbers
     )
 
 
