@@ -1,71 +1,154 @@
-"""Can the cast come out, and is every wall thick enough: measures on triangle meshes."""
+"""Whether a mould can be made and opened: measures on triangle meshes.
+
+Each is a number with the place where it is worst, so that a designer can be shown it. Limits and
+words are in `mould_checks`. Surfaces are looked at in evenly spread places (a low-discrepancy
+sequence, so the answer is the same each time), and things in the way are found by rays.
+"""
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 
 from geometry.rays import RayCaster
 
-STEP_DEG = 7.5
-DRAFT_DEG = 0.5
-"""A facet steeper than this against the pull counts as undercut."""
 SAMPLES = 2000
 START_MM = 1e-3
 """Depth below the surface at which a wall's ray starts [mm]."""
 OPPOSED_COSINE = 0.7
 """A wall is between faces that look apart to within 45 degrees; a sharp edge is no wall."""
+LIFT_MM = 0.1
+"""Undercuts shallower than this are none: the silicone gives way [mm]."""
+STEEPEST_SHARE = 0.01
+"""The least draft is that of the worst hundredth of the area; single facets are noise."""
+NARROW_MM = 1e-3
 
 
-def best_split_deg(points_mm: np.ndarray, faces: np.ndarray) -> tuple[float, float]:
-    """Azimuth of the pull direction [degree, 0 to 180) with the least undercut, and that share.
+class Worst(NamedTuple):
+    """A measure and the place where it is worst."""
 
-    Args:
-        points_mm: Vertices of the outer face, shape (N, 3).
-        faces: Triangles, shape (M, 3).
-
-    Returns:
-        Azimuth, and undercut area over the whole area.
-    """
-    corners = np.asarray(points_mm, dtype=np.float64)[faces]
-    cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    double_area = np.linalg.norm(cross, axis=1)
-    normal = cross / np.maximum(double_area, 1e-300)[:, None]
-    middle = (points_mm.min(axis=0) + points_mm.max(axis=0))[:2] / 2
-    place = corners.mean(axis=1)[:, :2] - middle
-    azimuths = np.arange(0.0, 180.0, STEP_DEG)
-    shares = []
-    for azimuth in np.radians(azimuths):
-        pull = np.array([np.cos(azimuth), np.sin(azimuth)])
-        side = np.where(place @ pull >= 0.0, 1.0, -1.0)
-        undercut = side * (normal[:, :2] @ pull) < -np.sin(np.radians(DRAFT_DEG))
-        # A facet across the split plane belongs to both halves: its normal tells nothing.
-        height = (corners[:, :, :2] - middle) @ pull
-        whole = (height > 0.0).all(axis=1) | (height < 0.0).all(axis=1)
-        shares.append(float(double_area[undercut & whole].sum() / double_area.sum()))
-    # Rounded, so that the first of equally good azimuths wins over one better by noise.
-    best = int(np.argmin(np.round(shares, 3)))
-    return float(azimuths[best]), shares[best]
+    value: float
+    place_mm: tuple[float, float, float]
 
 
-def thinnest_wall_mm(points_mm: np.ndarray, faces: np.ndarray) -> float:
-    """Thinnest wall of a closed mesh [mm], by rays straight inward from its surface.
+class Spread(NamedTuple):
+    """Evenly spread places on a surface."""
 
-    Rays start at evenly spread places on the surface (a low-discrepancy sequence, so the answer
-    is the same each time) and count where they end on a face that looks the other way.
+    points_mm: np.ndarray
+    """Shape (S, 3)."""
+    normals: np.ndarray
+    """Unit normals, shape (S, 3)."""
+    area_mm2: float
+    """Area of the whole surface."""
+
+
+def spread(points_mm: np.ndarray, faces: np.ndarray, count: int = SAMPLES) -> Spread:
+    """Places on a mesh, each for the same share of its area.
+
+    Source: Roberts, The unreasonable effectiveness of quasirandom sequences, 2018 (R2 sequence).
     """
     corners = np.asarray(points_mm, dtype=np.float64)[faces]
     cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     area = np.linalg.norm(cross, axis=1)
     normal = cross / np.maximum(area, 1e-300)[:, None]
-    cumulative = np.cumsum(area) / area.sum()
-    face = np.searchsorted(cumulative, (np.arange(SAMPLES) + 0.5) / SAMPLES)
-    # Additive recurrence of the plastic number. Source: Roberts, R2 sequence, 2018.
-    spread = (0.5 + np.outer(np.arange(SAMPLES), [0.7548776662, 0.5698402910])) % 1.0
-    folded = np.where(spread.sum(axis=1, keepdims=True) > 1.0, 1.0 - spread, spread)
+    face = np.searchsorted(np.cumsum(area) / area.sum(), (np.arange(count) + 0.5) / count)
+    face = np.minimum(face, len(faces) - 1)
+    place = (0.5 + np.outer(np.arange(count), [0.7548776662, 0.5698402910])) % 1.0
+    folded = np.where(place.sum(axis=1, keepdims=True) > 1.0, 1.0 - place, place)
     weights = np.column_stack([1.0 - folded.sum(axis=1), folded])
-    inward = -normal[face]
-    start = np.einsum("si,sij->sj", weights, corners[face]) + START_MM * inward
+    points = np.einsum("si,sij->sj", weights, corners[face])
+    return Spread(points_mm=points, normals=normal[face], area_mm2=float(area.sum() / 2))
+
+
+def blocked(places: Spread, pulls: np.ndarray, caster: RayCaster) -> np.ndarray:
+    """Which places of a cast its mould cannot leave along the pull, shape (S,), bool.
+
+    The mould's surface is lifted off the cast by `LIFT_MM` and then moves along its pull; where it
+    meets the cast it is held. Facets that only lean against the pull so count if it matters.
+
+    Args:
+        pulls: Direction of the mould part at each place, shape (S, 3).
+        caster: Rays against the whole cast.
+    """
+    start = places.points_mm + LIFT_MM * places.normals
+    return caster.occluded(start, pulls, np.inf)
+
+
+def undercut(points_mm: np.ndarray, faces: np.ndarray, pull: np.ndarray, part: Spread) -> Worst:
+    """Share of a region that holds its mould part when that is pulled, and the worst place.
+
+    Args:
+        points_mm: Vertices of the cast, shape (N, 3).
+        faces: Triangles of the whole cast, shape (M, 3).
+        pull: Unit direction of the part.
+        part: Places on the region that the part shapes.
+    """
+    if not len(part.points_mm):
+        return Worst(0.0, (0.0, 0.0, 0.0))
+    held = blocked(part, np.tile(pull, (len(part.points_mm), 1)), RayCaster(points_mm, faces))
+    if not held.any():
+        return Worst(0.0, _place(part.points_mm[np.argmin(part.normals @ pull)]))
+    rows = np.flatnonzero(held)
+    worst = rows[np.argmin(part.normals[rows] @ pull)]
+    return Worst(float(held.mean()), _place(part.points_mm[worst]))
+
+
+def draft_deg(part: Spread, pull: np.ndarray) -> Worst:
+    """Least angle between the pull and the surface [degree]; negative where it leans against it.
+
+    0 on a cylinder pulled along its axis, the half angle on a cone, 90 on a flat end.
+    """
+    if not len(part.points_mm):
+        return Worst(90.0, (0.0, 0.0, 0.0))
+    angle = np.degrees(np.arcsin(np.clip(part.normals @ pull, -1.0, 1.0)))
+    order = np.argsort(angle)
+    worst = order[int(STEEPEST_SHARE * (len(order) - 1))]
+    return Worst(float(angle[worst]), _place(part.points_mm[worst]))
+
+
+def thinnest_wall(points_mm: np.ndarray, faces: np.ndarray) -> Worst:
+    """Thinnest wall of a closed mesh [mm], by rays straight inward from its surface.
+
+    Only rays count that end on a face that looks the other way; inf when there is none.
+    """
+    places = spread(points_mm, faces)
+    inward = -places.normals
+    start = places.points_mm + START_MM * inward
     distance, found, _ = RayCaster(points_mm, faces).hits(start, inward)
-    opposed = np.einsum("ij,ij->i", normal[found], inward) > OPPOSED_COSINE
-    walls = distance[(found >= 0) & opposed]
-    return float(walls.min() + START_MM) if len(walls) else float("inf")
+    corners = np.asarray(points_mm, dtype=np.float64)[faces[found]]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
+    opposed = np.einsum("ij,ij->i", normal, inward) > OPPOSED_COSINE
+    wall = np.where((found >= 0) & opposed, distance + START_MM, np.inf)
+    worst = int(np.argmin(wall))
+    middle = start[worst] + inward[worst] * (wall[worst] / 2 if np.isfinite(wall[worst]) else 0.0)
+    return Worst(float(wall[worst]), _place(middle))
+
+
+def bed_ratio(points_mm: np.ndarray, bed_mm: tuple[float, float, float]) -> float:
+    """Largest size over the room for it, in the best of the six orientations along the axes.
+
+    Sorted sizes against sorted rooms are the best of them.
+    """
+    size = np.sort(np.ptp(points_mm, axis=0))
+    return float((size / np.sort(np.asarray(bed_mm))).max())
+
+
+def removal_strain(heights_mm: np.ndarray, around_mm: np.ndarray) -> Worst:
+    """Strain that the elastomer must bear for a core to leave downward through it.
+
+    max over z of (circumference at z) / (least circumference below z) - 1.
+
+    Args:
+        heights_mm: Rising heights of sections, shape (H,).
+        around_mm: Circumference of the core there, shape (H,).
+    """
+    below = np.minimum.accumulate(np.maximum(around_mm, NARROW_MM))
+    strain = around_mm / below - 1.0
+    worst = int(np.argmax(strain))
+    return Worst(max(0.0, float(strain[worst])), (0.0, 0.0, float(heights_mm[worst])))
+
+
+def _place(point: np.ndarray) -> tuple[float, float, float]:
+    return float(point[0]), float(point[1]), float(point[2])

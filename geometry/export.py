@@ -1,4 +1,8 @@
-"""Files for the workshop: binary STL and named STEP assemblies."""
+"""Files for the workshop: every part as STL, STEP and 3MF, assemblies, build sheet and parts list.
+
+A part without a B-rep body gets a STEP file of flat facets (`faceted`); a part that even that
+cannot hold gets none, and the build sheet says so.
+"""
 
 from __future__ import annotations
 
@@ -9,12 +13,18 @@ from typing import Any
 
 import numpy as np
 
+from geometry.build_sheet import bom_csv, build_sheet_html
+from geometry.faceted import faceted
 from geometry.solid import part_from_brep
-from workbench.core.errors import StoreError
-from workbench.core.fabrication import FabricationPart
+from geometry.threemf import threemf_bytes
+from workbench.core.errors import GeometryError, StoreError
+from workbench.core.fabrication import FabricationPart, HousingSet, MouldSet, PartGroup, Recipe
 from workbench.core.monitor import Monitor, silent
 
-ASSEMBLY = "mould_assembly"
+ASSEMBLIES = {PartGroup.MOULD: "mould_assembly", PartGroup.SENSOR: "sensor_assembly"}
+ALL_PARTS = "all_parts.3mf"
+FOLDERS = {PartGroup.MOULD: "moulds", PartGroup.SENSOR: "parts"}
+"""Folder of each group's files within the results."""
 HEADER = b"binary STL in millimetres"
 
 
@@ -29,61 +39,70 @@ def stl_bytes(points_mm: np.ndarray, faces: np.ndarray) -> bytes:
     return HEADER.ljust(80, b"\0") + np.array(len(faces), dtype="<u4").tobytes() + rows.tobytes()
 
 
-def step_file(parts: Sequence[FabricationPart], path: Path) -> None:
-    """Write a STEP assembly in which every part has its name.
-
-    Raises:
-        StoreError: If the file cannot be written.
-    """
-    from build123d import Compound
-
-    bodies = []
-    for part in parts:
-        body = part_from_brep(part.brep)
-        body.label = part.name
-        bodies.append(body)
-    _write_step(Compound(label=ASSEMBLY, children=bodies), path)
-
-
-def step_part(part: FabricationPart, path: Path) -> None:
-    """Write one part as a STEP file.
-
-    Raises:
-        StoreError: If the file cannot be written.
-    """
-    body = part_from_brep(part.brep)
-    body.label = part.name
-    _write_step(body, path)
-
-
-def part_files(
-    parts: Sequence[FabricationPart], monitor: Monitor = silent
+def package_files(
+    moulds: MouldSet, housing: HousingSet, recipe: Recipe, monitor: Monitor = silent
 ) -> dict[str, np.ndarray]:
-    """Every part as STL and STEP, and all as one STEP assembly.
+    """Every file of the workshop, by its path within the results, shape (bytes,), uint8."""
+    parts = (*moulds.parts, *housing.parts)
+    files: dict[str, bytes] = {}
+    bodies: dict[str, Any] = {}
+    missing: list[str] = []
+    for number, part in enumerate(parts):
+        monitor(0.7 * number / len(parts), f"writing {part.name}")
+        stem = f"{FOLDERS[part.group]}/{part.name}"
+        files[f"{stem}.stl"] = stl_bytes(part.points_mm, part.faces)
+        files[f"{stem}.3mf"] = threemf_bytes([part])
+        try:
+            bodies[part.name] = step_body(part)
+        except GeometryError as error:
+            missing.append(error.message)
+            continue
+        files[f"{stem}.step"] = step_bytes([bodies[part.name]], part.name)
+    monitor(0.7, "writing the assemblies")
+    for group, name in ASSEMBLIES.items():
+        found = [bodies[p.name] for p in parts if p.group is group and p.name in bodies]
+        if found:
+            files[f"{FOLDERS[group]}/{name}.step"] = step_bytes(found, name)
+    files[ALL_PARTS] = threemf_bytes(parts)
+    files["build_sheet.html"] = build_sheet_html(moulds, housing, recipe, missing).encode()
+    files["bom.csv"] = bom_csv(recipe).encode()
+    return {name: np.frombuffer(data, dtype=np.uint8).copy() for name, data in files.items()}
 
-    Returns:
-        Bytes of each file by its name, shape (bytes,), uint8.
+
+def step_body(part: FabricationPart) -> Any:
+    """The part as a named build123d body: its B-rep, or flat facets.
+
+    Raises:
+        GeometryError: If it has neither.
     """
-    files: dict[str, np.ndarray] = {}
+    if part.brep.size:
+        body = part_from_brep(part.brep)
+    else:
+        body = faceted(part.points_mm, part.faces, what=part.name)
+    body.label = part.name
+    return body
+
+
+def step_bytes(bodies: Sequence[Any], name: str) -> bytes:
+    """A STEP file: of one body as it is, of several as an assembly of named parts."""
     # OCCT writes STEP to named files only.
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "part.step"
-        for number, part in enumerate(parts):
-            monitor(number / (len(parts) + 1), f"writing {part.name}")
-            files[f"{part.name}.stl"] = _array(stl_bytes(part.points_mm, part.faces))
-            step_part(part, path)
-            files[f"{part.name}.step"] = _array(path.read_bytes())
-        monitor(len(parts) / (len(parts) + 1), "writing the assembly")
-        step_file(parts, path)
-        files[f"{ASSEMBLY}.step"] = _array(path.read_bytes())
-    return files
+        write_step(bodies, name, path)
+        return path.read_bytes()
 
 
-def _write_step(body: Any, path: Path) -> None:
-    from build123d import export_step
+def write_step(bodies: Sequence[Any], name: str, path: Path) -> None:
+    """Write a STEP file.
 
+    Raises:
+        StoreError: If the file cannot be written.
+    """
+    from build123d import Compound, export_step
+
+    shape = bodies[0] if len(bodies) == 1 else Compound(label=name, children=list(bodies))
     try:
-        written = export_step(body, str(path), timestamp="2000-01-01T00:00:00")
+        written = export_step(shape, str(path), timestamp="2000-01-01T00:00:00")
     except (OSError, RuntimeError) as error:
         raise _unwritten(path) from error
     if not written:
@@ -94,7 +113,3 @@ def _unwritten(path: Path) -> StoreError:
     return StoreError(
         f"cannot write {path}", hint="check that the folder exists and has room", at="out"
     )
-
-
-def _array(data: bytes) -> np.ndarray:
-    return np.frombuffer(data, dtype=np.uint8).copy()

@@ -1,12 +1,11 @@
-"""B-rep parts of a two-part casting mould with a core, in the mould's own frame.
+"""Descriptions of the mould's parts, in the local frame: x along the pull of the first part.
 
-The body stands on z = 0 with its tip up; half A is pulled toward +X and half B toward -X. The
-mould is used upside down: the flange is then the lid, and the base of the body its highest place,
-so gate and vents end there, in the ring between outer body and core.
+The body stands on its base plane with its tip up. The mould is used upside down: the flange is then
+the lid, and the base of the body its highest place, so gate and vents end there.
 
-         .-------+-------.     block: half B | half A, with ears along +Y and -Y
-         |    .-'|'-.    |     that carry the keys and the bolts
-         |   /  .|.  \\   |
+         .-------+-------.     block: parts that meet on the parting surface,
+         |    .-'|'-.    |     with ears that carry the keys and the bolts;
+         |   /  .|.  \\   |     three or four parts make a round block
          |  |  | | |  |  |     core, one piece with the flange
       ._ |  |  | | |  |  | _.
       | ||__|__|_|_|__|__|| |  rim of the flange around the block
@@ -17,25 +16,26 @@ so gate and vents end there, in the ring between outer body and core.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from workbench.core.booleans import cut, fuse
-from workbench.core.design import MouldOptions
+from geometry import csg
+from geometry.cast import Cast
+from geometry.channels import POCKET_VENT_MM, Channels
+from geometry.parting import Parting
 from workbench.core.errors import DesignError
+from workbench.core.making import MouldOptions
 
 EAR_MM = 17.0
 """Room beside the body for a key and a bolt, with walls of 3 mm."""
 KEY_OFFSET_MM = 5.5
-KEY_BASE_MM = 2.5
-KEY_TIP_MM = 1.5
-KEY_LENGTH_MM = 3.0
-KEY_ROOT_MM = 1.0
-"""How deep the key is rooted in its own half [mm]."""
 BOLT_OFFSET_MM = 12.5
 BOLT_RADIUS_MM = 1.7
 """Clearance hole of an M3 bolt. Source: ISO 273, medium fit 3.4 mm."""
+HEAD_RADIUS_MM = 3.5
+"""Half width of the flat seat of an M3 washer. Source: ISO 7089, 7 mm."""
+GRIP_MM = 8.0
+"""From the parting to the seat of a bolt in a round block [mm]."""
 END_MM = 6.0
 """Height of the lowest key above the base [mm]."""
 TALL_MM = 24.0
@@ -43,163 +43,299 @@ TALL_MM = 24.0
 FLANGE_MM = 6.0
 RIM_WIDTH_MM = 3.0
 RIM_HEIGHT_MM = 4.0
+RIM_TO_BOLT_MM = 3.8
+"""From the rim to the axis of a bolt [mm], so that its head goes past."""
 THROAT_MM = 1.5
 """Straight part of the gate above its funnel [mm]."""
-LARGEST_THROAT_MM = 2.0
-LARGEST_VENT_MM = 0.8
-"""Vents wider than this would let silicone pour out."""
+FUNNEL_EDGE_MM = 2.0
+"""Least material between the funnel's mouth and the edge of the flange [mm]."""
+KEY_ROOT_MM = 1.0
+"""How deep a key is rooted in its own part [mm]."""
+ACROSS = np.array([[1.0, 0, 0, 0], [0, 0, -1.0, 0], [0, 1.0, 0, 0]])
+"""Turns a prism along Z into one along -Y with its section in x and z, shape (3, 4)."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Block:
-    """Extent of the closed mould without its flange [mm]."""
+class Key:
+    """A cone that registers two parts."""
+
+    base_mm: float
+    tip_mm: float
+    length_mm: float
+
+
+STRAIGHT_KEY = Key(base_mm=2.5, tip_mm=1.5, length_mm=3.0)
+"""Of two parts, which leave each other along the key."""
+BLUNT_KEY = Key(base_mm=3.0, tip_mm=0.6, length_mm=2.0)
+"""Of three or four parts, which leave each other at up to 45 degrees to the key; this has 50."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Layout:
+    """What is made around the body, in the local frame."""
 
     low: np.ndarray
-    """Lower corner of the body's bounding box, shape (3,)."""
+    """Lower corner of the body's bounding box [mm], shape (3,)."""
     high: np.ndarray
     """Upper corner, shape (3,)."""
-    wall_mm: float
+    radius_mm: float
+    """Largest distance of the body from the parting's middle."""
+    parting: Parting
+    options: MouldOptions
 
     @property
     def ear_mm(self) -> float:
-        """Width of the block beside the body along Y."""
-        return max(EAR_MM, self.wall_mm)
+        """Width of the block beside the body."""
+        return max(EAR_MM, self.options.wall_mm)
+
+    @property
+    def half_mm(self) -> np.ndarray:
+        """Half widths of the block in x and y [mm], shape (2,)."""
+        if self.round:
+            return np.full(2, self.radius_mm + self.ear_mm)
+        margin = np.array([self.options.wall_mm, self.ear_mm])
+        return (self.high - self.low)[:2] / 2 + margin
 
     @property
     def middle(self) -> np.ndarray:
-        """Axis of the body in x and y, shape (2,)."""
-        return (self.low[:2] + self.high[:2]) / 2
+        """Axis of the block, shape (2,)."""
+        return self.parting.middle_mm
 
     @property
-    def half_x_mm(self) -> float:
-        """Half width of the block along X."""
-        return float(self.high[0] - self.low[0]) / 2 + self.wall_mm
+    def round(self) -> bool:
+        """Whether the block is a cylinder."""
+        return self.parting.count > 2
 
     @property
-    def half_y_mm(self) -> float:
-        """Half width of the block along Y, ears included."""
-        return float(self.high[1] - self.low[1]) / 2 + self.ear_mm
+    def base_mm(self) -> float:
+        """Height of the base plane [mm]."""
+        return float(self.low[2])
 
     @property
-    def height_mm(self) -> float:
-        """Height of the block."""
-        return float(self.high[2]) + self.wall_mm
+    def top_mm(self) -> float:
+        """Height of the block's top [mm]."""
+        return float(self.high[2]) + self.options.wall_mm
+
+    @property
+    def bolt_mm(self) -> float:
+        """Height of the bolts [mm]."""
+        return (self.base_mm + self.top_mm) / 2
+
+    @property
+    def rim_mm(self) -> float:
+        """Height of the rim over the base plane [mm]; low blocks leave room for the bolts."""
+        return min(RIM_HEIGHT_MM, self.bolt_mm - self.base_mm - RIM_TO_BOLT_MM)
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Ring:
-    """Places in the annulus between outer body and core where gate and vents end."""
-
-    centres_mm: np.ndarray
-    """x and y [mm], shape (1 + vents, 2); the first is the gate."""
-    gap_mm: float
-    """Narrowest width of the annulus there [mm]."""
-
-
-def block_half(outer: Any, block: Block, options: MouldOptions, *, side: int) -> Any:
-    """One outer half with keys (+1, half A) or their sockets (-1, half B) and bolt holes.
-
-    Raises:
-        GeometryError: If a boolean did not do what it should.
-    """
-    from build123d import Box, Pos
-
-    x, y = block.middle
-    width = block.half_x_mm
-    body = Pos(x + side * width / 2, y, block.height_mm / 2) * Box(
-        width, 2 * block.half_y_mm, block.height_mm
+def make_layout(cast: Cast, parting: Parting, options: MouldOptions) -> Layout:
+    """Sizes of the mould around a cast."""
+    local = cast.outer.points_mm @ csg.turn_z(parting.azimuth_deg)
+    return Layout(
+        low=local.min(axis=0),
+        high=local.max(axis=0),
+        radius_mm=float(np.linalg.norm(local[:, :2] - parting.middle_mm, axis=1).max()),
+        parting=parting,
+        options=options,
     )
-    name = "half A" if side > 0 else "half B"
-    half = cut(body, outer, what=f"the body from {name}")
-    for place in _key_places(block):
-        if side > 0:
-            half = fuse(half, _key(place, 0.0, root_mm=KEY_ROOT_MM), what=f"key of {name}")
-        else:
-            half = cut(half, _key(place, options.clearance_mm), what=f"socket of {name}")
-    for place in _bolt_places(block):
-        half = cut(half, _bolt(place, 4 * width), what=f"bolt hole of {name}")
-    return half
 
 
-def core_with_flange(core: Any, block: Block, ring: Ring, options: MouldOptions) -> Any:
+def outer_part(number: int, layout: Layout, outer: csg.Node, pockets_mm: np.ndarray) -> csg.Node:
+    """One outer part: its piece of the block without the body, with keys, sockets and bolt holes.
+
+    Args:
+        outer: The body in the local frame.
+        pockets_mm: Trapped air that this part lets out, local frame, shape (P, 3).
+    """
+    piece = _half(number, layout) if not layout.round else _wedge(number, layout)
+    count, seams = layout.parting.count, _seams(layout)
+    key = BLUNT_KEY if layout.round else STRAIGHT_KEY
+    # Each seam joins two parts: keys on the one whose turn comes first, sockets in the other.
+    mine = [seam for seam in seams if seam.first == number]
+    theirs = [seam for seam in seams if (seam.first + 1) % count == number]
+    sockets = [_key(key, spot, layout.options.clearance_mm) for s in theirs for spot in s.keys]
+    bolts = [hole for seam in (*mine, *theirs) for hole in seam.bolts]
+    body = csg.without(
+        piece, [outer, *sockets, *bolts, *air_holes(pockets_mm, layout, POCKET_VENT_MM)]
+    )
+    return csg.together(body, [_key(key, spot, None) for seam in mine for spot in seam.keys])
+
+
+def core_with_flange(layout: Layout, core: csg.Node | None, channels: Channels) -> csg.Node:
     """The core standing on a flange whose rim fits around the block, with gate and vents.
+
+    Args:
+        core: The core in the local frame; None for a flat lid.
+        channels: Holes in the local frame.
 
     Raises:
         DesignError: If the gate's funnel is wider than the flange.
-        GeometryError: If a boolean did not do what it should.
     """
-    from build123d import Box, Cone, Cylinder, Pos
-
-    x, y = block.middle
-    inside_x, inside_y = (
-        half + options.clearance_mm for half in (block.half_x_mm, block.half_y_mm)
-    )
-    _check_gate(ring, block, options)
-    height = FLANGE_MM + RIM_HEIGHT_MM
-    plate = Pos(x, y, height / 2 - FLANGE_MM) * Box(
-        2 * (inside_x + RIM_WIDTH_MM), 2 * (inside_y + RIM_WIDTH_MM), height
-    )
-    pocket = Pos(x, y, RIM_HEIGHT_MM) * Box(2 * inside_x, 2 * inside_y, 2 * RIM_HEIGHT_MM)
-    part = fuse(cut(plate, pocket, what="pocket of the flange"), core, what="core on its flange")
-    throat = min(0.45 * ring.gap_mm, LARGEST_THROAT_MM)
-    vent = min(0.4 * ring.gap_mm, LARGEST_VENT_MM)
-    for number, (hole_x, hole_y) in enumerate(ring.centres_mm):
-        radius = vent if number else throat
-        # Up to z = 0 and no farther: above it is the silicone, beside it the core.
-        hole = Pos(hole_x, hole_y, -FLANGE_MM / 2) * Cylinder(radius, FLANGE_MM)
-        part = cut(part, hole, what="vent" if number else "gate")
+    options, base = layout.options, layout.base_mm
+    _check_gate(channels, layout)
+    gap = options.clearance_mm
+    plate = _slab(layout, gap + RIM_WIDTH_MM, base - FLANGE_MM, base + layout.rim_mm)
+    pocket = _slab(layout, gap, base, base + layout.rim_mm + 1.0)
+    part = csg.together(csg.without(plate, [pocket]), [] if core is None else [core])
+    low = base - FLANGE_MM
+    # Up to the base plane and no farther: above it is the silicone, beside it the core.
+    holes = [_hole(place, channels.vent_mm, low, base) for place in channels.vents_mm]
+    holes.append(_hole(channels.gate_mm, channels.throat_mm, low, base))
     mouth = options.gate_diameter_mm / 2
-    if mouth > throat:
-        depth = FLANGE_MM - THROAT_MM
-        gate_x, gate_y = ring.centres_mm[0]
-        funnel = Pos(gate_x, gate_y, -FLANGE_MM + depth / 2) * Cone(mouth, throat, depth)
-        part = cut(part, funnel, what="funnel of the gate")
-    return part
+    if mouth > channels.throat_mm:
+        funnel = csg.Cone(
+            low_radius_mm=mouth,
+            high_radius_mm=channels.throat_mm,
+            low_mm=low,
+            high_mm=base - THROAT_MM,
+        )
+        holes.append(csg.moved(funnel, (*channels.gate_mm, 0.0)))
+    holes += air_holes(channels.pockets_mm, layout, POCKET_VENT_MM)
+    return csg.without(part, holes)
 
 
-def _check_gate(ring: Ring, block: Block, options: MouldOptions) -> None:
-    offset = np.abs(ring.centres_mm[0] - block.middle)
-    room = np.array([block.half_x_mm, block.half_y_mm]) + RIM_WIDTH_MM - offset
-    limit_mm = 2 * (float(room.min()) - 2.0)
-    if options.gate_diameter_mm > limit_mm:
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Seam:
+    """Where one part meets the next."""
+
+    first: int
+    """Number of the part that carries the keys."""
+    keys: tuple[tuple[np.ndarray, np.ndarray], ...]
+    """Place and direction of each key."""
+    bolts: tuple[csg.Node, ...]
+
+
+def _seams(layout: Layout) -> list[Seam]:
+    if layout.round:
+        return [_radial_seam(number, layout) for number in range(layout.parting.count)]
+    reach = layout.half_mm[1] - layout.ear_mm
+    inward = np.array([-1.0, 0.0, 0.0])
+    keys, bolts = [], []
+    for side in (-1.0, 1.0):
+        y = layout.middle[1] + side * (reach + KEY_OFFSET_MM)
+        for z in _key_heights(layout):
+            keys.append((np.array([float(layout.parting.curve_x_mm(z)), y, z]), inward))
+        y = layout.middle[1] + side * (reach + BOLT_OFFSET_MM)
+        long = 2.0 * layout.half_mm[0]
+        spot = np.array([layout.middle[0], y, layout.bolt_mm])
+        bolts.append(csg.along(csg.cylinder(BOLT_RADIUS_MM, -long, long), inward, spot))
+    return [Seam(first=0, keys=tuple(keys), bolts=tuple(bolts))]
+
+
+def _radial_seam(number: int, layout: Layout) -> Seam:
+    turn = np.radians(360.0 / layout.parting.count * (number + 0.5))
+    outward = np.array([np.cos(turn), np.sin(turn), 0.0])
+    onward = np.array([-np.sin(turn), np.cos(turn), 0.0])
+    middle = np.array([*layout.middle, 0.0])
+    up = np.array([0.0, 0.0, 1.0])
+    keys = tuple(
+        (middle + (layout.radius_mm + KEY_OFFSET_MM) * outward + z * up, onward)
+        for z in _key_heights(layout)
+    )
+    spot = middle + (layout.radius_mm + BOLT_OFFSET_MM) * outward + layout.bolt_mm * up
+    far = 2.0 * float(layout.half_mm[0])
+    hole = csg.along(csg.cylinder(BOLT_RADIUS_MM, -far, far), onward, spot)
+    # Seats are notches open to the outside: a round one would leave slivers of the block.
+    frame = np.column_stack([outward, -up, onward, spot])
+    seats = [
+        csg.Placed(
+            body=csg.Box(
+                low_mm=(-HEAD_RADIUS_MM, -HEAD_RADIUS_MM, low),
+                high_mm=(far, HEAD_RADIUS_MM, high),
+            ),
+            matrix=frame,
+        )
+        for low, high in ((GRIP_MM, far), (-far, -GRIP_MM))
+    ]
+    bolts = (hole, *seats)
+    return Seam(first=number, keys=keys, bolts=bolts)
+
+
+def _key_heights(layout: Layout) -> list[float]:
+    low, top = layout.base_mm, layout.top_mm
+    return [low + END_MM, top - END_MM] if top - low >= TALL_MM else [(low + top) / 2]
+
+
+def _half(number: int, layout: Layout) -> csg.Node:
+    """The block on one side of the parting surface, as a prism along Y."""
+    x, half = layout.middle[0], layout.half_mm
+    bottom, top = layout.base_mm, layout.top_mm
+    curve = layout.parting.curve_mm
+    seam = np.vstack([[curve[0, 0], bottom], curve[1:-1], [curve[-1, 0], top]])
+    far = x + half[0] if number == 0 else x - half[0]
+    outline = np.vstack([seam, [[far, top], [far, bottom]]])
+    if number == 0:
+        outline = outline[::-1]
+    middle_y = layout.middle[1]
+    prism = csg.Prism(polygon_mm=outline, low_mm=-middle_y - half[1], high_mm=-middle_y + half[1])
+    return csg.Placed(body=prism, matrix=ACROSS)
+
+
+def _wedge(number: int, layout: Layout) -> csg.Node:
+    """One sector of the round block."""
+    count, radius = layout.parting.count, float(layout.half_mm[0])
+    cylinder = csg.cylinder(radius, layout.base_mm, layout.top_mm)
+    # Corners come from one list, so that neighbours share their planes to the last bit.
+    turns = np.radians(180.0 / count * np.arange(2 * count))
+    rays = 2.0 * radius * np.column_stack([np.cos(turns), np.sin(turns)])
+    numbers = (2 * number + np.array([-1, 0, 1])) % (2 * count)
+    sector = csg.Prism(
+        polygon_mm=np.vstack([[0.0, 0.0], rays[numbers]]),
+        low_mm=layout.base_mm - 1.0,
+        high_mm=layout.top_mm + 1.0,
+    )
+    both = csg.Intersection(body=cylinder, other=sector)
+    return csg.moved(both, (*layout.middle, 0.0))
+
+
+def _slab(layout: Layout, margin_mm: float, low_mm: float, high_mm: float) -> csg.Node:
+    """The block's outline with a margin, between two heights."""
+    x, y = layout.middle
+    half = layout.half_mm + margin_mm
+    if layout.round:
+        return csg.moved(csg.cylinder(float(half[0]), low_mm, high_mm), (x, y, 0.0))
+    return csg.Box(
+        low_mm=(x - half[0], y - half[1], low_mm), high_mm=(x + half[0], y + half[1], high_mm)
+    )
+
+
+def _key(key: Key, spot: tuple[np.ndarray, np.ndarray], gap_mm: float | None) -> csg.Node:
+    """A key, or with a gap its socket. Both reach back through a sloping parting surface."""
+    place, direction = spot
+    gap = gap_mm or 0.0
+    slope = (key.base_mm - key.tip_mm) / key.length_mm
+    root = csg.Cone(
+        low_radius_mm=key.base_mm + gap + slope * KEY_ROOT_MM,
+        high_radius_mm=key.tip_mm + gap,
+        low_mm=-KEY_ROOT_MM,
+        high_mm=key.length_mm + gap,
+    )
+    return csg.along(root, direction, place)
+
+
+def _hole(place: np.ndarray, radius_mm: float, low_mm: float, high_mm: float) -> csg.Node:
+    return csg.moved(csg.cylinder(radius_mm, low_mm, high_mm), (*place, 0.0))
+
+
+def air_holes(pockets_mm: np.ndarray, layout: Layout, into_mm: float) -> list[csg.Node]:
+    """Thin holes from trapped air straight up (toward -Z) out of the mould.
+
+    Args:
+        into_mm: How far they reach into the cavity.
+    """
+    low = layout.base_mm - FLANGE_MM - 1.0
+    return [_hole(spot[:2], POCKET_VENT_MM, low, spot[2] + into_mm) for spot in pockets_mm]
+
+
+def _check_gate(channels: Channels, layout: Layout) -> None:
+    offset = np.abs(channels.gate_mm - layout.middle)
+    if layout.round:
+        offset = np.full(2, np.linalg.norm(offset))
+    room = layout.half_mm + RIM_WIDTH_MM - offset
+    limit_mm = 2 * (float(room.min()) - FUNNEL_EDGE_MM)
+    if layout.options.gate_diameter_mm > limit_mm:
         raise DesignError(
-            f"gate diameter {options.gate_diameter_mm:g} mm is wider than the {limit_mm:.1f} mm "
-            "that the flange has room for",
+            f"gate diameter {layout.options.gate_diameter_mm:g} mm is wider than the "
+            f"{limit_mm:.1f} mm that the flange has room for",
             hint="lower mould.gate_diameter_mm or raise mould.wall_mm",
             at="mould.gate_diameter_mm",
         )
-
-
-def _key_places(block: Block) -> list[tuple[float, float, float]]:
-    top = block.height_mm
-    heights = [END_MM, top - END_MM] if top >= TALL_MM else [top / 2]
-    return [(x, y, z) for x, y in _beside(block, KEY_OFFSET_MM) for z in heights]
-
-
-def _bolt_places(block: Block) -> list[tuple[float, float, float]]:
-    return [(x, y, block.height_mm / 2) for x, y in _beside(block, BOLT_OFFSET_MM)]
-
-
-def _beside(block: Block, offset_mm: float) -> list[tuple[float, float]]:
-    x = float(block.middle[0])
-    return [(x, float(block.low[1]) - offset_mm), (x, float(block.high[1]) + offset_mm)]
-
-
-def _key(place: tuple[float, float, float], clearance_mm: float, *, root_mm: float = 0.0) -> Any:
-    """A cone that points toward -X from the split plane, rooted `root_mm` behind it."""
-    from build123d import Cone, Cylinder, Pos, Rot
-
-    length = KEY_LENGTH_MM + clearance_mm
-    base, tip = KEY_BASE_MM + clearance_mm, KEY_TIP_MM + clearance_mm
-    turned = Pos(*place) * Rot(Y=-90)
-    cone = turned * Pos(0, 0, length / 2) * Cone(base, tip, length)
-    if root_mm == 0.0:
-        return cone
-    root = turned * Pos(0, 0, -root_mm / 2) * Cylinder(base, root_mm)
-    return fuse(cone, root, what="root of a key")
-
-
-def _bolt(place: tuple[float, float, float], length_mm: float) -> Any:
-    from build123d import Cylinder, Pos, Rot
-
-    return Pos(*place) * Rot(Y=90) * Cylinder(BOLT_RADIUS_MM, length_mm)

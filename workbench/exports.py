@@ -11,12 +11,12 @@ import numpy as np
 
 from workbench.core.design import SensorDesign
 from workbench.core.errors import DeviceError
-from workbench.outputs import prepare, write_moulds
+from workbench.outputs import prepare, write_package
 from workbench.pipeline import InlineRunner, PressCase, StageMonitor, evaluate, plan, results
 from workbench.project import design_to_toml, write_atomically
 from workbench.store import Store
 
-STAGES = ("mesh", "mould", "package")
+STAGES = ("mesh", "mould", "housing", "recipe", "package")
 
 
 def export_design(
@@ -25,7 +25,8 @@ def export_design(
     """Write the files of a design and yield their paths.
 
     `design.toml`, `membrane.stl`, `support.stl`, `base.stl`, `mesh.npz` (nodes, hexahedra, labels),
-    `exploded.png` (where the machine can render) and everything under `moulds/`.
+    `exploded.png` (where the machine can render) and everything of the workshop:
+    `moulds/`, `parts/`, `all_parts.3mf`, `build_sheet.html`, `bom.csv`.
 
     Raises:
         WorkbenchError: If a stage fails or the folder cannot be written.
@@ -61,6 +62,6 @@ def export_design(
     for name, content in files.items():
         write_atomically(out / name, content)
         yield out / name
-    write_moulds(out, found["mould"], found["package"])
+    write_package(out, found["package"])
     for name in found["package"].files:
-        yield out / "moulds" / name
+        yield out / name

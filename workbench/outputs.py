@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import contextlib
+import dataclasses
 import io
 import json
+import math
 from collections.abc import Container, Iterable, Sequence
 from pathlib import Path
 from typing import Any
@@ -13,7 +15,13 @@ import numpy as np
 
 from workbench.core.design import SensorDesign
 from workbench.core.errors import DesignError, StoreError
-from workbench.core.fabrication import MouldSet
+from workbench.core.fabrication import (
+    FabricationCheck,
+    HousingSet,
+    MouldSet,
+    PartGroup,
+    Recipe,
+)
 from workbench.core.press import Press
 from workbench.core.results import Bundle, Contact, MembraneMesh, Shot
 from workbench.pipeline import results
@@ -96,11 +104,17 @@ def write_contact(out: Path, mesh: MembraneMesh, contact: Contact) -> None:
     write_atomically(out / "contact.npz", buffer.getvalue())
 
 
-def write_moulds(out: Path, moulds: MouldSet, bundle: Bundle) -> list[dict[str, Any]]:
-    """Write every part as STL and STEP, and the assembly as STEP; returns the STL entries."""
-    _remove_stale(out / "moulds", ("*.stl", "*.step"), keep=bundle.files)
+def write_package(out: Path, bundle: Bundle) -> None:
+    """Write every file of the workshop; files of an earlier run that are not among them go."""
+    for folder in ("moulds", "parts"):
+        keep = {Path(name).name for name in bundle.files if name.startswith(f"{folder}/")}
+        _remove_stale(out / folder, ("*.stl", "*.step", "*.3mf"), keep=keep)
     for name, content in bundle.files.items():
-        write_atomically(out / "moulds" / name, content.tobytes())
+        write_atomically(out / name, content.tobytes())
+
+
+def mould_rows(moulds: MouldSet) -> list[dict[str, Any]]:
+    """The mould's STL files as the summary lists them."""
     return [
         {
             "file": f"moulds/{part.name}.stl",
@@ -109,6 +123,34 @@ def write_moulds(out: Path, moulds: MouldSet, bundle: Bundle) -> list[dict[str, 
         }
         for part in moulds.parts
     ]
+
+
+def fabrication_tables(moulds: MouldSet, housing: HousingSet, recipe: Recipe) -> dict[str, Any]:
+    """The tables `moulds`, `parts`, `checks` and `recipe` of the summary."""
+    return {
+        "moulds": mould_rows(moulds),
+        "parts": [
+            {
+                "file": f"{'moulds' if part.group is PartGroup.MOULD else 'parts'}/{part.name}.stl",
+                "group": str(part.group),
+                "watertight": part.watertight,
+                "volume_mm3": part.volume_mm3,
+                "process": part.process,
+            }
+            for part in (*moulds.parts, *housing.parts)
+        ],
+        "checks": [_plain(check) for check in (*moulds.checks, *housing.checks)],
+        "recipe": _plain(recipe),
+    }
+
+
+def _plain(value: FabricationCheck | Recipe) -> dict[str, Any]:
+    table = dataclasses.asdict(value)
+    # JSON has no infinity: a part without any wall to measure has none to report.
+    return {
+        name: None if isinstance(item, float) and not math.isfinite(item) else item
+        for name, item in table.items()
+    }
 
 
 def contact_summary(contact: Contact, path: Press, seconds: float) -> dict[str, Any]:
@@ -194,7 +236,8 @@ def write_all(
     summary = summary_table(design, path, store, calls, outcomes)
     summary["images"] = write_images(out, load["shoot"])
     write_contact(out, load["mesh"], load["press"])
-    summary["moulds"] = write_moulds(out, load["mould"], load["package"])
+    write_package(out, load["package"])
+    summary |= fabrication_tables(load["mould"], load["housing"], load["recipe"])
     html = report_html(design, path, summary, load["shoot"], load["press"], load.get("picture"))
     write_atomically(out / "report.html", html.encode())
     write_atomically(out / "summary.json", json.dumps(summary, indent=1).encode())

@@ -16,7 +16,18 @@ from workbench.core.press import ContactSettings, Indenter, Press
 from workbench.stages import Call, Outcome, run
 from workbench.store import Store
 
-NEEDED = ("build", "mesh", "lattice", "bake", "press", "shoot", "mould", "package")
+NEEDED = (
+    "build",
+    "mesh",
+    "lattice",
+    "bake",
+    "press",
+    "shoot",
+    "mould",
+    "housing",
+    "recipe",
+    "package",
+)
 """Stages of a whole run, in order."""
 EVERYTHING = (*NEEDED, "picture")
 """All stages; a machine without an off-screen renderer cannot run the last."""
@@ -62,9 +73,10 @@ def plan(design: SensorDesign, case: PressCase) -> dict[str, Call]:
     """Every call of the chain by stage name, in the order of `EVERYTHING`.
 
     Raises:
-        DesignError: If the family is unknown or refuses the shape.
+        DesignError: If the family or the silicone is unknown, or the family refuses the shape.
     """
     from designs.family import family, resolve_shape
+    from geometry.silicones import elongation
 
     shape = resolve_shape(design.family, design.shape)
     family(design.family).check(shape, design.layers)
@@ -77,10 +89,17 @@ def plan(design: SensorDesign, case: PressCase) -> dict[str, Call]:
         (mesh.ref, lattice.ref, design.material, case.indenter, case.press, case.settings),
     )
     shoot = Call("shoot", (mesh.ref, bake.ref, design.optics, press.ref))
-    mould = Call("mould", (build.ref, design.mould))
-    package = Call("package", (mould.ref,))
+    stretch = elongation(design.casting.silicone)
+    mould = Call("mould", (build.ref, design.mould, stretch))
+    optics = design.optics
+    housing = Call("housing", (build.ref, design.housing, optics.ring, optics.camera, design.mould))
+    recipe = Call(
+        "recipe",
+        (build.ref, mould.ref, housing.ref, optics.ring, design.casting, design.material),
+    )
+    package = Call("package", (mould.ref, housing.ref, recipe.ref))
     picture = Call("picture", (mould.ref,))
-    calls = (build, mesh, lattice, bake, press, shoot, mould, package, picture)
+    calls = (build, mesh, lattice, bake, press, shoot, mould, housing, recipe, package, picture)
     return {call.stage: call for call in calls}
 
 

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from workbench.core.design import (
+    Camera,
     Elastomer,
     Layers,
     LedRing,
@@ -22,7 +23,8 @@ from workbench.core.design import (
     Optics,
 )
 from workbench.core.digest import digest
-from workbench.core.fabrication import MouldSet
+from workbench.core.fabrication import HousingSet, MouldSet, Recipe
+from workbench.core.making import Casting, Housing
 from workbench.core.monitor import Monitor, part, silent
 from workbench.core.press import ContactSettings, Indenter, Press
 from workbench.core.results import (
@@ -175,11 +177,42 @@ def shoot(
     return Shot(frames=frames, metrics=measure(mesh, contact, frames, light))
 
 
-def mould(solid: Solid, options: MouldOptions, *, monitor: Monitor) -> MouldSet:
-    """Printable mould of the body."""
+def mould(solid: Solid, options: MouldOptions, elongation: float, *, monitor: Monitor) -> MouldSet:
+    """Printable mould of the body; the silicone's strain at break is for a check."""
     from geometry.moulds import make_mould
 
-    return make_mould(solid, options, monitor=monitor)
+    return make_mould(solid, options, elongation, monitor=monitor)
+
+
+def housing(
+    solid: Solid,
+    options: Housing,
+    ring: LedRing,
+    camera: Camera,
+    mould: MouldOptions,
+    *,
+    monitor: Monitor,
+) -> HousingSet:
+    """Rigid parts of the sensor."""
+    from geometry.housing import make_housing
+
+    return make_housing(solid, options, ring=ring, camera=camera, mould=mould, monitor=monitor)
+
+
+def recipe(
+    solid: Solid,
+    moulds: MouldSet,
+    housing: HousingSet,
+    ring: LedRing,
+    casting: Casting,
+    material: Elastomer,
+    *,
+    monitor: Monitor,
+) -> Recipe:
+    """What to weigh, pour, coat, solder and print."""
+    from geometry.recipe import make_recipe
+
+    return make_recipe(solid, moulds, housing, ring=ring, casting=casting, material=material)
 
 
 def picture(moulds: MouldSet, *, monitor: Monitor) -> Picture:
@@ -189,11 +222,11 @@ def picture(moulds: MouldSet, *, monitor: Monitor) -> Picture:
     return Picture(png=exploded_mould(moulds))
 
 
-def package(moulds: MouldSet, *, monitor: Monitor) -> Bundle:
-    """Every mould part as STL and STEP, and the assembly as STEP."""
-    from geometry.export import part_files
+def package(moulds: MouldSet, housing: HousingSet, recipe: Recipe, *, monitor: Monitor) -> Bundle:
+    """Every part as STL, STEP and 3MF, the assemblies, the build sheet and the parts list."""
+    from geometry.export import package_files
 
-    return Bundle(files=part_files(moulds.parts, monitor=monitor))
+    return Bundle(files=package_files(moulds, housing, recipe, monitor=monitor))
 
 
 STAGES = {
@@ -206,7 +239,9 @@ STAGES = {
         Stage(name="press", version=5, lane="sim", function=press),
         Stage(name="shoot", version=2, lane="sim", function=shoot),
         Stage(name="mould", version=2, lane="cad", function=mould),
-        Stage(name="package", version=1, lane="cad", function=package),
+        Stage(name="housing", version=1, lane="cad", function=housing),
+        Stage(name="recipe", version=1, lane="cad", function=recipe),
+        Stage(name="package", version=2, lane="cad", function=package),
         Stage(name="picture", version=1, lane="cad", function=picture),
     )
 }

@@ -26,7 +26,8 @@ OPTIONS = (
 ).split()
 FRAMES = 4
 """Two of the approach, two of the shear."""
-STAGES = ["build", "mesh", "lattice", "bake", "press", "shoot", "mould", "package", "picture"]
+STAGES = ["build", "mesh", "lattice", "bake", "press", "shoot"]
+STAGES += ["mould", "housing", "recipe", "package", "picture"]
 
 
 @pytest.fixture(scope="module")

@@ -228,8 +228,8 @@ def test_parts_of_another_mould_are_removed(tmp_path: Path) -> None:
     moulds.mkdir()
     for name in ("old.stl", "old.step", "mine.txt"):
         (moulds / name).write_text("old")
-    bundle = SimpleNamespace(files={"half_a.stl": np.zeros(3, np.uint8)})
-    outputs.write_moulds(tmp_path, SimpleNamespace(parts=()), bundle)  # type: ignore[arg-type]
+    bundle = SimpleNamespace(files={"moulds/half_a.stl": np.zeros(3, np.uint8)})
+    outputs.write_package(tmp_path, bundle)  # type: ignore[arg-type]
     assert sorted(path.name for path in moulds.iterdir()) == ["half_a.stl", "mine.txt"]
 
 

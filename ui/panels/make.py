@@ -85,7 +85,7 @@ class MakePanel:
 
     def _send_part(self, event: Any) -> None:
         name = f"{self.part.value}.stl"
-        content = self._bundle().files[name].tobytes()
+        content = self._bundle().files[f"moulds/{name}"].tobytes()
         event.client.send_file_download(name, content, save_immediately=True)
 
     def _send_all(self, event: Any) -> None:

@@ -10,6 +10,7 @@ from workbench.specimens import finger_solid
 from workbench.stages import build, lattice, mesh, mould
 
 CASE = "default finger"
+ELONGATION = 3.0
 
 
 def rows() -> list[Row]:
@@ -24,7 +25,7 @@ def rows() -> list[Row]:
         timed_row(
             "mould",
             CASE,
-            lambda: mould(finger_solid(), MouldOptions(), monitor=silent),
+            lambda: mould(finger_solid(), MouldOptions(), ELONGATION, monitor=silent),
             10.0,
             runs=3,
         ),

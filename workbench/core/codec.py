@@ -69,8 +69,12 @@ def _pack(value: Any, path: str, arrays: Arrays) -> Any:
         return [_pack(item, f"{path}.{i}", arrays) for i, item in enumerate(items)]
     if isinstance(value, Mapping):
         mapping = cast("Mapping[str, Any]", value)
+        # A store makes each array a file, so a slash in a name must not become a folder.
         return {
-            "map": {name: _pack(item, f"{path}.{name}", arrays) for name, item in mapping.items()}
+            "map": {
+                name: _pack(item, f"{path}.{name.replace('/', '%2F')}", arrays)
+                for name, item in mapping.items()
+            }
         }
     if isinstance(value, np.generic):
         return cast("Any", value).item()

@@ -11,6 +11,8 @@ from workbench.core.results import Label
 from workbench.rows import Row, bounded, compared
 from workbench.specimens import finger_hexes, finger_mesh, finger_points, finger_solid
 from workbench.stages import mould
+from workbench.validation import moulds as mould_rows
+from workbench.validation.moulds import ELONGATION
 
 CASE = "finger R 15, wall 2, cylinder 27 mm"
 RADIUS_MM, CYLINDER_MM, WALL_MM = 15.0, 27.0, 2.0
@@ -28,7 +30,7 @@ def rows() -> list[Row]:
 
     @functools.cache
     def moulds() -> MouldSet:
-        return mould(finger_solid(), MouldOptions(), monitor=silent)
+        return mould(finger_solid(), MouldOptions(), ELONGATION, monitor=silent)
 
     wall_mm3 = checks.capped_cylinder_mm3(RADIUS_MM, CYLINDER_MM)
     wall_mm3 -= checks.capped_cylinder_mm3(RADIUS_MM - WALL_MM, CYLINDER_MM)
@@ -42,7 +44,7 @@ def rows() -> list[Row]:
             finger_mesh().outer, radius_mm=RADIUS_MM, cylinder_mm=CYLINDER_MM
         )
 
-    return [
+    finger = [
         compared(
             "cad_volume", CASE, lambda: finger_solid().volume_mm3, wall_mm3, unit="mm3", limit=1e-6
         ),
@@ -112,3 +114,4 @@ def rows() -> list[Row]:
             sense="min",
         ),
     ]
+    return [*finger, *mould_rows.rows()]

@@ -1,0 +1,231 @@
+"""The rigid parts of the finished sensor: support, LED ring holder, camera mount and base.
+
+What is bought (camera module, LEDs) takes its room first; each printed part is then cut by the
+grown outlines of those before it, so nothing overlaps. Parts:
+
+- `support`: the design's transparent shell, as it is;
+- `led_ring_holder`: a ring under the LEDs with a pocket for each;
+- `camera_mount`: a cup on the camera's axis that the module slides into from the front;
+- `base`: the design's foot with seats for holder and mount, open to below for the mount;
+- `slider_0`, ...: for bodies with actuators, see `actuation`.
+
+Leaves out: wiring, screws between the parts, cable glands.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from geometry import csg
+from geometry.actuation import Slider, make_sliders
+from geometry.csg_mesh import evaluate
+from geometry.fabricate import fabricate
+from geometry.housing_checks import housing_checks
+from geometry.leds import led_places
+from workbench.core.design import Camera, LedMount, LedRing
+from workbench.core.fabrication import FabricationPart, HousingSet, PartGroup
+from workbench.core.making import Housing, MouldOptions
+from workbench.core.monitor import Monitor, silent
+from workbench.core.results import LabelledSurface, Solid
+
+LED_DEPTH_MM = 0.8
+"""Height of an LED with its solder. Source: WS2812 packages are 0.5 to 0.7 mm high."""
+FLOOR_MM = 1.2
+"""Material under the LEDs: three layers of a resin print or a flexible circuit [mm]."""
+FRONT_SHARE = 0.3
+"""How much of the camera module stands out of its mount: the lens."""
+CABLE_SHARE = 0.5
+"""Width of the cable's slot over the module's."""
+TOUCH_MM3 = 1e-9
+UPRIGHT_COSINE = 0.9
+APART_MM = 12.0
+FAR_MM = 500.0
+CLEAR_RESIN = "print in clear resin, polish"
+TOUGH = "3D print, opaque"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Bought:
+    """Rooms of the bought parts, without gaps."""
+
+    module: csg.Node
+    leds: tuple[csg.Node, ...]
+
+
+def make_housing(
+    solid: Solid,
+    options: Housing,
+    *,
+    ring: LedRing,
+    camera: Camera,
+    mould: MouldOptions,
+    monitor: Monitor = silent,
+) -> HousingSet:
+    """Make the rigid parts of a sensor.
+
+    Raises:
+        GeometryError: If a part does not come out as one body.
+    """
+    sliders = make_sliders(solid, options)
+    bought = Bought(module=_module(camera, options, 0.0), leds=_leds(ring, options, 0.0))
+    nodes = _nodes(solid, options, ring, camera, sliders)
+    places = _exploded(solid, sliders)
+    parts: list[FabricationPart] = []
+    reasons: list[str] = []
+    for number, (name, node) in enumerate(nodes.items()):
+        monitor(0.8 * number / len(nodes), f"making {name}")
+        part, reason = fabricate(
+            name,
+            node,
+            group=PartGroup.SENSOR,
+            explode=places[name],
+            process=CLEAR_RESIN if name == "support" else TOUGH,
+            keep_largest=True,
+            brep=solid.support_brep if name == "support" else None,
+        )
+        parts.append(part)
+        reasons += [reason] if reason else []
+    monitor(0.8, "checking")
+    checks = housing_checks(
+        parts,
+        solid,
+        bought.module,
+        bought.leds,
+        options,
+        in_shell=ring.mount is LedMount.SHELL,
+        bed_mm=mould.bed_mm,
+    )
+    return HousingSet(parts=tuple(parts), checks=checks, notice="; ".join(reasons))
+
+
+def _nodes(
+    solid: Solid, options: Housing, ring: LedRing, camera: Camera, sliders: tuple[Slider, ...]
+) -> dict[str, csg.Node]:
+    gap = options.clearance_mm
+    # Without its B-rep: only parts that do not fit meet the skin, and cutting splines is slow.
+    membrane = csg.Body(points_mm=solid.membrane.points_mm, faces=solid.membrane.faces)
+    support = _body(solid.support, solid.support_brep)
+    # The support a hair smaller lies inside its own cavity: what it takes away is the gap.
+    reach = ring.radius_mm + options.led_width_mm / 2 + options.wall_mm
+    shrunk = csg.scaled(support, 1.0 - 2.0 * gap / max(reach, 1.0), (0.0, 0.0, 0.0))
+    shells = [membrane, support, shrunk]
+    module = _module(camera, options, gap)
+    front_mm = _cup_front_mm(camera, ring, options)
+    seat = _ring(ring, options, gap)
+    leds = _leds(ring, options, gap)
+    cup = _cup(camera, options, front_mm, 0.0)
+    foot = csg.together(_body(solid.base, solid.base_brep), [slider.guide for slider in sliders])
+    room = [seat, _cup(camera, options, front_mm + gap, gap), _cable(camera, options), module]
+    return {
+        "support": _cut(support, [membrane]),
+        "led_ring_holder": _cut(_ring(ring, options, 0.0), [*shells, module, *leds]),
+        "camera_mount": _cut(cup, [*shells, seat, module, _cable(camera, options)]),
+        "base": _cut(foot, [*shells, *room, *(slider.bore for slider in sliders)]),
+        **{slider.name: _cut(slider.body, [membrane]) for slider in sliders},
+    }
+
+
+def _cut(body: csg.Node, tools: Sequence[csg.Node]) -> csg.Node:
+    """The body less those tools that meet it; the others would only slow the CAD kernel down."""
+    solid = evaluate(body)
+    meeting = [tool for tool in tools if (solid ^ evaluate(tool)).volume() > TOUCH_MM3]
+    return csg.without(body, meeting)
+
+
+def _cup_front_mm(camera: Camera, ring: LedRing, options: Housing) -> float:
+    """How far in front of the optical centre the mount ends [mm], negative: behind it.
+
+    Below the LED ring's seat, where the camera looks up through the ring.
+    """
+    front = -FRONT_SHARE * options.camera_depth_mm
+    upright = (_rotation(camera) @ [0.0, 0.0, 1.0])[2] > UPRIGHT_COSINE
+    low = ring.height_mm - LED_DEPTH_MM - FLOOR_MM - 2.0 * options.clearance_mm
+    below = low - camera.position_mm[2]
+    # A cup too low to hold the module is worse than one that the ring cuts into.
+    return min(front, below) if upright and below > -0.7 * options.camera_depth_mm else front
+
+
+def _body(surface: LabelledSurface, brep: np.ndarray) -> csg.Body:
+    return csg.Body(points_mm=surface.points_mm, faces=surface.faces, brep=brep)
+
+
+def _module(camera: Camera, options: Housing, gap_mm: float) -> csg.Node:
+    """Room of the camera module: its front at the optical centre; with a gap, open to the front."""
+    x, y = options.camera_width_mm / 2 + gap_mm, options.camera_height_mm / 2 + gap_mm
+    back = -options.camera_depth_mm - gap_mm
+    box = csg.Box(low_mm=(-x, -y, back), high_mm=(x, y, gap_mm))
+    return _at_camera(box, camera)
+
+
+def _cup(camera: Camera, options: Housing, front_mm: float, gap_mm: float) -> csg.Node:
+    """Outline of the camera's mount; with a gap, its seat, open to the back."""
+    wall = options.clearance_mm + options.wall_mm + gap_mm
+    x, y = options.camera_width_mm / 2 + wall, options.camera_height_mm / 2 + wall
+    back = -options.camera_depth_mm - options.clearance_mm - options.wall_mm
+    if gap_mm:
+        back = -FAR_MM
+    return _at_camera(csg.Box(low_mm=(-x, -y, back), high_mm=(x, y, front_mm)), camera)
+
+
+def _cable(camera: Camera, options: Housing) -> csg.Node:
+    """Slot for the camera's flat cable, out of the back."""
+    x = CABLE_SHARE * options.camera_width_mm / 2
+    y = CABLE_SHARE * options.camera_height_mm / 4
+    box = csg.Box(low_mm=(-x, -y, -FAR_MM), high_mm=(x, y, -options.camera_depth_mm))
+    return _at_camera(box, camera)
+
+
+def _at_camera(node: csg.Node, camera: Camera) -> csg.Node:
+    matrix = np.column_stack([_rotation(camera), camera.position_mm])
+    return csg.Placed(body=node, matrix=matrix)
+
+
+def _rotation(camera: Camera) -> np.ndarray:
+    from scipy.spatial.transform import Rotation
+
+    w, x, y, z = camera.wxyz
+    return Rotation.from_quat([x, y, z, w]).as_matrix()
+
+
+def _leds(ring: LedRing, options: Housing, gap_mm: float) -> tuple[csg.Node, ...]:
+    """Room of each LED behind its emitting face; with a gap, a pocket open to the front."""
+    x, y = options.led_width_mm / 2 + gap_mm, options.led_height_mm / 2 + gap_mm
+    front = options.wall_mm if gap_mm else 0.0
+    box = csg.Box(low_mm=(-x, -y, -LED_DEPTH_MM), high_mm=(x, y, front))
+    found = []
+    for place, axis in zip(*led_places(ring), strict=True):
+        outward = np.array([place[0], place[1], 0.0])
+        if not outward.any():
+            found.append(csg.along(box, axis, place))
+            continue
+        around = np.cross([0.0, 0.0, 1.0], outward / np.linalg.norm(outward))
+        frame = np.column_stack([np.cross(around, axis), around, axis, place])
+        found.append(csg.Placed(body=box, matrix=frame))
+    return tuple(found)
+
+
+def _ring(ring: LedRing, options: Housing, gap_mm: float) -> csg.Node:
+    """Outline of the LEDs' ring; with a gap, its seat."""
+    half = max(options.led_width_mm, options.led_height_mm) / 2 + options.wall_mm
+    top = ring.height_mm + gap_mm
+    low = ring.height_mm - LED_DEPTH_MM - FLOOR_MM - gap_mm
+    disc = csg.cylinder(ring.radius_mm + half + gap_mm, low, top)
+    hole = ring.radius_mm - half - gap_mm
+    if hole <= options.wall_mm:
+        return disc
+    return csg.without(disc, [csg.cylinder(hole, low - 1.0, top + 1.0)])
+
+
+def _exploded(solid: Solid, sliders: tuple[Slider, ...]) -> dict[str, tuple[float, float, float]]:
+    height = float(np.ptp(solid.support.points_mm[:, 2])) + APART_MM
+    foot = float(np.ptp(solid.base.points_mm[:, 2])) + APART_MM
+    return {
+        "support": (0.0, 0.0, height),
+        "led_ring_holder": (0.0, 0.0, APART_MM),
+        "camera_mount": (0.0, 0.0, -2.0 * foot),
+        "base": (0.0, 0.0, 0.0),
+        **{slider.name: slider.explode for slider in sliders},
+    }

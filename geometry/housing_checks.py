@@ -1,0 +1,102 @@
+"""Checks of the rigid parts: gaps around LEDs and camera, walls, room on the printer."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from geometry.castability import Worst
+from geometry.csg import Node
+from geometry.csg_mesh import closed, evaluate
+from geometry.mould_checks import check, wall_and_bed
+from workbench.core.fabrication import FabricationCheck, FabricationPart
+from workbench.core.making import Housing
+from workbench.core.results import Solid
+
+SEARCH_MM = 50.0
+"""Gaps wider than this are not measured [mm]."""
+LEAST_WALL_MM = 0.8
+"""Thinnest printed wall of a part that carries no bolts: two lines of a 0.4 mm nozzle [mm]."""
+
+
+def housing_checks(
+    parts: Sequence[FabricationPart],
+    solid: Solid,
+    module: Node,
+    leds: Sequence[Node],
+    options: Housing,
+    *,
+    in_shell: bool,
+    bed_mm: tuple[float, float, float],
+) -> tuple[FabricationCheck, ...]:
+    """Gaps around the bought parts, and walls and sizes of the printed ones.
+
+    Args:
+        module: Room of the camera module.
+        leds: Room of each LED.
+        in_shell: Whether LEDs touch the support on purpose, to feed light into it.
+    """
+    walls = [solid.membrane] if in_shell else [solid.membrane, solid.support]
+    shells = [closed("shell", surface.points_mm, surface.faces) for surface in walls]
+    camera = evaluate(module)
+    lights = [evaluate(led) for led in leds]
+    checks = [
+        _led_clearance(lights, [*shells, camera], options),
+        _camera_clearance(camera, shells, solid, options),
+    ]
+    for part in parts:
+        checks += wall_and_bed(part, bed_mm, LEAST_WALL_MM)
+    return tuple(checks)
+
+
+def _led_clearance(lights: list[Any], others: list[Any], options: Housing) -> FabricationCheck:
+    """Smallest gap between an LED and support, skin, camera or the next LED."""
+    gaps = []
+    for number, light in enumerate(lights):
+        following = [lights[(number + 1) % len(lights)]] if len(lights) > 1 else []
+        gap = min(_gap(light, other) for other in [*others, *following])
+        gaps.append(Worst(gap, _centre(light)))
+    return check(
+        "led_clearance",
+        "led_ring_holder",
+        min(gaps, key=lambda gap: gap.value),
+        unit="mm",
+        limit=options.clearance_mm,
+        sense="min",
+        bad=0.0,
+        message="change optics.ring.radius_mm or height_mm, lower its count, or use smaller LEDs",
+    )
+
+
+def _camera_clearance(
+    camera: Any, shells: list[Any], solid: Solid, options: Housing
+) -> FabricationCheck:
+    """Smallest gap between the module and support or skin, or left below its mount in the foot."""
+    gap = min(_gap(camera, shell) for shell in shells)
+    box = camera.bounding_box()
+    bottom = box[2] - options.clearance_mm - options.wall_mm
+    below = float(bottom - solid.base.points_mm[:, 2].min())
+    return check(
+        "camera_clearance",
+        "camera_mount",
+        Worst(min(gap, below), _centre(camera)),
+        unit="mm",
+        limit=options.clearance_mm,
+        sense="min",
+        bad=0.0,
+        message="move optics.camera.position_mm, raise shape.base_height_mm or take a smaller one",
+    )
+
+
+def _gap(one: Any, other: Any) -> float:
+    """Distance of two manifolds [mm], or minus the cube root of their overlap's volume."""
+    shared = float((one ^ other).volume())
+    return -(shared ** (1 / 3)) if shared > 1e-9 else float(one.min_gap(other, SEARCH_MM))
+
+
+def _centre(solid: Any) -> tuple[float, float, float]:
+    box = np.array(solid.bounding_box())
+    x, y, z = (float(value) for value in (box[:3] + box[3:]) / 2)
+    return x, y, z

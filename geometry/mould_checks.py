@@ -1,0 +1,282 @@
+"""The checks of a mould: each a number, its limit, where it is worst, and what to do about it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from geometry.cast import Cast
+from geometry.castability import (
+    Spread,
+    Worst,
+    bed_ratio,
+    draft_deg,
+    removal_strain,
+    spread,
+    thinnest_wall,
+    undercut,
+)
+from geometry.channels import POCKET_VENT_MM, Channels
+from geometry.csg import Body
+from geometry.csg_mesh import evaluate
+from geometry.parting import Parting
+from workbench.core.fabrication import FabricationCheck, FabricationPart, Severity
+from workbench.core.making import MouldOptions
+from workbench.core.results import Label, LabelledSurface
+
+UNDERCUT_SHARE = 0.02
+"""Silicone peels off undercuts that small without a thought."""
+LOCKED_SHARE = 0.35
+"""A part that holds more than a third of its surface tears the skin or does not come off."""
+LEAST_DRAFT_DEG = -0.5
+"""Silicone needs no draft, only no lean against the pull; half a degree is facets."""
+WALL_MM = 2.0
+"""Printed walls thinner than this bend under the bolts; sharp rims measure as thin walls too."""
+STRAIN_SAFETY = 3.0
+"""Share of the elongation at break that demoulding may take, as 1 / 3: data sheets give the
+elongation of flawless strips (ASTM D412), and cast skins tear at nicks and seams first."""
+ROUNDING = 1e-6
+"""A value that misses its limit by less meets it."""
+CORE_SECTIONS = 60
+PIN_BINS = 12
+
+
+def check(
+    name: str,
+    part: str,
+    worst: Worst,
+    *,
+    unit: str,
+    limit: float,
+    message: str,
+    sense: str = "max",
+    bad: float | None = None,
+) -> FabricationCheck:
+    """A check; a warning beyond the limit, bad beyond `bad` (never, when None).
+
+    Args:
+        message: What to do about it, added when it is not good.
+    """
+    sign = 1.0 if sense == "max" else -1.0
+    over = sign * (worst.value - limit) > ROUNDING
+    severity = Severity.WARNING if over else Severity.GOOD
+    if over and bad is not None and sign * worst.value > sign * bad:
+        severity = Severity.BAD
+    bound = "at most" if sense == "max" else "at least"
+    title = name.replace("_", " ")
+    text = f"{part}: {title} {worst.value:.3g} {unit}, {bound} {limit:.3g} {unit} is good"
+    return FabricationCheck(
+        name=name,
+        part=part,
+        value=worst.value,
+        unit=unit,
+        limit=limit,
+        sense=sense,
+        severity=severity,
+        place_mm=worst.place_mm,
+        message=f"{text}; {message}." if over else f"{text}.",
+    )
+
+
+def mould_checks(
+    parts: Sequence[FabricationPart],
+    cast: Cast,
+    parting: Parting,
+    channels: Channels,
+    options: MouldOptions,
+    *,
+    membrane: LabelledSurface,
+    elongation: float,
+) -> tuple[FabricationCheck, ...]:
+    """All checks of a mould.
+
+    Args:
+        membrane: The elastomer's surface, for its pins.
+        elongation: Strain at break of the silicone [1].
+    """
+    checks = [*_release(cast, parting), *_core(cast, membrane, elongation)]
+    for part in parts:
+        checks += wall_and_bed(part, options.bed_mm)
+    return (*checks, _trapped(channels), _feature(channels, options))
+
+
+def wall_and_bed(
+    part: FabricationPart, bed_mm: tuple[float, float, float], wall_mm: float = WALL_MM
+) -> tuple[FabricationCheck, FabricationCheck]:
+    """Thinnest wall and room on the printer of one part."""
+    place = (part.points_mm.min(axis=0) + part.points_mm.max(axis=0)) / 2
+    middle = (float(place[0]), float(place[1]), float(place[2]))
+    return (
+        check(
+            "minimum_wall",
+            part.name,
+            thinnest_wall(part.points_mm, part.faces),
+            unit="mm",
+            limit=wall_mm,
+            sense="min",
+            message="raise mould.wall_mm or the shape's own sizes there, or print in tough resin",
+        ),
+        check(
+            "bed",
+            part.name,
+            Worst(bed_ratio(part.points_mm, bed_mm), middle),
+            unit="of the bed",
+            limit=1.0,
+            bad=1.0,
+            message="lower mould.wall_mm, raise mould.outer_parts or use a larger printer",
+        ),
+    )
+
+
+def _release(cast: Cast, parting: Parting) -> Iterator[FabricationCheck]:
+    """Undercut and draft of each outer part."""
+    places = spread(cast.sensing.points_mm, cast.sensing.faces)
+    owner = parting.part_of(places.points_mm)
+    for number, name in enumerate(parting.names):
+        mine = owner == number
+        part = Spread(places.points_mm[mine], places.normals[mine], places.area_mm2)
+        held = undercut(cast.outer.points_mm, cast.outer.faces, parting.pulls[number], part)
+        yield check(
+            "undercut",
+            name,
+            held,
+            unit="of its surface",
+            limit=UNDERCUT_SHARE,
+            bad=LOCKED_SHARE,
+            message="the skin must be peeled over it: use a silicone that stretches, "
+            "raise mould.outer_parts or round the shape",
+        )
+        yield check(
+            "draft",
+            name,
+            draft_deg(part, parting.pulls[number]),
+            unit="degree",
+            limit=LEAST_DRAFT_DEG,
+            sense="min",
+            message="the surface leans against the pull there",
+        )
+
+
+def _core(cast: Cast, membrane: LabelledSurface, elongation: float) -> Iterator[FabricationCheck]:
+    """How the core leaves the cast."""
+    if cast.core is None:
+        return
+    places = spread(cast.core.points_mm, cast.core.faces)
+    sides = places.points_mm[:, 2] > cast.base_mm + 1e-3
+    part = Spread(places.points_mm[sides], places.normals[sides], places.area_mm2)
+    # The core leaves downward inside the silicone: its facets must look up, away from the pull.
+    draft = draft_deg(part, np.array([0.0, 0.0, 1.0]))
+    yield check(
+        "draft",
+        "core",
+        draft,
+        unit="degree",
+        limit=LEAST_DRAFT_DEG,
+        sense="min",
+        message="the core is wider above than below: raise mould.draft_deg or stretch the skin",
+    )
+    strain = max(core_strain(cast.core), pin_strain(membrane), key=lambda worst: worst.value)
+    yield check(
+        "core_removal",
+        "core",
+        strain,
+        unit="strain",
+        limit=elongation / STRAIN_SAFETY,
+        bad=elongation,
+        message="choose a silicone with more elongation, or raise mould.draft_deg",
+    )
+
+
+def core_strain(core: Body) -> Worst:
+    """Strain of the elastomer when the core leaves downward, by circumferences of its sections."""
+    body = evaluate(core)
+    low, high = core.points_mm[:, 2].min(), core.points_mm[:, 2].max()
+    heights = low + (high - low) * (np.arange(CORE_SECTIONS) + 0.5) / CORE_SECTIONS
+    around = np.array([_around(body.slice(float(height))) for height in heights])
+    strain = removal_strain(heights, around)
+    middle = core.points_mm.mean(axis=0)
+    return Worst(strain.value, (float(middle[0]), float(middle[1]), strain.place_mm[2]))
+
+
+def _around(section: Any) -> float:
+    """Length of the outlines of a section without its holes [mm]."""
+    total = 0.0
+    for outline in section.to_polygons():
+        points = np.asarray(outline)
+        ahead = np.roll(points, -1, axis=0)
+        if (points[:, 0] * ahead[:, 1] - points[:, 1] * ahead[:, 0]).sum() > 0.0:
+            total += float(np.linalg.norm(ahead - points, axis=1).sum())
+    return total
+
+
+def pin_strain(membrane: LabelledSurface) -> Worst:
+    """Strain of the internal pins when the core leaves: the widest place toward the tip over the
+    narrowest toward the root, less 1; the worst of all pins."""
+    worst = Worst(0.0, (0.0, 0.0, 0.0))
+    pins = membrane.has(Label.PIN)
+    for number in np.unique(membrane.numbers[pins]):
+        faces = membrane.faces[pins & (membrane.numbers == number)]
+        points = membrane.points_mm[np.unique(faces)]
+        bins = _pin_profile(points)
+        if len(bins) < 2:
+            continue
+        # From the root (highest) down: what is above the tip-side width must have let it pass.
+        narrow = np.minimum.accumulate(bins[::-1, 1])
+        strain = bins[::-1, 1] / narrow - 1.0
+        if strain.max() > worst.value:
+            spot = points.mean(axis=0)
+            worst = Worst(float(strain.max()), (float(spot[0]), float(spot[1]), float(spot[2])))
+    return worst
+
+
+def _pin_profile(points: np.ndarray) -> np.ndarray:
+    """Height and greatest radius of a pin in slices, rising, shape (B, 2); rounded tip left out."""
+    axis = (points[:, :2].min(axis=0) + points[:, :2].max(axis=0)) / 2
+    radius = np.linalg.norm(points[:, :2] - axis, axis=1)
+    height = points[:, 2]
+    edges = np.linspace(height.min(), height.max() + 1e-9, PIN_BINS + 1)
+    slices = np.digitize(height, edges) - 1
+    found = [
+        (float(height[slices == k].mean()), float(radius[slices == k].max()))
+        for k in range(PIN_BINS)
+        if (slices == k).any()
+    ]
+    return np.array(found).reshape(-1, 2)
+
+
+def _trapped(channels: Channels) -> FabricationCheck:
+    places = channels.trapped_mm
+    spot = places[0] if len(places) else np.zeros(3)
+    vented = len(channels.pockets_mm)
+    return check(
+        "trapped_air",
+        "cast",
+        Worst(float(len(places)), (float(spot[0]), float(spot[1]), float(spot[2]))),
+        unit="pockets",
+        limit=0.0,
+        message=f"the highest holds {channels.trapped_height_mm:.1f} mm of air; {vented} others "
+        "are vented; tilt the mould while pouring and degas it under vacuum",
+    )
+
+
+def _feature(channels: Channels, options: MouldOptions) -> FabricationCheck:
+    gate, vent = channels.gate_mm, channels.vents_mm[0]
+    features = [
+        Worst(2 * channels.throat_mm, (float(gate[0]), float(gate[1]), 0.0)),
+        Worst(2 * channels.vent_mm, (float(vent[0]), float(vent[1]), 0.0)),
+    ]
+    if len(channels.pockets_mm):
+        spot = channels.pockets_mm[0]
+        place = (float(spot[0]), float(spot[1]), float(spot[2]))
+        features.append(Worst(2 * POCKET_VENT_MM, place))
+    return check(
+        "smallest_feature",
+        "core",
+        min(features, key=lambda feature: feature.value),
+        unit="mm",
+        limit=options.feature_mm,
+        sense="min",
+        message="the printer closes holes this small: drill them, or lower mould.feature_mm",
+    )

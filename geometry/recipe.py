@@ -1,0 +1,128 @@
+"""The casting recipe: what to weigh, pour, coat, solder and print, and in which order.
+
+mass = volume (1 + waste) density, split by the mix ratio; the volume is that of the cavity, so it
+holds the shrinkage. Numbers of the silicone come from `silicones`.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from geometry.leds import led_items
+from geometry.silicones import NEAR, Silicone, nearest, silicone
+from geometry.surface import face_areas
+from workbench.core.design import Elastomer, LedRing
+from workbench.core.fabrication import FabricationPart, HousingSet, MouldSet, PrintItem, Recipe
+from workbench.core.making import Casting
+from workbench.core.results import Label, Solid
+
+
+def make_recipe(
+    solid: Solid,
+    moulds: MouldSet,
+    housing: HousingSet,
+    *,
+    ring: LedRing,
+    casting: Casting,
+    material: Elastomer,
+) -> Recipe:
+    """Everything the workshop needs besides the files.
+
+    Raises:
+        DesignError: If the silicone is not in the table.
+    """
+    chosen = silicone(casting.silicone)
+    density = chosen.density_g_cm3 or material.density_g_cm3
+    cast_ml = moulds.cast_volume_mm3 / 1000.0
+    pour_ml = cast_ml * (1.0 + casting.waste_percent / 100.0)
+    mass_g = pour_ml * density
+    share_a = chosen.parts_a / (chosen.parts_a + chosen.parts_b)
+    sensing = solid.membrane.faces[solid.membrane.has(Label.OUTER)]
+    recipe = Recipe(
+        silicone=chosen.name,
+        source=chosen.source,
+        density_g_cm3=density,
+        cast_ml=cast_ml,
+        pour_ml=pour_ml,
+        part_a_g=mass_g * share_a,
+        part_b_g=mass_g * (1.0 - share_a),
+        coating_mm2=float(face_areas(solid.membrane.points_mm, sensing).sum()),
+        leds=led_items(ring),
+        prints=tuple(print_item(part) for part in (*moulds.parts, *housing.parts)),
+        steps=_steps(solid, moulds, housing, chosen, pour_ml, mass_g, share_a),
+        notice=_notice(chosen, material),
+    )
+    return recipe
+
+
+def print_item(part: FabricationPart) -> PrintItem:
+    """One part as a row of the bill of materials."""
+    x, y, z = (float(size) for size in np.ptp(part.points_mm, axis=0))
+    return PrintItem(
+        name=part.name,
+        group=part.group,
+        process=part.process,
+        volume_mm3=part.volume_mm3,
+        size_mm=(x, y, z),
+    )
+
+
+def _notice(chosen: Silicone, material: Elastomer) -> str:
+    words = []
+    off = abs(chosen.young_MPa / material.young_MPa - 1.0)
+    if off > NEAR:
+        near = nearest(material.young_MPa)
+        words.append(
+            f"the design has E {material.young_MPa:.3g} MPa, {chosen.name} has "
+            f"{chosen.young_MPa:.3g} MPa, {100 * off:.0f} % off; nearest in the table is "
+            f"{near.name} with {near.young_MPa:.3g} MPa"
+        )
+    if chosen.density_g_cm3 is None:
+        words.append(
+            f"no density of {chosen.name} is on record: masses use the design's "
+            f"{material.density_g_cm3:g} g/cm3"
+        )
+    return "; ".join(words)
+
+
+def _steps(
+    solid: Solid,
+    moulds: MouldSet,
+    housing: HousingSet,
+    chosen: Silicone,
+    pour_ml: float,
+    mass_g: float,
+    share_a: float,
+) -> tuple[str, ...]:
+    outer = [part.name for part in moulds.parts if part.name != "core"]
+    pins = len(solid.tips_mm)
+    life = f", within {chosen.pot_life_min:g} minutes" if chosen.pot_life_min else ""
+    steps = [
+        f"Print {', '.join(part.name for part in moulds.parts)} and, for the sensor, "
+        f"{', '.join(part.name for part in housing.parts)}; wash, cure and sand the cavity.",
+        "Coat all mould faces with release agent: printed resin stops platinum silicone from "
+        "curing, so bake it or seal it with clear acrylic lacquer first.",
+        f"Bolt {' and '.join(outer)} together with M3 bolts and turn them tip down.",
+        f"Weigh {mass_g * share_a:.2f} g of part A and {mass_g * (1 - share_a):.2f} g of part B of "
+        f"{chosen.name} ({pour_ml:.2f} ml in all), stir slowly and degas under vacuum.",
+        f"Close the mould with the core, flange up, and fill it through the gate{life}, until "
+        "silicone stands in every vent.",
+        f"Let it cure ({chosen.cure} at room temperature), flange up and level.",
+        "Open the bolts, pull the outer parts along their arrows, then roll the skin off the core; "
+        "cut gate and vents flush.",
+    ]
+    if pins:
+        steps.append(f"Dab white silicone paint on the tips of the {pins} pins.")
+    if solid.backing_mm > 0.0:
+        steps.append(
+            f"Fill the gap of {solid.backing_mm:g} mm between skin and window with the soft gel."
+        )
+    steps += [
+        "Coat the outside with pigmented silicone paint, reflective or opaque as the optics ask.",
+        "Prime the support and bond the skin to it with the same silicone.",
+        "Solder the LEDs in the order of the list and press them into led_ring_holder; put camera "
+        "and camera_mount into the base from below, then holder and support on top.",
+    ]
+    if any(part.name.startswith("slider") for part in housing.parts):
+        steps.append("Push the sliders through their guides and tie them to the actuators.")
+    return tuple(steps)
