@@ -169,7 +169,7 @@ def _persistent_minima(z_mm: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray,
         return node
 
     rise = {}
-    ranks: list[int] = rank.tolist()
+    ranks = [int(number) for number in rank]
     begin: list[int] = links.indptr.tolist()
     near: list[int] = links.indices.tolist()
     for node in order.tolist():
