@@ -170,8 +170,8 @@ def _persistent_minima(z_mm: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray,
 
     rise = {}
     ranks = [int(number) for number in rank]
-    begin: list[int] = links.indptr.tolist()
-    near: list[int] = links.indices.tolist()
+    begin = [int(number) for number in links.indptr]
+    near = [int(number) for number in links.indices]
     for node in order.tolist():
         lower = {root(n) for n in near[begin[node] : begin[node + 1]] if ranks[n] < ranks[node]}
         if not lower:

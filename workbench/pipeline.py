@@ -29,7 +29,7 @@ NEEDED = (
     "package",
 )
 """Stages of a whole run, in order."""
-EVERYTHING = (*NEEDED, "picture")
+EVERYTHING = (*NEEDED, "quality", "tets", "picture")
 """All stages; a machine without an off-screen renderer cannot run the last."""
 
 
@@ -82,6 +82,8 @@ def plan(design: SensorDesign, case: PressCase) -> dict[str, Call]:
     family(design.family).check(shape, design.layers)
     build = Call("build", (design.family, shape, design.layers))
     mesh = Call("mesh", (build.ref, design.meshing))
+    quality = Call("quality", (build.ref, mesh.ref))
+    tets = Call("tets", (build.ref, design.meshing.tet_mm))
     lattice = Call("lattice", (build.ref, case.settings.grid_mm))
     bake = Call("bake", (mesh.ref, design.optics.ring, design.optics.light_model))
     press = Call(
@@ -91,15 +93,31 @@ def plan(design: SensorDesign, case: PressCase) -> dict[str, Call]:
     shoot = Call("shoot", (mesh.ref, bake.ref, design.optics, press.ref))
     stretch = elongation(design.casting.silicone)
     mould = Call("mould", (build.ref, design.mould, stretch))
-    optics = design.optics
-    housing = Call("housing", (build.ref, design.housing, optics.ring, optics.camera, design.mould))
+    optics, eye = design.optics, design.optics.camera
+    housing = Call(
+        "housing", (build.ref, design.housing, optics.ring, eye.position_mm, eye.wxyz, design.mould)
+    )
     recipe = Call(
         "recipe",
         (build.ref, mould.ref, housing.ref, optics.ring, design.casting, design.material),
     )
     package = Call("package", (mould.ref, housing.ref, recipe.ref))
     picture = Call("picture", (mould.ref,))
-    calls = (build, mesh, lattice, bake, press, shoot, mould, housing, recipe, package, picture)
+    calls = (
+        build,
+        mesh,
+        lattice,
+        bake,
+        press,
+        shoot,
+        mould,
+        housing,
+        recipe,
+        package,
+        quality,
+        tets,
+        picture,
+    )
     return {call.stage: call for call in calls}
 
 

@@ -34,8 +34,10 @@ from workbench.core.results import (
     MaterialPoints,
     MembraneMesh,
     Picture,
+    QualityReport,
     Shot,
     Solid,
+    VolumeMesh,
 )
 from workbench.store import Store, timed
 
@@ -107,11 +109,9 @@ def run(store: Store, call: Call, monitor: Monitor = silent) -> Outcome:
 def build(family: str, shape: Any, layers: Layers, *, monitor: Monitor) -> Solid:
     """Parameters to a labelled body."""
     from designs.family import family as find_family
-    from geometry.solid import assemble
+    from workbench.building import build_solid
 
-    bodies = find_family(family).build(shape, layers)
-    monitor(0.5, "labelling faces")
-    return assemble(**{f.name: getattr(bodies, f.name) for f in dataclasses.fields(bodies)})
+    return build_solid(find_family(family), shape, layers)
 
 
 def mesh(solid: Solid, meshing: Meshing, *, monitor: Monitor) -> MembraneMesh:
@@ -119,6 +119,20 @@ def mesh(solid: Solid, meshing: Meshing, *, monitor: Monitor) -> MembraneMesh:
     from geometry.hexmesh import mesh_membrane
 
     return mesh_membrane(solid, meshing, monitor=monitor)
+
+
+def tets(solid: Solid, edge_mm: float, *, monitor: Monitor) -> VolumeMesh:
+    """Body to tetrahedra."""
+    from geometry.tets import tetrahedra
+
+    return tetrahedra(solid, edge_mm, monitor=monitor)
+
+
+def quality(solid: Solid, mesh: MembraneMesh, *, monitor: Monitor) -> QualityReport:
+    """How good the meshes of the body are."""
+    from geometry.quality import quality_report
+
+    return quality_report(mesh, solid.volume_mm3)
 
 
 def lattice(solid: Solid, grid_mm: float, *, monitor: Monitor) -> MaterialPoints:
@@ -188,14 +202,16 @@ def housing(
     solid: Solid,
     options: Housing,
     ring: LedRing,
-    camera: Camera,
+    camera_mm: tuple[float, float, float],
+    camera_wxyz: tuple[float, float, float, float],
     mould: MouldOptions,
     *,
     monitor: Monitor,
 ) -> HousingSet:
-    """Rigid parts of the sensor."""
+    """Rigid parts of the sensor; of the camera only its pose, so that a lens re-runs nothing."""
     from geometry.housing import make_housing
 
+    camera = Camera(position_mm=camera_mm, wxyz=camera_wxyz)
     return make_housing(solid, options, ring=ring, camera=camera, mould=mould, monitor=monitor)
 
 
@@ -234,6 +250,8 @@ STAGES = {
     for stage in (
         Stage(name="build", version=2, lane="cad", function=build),
         Stage(name="mesh", version=2, lane="cad", function=mesh),
+        Stage(name="quality", version=1, lane="cad", function=quality),
+        Stage(name="tets", version=1, lane="cad", function=tets),
         Stage(name="lattice", version=2, lane="cad", function=lattice),
         Stage(name="bake", version=1, lane="sim", function=bake),
         Stage(name="press", version=5, lane="sim", function=press),
