@@ -7,7 +7,6 @@ contact. Bump `version` when the output of a stage changes.
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
