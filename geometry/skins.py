@@ -6,10 +6,13 @@ shorter diagonal; elsewhere they are regions of an evenly remeshed surface.
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 
 from geometry.curved import CurvedSurface
 from geometry.ogrid import axis_of, on_base, ray_grid
+from geometry.rays import RayCaster
 from geometry.remesh import remesh
 from geometry.solid import COARSE_TOLERANCE_MM, TOLERANCE_MM
 from geometry.surface import face_areas, vertex_normals
@@ -24,6 +27,7 @@ REMESHED_EDGE_MM = 0.52
 LONGEST_EDGE_MM = 1.0
 FINEST_CAVITY_MM = 0.45
 """Grids finer than this cost more than remeshing, and only one long edge asks for them."""
+LOOKS = 16
 CAVITY_AREA = 0.005
 """Relative error of area above which rays have cut corners of the cavity."""
 
@@ -79,6 +83,7 @@ def cavity_skin(support: LabelledSurface) -> Skin:
     Raises:
         MeshingError: If the support has no such face.
     """
+    support = _facing_the_camera(support)
     wanted_mm2 = float(face_areas(support.points_mm, labelled_faces(support, Label.INNER)).sum())
     spacing_mm = CAVITY_EDGE_MM
     try:
@@ -95,6 +100,34 @@ def cavity_skin(support: LabelledSurface) -> Skin:
         # Rays from the axis miss a wall that is bent or hollowed; triangles do not mind.
         pass
     return region_skin(remesh(support, REMESHED_EDGE_MM), Label.INNER)
+
+
+def _facing_the_camera(support: LabelledSurface) -> LabelledSurface:
+    """The support with only those faces INNER that rays from low on the axis meet first.
+
+    A support that stands off from a backed skin has faces toward the gap too.
+    """
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+
+    members = np.flatnonzero(support.has(Label.INNER))
+    faces = labelled_faces(support, Label.INNER)
+    count = len(support.points_mm)
+    ends = np.stack([faces, np.roll(faces, 1, axis=1)]).reshape(2, -1)
+    links = coo_matrix((np.ones(ends.shape[1]), (ends[0], ends[1])), (count, count))
+    piece = connected_components(links, directed=False)[1][faces[:, 0]]
+    turn = np.arange(LOOKS) / LOOKS * 2.0 * np.pi
+    around = np.column_stack([np.cos(turn), np.sin(turn), np.full(LOOKS, 0.1)])
+    height = support.points_mm[faces, 2]
+    low_mm = 0.9 * max(float(height.min()), 0.0) + 0.1 * float(height.max())
+    start = np.broadcast_to([0.0, 0.0, low_mm], around.shape)
+    met = RayCaster(support.points_mm, faces).hits(start, around)[1]
+    if not (met >= 0).any():
+        return support
+    seen = np.bincount(piece[met[met >= 0]]).argmax()
+    labels = support.labels.copy()
+    labels[members[piece != seen]] = Label.OUTER
+    return dataclasses.replace(support, labels=labels)
 
 
 def _cavity_grid(support: LabelledSurface, spacing_mm: float) -> Skin:

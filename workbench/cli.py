@@ -149,6 +149,7 @@ def parser() -> argparse.ArgumentParser:
     export = command("export", _export, "Write the design's bodies, mould and meshes.")
     export.add_argument("design", metavar="NAME|FILE.toml")
     export.add_argument("--out", required=True, type=Path, metavar="DIR")
+    export.add_argument("--tets", action="store_true", help="also tetrahedra: about a minute")
     export.add_argument("--json", action="store_true")
     presets = command("presets", _presets, "List the shipped designs and the families.")
     presets.add_argument("--json", action="store_true")
@@ -306,7 +307,8 @@ def _export(options: argparse.Namespace, project: Project) -> int:
     from workbench.project import load_design
 
     printer = _Progress(as_json=options.json)
-    for path in export_design(load_design(options.design), options.out, project.store, printer):
+    design = load_design(options.design)
+    for path in export_design(design, options.out, project.store, printer, tets=options.tets):
         _say(json.dumps({"file": str(path)}) if options.json else path)
     return 0
 

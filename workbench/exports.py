@@ -11,6 +11,7 @@ import numpy as np
 
 from workbench.core.design import SensorDesign
 from workbench.core.errors import DeviceError
+from workbench.core.results import VolumeMesh
 from workbench.outputs import prepare, write_package
 from workbench.pipeline import InlineRunner, PressCase, StageMonitor, evaluate, plan, results
 from workbench.project import design_to_toml, write_atomically
@@ -20,13 +21,16 @@ STAGES = ("mesh", "mould", "housing", "recipe", "package")
 
 
 def export_design(
-    design: SensorDesign, out: Path, store: Store, monitor: StageMonitor
+    design: SensorDesign, out: Path, store: Store, monitor: StageMonitor, *, tets: bool = False
 ) -> Iterator[Path]:
     """Write the files of a design and yield their paths.
 
     `design.toml`, `membrane.stl`, `support.stl`, `base.stl`, `mesh.npz` (nodes, hexahedra, labels),
     `exploded.png` (where the machine can render) and everything of the workshop:
     `moulds/`, `parts/`, `all_parts.3mf`, `build_sheet.html`, `bom.csv`.
+
+    Args:
+        tets: Also write `tets.npz`: nodes, tetrahedra, labels; takes about a minute.
 
     Raises:
         WorkbenchError: If a stage fails or the folder cannot be written.
@@ -35,28 +39,23 @@ def export_design(
 
     prepare(out)
     runner = InlineRunner(store)
-    for _ in evaluate(design, PressCase(), runner, wanted=STAGES, monitor=monitor):
+    wanted = (*STAGES, "tets") if tets else STAGES
+    for _ in evaluate(design, PressCase(), runner, wanted=wanted, monitor=monitor):
         pass
     # A machine without an off-screen renderer still gets all files but the picture.
     with contextlib.suppress(DeviceError):
         for _ in evaluate(design, PressCase(), runner, wanted=("picture",), monitor=monitor):
             pass
-    found = results(store, plan(design, PressCase()), ("build", *STAGES, "picture"))
+    found = results(store, plan(design, PressCase()), ("build", *wanted, "picture"))
     solid, hexes = found["build"], found["mesh"].hexes
     files = {"design.toml": design_to_toml(design).encode()}
     for name in ("membrane", "support", "base"):
         surface = getattr(solid, name)
         files[f"{name}.stl"] = stl_bytes(surface.points_mm, surface.faces)
     if hexes is not None:
-        buffer = io.BytesIO()
-        np.savez_compressed(
-            buffer,
-            points_mm=hexes.points_mm,
-            cells=hexes.cells,
-            labels=hexes.labels,
-            numbers=hexes.numbers,
-        )
-        files["mesh.npz"] = buffer.getvalue()
+        files["mesh.npz"] = _volume_bytes(hexes)
+    if tets:
+        files["tets.npz"] = _volume_bytes(found["tets"])
     if "picture" in found:
         files["exploded.png"] = found["picture"].png.tobytes()
     for name, content in files.items():
@@ -65,3 +64,16 @@ def export_design(
     write_package(out, found["package"])
     for name in found["package"].files:
         yield out / name
+
+
+def _volume_bytes(mesh: VolumeMesh) -> bytes:
+    """A compressed NumPy archive of nodes, cells, labels and numbers."""
+    buffer = io.BytesIO()
+    np.savez_compressed(
+        buffer,
+        points_mm=mesh.points_mm,
+        cells=mesh.cells,
+        labels=mesh.labels,
+        numbers=mesh.numbers,
+    )
+    return buffer.getvalue()

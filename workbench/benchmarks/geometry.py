@@ -5,9 +5,11 @@ from __future__ import annotations
 from workbench.benchmarks.timing import timed_row
 from workbench.core.design import Layers, Meshing, MouldOptions
 from workbench.core.monitor import silent
+from workbench.core.results import MembraneMesh
 from workbench.rows import Row
 from workbench.specimens import finger_solid
 from workbench.stages import build, lattice, mesh, mould
+from workbench.validation.meshes import default_solid, family_names
 
 CASE = "default finger"
 ELONGATION = 3.0
@@ -18,7 +20,7 @@ def rows() -> list[Row]:
     from designs.family import resolve_shape
 
     shape = resolve_shape("finger", {})
-    return [
+    finger = [
         timed_row("build", CASE, lambda: build("finger", shape, Layers(), monitor=silent), 0.25),
         timed_row("mesh", "0.4 mm", lambda: mesh(finger_solid(), Meshing(), monitor=silent), 3.0),
         timed_row("lattice", "0.5 mm", lambda: lattice(finger_solid(), 0.5, monitor=silent), 2.0),
@@ -30,3 +32,23 @@ def rows() -> list[Row]:
             runs=3,
         ),
     ]
+    return [*finger, *_family_rows()]
+
+
+def _family_rows() -> list[Row]:
+    """Build every family's default shape, and mesh those that hexahedra suit."""
+    from designs.family import resolve_shape
+
+    found: list[Row] = []
+    for name in family_names():
+
+        def rebuilt(name: str = name) -> object:
+            return build(name, resolve_shape(name, {}), Layers(), monitor=silent)
+
+        def meshed(name: str = name) -> MembraneMesh:
+            return mesh(default_solid(name), Meshing(), monitor=silent)
+
+        found.append(timed_row(f"build_{name}", "default shape", rebuilt, 1.0, runs=3))
+        if meshed().hexes is not None:
+            found.append(timed_row(f"hex_{name}", "default shape, 0.4 mm", meshed, 3.0, runs=3))
+    return found

@@ -262,11 +262,16 @@ class Meshing:
 
     hex_mm: float = 0.4
     """Edge of a hexahedron and of a skin triangle [mm]."""
+    tet_mm: float = field(default=1.2, metadata={"cosmetic": True})
+    """Edge of a tetrahedron [mm]; `tets` is given it by itself, so no other stage depends on it."""
 
     def __post_init__(self) -> None:
         hint = "0.4 mm suits walls of 1 mm and more"
         at = "meshing.hex_mm"
         within(self.hex_mm, 0.1, 5.0, what="mesh spacing", unit="mm", at=at, hint=hint)
+        hint = "1.2 mm takes about a minute, and the time grows with its inverse square"
+        at = "meshing.tet_mm"
+        within(self.tet_mm, 0.5, 10.0, what="tetrahedron edge", unit="mm", at=at, hint=hint)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -11,6 +11,7 @@ from workbench.core.results import Label
 from workbench.rows import Row, bounded, compared
 from workbench.specimens import finger_hexes, finger_mesh, finger_points, finger_solid
 from workbench.stages import mould
+from workbench.validation import meshes as mesh_rows
 from workbench.validation import moulds as mould_rows
 from workbench.validation.moulds import ELONGATION
 
@@ -114,4 +115,4 @@ def rows() -> list[Row]:
             sense="min",
         ),
     ]
-    return [*finger, *mould_rows.rows()]
+    return [*finger, *mesh_rows.rows(), *mould_rows.rows()]
