@@ -182,4 +182,5 @@ def _patch(rows: list[tuple[float, np.ndarray, np.ndarray, float]], number: int)
         [(*(centre + axes * spot).tolist(), height) for spot in circle]
         for height, axes, centre, _ in rows
     ]
-    return Face.make_bezier_surface(points, [(weight * row[3]).tolist() for row in rows])
+    weights = [(weight * row[3]).tolist() for row in rows]
+    return Face.make_bezier_surface(points, weights)  # pyright: ignore[reportArgumentType]

@@ -11,6 +11,7 @@ shows in the volume. Leaves out: outlines with corners.
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from typing import Any
@@ -83,14 +84,21 @@ def ellipse_perimeter_mm(half_x_mm: float, half_y_mm: float) -> float:
     return float(speed.mean() * 2.0 * np.pi)
 
 
-def ellipse_edge(half_x_mm: float, half_y_mm: float) -> list[Any]:
-    """The ellipse as a closed edge in the plane z = 0."""
+def ellipse_edges(half_x_mm: float, half_y_mm: float, *, pieces: int = 1) -> list[Any]:
+    """The ellipse as edges in the plane z = 0.
+
+    Args:
+        pieces: More of them where faces on it will be trimmed by curves: the kernel integrates
+            each face's area with a fixed number of points.
+    """
     from build123d import Edge, Plane
 
-    if half_x_mm >= half_y_mm:
-        return [Edge.make_ellipse(half_x_mm, half_y_mm, Plane.XY)]
-    turned = Plane(origin=(0, 0, 0), x_dir=(0, 1, 0), z_dir=(0, 0, 1))
-    return [Edge.make_ellipse(half_y_mm, half_x_mm, turned)]
+    plane, axes = Plane.XY, (half_x_mm, half_y_mm)
+    if half_x_mm < half_y_mm:
+        plane = Plane(origin=(0, 0, 0), x_dir=(0, 1, 0), z_dir=(0, 0, 1))
+        axes = (half_y_mm, half_x_mm)
+    turns = np.linspace(0.0, 360.0, pieces + 1).tolist()
+    return [Edge.make_ellipse(*axes, plane, a, b) for a, b in itertools.pairwise(turns)]
 
 
 def elliptic_foot(
@@ -107,6 +115,6 @@ def elliptic_foot(
     from designs.plates import bored_plate
 
     half_x, half_y = half_mm[0] + lip_mm, half_mm[1] + lip_mm
-    block = prism(ellipse_edge(half_x, half_y), height_mm)
+    block = prism(ellipse_edges(half_x, half_y), height_mm)
     expect_volume(block, ellipse_area_mm2(half_x, half_y) * height_mm, what="foot")
     return bored_plate(Pos(0, 0, -height_mm) * block, cavity_mm, height_mm)

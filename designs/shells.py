@@ -5,6 +5,9 @@ of both and a ring between them; sewing these takes milliseconds where the kerne
 bodies that do not even meet takes 0.2 s. The caller sees to it that the core lies inside.
 """
 
+# OCP has no type stubs.
+# pyright: reportAttributeAccessIssue=false
+
 from __future__ import annotations
 
 from typing import Any

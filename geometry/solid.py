@@ -54,15 +54,21 @@ def assemble(
     base: Any,
     marks: Marks = NO_MARKS,
     notice: str = "",
+    fineness: float = 1.0,
 ) -> Solid:
     """Turn the B-rep bodies of a family into arrays.
+
+    Args:
+        fineness: How many times finer than `TOLERANCE_MM` the elastomer is tessellated.
 
     Raises:
         MeshingError: If a surface is not watertight, or a marked region is empty.
     """
     coarse = {"tolerance_mm": COARSE_TOLERANCE_MM, "angle_rad": COARSE_ANGLE_RAD}
+    # A chord's distance from its arc goes with the square of its angle.
+    fine = {"tolerance_mm": TOLERANCE_MM / fineness, "angle_rad": ANGLE_RAD / fineness**0.5}
     return Solid(
-        membrane=mark_regions(label_surface(membrane, core), marks.regions),
+        membrane=mark_regions(label_surface(membrane, core, **fine), marks.regions),
         support=label_surface(support, core, **coarse),
         base=label_surface(base, None, **coarse),
         outer_brep=brep_bytes(outer),
@@ -236,8 +242,13 @@ def _classifier(core: Any) -> Any:
     from OCP.TopAbs import TopAbs_State
 
     solid = BRepClass3d_SolidClassifier(core.wrapped)
+    box = core.bounding_box(optimal=False)
+    low, high = np.array(tuple(box.min)), np.array(tuple(box.max))
 
     def inside(point: np.ndarray) -> bool:
+        # A spline body takes 20 ms to say no.
+        if np.any(point < low) or np.any(point > high):
+            return False
         solid.Perform(gp_Pnt(*point.tolist()), 1e-7)
         return solid.State() == TopAbs_State.TopAbs_IN
 
