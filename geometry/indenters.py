@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from geometry.primitives import rounded_box, rounded_revolution, sphere
+from geometry.stl import stl_corners, welded
 from geometry.surface import mesh_volume, open_edges
 from workbench.core.errors import DesignError
 from workbench.core.press import Indenter, IndenterKind, IndenterMesh
@@ -29,11 +30,7 @@ def load_stl(path: str | Path) -> IndenterMesh:
     """
     file = Path(path)
     _check_size(file)
-    data = file.read_bytes()
-    corners = _binary_corners(data)
-    if corners is None:
-        corners = _text_corners(data, file.name)
-    return _closed_mesh(corners, file.name)
+    return _closed_mesh(stl_corners(file.read_bytes(), file.name, at=AT), file.name)
 
 
 def largest_width(mesh: IndenterMesh) -> float:
@@ -102,50 +99,9 @@ def _check_size(file: Path) -> None:
         )
 
 
-def _binary_corners(data: bytes) -> np.ndarray | None:
-    """Triangles of a binary STL, shape (M, 3, 3), or None when its length says it is none."""
-    if len(data) < 84:
-        return None
-    count = int(np.frombuffer(data, dtype="<u4", count=1, offset=80)[0])
-    if len(data) != 84 + 50 * count:
-        return None
-    record = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("spare", "<u2")])
-    return np.frombuffer(data, dtype=record, count=count, offset=84)["corners"].astype(np.float64)
-
-
-def _text_corners(data: bytes, name: str) -> np.ndarray:
-    """Triangles of a text STL, shape (M, 3, 3)."""
-    if not data.lstrip()[:5].lower() == b"solid":
-        raise _not_stl(name)
-    words = [line.split()[1:] for line in data.splitlines() if line.split()[:1] == [b"vertex"]]
-    try:
-        corners = np.array(words, dtype=np.float64)
-        return corners.reshape(-1, 3, 3)
-    except ValueError as error:
-        raise _not_stl(name) from error
-
-
-def _not_stl(name: str) -> DesignError:
-    return DesignError(
-        f"{name} is not an STL file", hint="export the indenter as binary or text STL", at=AT
-    )
-
-
 def _closed_mesh(corners: np.ndarray, name: str) -> IndenterMesh:
     """Weld triangles (M, 3, 3) into a closed body, refusing what is none."""
-    if not len(corners):
-        raise DesignError(f"{name} has no faces", hint="export the body, not an empty file", at=AT)
-    if not np.isfinite(corners).all():
-        bad = int((~np.isfinite(corners)).any(axis=(1, 2)).sum())
-        raise DesignError(
-            f"{name} has {bad} faces with NaN or infinite coordinates",
-            hint="repair the mesh in the program that made it",
-            at=AT,
-        )
-    # STL repeats every vertex in float32; equal ones have equal bits apart from the sign of zero.
-    points, faces = np.unique(corners.reshape(-1, 3) + 0.0, axis=0, return_inverse=True)
-    faces = faces.reshape(-1, 3)
-    faces = faces[np.all(faces != np.roll(faces, 1, axis=1), axis=1)]
+    points, faces = welded(corners)
     gaps = open_edges(faces)
     if gaps:
         raise DesignError(

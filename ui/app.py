@@ -45,7 +45,7 @@ def serve(options: argparse.Namespace, project: Project) -> int:
     """
     check_port(options.host, options.port)
     session = Session(project)
-    session.open(options.design)
+    session.open(options.design, unit=options.unit)
     project.store.sweep()
     local = options.host in (*LOOPBACK, "::1")
     token = None if local else secrets.token_urlsafe(16)

@@ -17,7 +17,7 @@ from workbench.core.press import Indenter
 from workbench.pipeline import EVERYTHING, PressCase, plan
 from workbench.project import AUTOSAVE, Project, check_design, load_design
 from workbench.stages import Call
-from workbench.state import State, case_table, read_state
+from workbench.state import State, case_table, fresh_state, read_state
 
 COALESCE_S = 0.7
 """Edits of the same field closer than this are one step of undo [s]."""
@@ -37,7 +37,7 @@ class Session:
         self._past: list[State] = []
         self._future: list[State] = []
         self._last_edit = ("", -1e9)
-        self.state = State(design=load_design(DEFAULT_DESIGN), case=PressCase())
+        self.state = fresh_state(load_design(DEFAULT_DESIGN))
         self._planned: tuple[State | None, dict[str, Call]] = (None, {})
 
     @property
@@ -50,14 +50,14 @@ class Session:
         """The press as it stands."""
         return self.state.case
 
-    def open(self, name: str | None) -> None:
+    def open(self, name: str | None, *, unit: str = "auto") -> None:
         """Start from a named design, else from where the last session stopped.
 
         Raises:
             DesignError: If the named design does not exist; a broken autosave only leaves a notice.
         """
         if name is not None:
-            self.state = State(design=load_design(name), case=PressCase())
+            self.state = fresh_state(load_design(name, unit=unit))
             return
         path = self.project.design_path(AUTOSAVE)
         if path.exists():
@@ -103,8 +103,8 @@ class Session:
         self._commit(state, "state")
 
     def replace_design(self, design: SensorDesign) -> None:
-        """Take a whole other design, for example a preset; the press stays."""
-        self.replace_state(dataclasses.replace(self.state, design=design))
+        """Take a whole other design, for example a preset; the press stays, aimed anew."""
+        self.replace_state(fresh_state(design, self.case))
 
     def _commit(self, state: State, field: str) -> None:
         if state == self.state:

@@ -23,6 +23,7 @@ from typing import Any, TextIO
 from workbench import __version__
 from workbench.core.design import LightModel
 from workbench.core.errors import Cancelled, DesignError, DeviceError, StoreError, WorkbenchError
+from workbench.core.imported import LengthUnit
 from workbench.core.monitor import seconds_left
 from workbench.core.units import human_seconds
 from workbench.project import Project
@@ -147,7 +148,8 @@ def parser() -> argparse.ArgumentParser:
     _serve_options(command("serve", _serve, "Open the workbench in a browser."))
     _run_options(command("run", _run, "Press a design and write images, forces and moulds."))
     export = command("export", _export, "Write the design's bodies, mould and meshes.")
-    export.add_argument("design", metavar="NAME|FILE.toml")
+    export.add_argument("design", metavar="NAME|FILE")
+    _unit_option(export)
     export.add_argument("--out", required=True, type=Path, metavar="DIR")
     export.add_argument("--tets", action="store_true", help="also tetrahedra: about a minute")
     export.add_argument("--json", action="store_true")
@@ -162,8 +164,18 @@ def parser() -> argparse.ArgumentParser:
     return top
 
 
+def _unit_option(sub: argparse.ArgumentParser) -> None:
+    sub.add_argument(
+        "--unit",
+        default="auto",
+        choices=[unit.value for unit in LengthUnit],
+        help="unit of an STL design (default: inferred from its size)",
+    )
+
+
 def _serve_options(sub: argparse.ArgumentParser) -> None:
-    sub.add_argument("design", nargs="?", metavar="NAME|FILE.toml", help="default: where you left")
+    sub.add_argument("design", nargs="?", metavar="NAME|FILE", help="default: where you left")
+    _unit_option(sub)
     sub.add_argument("--host", default="127.0.0.1", help="default 127.0.0.1; others need a token")
     sub.add_argument("--port", type=int, default=8080)
     sub.add_argument("--open", action="store_true", help="open the system's browser")
@@ -171,11 +183,12 @@ def _serve_options(sub: argparse.ArgumentParser) -> None:
 
 
 def _run_options(sub: argparse.ArgumentParser) -> None:
-    sub.add_argument("design", metavar="NAME|FILE.toml")
+    sub.add_argument("design", metavar="NAME|FILE")
+    _unit_option(sub)
     sub.add_argument("--indenter", default="sphere", help=INDENTERS)
     sub.add_argument("--size-mm", type=float, help="diameter, else the largest width (default 6)")
     sub.add_argument("--edge-radius-mm", type=float, help="rounding of edges (default 0.45)")
-    sub.add_argument("--target", default="0,10,35", help="x,y,z near the skin [mm]")
+    sub.add_argument("--target", help="x,y,z near the skin [mm]; default: where the family says")
     sub.add_argument("--depth-mm", type=float, default=1.0)
     sub.add_argument("--shear-mm", default="0,0", metavar="U,V")
     sub.add_argument("--twist-deg", type=float, default=0.0)
@@ -187,20 +200,27 @@ def _run_options(sub: argparse.ArgumentParser) -> None:
 
 
 def _run(options: argparse.Namespace, project: Project) -> int:
+    from workbench.aim import default_target_mm
     from workbench.outputs import prepare, write_all
     from workbench.pipeline import InlineRunner, evaluate, plan
     from workbench.project import load_design
 
-    design = load_design(options.design)
+    design = load_design(options.design, unit=options.unit)
     if options.light_model:
         design = design.replace("optics.light_model", LightModel(options.light_model))
-    case = press_case(options)
+    case = press_case(options, default_target_mm(design))
     calls = plan(design, case)
     prepare(options.out)
     project.store.sweep()
     printer = _Progress(as_json=options.json)
     runner = InlineRunner(project.store)
     outcomes = []
+    if design.body is not None and options.target is None:
+        # Where the top of an imported body is, is only known once it has been built.
+        *_, built = evaluate(design, case, runner, wanted=("build",), monitor=printer)
+        solid = project.store.load("build", built.key)
+        case = press_case(options, default_target_mm(design, solid))
+        calls = plan(design, case)
     for outcome in evaluate(design, case, runner, monitor=printer):
         printer.done(outcome)
         outcomes.append(outcome)
@@ -221,8 +241,8 @@ def _run(options: argparse.Namespace, project: Project) -> int:
     return 0
 
 
-def press_case(options: argparse.Namespace) -> Any:
-    """The press that the options of `run` describe.
+def press_case(options: argparse.Namespace, target_mm: tuple[float, float, float]) -> Any:
+    """The press that the options of `run` describe; `target_mm` where they name none.
 
     Raises:
         DesignError: If a value is refused or the indenter is unknown.
@@ -237,7 +257,7 @@ def press_case(options: argparse.Namespace) -> Any:
             options.indenter, size_mm=options.size_mm, edge_radius_mm=options.edge_radius_mm
         ),
         press=Press(
-            target_mm=_numbers(options.target, 3, at="--target"),
+            target_mm=_numbers(options.target, 3, at="--target") if options.target else target_mm,
             depth_mm=options.depth_mm,
             shear_mm=_numbers(options.shear_mm, 2, at="--shear-mm"),
             twist_deg=options.twist_deg,

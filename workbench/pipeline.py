@@ -6,10 +6,12 @@ runner (in this process, or in worker lanes) and yields each outcome.
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
+from workbench.bodies import IMPORTED, check_body
 from workbench.core.design import SensorDesign
 from workbench.core.monitor import Monitor, silent
 from workbench.core.press import ContactSettings, Indenter, Press
@@ -72,6 +74,8 @@ class StageMonitor(Protocol):
 def plan(design: SensorDesign, case: PressCase) -> dict[str, Call]:
     """Every call of the chain by stage name, in the order of `EVERYTHING`.
 
+    A design with a body of its own has the call `intake` before them.
+
     Raises:
         DesignError: If the family or the silicone is unknown, or the family refuses the shape.
     """
@@ -80,7 +84,13 @@ def plan(design: SensorDesign, case: PressCase) -> dict[str, Call]:
 
     shape = resolve_shape(design.family, design.shape)
     family(design.family).check(shape, design.layers)
+    check_body(design)
+    sources: tuple[Call, ...] = ()
     build = Call("build", (design.family, shape, design.layers))
+    if design.body is not None and design.family == IMPORTED:
+        intake = Call("intake", (dataclasses.replace(design.body, picks=()),))
+        inputs = (design.family, shape, design.layers, intake.ref, design.body.picks)
+        sources, build = (intake,), Call("build", inputs)
     mesh = Call("mesh", (build.ref, design.meshing))
     quality = Call("quality", (build.ref, mesh.ref))
     tets = Call("tets", (build.ref, design.meshing.tet_mm))
@@ -104,6 +114,7 @@ def plan(design: SensorDesign, case: PressCase) -> dict[str, Call]:
     package = Call("package", (mould.ref, housing.ref, recipe.ref))
     picture = Call("picture", (mould.ref,))
     calls = (
+        *sources,
         build,
         mesh,
         lattice,

@@ -5,6 +5,7 @@
   store/     results by stage and key
   designs/   autosave.toml
   variants/  kept designs with their press and numbers
+  bodies/    files of imported bodies by hash
   indenters/ meshes of STL indenters by key
   crash/     one file per bug that reached the edge
 ```
@@ -13,15 +14,25 @@
 from __future__ import annotations
 
 import contextlib
+import dataclasses
 import os
 import secrets
 import time
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from importlib import resources
 from pathlib import Path
 from typing import Any
 
+from workbench.bodies import (
+    ENDINGS,
+    body_table,
+    check_body,
+    design_of_file,
+    kept_files,
+    read_body_table,
+    without_body,
+)
 from workbench.core.design import SCHEMA, SensorDesign
 from workbench.core.errors import DesignError, StoreError
 from workbench.core.mapping import from_table, suggest, to_table
@@ -59,8 +70,21 @@ class Project:
     def save_design(self, name: str, design: SensorDesign, **extra: Any) -> Path:
         """Write a design by atomic replacement; `extra` tables are kept beside it."""
         path = self.design_path(name)
+        self.keep_body(design)
         write_atomically(path, (design_to_toml(design, **extra)).encode())
         return path
+
+    def keep_body(self, design: SensorDesign) -> None:
+        """Keep the files of an imported body; each is written once.
+
+        Raises:
+            StoreError: If the project folder cannot be written.
+        """
+        if design.body is None:
+            return
+        for name, content in kept_files(design.body).items():
+            if not (self.folder / name).exists():
+                write_atomically(self.folder / name, content)
 
     def write_crash(self, text: str) -> Path:
         """Keep a traceback for a bug report; returns the file."""
@@ -107,8 +131,12 @@ def _preset_folder() -> Any:
     return resources.files("designs") / "presets"
 
 
-def load_design(name: str) -> SensorDesign:
-    """A preset by name, else a family with its defaults, else a TOML file.
+def load_design(name: str, *, unit: str = "auto") -> SensorDesign:
+    """A preset by name, else a family with its defaults, else a TOML, STL or STEP file.
+
+    Args:
+        name: Name or path.
+        unit: Unit of an STL file.
 
     Raises:
         DesignError: If there is no such preset, family or file, or the file is not valid.
@@ -119,10 +147,13 @@ def load_design(name: str) -> SensorDesign:
         return design_from_toml((_preset_folder() / f"{name}.toml").read_text(), source=name)
     if name in families():
         return SensorDesign(name=name, family=name)
+    if name.lower().endswith(ENDINGS):
+        return design_of_file(Path(name), unit)
     if name.endswith(".toml") or os.sep in name:
-        return design_from_toml(_read(Path(name)), source=name)
+        path = Path(name)
+        return design_from_toml(_read(path), source=name, roots=(path.parent, path.parent.parent))
     raise DesignError(
-        f"there is no preset, family or TOML file named {name!r}",
+        f"there is no preset, family, TOML, STL or STEP file named {name!r}",
         hint=suggest(name, {*presets(), *families()}),
         at="design",
     )
@@ -146,15 +177,25 @@ def _read(path: Path) -> str:
         ) from error
 
 
-def design_from_toml(text: str, *, source: str = "the file") -> SensorDesign:
+def design_from_toml(
+    text: str, *, source: str = "the file", roots: Sequence[Path] = ()
+) -> SensorDesign:
     """Parse and check a design; tables that belong to a session or variant are left out.
+
+    Args:
+        text: The file.
+        source: Its name, for messages.
+        roots: Folders in which the files of an imported body are looked for.
 
     Raises:
         DesignError: For broken TOML, a newer schema, unknown fields or refused values.
     """
     table = parse_toml(text, source=source)
     own = {name: value for name, value in table.items() if name not in GUEST_TABLES}
+    body = own.pop("body", None)
     design = from_table(SensorDesign, own)
+    if body is not None:
+        design = dataclasses.replace(design, body=read_body_table(body, roots=roots))
     check_design(design)
     return design
 
@@ -193,6 +234,7 @@ def check_design(design: SensorDesign) -> None:
     """
     from designs.family import family, resolve_shape
 
+    check_body(design)
     family(design.family).check(resolve_shape(design.family, design.shape), design.layers)
 
 
@@ -200,4 +242,11 @@ def design_to_toml(design: SensorDesign, **extra: Any) -> str:
     """A design as readable TOML; `design_from_toml` gives the same design back."""
     import tomli_w
 
-    return tomli_w.dumps({**to_table(design), **to_table(extra)})
+    return tomli_w.dumps({**design_table(design), **to_table(extra)})
+
+
+def design_table(design: SensorDesign) -> dict[str, Any]:
+    """A design as nested tables, an imported body by the names of its files."""
+    table = to_table(without_body(design))
+    del table["body"]
+    return table if design.body is None else {**table, "body": body_table(design.body)}

@@ -14,6 +14,7 @@ from workbench.core.mapping import to_table
 from workbench.core.press import Press
 from workbench.core.results import Contact, Picture, Shot
 from workbench.outputs import png_bytes
+from workbench.project import design_table
 
 STYLE = """
 body{font:15px/1.5 system-ui,sans-serif;max-width:1000px;margin:2em auto;padding:0 1em}
@@ -54,7 +55,7 @@ def report_html(
             (m["file"], f"{m['volume_mm3']:.0f} mm3, {'closed' if m['watertight'] else 'OPEN'}")
             for m in summary["moulds"]
         ),
-        "<h2>Design</h2>" + _table(_flat(to_table(design))),
+        "<h2>Design</h2>" + _table(_flat(design_table(design))),
         "<h2>Press</h2>" + _table(_flat(to_table(path))),
         "<h2>Stages</h2>"
         + _table(

@@ -23,6 +23,7 @@ from workbench.core.design import (
 )
 from workbench.core.digest import digest
 from workbench.core.fabrication import HousingSet, MouldSet, Recipe
+from workbench.core.imported import ImportedBody, Pick, ReadBody
 from workbench.core.making import Casting, Housing
 from workbench.core.monitor import Monitor, part, silent
 from workbench.core.press import ContactSettings, Indenter, Press
@@ -105,8 +106,27 @@ def run(store: Store, call: Call, monitor: Monitor = silent) -> Outcome:
     return Outcome(stage=stage.name, key=key, cached=False, seconds=seconds)
 
 
-def build(family: str, shape: Any, layers: Layers, *, monitor: Monitor) -> Solid:
-    """Parameters to a labelled body."""
+def intake(body: ImportedBody, *, monitor: Monitor) -> ReadBody:
+    """The designer's file to closed surfaces, repaired where that is safe."""
+    from geometry.intake import read_body
+
+    return read_body(body, monitor)
+
+
+def build(
+    family: str,
+    shape: Any,
+    layers: Layers,
+    body: ReadBody | None = None,
+    picks: tuple[Pick, ...] = (),
+    *,
+    monitor: Monitor,
+) -> Solid:
+    """Parameters, or a body that was read, to a labelled body."""
+    if body is not None:
+        from geometry.imported import build_imported
+
+        return build_imported(body, shape, layers, picks, monitor)
     from designs.family import family as find_family
     from workbench.building import build_solid
 
@@ -247,6 +267,7 @@ def package(moulds: MouldSet, housing: HousingSet, recipe: Recipe, *, monitor: M
 STAGES = {
     stage.name: stage
     for stage in (
+        Stage(name="intake", version=1, lane="cad", function=intake),
         Stage(name="build", version=2, lane="cad", function=build),
         Stage(name="mesh", version=2, lane="cad", function=mesh),
         Stage(name="quality", version=1, lane="cad", function=quality),

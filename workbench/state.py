@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from workbench.aim import default_target_mm
 from workbench.core.design import SensorDesign
 from workbench.core.digest import digest
 from workbench.core.errors import DesignError
@@ -32,6 +33,13 @@ class State:
 
     design: SensorDesign
     case: PressCase
+
+
+def fresh_state(design: SensorDesign, case: PressCase | None = None) -> State:
+    """A design with a press (the default one) aimed where its family says."""
+    case = PressCase() if case is None else case
+    press = dataclasses.replace(case.press, target_mm=default_target_mm(design))
+    return State(design=design, case=dataclasses.replace(case, press=press))
 
 
 def case_table(case: PressCase, project: Project) -> dict[str, Any]:
@@ -74,7 +82,9 @@ def read_state(text: str, project: Project, *, source: str) -> State:
     }
     if "indenter" in table:
         known["indenter"] = _read_indenter(table["indenter"], project)
-    return State(design=design_from_toml(text, source=source), case=PressCase(**known))
+    roots = (project.folder, Path(source).parent)
+    design = design_from_toml(text, source=source, roots=roots)
+    return State(design=design, case=PressCase(**known))
 
 
 def _read_indenter(table: Any, project: Project) -> Indenter:

@@ -67,7 +67,7 @@ def test_negative_coordinates_are_values() -> None:
     from workbench.cli import _join_negative
 
     words = ["run", "geltip", "--target", "-3,0,35", "--shear-mm", "-.5,0", "--out", "x"]
-    case = press_case(parser().parse_args(_join_negative(words)))
+    case = press_case(parser().parse_args(_join_negative(words)), (0.0, 0.0, 0.0))
     assert case.press.target_mm == (-3.0, 0.0, 35.0)
     assert case.press.shear_mm == (-0.5, 0.0)
 

@@ -17,6 +17,7 @@ import numpy as np
 _MODULES = (
     "workbench.core.results",
     "workbench.core.fabrication",
+    "workbench.core.imported",
     "workbench.core.design",
     "workbench.core.press",
 )

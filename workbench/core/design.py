@@ -16,6 +16,7 @@ from typing import Any, cast
 
 from workbench.core.check import within
 from workbench.core.errors import DesignError
+from workbench.core.imported import ImportedBody
 from workbench.core.making import Casting, Housing, MouldOptions
 
 SCHEMA = 1
@@ -288,6 +289,8 @@ class SensorDesign:
     mould: MouldOptions = field(default_factory=MouldOptions)
     housing: Housing = field(default_factory=Housing)
     casting: Casting = field(default_factory=Casting)
+    body: ImportedBody | None = None
+    """File of the body, for the family `imported`."""
     schema: int = field(default=SCHEMA, metadata={"cosmetic": True})
 
     def replace(self, dotted: str, value: Any) -> SensorDesign:

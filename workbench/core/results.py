@@ -142,6 +142,9 @@ class Solid:
     volume_mm3: float
     """Volume of the elastomer by the CAD kernel [mm3], or of the surface where there is none."""
     method: BodyMethod = BodyMethod.BREP
+    patches: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=np.int32))
+    """Face of the outer file of each membrane triangle, -1 elsewhere, shape (M,), int32; empty
+    for bodies that come from no file."""
     tips_mm: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
     """Centres of the tips of internal pins, in the order of their numbers [mm], shape (T, 3)."""
     tip_radius_mm: float = 0.0

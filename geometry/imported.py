@@ -1,0 +1,267 @@
+"""A body from a file to a sensor: placed, cut flat, hollowed, given a support and a foot.
+
+Booleans are manifold3d's, which carry the number of the source face on every triangle, so labels
+and picked faces survive them. Without an inner file the core is the set of points farther than the
+wall from the skin: marching cubes on the exact distance to its triangles. Near the base the skin
+is continued straight down, so that the wall meets the base at right angles.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from geometry.isosurface import distance_mm
+from geometry.offset import inset_surface, inside
+from geometry.surface import mesh_volume
+from workbench.core.design import Layers
+from workbench.core.errors import DesignError
+from workbench.core.imported import Pick, ReadBody, ReadSurface
+from workbench.core.monitor import Monitor, silent
+from workbench.core.results import BodyMethod, Label, LabelledSurface, Solid
+
+NO_BREP = np.zeros(0, dtype=np.uint8)
+CORE_FACE = 1_000_000
+"""Face number of every triangle of the core; patches of the outer file stay below."""
+FLAT_MM = 1e-6
+LEAST_BASE_MM2 = 10.0
+"""Smallest base that can carry a sensor [mm2]."""
+LEAST_WALL_MM = 0.2
+"""Thinnest elastomer that can be cast [mm]."""
+BORE_SHARE = 0.6
+
+
+def build_imported(
+    body: ReadBody,
+    shape: Any,
+    layers: Layers,
+    picks: Sequence[Pick] = (),
+    monitor: Monitor = silent,
+) -> Solid:
+    """Make a sensor of a read body.
+
+    Args:
+        body: What the file holds.
+        shape: Turns, cut and foot, as `designs.imported.ImportedShape`.
+        layers: Thickness of wall and support.
+        picks: Faces that the designer named.
+
+    Raises:
+        DesignError: If the cut leaves no base, the wall or support no room, or the inner body
+            comes through the outer.
+    """
+    turn = _rotation(shape)
+    outer, shift = _placed(body.outer, turn, shape.cut_mm)
+    monitor(0.2, "offsetting the wall")
+    if body.inner is None:
+        core = _offset(outer, layers.elastomer_mm, at="layers.elastomer_mm")
+        inset_mm = layers.elastomer_mm + layers.support_mm
+        monitor(0.5, "offsetting the support")
+        cavity = _offset(outer, inset_mm, at="layers.support_mm")
+    else:
+        core = _solid(body.inner.points_mm @ turn.T - shift, body.inner.faces, None)
+        core = core.trim_by_plane((0.0, 0.0, 1.0), 0.0)
+        _expect_inside(outer, core)
+        cavity = _offset(core, layers.support_mm, at="layers.support_mm")
+    monitor(0.8, "labelling")
+    membrane = _labelled(outer - _renumbered(core), picks)
+    _expect_one_body(membrane)
+    return Solid(
+        membrane=membrane,
+        support=_labelled(_renumbered(core, 0) - _renumbered(cavity), ()),
+        base=_foot(outer, cavity, shape),
+        outer_brep=NO_BREP,
+        core_brep=NO_BREP,
+        membrane_brep=NO_BREP,
+        support_brep=NO_BREP,
+        base_brep=NO_BREP,
+        volume_mm3=mesh_volume(membrane.points_mm, membrane.faces),
+        method=BodyMethod.IMPORTED,
+        patches=_patches(outer, core),
+        notice=body.notice,
+    )
+
+
+def _rotation(shape: Any) -> np.ndarray:
+    """Turns about X, then Y, then Z, shape (3, 3)."""
+    total = np.eye(3)
+    for axis, degrees in enumerate((shape.turn_x_deg, shape.turn_y_deg, shape.turn_z_deg)):
+        cosine, sine = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+        i, j = (axis + 1) % 3, (axis + 2) % 3
+        turn = np.eye(3)
+        turn[[i, i, j, j], [i, j, i, j]] = cosine, -sine, sine, cosine
+        total = turn @ total
+    return total
+
+
+def _placed(surface: ReadSurface, turn: np.ndarray, cut_mm: float) -> tuple[Any, np.ndarray]:
+    """The outer body with its cut on z = 0 and its base centred, and the shift that did it."""
+    points = surface.points_mm @ turn.T
+    low, high = points[:, 2].min(), points[:, 2].max()
+    if cut_mm >= high - low:
+        raise DesignError(
+            f"a cut of {cut_mm:g} mm leaves nothing of a body {high - low:.3g} mm high",
+            hint="lower shape.cut_mm, or turn the body",
+            at="shape.cut_mm",
+        )
+    whole = _solid(points, surface.faces, surface.patch)
+    body = whole.translate((0.0, 0.0, -(low + cut_mm))).trim_by_plane((0.0, 0.0, 1.0), 0.0)
+    # Just above the cut: on it, a flat foot of the body has no section.
+    section = body.slice(min(0.01, 0.01 * (high - low)))
+    area = float(section.area())
+    if area < LEAST_BASE_MM2:
+        raise DesignError(
+            f"the base is {area:.3g} mm2, less than {LEAST_BASE_MM2:g} mm2: the body stands on a "
+            "point or an edge",
+            hint="raise shape.cut_mm, or turn the body until its foot is down",
+            at="shape.cut_mm",
+        )
+    outline = np.concatenate(section.to_polygons())
+    middle = (outline.min(axis=0) + outline.max(axis=0)) / 2
+    shift = np.array([middle[0], middle[1], low + cut_mm])
+    return body.translate((-float(middle[0]), -float(middle[1]), 0.0)), shift
+
+
+def _offset(outer: Any, inset_mm: float, *, at: str) -> Any:
+    """Points of a body farther than the inset from its skin, cut at z = 0.
+
+    Raises:
+        DesignError: If there are none, or they do not reach the base.
+    """
+    points, faces, _ = _arrays(outer)
+    found, deepest_mm = inset_surface(points, faces, inset_mm)
+    if found is None:
+        raise DesignError(
+            f"a wall of {inset_mm:g} mm leaves no room inside: the body is at most "
+            f"{deepest_mm:.2g} mm deep",
+            hint="lower layers.elastomer_mm or layers.support_mm, or scale the body",
+            at=at,
+        )
+    inner = _solid(*found, None).trim_by_plane((0.0, 0.0, 1.0), 0.0)
+    pieces = sorted(inner.decompose(), key=lambda piece: -piece.volume())
+    kept = pieces[0] if pieces else inner
+    if kept.is_empty() or kept.bounding_box()[2] > FLAT_MM:
+        raise DesignError(
+            f"a wall of {inset_mm:g} mm closes the foot of the body: camera and LEDs have no way "
+            "in",
+            hint="lower layers.elastomer_mm or layers.support_mm, or raise shape.cut_mm",
+            at=at,
+        )
+    return kept
+
+
+def _expect_inside(outer: Any, core: Any) -> None:
+    """Refuse an inner body that comes through the outer, or leaves too thin a wall."""
+    if core.is_empty() or core.bounding_box()[2] > FLAT_MM:
+        raise DesignError(
+            "the inner body does not reach the base of the outer",
+            hint="both files must share one coordinate system; raise shape.cut_mm if they do",
+            at="body.inner",
+        )
+    points, faces, _ = _arrays(outer)
+    inner, _, _ = _arrays(core)
+    above = inner[inner[:, 2] > FLAT_MM]
+    side = ~(np.abs(points[faces][:, :, 2]).max(axis=1) < FLAT_MM)
+    distance = distance_mm(points, faces[side], above)
+    distance = np.where(inside(points, faces, above), distance, -distance)
+    worst = int(np.argmin(distance))
+    if distance[worst] < LEAST_WALL_MM:
+        x, y, z = above[worst]
+        raise DesignError(
+            f"the wall between outer and inner body is {distance[worst]:.2g} mm at "
+            f"({x:.1f}, {y:.1f}, {z:.1f}) mm, less than {LEAST_WALL_MM:g} mm",
+            hint="make the inner body smaller; both files must share one coordinate system",
+            at="body.inner",
+        )
+
+
+def _labelled(body: Any, picks: Sequence[Pick]) -> LabelledSurface:
+    points, faces, source = _arrays(body)
+    labels = np.where(source >= CORE_FACE, Label.INNER, Label.OUTER).astype(np.uint8)
+    flat = np.abs(points[faces][:, :, 2]).max(axis=1) < FLAT_MM
+    labels[flat] = Label.BASE
+    numbers = np.full(len(faces), -1, dtype=np.int16)
+    for pick in picks:
+        members = (source == pick.patch) & (labels == Label.OUTER)
+        if not members.any():
+            raise DesignError(
+                f"the picked face {pick.patch} is not on the sensing side of this body",
+                hint="remove it from the picks, or pick again",
+                at="body.picks",
+            )
+        kind, _, number = pick.region.partition("_")
+        if kind == "base":
+            labels[members] = Label.BASE
+        else:
+            labels[members] |= np.uint8(Label.ACTUATOR)
+            numbers[members] = int(number)
+    return LabelledSurface(points_mm=points, faces=faces, labels=labels, numbers=numbers)
+
+
+def _patches(outer: Any, core: Any) -> np.ndarray:
+    """Face of the outer file of each membrane triangle, -1 on the core and the cut, (M,)."""
+    points, faces, source = _arrays(outer - _renumbered(core))
+    flat = np.abs(points[faces][:, :, 2]).max(axis=1) < FLAT_MM
+    return np.where(flat | (source >= CORE_FACE), -1, source).astype(np.int32)
+
+
+def _expect_one_body(membrane: LabelledSurface) -> None:
+    for label in (Label.OUTER, Label.INNER):
+        if not membrane.has(label).any():
+            raise DesignError(
+                f"the membrane has no {str(label.name).lower()} side",
+                hint="check the inner file and the wall",
+                at="body.inner",
+            )
+
+
+def _foot(outer: Any, cavity: Any, shape: Any) -> LabelledSurface:
+    """The outline of the base, wider by the lip, with a bore for the camera."""
+    import manifold3d
+
+    outline = outer.slice(0.01).offset(shape.base_lip_mm, manifold3d.JoinType.Round)
+    height = shape.base_height_mm
+    plate = manifold3d.Manifold.extrude(outline, height).translate((0.0, 0.0, -height))
+    opening = np.concatenate(cavity.slice(0.01).to_polygons())
+    radius = BORE_SHARE * float(np.linalg.norm(opening, axis=1).min())
+    bore = manifold3d.Manifold.cylinder(height + 2.0, radius, radius, 64)
+    points, faces, _ = _arrays(plate - bore.translate((0.0, 0.0, -height - 1.0)))
+    flat = np.abs(points[faces][:, :, 2]).max(axis=1) < FLAT_MM
+    labels = np.where(flat, Label.BASE, Label.OUTER).astype(np.uint8)
+    return LabelledSurface(points_mm=points, faces=faces, labels=labels)
+
+
+def _solid(points: np.ndarray, faces: np.ndarray, source: np.ndarray | None) -> Any:
+    import manifold3d
+
+    numbers = np.full(len(faces), CORE_FACE) if source is None else source
+    mesh = manifold3d.Mesh64(
+        vert_properties=np.array(points, dtype=np.float64),
+        tri_verts=np.array(faces, dtype=np.uint64),
+        face_id=np.array(numbers, dtype=np.uint64),
+    )
+    solid = manifold3d.Manifold(mesh)
+    if solid.status() != manifold3d.Error.NoError:
+        raise DesignError(
+            f"the body is not closed: {solid.status().name}",
+            hint="repair it in the program that made it",
+            at="body.outer",
+        )
+    return solid
+
+
+def _renumbered(solid: Any, number: int = CORE_FACE) -> Any:
+    points, faces, _ = _arrays(solid)
+    return _solid(points, faces, np.full(len(faces), number))
+
+
+def _arrays(solid: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Vertices (N, 3), triangles (M, 3) and source faces (M,) of a manifold."""
+    mesh = solid.to_mesh64()
+    points = np.array(mesh.vert_properties)[:, :3]
+    # Cuts land on the plane to rounding; the base must lie on it exactly.
+    points[np.abs(points[:, 2]) < FLAT_MM, 2] = 0.0
+    faces = np.array(mesh.tri_verts).astype(np.int32)
+    return points, faces, np.array(mesh.face_id).astype(np.int64)

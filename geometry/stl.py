@@ -1,0 +1,67 @@
+"""Reading STL files: binary or text, to triangles and welded vertices."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from workbench.core.errors import DesignError
+
+
+def stl_corners(data: bytes, name: str, *, at: str) -> np.ndarray:
+    """Triangles of an STL file, shape (M, 3, 3), float64, in the file's unit.
+
+    Raises:
+        DesignError: If it is no STL, is empty, or holds numbers that are not finite.
+    """
+    corners = _binary_corners(data)
+    if corners is None:
+        corners = _text_corners(data, name, at)
+    if not len(corners):
+        raise DesignError(f"{name} has no faces", hint="export the body, not an empty file", at=at)
+    if not np.isfinite(corners).all():
+        bad = int((~np.isfinite(corners)).any(axis=(1, 2)).sum())
+        raise DesignError(
+            f"{name} has {bad} faces with NaN or infinite coordinates",
+            hint="repair the mesh in the program that made it",
+            at=at,
+        )
+    return corners
+
+
+def welded(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Vertices (N, 3) and triangles (M, 3) of loose triangles; those that collapse are dropped.
+
+    STL repeats every vertex in float32; equal ones have equal bits apart from the sign of zero.
+    """
+    points, faces = np.unique(corners.reshape(-1, 3) + 0.0, axis=0, return_inverse=True)
+    faces = faces.reshape(-1, 3)
+    return points, faces[np.all(faces != np.roll(faces, 1, axis=1), axis=1)]
+
+
+def _binary_corners(data: bytes) -> np.ndarray | None:
+    """Triangles of a binary STL, shape (M, 3, 3), or None when its length says it is none."""
+    if len(data) < 84:
+        return None
+    count = int(np.frombuffer(data, dtype="<u4", count=1, offset=80)[0])
+    if len(data) != 84 + 50 * count:
+        return None
+    record = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("spare", "<u2")])
+    return np.frombuffer(data, dtype=record, count=count, offset=84)["corners"].astype(np.float64)
+
+
+def _text_corners(data: bytes, name: str, at: str) -> np.ndarray:
+    """Triangles of a text STL, shape (M, 3, 3)."""
+    if not data.lstrip()[:5].lower() == b"solid":
+        raise _not_stl(name, at)
+    words = [line.split()[1:] for line in data.splitlines() if line.split()[:1] == [b"vertex"]]
+    try:
+        corners = np.array(words, dtype=np.float64)
+        return corners.reshape(-1, 3, 3)
+    except ValueError as error:
+        raise _not_stl(name, at) from error
+
+
+def _not_stl(name: str, at: str) -> DesignError:
+    return DesignError(
+        f"{name} is not an STL file", hint="export the body as binary or text STL", at=at
+    )

@@ -1,0 +1,146 @@
+"""Body files of imported designs: read from disk, kept in the project, written into design files.
+
+A design file names its body's files, relative to itself or to the project folder. A project keeps
+each file once, by its hash, so that designs and variants stay small and find it again.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from workbench.core.design import SensorDesign
+from workbench.core.errors import DesignError
+from workbench.core.imported import BodyFile, ImportedBody, LengthUnit, Pick, body_file
+from workbench.core.mapping import from_table, to_table
+
+IMPORTED = "imported"
+"""Name of the family whose body comes from a file."""
+FOLDER = "bodies"
+LARGEST_FILE_MB = 64
+ENDINGS = (".stl", ".step", ".stp")
+
+
+def design_of_file(path: Path, unit: str = "auto") -> SensorDesign:
+    """A design around the body of an STL or STEP file.
+
+    Raises:
+        DesignError: If the file cannot be read, or the unit is unknown.
+    """
+    table = {"outer": str(path), "unit": unit}
+    body = read_body_table(table, roots=(Path(),))
+    return SensorDesign(name=path.stem[:80], family=IMPORTED, body=body)
+
+
+def check_body(design: SensorDesign) -> None:
+    """Refuse an imported design without a file.
+
+    Raises:
+        DesignError: Saying how to give one.
+    """
+    if design.family == IMPORTED and design.body is None:
+        raise DesignError(
+            "an imported design needs the file of its body",
+            hint="load a STEP or STL file, or write [body] outer = 'file.step' in the design",
+            at="body.outer",
+        )
+
+
+def body_table(body: ImportedBody) -> dict[str, Any]:
+    """The `[body]` table of a design file; names files as the project keeps them."""
+    table: dict[str, Any] = {
+        "outer": kept_name(body.outer),
+        "outer_name": body.outer.name,
+        "unit": body.unit.value,
+        "picks": [to_table(pick) for pick in body.picks],
+    }
+    if body.inner is not None:
+        table |= {"inner": kept_name(body.inner), "inner_name": body.inner.name}
+    return table
+
+
+def read_body_table(table: Any, *, roots: Sequence[Path]) -> ImportedBody:
+    """The body that a `[body]` table names.
+
+    Args:
+        table: `outer`, and optionally `inner`, their names for people, `unit` and `picks`.
+        roots: Folders in which the files are looked for, in order.
+
+    Raises:
+        DesignError: For an unknown field, a missing file, or one that is too large.
+    """
+    if not isinstance(table, Mapping) or "outer" not in table:
+        raise DesignError(
+            f"body is {table!r}, expected a table with the file of the outer body",
+            hint="write [body] outer = 'file.step'",
+            at="body.outer",
+        )
+    known = {"outer", "inner", "outer_name", "inner_name", "unit", "picks"}
+    for name in table:
+        if name not in known:
+            raise DesignError(
+                f"there is no field 'body.{name}'",
+                hint=f"known: {', '.join(sorted(known))}",
+                at=f"body.{name}",
+            )
+    inner = None
+    if "inner" in table:
+        inner = _read(table["inner"], table.get("inner_name"), roots, at="body.inner")
+    units = {unit.value: unit for unit in LengthUnit}
+    unit = table.get("unit", "auto")
+    if unit not in units:
+        raise DesignError(
+            f"body.unit is {unit!r}", hint=f"choose one of {', '.join(units)}", at="body.unit"
+        )
+    return ImportedBody(
+        outer=_read(table["outer"], table.get("outer_name"), roots, at="body.outer"),
+        inner=inner,
+        unit=units[unit],
+        picks=tuple(from_table(Pick, pick, at="body.picks") for pick in table.get("picks", ())),
+    )
+
+
+def kept_name(file: BodyFile) -> str:
+    """Where a project keeps a file, relative to its folder."""
+    return f"{FOLDER}/{file.sha256[:32]}.{file.kind.value}"
+
+
+def kept_files(body: ImportedBody) -> dict[str, bytes]:
+    """What a project must hold for a design, by path relative to its folder."""
+    files = [file for file in (body.outer, body.inner) if file is not None]
+    return {kept_name(file): file.data.tobytes() for file in files}
+
+
+def without_body(design: SensorDesign) -> SensorDesign:
+    """The design as plain numbers and texts only."""
+    return dataclasses.replace(design, body=None)
+
+
+def _read(name: Any, label: Any, roots: Sequence[Path], *, at: str) -> BodyFile:
+    if not isinstance(name, str) or not name:
+        raise DesignError(
+            f"{at} is {name!r}, expected the path of a file", hint="write 'file.step'", at=at
+        )
+    paths = [root / name for root in roots]
+    path = next((path for path in paths if path.is_file()), None)
+    if path is None:
+        raise DesignError(
+            f"there is no file {str(label or name)!r} for the body of this design",
+            hint=f"looked for {' and '.join(str(p) for p in paths)}; load the file again",
+            at=at,
+        )
+    size_mb = path.stat().st_size / 1e6
+    if size_mb > LARGEST_FILE_MB:
+        raise DesignError(
+            f"{path.name} has {size_mb:,.0f} MB, more than {LARGEST_FILE_MB} MB",
+            hint="reduce the mesh, or export it as STEP",
+            at=at,
+        )
+    try:
+        return body_file(str(label or path.name), path.read_bytes())
+    except OSError as error:
+        raise DesignError(
+            f"cannot read {path}: {error.strerror or error}", hint="check the file", at=at
+        ) from error

@@ -1,0 +1,124 @@
+"""A designer's own body: the file it comes from, and which of its faces are what."""
+
+from __future__ import annotations
+
+import enum
+import hashlib
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from workbench.core.check import expect
+from workbench.core.errors import DesignError
+
+
+class FileKind(enum.StrEnum):
+    """Formats that can be read."""
+
+    STL = "stl"
+    STEP = "step"
+
+
+class LengthUnit(enum.StrEnum):
+    """Unit of the numbers in a file."""
+
+    AUTO = "auto"
+    """As the file says, or the only unit that gives a body of a sensor's size."""
+    MM = "mm"
+    CM = "cm"
+    M = "m"
+    INCH = "inch"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class BodyFile:
+    """The bytes of a file; equal files are equal whatever their names."""
+
+    name: str = field(compare=False, metadata={"cosmetic": True})
+    """Name for people."""
+    kind: FileKind
+    sha256: str
+    data: np.ndarray = field(compare=False, repr=False, metadata={"cosmetic": True})
+    """Content, shape (bytes,), uint8; `sha256` stands for it in keys."""
+
+
+def body_file(name: str, data: bytes) -> BodyFile:
+    """A file as the designer gave it.
+
+    Raises:
+        DesignError: If its name ends in no known format.
+    """
+    ending = name.lower().rsplit(".", 1)[-1]
+    kinds = {"stl": FileKind.STL, "step": FileKind.STEP, "stp": FileKind.STEP}
+    if ending not in kinds:
+        raise DesignError(
+            f"{name} is neither an STL nor a STEP file",
+            hint="export the body as .step, .stp or .stl",
+            at="body.outer",
+        )
+    return BodyFile(
+        name=name,
+        kind=kinds[ending],
+        sha256=hashlib.sha256(data).hexdigest(),
+        data=np.frombuffer(data, dtype=np.uint8),
+    )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Pick:
+    """A face of the file that the designer named."""
+
+    patch: int
+    """Number of the face, as `ReadBody.patch` counts."""
+    region: str
+    """`actuator_i`, or `base` for a face that is not sensed."""
+
+    def __post_init__(self) -> None:
+        head, _, number = self.region.partition("_")
+        if self.region != "base" and not (head == "actuator" and number.isdigit()):
+            raise DesignError(
+                f"a picked face cannot be {self.region!r}",
+                hint="choose base, actuator_0, actuator_1 ...",
+                at="body.picks",
+            )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ImportedBody:
+    """What the designer brought."""
+
+    outer: BodyFile
+    """The sensing side, as a closed body."""
+    inner: BodyFile | None = None
+    """The body that hollows it; without it the wall is `layers.elastomer_mm` everywhere."""
+    unit: LengthUnit = LengthUnit.AUTO
+    picks: tuple[Pick, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ReadSurface:
+    """One closed surface as read and repaired, in its file's own frame."""
+
+    points_mm: np.ndarray
+    """Vertices [mm], shape (N, 3), float64."""
+    faces: np.ndarray
+    """Triangles, shape (M, 3), int32, counter-clockwise from outside."""
+    patch: np.ndarray
+    """Face of the CAD file, or smooth patch of the STL, of each triangle, shape (M,), int32."""
+
+    def __post_init__(self) -> None:
+        expect(self.points_mm, "N 3", name="points")
+        expect(self.faces, "M 3", name="faces")
+        expect(self.patch, "M", name="patches")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ReadBody:
+    """Result of the stage `intake`."""
+
+    outer: ReadSurface
+    inner: ReadSurface | None
+    unit: str
+    """Unit that was used."""
+    notice: str
+    """What was inferred or repaired, for the designer; empty when nothing."""
