@@ -327,7 +327,7 @@ def _export(options: argparse.Namespace, project: Project) -> int:
     from workbench.project import load_design
 
     printer = _Progress(as_json=options.json)
-    design = load_design(options.design)
+    design = load_design(options.design, unit=options.unit)
     for path in export_design(design, options.out, project.store, printer, tets=options.tets):
         _say(json.dumps({"file": str(path)}) if options.json else path)
     return 0
