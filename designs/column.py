@@ -105,21 +105,33 @@ class Column:
 
 
 def column_field(column: Column) -> Field:
-    """Signed distance to a column, first order: its norm's excess over the slope of the norm."""
+    """Signed distance to a column, first order: its norm's excess over the slope of the norm.
+
+    norm^2 = ((x - cx) / a)^2 + ((y - cy) / b)^2 + (height in the tip / h)^2.
+    """
+    foot, head, bend = column.foot_mm, column.head_mm, column.bend_mm
+    length, tip = column.length_mm, column.tip_mm
 
     def distance(points_mm: np.ndarray) -> np.ndarray:
+        # Column by column: sums over an axis of two are many times slower in numpy.
         z = points_mm[:, 2]
-        offset = points_mm[:, :2] - column.centres(z)
-        axes = column.half_axes(z)
-        above = np.maximum(z - column.length_mm, 0.0) / column.tip_mm
-        norm = np.sqrt(((offset / axes) ** 2).sum(axis=1) + above**2)
-        safe = np.maximum(norm, 1e-9)
-        across = offset / axes**2 / safe[:, None]
-        u = np.clip(z / column.length_mm, 0.0, 1.0)
-        taper = -2.0 * (np.array(column.foot_mm) - np.array(column.head_mm)) * (1.0 - u)[:, None]
-        growth = (offset**2 / axes**3 * taper).sum(axis=1) / column.length_mm / safe
-        along = above / column.tip_mm / safe - (across * column.slopes(z)).sum(axis=1) - growth
-        return (norm - 1.0) / np.maximum(np.sqrt((across**2).sum(axis=1) + along**2), 1e-9)
+        u = z / length
+        part = np.clip(u, 0.0, 1.0)
+        moved = np.where(u < 1.0, u * u, 2.0 * u - 1.0)
+        above = np.maximum(z - length, 0.0) / tip
+        square, steep = above**2, np.zeros(len(z))
+        along = above / tip
+        for k in range(2):
+            axis = foot[k] - (foot[k] - head[k]) * (2.0 * part - part * part)
+            offset = (points_mm[:, k] - bend[k] * moved) / axis
+            across = offset / axis
+            taper = -2.0 * (foot[k] - head[k]) * (1.0 - part)
+            square += offset**2
+            steep += across**2
+            along -= (across * (2.0 * bend[k] * part + offset * taper)) / length
+        norm = np.sqrt(square)
+        slope = np.sqrt(steep + along**2)
+        return norm * (norm - 1.0) / np.maximum(slope, 1e-9)
 
     return distance
 

@@ -10,9 +10,9 @@ import numpy as np
 
 def ellipse(points_mm: np.ndarray, half_x_mm: float, half_y_mm: float) -> np.ndarray:
     """Distance to an ellipse about the origin in X and Y, first order, shape (N,)."""
-    axes = np.array([half_x_mm, half_y_mm])
-    norm = np.sqrt(((points_mm[:, :2] / axes) ** 2).sum(axis=1))
-    slope = np.sqrt(((points_mm[:, :2] / axes**2) ** 2).sum(axis=1))
+    x, y = points_mm[:, 0] / half_x_mm, points_mm[:, 1] / half_y_mm
+    norm = np.sqrt(x * x + y * y)
+    slope = np.hypot(x / half_x_mm, y / half_y_mm)
     return norm * (norm - 1.0) / np.maximum(slope, 1e-9)
 
 
@@ -38,7 +38,8 @@ def cylinder(
     span_mm: tuple[float, float],
 ) -> np.ndarray:
     """Distance to a cylinder between two places on its axis, measured from its centre."""
-    offset = points_mm - centre_mm
-    along = offset @ axis
-    beside = np.sqrt(np.maximum((offset**2).sum(axis=1) - along**2, 0.0))
-    return np.maximum.reduce([beside - radius_mm, along - span_mm[1], span_mm[0] - along])
+    x, y, z = (points_mm[:, k] - centre_mm[k] for k in range(3))
+    along = x * axis[0] + y * axis[1] + z * axis[2]
+    beside = np.sqrt(np.maximum(x * x + y * y + z * z - along * along, 0.0))
+    ends = np.maximum(along - span_mm[1], span_mm[0] - along)
+    return np.maximum(beside - radius_mm, ends)

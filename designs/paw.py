@@ -71,8 +71,9 @@ PAD_LIMIT = 1e-3
 """Tolerance of the body's volume with pads; the kernel integrates trimmed faces to 2e-4."""
 APEX_MM = 1e-3
 """How near the highest point of a pad's faces must be to the height asked for [mm]."""
-RIM_SHARE = 0.8
-"""Most of the outline's narrowest bend that the rim radius may take."""
+CORE_RIM_SHARE = 0.4
+"""Most of a core's narrowest bend that its rim radius may take; the body's own never is narrower
+than 3 mm, and its rim at most 2.5 mm."""
 OUTLINE_POINTS = 48
 """Points through which the outline is drawn: good to 1e-3 mm."""
 SAMPLES = 1440
@@ -199,20 +200,12 @@ class Paw:
     shape_type: type = PawShape
 
     def check(self, shape: PawShape, layers: Layers) -> None:
-        """Refuse rims too wide for the toes, pads that meet, and walls that leave no room.
+        """Refuse pads that meet, and walls that leave no room.
 
         Raises:
             DesignError: Naming the field, its value and its limit.
         """
         outline = Outline(shape, 0.0)
-        limit_mm = RIM_SHARE * outline.bend_mm
-        if shape.rim_mm > limit_mm:
-            raise DesignError(
-                f"rim radius {shape.rim_mm:g} mm is more than {limit_mm:.3g} mm, what the bend of "
-                "the toes allows",
-                hint="lower shape.rim_mm or shape.toe_mm, or raise shape.radius_mm",
-                at="shape.rim_mm",
-            )
         both_mm = layers.elastomer_mm + layers.support_mm
         room_mm = min(Outline(shape, both_mm).least_mm, shape.height_mm - both_mm)
         if room_mm < CAVITY_MM:
@@ -357,7 +350,7 @@ def _ball(shape: PawShape, radius_mm: float) -> tuple[float, float]:
 
 def _rim_mm(shape: PawShape, outline: Outline) -> float:
     """Rim radius of a core: the body's, as far as its bends allow."""
-    return min(shape.rim_mm, RIM_SHARE / 2 * outline.bend_mm)
+    return min(shape.rim_mm, CORE_RIM_SHARE * outline.bend_mm)
 
 
 def _prism(shape: PawShape, inset_mm: float, *, what: str) -> Any:

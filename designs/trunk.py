@@ -69,8 +69,9 @@ CORE_RIM_SHARE = 0.3
 """Most of the core's smallest bend that its rim radius may take."""
 ROOF_POINTS = 41
 """Points through which the roof's cosine is drawn: good to 1e-5 of the volume."""
-PIECES = 4
-"""Pieces of the outline under the roof: with one the kernel's volume is off by up to 2e-3."""
+PIECES = 2
+"""Pieces of the outline under the roof: with one the kernel's volume is off by 2e-3, with two by
+4e-4."""
 SIMTAC = "SimTac, trunk sensor"
 
 
@@ -227,8 +228,8 @@ def _saddle(shape: TrunkShape) -> Any:
     above = Solid.extrude(Face(Wire([roof, *lines])), Vector(2 * half_x + 4.0, 0, 0))
     block = prism(ellipse_edges(half_x, half_y, pieces=PIECES), top_mm - 1.0)
     body = cut(block, above, what="saddle")
-    # The kernel integrates faces with curved borders to some 2e-5 here; the saddle is 20 %.
-    expect_volume(body, saddle_mm3(shape), what="saddle", relative=2e-4)
+    # The kernel integrates faces with curved borders to some 4e-4 here; the saddle is 20 %.
+    expect_volume(body, saddle_mm3(shape), what="saddle", relative=1e-3)
     edges = [edge for edge in body.edges() if edge.bounding_box().min.Z > shape.valley_mm / 2]
     length_mm = sum(edge.length for edge in edges)
     right_mm3 = CORNER * shape.rim_mm**2 * length_mm

@@ -13,6 +13,7 @@ from workbench.specimens import finger_hexes, finger_mesh, finger_points, finger
 from workbench.stages import mould
 from workbench.validation import meshes as mesh_rows
 from workbench.validation import moulds as mould_rows
+from workbench.validation import sweep
 from workbench.validation.moulds import ELONGATION
 
 CASE = "finger R 15, wall 2, cylinder 27 mm"
@@ -115,4 +116,4 @@ def rows() -> list[Row]:
             sense="min",
         ),
     ]
-    return [*finger, *mesh_rows.rows(), *mould_rows.rows()]
+    return [*finger, *mesh_rows.rows(), *mould_rows.rows(), *sweep.rows()]

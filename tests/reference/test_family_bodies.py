@@ -1,0 +1,186 @@
+"""Trunk, paw, thumb and tentacle: closed forms, features that must not be lost, marks."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from designs import paw, tentacle, thumb, trunk
+from designs.column import Column, column_body, column_field
+from designs.family import family, resolve_shape
+from designs.paw import PawShape, pads_mm3
+from designs.prisms import rounded_prism_mm3
+from designs.tentacle import TentacleShape
+from designs.thumb import ThumbShape, nail_mm3
+from designs.trunk import TrunkShape, saddle_mm3
+from workbench.building import build_solid
+from workbench.core.design import Layers
+from workbench.core.errors import DesignError, GeometryError
+from workbench.core.results import Label
+
+BENT = Column(
+    foot_mm=(13.0, 11.0), head_mm=(12.0, 8.0), length_mm=30.0, tip_mm=9.0, bend_mm=(2.0, 6.0)
+)
+
+
+def test_straight_column_is_a_capped_cylinder() -> None:
+    """V = pi 15^2 (27 + 2/3 15) = 26153.76 mm3; bending it changes nothing (Cavalieri)."""
+    exact = math.pi * 225.0 * 37.0
+    for bend in ((0.0, 0.0), (3.0, 8.0)):
+        column = Column(
+            foot_mm=(15.0, 15.0), head_mm=(15.0, 15.0), length_mm=27.0, tip_mm=15.0, bend_mm=bend
+        )
+        assert column.volume_mm3 == pytest.approx(exact, rel=1e-12)
+        # Rational Bezier patches: the kernel integrates them to about 1e-9.
+        assert column_body(column, what="column").volume == pytest.approx(exact, rel=1e-7)
+
+
+def test_column_field_vanishes_on_the_kernels_surface_with_slope_one() -> None:
+    """f = 0 and |grad f| = 1 at every vertex above the base."""
+    from geometry.solid import tessellate
+
+    points = tessellate(column_body(BENT, what="column")).points_mm
+    points = points[points[:, 2] > 1e-3]
+    field = column_field(BENT)
+    assert np.abs(field(points)).max() < 1e-9
+    step = 1e-5
+    slope = [(field(points + step * e) - field(points - step * e)) / (2 * step) for e in np.eye(3)]
+    # Central differences of 1e-5 mm: rounding 1e-10 relative.
+    assert np.linalg.norm(slope, axis=0) == pytest.approx(1.0, abs=1e-5)
+
+
+def test_rounded_prism_volume() -> None:
+    """A disc of radius R with rim r is a cylinder, a quarter torus and a ring: R 10, r 2, H 8."""
+    radius, rim, top = 10.0, 2.0, 8.0
+    inner = radius - rim
+    quarter = math.pi * rim**2 / 4 * 2 * math.pi * (inner + 4 * rim / (3 * math.pi))
+    exact = math.pi * radius**2 * (top - rim) + math.pi * inner**2 * rim + quarter
+    found = rounded_prism_mm3(math.pi * radius**2, 2 * math.pi * radius, top, rim)
+    assert found == pytest.approx(exact, rel=1e-12)
+
+
+def test_trunk_without_lobes_is_an_elliptic_prism() -> None:
+    """V = pi a b h with lobe 0; a lobe adds its mean over the ellipse, checked by a fine sum."""
+    flat = TrunkShape(lobe_mm=0.0)
+    assert saddle_mm3(flat) == pytest.approx(math.pi * 17.0 * 13.0 * 30.0, rel=1e-12)
+    y = np.linspace(-13.0, 13.0, 200001)
+    shape = TrunkShape()
+    fine = np.trapezoid(shape.roof_mm(y) * 34.0 * np.sqrt(1.0 - (y / 13.0) ** 2), y)
+    assert saddle_mm3(shape) == pytest.approx(float(fine), rel=1e-6)
+
+
+def test_published_trunk_is_34_by_26_by_50_mm() -> None:
+    """With its foot of 14 mm; both lobes are marked, equal in area, above half their height."""
+    solid = build_solid(family("trunk"), TrunkShape(), Layers(elastomer_mm=2.5))
+    points = np.concatenate([solid.membrane.points_mm, solid.base.points_mm])
+    # Chords of 0.02 mm and 0.05 mm.
+    assert np.ptp(points, axis=0) == pytest.approx([34.0, 26.0, 50.0], abs=0.05)
+    membrane = solid.membrane
+    corners = membrane.points_mm[membrane.faces]
+    area = 0.5 * np.linalg.norm(
+        np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1
+    )
+    driven = membrane.has(Label.ACTUATOR)
+    first, second = (area[driven & (membrane.numbers == number)].sum() for number in (0, 1))
+    # The tessellation is not symmetric: chords of 0.1 rad are good to 1e-3.
+    assert first == pytest.approx(second, rel=5e-3)
+    assert corners[driven][:, :, 2].min() == pytest.approx(33.0, abs=1e-3)
+    assert not np.any(driven & membrane.has(Label.INNER))
+
+
+def test_nail_takes_what_the_closed_form_says() -> None:
+    """Straight thumb: segment of the ellipse times the length, and half an ellipsoid's cap."""
+    shape, layers = ThumbShape(taper=1.0, bend_mm=0.0), Layers()
+    share = shape.nail_ratio * 2.0 / 11.0
+    segment = math.acos(1 - share) - (1 - share) * math.sqrt(2 * share - share**2)
+    cap = 13.0 * 11.0 * 12.0 * math.pi * share**2 * (3 - share) / 6
+    exact = 13.0 * 11.0 * segment * 10.0 + cap
+    assert nail_mm3(shape, layers) == pytest.approx(exact, rel=1e-12)
+    bodies = family("thumb").build(shape, layers)
+    removed = shape.column.volume_mm3 - bodies.outer.volume
+    # The kernel integrates the trimmed body to about 1e-6, that is 0.01 mm3 of some 60.
+    assert removed == pytest.approx(exact, rel=2e-3)
+
+
+def test_pads_add_what_the_closed_form_says() -> None:
+    """Four caps pi h (3 a^2 + h^2) / 6 and a drawn-out one stand on the top."""
+    shape = PawShape()
+    caps = 4 * math.pi * 2.0 * (3 * 9.0 + 4.0) / 6
+    ball = (4.5**2 + 4.0) / 4.0
+    segment = ball**2 * math.acos((ball - 2.0) / ball) - (ball - 2.0) * 4.5
+    large = math.pi * 2.0 * (3 * 4.5**2 + 4.0) / 6 + 4.5 * segment
+    assert pads_mm3(shape) == pytest.approx(caps + large, rel=1e-12)
+    top = family("paw").build(shape, Layers()).outer.bounding_box().max.Z
+    assert top == pytest.approx(26.0, abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("module", "name", "boolean", "feature", "says"),
+    [
+        (thumb, "thumb", "cut", "nail", "nail"),
+        (tentacle, "tentacle", "fuse", "sucker", "rim of sucker 1"),
+        (tentacle, "tentacle", "cut", "cup", "rim of sucker 1"),
+        (paw, "paw", "fuse", "pads", "pads: expected"),
+        (trunk, "trunk", "cut", "saddle", "saddle: expected"),
+    ],
+)
+def test_a_kernel_that_returns_the_uncut_body_is_found_out(
+    monkeypatch: pytest.MonkeyPatch, module: Any, name: str, boolean: str, feature: str, says: str
+) -> None:
+    """The boolean's own checks are taken away too: the feature's check must still see it."""
+    real: Callable[..., Any] = getattr(module, boolean)
+
+    def lazy(body: Any, tool: Any, *, what: str, **rest: Any) -> Any:
+        return body if what.startswith(feature) else real(body, tool, what=what, **rest)
+
+    monkeypatch.setattr(module, boolean, lazy)
+    with pytest.raises(GeometryError, match=says):
+        family(name).build(resolve_shape(name, {}), Layers())
+
+
+def test_one_lost_sucker_is_named() -> None:
+    """A body without its second sucker fails as sucker 2."""
+    shape = TentacleShape()
+    first, _, third = tentacle._suckers(shape)
+    body = column_body(shape.column, what="arm")
+    for sucker in (first, third):
+        body = body + tentacle._tube(shape, sucker)
+    with pytest.raises(GeometryError, match="rim of sucker 2"):
+        tentacle._expect_suckers(body, shape)
+
+
+@pytest.mark.parametrize(
+    ("name", "shape", "layers", "at"),
+    [
+        ("trunk", {"depth_mm": 20.0}, {"elastomer_mm": 5.5}, "layers.elastomer_mm"),
+        ("paw", {"pad_mm": 4.0}, {}, "shape.pad_mm"),
+        ("paw", {"toe_pad_mm": 5.0, "radius_mm": 11.0}, {}, "shape.toe_pad_mm"),
+        ("paw", {"large_pad_mm": 8.0}, {}, "shape.large_pad_mm"),
+        (
+            "paw",
+            {"radius_mm": 11.0},
+            {"elastomer_mm": 5.5, "support_mm": 4.0},
+            "layers.elastomer_mm",
+        ),
+        ("thumb", {"tip_mm": 8.0}, {"elastomer_mm": 5.0}, "layers.elastomer_mm"),
+        ("thumb", {"taper": 0.75, "bend_mm": 0.0, "length_mm": 16.0}, {}, "shape.nail_ratio"),
+        ("tentacle", {"tip_radius_mm": 15.0}, {}, "shape.tip_radius_mm"),
+        ("tentacle", {"sucker_count": 6.0}, {}, "shape.sucker_count"),
+        ("tentacle", {"sucker_count": 2.5}, {}, "shape.sucker_count"),
+        ("tentacle", {"cup_ratio": 0.8, "sucker_ratio": 0.2}, {}, "shape.cup_ratio"),
+        ("tentacle", {"tip_radius_mm": 5.0}, {"elastomer_mm": 3.0}, "layers.elastomer_mm"),
+    ],
+)
+def test_contradictions_are_refused_with_their_place(
+    name: str, shape: dict[str, float], layers: dict[str, float], at: str
+) -> None:
+    """Each names value, limit and unit, and what to change."""
+    with pytest.raises(DesignError) as caught:
+        family(name).check(resolve_shape(name, shape), Layers(**layers))
+    assert caught.value.at == at
+    assert caught.value.hint
+    assert any(letter.isdigit() for letter in caught.value.message)
