@@ -16,6 +16,7 @@ from workbench.outputs import prepare, write_package
 from workbench.pipeline import InlineRunner, PressCase, StageMonitor, evaluate, plan, results
 from workbench.project import design_to_toml, write_atomically
 from workbench.store import Store
+from workbench.vtkfiles import write_vtk
 
 STAGES = ("mesh", "mould", "housing", "recipe", "package")
 
@@ -26,8 +27,8 @@ def export_design(
     """Write the files of a design and yield their paths.
 
     `design.toml`, `membrane.stl`, `support.stl`, `base.stl`, `mesh.npz` (nodes, hexahedra, labels),
-    `exploded.png` (where the machine can render) and everything of the workshop:
-    `moulds/`, `parts/`, `all_parts.3mf`, `build_sheet.html`, `bom.csv`.
+    `mesh.vtu`, `membrane.vtp`, `exploded.png` (where the machine can render) and everything of the
+    workshop: `moulds/`, `parts/`, `all_parts.3mf`, `build_sheet.html`, `bom.csv`.
 
     Args:
         tets: Also write `tets.npz`: nodes, tetrahedra, labels; takes about a minute.
@@ -60,6 +61,8 @@ def export_design(
         files["exploded.png"] = found["picture"].png.tobytes()
     for name, content in files.items():
         write_atomically(out / name, content)
+        yield out / name
+    for name in write_vtk(out, solid, found["mesh"], tets=found.get("tets")):
         yield out / name
     write_package(out, found["package"])
     for name in found["package"].files:

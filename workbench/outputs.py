@@ -28,6 +28,7 @@ from workbench.pipeline import results
 from workbench.project import write_atomically
 from workbench.stages import Call, Outcome
 from workbench.store import Store
+from workbench.vtkfiles import write_vtk
 
 SUMMARY_SCHEMA = 1
 
@@ -157,13 +158,13 @@ def contact_summary(contact: Contact, path: Press, seconds: float) -> dict[str, 
     """The `contact` table of `summary.json`: last frame's force, worst residual and penetration."""
     frames = [
         {
-            "depth_mm": float(path.depth_mm * min(k + 1, path.frames) / path.frames),
+            "depth_mm": depth,
             "reaction_N": contact.reaction_N[k].tolist(),
             "normal_N": float(contact.normal_N[k]),
             "residual": float(contact.residual[k]),
             "penetration_mm": float(contact.penetration_mm[k]),
         }
-        for k in range(len(contact.reaction_N))
+        for k, depth in enumerate(frame_depths_mm(path))
     ]
     return {
         "reaction_N": contact.reaction_N[-1].tolist(),
@@ -179,6 +180,12 @@ def contact_summary(contact: Contact, path: Press, seconds: float) -> dict[str, 
         "seconds": seconds,
         "frames": frames,
     }
+
+
+def frame_depths_mm(path: Press) -> list[float]:
+    """Depth of each frame of a press from first touch [mm]."""
+    shares = (min(k + 1, path.frames) / path.frames for k in range(path.frame_count))
+    return [float(path.depth_mm * share) for share in shares]
 
 
 def force_balance(contact: Contact) -> float:
@@ -236,6 +243,8 @@ def write_all(
     summary = summary_table(design, path, store, calls, outcomes)
     summary["images"] = write_images(out, load["shoot"])
     write_contact(out, load["mesh"], load["press"])
+    depths_mm = frame_depths_mm(path)
+    write_vtk(out, load["build"], load["mesh"], contact=load["press"], depth_mm=depths_mm)
     write_package(out, load["package"])
     summary |= fabrication_tables(load["mould"], load["housing"], load["recipe"])
     html = report_html(design, path, summary, load["shoot"], load["press"], load.get("picture"))

@@ -1,0 +1,52 @@
+"""The VTK files of a run or an export: mesh, membrane, and the press frame by frame."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Sequence
+from pathlib import Path
+
+from workbench.core.results import Contact, MembraneMesh, Solid, VolumeMesh
+from workbench.project import write_atomically
+
+PATTERNS = ("mesh.vtu", "membrane.vtp", "contact_*.vtp", "contact.pvd")
+
+
+def write_vtk(
+    out: Path,
+    solid: Solid,
+    mesh: MembraneMesh,
+    *,
+    tets: VolumeMesh | None = None,
+    contact: Contact | None = None,
+    depth_mm: Sequence[float] = (),
+) -> list[str]:
+    """Write `mesh.vtu`, `membrane.vtp` and, of a press, `contact_000.vtp` ... and `contact.pvd`.
+
+    Such files of an earlier run that this one does not replace go.
+
+    Args:
+        tets: What `mesh.vtu` holds where there are no hexahedra; without either it is not written.
+        depth_mm: Depth of each frame of the contact [mm], shape (K,).
+
+    Returns:
+        Names of the files written.
+
+    Raises:
+        StoreError: If the folder cannot be written.
+    """
+    from geometry.vtk import contact_files, membrane_file, volume_file
+
+    volume = tets if mesh.hexes is None else mesh.hexes
+    files = {} if volume is None else {"mesh.vtu": volume_file(volume)}
+    files["membrane.vtp"] = membrane_file(mesh, solid.membrane)
+    if contact is not None:
+        files |= contact_files(mesh, contact, depth_mm)
+    for pattern in PATTERNS:
+        for path in out.glob(pattern):
+            if path.name not in files:
+                with contextlib.suppress(OSError):
+                    path.unlink()
+    for name, content in files.items():
+        write_atomically(out / name, content)
+    return list(files)
