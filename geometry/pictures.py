@@ -1,126 +1,135 @@
-"""Off-screen pictures for the report: the exploded mould, and a skin coloured by a field.
+"""Pictures of a sensor: the membrane, the exploded view, and a skin coloured by a field.
 
-Rendered by VTK without a display: through EGL where there is a device for it, else in software
-by OSMesa. Which one works is found out once, in a child process, because VTK ends the process
-that asks for a window it cannot have.
+All are PNG bytes, shape (bytes,), uint8, drawn off-screen; each raises DeviceError where nothing
+can render.
 """
 
 from __future__ import annotations
 
-import functools
-import os
-import subprocess
-import sys
-from typing import Any
-
 import numpy as np
 
-from workbench.core.errors import DeviceError
-from workbench.core.fabrication import MouldSet
-from workbench.core.results import Skin
+from geometry.exploded import exploded
+from geometry.rendering import canvas, draw, look, png, surface
+from workbench.core.fabrication import HousingSet, MouldSet
+from workbench.core.results import Label, LabelledSurface, Skin, Solid
 
 SIZE_PX = (1200, 900)
-WINDOW = "VTK_DEFAULT_OPENGL_WINDOW"
-WINDOWS = ("vtkEGLRenderWindow", "vtkOSOpenGLRenderWindow")
-PROBE = """
-import vtkmodules.vtkRenderingOpenGL2
-from vtkmodules.vtkRenderingCore import vtkRenderWindow
-window = vtkRenderWindow()
-window.SetOffScreenRendering(1)
-window.Render()
-"""
-PROBE_SECONDS = 60
-COLOURS = {"half_a": "lightsteelblue", "half_b": "slategray", "core": "khaki"}
-PLAIN = "salmon"
-VIEW = (1.6, -1.8, 0.9)
-"""Direction from the body to the eye."""
+THUMBNAIL_PX = (480, 480)
+EYE = np.array([1.6, 1.8, 0.9])
+"""Direction from the body to the eye; families aim at +Y, where suckers and finger pads are."""
+COLOURS = {
+    "membrane": "#f08a6c",
+    "support": "#a9d6ea",
+    "led_ring_holder": "#4c9a6a",
+    "base": "#565d66",
+    "camera_mount": "#8a919b",
+    "core": "#e6cf86",
+}
+MOULD_COLOURS = ("#b7c9dd", "#8299b3", "#c9d6c4", "#9db39a")
+"""Outer parts of a mould in their order."""
+SLIDER = "#e0a030"
+GLASS = 0.45
+"""Opacity of what is transparent."""
+CLEAR = 0.3
+"""Opacity of a membrane whose pins shall show."""
+ACTUATORS = ("#5b8def", "#8d6fe0", "#3fb8a5", "#d9679f")
+"""Actuator regions by number, then again from the first."""
+SMOOTH = ("membrane", "support")
+"""Parts drawn without lines along their edges: slivers of their many triangles would be lines."""
+PIN = "#27384d"
+LEGEND_SHARE = 0.24
+"""Share of the picture's width that the colour bar takes."""
 
 
-def exploded_mould(moulds: MouldSet, size_px: tuple[int, int] = SIZE_PX) -> np.ndarray:
-    """The parts of a mould drawn apart, as PNG bytes, shape (bytes,), uint8.
+def thumbnail(
+    solid: Solid, size_px: tuple[int, int] = THUMBNAIL_PX, *, clear: bool = True
+) -> np.ndarray:
+    """The membrane, actuator regions tinted; one with pins is clear, so that they show.
 
-    Raises:
-        DeviceError: If nothing here can render.
+    Args:
+        clear: Whether the ground is transparent instead of white.
     """
-    plotter = _plotter(size_px)
-    for part in moulds.parts:
-        mesh = _polydata(part.points_mm + np.asarray(part.explode), part.faces)
-        colour = COLOURS.get(part.name, PLAIN)
-        plotter.add_mesh(mesh, color=colour, smooth_shading=True, split_sharp_edges=True)
-    return _png(plotter)
+    membrane = solid.membrane
+    pins, driven = membrane.has(Label.PIN), membrane.has(Label.ACTUATOR)
+    plotter = canvas(size_px)
+    seen = membrane.has(Label.OUTER) if pins.any() else np.ones(len(pins), dtype=bool)
+    opacity = CLEAR if pins.any() else 1.0
+    _draw_faces(plotter, membrane, seen & ~driven & ~pins, COLOURS["membrane"], opacity)
+    for number in np.unique(membrane.numbers[driven]):
+        chosen = driven & (membrane.numbers == number)
+        _draw_faces(plotter, membrane, chosen, ACTUATORS[int(number) % len(ACTUATORS)], opacity)
+    _draw_faces(plotter, membrane, pins, PIN, 1.0)
+    look(plotter, EYE, membrane.points_mm)
+    return png(plotter, clear=clear)
+
+
+def _draw_faces(
+    plotter: object, membrane: LabelledSurface, chosen: np.ndarray, colour: str, opacity: float
+) -> None:
+    if chosen.any():
+        faces = membrane.faces[chosen]
+        draw(plotter, membrane.points_mm, faces, colour, opacity=opacity, edges=False)
+
+
+def exploded_sensor(
+    solid: Solid,
+    moulds: MouldSet,
+    housing: HousingSet,
+    size_px: tuple[int, int] = SIZE_PX,
+) -> np.ndarray:
+    """The mould drawn apart, and beside it the parts of the sensor as a stack."""
+    plotter = canvas(size_px)
+    places = exploded(solid, moulds, housing, EYE)
+    # The mould's names first: its core has a colour of its own and keeps it.
+    outer = {p.name: MOULD_COLOURS[k % len(MOULD_COLOURS)] for k, p in enumerate(moulds.parts)}
+    colours = {**outer, **COLOURS}
+    for place in places:
+        colour = colours.get(place.name, SLIDER)
+        opacity = GLASS if place.name == "support" else 1.0
+        edges = place.name not in SMOOTH
+        draw(plotter, place.points_mm, place.faces, colour, opacity=opacity, edges=edges)
+    look(plotter, EYE, np.concatenate([place.points_mm for place in places]))
+    return png(plotter)
 
 
 def skin_field(
-    skin: Skin, values: np.ndarray, label: str, size_px: tuple[int, int] = SIZE_PX
+    skin: Skin,
+    values: np.ndarray,
+    label: str,
+    size_px: tuple[int, int] = SIZE_PX,
+    *,
+    eye: np.ndarray = EYE,
 ) -> np.ndarray:
-    """A skin coloured by one value at each vertex, as PNG bytes, shape (bytes,), uint8.
+    """A skin coloured by one value at each vertex, pale to dark from 0, with a colour bar.
 
     Args:
         values: Shape (V,).
-        label: Name and unit of the values, for the legend.
-
-    Raises:
-        DeviceError: If nothing here can render.
+        label: Name and unit of the values, for the bar.
+        eye: Direction from the skin to the eye.
     """
-    plotter = _plotter(size_px)
-    mesh = _polydata(skin.points_mm, skin.faces)
-    legend = {"title": label, "color": "black", "vertical": True, "position_x": 0.85}
+    values = np.asarray(values, dtype=np.float64)
+    plotter = canvas(size_px)
+    bar = {
+        "title": f"{label}\n",
+        "color": "black",
+        "vertical": True,
+        "position_x": 0.82,
+        "position_y": 0.1,
+        "height": 0.8,
+        "width": 0.05,
+        "title_font_size": round(size_px[1] / 36),
+        "label_font_size": round(size_px[1] / 42),
+        "fmt": "%.2g",
+    }
     plotter.add_mesh(
-        mesh,
-        scalars=np.asarray(values),
-        cmap="viridis",
+        surface(skin.points_mm, skin.faces),
+        scalars=values,
+        cmap="YlGnBu",
+        clim=(min(0.0, float(values.min())), float(values.max())),
         smooth_shading=True,
-        scalar_bar_args=legend,
+        ambient=0.3,
+        diffuse=0.8,
+        scalar_bar_args=bar,
     )
-    return _png(plotter)
-
-
-@functools.cache
-def _window() -> str:
-    """The kind of VTK window that renders here.
-
-    Raises:
-        DeviceError: If none does.
-    """
-    chosen = os.environ.get(WINDOW)
-    for window in (chosen,) if chosen else WINDOWS:
-        environment = {**os.environ, WINDOW: window}
-        command = [sys.executable, "-c", PROBE]
-        try:
-            probe = subprocess.run(
-                command, env=environment, capture_output=True, timeout=PROBE_SECONDS, check=False
-            )
-        except subprocess.TimeoutExpired:
-            continue
-        if probe.returncode == 0 and not probe.stderr:
-            return window
-    raise DeviceError(
-        "no off-screen renderer works here",
-        hint=f"install libegl1 or libosmesa6, or set {WINDOW}",
-    )
-
-
-def _plotter(size_px: tuple[int, int]) -> Any:
-    os.environ[WINDOW] = _window()
-    import pyvista
-
-    plotter: Any = pyvista.Plotter(off_screen=True, window_size=list(size_px))
-    plotter.set_background("white")
-    return plotter
-
-
-def _png(plotter: Any) -> np.ndarray:
-    import cv2
-
-    plotter.view_vector(VIEW, viewup=(0.0, 0.0, 1.0))
-    plotter.enable_anti_aliasing("ssaa")
-    rgb = plotter.screenshot(return_img=True)
-    plotter.close()
-    return cv2.imencode(".png", np.ascontiguousarray(rgb[:, :, 2::-1]))[1].ravel()
-
-
-def _polydata(points_mm: np.ndarray, faces: np.ndarray) -> Any:
-    import pyvista
-
-    padded = np.column_stack([np.full(len(faces), 3), faces]).ravel()
-    return pyvista.PolyData(np.asarray(points_mm), padded)
+    look(plotter, eye, skin.points_mm, (0.0, LEGEND_SHARE))
+    return png(plotter)

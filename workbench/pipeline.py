@@ -112,7 +112,7 @@ def plan(design: SensorDesign, case: PressCase) -> dict[str, Call]:
         (build.ref, mould.ref, housing.ref, optics.ring, design.casting, design.material),
     )
     package = Call("package", (mould.ref, housing.ref, recipe.ref))
-    picture = Call("picture", (mould.ref,))
+    picture = Call("picture", (build.ref, mould.ref, housing.ref))
     calls = (
         *sources,
         build,

@@ -10,12 +10,18 @@ from typing import Any
 import numpy as np
 
 from workbench.core.design import SensorDesign
+from workbench.core.errors import DeviceError
 from workbench.core.mapping import to_table
 from workbench.core.press import Press
-from workbench.core.results import Contact, Picture, Shot
+from workbench.core.results import Contact, MembraneMesh, Picture, Shot, Skin
 from workbench.outputs import png_bytes
 from workbench.project import design_table
 
+NO_RENDERER = "<p>No picture: this machine has no off-screen renderer (libegl1).</p>"
+EXPLODED = (
+    "Exploded view. Left the mould: outer parts and core. Right the sensor, from the top: "
+    "membrane, support, LED ring holder, base, camera mount."
+)
 STYLE = """
 body{font:15px/1.5 system-ui,sans-serif;max-width:1000px;margin:2em auto;padding:0 1em}
 body{color:#1b1f24}
@@ -34,8 +40,14 @@ def report_html(
     shot: Shot,
     contact: Contact,
     picture: Picture | None,
+    pressed_png: bytes | None,
 ) -> str:
-    """The report as one page without outside links."""
+    """The report as one page without outside links.
+
+    Args:
+        picture: Exploded view, None where nothing renders.
+        pressed_png: Displacement on the pressed membrane, None likewise.
+    """
     force = summary["contact"]
     title = html.escape(f"{design.name} ({design.family})")
     pressed = (
@@ -49,8 +61,9 @@ def report_html(
         f"<h1>{title}</h1><p>{pressed}</p>",
         "<h2>Tactile image</h2>" + _images(shot),
         "<h2>Force against depth</h2>" + _force_curve(path, contact),
+        "<h2>Displacement</h2>" + _drawn(pressed_png, "Outer skin in the last frame"),
         "<h2>Score card</h2>" + _table(sorted(summary["metrics"].items())),
-        "<h2>Mould</h2>" + _mould_view(picture),
+        "<h2>Mould and sensor</h2>" + _drawn(picture and picture.png.tobytes(), EXPLODED),
         _table(
             (m["file"], f"{m['volume_mm3']:.0f} mm3, {'closed' if m['watertight'] else 'OPEN'}")
             for m in summary["moulds"]
@@ -91,10 +104,27 @@ def _figure(png: bytes, caption: str, *, width: int = 640) -> str:
     )
 
 
-def _mould_view(picture: Picture | None) -> str:
-    if picture is None:
-        return "<p>No picture: this machine has no off-screen renderer (libegl1).</p>"
-    return _figure(picture.png.tobytes(), "Exploded view")
+def _drawn(png: bytes | None, caption: str) -> str:
+    return NO_RENDERER if png is None else _figure(png, caption)
+
+
+def displacement_png(mesh: MembraneMesh, contact: Contact) -> bytes | None:
+    """The pressed membrane coloured by how far its skin moved, or None where nothing renders.
+
+    Seen from 35 degrees beside the outward normal at the target.
+    """
+    from geometry.pictures import skin_field
+
+    moved_mm = contact.displacement_mm[-1].astype(np.float64)
+    skin = mesh.outer
+    pressed = Skin(points_mm=skin.points_mm + moved_mm, faces=skin.faces, normals=skin.normals)
+    beside = np.cross(contact.normal, contact.tangent_u)
+    eye = contact.normal + 0.5 * contact.tangent_u + 0.5 * beside
+    values = np.linalg.norm(moved_mm, axis=1)
+    try:
+        return skin_field(pressed, values, "displacement [mm]", eye=eye).tobytes()
+    except DeviceError:
+        return None
 
 
 def _force_curve(path: Press, contact: Contact) -> str:

@@ -250,11 +250,11 @@ def recipe(
     return make_recipe(solid, moulds, housing, ring=ring, casting=casting, material=material)
 
 
-def picture(moulds: MouldSet, *, monitor: Monitor) -> Picture:
-    """The exploded mould as a picture for the report; a DeviceError where nothing can render."""
-    from geometry.pictures import exploded_mould
+def picture(solid: Solid, moulds: MouldSet, housing: HousingSet, *, monitor: Monitor) -> Picture:
+    """Mould and sensor drawn apart, for the report; a DeviceError where nothing can render."""
+    from geometry.pictures import exploded_sensor
 
-    return Picture(png=exploded_mould(moulds))
+    return Picture(png=exploded_sensor(solid, moulds, housing))
 
 
 def package(moulds: MouldSet, housing: HousingSet, recipe: Recipe, *, monitor: Monitor) -> Bundle:
@@ -280,6 +280,6 @@ STAGES = {
         Stage(name="housing", version=1, lane="cad", function=housing),
         Stage(name="recipe", version=1, lane="cad", function=recipe),
         Stage(name="package", version=2, lane="cad", function=package),
-        Stage(name="picture", version=1, lane="cad", function=picture),
+        Stage(name="picture", version=2, lane="cad", function=picture),
     )
 }

@@ -1,66 +1,206 @@
-"""Off-screen pictures are made without a display and without warnings."""
+"""Off-screen pictures are made without a display, in frame, and without warnings."""
 
 from __future__ import annotations
+
+import dataclasses
+import itertools
+from typing import Any
 
 import cv2
 import numpy as np
 import pytest
 
-from geometry import pictures
+from geometry import pictures, rendering
+from geometry.exploded import STACK, exploded
 from geometry.primitives import rounded_box, sphere
 from geometry.surface import vertex_normals
+from workbench import report
 from workbench.core.errors import DeviceError
-from workbench.core.fabrication import FabricationPart, MouldSet, PartGroup
-from workbench.core.results import Skin
+from workbench.core.fabrication import FabricationPart, HousingSet, MouldSet, PartGroup
+from workbench.core.results import Label, LabelledSurface, Skin, Solid
 
 SMALL = (240, 180)
+NOTHING = np.zeros(0, dtype=np.uint8)
 
 
 def decoded(png: np.ndarray) -> np.ndarray:
-    image = cv2.imdecode(png, cv2.IMREAD_COLOR)
+    image = cv2.imdecode(png, cv2.IMREAD_UNCHANGED)
     assert image is not None
     return image
 
 
-@pytest.mark.slow
-def test_mould_and_field_are_drawn(capfd: pytest.CaptureFixture[str]) -> None:
-    """White ground, something coloured on it, nothing on stderr."""
-    points, faces = rounded_box(5.0, 0.5)
-    part = FabricationPart(
-        group=PartGroup.MOULD,
-        name="half_a",
-        points_mm=points,
+def part(name: str, half_mm: float, centre: tuple[float, float, float], **more: Any) -> Any:
+    points, faces = rounded_box(half_mm, 0.2 * half_mm)
+    return FabricationPart(
+        group=PartGroup.SENSOR,
+        name=name,
+        points_mm=points + np.asarray(centre),
         faces=faces,
-        brep=np.zeros(0, np.uint8),
-        volume_mm3=1000.0,
+        brep=NOTHING,
+        volume_mm3=1.0,
         watertight=True,
-        explode=(10.0, 0.0, 0.0),
+        **{"explode": (0.0, 0.0, 0.0), **more},
     )
-    moulds = MouldSet(
-        parts=(part,),
-        split_azimuth_deg=0.0,
+
+
+def moulds(azimuth_deg: float) -> MouldSet:
+    """Two halves that open along the azimuth, and a core that leaves downward."""
+    angle = np.radians(azimuth_deg)
+    x, y = float(np.cos(angle)), float(np.sin(angle))
+    halves = [
+        part(name, 5.0, (sign * 5.0 * x, sign * 5.0 * y, 5.0), pull=(sign * x, sign * y, 0.0))
+        for name, sign in (("half_a", 1.0), ("half_b", -1.0))
+    ]
+    core = part("core", 4.0, (0.0, 0.0, 4.0), pull=(0.0, 0.0, -1.0))
+    return MouldSet(
+        parts=(*halves, core),
+        split_azimuth_deg=azimuth_deg,
         overlap_mm3=0.0,
         thinnest_wall_mm=1.0,
         cast_volume_mm3=1.0,
     )
+
+
+HOUSING = HousingSet(
+    parts=(
+        part("support", 3.0, (0.0, 0.0, 3.0)),
+        part("led_ring_holder", 2.0, (0.0, 0.0, 0.0)),
+        part("camera_mount", 1.0, (0.0, 0.0, -4.0)),
+        part("base", 4.0, (0.0, 0.0, -4.0)),
+        part("slider_0", 1.0, (5.0, 0.0, 0.0), explode=(10.0, 0.0, 0.0)),
+    )
+)
+
+
+def solid(label: Label = Label.OUTER, number: int = -1) -> Solid:
+    """A ball as membrane whose upper half has the label and the number."""
+    points, faces = sphere(5.0)
+    upper = points[faces].mean(axis=1)[:, 2] > 0.0
+    membrane = LabelledSurface(
+        points_mm=points,
+        faces=faces,
+        labels=np.where(upper, label | Label.OUTER, Label.OUTER).astype(np.uint8),
+        numbers=np.where(upper, number, -1).astype(np.int16),
+    )
+    return Solid(
+        membrane=membrane,
+        support=membrane,
+        base=membrane,
+        outer_brep=NOTHING,
+        core_brep=NOTHING,
+        membrane_brep=NOTHING,
+        support_brep=NOTHING,
+        base_brep=NOTHING,
+        volume_mm3=1.0,
+    )
+
+
+def expect_in_frame(image: np.ndarray, *, fill: float) -> None:
+    """White border, something on it that reaches `fill` of the height or the width."""
+    drawn = image.min(axis=2) < 250
+    assert not drawn[[0, -1]].any()
+    assert not drawn[:, [0, -1]].any()
+    rows, columns = np.flatnonzero(drawn.any(axis=1)), np.flatnonzero(drawn.any(axis=0))
+    shares = np.ptp(rows) / image.shape[0], np.ptp(columns) / image.shape[1]
+    assert max(shares) > fill
+
+
+@pytest.mark.slow
+def test_pictures_are_filled_and_not_clipped(capfd: pytest.CaptureFixture[str]) -> None:
+    """The body reaches 1 / 1.06 of the picture (0.9 allows for rounded ends), never its border."""
     ball, triangles = sphere(3.0)
     skin = Skin(points_mm=ball, faces=triangles, normals=vertex_normals(ball, triangles))
     for png in (
-        pictures.exploded_mould(moulds, SMALL),
+        pictures.exploded_sensor(solid(), moulds(20.0), HOUSING, SMALL),
+        pictures.thumbnail(solid(), SMALL, clear=False),
         pictures.skin_field(skin, ball[:, 2], "height [mm]", SMALL),
     ):
         image = decoded(png)
         assert image.shape == (180, 240, 3)
-        assert (image[0, 0] == 255).all()
-        assert (image.min(axis=2) < 200).mean() > 0.02
+        expect_in_frame(image, fill=0.9)
     assert capfd.readouterr().err == ""
+
+
+@pytest.mark.slow
+def test_actuators_are_tinted_on_a_clear_ground() -> None:
+    """Alpha is 0 in the corner; the driven upper half is blue, the lower half is red."""
+    image = decoded(pictures.thumbnail(solid(Label.ACTUATOR, 0), SMALL))
+    assert image.shape == (180, 240, 4)
+    assert image[0, 0, 3] == 0
+    upper, lower = image[40, 120].astype(int), image[150, 120].astype(int)
+    assert upper[3] == lower[3] == 255
+    assert upper[0] > upper[2] + 40
+    assert lower[2] > lower[0] + 40
+
+
+@pytest.mark.slow
+def test_field_is_pale_at_zero_and_dark_at_its_largest() -> None:
+    """0 to 1 from the bottom of a ball to its top: the top is darker by half the range."""
+    ball, triangles = sphere(3.0)
+    skin = Skin(points_mm=ball, faces=triangles, normals=vertex_normals(ball, triangles))
+    values = (ball[:, 2] + 3.0) / 6.0
+    eye = np.array([1.0, 0.0, 0.0])
+    image = decoded(pictures.skin_field(skin, values, "height", SMALL, eye=eye))
+    # The legend takes the right of the picture; the ball is in the middle of the rest.
+    middle = round((1.0 - pictures.LEGEND_SHARE) / 2.0 * SMALL[0])
+    rows = np.flatnonzero(image[:, middle].min(axis=1) < 240)
+    top, bottom = (image[row, middle].astype(int) for row in (rows[8], rows[-8]))
+    assert top.mean() < bottom.mean() - 50
+
+
+@pytest.mark.parametrize("azimuth_deg", [0.0, 35.0, 250.0])
+def test_exploded_parts_stand_apart(azimuth_deg: float) -> None:
+    """The stack goes downward in its order; mould and sensor do not meet across the picture."""
+    places = exploded(solid(), moulds(azimuth_deg), HOUSING, pictures.EYE)
+    assert len(places) == 3 + len(STACK) + 1
+    points = {place.name: place.points_mm for place in places}
+    for above, below in itertools.pairwise(STACK):
+        assert points[above][:, 2].min() > points[below][:, 2].max()
+    assert points["core"][:, 2].max() < points["half_a"][:, 2].min()
+    right, _ = rendering.screen_axes(pictures.EYE)
+    edge_mm = max((points[name] @ right).max() for name in ("half_a", "half_b", "core"))
+    assert edge_mm < min((points[name] @ right).min() for name in (*STACK, "slider_0"))
+
+
+def test_mould_opens_the_same_way_for_every_split() -> None:
+    """From one half to the other the way is the same after splits at 35 and at 250 degrees."""
+    ways = []
+    for azimuth_deg in (35.0, 250.0):
+        first, second, *_ = exploded(solid(), moulds(azimuth_deg), HOUSING, pictures.EYE)
+        way = first.points_mm.mean(axis=0) - second.points_mm.mean(axis=0)
+        ways.append(way / np.linalg.norm(way))
+    np.testing.assert_allclose(ways[0], ways[1], atol=1e-9)
 
 
 def test_no_renderer_is_a_device_error(monkeypatch: pytest.MonkeyPatch) -> None:
     """An impossible window: DeviceError with a remedy, and the process lives."""
-    monkeypatch.setenv(pictures.WINDOW, "vtkNoSuchWindow")
-    monkeypatch.setattr(pictures, "PROBE", "raise SystemExit(1)")
-    pictures._window.cache_clear()
+    monkeypatch.setenv(rendering.WINDOW, "vtkNoSuchWindow")
+    monkeypatch.setattr(rendering, "PROBE", "raise SystemExit(1)")
+    rendering._window.cache_clear()
     with pytest.raises(DeviceError, match="no off-screen renderer"):
-        pictures._window()
-    pictures._window.cache_clear()
+        rendering._window()
+    rendering._window.cache_clear()
+
+
+def test_report_goes_without_pictures_where_nothing_renders(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """None instead of a picture, and the page says why."""
+
+    def missing(*_: Any, **__: Any) -> np.ndarray:
+        raise DeviceError("no off-screen renderer works here", hint="install libegl1")
+
+    monkeypatch.setattr(pictures, "skin_field", missing)
+    ball, triangles = sphere(3.0)
+    skin = Skin(points_mm=ball, faces=triangles, normals=vertex_normals(ball, triangles))
+
+    @dataclasses.dataclass
+    class Pressed:
+        outer: Skin
+        displacement_mm: np.ndarray
+        normal: np.ndarray
+        tangent_u: np.ndarray
+
+    press: Any = Pressed(skin, np.zeros((1, len(ball), 3)), np.eye(3)[2], np.eye(3)[0])
+    assert report.displacement_png(press, press) is None
+    assert "no off-screen renderer" in report._drawn(None, "caption")
