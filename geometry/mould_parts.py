@@ -154,10 +154,11 @@ def outer_part(number: int, layout: Layout, outer: csg.Node, pockets_mm: np.ndar
     theirs = [seam for seam in seams if (seam.first + 1) % count == number]
     sockets = [_key(key, spot, layout.options.clearance_mm) for s in theirs for spot in s.keys]
     bolts = [hole for seam in (*mine, *theirs) for hole in seam.bolts]
-    body = csg.without(
-        piece, [outer, *sockets, *bolts, *air_holes(pockets_mm, layout, POCKET_VENT_MM)]
+    # Keys first: joined to a plain block they cost the CAD kernel nothing, after the body much.
+    keyed = csg.together(piece, [_key(key, spot, None) for seam in mine for spot in seam.keys])
+    return csg.without(
+        keyed, [outer, *sockets, *bolts, *air_holes(pockets_mm, layout, POCKET_VENT_MM)]
     )
-    return csg.together(body, [_key(key, spot, None) for seam in mine for spot in seam.keys])
 
 
 def core_with_flange(layout: Layout, core: csg.Node | None, channels: Channels) -> csg.Node:
@@ -175,7 +176,6 @@ def core_with_flange(layout: Layout, core: csg.Node | None, channels: Channels) 
     gap = options.clearance_mm
     plate = _slab(layout, gap + RIM_WIDTH_MM, base - FLANGE_MM, base + layout.rim_mm)
     pocket = _slab(layout, gap, base, base + layout.rim_mm + 1.0)
-    part = csg.together(csg.without(plate, [pocket]), [] if core is None else [core])
     low = base - FLANGE_MM
     # Up to the base plane and no farther: above it is the silicone, beside it the core.
     holes = [_hole(place, channels.vent_mm, low, base) for place in channels.vents_mm]
@@ -189,8 +189,10 @@ def core_with_flange(layout: Layout, core: csg.Node | None, channels: Channels) 
             high_mm=base - THROAT_MM,
         )
         holes.append(csg.moved(funnel, (*channels.gate_mm, 0.0)))
-    holes += air_holes(channels.pockets_mm, layout, POCKET_VENT_MM)
-    return csg.without(part, holes)
+    # Before the core joins: the CAD kernel is slow with its surface, and these do not meet it.
+    flange = csg.without(csg.without(plate, [pocket]), holes)
+    part = csg.together(flange, [] if core is None else [core])
+    return csg.without(part, air_holes(channels.pockets_mm, layout, POCKET_VENT_MM))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

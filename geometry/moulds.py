@@ -10,26 +10,22 @@ Leaves out: ejectors, sprue runners, vacuum ports.
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Sequence
 
 import numpy as np
 
 from geometry import csg
 from geometry.cast import Cast, footprint, make_cast
 from geometry.channels import Channels, make_channels
-from geometry.csg_mesh import arrays, closed, evaluate, overlaps_mm3
 from geometry.fabricate import fabricate
 from geometry.mould_checks import mould_checks
+from geometry.mould_fit import measure_fit
 from geometry.mould_parts import Layout, air_holes, core_with_flange, make_layout, outer_part
 from geometry.parting import COUNTS, Parting, best_parting
-from workbench.core.errors import GeometryError
-from workbench.core.fabrication import FabricationPart, MouldSet, PartGroup
+from workbench.core.fabrication import MouldSet, PartGroup
 from workbench.core.making import MouldOptions
 from workbench.core.monitor import Monitor, silent
 from workbench.core.results import Solid
 
-LARGEST_OVERLAP_MM3 = 1e-6
-"""More is a fault of the parts' descriptions, not of rounding [mm3]."""
 APART_MM = 15.0
 """Gap between the parts of the exploded view [mm]."""
 ELONGATION = 5.0
@@ -70,6 +66,7 @@ def make_mould(
         parts.append(part)
         reasons += [reason] if reason else []
     monitor(0.7, "checking")
+    found = measure_fit(parts, cast, air_holes(channels.pockets_mm, layout, 0.0))
     checks = mould_checks(
         parts,
         cast,
@@ -82,31 +79,12 @@ def make_mould(
     return MouldSet(
         parts=tuple(parts),
         split_azimuth_deg=parting.azimuth_deg,
-        overlap_mm3=_overlap_mm3(parts, cast),
+        overlap_mm3=found.overlap_mm3,
         thinnest_wall_mm=min(c.value for c in checks if c.name == "minimum_wall"),
-        cast_volume_mm3=cavity_mm3(parts, cast, air_holes(channels.pockets_mm, layout, 0.0)),
+        cast_volume_mm3=found.cavity_mm3,
         checks=checks,
         notice="; ".join(reasons),
     )
-
-
-def cavity_mm3(parts: Sequence[FabricationPart], cast: Cast, holes: Sequence[csg.Node]) -> float:
-    """Silicone that the closed mould holds [mm3], gate and vents not counted.
-
-    What the finished parts leave free inside the outer body: a fault in a part shows here.
-
-    Args:
-        holes: Vents through the core, which lie inside the outer body but are no cavity.
-    """
-    import manifold3d
-
-    low, high = cast.corners_mm
-    room = manifold3d.Manifold.cube(high - low).translate(low)
-    solids = [closed(part.name, part.points_mm, part.faces) for part in parts]
-    subtract = manifold3d.OpType.Subtract
-    free = manifold3d.Manifold.batch_boolean([room, *solids, *map(evaluate, holes)], subtract)
-    # Vents through outer parts reach into the box around the cast; they are not the cavity.
-    return float((free ^ evaluate(cast.outer)).volume())
 
 
 def _nodes(cast: Cast, layout: Layout, channels: Channels) -> dict[str, csg.Node]:
@@ -136,24 +114,6 @@ def _beside(cast: Cast, places_mm: np.ndarray) -> np.ndarray:
 
     inside = shapely.convex_hull(footprint(cast))
     return ~shapely.contains_xy(inside, places_mm[:, 0], places_mm[:, 1])
-
-
-def _overlap_mm3(parts: Sequence[FabricationPart], cast: Cast) -> float:
-    """Largest overlap of two parts, or of a part and the cast [mm3]."""
-    solids = {part.name: closed(part.name, part.points_mm, part.faces) for part in parts}
-    body = evaluate(cast.outer)
-    if cast.core is not None:
-        body = body - evaluate(cast.core)
-    # Through arrays like the parts: with another history, slivers of 1e-4 mm3 appear.
-    solids["cast"] = closed("cast", *arrays(body))
-    overlap_mm3 = max(overlaps_mm3(solids).values())
-    if overlap_mm3 > LARGEST_OVERLAP_MM3:
-        raise GeometryError(
-            f"mould parts overlap by {overlap_mm3:.3g} mm3, more than {LARGEST_OVERLAP_MM3:g} mm3",
-            hint="raise mould.clearance_mm, or change the last shape parameter a little",
-            at="mould",
-        )
-    return overlap_mm3
 
 
 def _pull(number: int, parting: Parting) -> tuple[float, float, float]:

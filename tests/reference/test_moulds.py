@@ -8,16 +8,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from geometry.cast import make_cast
 from geometry.export import package_files, step_body, stl_bytes, write_step
 from geometry.fabricate import piece_count
 from geometry.housing import make_housing
 from geometry.indenters import load_stl
+from geometry.mould_fit import measure_fit
 from geometry.moulds import make_mould
 from geometry.recipe import make_recipe
 from geometry.surface import is_watertight, mesh_volume
 from geometry.threemf import read_threemf
 from workbench.core.design import Camera, Elastomer, LedRing, MouldOptions
-from workbench.core.errors import DesignError, StoreError
+from workbench.core.errors import DesignError, GeometryError, StoreError
 from workbench.core.fabrication import HousingSet, MouldSet, PartGroup, Recipe
 from workbench.core.making import Casting, Housing
 from workbench.core.results import Solid
@@ -65,6 +67,24 @@ def test_cavity_is_the_membrane_enlarged_by_the_shrinkage(moulds: MouldSet, fing
     membrane = mesh_volume(finger.membrane.points_mm, finger.membrane.faces)
     assert moulds.cast_volume_mm3 == pytest.approx(membrane / 0.998**3, rel=1e-6)
     assert moulds.overlap_mm3 <= 1e-6
+
+
+def test_a_part_that_reaches_into_the_cast_is_refused(finger: Solid, moulds: MouldSet) -> None:
+    """The core 0.01 mm aside takes 0.01 mm times its side view from the wall: 8 mm3."""
+    import dataclasses
+
+    cast = make_cast(finger, MouldOptions())
+    core = next(part for part in moulds.parts if part.name == "core")
+    aside = dataclasses.replace(core, points_mm=np.add(core.points_mm, (0.01, 0.0, 0.0)))
+    with pytest.raises(GeometryError, match=r"mould parts overlap by \d+\.?\d* mm3") as caught:
+        measure_fit([*moulds.parts[:2], aside], cast, [])
+    found_mm3 = float(caught.value.message.split(" by ")[1].split(" mm3")[0])
+    inner = cast.core
+    assert inner is not None
+    width_mm, _, height_mm = np.ptp(inner.points_mm, axis=0)
+    # A cylinder of that width with half a sphere on it, seen from the side.
+    side_mm2 = width_mm * (height_mm - width_mm / 2) + np.pi * width_mm**2 / 8
+    assert found_mm3 == pytest.approx(0.01 * side_mm2, rel=0.02)
 
 
 def test_finger_has_no_undercut_and_its_walls_are_good(moulds: MouldSet) -> None:

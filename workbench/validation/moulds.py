@@ -1,53 +1,54 @@
 """Moulds of every family: one row each, the number of limits that its mould misses.
 
-Looked at: closed after an STL file, overlap, volume of the cavity against the membrane's (without
-shrinkage), thinnest wall and time. What was found stands in the row's case.
+Looked at, without shrinkage and draft: every part one closed body after an STL file; overlap;
+volume of the cavity against the membrane's; walls of 2 mm, or a warning that says where; time. What
+was found stands in the row's case.
 """
 
 from __future__ import annotations
 
+import math
+import tempfile
 import time
 from collections.abc import Sequence
+from pathlib import Path
 
-from workbench.core.design import Layers, MouldOptions
-from workbench.core.errors import WorkbenchError
-from workbench.core.fabrication import MouldSet
+from workbench.core.design import MouldOptions
+from workbench.core.errors import DesignError, WorkbenchError
+from workbench.core.fabrication import FabricationPart, MouldSet, Severity
 from workbench.core.monitor import silent
 from workbench.core.results import Solid
 from workbench.rows import Row, bounded, failed
-from workbench.stages import build, mould
+from workbench.stages import mould
+from workbench.validation.meshes import default_solid, family_names
 
 OVERLAP_MM3 = 1e-6
 VOLUME_ERROR = 0.005
-SECONDS = 20.0
-"""Of a machine that does nothing else it takes 2 to 5; a shared one may take four times that."""
+WALL_MM = 2.0
+SECONDS = 5.0
+TRIES = 3
+"""A shared machine may be late once; a slow mould is late every time."""
 ELONGATION = 3.0
-IMPORTED = "imported"
 
 
 def rows(names: Sequence[str] = ()) -> list[Row]:
     """One row for each family, or for those named."""
-    from designs.family import families
-
-    return [_row(name) for name in names or families() if name != IMPORTED]
+    return [_row(name) for name in names or family_names()]
 
 
 def _row(name: str) -> Row:
-    from designs.family import resolve_shape
-
     try:
-        solid = build(name, resolve_shape(name, {}), Layers(), monitor=silent)
-        begin = time.perf_counter()
-        moulds = mould(solid, MouldOptions(shrink_percent=0.0), ELONGATION, monitor=silent)
-        seconds = time.perf_counter() - begin
+        solid = default_solid(name)
+        moulds, seconds = _timed(solid)
     except WorkbenchError as error:
         return failed(f"mould_{name}", "default shape", unit="limits missed", why=error.message)
     error = volume_error(moulds, solid)
     undercut = max(c.value for c in moulds.checks if c.name == "undercut")
     missed = [
-        not all(part.watertight for part in moulds.parts),
+        not all(is_one_body(part) for part in moulds.parts),
         moulds.overlap_mm3 > OVERLAP_MM3,
         error > VOLUME_ERROR,
+        not thin_walls_are_told(moulds),
         seconds > SECONDS,
     ]
     case = (
@@ -56,6 +57,49 @@ def _row(name: str) -> Row:
         f"undercut {100 * undercut:.1f} %"
     )
     return bounded(f"mould_{name}", case, float(sum(missed)), unit="limits missed", limit=0.0)
+
+
+def _timed(solid: Solid) -> tuple[MouldSet, float]:
+    """The mould without shrinkage and draft, and the least time of up to `TRIES` tries [s].
+
+    Of wall and processor time the smaller: what others take of a shared machine is not counted.
+    """
+    options, least = MouldOptions(shrink_percent=0.0, draft_deg=0.0), math.inf
+    for _ in range(TRIES):
+        begin, worked = time.perf_counter(), time.process_time()
+        moulds = mould(solid, options, ELONGATION, monitor=silent)
+        least = min(least, time.perf_counter() - begin, time.process_time() - worked)
+        if least <= SECONDS:
+            break
+    return moulds, least
+
+
+def is_one_body(part: FabricationPart) -> bool:
+    """Whether the part is one closed body when its STL file is read again."""
+    from geometry.export import stl_bytes
+    from geometry.fabricate import piece_count
+    from geometry.indenters import load_stl
+
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / f"{part.name}.stl"
+        path.write_bytes(stl_bytes(part.points_mm, part.faces))
+        try:
+            mesh = load_stl(path)
+        except DesignError:
+            return False
+    return piece_count(mesh.points_mm, mesh.faces) == 1
+
+
+def thin_walls_are_told(moulds: MouldSet) -> bool:
+    """Whether every part has a wall check, and each wall under 2 mm a warning with its place."""
+    walls = {check.part: check for check in moulds.checks if check.name == "minimum_wall"}
+    if walls.keys() != {part.name for part in moulds.parts}:
+        return False
+    thin = [check for check in walls.values() if check.value < WALL_MM]
+    return all(
+        check.severity is not Severity.GOOD and all(map(math.isfinite, check.place_mm))
+        for check in thin
+    )
 
 
 def volume_error(moulds: MouldSet, solid: Solid) -> float:
