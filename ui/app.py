@@ -23,6 +23,7 @@ from ui.desk import Desk
 from ui.guard import LOOPBACK, Gate, guarded
 from ui.panels.compare import ComparePanel
 from ui.panels.make import MakePanel
+from ui.panels.mesh import MeshPanel
 from ui.panels.optics import OpticsPanel
 from ui.panels.results import ResultsPanel
 from ui.panels.shape import ShapePanel
@@ -85,9 +86,10 @@ def build_desk(server: Any, session: Session, conductor: Conductor, *, fast: boo
     with server.atomic():
         desk = Desk(server, session, conductor, fast=fast)
         tabs = gui.add_tab_group()
-        # Five labels without icons fit on one row.
+        # Six labels without icons fit on one row.
         pages = {
             "Shape": ShapePanel,
+            "Mesh": MeshPanel,
             "Optics": OpticsPanel,
             "Simulate": SimulatePanel,
             "Make": MakePanel,

@@ -6,41 +6,33 @@ into widgets ten times a second and saves the session once edits have settled.
 
 from __future__ import annotations
 
-import contextlib
-import html
-import sys
-import threading
 import time
-import traceback
 from collections.abc import Callable, Sequence
 from typing import Any, Protocol
 
 import numpy as np
-import viser
 
+from ui.header import NAMES, Header
 from ui.panels.fields import Fields, read_field, whole_shape
+from ui.reports import Reports
 from ui.scene import Scene
 from ui.session import Session
-from workbench.conductor import Conductor, Event, Finished, Progress, StageDone
+from workbench.aim import default_target_mm
+from workbench.bodies import IMPORTED
+from workbench.conductor import LIVE, Conductor, Event, Finished, Progress, StageDone
+from workbench.core.design import SensorDesign
 from workbench.core.errors import Cancelled, WorkbenchError
+from workbench.core.results import Solid
 from workbench.core.units import human_seconds
 from workbench.forms import resolve_shape
 
 PUMP_S = 0.1
 AUTOSAVE_S = 1.0
 """Quiet time after an edit before the design is written [s]."""
-NOTICE_S = 15.0
 AIM_LIMIT_MM = 4.0
 """Distance from target to skin at which the target follows; the solver refuses beyond 5 mm."""
-STRIP = {
-    "build": "Shape",
-    "mesh": "Mesh",
-    "bake": "Light",
-    "press": "Contact",
-    "shoot": "Image",
-    "mould": "Mould",
-}
-"""Stages of the strip and their names for people."""
+SHOWN = ("build", "mesh", "press", "shoot", "quality", "tets", "mould", "housing", "recipe")
+"""Stages whose stored results are shown without asking."""
 
 
 class Panel(Protocol):
@@ -62,31 +54,26 @@ class Desk:
         self.server = server
         self.session = session
         self.conductor = conductor
-        self.scene = Scene(server, fast=fast, on_aim=self.guarded(self._aim))
         self.fields = Fields(server, self.read, self.edit)
+        self.reports = Reports(server, session, self.fields)
+        self.reports.on_log = lambda lines: self._tell("log", lines)
+        self.guarded = self.reports.guarded
+        self.log = self.reports.log
+        self.scene = Scene(server, fast=fast, on_click=self.guarded(self._clicked))
         self.panels: list[Panel] = []
-        self.put_mould_away: Callable[[], None] = lambda: None
-        """Set by the panel that shows the mould."""
-        self.log_lines: list[str] = []
+        self.put_parts_away: Callable[[], None] = lambda: None
+        """Set by the panel that shows the parts."""
+        self.pick: Callable[[int], bool] = lambda face: False
+        """Set by the panel that labels faces: whether it took a click on this membrane face."""
+        self.header = Header(server.gui, self.guarded(lambda event: self.conductor.cancel()))
+        self.reports.banner = self.header.banner
         self._edited: float | None = None
+        self._framed: tuple[str, str] | None = None
+        self._notices: dict[str, str] = {}
         self._running: dict[str, Progress] = {}
         self._shown: dict[str, str] = {}
-        self._lock = threading.RLock()
-        self._build_header()
-
-    def _build_header(self) -> None:
-        gui = self.server.gui
-        self.title = gui.add_markdown("")
-        self.strip = gui.add_markdown("")
-        self.banner = gui.add_markdown("", visible=False)
-        # A panel of its own: widgets must not move under the mouse when a job starts or ends.
-        self.job = gui.add_panel(visible=False)
-        with self.job.add_tab("Running", viser.Icon.LOADER):
-            self.progress = gui.add_progress_bar(0.0, animated=True)
-            self.progress_text = gui.add_markdown("")
-            cancel = gui.add_button("Cancel", color="red")
-            cancel.on_click(self.guarded(lambda event: self.conductor.cancel()))
-        self.job.float(x=405, y=15, width=330)
+        self._then: dict[str, Callable[[Finished], None]] = {}
+        self._lock = self.reports.lock
 
     def read(self, path: str) -> Any:
         """Value of a field of the state; shape parameters have their defaults filled in."""
@@ -96,34 +83,17 @@ class Desk:
             return whole_shape(shape)[path.rsplit(".", 1)[1]]
         return read_field(self.session.state, path)
 
-    def guarded(self, handler: Callable[[Any], None]) -> Callable[[Any], None]:
-        """A widget callback whose errors reach the designer instead of the terminal only."""
-
-        def call(event: Any) -> None:
-            try:
-                # viser calls from a pool of threads; the lock is re-entrant, because a value set
-                # by a handler runs that widget's own handler at once.
-                with self._lock:
-                    handler(event)
-            except WorkbenchError as error:
-                self.report(error)
-            except Exception as bug:
-                self.crash(bug)
-
-        return call
-
     def edit(self, path: str, value: Any) -> None:
         """Change one field; a refused value is explained and leaves the last good state."""
         with self._lock:
             try:
                 self.session.change(path, value)
             except WorkbenchError as error:
-                self.report(error, quiet=True)
+                self.reports.report(error, quiet=True)
                 return
-            self.fields.clear_complaints()
-            self.banner.visible = False
-            if not path.startswith("design.mould"):
-                self.put_mould_away()
+            self.reports.settle()
+            if not path.startswith(("design.mould", "design.housing", "design.casting")):
+                self.put_parts_away()
             self.changed()
             if path.startswith("design.optics"):
                 # The pressed skin is opaque; the one at rest shows LEDs and camera.
@@ -135,9 +105,9 @@ class Desk:
         session = self.session
         if not session.store.has("build", session.calls()["build"].key):
             # First of all: the worker builds while the widgets follow.
-            self.conductor.submit("shape", session.design, session.case, ("build",))
-        self.scene.show_lights(session.design.optics.ring)
-        self.scene.show_camera(session.design.optics.camera)
+            self.conductor.submit(LIVE, session.design, session.case, ("build",))
+        self.scene.rig.show_lights(session.design.optics.ring)
+        self.scene.rig.show_camera(session.design.optics.camera)
         self.show_stored()
         if self.current("build"):
             self._keep_aim()
@@ -148,27 +118,32 @@ class Desk:
             self.scene.place_indenter(session.case.press)
         for panel in self.panels:
             panel.refresh()
-        self.refresh_strip()
-
-    def _aim(self, event: Any) -> None:
-        """A click on the skin moves the target there."""
-        target = self.scene.aim(np.asarray(event.ray_origin), np.asarray(event.ray_direction))
-        if target is not None:
-            self.edit("case.press.target_mm", tuple(round(x, 2) for x in target))
-            self.fields.refresh()
-            self.log(f"target {target[0]:.1f}, {target[1]:.1f}, {target[2]:.1f} mm")
+        self.refresh_header()
 
     def replaced(self) -> None:
         """Follow a change of many fields at once: undo, a preset, an upload."""
         with self._lock:
+            for panel in self.panels:
+                # Another family's widgets come before they are given values.
+                panel.refresh()
             self.fields.refresh()
-            self.fields.clear_complaints()
-            self.banner.visible = False
+            self.reports.settle()
+            self.put_parts_away()
             self.changed()
+
+    def _clicked(self, event: Any) -> None:
+        """A click on the skin labels a face while faces are picked, else moves the target there."""
+        hit = self.scene.body.hit(np.asarray(event.ray_origin), np.asarray(event.ray_direction))
+        if hit is None or self.pick(hit[0]):
+            return
+        x, y, z = (round(float(c), 2) for c in hit[1])
+        self.edit("case.press.target_mm", (x, y, z))
+        self.fields.refresh()
+        self.log(f"target {x:.1f}, {y:.1f}, {z:.1f} mm")
 
     def show_stored(self) -> None:
         """Show every result that is stored for the state as it stands."""
-        for stage in ("build", "press", "shoot", "mould"):
+        for stage in SHOWN:
             # Asked anew each time: showing a body may move the target, and with it later keys.
             key = self.session.calls()[stage].key
             if self.session.store.has(stage, key):
@@ -176,40 +151,62 @@ class Desk:
 
     def run(self, topic: str, wanted: tuple[str, ...]) -> None:
         """Compute stages for the state as it stands."""
-        self.banner.visible = False
-        if topic != "mould":
-            self.put_mould_away()
+        self.header.banner.visible = False
+        if topic != "parts":
+            self.put_parts_away()
         self.log(f"{topic}: started")
         self.conductor.submit(topic, self.session.design, self.session.case, wanted)
+
+    def trial(
+        self, topic: str, design: SensorDesign, wanted: str, then: Callable[[Finished], None]
+    ) -> None:
+        """Compute a stage of a design that is not the state; `then` decides by how it ended."""
+        self._then[topic] = then
+        self.log(f"{topic}: started")
+        self.conductor.submit(topic, design, self.session.case, (wanted,))
 
     def _show(self, stage: str, key: str) -> None:
         if self._shown.get(stage) == key:
             return
         result = self.session.store.load(stage, key)
-        self._shown[stage] = key
         if stage == "build":
             # Another body: what was shown of the old one goes.
-            self._shown.pop("press", None)
-            self._shown.pop("mould", None)
-            self.scene.show_solid(result)
-            self._keep_aim()
-            self.scene.show_indenter(self.session.case.indenter, self.session.case.press)
-            if result.notice:
-                self.notify("Shape", result.notice, color="yellow")
+            self._shown = {stage: key}
+            self._notices.clear()
+            self._show_body(result)
+        self._shown[stage] = key
+        if stage in ("build", "mesh"):
+            self._notices[stage] = result.notice
+            self.header.show_notice(self._notices)
+        self._tell(stage, result)
+
+    def _show_body(self, solid: Solid) -> None:
+        design = self.session.design
+        self.scene.show_solid(solid)
+        origin = (design.family, design.body.outer.sha256 if design.body is not None else "")
+        if origin != self._framed:
+            # Another kind of body; within a family the designer's own view is kept.
+            self._framed = origin
+            self.scene.frame_body()
+        self._keep_aim()
+        self.scene.show_indenter(self.session.case.indenter, self.session.case.press)
+
+    def _tell(self, stage: str, result: Any) -> None:
         for panel in self.panels:
             panel.show(stage, result)
 
     def _keep_aim(self) -> None:
         """Bring a target that a change of shape left in the air back to the skin, and say so."""
-        point, distance_mm = self.scene.nearest(self.session.case.press.target_mm)
+        point, distance_mm = self.scene.body.nearest(self.session.case.press.target_mm)
         if distance_mm > AIM_LIMIT_MM:
+            design, solid = self.session.design, self.scene.body.solid
+            if design.family == IMPORTED and solid is not None:
+                point = default_target_mm(design, solid)
             x, y, z = (round(float(c), 2) for c in point)
             self.session.amend("case.press.target_mm", (x, y, z))
             self._edited = time.monotonic()
             self.fields.refresh()
-            self.log(
-                f"the skin moved {distance_mm:.1f} mm from the target: it is now at {x}, {y}, {z}"
-            )
+            self.log(f"the target was {distance_mm:.1f} mm off the skin: it is now {x}, {y}, {z}")
 
     def current(self, stage: str) -> bool:
         """Whether what is shown of a stage belongs to the state as it stands."""
@@ -222,27 +219,19 @@ class Desk:
                 # Wakes at once for an event, and regularly for the autosave.
                 self.pump(self.conductor.wait(PUMP_S))
             except Exception as bug:
-                self.crash(bug)
+                self.reports.crash(bug)
 
     def pump(self, events: Sequence[Event]) -> None:
         """Handle events, then the autosave."""
         with self._lock:
             for event in events:
-                try:
-                    self._handle(event)
-                except WorkbenchError as error:
-                    self.report(error)
-                except Exception as bug:
-                    self.crash(bug)
+                self.guarded(self._handle)(event)
             if events:
-                self._refresh_progress()
-                self.refresh_strip()
+                self.header.show_progress(self._running)
+                self.refresh_header()
             if self._edited is not None and time.monotonic() - self._edited > AUTOSAVE_S:
                 self._edited = None
-                try:
-                    self.session.autosave()
-                except WorkbenchError as error:
-                    self.report(error)
+                self.guarded(lambda event: self.session.autosave())(None)
 
     def _handle(self, event: Event) -> None:
         if isinstance(event, Progress):
@@ -250,94 +239,36 @@ class Desk:
         elif isinstance(event, StageDone):
             stage, key = event.outcome.stage, event.outcome.key
             if not event.outcome.cached:
-                name = STRIP.get(stage, stage)
-                self.log(f"{name} done in {human_seconds(event.outcome.seconds)}")
-            if self.session.calls()[stage].key == key:
+                self.log(
+                    f"{NAMES.get(stage, stage)} done in {human_seconds(event.outcome.seconds)}"
+                )
+            calls = self.session.calls()
+            if stage in SHOWN and calls[stage].key == key:
                 self._show(stage, key)
         else:
             self._finish(event)
 
     def _finish(self, event: Finished) -> None:
         self._running.pop(event.topic, None)
-        error = event.error
+        error, then = event.error, self._then.pop(event.topic, None)
         if event.superseded:
             self.log(f"{event.topic}: replaced by a newer request")
-        elif error is None:
-            if event.topic != "shape":
-                self.log(f"{event.topic}: finished in {human_seconds(event.seconds)}")
+            if then is not None:
+                # It waits for the newer request's end.
+                self._then[event.topic] = then
         elif isinstance(error, Cancelled):
             self.log(f"{event.topic}: cancelled")
-            if event.topic != "shape":
-                self.notify("Cancelled", f"{event.topic} was stopped; earlier results are kept")
-        else:
-            self.report(error)
+            if event.topic != LIVE:
+                text = f"{event.topic} was stopped; earlier results are kept"
+                self.reports.notify("Cancelled", text)
+        elif then is not None:
+            then(event)
+        elif error is not None:
+            self.reports.report(error)
+        elif event.topic != LIVE:
+            self.log(f"{event.topic}: finished in {human_seconds(event.seconds)}")
 
-    def _refresh_progress(self) -> None:
-        shown = [p for topic, p in self._running.items() if topic != "shape"]
-        visible = bool(shown)
-        if self.job.visible != visible:
-            self.job.visible = visible
-        if shown:
-            now = shown[-1]
-            self.progress.value = 100.0 * now.fraction
-            left = f"about {human_seconds(now.eta_s)} left" if now.eta_s is not None else ""
-            name = STRIP.get(now.stage, now.stage)
-            parts = (f"{name} {100 * now.fraction:.0f} %", left, now.note)
-            self.progress_text.content = " · ".join(part for part in parts if part)
-
-    def refresh_strip(self) -> None:
+    def refresh_header(self) -> None:
         """Show which stages are done and which are stale."""
-        fresh = self.session.fresh()
-        running = {p.stage for p in self._running.values()}
-        marks = {True: "✓", False: "○"}
-        text = " &nbsp;".join(
-            f"{name} {'▶' if stage in running else marks[fresh[stage]]}"
-            for stage, name in STRIP.items()
-        ).replace(" ✓", "&nbsp;✓")
-        if self.strip.content != text:
-            self.strip.content = text
-        design = self.session.design
-        title = f"**{html.escape(design.name)}** · {html.escape(design.family)}"
-        if self.title.content != title:
-            self.title.content = title
-
-    def report(self, error: WorkbenchError, *, quiet: bool = False) -> None:
-        """Show an error at its field; in a banner too, unless it answers an edit there."""
-        at_field = self.fields.complain(error)
-        words = self.fields.in_words(error.message)
-        hint = ""
-        if error.hint and "\n" not in error.hint:
-            hint = self.fields.in_words(f" {error.hint[0].upper()}{error.hint[1:]}.")
-        self.log(f"{type(error).__name__}: {words} {error.hint}")
-        if not (quiet and at_field):
-            text = html.escape(f"{words}.{hint}")
-            self.banner.content = f"<span style='color:#e5484d'>**{text}**</span>"
-            self.banner.visible = True
-        if not at_field:
-            self.notify("Not possible", f"{words}.{hint}", color="red")
-        if "\n" in error.hint:
-            # A traceback from a worker; a full disk must not hide the message itself.
-            with contextlib.suppress(WorkbenchError):
-                self.session.project.write_crash(error.hint)
-
-    def crash(self, bug: Exception) -> None:
-        """Keep the traceback of a bug and tell the designer where it is."""
-        text = "".join(traceback.format_exception(bug))
-        print(text, file=sys.stderr, flush=True)
-        try:
-            where = str(self.session.project.write_crash(text))
-        except WorkbenchError:
-            where = "the terminal"
-        self.log(f"internal error: {bug!r}; see {where}")
-        self.notify("Internal error", f"{bug!r}; the details are in {where}", color="red")
-
-    def notify(self, title: str, body: str, *, color: Any = None) -> None:
-        """A passing message in every tab."""
-        for client in self.server.get_clients().values():
-            client.add_notification(title, body, color=color, auto_close_seconds=NOTICE_S)
-
-    def log(self, text: str) -> None:
-        """Add a line to the log."""
-        self.log_lines = [*self.log_lines[-199:], f"{time.strftime('%H:%M:%S')} {text}"]
-        for panel in self.panels:
-            panel.show("log", self.log_lines)
+        self.header.show_stages(self.session.fresh(), self._running)
+        self.header.show_design(self.session.design)

@@ -1,4 +1,7 @@
-"""Cheap shapes for the live view: the indenter, and where it would stand before a press."""
+"""Cheap shapes for the live view: regions of a body, the indenter, clicks, cells of a mesh.
+
+Everything here takes milliseconds on the largest body; what takes longer is a stage.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +9,21 @@ import numpy as np
 
 from workbench.core.frames import quaternion, tangent
 from workbench.core.press import Indenter
-from workbench.core.results import Label, LabelledSurface
+from workbench.core.results import Label, LabelledSurface, MeshQuality, VolumeMesh, region_masks
+
+LEAST_SINE = 1e-12
+"""Rays flatter to a triangle than this do not meet it."""
+CELL_EDGES = {
+    3: ((0, 1), (1, 2), (2, 0)),
+    4: ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)),
+    8: (
+        *((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4)),
+        *((0, 4), (1, 5), (2, 6), (3, 7)),
+    ),
+}
+"""Pairs of corners in VTK order by number of corners."""
+PLANE_MM = 1e-3
+"""Faces nearer to the base plane than this lie on it [mm]."""
 
 
 def indenter_shape(indenter: Indenter) -> tuple[np.ndarray, np.ndarray]:
@@ -18,9 +35,84 @@ def indenter_shape(indenter: Indenter) -> tuple[np.ndarray, np.ndarray]:
 
 def outer_faces(surface: LabelledSurface) -> tuple[np.ndarray, np.ndarray]:
     """The sensing side of a body: its vertices [mm] (N, 3) and triangles (M, 3)."""
-    faces = surface.faces[(surface.labels & Label.OUTER) != 0]
+    return _packed(surface, surface.has(Label.OUTER))
+
+
+def skin_parts(surface: LabelledSurface) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """What is drawn of a membrane, each as vertices [mm] (N, 3) and triangles (M, 3).
+
+    `skin` is the sensing side without `actuator_i`; `pins` are internal; `unsensed` are faces off
+    the base plane that the designer took out of the sensing side.
+    """
+    masks = region_masks(surface.labels, surface.numbers)
+    actuators = {name: mask for name, mask in masks.items() if name.startswith("actuator")}
+    driven = surface.has(Label.ACTUATOR)
+    off_plane = np.abs(surface.points_mm[surface.faces][:, :, 2]).max(axis=1) > PLANE_MM
+    parts = {
+        "skin": surface.has(Label.OUTER) & ~driven,
+        **actuators,
+        "pins": surface.has(Label.PIN),
+        "unsensed": surface.has(Label.BASE) & off_plane,
+    }
+    return {name: _packed(surface, mask) for name, mask in parts.items() if mask.any()}
+
+
+def _packed(surface: LabelledSurface, mask: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    faces = surface.faces[mask]
     used, packed = np.unique(faces, return_inverse=True)
     return np.asarray(surface.points_mm)[used], packed.reshape(faces.shape)
+
+
+def first_hit(
+    points_mm: np.ndarray, faces: np.ndarray, origin: np.ndarray, direction: np.ndarray
+) -> tuple[int, np.ndarray] | None:
+    """The face a ray enters first from outside, and where [mm]; None when it misses.
+
+    Source: Moeller and Trumbore, Journal of Graphics Tools 2, 1997.
+
+    Args:
+        points_mm: Vertices, shape (N, 3).
+        faces: Triangles counter-clockwise from outside, shape (M, 3).
+        origin: Start of the ray [mm], shape (3,).
+        direction: Unit direction, shape (3,).
+    """
+    a, b, c = (np.asarray(points_mm)[faces[:, i]] for i in range(3))
+    edge_1, edge_2, offset = b - a, c - a, origin - a
+    across = np.cross(direction, edge_2)
+    volume = np.einsum("ij,ij->i", edge_1, across)
+    front = volume > LEAST_SINE
+    scale = 1.0 / np.where(front, volume, 1.0)
+    u = np.einsum("ij,ij->i", offset, across) * scale
+    turned = np.cross(offset, edge_1)
+    v = turned @ direction * scale
+    along = np.einsum("ij,ij->i", edge_2, turned) * scale
+    met = front & (u >= 0) & (v >= 0) & (u + v <= 1) & (along > 0)
+    if not met.any():
+        return None
+    best = int(np.argmin(np.where(met, along, np.inf)))
+    return best, origin + along[best] * np.asarray(direction)
+
+
+def outward(points_mm: np.ndarray, faces: np.ndarray, place_mm: np.ndarray) -> np.ndarray:
+    """Unit normal of a surface at its vertex nearest to a place, shape (3,)."""
+    points = np.asarray(points_mm)
+    nearest = int(np.argmin(((points - np.asarray(place_mm)) ** 2).sum(axis=1)))
+    around = np.asarray(faces)[(np.asarray(faces) == nearest).any(axis=1)]
+    a, b, c = (points[around[:, i]] for i in range(3))
+    total = np.cross(b - a, c - a).sum(axis=0)
+    return total / max(float(np.linalg.norm(total)), 1e-12)
+
+
+def cell_edges(corners_mm: np.ndarray) -> np.ndarray:
+    """Ends of the edges of one cell [mm], shape (E, 2, 3), from its corners (8|4|3, 3)."""
+    return np.asarray(corners_mm)[np.array(CELL_EDGES[len(corners_mm)])]
+
+
+def judged(mesh: VolumeMesh, volume_mm3: float) -> MeshQuality:
+    """How good the cells of a volume mesh are, beside the volume of its body [mm3]."""
+    from geometry.quality import volume_quality
+
+    return volume_quality(mesh, volume_mm3)
 
 
 def corner_normals(points_mm: np.ndarray, faces: np.ndarray) -> np.ndarray:

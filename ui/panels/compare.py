@@ -17,7 +17,7 @@ NONE = "-"
 
 
 class ComparePanel:
-    """Widgets of the fifth tab."""
+    """Widgets of the sixth tab."""
 
     def __init__(self, desk: Desk) -> None:
         self.desk = desk
@@ -47,7 +47,7 @@ class ComparePanel:
         name = self.name.value.strip()
         save_variant(session.project, name, session.state, session.calls())
         self.desk.log(f"variant {name} saved")
-        self.desk.notify("Saved", f"{name}: design, press and numbers", color="green")
+        self.desk.reports.notify("Saved", f"{name}: design, press and numbers", color="green")
         self._offer()
         empty = [handle for handle in (self.a, self.b) if handle.value == NONE]
         if empty:
@@ -93,7 +93,7 @@ class ComparePanel:
         try:
             return np.asarray(store.load("shoot", variant.shoot_key).frames.rgb[-1])
         except WorkbenchError as error:
-            self.desk.report(error)
+            self.desk.reports.report(error)
             return placeholder()
 
     def refresh(self) -> None:

@@ -19,6 +19,7 @@ class Field:
     """Dotted field of the session's state, for example `design.layers.elastomer_mm`."""
     label: str
     handle: Any
+    """None where another widget than a bound one gives the value, for example an upload."""
     to_field: Callable[[Any], Any]
     to_widget: Callable[[Any], Any]
     complaint: Any
@@ -57,10 +58,14 @@ class Fields:
 
     def choice(self, label: str, path: str, options: Sequence[Any], *, hint: str = "") -> Any:
         """A drop-down over the members of an enumeration."""
-        names = {str(member.value): member for member in options}
-        now = str(self._read(path).value)
-        handle = self.gui.add_dropdown(label, tuple(names), initial_value=now, hint=hint or None)
-        return self._bind(path, handle, names.__getitem__, lambda member: str(member.value))
+        return self.options(label, path, {str(m.value): m for m in options}, hint=hint)
+
+    def options(self, label: str, path: str, named: Mapping[str, Any], *, hint: str = "") -> Any:
+        """A drop-down over values with names for people."""
+        names = {value: name for name, value in named.items()}
+        now = names[self._read(path)]
+        handle = self.gui.add_dropdown(label, tuple(named), initial_value=now, hint=hint or None)
+        return self._bind(path, handle, named.__getitem__, names.__getitem__)
 
     def check(self, label: str, path: str, *, hint: str = "") -> Any:
         """A check box."""
@@ -71,6 +76,17 @@ class Fields:
         """Three numbers in mm."""
         handle = self.gui.add_vector3(label, tuple(self._read(path)), step=step, hint=hint or None)
         return self._bind(path, handle, lambda v: tuple(float(x) for x in v), tuple)
+
+    def anchor(self, label: str, path: str) -> None:
+        """A place for messages about a field that another widget gives."""
+        self._fields[path] = Field(
+            path=path,
+            label=label,
+            handle=None,
+            to_field=lambda value: value,
+            to_widget=lambda value: value,
+            complaint=self.gui.add_markdown("", visible=False),
+        )
 
     def _bind(
         self,
@@ -102,12 +118,15 @@ class Fields:
         """Remove the widgets whose path begins so."""
         for path in [p for p in self._fields if p.startswith(prefix)]:
             field = self._fields.pop(path)
-            field.handle.remove()
+            if field.handle is not None:
+                field.handle.remove()
             field.complaint.remove()
 
     def refresh(self) -> None:
         """Show the session's values in every widget."""
         for path, field in self._fields.items():
+            if field.handle is None:
+                continue
             value = field.to_widget(self._read(path))
             if field.handle.value != value:
                 field.handle.value = value
@@ -118,9 +137,10 @@ class Fields:
         if field is None:
             return False
         parts = [self.in_words(error.message), self.in_words(error.hint)]
-        kept = field.to_widget(self._read(field.path))
-        if isinstance(kept, (int, float)) and kept != field.handle.value:
-            parts.append(f"still using {kept:g}")
+        if field.handle is not None:
+            kept = field.to_widget(self._read(field.path))
+            if isinstance(kept, (int, float)) and kept != field.handle.value:
+                parts.append(f"still using {kept:g}")
         words = html.escape("; ".join(part for part in parts if part))
         text = f"<span style='color:#e5484d'>{words}</span>"
         field.complaint.content = text

@@ -1,147 +1,121 @@
-"""Make: the mould, its checks, the exploded view and the downloads."""
+"""Make: what the workshop needs to know, then parts, checks, recipe and files."""
 
 from __future__ import annotations
 
-import io
-import zipfile
 from typing import Any
 
 import viser
 
 from ui.desk import Desk
-from workbench.core.errors import WorkbenchError
-from workbench.core.fabrication import MouldSet
-from workbench.core.results import Bundle
-from workbench.core.units import volume_ml
+from ui.panels.checks import ChecksList
+from ui.panels.downloads import Downloads
+from ui.panels.parts import PartsTree
+from ui.panels.recipe import recipe_html
+from workbench.core.fabrication import FabricationCheck, FabricationPart
+from workbench.forms import silicones
 
-OVERLAP_LIMIT_MM3 = 1e-3
-WALL_LIMIT_MM = 0.8
-"""Two lines of a 0.4 mm nozzle [mm]."""
+STAGES = ("mould", "housing", "recipe", "package")
+NOTHING = "No parts yet: press *Make parts*."
 
 
 class MakePanel:
-    """Widgets of the fourth tab."""
+    """Widgets of the fifth tab."""
 
     def __init__(self, desk: Desk) -> None:
         self.desk = desk
-        gui, fields = desk.server.gui, desk.fields
-        with gui.add_folder("Mould"):
-            fields.slider("Mould wall mm", "design.mould.wall_mm", span=(3.0, 15.0, 0.5))
-            fields.slider("Shrinkage %", "design.mould.shrink_percent", span=(0.0, 3.0, 0.05))
-            fields.slider("Clearance mm", "design.mould.clearance_mm", span=(0.0, 0.6, 0.05))
-            fields.slider("Vents", "design.mould.vent_count", span=(1, 8, 1), whole=True)
-        button = gui.add_button("Make mould", icon=viser.Icon.PRINTER)
+        gui = desk.server.gui
+        with gui.add_folder("Mould", expand_by_default=False):
+            self._mould()
+        with gui.add_folder("Casting and printer", expand_by_default=False):
+            self._casting()
+        with gui.add_folder("Housing", expand_by_default=False):
+            self._housing()
+        hint = "Mould, housing, recipe and files; half a minute or so"
+        button = gui.add_button("Make parts", icon=viser.Icon.PRINTER, hint=hint)
         button.on_click(desk.guarded(self._make))
+        self.status = gui.add_markdown(NOTHING)
+        self.tree = PartsTree(desk)
+        desk.put_parts_away = self.tree.put_away
+        self.recipe_folder = gui.add_folder("Recipe", expand_by_default=False, visible=False)
+        with self.recipe_folder:
+            self.recipe = gui.add_html("")
+        self.downloads = Downloads(desk)
+        self.checks = ChecksList(desk, self.tree)
         self.asked = False
-        self.offered = ""
-        self.checks = gui.add_markdown("No mould yet.")
-        self.view = gui.add_checkbox("Show mould", False, visible=False)
-        self.view.on_update(desk.guarded(self._view))
-        desk.put_mould_away = self._put_away
-        self.spread = gui.add_slider("Explode", 0.0, 1.0, 0.05, 1.0, visible=False)
-        self.spread.on_update(desk.guarded(lambda event: self._spread()))
-        self.part = gui.add_dropdown("Part", ("-",), visible=False)
-        self.part_button = gui.add_button(
-            "Download part STL", icon=viser.Icon.DOWNLOAD, visible=False
-        )
-        self.part_button.on_click(desk.guarded(self._send_part))
-        self.zip_button = gui.add_button("Download all (zip)", visible=False)
-        self.zip_button.on_click(desk.guarded(self._send_all))
+        self.offered: tuple[str, ...] = ()
+
+    def _mould(self) -> None:
+        fields, mould = self.desk.fields, "design.mould"
+        named = {"least undercut decides": 0, "2": 2, "3": 3, "4": 4}
+        fields.options("Outer parts", f"{mould}.outer_parts", named)
+        fields.slider("Mould wall mm", f"{mould}.wall_mm", span=(3.0, 15.0, 0.5))
+        hint = "Linear, of the silicone while curing; the cavity is larger by it"
+        fields.slider("Shrinkage %", f"{mould}.shrink_percent", span=(0.0, 3.0, 0.05), hint=hint)
+        hint = "Taper of the core toward its tip"
+        fields.slider("Draft deg", f"{mould}.draft_deg", span=(0.0, 5.0, 0.25), hint=hint)
+        hint = "Gap between mating printed faces"
+        fields.slider("Clearance mm", f"{mould}.clearance_mm", span=(0.0, 0.6, 0.05), hint=hint)
+        hint = "Mouth of the pouring funnel"
+        fields.slider("Gate mm", f"{mould}.gate_diameter_mm", span=(2.0, 20.0, 0.5), hint=hint)
+        fields.slider("Vents", f"{mould}.vent_count", span=(1, 8, 1), whole=True)
+
+    def _casting(self) -> None:
+        fields = self.desk.fields
+        fields.options("Silicone", "design.casting.silicone", {n: n for n in silicones()})
+        hint = "Left in cup, gate and vents"
+        fields.slider("Waste %", "design.casting.waste_percent", span=(0.0, 100.0, 5.0), hint=hint)
+        hint = "Room of the printer along X, Y and Z"
+        fields.point("Printer bed mm", "design.mould.bed_mm", step=5.0, hint=hint)
+        hint = "Smallest feature that prints: nozzle, or twice the pixel"
+        fields.slider("Feature mm", "design.mould.feature_mm", span=(0.05, 1.0, 0.05), hint=hint)
+
+    def _housing(self) -> None:
+        fields, housing = self.desk.fields, "design.housing"
+        for label, name in (
+            ("Camera width mm", "camera_width_mm"),
+            ("Camera height mm", "camera_height_mm"),
+            ("Camera depth mm", "camera_depth_mm"),
+        ):
+            fields.slider(label, f"{housing}.{name}", span=(3.0, 30.0, 0.5))
+        fields.slider("LED width mm", f"{housing}.led_width_mm", span=(0.5, 6.0, 0.1))
+        fields.slider("LED height mm", f"{housing}.led_height_mm", span=(0.5, 6.0, 0.1))
+        fields.slider("Housing wall mm", f"{housing}.wall_mm", span=(1.0, 6.0, 0.25))
+        fields.slider("Fit gap mm", f"{housing}.clearance_mm", span=(0.0, 0.6, 0.05))
 
     def _make(self, event: Any) -> None:
         self.asked = True
-        self.desk.run("mould", ("mould", "package"))
-        if self.desk.session.fresh()["mould"]:
-            self.show("mould", self._moulds())
+        self.desk.run("parts", STAGES)
+        self._offer()
 
-    def _put_away(self) -> None:
-        if self.view.value:
-            self.view.value = False
-
-    def _moulds(self) -> MouldSet | None:
-        return self.desk.session.result("mould")
-
-    def _bundle(self) -> Bundle:
-        bundle = self.desk.session.result("package")
-        if bundle is None:
-            raise WorkbenchError(
-                "the mould of this shape has not been made", hint="press Make mould first"
-            )
-        return bundle
-
-    def _view(self, event: Any) -> None:
-        moulds = self._moulds()
-        if moulds is not None and self.view.value:
-            self.desk.scene.show_mould(moulds, self.spread.value)
-            self.desk.scene.show_sensor(False)
-            self.desk.scene.step_back(moulds)
-        else:
-            self.desk.scene.clear_mould()
-            self.desk.scene.show_sensor(True)
-            self.desk.scene.step_forward()
-
-    def _spread(self) -> None:
-        self.desk.scene.spread_mould(self.spread.value)
-
-    def _send_part(self, event: Any) -> None:
-        name = f"{self.part.value}.stl"
-        content = self._bundle().files[f"moulds/{name}"].tobytes()
-        event.client.send_file_download(name, content, save_immediately=True)
-
-    def _send_all(self, event: Any) -> None:
-        buffer = io.BytesIO()
-        with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
-            for name, content in self._bundle().files.items():
-                archive.writestr(name, content.tobytes())
-        name = f"{self.desk.session.design.name}-mould.zip"
-        event.client.send_file_download(name, buffer.getvalue(), save_immediately=True)
+    def _offer(self) -> None:
+        """Show what is stored for the design as it stands; hide what belongs to another."""
+        session = self.desk.session
+        fresh, calls = session.fresh(), session.calls()
+        ready = tuple(calls[stage].key for stage in STAGES if fresh[stage])
+        if ready != self.offered:
+            self.offered = ready
+            found = {stage: session.result(stage) for stage in STAGES[:3]}
+            sets = [found[stage] for stage in ("mould", "housing") if found[stage] is not None]
+            parts: tuple[FabricationPart, ...] = tuple(p for made in sets for p in made.parts)
+            checks: tuple[FabricationCheck, ...] = tuple(c for made in sets for c in made.checks)
+            notices = [made.notice for made in found.values() if made is not None and made.notice]
+            self.status.content = "\n\n".join(notices) or ("" if parts else NOTHING)
+            self.tree.offer(parts)
+            self.checks.offer(checks)
+            recipe = found["recipe"]
+            self.recipe_folder.visible = recipe is not None
+            self.recipe.content = recipe_html(recipe) if recipe is not None else ""
+            self.downloads.offer(parts if fresh["package"] else ())
+        if self.asked and fresh["mould"] and fresh["housing"]:
+            # Stored parts stay in the drawer until somebody asks for them.
+            self.asked = False
+            self.tree.bring_out()
 
     def refresh(self) -> None:
-        """Hide what belongs to another design's mould."""
-        self._offer(self._moulds())
-
-    def _offer(self, moulds: MouldSet | None) -> None:
-        key = self.desk.session.calls()["mould"].key if moulds is not None else ""
-        if key == self.offered:
-            return
-        self.offered = key
-        made = moulds is not None
-        for handle in (self.view, self.spread, self.part, self.part_button, self.zip_button):
-            handle.visible = made
-        if moulds is None:
-            self.checks.content = "No mould yet."
-            self.view.value = False
-            return
-        self.part.options = tuple(part.name for part in moulds.parts)
-        self.checks.content = "\n\n".join(mould_checks(moulds))
+        """Follow the state."""
+        self._offer()
 
     def show(self, stage: str, result: Any) -> None:
-        """Show a new mould, or forget it when the body changed."""
-        if stage == "mould":
-            self._offer(result)
-            # A stored mould stays in the drawer until somebody asks for it.
-            if self.asked:
-                self.asked = False
-                self.view.value = True
-        elif stage == "build":
-            self._offer(self._moulds())
-
-
-def mould_checks(moulds: MouldSet) -> list[str]:
-    """One line per check: mark, number, limit."""
-    closed = all(part.watertight for part in moulds.parts)
-    wall, overlap = moulds.thinnest_wall_mm, moulds.overlap_mm3
-    rows = [
-        (closed, f"{len(moulds.parts)} parts, each one closed body"),
-        (overlap <= OVERLAP_LIMIT_MM3, f"overlap {overlap:.1e} mm³ (at most {OVERLAP_LIMIT_MM3})"),
-        (wall >= WALL_LIMIT_MM, f"thinnest wall {wall:.2f} mm (at least {WALL_LIMIT_MM})"),
-    ]
-    lines = [_mark(good) + text for good, text in rows]
-    cast_ml = volume_ml(moulds.cast_volume_mm3)
-    lines.append(f"silicone {cast_ml:.1f} ml · split at {moulds.split_azimuth_deg:.0f}°")
-    return lines
-
-
-def _mark(good: bool) -> str:
-    colour, sign = ("#30a46c", "✓") if good else ("#e5484d", "✗")
-    return f"<span style='color:{colour}'>**{sign}**</span> "
+        """Follow results."""
+        if stage in ("build", *STAGES):
+            self._offer()

@@ -11,7 +11,7 @@ from workbench.core.design import LedMount, LensModel, LightModel
 
 
 class OpticsPanel:
-    """Widgets of the second tab."""
+    """Widgets of the third tab."""
 
     def __init__(self, desk: Desk) -> None:
         self.desk = desk

@@ -13,7 +13,7 @@ from viser import uplot
 
 from ui.desk import Desk
 from ui.imaging import difference, legend, placeholder
-from ui.scene import SKIN_COLOUR
+from ui.sensor import SKIN_COLOUR
 from workbench.core.results import Contact, Shot
 from workbench.outputs import force_balance
 
@@ -125,7 +125,7 @@ class ResultsPanel:
             self.desk.scene.show_frame(int(self.frame.value))
             camera = self.desk.session.design.optics.camera
             image = np.asarray(result.frames.rgb[int(self.frame.value)])
-            self.desk.scene.show_camera(camera, image[::4, ::4])
+            self.desk.scene.rig.show_camera(camera, image[::4, ::4])
         elif stage == "log":
             rows = "<br>".join(html.escape(line) for line in reversed(result[-LOG_ROWS:]))
             self.log.content = f"<div style='font:12px monospace;margin:8px'>{rows}</div>"

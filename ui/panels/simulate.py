@@ -19,7 +19,7 @@ SHAPES = tuple(k.value for k in IndenterKind if k is not IndenterKind.MESH)
 
 
 class SimulatePanel:
-    """Widgets of the third tab."""
+    """Widgets of the fourth tab."""
 
     def __init__(self, desk: Desk) -> None:
         self.desk = desk
@@ -91,8 +91,7 @@ class SimulatePanel:
 
     def _follow(self) -> None:
         case = self.desk.session.case
-        self.desk.fields.clear_complaints()
-        self.desk.banner.visible = False
+        self.desk.reports.settle()
         self.refresh()
         self.desk.scene.show_indenter(case.indenter, case.press)
         self.desk.changed()

@@ -1,0 +1,87 @@
+"""The top of the left dock: name, stages, refusals, the builder's notice; and the running job."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import viser
+
+from workbench.conductor import LIVE, Progress
+from workbench.core.design import SensorDesign
+from workbench.core.units import human_seconds
+
+STRIP = {
+    "build": "Shape",
+    "mesh": "Mesh",
+    "bake": "Light",
+    "press": "Contact",
+    "shoot": "Image",
+    "mould": "Mould",
+}
+"""Stages of the strip and their names for people."""
+NAMES = {
+    **STRIP,
+    "intake": "File",
+    "quality": "Mesh quality",
+    "tets": "Tetrahedra",
+    "lattice": "Material points",
+    "housing": "Housing",
+    "recipe": "Recipe",
+    "package": "Files",
+}
+AMBER = "#f5a623"
+
+
+class Header:
+    """Widgets that every page of the left dock has above it."""
+
+    def __init__(self, gui: Any, on_cancel: Callable[[Any], None]) -> None:
+        self.title = gui.add_markdown("")
+        self.strip = gui.add_markdown("")
+        self.banner = gui.add_markdown("", visible=False)
+        self.notice = gui.add_markdown("", visible=False)
+        # A panel of its own: widgets must not move under the mouse when a job starts or ends.
+        self.job = gui.add_panel(visible=False)
+        with self.job.add_tab("Running", viser.Icon.LOADER):
+            self.progress = gui.add_progress_bar(0.0, animated=True)
+            self.progress_text = gui.add_markdown("")
+            gui.add_button("Cancel", color="red").on_click(on_cancel)
+        self.job.float(x=405, y=15, width=330)
+
+    def show_design(self, design: SensorDesign) -> None:
+        """Name and family."""
+        text = f"**{html.escape(design.name)}** · {html.escape(design.family)}"
+        if self.title.content != text:
+            self.title.content = text
+
+    def show_stages(self, fresh: Mapping[str, bool], running: Mapping[str, Progress]) -> None:
+        """Which stages are done, stale or running."""
+        active = {progress.stage for progress in running.values()}
+        marks = {True: "✓", False: "○"}
+        text = " &nbsp;".join(
+            f"{name} {'▶' if stage in active else marks[fresh[stage]]}"
+            for stage, name in STRIP.items()
+        ).replace(" ✓", "&nbsp;✓")
+        if self.strip.content != text:
+            self.strip.content = text
+
+    def show_progress(self, running: Mapping[str, Progress]) -> None:
+        """The newest job; the live view is too quick to be worth a bar."""
+        shown = [progress for topic, progress in running.items() if topic != LIVE]
+        if self.job.visible != bool(shown):
+            self.job.visible = bool(shown)
+        if shown:
+            now = shown[-1]
+            self.progress.value = 100.0 * now.fraction
+            left = f"about {human_seconds(now.eta_s)} left" if now.eta_s is not None else ""
+            name = NAMES.get(now.stage, now.stage)
+            parts = (f"{name} {100 * now.fraction:.0f} %", left, now.note)
+            self.progress_text.content = " · ".join(part for part in parts if part)
+
+    def show_notice(self, notices: Mapping[str, str]) -> None:
+        """What builder and mesher had to change; nothing when they had to change nothing."""
+        text = "<br>".join(html.escape(notice) for notice in notices.values() if notice)
+        self.notice.visible = bool(text)
+        self.notice.content = f"<span style='color:{AMBER}'>**Note:** {text}</span>"

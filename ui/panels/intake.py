@@ -1,0 +1,166 @@
+"""A body of the designer's own: upload, unit, an optional inner body, and labels by clicking.
+
+A file is read on trial by the worker. Only one that can be read replaces the design, so a refused
+file leaves everything as it was, with the reason under the button. What the reader repaired or
+inferred stands in the note above the tabs.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+from typing import Any
+
+import viser
+
+from ui.desk import Desk
+from workbench.bodies import IMPORTED
+from workbench.conductor import Finished
+from workbench.core.design import SensorDesign
+from workbench.core.errors import DesignError
+from workbench.core.imported import BodyFile, ImportedBody, LengthUnit, Pick, body_file
+
+MAX_BYTES = 40 * 2**20
+"""Larger files do not pass the browser's connection; the command line takes them."""
+AIM = "nothing: a click aims"
+REGIONS = ("base", *(f"actuator_{i}" for i in range(4)))
+BODY = "design.body"
+
+
+class IntakeFolder:
+    """Widgets inside the folder of imported bodies."""
+
+    def __init__(self, desk: Desk) -> None:
+        self.desk = desk
+        self.trial: ImportedBody | None = None
+        """What was last uploaded, kept until it is read: another unit may make it readable."""
+        gui, fields = desk.server.gui, desk.fields
+        hint = "Of an STL; a STEP file says its own"
+        units = tuple(unit.value for unit in LengthUnit)
+        self.unit = gui.add_dropdown("File unit", units, hint=hint)
+        self.unit.on_update(desk.guarded(self._choose_unit))
+        fields.anchor("File unit", f"{BODY}.unit")
+        hint = "The sensing side as a closed body, at most 40 MB; replaces the design"
+        self.outer = gui.add_upload_button(
+            "Load outer body", mime_type=".stl,.step,.stp", icon=viser.Icon.UPLOAD, hint=hint
+        )
+        self.outer.on_upload(desk.guarded(self._load_outer))
+        fields.anchor("Load outer body", f"{BODY}.outer")
+        hint = "What hollows it, in the same coordinates; without it the wall is even"
+        self.inner = gui.add_upload_button(
+            "Load inner body", mime_type=".stl,.step,.stp", hint=hint, visible=False
+        )
+        self.inner.on_upload(desk.guarded(self._load_inner))
+        fields.anchor("Load inner body", f"{BODY}.inner")
+        self.drop = gui.add_button("Remove inner body", visible=False)
+        self.drop.on_click(desk.guarded(self._drop_inner))
+        hint = "A second click on a face takes the label back"
+        self.label = gui.add_dropdown("Clicks label", (AIM, *REGIONS), hint=hint, visible=False)
+        fields.anchor("Clicks label", f"{BODY}.picks")
+        self.said = gui.add_markdown("")
+        desk.pick = self._pick
+
+    @property
+    def body(self) -> ImportedBody | None:
+        """The body of the design, if it has one of its own."""
+        return self.desk.session.design.body
+
+    def _load_outer(self, event: Any) -> None:
+        file = self._received(self.outer, at="body.outer")
+        unit = LengthUnit(self.unit.value)
+        self._try(ImportedBody(outer=file, unit=unit))
+
+    def _load_inner(self, event: Any) -> None:
+        if self.body is not None:
+            file = self._received(self.inner, at="body.inner")
+            self._try(dataclasses.replace(self.body, inner=file))
+
+    def _drop_inner(self, event: Any) -> None:
+        if self.body is not None:
+            self._try(dataclasses.replace(self.body, inner=None))
+
+    def _choose_unit(self, event: Any) -> None:
+        body = self.trial or self.body
+        if event.client is not None and body is not None:
+            self._try(dataclasses.replace(body, unit=LengthUnit(self.unit.value)))
+
+    def _received(self, button: Any, *, at: str) -> BodyFile:
+        """The uploaded file.
+
+        Raises:
+            DesignError: If it is too large, or neither STL nor STEP.
+        """
+        name, content = Path(button.value.name).name, button.value.content
+        self.desk.reports.settle()
+        if len(content) > MAX_BYTES:
+            raise DesignError(
+                f"{name} has {len(content) / 2**20:.0f} MB, the browser takes "
+                f"{MAX_BYTES / 2**20:.0f} MB",
+                hint="reduce the mesh, or use workbench serve FILE",
+                at=at,
+            )
+        try:
+            return body_file(name, content)
+        except DesignError as error:
+            error.at = at
+            raise
+
+    def _try(self, body: ImportedBody) -> None:
+        """Have the worker read the files; the design follows once they are read."""
+        design, self.trial = self.desk.session.design, body
+        if design.family == IMPORTED:
+            candidate = dataclasses.replace(design, body=body)
+        else:
+            name = Path(body.outer.name).stem[:80] or IMPORTED
+            candidate = SensorDesign(name=name, family=IMPORTED, body=body)
+        self.desk.reports.settle()
+        self.said.content = f"reading {body.outer.name} ..."
+        self.desk.trial("import", candidate, "intake", self._read)
+
+    def _read(self, event: Finished) -> None:
+        self.said.content = ""
+        if event.error is not None:
+            self.desk.reports.report(event.error)
+            return
+        self.trial = None
+        session, design = self.desk.session, event.request.design
+        if session.design.family == IMPORTED:
+            session.change(BODY, design.body)
+        else:
+            session.replace_design(design)
+        self.desk.replaced()
+
+    def _pick(self, face: int) -> bool:
+        """Label the file's face under a click, or take its label back."""
+        solid, body = self.desk.scene.body.solid, self.body
+        if self.label.value == AIM or body is None or solid is None or not len(solid.patches):
+            return False
+        patch, region = int(solid.patches[face]), self.label.value
+        if patch >= 0:
+            kept = tuple(pick for pick in body.picks if pick.patch != patch)
+            again = Pick(patch=patch, region=region) in body.picks
+            new = () if again else (Pick(patch=patch, region=region),)
+            self.desk.edit(f"{BODY}.picks", (*kept, *new))
+            self.desk.log(f"face {patch}: {'no label' if again else region}")
+        return True
+
+    def refresh(self) -> None:
+        """Offer what the body allows."""
+        body = self.body
+        self.inner.visible = self.label.visible = body is not None
+        self.drop.visible = body is not None and body.inner is not None
+        if body is None:
+            self.label.value = AIM
+        elif self.unit.value != body.unit.value:
+            self.unit.value = body.unit.value
+        if self.trial is None:
+            self.said.content = "" if body is None else _summary(body)
+
+    def show(self, stage: str, result: Any) -> None:
+        """Nothing here follows results."""
+
+
+def _summary(body: ImportedBody) -> str:
+    inner = "even wall" if body.inner is None else f"inner {body.inner.name}"
+    picks = ", ".join(f"face {pick.patch} {pick.region}" for pick in body.picks)
+    return " · ".join(part for part in (f"outer {body.outer.name}", inner, picks) if part)

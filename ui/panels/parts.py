@@ -1,0 +1,118 @@
+"""The tree of parts: which are on show in the 3D view, and how far apart."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ui.desk import Desk
+from workbench.core.fabrication import FabricationPart, PartGroup
+
+TITLES = {PartGroup.MOULD: "Mould parts", PartGroup.SENSOR: "Sensor parts"}
+
+
+class PartsTree:
+    """One check box for each part, one for each group, one for all, and the exploded view."""
+
+    def __init__(self, desk: Desk) -> None:
+        self.desk = desk
+        gui = desk.server.gui
+        hint = "In place of the sensor"
+        self.view = gui.add_checkbox("Show parts", False, visible=False, hint=hint)
+        self.view.on_update(desk.guarded(lambda event: self._view()))
+        hint = "How far the parts stand apart, over the full way"
+        self.spread = gui.add_slider("Explode", 0.0, 1.0, 0.05, 1.0, visible=False, hint=hint)
+        self.spread.on_update(desk.guarded(lambda event: self._show()))
+        self.folder = gui.add_folder("Parts", visible=False)
+        self.boxes: dict[str, Any] = {}
+        self.groups: dict[PartGroup, Any] = {}
+        self.parts: tuple[FabricationPart, ...] = ()
+        self.closed: list[Any] = []
+
+    def offer(self, parts: tuple[FabricationPart, ...]) -> None:
+        """Take the parts of another design; those of the mould are ticked."""
+        shown = self.view.value
+        if not parts:
+            self.put_away()
+        self.parts = parts
+        for handle in self.closed:
+            handle.remove()
+        self.closed, self.boxes, self.groups = [], {}, {}
+        for handle in (self.view, self.spread, self.folder):
+            handle.visible = bool(parts)
+        for group, title in TITLES.items():
+            members = [part for part in parts if part.group is group]
+            if members:
+                self._add_group(group, title, members)
+        self.desk.scene.parts.load(parts)
+        if shown and parts:
+            self._show()
+
+    def _add_group(self, group: PartGroup, title: str, members: list[FabricationPart]) -> None:
+        gui, ticked = self.desk.server.gui, group is PartGroup.MOULD
+        with self.folder:
+            folder = gui.add_folder(title)
+        self.closed.append(folder)
+        with folder:
+            every = gui.add_checkbox(f"All {title.lower()}", ticked)
+            every.on_update(self.desk.guarded(lambda event: self._tick_group(group, event)))
+            self.groups[group] = every
+            for part in members:
+                box = gui.add_checkbox(part.name, ticked, hint=part.process)
+                box.on_update(self.desk.guarded(self._ticked))
+                self.boxes[part.name] = box
+
+    def _tick_group(self, group: PartGroup, event: Any) -> None:
+        if event.client is not None:
+            for part in self.parts:
+                if part.group is group:
+                    self.boxes[part.name].value = self.groups[group].value
+            self._bring_or_show()
+
+    def _ticked(self, event: Any) -> None:
+        if event.client is not None:
+            self._bring_or_show()
+
+    def _bring_or_show(self) -> None:
+        if self.view.value:
+            self._show()
+        else:
+            self.bring_out()
+
+    def reveal(self, name: str) -> None:
+        """Make sure that a part is on show; without one of that name, the sensor itself."""
+        if name not in self.boxes:
+            self.put_away()
+            return
+        self.boxes[name].value = True
+        self._bring_or_show()
+
+    def bring_out(self) -> None:
+        """Show the ticked parts in place of the sensor."""
+        if self.view.value:
+            self._show()
+        else:
+            self.view.value = True
+
+    def put_away(self) -> None:
+        """Show the sensor again."""
+        if self.view.value:
+            self.view.value = False
+
+    def _view(self) -> None:
+        scene = self.desk.scene
+        scene.clear_cell()
+        if self.view.value and self.parts:
+            scene.show_sensor(False)
+            self._show()
+            if scene.parts.shown:
+                scene.views.step_back(*scene.parts.bounds_mm())
+        else:
+            scene.parts.show(set(), self.spread.value)
+            scene.show_sensor(True)
+            scene.views.step_forward()
+
+    def _show(self) -> None:
+        if self.view.value:
+            self.desk.scene.clear_cell()
+            ticked = {name for name, box in self.boxes.items() if box.value}
+            self.desk.scene.parts.show(ticked, self.spread.value)

@@ -1,0 +1,72 @@
+"""Printable parts in the 3D view: one mesh each, shown or hidden, moved apart."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ui.nodes import Meshes
+from workbench.core.fabrication import FabricationPart, PartGroup
+
+MOULD_COLOURS = ((122, 162, 214), (146, 186, 160), (214, 182, 112), (180, 150, 200))
+SENSOR_COLOURS = ((150, 150, 156), (205, 140, 120), (120, 190, 200), (200, 190, 150))
+
+
+class PartsView:
+    """Nodes of all parts of a design."""
+
+    def __init__(self, server: Any) -> None:
+        self.server = server
+        self.meshes = Meshes(server.scene, "/parts")
+        self.parts: dict[str, FabricationPart] = {}
+        self.shown: set[str] = set()
+        self.spread = 1.0
+
+    def load(self, parts: tuple[FabricationPart, ...]) -> None:
+        """Take the parts of another design; none of them is on show yet."""
+        self.clear()
+        self.parts = {part.name: part for part in parts}
+
+    def show(self, names: set[str], spread: float) -> None:
+        """Show these parts, moved apart by `spread` in [0, 1]."""
+        self.shown, self.spread = names & set(self.parts), spread
+        with self.server.atomic():
+            # Meshes travel when they are first asked for: a housing nobody looks at costs nothing.
+            for name in self.shown - set(self.meshes.nodes):
+                part = self.parts[name]
+                looks = {"color": self._colour(name), "flat_shading": True}
+                self.meshes.put(name, part.points_mm, part.faces, looks)
+            for name, node in self.meshes.nodes.items():
+                node.position = self.moved(name, (0.0, 0.0, 0.0))
+                node.visible = name in self.shown
+
+    def clear(self) -> None:
+        """Take every part away."""
+        self.meshes.keep(())
+        self.parts.clear()
+        self.shown = set()
+
+    def moved(self, name: str, place_mm: tuple[float, float, float]) -> tuple[float, float, float]:
+        """Where a place of a part stands at the present spread [mm]."""
+        part = self.parts.get(name)
+        if part is None:
+            return place_mm
+        x, y, z = np.asarray(place_mm) + self.spread * np.asarray(part.explode)
+        return float(x), float(y), float(z)
+
+    def bounds_mm(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lowest and highest corner of the parts on show [mm]."""
+        corners = [
+            np.asarray(self.moved(name, tuple(side)))
+            for name in self.shown
+            for points in (np.asarray(self.parts[name].points_mm),)
+            for side in (points.min(axis=0), points.max(axis=0))
+        ]
+        return np.min(corners, axis=0), np.max(corners, axis=0)
+
+    def _colour(self, name: str) -> tuple[int, int, int]:
+        group = self.parts[name].group
+        colours = MOULD_COLOURS if group is PartGroup.MOULD else SENSOR_COLOURS
+        names = [n for n, part in self.parts.items() if part.group is group]
+        return colours[names.index(name) % len(colours)]

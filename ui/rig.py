@@ -1,0 +1,70 @@
+"""LEDs and camera in the 3D view."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from workbench.core.design import Camera, LedRing, LensModel
+
+FRUSTUM_MM = 5.0
+WIDEST_DEG = 150.0
+"""A fisheye is drawn at most so wide."""
+LENS_COLOURS = {LensModel.PINHOLE: (255, 200, 0), LensModel.EQUIDISTANT: (255, 150, 0)}
+
+
+class RigView:
+    """Nodes of one ring and one camera."""
+
+    def __init__(self, server: Any) -> None:
+        self.server = server
+        self.api = server.scene
+        self.leds: list[Any] = []
+        self.camera: Any = None
+
+    def show_lights(self, ring: LedRing) -> None:
+        """Show the LEDs of a ring in their colours."""
+        azimuth = np.radians(ring.phase_deg + 360.0 * np.arange(ring.count) / ring.count)
+        with self.server.atomic():
+            while len(self.leds) > ring.count:
+                self.leds.pop().remove()
+            for i, angle in enumerate(azimuth):
+                place = (
+                    ring.radius_mm * math.cos(angle),
+                    ring.radius_mm * math.sin(angle),
+                    ring.height_mm,
+                )
+                text = ring.colours[i * len(ring.colours) // ring.count]
+                colour = tuple(int(text[k : k + 2], 16) for k in (1, 3, 5))
+                if i == len(self.leds):
+                    led = self.api.add_icosphere(f"/leds/{i}", radius=0.7, subdivisions=2)
+                    self.leds.append(led)
+                self.leds[i].position = place
+                self.leds[i].color = colour
+
+    def show_camera(self, camera: Camera, image: np.ndarray | None = None) -> None:
+        """Show the camera as a frustum, with what it sees where that is given."""
+        across = math.radians(min(camera.fov_x_deg, WIDEST_DEG))
+        high = 2 * math.atan(math.tan(across / 2) * camera.height_px / camera.width_px)
+        aspect = camera.width_px / camera.height_px
+        colour = LENS_COLOURS[camera.lens]
+        if self.camera is None:
+            self.camera = self.api.add_camera_frustum(
+                "/camera", fov=high, aspect=aspect, scale=FRUSTUM_MM, color=colour
+            )
+        with self.server.atomic():
+            self.camera.fov = high
+            self.camera.aspect = aspect
+            self.camera.position = camera.position_mm
+            self.camera.wxyz = camera.wxyz
+            self.camera.color = colour
+            if image is not None:
+                self.camera.image = image
+
+    def show(self, visible: bool) -> None:
+        """Show or hide LEDs and camera."""
+        for node in (self.camera, *self.leds):
+            if node is not None:
+                node.visible = visible

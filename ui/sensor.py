@@ -1,0 +1,128 @@
+"""The body of a sensor in the 3D view: skin by region, pins, clear support, foot.
+
+The skin is translucent, so that support, pins, LEDs and camera show through. Driven regions have
+the tint of their actuator; faces that the designer took out of the sensing side are grey.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from ui.nodes import Meshes
+from workbench.core.results import Label, Solid
+from workbench.previews import corner_normals, first_hit, outer_faces, skin_parts
+
+SKIN_COLOUR = (196, 206, 220)
+ACTUATOR_COLOURS = ((240, 150, 70), (90, 175, 240), (170, 120, 230), (120, 200, 110))
+SKIN = {"color": SKIN_COLOUR, "opacity": 0.55}
+UNSENSED = {"color": (90, 90, 96), "opacity": 0.8}
+PINS = {"color": (60, 64, 72), "flat_shading": False}
+SUPPORT = {"color": (150, 205, 235), "opacity": 0.22, "cast_shadow": False}
+FOOT = {"color": (92, 98, 108), "flat_shading": True}
+TIP_COLOUR = (245, 245, 245)
+
+
+class SensorView:
+    """Nodes of one body."""
+
+    def __init__(self, api: Any, on_click: Callable[[Any], None]) -> None:
+        self.api = api
+        self.skin = Meshes(api, "/sensor/skin", on_click)
+        self.inside = Meshes(api, "/sensor/inside")
+        self.rigid = Meshes(api, "/sensor/rigid")
+        self.tips: Any = None
+        self.points = np.zeros((0, 3))
+        """Vertices of the sensing side [mm], shape (N, 3)."""
+        self.normals = np.zeros((0, 3))
+        self.solid: Solid | None = None
+
+    def show_solid(self, solid: Solid) -> None:
+        """Show a body in place of the one before."""
+        self.solid = solid
+        self.points, faces = outer_faces(solid.membrane)
+        self.normals = corner_normals(self.points, faces)
+        parts = skin_parts(solid.membrane)
+        pins = parts.pop("pins", None)
+        for name, (points, triangles) in parts.items():
+            self.skin.put(name, points, triangles, _looks(name))
+        self.skin.keep(parts)
+        if pins is not None:
+            self.inside.put("pins", *pins, PINS)
+        self.inside.keep(() if pins is None else ("pins",))
+        self.rigid.put("support", solid.support.points_mm, solid.support.faces, SUPPORT)
+        self.rigid.put("foot", solid.base.points_mm, solid.base.faces, FOOT)
+        self._show_tips(solid)
+        self.show(True)
+
+    def _show_tips(self, solid: Solid) -> None:
+        if self.tips is not None:
+            self.tips.remove()
+            self.tips = None
+        count = len(solid.tips_mm)
+        if count:
+            points, faces = ball(solid.tip_radius_mm)
+            self.tips = self.api.add_batched_meshes_simple(
+                "/sensor/tips",
+                points,
+                faces,
+                batched_wxyzs=np.tile(np.array([1.0, 0.0, 0.0, 0.0]), (count, 1)),
+                batched_positions=np.asarray(solid.tips_mm),
+                batched_colors=TIP_COLOUR,
+            )
+
+    def show(self, visible: bool) -> None:
+        """Show or hide all of it."""
+        self.show_skin(visible)
+        self.rigid.show(visible)
+
+    def show_skin(self, visible: bool) -> None:
+        """Show or hide what the coloured skin of a press takes the place of."""
+        self.skin.show(visible)
+        self.inside.show(visible)
+        if self.tips is not None:
+            self.tips.visible = visible
+
+    def hit(self, origin: np.ndarray, direction: np.ndarray) -> tuple[int, np.ndarray] | None:
+        """Membrane triangle and point [mm] that a click ray meets first on the skin, or None."""
+        if self.solid is None:
+            return None
+        membrane = self.solid.membrane
+        # Faces taken out of the sensing side stay clickable, to be taken in again.
+        clickable = np.flatnonzero(
+            membrane.has(Label.OUTER)
+            | ((self.solid.patches >= 0) if len(self.solid.patches) else False)
+        )
+        found = first_hit(membrane.points_mm, membrane.faces[clickable], origin, direction)
+        return None if found is None else (int(clickable[found[0]]), found[1])
+
+    def nearest(self, target_mm: tuple[float, float, float]) -> tuple[np.ndarray, float]:
+        """The skin vertex nearest to a point and its distance [mm]."""
+        distance = np.linalg.norm(self.points - np.asarray(target_mm), axis=1)
+        best = int(np.argmin(distance))
+        return self.points[best], float(distance[best])
+
+    @property
+    def bounds_mm(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lowest and highest corner of skin and foot [mm]; of the origin without a body."""
+        if self.solid is None:
+            return np.zeros(3), np.zeros(3)
+        points = np.concatenate([self.points, np.asarray(self.solid.base.points_mm)])
+        return points.min(axis=0), points.max(axis=0)
+
+
+def _looks(name: str) -> dict[str, Any]:
+    kind, _, number = name.partition("_")
+    if kind == "actuator":
+        return {**SKIN, "color": ACTUATOR_COLOURS[int(number) % len(ACTUATOR_COLOURS)]}
+    return UNSENSED if kind == "unsensed" else SKIN
+
+
+def ball(radius_mm: float) -> tuple[np.ndarray, np.ndarray]:
+    """A small sphere: vertices (N, 3) and triangles (M, 3)."""
+    import trimesh
+
+    mesh = trimesh.creation.icosphere(subdivisions=2, radius=radius_mm)
+    return np.asarray(mesh.vertices, np.float32), np.asarray(mesh.faces, np.uint32)

@@ -1,0 +1,114 @@
+"""Where the tabs look from: frames a body, flies to a place and marks it, and comes back."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+FOV_RAD = 0.6
+"""Vertical angle of view of every tab [rad]."""
+AWAY = np.array([0.74, 0.55, 0.39])
+"""Unit direction from which a body is seen first."""
+SIDE = np.array([0.51, -0.77, 0.38])
+"""Unit direction from which parts are seen that stand apart along X and Z."""
+FILLED = 0.9
+"""Share of the view that the diagonal of a framed box takes."""
+USUAL_ASPECT = 0.78
+"""Width over height of the view between the docks, for tabs that have not told theirs."""
+TILT = np.array([0.2, -0.3, 0.35])
+"""Added to a surface normal before looking along it: never straight down the turntable's axis."""
+MARK_SHARE = 0.012
+"""Radius of a mark over the eye's distance from it."""
+POINTER_SHARE = 0.12
+"""Length of the pointer that stands on a mark over the eye's distance from it."""
+MARK_COLOUR = (255, 45, 85)
+
+
+class Views:
+    """Cameras of all tabs of one server."""
+
+    def __init__(self, server: Any) -> None:
+        self.server = server
+        self._before: dict[int, tuple[Any, Any]] = {}
+        self._mark: list[Any] = []
+        server.initial_camera.fov = FOV_RAD
+
+    def frame(self, low_mm: np.ndarray, high_mm: np.ndarray) -> None:
+        """Look at a box from the front, in tabs that are open and those that come."""
+        centre = (low_mm + high_mm) / 2
+        size_mm = float(np.linalg.norm(high_mm - low_mm))
+        self.server.initial_camera.position = tuple(centre + _distance_mm(size_mm) * AWAY)
+        self.server.initial_camera.look_at = tuple(centre)
+        self._before.clear()
+        self._fit(centre, size_mm, AWAY)
+
+    def step_back(self, low_mm: np.ndarray, high_mm: np.ndarray) -> None:
+        """Look at another box for a while; remembers where each tab was."""
+        for number, client in self.server.get_clients().items():
+            self._before.setdefault(number, (client.camera.position, client.camera.look_at))
+        centre = (low_mm + high_mm) / 2
+        self._fit(centre, float(np.linalg.norm(high_mm - low_mm)), SIDE)
+
+    def step_forward(self) -> None:
+        """Give every tab its place before `step_back` again."""
+        for number, client in self.server.get_clients().items():
+            if number in self._before:
+                with client.atomic():
+                    client.camera.position, client.camera.look_at = self._before.pop(number)
+
+    def fly_to(
+        self, place_mm: Sequence[float], normal: np.ndarray, distance_mm: float, text: str
+    ) -> None:
+        """Look at a place along its surface normal and mark it.
+
+        Args:
+            place_mm: The place [mm].
+            normal: Outward unit normal of the surface there.
+            distance_mm: From the eye to the place.
+            text: Label of the mark.
+        """
+        place = np.asarray(place_mm, dtype=float)
+        toward = np.asarray(normal) + TILT
+        toward /= max(float(np.linalg.norm(toward)), 1e-9)
+        self._put_mark(place, place + POINTER_SHARE * distance_mm * np.asarray(normal), text)
+        for client in self.server.get_clients().values():
+            with client.atomic():
+                client.camera.position = place + distance_mm * toward
+                client.camera.look_at = place
+
+    def _put_mark(self, place: np.ndarray, top: np.ndarray, text: str) -> None:
+        """A ball at the place, a pointer that stands on it, and the text at its top."""
+        self.unmark()
+        api, radius = self.server.scene, float(np.linalg.norm(top - place))
+        radius *= MARK_SHARE / POINTER_SHARE
+        self._mark = [
+            api.add_icosphere("/mark/ball", radius=radius, color=MARK_COLOUR, position=place),
+            api.add_line_segments(
+                "/mark/pointer",
+                np.array([[place, top]], dtype=np.float32),
+                colors=MARK_COLOUR,
+                line_width=4.0,
+            ),
+            api.add_label("/mark/text", text, position=top, anchor="bottom-center"),
+        ]
+
+    def unmark(self) -> None:
+        """Take the mark away."""
+        for node in self._mark:
+            node.remove()
+        self._mark.clear()
+
+    def _fit(self, centre: np.ndarray, size_mm: float, away: np.ndarray) -> None:
+        """Look at a ball from the side `away`, as near as it fits each tab's view."""
+        for client in self.server.get_clients().values():
+            distance_mm = _distance_mm(size_mm, client.camera.aspect)
+            with client.atomic():
+                client.camera.position = centre + distance_mm * away
+                client.camera.look_at = centre
+
+
+def _distance_mm(size_mm: float, aspect: float = USUAL_ASPECT) -> float:
+    """From the eye to a ball that takes `FILLED` of the narrower side of the view [mm]."""
+    return size_mm / (2 * np.tan(FOV_RAD / 2) * min(1.0, aspect) * FILLED)
