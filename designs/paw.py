@@ -49,7 +49,7 @@ from designs.bodies import Bodies, Fields
 from designs.prisms import elliptic_foot, rounded_prism
 from designs.shells import hollow
 from designs.sliders import slider
-from workbench.core.booleans import expect_volume, fuse
+from workbench.core.booleans import expect_volume, fuse, volume
 from workbench.core.design import Layers
 from workbench.core.errors import DesignError, GeometryError
 from workbench.core.marks import Field
@@ -237,7 +237,7 @@ class Paw:
         self.check(shape, layers)
         both_mm = layers.elastomer_mm + layers.support_mm
         outer = _prism(shape, 0.0, what="body")
-        expected_mm3 = outer.volume + pads_mm3(shape)
+        expected_mm3 = volume(outer) + pads_mm3(shape)
         outer = fuse(outer, _pads(shape), what="pads")
         expect_volume(outer, expected_mm3, what="pads", relative=PAD_LIMIT)
         _expect_pads(outer, shape)

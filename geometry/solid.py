@@ -17,6 +17,7 @@ import numpy as np
 
 from geometry.regions import mark_regions
 from geometry.surface import face_areas, mesh_volume, open_edges
+from workbench.core.booleans import volume
 from workbench.core.errors import GeometryError, MeshingError
 from workbench.core.marks import NO_MARKS, Marks
 from workbench.core.results import Label, LabelledSurface, Solid
@@ -76,7 +77,7 @@ def assemble(
         membrane_brep=brep_bytes(membrane),
         support_brep=brep_bytes(support),
         base_brep=brep_bytes(base),
-        volume_mm3=float(membrane.volume),
+        volume_mm3=volume(membrane),
         tips_mm=np.asarray(marks.tips_mm, dtype=np.float64).reshape(-1, 3),
         tip_radius_mm=marks.tip_radius_mm,
         backing_mm=marks.backing_mm,

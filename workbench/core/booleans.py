@@ -120,9 +120,17 @@ def volume(body: Any) -> float:
     """Volume of a body or of a list of bodies [mm3]; 0 for None, which OCCT returns for empty."""
     if body is None:
         return 0.0
-    # Asked for once: the kernel integrates anew every time, for up to 50 ms.
+    # The kernel integrates anew every time, for up to 50 ms: kept with the shape it belongs to.
+    kept = getattr(body, "_kept_volume", None)
+    if kept is not None and kept[0] is body.wrapped:
+        return kept[1]
     found_mm3 = getattr(body, "volume", None)
-    return sum(volume(item) for item in body) if found_mm3 is None else float(found_mm3)
+    if found_mm3 is None:
+        return sum(volume(item) for item in body)
+    # An empty body refuses to show its shape.
+    if found_mm3 and hasattr(body, "wrapped"):
+        body._kept_volume = (body.wrapped, float(found_mm3))
+    return float(found_mm3)
 
 
 def _slack(size_mm3: float) -> float:

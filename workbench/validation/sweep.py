@@ -36,6 +36,9 @@ SURFACE_LIMIT = 0.003
 FIELD_LIMIT = 0.03
 FINE_MM = 0.6
 """Grid of the reference integral [mm]: good to about 0.5 % of a 1 mm wall."""
+FINEST_MM = 0.3
+"""The same where it stands in for the kernel's volume [mm]: within 0.04 % of a grid of 0.15 mm on
+16 random sensors."""
 SIZE_LIMIT_MM = 1.0
 WITHOUT_SHAPE = frozenset({"imported"})
 """Families whose body comes from a file, not from parameters."""
@@ -63,7 +66,7 @@ class Finding:
     distance: bool = False
     """Built by signed distance."""
     surface_error: float = 0.0
-    """Of the triangles' volume, relative to the kernel's."""
+    """Of the triangles' volume, relative to the kernel's, else to the finest integral."""
     field_error: float = 0.0
     """Of the triangles' volume, relative to the fields' integral."""
     size_error_mm: float = 0.0
@@ -139,8 +142,9 @@ def _measured(trial: Trial, solid: Solid, fields: Any, seconds: float) -> Findin
     points, faces = solid.membrane.points_mm, solid.membrane.faces
     volume_mm3 = mesh_volume(points, faces)
     distance = solid.method is BodyMethod.SIGNED_DISTANCE
-    reference_mm3 = coarse_volume_mm3(fields, FINE_MM)
-    surface = abs(volume_mm3 / solid.volume_mm3 - 1.0)
+    reference_mm3 = coarse_volume_mm3(fields, FINEST_MM if distance else FINE_MM)
+    # Without a kernel's volume to compare with, the finer integral stands in for it.
+    surface = abs(volume_mm3 / (reference_mm3 if distance else solid.volume_mm3) - 1.0)
     field = abs(volume_mm3 / reference_mm3 - 1.0)
     high, low = points.max(axis=0), points.min(axis=0)
     size_mm = float(
@@ -150,7 +154,7 @@ def _measured(trial: Trial, solid: Solid, fields: Any, seconds: float) -> Findin
         f"{open_edges(faces)} open edges": open_edges(faces) > 0,
         f"{body_count(faces)} pieces": body_count(faces) != 1,
         f"volume {volume_mm3:.4g} mm3": volume_mm3 <= 0.0,
-        f"surface off the kernel's volume by {surface:.2%}": surface > SURFACE_LIMIT,
+        f"surface off its reference volume by {surface:.2%}": surface > SURFACE_LIMIT,
         f"volume off the fields' by {field:.2%}": field > FIELD_LIMIT,
         f"size off by {size_mm:.2g} mm": size_mm > SIZE_LIMIT_MM,
     }
@@ -190,11 +194,12 @@ def sweep_row(name: str, run: Callable[[], list[Finding]]) -> Row:
     except WorkbenchError as error:
         return failed(f"sweep_{name}", "random sets", why=error.message)
     faults = [finding.fault for finding in found if finding.fault]
+    surface, field = (max(getattr(f, f"{of}_error") for f in found) for of in ("surface", "field"))
     case = (
         f"{len(found)} random sets, {sum(f.trial.refused for f in found)} more refused, "
         f"{sum(f.softened for f in found)} softened, "
-        f"{sum(f.distance for f in found)} by signed distance, volume off the fields' by at most "
-        f"{max(f.field_error for f in found):.2%}"
+        f"{sum(f.distance for f in found)} by signed distance; volume off the kernel's by at most "
+        f"{surface:.2%}, off the fields' by {field:.2%}"
     )
     if faults:
         case += f"; the first failure: {faults[0]}"
