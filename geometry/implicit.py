@@ -23,6 +23,7 @@ from typing import Any
 
 import numpy as np
 
+from geometry.isosurface import isosurface
 from geometry.regions import mark_regions
 from geometry.solid import (
     COARSE_ANGLE_RAD,
@@ -114,10 +115,12 @@ def between(
         above = np.column_stack([points_mm[:, :2], np.maximum(points_mm[:, 2], 0.0)])
         return np.maximum(outer(above), -core(above))
 
-    points, faces = _zero_set(*sampled(wall, box_mm, step_mm), step_mm)
-    closed = Manifold(Mesh64(points, faces.astype(np.uint64)))
+    found = isosurface(*sampled(wall, box_mm, step_mm), step_mm)
+    if found is None:
+        raise _unusable(what, "is empty")
+    closed = Manifold(Mesh64(found[0], found[1].astype(np.uint64)))
     if closed.is_empty():
-        raise _unusable(what, f"is empty or not closed ({closed.status().name})")
+        raise _unusable(what, f"is not closed ({closed.status().name})")
     cut = closed.trim_by_plane((0.0, 0.0, 1.0), 0.0).to_mesh64()
     # Copies: the views into the kernel are read-only.
     points = np.array(cut.vert_properties[:, :3], order="C")
@@ -163,23 +166,6 @@ def sampled(
         edge = np.moveaxis(grid, axis, 0)
         edge[[0, -1]] = np.maximum(edge[[0, -1]], step_mm)
     return grid, low
-
-
-def _zero_set(
-    grid: np.ndarray, low_mm: np.ndarray, step_mm: float
-) -> tuple[np.ndarray, np.ndarray]:
-    """Vertices and outward triangles where a grid of values passes through 0."""
-    from pyvista import ImageData
-
-    image = ImageData(dimensions=grid.shape, spacing=(step_mm,) * 3, origin=low_mm)
-    image.point_data["distance"] = grid.ravel(order="F")
-    surface = image.contour([0.0], scalars="distance", method="flying_edges", compute_normals=False)
-    faces = surface.regular_faces if surface.n_cells else np.zeros((0, 3), dtype=np.int64)
-    points = np.asarray(surface.points, dtype=np.float64)
-    # Towards larger values is outward; which way VTK turns its triangles is not documented.
-    if len(faces) and mesh_volume(points, faces) < 0.0:
-        faces = faces[:, ::-1]
-    return points, np.ascontiguousarray(faces)
 
 
 def _unusable(what: str, why: str) -> MeshingError:

@@ -33,7 +33,7 @@ def distance_mm(points_mm: np.ndarray, faces: np.ndarray, places_mm: np.ndarray)
 
 
 def isosurface(
-    values: np.ndarray, low_mm: Sequence[float], step_mm: float
+    values: np.ndarray, low_mm: Sequence[float] | np.ndarray, step_mm: float
 ) -> tuple[np.ndarray, np.ndarray] | None:
     """Closed triangles around the samples that are negative.
 
@@ -56,6 +56,7 @@ def isosurface(
     found = grid.contour([0.0], scalars="value", method="flying_edges", compute_normals=False)
     points = np.asarray(low_mm) + step_mm * np.asarray(found.points, dtype=np.float64)
     faces = found.regular_faces.astype(np.int32)
+    # Towards larger values is outward; which way VTK turns its triangles is not documented.
     if mesh_volume(points, faces) < 0.0:
         faces = faces[:, ::-1].copy()
     return points, faces
