@@ -237,7 +237,7 @@ def write_all(
     Raises:
         StoreError: If the folder cannot be written.
     """
-    from workbench.report import displacement_png, report_html
+    from workbench.report import drawings, report_html
 
     load = results(store, calls, calls)
     summary = summary_table(design, path, store, calls, outcomes)
@@ -247,10 +247,8 @@ def write_all(
     write_vtk(out, load["build"], load["mesh"], contact=load["press"], depth_mm=depths_mm)
     write_package(out, load["package"])
     summary |= fabrication_tables(load["mould"], load["housing"], load["recipe"])
-    pressed_png = displacement_png(load["mesh"], load["press"])
-    html = report_html(
-        design, path, summary, load["shoot"], load["press"], load.get("picture"), pressed_png
-    )
+    drawn = drawings(load["build"], load["mesh"], load["press"], load.get("picture"))
+    html = report_html(design, path, summary, load["shoot"], load["press"], drawn)
     write_atomically(out / "report.html", html.encode())
     write_atomically(out / "summary.json", json.dumps(summary, indent=1).encode())
     return summary

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import html
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from workbench.core.design import SensorDesign
 from workbench.core.errors import DeviceError
 from workbench.core.mapping import to_table
 from workbench.core.press import Press
-from workbench.core.results import Contact, MembraneMesh, Picture, Shot, Skin
+from workbench.core.results import Contact, MembraneMesh, Picture, Shot, Skin, Solid
 from workbench.outputs import png_bytes
 from workbench.project import design_table
 
@@ -33,21 +34,26 @@ td.n{text-align:right;font-variant-numeric:tabular-nums}
 """
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Drawings:
+    """PNG files drawn for the report; None where nothing can render."""
+
+    membrane: bytes | None
+    pressed: bytes | None
+    """Displacement on the pressed membrane."""
+    parts: bytes | None
+    """Exploded view of mould and sensor."""
+
+
 def report_html(
     design: SensorDesign,
     path: Press,
     summary: Mapping[str, Any],
     shot: Shot,
     contact: Contact,
-    picture: Picture | None,
-    pressed_png: bytes | None,
+    drawings: Drawings,
 ) -> str:
-    """The report as one page without outside links.
-
-    Args:
-        picture: Exploded view, None where nothing renders.
-        pressed_png: Displacement on the pressed membrane, None likewise.
-    """
+    """The report as one page without outside links."""
     force = summary["contact"]
     title = html.escape(f"{design.name} ({design.family})")
     pressed = (
@@ -61,14 +67,15 @@ def report_html(
         f"<h1>{title}</h1><p>{pressed}</p>",
         "<h2>Tactile image</h2>" + _images(shot),
         "<h2>Force against depth</h2>" + _force_curve(path, contact),
-        "<h2>Displacement</h2>" + _drawn(pressed_png, "Outer skin in the last frame"),
+        "<h2>Displacement</h2>" + _drawn(drawings.pressed, "Outer skin in the last frame"),
         "<h2>Score card</h2>" + _table(sorted(summary["metrics"].items())),
-        "<h2>Mould and sensor</h2>" + _drawn(picture and picture.png.tobytes(), EXPLODED),
+        "<h2>Mould and sensor</h2>" + _drawn(drawings.parts, EXPLODED),
         _table(
             (m["file"], f"{m['volume_mm3']:.0f} mm3, {'closed' if m['watertight'] else 'OPEN'}")
             for m in summary["moulds"]
         ),
-        "<h2>Design</h2>" + _table(_flat(design_table(design))),
+        "<h2>Design</h2>" + _drawn(drawings.membrane, "Membrane", width=310),
+        _table(_flat(design_table(design))),
         "<h2>Press</h2>" + _table(_flat(to_table(path))),
         "<h2>Stages</h2>"
         + _table(
@@ -104,12 +111,26 @@ def _figure(png: bytes, caption: str, *, width: int = 640) -> str:
     )
 
 
-def _drawn(png: bytes | None, caption: str) -> str:
-    return NO_RENDERER if png is None else _figure(png, caption)
+def _drawn(png: bytes | None, caption: str, *, width: int = 640) -> str:
+    return NO_RENDERER if png is None else _figure(png, caption, width=width)
 
 
-def displacement_png(mesh: MembraneMesh, contact: Contact) -> bytes | None:
-    """The pressed membrane coloured by how far its skin moved, or None where nothing renders.
+def drawings(
+    solid: Solid, mesh: MembraneMesh, contact: Contact, picture: Picture | None
+) -> Drawings:
+    """Everything drawn for a report; the exploded view comes from its own stage."""
+    from geometry.pictures import thumbnail
+
+    parts = None if picture is None else picture.png.tobytes()
+    try:
+        membrane = thumbnail(solid).tobytes()
+        return Drawings(membrane=membrane, pressed=_displacement_png(mesh, contact), parts=parts)
+    except DeviceError:
+        return Drawings(membrane=None, pressed=None, parts=parts)
+
+
+def _displacement_png(mesh: MembraneMesh, contact: Contact) -> bytes:
+    """The pressed membrane coloured by how far its skin moved.
 
     Seen from 35 degrees beside the outward normal at the target.
     """
@@ -121,10 +142,7 @@ def displacement_png(mesh: MembraneMesh, contact: Contact) -> bytes | None:
     beside = np.cross(contact.normal, contact.tangent_u)
     eye = contact.normal + 0.5 * contact.tangent_u + 0.5 * beside
     values = np.linalg.norm(moved_mm, axis=1)
-    try:
-        return skin_field(pressed, values, "displacement [mm]", eye=eye).tobytes()
-    except DeviceError:
-        return None
+    return skin_field(pressed, values, "displacement [mm]", eye=eye).tobytes()
 
 
 def _force_curve(path: Press, contact: Contact) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import itertools
 from typing import Any
 
@@ -185,22 +184,13 @@ def test_no_renderer_is_a_device_error(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_report_goes_without_pictures_where_nothing_renders(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """None instead of a picture, and the page says why."""
+    """Neither membrane nor displacement is drawn, and the page says why."""
 
-    def missing(*_: Any, **__: Any) -> np.ndarray:
+    def missing() -> str:
         raise DeviceError("no off-screen renderer works here", hint="install libegl1")
 
-    monkeypatch.setattr(pictures, "skin_field", missing)
-    ball, triangles = sphere(3.0)
-    skin = Skin(points_mm=ball, faces=triangles, normals=vertex_normals(ball, triangles))
-
-    @dataclasses.dataclass
-    class Pressed:
-        outer: Skin
-        displacement_mm: np.ndarray
-        normal: np.ndarray
-        tangent_u: np.ndarray
-
-    press: Any = Pressed(skin, np.zeros((1, len(ball), 3)), np.eye(3)[2], np.eye(3)[0])
-    assert report.displacement_png(press, press) is None
-    assert "no off-screen renderer" in report._drawn(None, "caption")
+    monkeypatch.setattr(rendering, "_window", missing)
+    unread: Any = None
+    drawn = report.drawings(solid(), unread, unread, None)
+    assert (drawn.membrane, drawn.pressed, drawn.parts) == (None, None, None)
+    assert "no off-screen renderer" in report._drawn(drawn.pressed, "caption")
