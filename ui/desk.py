@@ -31,7 +31,10 @@ AUTOSAVE_S = 1.0
 """Quiet time after an edit before the design is written [s]."""
 AIM_LIMIT_MM = 4.0
 """Distance from target to skin at which the target follows; the solver refuses beyond 5 mm."""
-SHOWN = ("build", "mesh", "press", "shoot", "quality", "tets", "mould", "housing", "recipe")
+SHOWN = (
+    *("build", "mesh", "press", "shoot", "quality", "tets"),
+    *("mould", "housing", "recipe", "package"),
+)
 """Stages whose stored results are shown without asking."""
 
 

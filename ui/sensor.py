@@ -20,7 +20,7 @@ ACTUATOR_COLOURS = ((240, 150, 70), (90, 175, 240), (170, 120, 230), (120, 200, 
 SKIN = {"color": SKIN_COLOUR, "opacity": 0.55}
 UNSENSED = {"color": (90, 90, 96), "opacity": 0.8}
 PINS = {"color": (60, 64, 72), "flat_shading": False}
-SUPPORT = {"color": (150, 205, 235), "opacity": 0.22, "cast_shadow": False}
+SUPPORT = {"color": (150, 205, 235), "opacity": 0.16, "cast_shadow": False}
 FOOT = {"color": (92, 98, 108), "flat_shading": True}
 TIP_COLOUR = (245, 245, 245)
 
@@ -52,7 +52,9 @@ class SensorView:
         if pins is not None:
             self.inside.put("pins", *pins, PINS)
         self.inside.keep(() if pins is None else ("pins",))
-        self.rigid.put("support", solid.support.points_mm, solid.support.faces, SUPPORT)
+        # Where the support stands on the foot, only one of both is drawn: they would flicker.
+        clear = solid.support.faces[~solid.support.has(Label.BASE)]
+        self.rigid.put("support", solid.support.points_mm, clear, SUPPORT)
         self.rigid.put("foot", solid.base.points_mm, solid.base.faces, FOOT)
         self._show_tips(solid)
         self.show(True)

@@ -59,7 +59,13 @@ class Views:
                     client.camera.position, client.camera.look_at = self._before.pop(number)
 
     def fly_to(
-        self, place_mm: Sequence[float], normal: np.ndarray, distance_mm: float, text: str
+        self,
+        place_mm: Sequence[float],
+        normal: np.ndarray,
+        distance_mm: float,
+        text: str,
+        *,
+        ball: bool = True,
     ) -> None:
         """Look at a place along its surface normal and mark it.
 
@@ -68,23 +74,24 @@ class Views:
             normal: Outward unit normal of the surface there.
             distance_mm: From the eye to the place.
             text: Label of the mark.
+            ball: Whether a ball stands at the place; it would hide what is as small.
         """
         place = np.asarray(place_mm, dtype=float)
         toward = np.asarray(normal) + TILT
         toward /= max(float(np.linalg.norm(toward)), 1e-9)
         self._put_mark(place, place + POINTER_SHARE * distance_mm * np.asarray(normal), text)
+        if ball:
+            self._put_ball(place, MARK_SHARE * distance_mm)
         for client in self.server.get_clients().values():
             with client.atomic():
                 client.camera.position = place + distance_mm * toward
                 client.camera.look_at = place
 
     def _put_mark(self, place: np.ndarray, top: np.ndarray, text: str) -> None:
-        """A ball at the place, a pointer that stands on it, and the text at its top."""
+        """A pointer that stands on the place, and the text at its top."""
         self.unmark()
-        api, radius = self.server.scene, float(np.linalg.norm(top - place))
-        radius *= MARK_SHARE / POINTER_SHARE
+        api = self.server.scene
         self._mark = [
-            api.add_icosphere("/mark/ball", radius=radius, color=MARK_COLOUR, position=place),
             api.add_line_segments(
                 "/mark/pointer",
                 np.array([[place, top]], dtype=np.float32),
@@ -93,6 +100,12 @@ class Views:
             ),
             api.add_label("/mark/text", text, position=top, anchor="bottom-center"),
         ]
+
+    def _put_ball(self, place: np.ndarray, radius_mm: float) -> None:
+        api = self.server.scene
+        self._mark.append(
+            api.add_icosphere("/mark/ball", radius=radius_mm, color=MARK_COLOUR, position=place)
+        )
 
     def unmark(self) -> None:
         """Take the mark away."""

@@ -3,7 +3,47 @@
 from __future__ import annotations
 
 import re
+import time
+from collections.abc import Callable
+from pathlib import Path
 from typing import Any
+
+import numpy as np
+
+COARSE = """
+name = "coarse"
+family = "finger"
+[meshing]
+hex_mm = 0.8
+[optics.camera]
+width_px = 320
+height_px = 240
+[press_case.press]
+frames = 2
+[press_case.settings]
+grid_mm = 1.0
+active_radius_mm = 9.0
+"""
+VISIBLE_CHANGE = 24
+"""Difference of grey values that an eye sees at once."""
+
+
+def wait_until(condition: Callable[[], Any], seconds: float, what: str) -> None:
+    """Poll until the condition holds."""
+    deadline = time.monotonic() + seconds
+    while time.monotonic() < deadline:
+        if condition():
+            return
+        time.sleep(0.2)
+    raise AssertionError(f"after {seconds} s still not: {what}")
+
+
+def coarse_project(tmp_path: Path) -> Path:
+    """A project whose last session was a coarse finger, quick to press."""
+    project = tmp_path / "project"
+    (project / "designs").mkdir(parents=True)
+    (project / "designs" / "autosave.toml").write_text(COARSE)
+    return project
 
 
 def open_page(page: Any, url: str) -> None:
@@ -55,3 +95,48 @@ def drag(page: Any, label: str, start: float, stop: float) -> None:
 def image_source(page: Any, number: int = 0) -> str:
     """Address of an image in the right dock; it changes when the image does."""
     return page.locator("img:visible").nth(number).get_attribute("src")
+
+
+def choose(page: Any, label: str, option: str) -> None:
+    """Take an entry of a drop-down."""
+    control(page, label).click()
+    page.get_by_role("option", name=option, exact=True).click()
+
+
+def labels(page: Any) -> list[str]:
+    """Labels of all widgets on show."""
+    return [text.strip() for text in page.locator("label[for]:visible").all_inner_texts()]
+
+
+def stop_first_press(page: Any) -> None:
+    """A new project presses its example at once; a test that needs no press stops it."""
+    button(page, "Cancel").wait_for(timeout=30_000)
+    button(page, "Cancel").click()
+    button(page, "Cancel").wait_for(state="hidden", timeout=15_000)
+
+
+def view(page: Any) -> np.ndarray:
+    """What the middle of the 3D view shows, shape (H, W) of grey values."""
+    import cv2
+
+    box = page.locator("canvas").first.bounding_box()
+    clip = {
+        "x": box["x"] + 0.1 * box["width"],
+        "y": box["y"] + 0.3 * box["height"],
+        "width": 0.8 * box["width"],
+        "height": 0.5 * box["height"],
+    }
+    data = np.frombuffer(page.screenshot(clip=clip), dtype=np.uint8)
+    return np.asarray(cv2.imdecode(data, cv2.IMREAD_GRAYSCALE), dtype=np.int16)
+
+
+def changed_share(before: np.ndarray, after: np.ndarray) -> float:
+    """Share of pixels that differ visibly between two views."""
+    return float((np.abs(after - before) > VISIBLE_CHANGE).mean())
+
+
+def upload(page: Any, name: str, path: Path) -> None:
+    """Give a file to an upload button."""
+    with page.expect_file_chooser() as chooser:
+        button(page, name).click()
+    chooser.value.set_files(str(path))

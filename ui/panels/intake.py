@@ -46,19 +46,25 @@ class IntakeFolder:
         )
         self.outer.on_upload(desk.guarded(self._load_outer))
         fields.anchor("Load outer body", f"{BODY}.outer")
+        self.more = gui.add_folder("Inner body and labels", visible=False)
+        with self.more:
+            self._fill_more()
+        self.said = gui.add_markdown("")
+        desk.pick = self._pick
+
+    def _fill_more(self) -> None:
+        desk, gui, fields = self.desk, self.desk.server.gui, self.desk.fields
         hint = "What hollows it, in the same coordinates; without it the wall is even"
         self.inner = gui.add_upload_button(
-            "Load inner body", mime_type=".stl,.step,.stp", hint=hint, visible=False
+            "Load inner body", mime_type=".stl,.step,.stp", hint=hint
         )
         self.inner.on_upload(desk.guarded(self._load_inner))
         fields.anchor("Load inner body", f"{BODY}.inner")
         self.drop = gui.add_button("Remove inner body", visible=False)
         self.drop.on_click(desk.guarded(self._drop_inner))
         hint = "A second click on a face takes the label back"
-        self.label = gui.add_dropdown("Clicks label", (AIM, *REGIONS), hint=hint, visible=False)
+        self.label = gui.add_dropdown("Clicks label", (AIM, *REGIONS), hint=hint)
         fields.anchor("Clicks label", f"{BODY}.picks")
-        self.said = gui.add_markdown("")
-        desk.pick = self._pick
 
     @property
     def body(self) -> ImportedBody | None:
@@ -120,7 +126,7 @@ class IntakeFolder:
     def _read(self, event: Finished) -> None:
         self.said.content = ""
         if event.error is not None:
-            self.desk.reports.report(event.error)
+            self.desk.reports.report(event.error, quiet=True)
             return
         self.trial = None
         session, design = self.desk.session, event.request.design
@@ -147,7 +153,7 @@ class IntakeFolder:
     def refresh(self) -> None:
         """Offer what the body allows."""
         body = self.body
-        self.inner.visible = self.label.visible = body is not None
+        self.more.visible = body is not None
         self.drop.visible = body is not None and body.inner is not None
         if body is None:
             self.label.value = AIM

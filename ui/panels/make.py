@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import html
 from typing import Any
 
 import viser
 
 from ui.desk import Desk
-from ui.panels.checks import ChecksList
+from ui.panels.checks import ChecksList, verdict
 from ui.panels.downloads import Downloads
 from ui.panels.parts import PartsTree
 from ui.panels.recipe import recipe_html
@@ -36,6 +37,9 @@ class MakePanel:
         self.status = gui.add_markdown(NOTHING)
         self.tree = PartsTree(desk)
         desk.put_parts_away = self.tree.put_away
+        self.notes_folder = gui.add_folder("Notes", expand_by_default=False, visible=False)
+        with self.notes_folder:
+            self.notes = gui.add_markdown("")
         self.recipe_folder = gui.add_folder("Recipe", expand_by_default=False, visible=False)
         with self.recipe_folder:
             self.recipe = gui.add_html("")
@@ -99,7 +103,9 @@ class MakePanel:
             parts: tuple[FabricationPart, ...] = tuple(p for made in sets for p in made.parts)
             checks: tuple[FabricationCheck, ...] = tuple(c for made in sets for c in made.checks)
             notices = [made.notice for made in found.values() if made is not None and made.notice]
-            self.status.content = "\n\n".join(notices) or ("" if parts else NOTHING)
+            self.status.content = summary(parts, checks) if parts else NOTHING
+            self.notes_folder.visible = bool(notices)
+            self.notes.content = html.escape("\n\n".join(notices).replace("; ", "\n\n"))
             self.tree.offer(parts)
             self.checks.offer(checks)
             recipe = found["recipe"]
@@ -119,3 +125,9 @@ class MakePanel:
         """Follow results."""
         if stage in ("build", *STAGES):
             self._offer()
+
+
+def summary(parts: tuple[FabricationPart, ...], checks: tuple[FabricationCheck, ...]) -> str:
+    """How many parts there are, whether all are closed, and how the checks came out."""
+    closed = sum(part.watertight for part in parts)
+    return f"**{len(parts)}** parts, {closed} of them closed · checks: {verdict(checks)}"

@@ -14,7 +14,7 @@ from workbench.core.units import volume_ml
 from workbench.previews import judged
 
 NOTHING = "No numbers yet: press *Check mesh*."
-CLOSE = 12.0
+CLOSE = 25.0
 """Distance of the eye from a cell over the cell's diagonal."""
 KINDS = {8: "hexahedra", 4: "tetrahedra", 3: "triangles"}
 
@@ -93,7 +93,7 @@ class MeshPanel:
         scene.show_frame(0)
         scene.show_cell(corners)
         text = f"worst cell: {quality.measure[0]:.3g}"
-        scene.views.fly_to(middle, away, CLOSE * size_mm, text)
+        scene.views.fly_to(middle, away, CLOSE * size_mm, text, ball=False)
         x, y, z = middle
         self.desk.log(
             f"looking at the worst cell of {self.choice.value}: {x:.1f}, {y:.1f}, {z:.1f} mm"
@@ -152,7 +152,7 @@ def numbers(quality: MeshQuality, notice: str) -> str:
     if np.isfinite(quality.volume_ratio):
         lines.append(f"volume: {100 * quality.volume_ratio:.2f} % of the CAD body's")
     if notice and kind == "triangles":
-        lines.append(f"no hexahedra: {notice}")
+        lines.append(notice)
     return "\n\n".join(lines)
 
 

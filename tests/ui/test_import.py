@@ -1,0 +1,61 @@
+"""A body of the designer's own: uploaded, refused with a reason, labelled by clicking."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.ui.conftest import Server
+from tests.ui.widgets import (
+    changed_share,
+    choose,
+    coarse_project,
+    labels,
+    open_page,
+    stop_first_press,
+    upload,
+    view,
+    wait_until,
+)
+
+pytestmark = [pytest.mark.ui, pytest.mark.slow]
+
+Start = Callable[..., Server]
+TINTED = 0.01
+"""Share of the view that the tint of one face of the box changes at least."""
+
+
+def test_bad_file_is_refused_and_a_box_becomes_a_sensor(
+    tmp_path: Path, page: Any, start_server: Start
+) -> None:
+    """A file without triangles leaves the finger; a box is built; a click labels its face."""
+    import trimesh
+
+    bad, good = tmp_path / "bad.stl", tmp_path / "brick.stl"
+    bad.write_bytes(b"solid nothing\nendsolid nothing\n")
+    trimesh.creation.box((30.0, 24.0, 40.0)).export(good)
+    server = start_server(coarse_project(tmp_path))
+    open_page(page, server.url)
+    stop_first_press(page)
+    page.get_by_text("Own body (STEP or STL)").click()
+    upload(page, "Load outer body", bad)
+    wait_until(lambda: page.get_by_text("bad.stl has no faces").count(), 60, "the refusal is shown")
+    assert page.get_by_text("coarse · finger").count()
+    assert "Outer radius mm" in labels(page)
+
+    upload(page, "Load outer body", good)
+    page.get_by_text("brick · imported").wait_for()
+    wait_until(lambda: page.get_by_text("Shape ✓").count(), 60, "the brick is built")
+    assert "Cut off below mm" in labels(page)
+    assert not page.get_by_text("bad.stl has no faces").count()
+    choose(page, "Clicks label", "actuator_1")
+    page.wait_for_timeout(1000)
+    before = view(page)
+    box = page.locator("canvas").first.bounding_box()
+    page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    page.get_by_text("actuator_1", exact=False).filter(has_text="face").wait_for()
+    page.mouse.move(box["x"] + 5, box["y"] + box["height"] - 5)
+    wait_until(lambda: changed_share(before, view(page)) > TINTED, 60, "the face is tinted")

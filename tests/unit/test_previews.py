@@ -1,0 +1,99 @@
+"""Clicks, regions and histograms of the live view on a cube whose answers are known."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from ui.panels.checks import amount, line
+from ui.panels.mesh import steps
+from workbench.core.fabrication import FabricationCheck, Severity
+from workbench.core.results import Label, LabelledSurface
+from workbench.forms import choices, purpose
+from workbench.previews import cell_edges, first_hit, outward, skin_parts
+
+
+def cube(edge_mm: float = 2.0) -> tuple[np.ndarray, np.ndarray]:
+    """A cube about the origin."""
+    import trimesh
+
+    mesh = trimesh.creation.box((edge_mm, edge_mm, edge_mm))
+    return np.asarray(mesh.vertices), np.asarray(mesh.faces)
+
+
+def test_click_meets_the_near_side() -> None:
+    """A ray along -X from x = 5 enters a cube of edge 2 at (1, 0.3, 0.2)."""
+    points, faces = cube()
+    hit = first_hit(points, faces, np.array([5.0, 0.3, 0.2]), np.array([-1.0, 0.0, 0.0]))
+    assert hit is not None
+    # Exact but for rounding of a division.
+    assert hit[1] == pytest.approx([1.0, 0.3, 0.2], abs=1e-12)
+    assert (points[faces[hit[0]], 0] == 1.0).all()
+
+
+def test_click_beside_or_from_inside_meets_nothing() -> None:
+    """A ray that passes the cube, or leaves it from within, has no entry."""
+    points, faces = cube()
+    along = np.array([-1.0, 0.0, 0.0])
+    assert first_hit(points, faces, np.array([5.0, 1.5, 0.0]), along) is None
+    assert first_hit(points, faces, np.zeros(3), along) is None
+
+
+def test_outward_normal_of_a_corner_points_away() -> None:
+    """The normal at the corner (1, 1, 1) of a cube lies in its octant."""
+    assert (outward(*cube(), np.array([3.0, 3.0, 3.0])) > 0).all()
+
+
+def test_regions_are_drawn_once_each() -> None:
+    """A cube with a driven top, a flat foot on z = 0: skin 8 triangles, actuator 2, foot none."""
+    points, faces = cube()
+    points = points + np.array([0.0, 0.0, 1.0])
+    height = points[faces][:, :, 2]
+    labels = np.full(len(faces), Label.OUTER, dtype=np.uint8)
+    labels[(height == 2.0).all(axis=1)] |= np.uint8(Label.ACTUATOR)
+    labels[(height == 0.0).all(axis=1)] = Label.BASE
+    numbers = np.where(labels & Label.ACTUATOR, 3, -1).astype(np.int16)
+    surface = LabelledSurface(points_mm=points, faces=faces, labels=labels, numbers=numbers)
+    drawn = {name: len(triangles) for name, (_, triangles) in skin_parts(surface).items()}
+    assert drawn == {"skin": 8, "actuator_3": 2}
+
+
+@pytest.mark.parametrize(("corners", "edges"), [(3, 3), (4, 6), (8, 12)])
+def test_cells_have_their_edges(corners: int, edges: int) -> None:
+    """Triangle, tetrahedron and hexahedron have 3, 6 and 12 edges, none from a corner to itself."""
+    ends = cell_edges(np.arange(3.0 * corners).reshape(corners, 3))
+    assert ends.shape == (edges, 2, 3)
+    assert (ends[:, 0] != ends[:, 1]).any(axis=1).all()
+
+
+def test_histogram_is_in_percent() -> None:
+    """Counts 1 and 3 over [0, 2] are bars of 25 and 75 %; x never falls, as the plot demands."""
+    x, y = steps(np.array([0.0, 1.0, 2.0]), np.array([1, 3]))
+    assert x.tolist() == [0, 0, 1, 1, 2, 2]
+    assert y.tolist() == [0, 25, 25, 75, 75, 0]
+
+
+def test_check_says_value_unit_and_limit() -> None:
+    """A wall of 2.803 mm with 2 mm needed reads so; noise of 1e-15 degree reads 0."""
+    check = FabricationCheck(
+        name="minimum_wall",
+        part="half_a",
+        value=2.803,
+        unit="mm",
+        limit=2.0,
+        sense="min",
+        severity=Severity.GOOD,
+        place_mm=(0.0, 0.0, 0.0),
+        message="",
+    )
+    assert line(check) == "✓ minimum wall, half a: 2.8 mm (≥ 2)"
+    values = {"value": -5e-15, "unit": "degree", "limit": -0.5}
+    fields = {name: getattr(check, name) for name in check.__dataclass_fields__}
+    assert amount(FabricationCheck(**{**fields, **values})) == "0 degree (≥ -0.5)"
+
+
+def test_a_family_without_its_file_is_not_offered() -> None:
+    """`imported` needs a file; every name that is offered says what it is for."""
+    assert "imported" not in choices()
+    assert {"trunk", "pad", "finger"} <= set(choices())
+    assert all(purpose(name) for name in choices())
