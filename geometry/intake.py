@@ -16,7 +16,7 @@ import numpy as np
 
 from geometry.holes import close_holes
 from geometry.stl import stl_corners, welded
-from geometry.surface import mesh_volume, open_edges
+from geometry.surface import face_areas, mesh_volume, open_edges, pieces
 from workbench.core.errors import DesignError, GeometryError, MeshingError
 from workbench.core.imported import (
     BodyFile,
@@ -194,9 +194,7 @@ def _merged(
 
 def _one_piece(points: np.ndarray, faces: np.ndarray, name: str, notes: list[str]) -> np.ndarray:
     """Triangles of the only piece, after debris has been dropped."""
-    from geometry.surface import face_areas
-
-    piece = _pieces(faces)
+    piece = pieces(faces)
     area = np.bincount(piece, face_areas(points, faces))
     kept = np.flatnonzero(area > STRAY_SHARE * area.max())
     if len(kept) > 1:
@@ -234,18 +232,6 @@ def _consistent(points: np.ndarray, faces: np.ndarray, notes: list[str]) -> np.n
     trimesh.repair.fix_winding(mesh)
     notes.append("triangles that faced the wrong way were turned")
     return np.asarray(mesh.faces, dtype=np.int64)
-
-
-def _pieces(faces: np.ndarray) -> np.ndarray:
-    """Number of the connected piece of each triangle, shape (M,)."""
-    from scipy.sparse import coo_matrix
-    from scipy.sparse.csgraph import connected_components
-
-    count = int(faces.max()) + 1
-    ends = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
-    links = coo_matrix((np.ones(faces.size), ends), (count, count))
-    group = connected_components(links, directed=False)[1]
-    return np.unique(group[faces[:, 0]], return_inverse=True)[1]
 
 
 def _expect_simple(surface: ReadSurface, name: str) -> None:

@@ -85,6 +85,18 @@ def is_watertight(faces: np.ndarray) -> bool:
     return len(faces) > 0 and open_edges(faces) == 0
 
 
+def pieces(faces: np.ndarray) -> np.ndarray:
+    """Number of the connected piece that each triangle belongs to, shape (M,), from 0."""
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+
+    count = int(faces.max()) + 1
+    ends = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
+    links = coo_matrix((np.ones(faces.size, dtype=np.int8), ends), (count, count))
+    piece = connected_components(links, directed=False)[1]
+    return np.unique(piece[faces[:, 0]], return_inverse=True)[1]
+
+
 def closest_point(
     points_mm: np.ndarray, faces: np.ndarray, query_mm: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -115,14 +115,9 @@ def surface_error(solid: Solid) -> float:
 
 def body_count(faces: np.ndarray) -> int:
     """Connected pieces of a triangle mesh."""
-    from scipy.sparse import coo_matrix
-    from scipy.sparse.csgraph import connected_components
+    from geometry.surface import pieces
 
-    count = int(faces.max()) + 1
-    ends = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
-    links = coo_matrix((np.ones(faces.size, dtype=np.int8), ends), (count, count))
-    piece = connected_components(links, directed=False)[1]
-    return len(np.unique(piece[faces[:, 0]]))
+    return int(pieces(faces).max()) + 1
 
 
 def _by_kernel(family: Any, shape: Any, layers: Layers, expected_mm3: float) -> Solid:
