@@ -33,30 +33,36 @@ def faceted(points_mm: np.ndarray, faces: np.ndarray, *, what: str) -> Any:
     """
     solid, tolerance_mm = closed(what, points_mm, faces), FIRST_MM
     wanted_mm3 = float(solid.volume())
-    while solid.num_tri() > MOST_FACETS and tolerance_mm <= LAST_MM:
+    reason = ""
+    while tolerance_mm <= LAST_MM:
+        if solid.num_tri() <= MOST_FACETS:
+            body = _on_mesh(*arrays(solid))
+            if body is not None and _as_wanted(body, wanted_mm3):
+                return body
+            reason = "the CAD kernel makes no valid solid of them"
+        # Also where the kernel failed: it refuses facets that are slivers.
         solid, tolerance_mm = solid.simplify(tolerance_mm), 2.0 * tolerance_mm
-    if solid.num_tri() > MOST_FACETS:
-        raise GeometryError(
-            f"{what} has {solid.num_tri()} facets, more than the {MOST_FACETS} of a STEP file",
-            hint="use its STL or 3MF file",
-            at="mould",
-        )
-    body = _on_mesh(*arrays(solid))
-    if abs(body.volume - wanted_mm3) > 0.01 * wanted_mm3 or not body.is_valid:
-        raise GeometryError(
-            f"{what} as facets has {body.volume:.6g} mm3 instead of {wanted_mm3:.6g} mm3",
-            hint="use its STL or 3MF file",
-            at="mould",
-        )
-    return body
+    raise GeometryError(
+        f"{what} has {solid.num_tri()} facets after thinning out to {LAST_MM} mm: "
+        f"{reason or f'more than the {MOST_FACETS} of a STEP file'}",
+        hint="use its STL or 3MF file",
+        at="mould",
+    )
 
 
-def _on_mesh(points_mm: np.ndarray, faces: np.ndarray) -> Any:
+def _as_wanted(body: Any, wanted_mm3: float) -> bool:
+    return abs(body.volume - wanted_mm3) <= 0.01 * wanted_mm3 and body.is_valid
+
+
+def _on_mesh(points_mm: np.ndarray, faces: np.ndarray) -> Any | None:
+    """The solid, or None where the kernel gives up."""
     from build123d.topology import Shape
     from OCP.BRep import BRep_Builder
     from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeShapeOnMesh
     from OCP.gp import gp_Pnt
     from OCP.Poly import Poly_Triangle, Poly_Triangulation
+    from OCP.Standard import Standard_Failure
+    from OCP.StdFail import StdFail_NotDone
     from OCP.TopAbs import TopAbs_ShapeEnum
     from OCP.TopExp import TopExp_Explorer
     from OCP.TopoDS import TopoDS_Shell, TopoDS_Solid
@@ -67,7 +73,10 @@ def _on_mesh(points_mm: np.ndarray, faces: np.ndarray) -> Any:
     for number, corners in enumerate((faces + 1).tolist(), 1):
         mesh.SetTriangle(number, Poly_Triangle(*corners))
     maker = BRepBuilderAPI_MakeShapeOnMesh(mesh)
-    maker.Build()
+    try:
+        maker.Build()
+    except (Standard_Failure, StdFail_NotDone):
+        return None
     builder, shell, solid = BRep_Builder(), TopoDS_Shell(), TopoDS_Solid()
     builder.MakeShell(shell)
     explorer = TopExp_Explorer(maker.Shape(), TopAbs_ShapeEnum.TopAbs_FACE)
