@@ -163,10 +163,8 @@ class Tentacle:
         return None
 
     def target(self, shape: TentacleShape, layers: Layers) -> tuple[float, float, float]:
-        """The rim's middle of the sucker nearest to the tip."""
-        last = _suckers(shape)[-1]
-        x, y, z = (last.centre_mm + shape.sucker_mm * last.axis).tolist()
-        return x, y, z
+        """The end of the arm: dents of the suckers lie where the camera does not see them."""
+        return shape.column.apex_mm
 
     def build(self, shape: TentacleShape, layers: Layers) -> Bodies:
         """Build the five bodies.

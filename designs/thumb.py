@@ -161,9 +161,9 @@ class Thumb:
         return None
 
     def target(self, shape: ThumbShape, layers: Layers) -> tuple[float, float, float]:
-        """On the pad, a little above the root of the tip."""
+        """On the pad, two thirds up the tip; lower, its rim hides the dent from the camera."""
         column = shape.column
-        rise = 1.0 / 3.0
+        rise = 2.0 / 3.0
         z_mm = shape.length_mm + rise * shape.tip_mm
         centre_mm = float(column.centres(np.array([z_mm]))[0, 1])
         return 0.0, centre_mm + column.head_mm[1] * math.sqrt(1.0 - rise**2), z_mm

@@ -246,6 +246,9 @@ def write_all(
     depths_mm = frame_depths_mm(path)
     write_vtk(out, load["build"], load["mesh"], contact=load["press"], depth_mm=depths_mm)
     write_package(out, load["package"])
+    summary["notices"] = {
+        name: value.notice for name, value in load.items() if getattr(value, "notice", "")
+    }
     summary |= fabrication_tables(load["mould"], load["housing"], load["recipe"])
     drawn = drawings(load["build"], load["mesh"], load["press"], load.get("picture"))
     html = report_html(design, path, summary, load["shoot"], load["press"], drawn)
