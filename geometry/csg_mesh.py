@@ -58,8 +58,13 @@ def evaluate(node: csg.Node) -> Any:
             return evaluate(node.body).transform(node.matrix)
 
 
-def closed(name: str, points_mm: np.ndarray, faces: np.ndarray) -> Any:
+def closed(
+    name: str, points_mm: np.ndarray, faces: np.ndarray, numbers: np.ndarray | None = None
+) -> Any:
     """The manifold of a closed mesh, points (N, 3) [mm] and faces (M, 3).
+
+    Args:
+        numbers: Number that each face and what is cut from it carries, shape (M,).
 
     Raises:
         GeometryError: If it is not closed.
@@ -70,6 +75,7 @@ def closed(name: str, points_mm: np.ndarray, faces: np.ndarray) -> Any:
     mesh = manifold3d.Mesh64(
         vert_properties=np.array(points_mm, dtype=np.float64, order="C"),
         tri_verts=np.array(faces, dtype=np.uint64, order="C"),
+        face_id=np.array([] if numbers is None else numbers, dtype=np.uint64),
     )
     solid = manifold3d.Manifold(mesh)
     if solid.status() != manifold3d.Error.NoError:

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from geometry.csg_mesh import arrays, closed
 from geometry.isosurface import distance_mm
 from geometry.offset import inset_surface, inside
 from geometry.surface import mesh_volume
@@ -31,6 +32,9 @@ LEAST_BASE_MM2 = 10.0
 LEAST_WALL_MM = 0.2
 """Thinnest elastomer that can be cast [mm]."""
 BORE_SHARE = 0.6
+LEAST_OPENING_MM = 6.0
+"""Narrowest way into the cavity about the middle of the base: the smallest camera modules are
+about 4 mm wide."""
 
 
 def build_imported(
@@ -224,8 +228,7 @@ def _foot(outer: Any, cavity: Any, shape: Any) -> LabelledSurface:
     outline = outer.slice(0.01).offset(shape.base_lip_mm, manifold3d.JoinType.Round)
     height = shape.base_height_mm
     plate = manifold3d.Manifold.extrude(outline, height).translate((0.0, 0.0, -height))
-    opening = np.concatenate(cavity.slice(0.01).to_polygons())
-    radius = BORE_SHARE * float(np.linalg.norm(opening, axis=1).min())
+    radius = BORE_SHARE * _opening_mm(cavity) / 2
     bore = manifold3d.Manifold.cylinder(height + 2.0, radius, radius, 64)
     points, faces, _ = _arrays(plate - bore.translate((0.0, 0.0, -height - 1.0)))
     flat = np.abs(points[faces][:, :, 2]).max(axis=1) < FLAT_MM
@@ -233,23 +236,31 @@ def _foot(outer: Any, cavity: Any, shape: Any) -> LabelledSurface:
     return LabelledSurface(points_mm=points, faces=faces, labels=labels)
 
 
-def _solid(points: np.ndarray, faces: np.ndarray, source: np.ndarray | None) -> Any:
+def _opening_mm(cavity: Any) -> float:
+    """Width of the way into the cavity about the middle of the base.
+
+    Raises:
+        DesignError: If a camera does not pass.
+    """
     import manifold3d
 
-    numbers = np.full(len(faces), CORE_FACE) if source is None else source
-    mesh = manifold3d.Mesh64(
-        vert_properties=np.array(points, dtype=np.float64),
-        tri_verts=np.array(faces, dtype=np.uint64),
-        face_id=np.array(numbers, dtype=np.uint64),
-    )
-    solid = manifold3d.Manifold(mesh)
-    if solid.status() != manifold3d.Error.NoError:
+    section = cavity.slice(0.01)
+    rim_mm = float(np.linalg.norm(np.concatenate(section.to_polygons()), axis=1).min())
+    open_there = not (section ^ manifold3d.CrossSection.circle(FLAT_MM, 8)).is_empty()
+    width_mm = 2.0 * rim_mm if open_there else 0.0
+    if width_mm < LEAST_OPENING_MM:
         raise DesignError(
-            f"the body is not closed: {solid.status().name}",
-            hint="repair it in the program that made it",
-            at="body.outer",
+            f"the way into the cavity is {width_mm:.2g} mm wide about the middle of the base, a "
+            f"camera needs {LEAST_OPENING_MM:g} mm",
+            hint="lower layers.elastomer_mm or layers.support_mm, or change shape.cut_mm",
+            at="layers.support_mm",
         )
-    return solid
+    return width_mm
+
+
+def _solid(points: np.ndarray, faces: np.ndarray, source: np.ndarray | None) -> Any:
+    numbers = np.full(len(faces), CORE_FACE) if source is None else source
+    return closed("the imported body", points, faces, numbers)
 
 
 def _renumbered(solid: Any, number: int = CORE_FACE) -> Any:
@@ -259,9 +270,7 @@ def _renumbered(solid: Any, number: int = CORE_FACE) -> Any:
 
 def _arrays(solid: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Vertices (N, 3), triangles (M, 3) and source faces (M,) of a manifold."""
-    mesh = solid.to_mesh64()
-    points = np.array(mesh.vert_properties)[:, :3]
+    points, faces = arrays(solid)
     # Cuts land on the plane to rounding; the base must lie on it exactly.
     points[np.abs(points[:, 2]) < FLAT_MM, 2] = 0.0
-    faces = np.array(mesh.tri_verts).astype(np.int32)
-    return points, faces, np.array(mesh.face_id).astype(np.int64)
+    return points, faces, np.array(solid.to_mesh64().face_id).astype(np.int64)
