@@ -68,8 +68,10 @@ def main() -> None:
             ).first.click(timeout=3_000)
             shoot(page, "workbench")
             page.locator('[role="tab"]').filter(has_text="Make").click()
-            page.get_by_role("button", name="Make mould", exact=True).click()
-            page.get_by_text("Mould ✓").wait_for(timeout=120_000)
+            page.get_by_role("button", name="Make parts", exact=True).click()
+            page.get_by_role("button", name="Download part STL", exact=True).wait_for(
+                timeout=180_000
+            )
             shoot(page, "mould")
             browser.close()
         finally:

@@ -9,7 +9,7 @@ import numpy as np
 
 from workbench.core.design import Camera, LedRing, LensModel
 
-FRUSTUM_MM = 5.0
+FRUSTUM_MM = 4.0
 WIDEST_DEG = 150.0
 """A fisheye is drawn at most so wide."""
 LENS_COLOURS = {LensModel.PINHOLE: (255, 200, 0), LensModel.EQUIDISTANT: (255, 150, 0)}

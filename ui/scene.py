@@ -160,6 +160,8 @@ class Scene:
         with self.server.atomic():
             self.body.show(visible)
             self.rig.show(visible)
+            # The core of an exploded mould hangs below the floor, whose lines would cross it.
+            self.grid.visible = visible
             if self.indenter is not None:
                 self.indenter.visible = visible
             for node in self._frames:

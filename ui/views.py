@@ -7,22 +7,22 @@ from typing import Any
 
 import numpy as np
 
+from workbench.previews import USUAL_VIEW
+
 FOV_RAD = 0.6
 """Vertical angle of view of every tab [rad]."""
 AWAY = np.array([0.74, 0.55, 0.39])
 """Unit direction from which a body is seen first."""
-SIDE = np.array([0.51, -0.77, 0.38])
-"""Unit direction from which parts are seen that stand apart along X and Z."""
 FILLED = 0.9
 """Share of the view that the diagonal of a framed box takes."""
 USUAL_ASPECT = 0.78
 """Width over height of the view between the docks, for tabs that have not told theirs."""
-TILT = np.array([0.2, -0.3, 0.35])
-"""Added to a surface normal before looking along it: never straight down the turntable's axis."""
 MARK_SHARE = 0.012
 """Radius of a mark over the eye's distance from it."""
 POINTER_SHARE = 0.12
 """Length of the pointer that stands on a mark over the eye's distance from it."""
+POINTER_UP = np.array([0.0, 0.0, 0.7])
+"""Added to the direction of the pointer, which would otherwise be seen end-on."""
 MARK_COLOUR = (255, 45, 85)
 
 
@@ -49,7 +49,7 @@ class Views:
         for number, client in self.server.get_clients().items():
             self._before.setdefault(number, (client.camera.position, client.camera.look_at))
         centre = (low_mm + high_mm) / 2
-        self._fit(centre, float(np.linalg.norm(high_mm - low_mm)), SIDE)
+        self._fit(centre, float(np.linalg.norm(high_mm - low_mm)), USUAL_VIEW)
 
     def step_forward(self) -> None:
         """Give every tab its place before `step_back` again."""
@@ -61,25 +61,24 @@ class Views:
     def fly_to(
         self,
         place_mm: Sequence[float],
-        normal: np.ndarray,
+        toward: np.ndarray,
         distance_mm: float,
         text: str,
         *,
         ball: bool = True,
     ) -> None:
-        """Look at a place along its surface normal and mark it.
+        """Look at a place from a side and mark it.
 
         Args:
             place_mm: The place [mm].
-            normal: Outward unit normal of the surface there.
+            toward: Unit direction from the place to the eye.
             distance_mm: From the eye to the place.
             text: Label of the mark.
             ball: Whether a ball stands at the place; it would hide what is as small.
         """
         place = np.asarray(place_mm, dtype=float)
-        toward = np.asarray(normal) + TILT
-        toward /= max(float(np.linalg.norm(toward)), 1e-9)
-        self._put_mark(place, place + POINTER_SHARE * distance_mm * np.asarray(normal), text)
+        pointer = POINTER_SHARE * distance_mm * (np.asarray(toward) + POINTER_UP)
+        self._put_mark(place, place + pointer, text)
         if ball:
             self._put_ball(place, MARK_SHARE * distance_mm)
         for client in self.server.get_clients().values():

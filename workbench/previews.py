@@ -5,6 +5,8 @@ Everything here takes milliseconds on the largest body; what takes longer is a s
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 
 from workbench.core.frames import quaternion, tangent
@@ -13,6 +15,12 @@ from workbench.core.results import Label, LabelledSurface, MeshQuality, VolumeMe
 
 LEAST_SINE = 1e-12
 """Rays flatter to a triangle than this do not meet it."""
+USUAL_VIEW = np.array([0.51, -0.77, 0.38])
+"""Unit direction toward the eye that people expect: from the front, a little from above."""
+UNUSUAL_MM = 0.5
+"""Material that one looks through rather than from the opposite side, per unit of 1 - cosine."""
+EDGE_ON_MM = 1.0
+"""Material that one looks through rather than at a surface edge-on."""
 CELL_EDGES = {
     3: ((0, 1), (1, 2), (2, 0)),
     4: ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)),
@@ -93,14 +101,35 @@ def first_hit(
     return best, origin + along[best] * np.asarray(direction)
 
 
-def outward(points_mm: np.ndarray, faces: np.ndarray, place_mm: np.ndarray) -> np.ndarray:
-    """Unit normal of a surface at its vertex nearest to a place, shape (3,)."""
-    points = np.asarray(points_mm)
-    nearest = int(np.argmin(((points - np.asarray(place_mm)) ** 2).sum(axis=1)))
-    around = np.asarray(faces)[(np.asarray(faces) == nearest).any(axis=1)]
-    a, b, c = (points[around[:, i]] for i in range(3))
-    total = np.cross(b - a, c - a).sum(axis=0)
-    return total / max(float(np.linalg.norm(total)), 1e-12)
+def clear_view(
+    points_mm: np.ndarray, faces: np.ndarray, place_mm: np.ndarray, distance_mm: float
+) -> np.ndarray:
+    """Unit direction from a place toward an eye that sees it, shape (3,).
+
+    Of 24 directions the one with the least material before the place; of equals the one nearest
+    to `USUAL_VIEW`. A place inside a wall is seen through its thinner side.
+
+    Args:
+        points_mm: Vertices of what may stand in the way, shape (N, 3).
+        faces: Triangles counter-clockwise from outside, shape (M, 3).
+        place_mm: The place, shape (3,).
+        distance_mm: From the place to the eye.
+    """
+    place = np.asarray(place_mm, dtype=float)
+    best, least = USUAL_VIEW, np.inf
+    for axis in itertools.product((-1.0, 0.0, 1.0), repeat=3):
+        # Straight down the upright axis a turntable camera has no up.
+        if axis[0] == axis[1] == 0.0:
+            continue
+        toward = np.array(axis) / np.linalg.norm(axis)
+        hit = first_hit(points_mm, faces, place + distance_mm * toward, -toward)
+        before_mm = -np.inf if hit is None else float((hit[1] - place) @ toward)
+        # A ray that passes the place without meeting it sees its surface edge-on.
+        blocked_mm = before_mm if before_mm > -PLANE_MM else EDGE_ON_MM
+        cost = blocked_mm + UNUSUAL_MM * (1.0 - float(toward @ USUAL_VIEW))
+        if cost < least:
+            best, least = toward, cost
+    return best
 
 
 def cell_edges(corners_mm: np.ndarray) -> np.ndarray:

@@ -10,7 +10,7 @@ from ui.panels.mesh import steps
 from workbench.core.fabrication import FabricationCheck, Severity
 from workbench.core.results import Label, LabelledSurface
 from workbench.forms import choices, purpose
-from workbench.previews import cell_edges, first_hit, outward, skin_parts
+from workbench.previews import cell_edges, clear_view, first_hit, skin_parts
 
 
 def cube(edge_mm: float = 2.0) -> tuple[np.ndarray, np.ndarray]:
@@ -39,9 +39,18 @@ def test_click_beside_or_from_inside_meets_nothing() -> None:
     assert first_hit(points, faces, np.zeros(3), along) is None
 
 
-def test_outward_normal_of_a_corner_points_away() -> None:
-    """The normal at the corner (1, 1, 1) of a cube lies in its octant."""
-    assert (outward(*cube(), np.array([3.0, 3.0, 3.0])) > 0).all()
+@pytest.mark.parametrize("side", [(1.0, 0.0, 0.0), (-1.0, 0.0, 0.0), (0.0, 1.0, 0.0)])
+def test_a_place_is_seen_from_its_own_side(side: tuple[float, float, float]) -> None:
+    """The middle of a cube's side is seen from before that side, whichever it is."""
+    toward = clear_view(*cube(), np.array(side), 20.0)
+    assert toward @ np.array(side) > 0.5
+    assert np.linalg.norm(toward) == pytest.approx(1.0)
+
+
+def test_a_place_inside_is_seen_through_the_thinner_wall() -> None:
+    """0.1 mm under the side at +Y of a cube of 20 mm: the eye is at +Y, not in front."""
+    toward = clear_view(*cube(20.0), np.array([0.0, 9.9, 0.0]), 100.0)
+    assert toward[1] > 0.5
 
 
 def test_regions_are_drawn_once_each() -> None:

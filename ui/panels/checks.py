@@ -11,7 +11,7 @@ import numpy as np
 from ui.desk import Desk
 from ui.panels.parts import PartsTree
 from workbench.core.fabrication import FabricationCheck, Severity
-from workbench.previews import outward
+from workbench.previews import clear_view
 
 LOOKS = {
     Severity.BAD: ("✗", (190, 48, 52)),
@@ -68,10 +68,10 @@ class ChecksList:
         points = np.asarray(surface.points_mm)
         size_mm = float(np.linalg.norm(np.ptp(points, axis=0)))
         place = scene.parts.moved(check.part, check.place_mm)
-        normal = outward(points, surface.faces, np.asarray(check.place_mm))
         distance_mm = min(max(NEAR_SHARE * size_mm, NEAR_MM[0]), NEAR_MM[1])
+        toward = clear_view(points, surface.faces, np.asarray(check.place_mm), distance_mm)
         scene.views.fly_to(
-            place, normal, distance_mm, f"{check.name.replace('_', ' ')}: {amount(check)}"
+            place, toward, distance_mm, f"{check.name.replace('_', ' ')}: {amount(check)}"
         )
         x, y, z = check.place_mm
         self.detail.content = f"{html.escape(check.message)} At {x:.1f}, {y:.1f}, {z:.1f} mm."

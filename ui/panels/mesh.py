@@ -11,7 +11,7 @@ from viser import uplot
 from ui.desk import Desk
 from workbench.core.results import MeshQuality, QualityReport
 from workbench.core.units import volume_ml
-from workbench.previews import judged
+from workbench.previews import clear_view, judged
 
 NOTHING = "No numbers yet: press *Check mesh*."
 CLOSE = 25.0
@@ -81,19 +81,20 @@ class MeshPanel:
 
     def _fly(self) -> None:
         """Look at the worst cell of the chosen mesh."""
-        quality = self._chosen()
-        if quality is None:
+        quality, solid = self._chosen(), self.desk.scene.body.solid
+        if quality is None or solid is None:
             return
         self.desk.put_parts_away()
         corners = np.asarray(quality.worst_mm)
         scene, middle = self.desk.scene, corners.mean(axis=0)
         size_mm = float(np.linalg.norm(np.ptp(corners, axis=0)))
-        nearest = int(np.argmin(((scene.body.points - middle) ** 2).sum(axis=1)))
-        away = scene.body.normals[nearest]
+        distance_mm = CLOSE * size_mm
+        membrane = solid.membrane
+        toward = clear_view(membrane.points_mm, membrane.faces, middle, distance_mm)
         scene.show_frame(0)
         scene.show_cell(corners)
         text = f"worst cell: {quality.measure[0]:.3g}"
-        scene.views.fly_to(middle, away, CLOSE * size_mm, text, ball=False)
+        scene.views.fly_to(middle, toward, distance_mm, text, ball=False)
         x, y, z = middle
         self.desk.log(
             f"looking at the worst cell of {self.choice.value}: {x:.1f}, {y:.1f}, {z:.1f} mm"
