@@ -3,12 +3,14 @@
 (a) `bonded_block_errors`: against the closed form of Dimitriadis and others, Determination of
 elastic moduli of thin layers of soft material using the atomic force microscope, Biophys. J. 82
 (2002), eq. 11 with the bonded coefficients. (b) and (c) `penetration_and_balance`.
-(d) `finger_45`: the finger of SimTac under a sphere at 45 degrees; finite elements give 1.29 N.
+(d) `backed_block_force_N`: a block and the gel behind it against two columns in series.
+(e) `finger_45`: the finger of SimTac under a sphere at 45 degrees; finite elements give 1.29 N.
 Taichi must have been initialised in this thread.
 """
 
 from __future__ import annotations
 
+import dataclasses
 import math
 
 import numpy as np
@@ -16,8 +18,8 @@ import numpy as np
 from sim.contact import specimens
 from sim.contact.solver import press_membrane
 from workbench.core.design import Elastomer
-from workbench.core.press import ContactSettings, Indenter, Press
-from workbench.core.results import Contact
+from workbench.core.press import ContactSettings, Indenter, IndenterKind, Press
+from workbench.core.results import Contact, Label
 
 BLOCK_HEIGHT_MM = 5.0
 BLOCK_WIDTH_MM = 16.0
@@ -25,6 +27,14 @@ BLOCK_SPHERE_MM = 12.0
 BLOCK_REGION_MM = 11.0
 BLOCK_DEPTHS_MM = (0.3, 0.4, 0.5)
 FINGER_SPHERE_MM = 6.0
+BACKED_MM = 6.0
+"""Width of the block on gel [mm]."""
+BACKED_HEIGHT_MM = 2.0
+BACKED_GAP_MM = 1.0
+BACKED_DEPTH_MM = 0.1
+BACKED_MATERIAL = Elastomer(poisson=0.0, friction=0.0)
+BACKINGS_MPa = (0.02, 0.1, 1.0)
+"""Gels for the check: the block takes 22 %, 58 % and 93 % of the way."""
 
 
 def bonded_layer_force_N(
@@ -120,6 +130,33 @@ def finger_45_sheared(*, shear_mm: float = 0.5) -> np.ndarray:
     contact = press_finger(path)
     axes = [contact.normal, contact.tangent_u, np.cross(contact.normal, contact.tangent_u)]
     return np.stack(axes) @ contact.reaction_N[-1]
+
+
+def backed_block_force_N(backing_MPa: float) -> float:
+    """Force of a flat plate that pushes a whole block into the gel behind it [N]."""
+    bonded, points = specimens.flat_block(
+        width_mm=BACKED_MM, height_mm=BACKED_HEIGHT_MM, grid_mm=0.5
+    )
+    label = np.full(len(bonded.inner.faces), Label.INNER | Label.BACKED, dtype=np.uint8)
+    inner = dataclasses.replace(bonded.inner, labels=label)
+    contact = press_membrane(
+        dataclasses.replace(bonded, inner=inner, backing_mm=BACKED_GAP_MM),
+        points,
+        dataclasses.replace(BACKED_MATERIAL, backing_MPa=backing_MPa),
+        Indenter(kind=IndenterKind.CUBE, size_mm=3.0 * BACKED_MM),
+        Press(target_mm=(0.0, 0.0, BACKED_HEIGHT_MM), depth_mm=BACKED_DEPTH_MM, frames=1),
+        ContactSettings(active_radius_mm=2.0 * BACKED_MM),
+    )
+    return float(contact.reaction_N[-1][2])
+
+
+def two_columns_force_N(backing_MPa: float) -> float:
+    """The same in closed form, for small strain: block and gel as two columns in series [N].
+
+    F = A d / (h / E + gap / E_gel); without Poisson effect nothing is held sideways.
+    """
+    compliance = BACKED_HEIGHT_MM / BACKED_MATERIAL.young_MPa + BACKED_GAP_MM / backing_MPa
+    return BACKED_MM**2 * BACKED_DEPTH_MM / compliance
 
 
 def penetration_and_balance(contact: Contact) -> tuple[float, float]:

@@ -26,6 +26,14 @@ def test_bonded_block_force_within_7_percent() -> None:
     assert np.abs(checks.bonded_block_errors(grid_mm=0.4)).max() < 0.07
 
 
+def test_gel_behind_a_block_is_a_second_column() -> None:
+    """F = A d / (h / E + gap / E_gel) = 0.0564, 0.151, 0.243 N for gels of 0.02, 0.1, 1 MPa."""
+    for backing_MPa in checks.BACKINGS_MPa:
+        exact = checks.two_columns_force_N(backing_MPa)
+        # Small strain against 4 % with neo-Hookean columns: 2 %, and the grid 1.5 %.
+        assert checks.backed_block_force_N(backing_MPa) == pytest.approx(exact, rel=0.03)
+
+
 @pytest.mark.slow
 def test_finger_at_45_degrees_is_that_of_finite_elements() -> None:
     """FEM: 1.424, 1.308, 1.291 N, falling with its mesh; this method rises with its own."""

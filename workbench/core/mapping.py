@@ -38,6 +38,14 @@ def from_table(cls: type[Any], table: Any, *, at: str = "") -> Any:
         if name not in names:
             raise DesignError(f"there is no field {where!r}", hint=suggest(name, names), at=where)
         values[name] = _convert(hints[name], raw, where)
+    missing = dataclasses.MISSING
+    for field in dataclasses.fields(cls):
+        if field.name not in values and field.default is field.default_factory is missing:
+            raise DesignError(
+                f"{at or 'the design'} has no {field.name!r}",
+                hint=f"add {field.name} = ... to it",
+                at=f"{at}.{field.name}" if at else field.name,
+            )
     return cls(**values)
 
 

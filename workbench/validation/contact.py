@@ -16,6 +16,9 @@ from workbench.validation.presses import NAME, finger_press
 
 CELLS_PER_CONTACT_RADIUS = 4.0
 BLOCK_LIMIT = 0.07
+BACKED_LIMIT = 0.03
+"""The closed form is for small strain: neo-Hookean columns without Poisson effect push 2 % more at
+4 %, and a plate sinks up to 1 % into the grid's edge."""
 PENETRATION_LIMIT_CELLS = 0.02
 BALANCE_LIMIT = 0.01
 WIDE_REGION_MM = 18.0
@@ -25,7 +28,7 @@ FINGER_RANGE_N = (1.20, 1.35)
 
 def rows() -> list[Row]:
     """All rows of the room."""
-    return [*_bonded_block(), *_finger()]
+    return [*_bonded_block(), *_backed_block(), *_finger()]
 
 
 def _bonded_block() -> list[Row]:
@@ -66,6 +69,29 @@ def _bonded_block() -> list[Row]:
             )
         )
     return found
+
+
+def _backed_block() -> list[Row]:
+    from sim.contact import checks
+
+    def force_N(backing_MPa: float) -> float:
+        open_device()
+        return checks.backed_block_force_N(backing_MPa)
+
+    area_mm2, depth_mm = checks.BACKED_MM**2, checks.BACKED_DEPTH_MM
+    return [
+        compared(
+            "backed_block_force",
+            f"block {checks.BACKED_HEIGHT_MM:g} mm on {checks.BACKED_GAP_MM:g} mm of gel of "
+            f"{backing_MPa:g} MPa, plate {depth_mm:g} mm deep; null: the gel alone",
+            functools.partial(force_N, backing_MPa),
+            checks.two_columns_force_N(backing_MPa),
+            unit="N",
+            limit=BACKED_LIMIT,
+            null=area_mm2 * depth_mm * backing_MPa / checks.BACKED_GAP_MM,
+        )
+        for backing_MPa in checks.BACKINGS_MPa
+    ]
 
 
 def _finger() -> list[Row]:

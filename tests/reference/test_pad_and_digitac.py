@@ -1,0 +1,157 @@
+"""Pad and DigiTac: closed forms, pins that must not be lost, contradictions that are refused."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from designs import digitac, pad
+from designs.digitac import DigitacShape
+from designs.family import family, resolve_shape
+from designs.loaf import Loaf, loaf_body, loaf_shell
+from designs.pad import PadShape, slab_mm3
+from designs.plates import rectangle_distance
+from geometry.surface import face_areas
+from workbench.building import build_solid
+from workbench.core.design import Layers
+from workbench.core.errors import DesignError, GeometryError
+from workbench.core.results import Label
+
+LOAF = Loaf(half_mm=10.0, straight_mm=6.0, wall_mm=4.0, dome_mm=7.0)
+
+
+def test_flat_pad_is_a_rounded_plate() -> None:
+    """V = t (w d - (4 - pi) c^2) exactly, and the sensing side is the top."""
+    shape = PadShape(width_mm=25.0, depth_mm=20.0, corner_mm=3.0, dome_mm=0.0)
+    layers = Layers(elastomer_mm=3.0)
+    exact = 3.0 * (500.0 - (4 - math.pi) * 9.0)
+    assert slab_mm3(shape, layers) == pytest.approx(exact, rel=1e-12)
+    solid = build_solid(family("pad"), shape, layers)
+    assert solid.volume_mm3 == pytest.approx(exact, rel=1e-9)
+
+
+def test_domed_pad_holds_what_a_fine_sum_says() -> None:
+    """Mean height over a grid of 0.02 mm, good to 1e-4, for a dome of 1 mm."""
+    shape, layers = PadShape(dome_mm=1.0), Layers(elastomer_mm=3.0)
+    half_x, half_y = shape.width_mm / 2, shape.depth_mm / 2
+    x, y = np.meshgrid(np.arange(0.01, half_x, 0.02), np.arange(0.01, half_y, 0.02))
+    plan = np.column_stack([x.ravel(), y.ravel()])
+    within = rectangle_distance(plan, half_x, half_y, shape.corner_mm) < 0.0
+    radius = shape.sphere_mm
+    height = 3.0 + 1.0 - radius + np.sqrt(radius**2 - (plan[within] ** 2).sum(axis=1))
+    assert slab_mm3(shape, layers) == pytest.approx(4 * 0.02**2 * height.sum(), rel=1e-4)
+    # At the farthest corner the dome has come down to the elastomer's thickness.
+    corner = shape.half_diagonal_mm
+    assert 1.0 - radius + math.sqrt(radius**2 - corner**2) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_loaf_has_the_volume_of_prism_and_half_ellipsoid() -> None:
+    """2 a w s + pi/2 a b s + pi a^2 (w + 2/3 b) = 3866.3 mm3 by the kernel, to 1e-6."""
+    exact = 2 * 10 * 4 * 6 + math.pi / 2 * 10 * 7 * 6 + math.pi * 100 * (4 + 14 / 3)
+    assert LOAF.volume_mm3 == pytest.approx(exact, rel=1e-12)
+    assert loaf_body(LOAF).volume == pytest.approx(exact, rel=1e-6)
+    inside = dataclasses.replace(LOAF, half_mm=8.8, dome_mm=5.8)
+    shell = loaf_shell(LOAF, inside)
+    assert shell.volume == pytest.approx(exact - inside.volume_mm3, rel=1e-6)
+
+
+def test_loaf_field_is_zero_on_its_roof() -> None:
+    """Points on the roof have distance 0; 0.1 mm above the ridge it is 0.1 mm to first order."""
+    plan = np.array([[0.0, 0.0], [3.0, 4.0], [9.0, 1.0], [0.0, 12.5]])
+    roof = np.column_stack([plan, LOAF.roof_mm(plan)])
+    assert LOAF.distance(roof) == pytest.approx([0.0] * 4, abs=1e-12)
+    # k (k - 1) / |grad k| with k = 7.1 / 7: second order is 1.4 % of 0.1 mm.
+    assert LOAF.distance(np.array([[0.0, 0.0, 11.1]]))[0] == pytest.approx(0.1, rel=0.03)
+
+
+def test_rectangle_distance_is_exact() -> None:
+    """4 x 2 with corners of 0.5: beside a side, off a corner's centre, and in the middle."""
+    places = np.array([[3.0, 0.0], [2.0, 1.0], [0.0, 0.0], [1.5 + 0.3, 0.5 + 0.4]])
+    found = rectangle_distance(places, 2.0, 1.0, 0.5)
+    assert found == pytest.approx([1.0, math.hypot(0.5, 0.5) - 0.5, -1.0, 0.0], abs=1e-12)
+
+
+def test_digitac_pins_are_marked_one_by_one() -> None:
+    """Each tip is a disc of pi r^2 at its height; skin without pins is backed above the clamp."""
+    shape = resolve_shape("digitac", {"pin_rows": 3.0, "pin_columns": 3.0})
+    layers = Layers(elastomer_mm=1.2)
+    solid = build_solid(family("digitac"), shape, layers)
+    membrane = solid.membrane
+    assert len(solid.tips_mm) == 9 - 4
+    assert solid.tip_radius_mm == shape.pin_radius_mm
+    assert solid.backing_mm == pytest.approx(shape.pin_length_mm + shape.pin_gap_mm)
+    area = face_areas(membrane.points_mm, membrane.faces)
+    corners = membrane.points_mm[membrane.faces]
+    pins = membrane.has(Label.PIN)
+    for number, tip in enumerate(solid.tips_mm):
+        own = pins & (membrane.numbers == number)
+        flat = own & (np.abs(corners[:, :, 2] - tip[2]).max(axis=1) < 1e-6)
+        # Chords of 0.1 rad: 2e-3 of a disc.
+        assert area[flat].sum() == pytest.approx(math.pi * shape.pin_radius_mm**2, rel=0.02)
+    backed = membrane.has(Label.BACKED)
+    assert not np.any(backed & membrane.has(Label.OUTER))
+    assert corners[backed & ~pins][:, :, 2].min() == pytest.approx(shape.clamp_mm, abs=1e-6)
+
+
+def test_corner_pins_are_left_out() -> None:
+    """Of 5 x 7 pins those beyond 80 % of the dome are missing; none stands near the rim."""
+    shape, layers = DigitacShape(), Layers(elastomer_mm=1.2)
+    pins = np.array(digitac._pins(shape, layers))
+    inside = shape.loaf(1.2)
+    assert 0 < len(pins) < 35
+    assert inside.share(pins[:, :2]).max() <= 0.8
+    assert pins[:, 2] == pytest.approx(inside.roof_mm(pins[:, :2]) - shape.pin_length_mm)
+
+
+@pytest.mark.parametrize(
+    ("module", "name", "boolean", "feature", "says"),
+    [
+        (digitac, "digitac", "fuse", "pins to the skin", "skin: 0 of"),
+        (digitac, "digitac", "cut", "pins from the core", "core: 0 of"),
+        (pad, "pad", "intersect", "dome", "gel slab: expected"),
+    ],
+)
+def test_a_kernel_that_returns_the_uncut_body_is_found_out(
+    monkeypatch: pytest.MonkeyPatch, module: Any, name: str, boolean: str, feature: str, says: str
+) -> None:
+    """The boolean's own checks are taken away too: the family's check must still see it."""
+    real = getattr(module, boolean)
+
+    def lazy(body: Any, tool: Any, *, what: str, **rest: Any) -> Any:
+        return body if what.startswith(feature) else real(body, tool, what=what, **rest)
+
+    monkeypatch.setattr(module, boolean, lazy)
+    with pytest.raises(GeometryError, match=says):
+        family(name).build(resolve_shape(name, {}), Layers(elastomer_mm=1.2))
+
+
+@pytest.mark.parametrize(
+    ("name", "shape", "layers", "at"),
+    [
+        ("pad", {"corner_mm": 8.0, "depth_mm": 12.0}, {}, "shape.corner_mm"),
+        ("pad", {"standoff_mm": 8.0}, {"support_mm": 4.5}, "layers.support_mm"),
+        ("digitac", {"length_mm": 19.0}, {}, "shape.length_mm"),
+        ("digitac", {"pin_rows": 2.5}, {}, "shape.pin_rows"),
+        ("digitac", {"pin_length_mm": 3.0}, {"elastomer_mm": 3.0}, "shape.dome_mm"),
+        ("digitac", {"clamp_mm": 6.0}, {"elastomer_mm": 1.0}, "shape.clamp_mm"),
+        (
+            "digitac",
+            {"pin_rows": 9.0, "pin_radius_mm": 1.0},
+            {"elastomer_mm": 1.0},
+            "shape.pin_rows",
+        ),
+    ],
+)
+def test_contradictions_are_refused_with_their_place(
+    name: str, shape: dict[str, float], layers: dict[str, float], at: str
+) -> None:
+    """Each names value, limit and unit, and what to change."""
+    with pytest.raises(DesignError) as caught:
+        family(name).check(resolve_shape(name, shape), Layers(**layers))
+    assert caught.value.at == at
+    assert caught.value.hint
+    assert any(letter.isdigit() for letter in caught.value.message)
