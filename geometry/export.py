@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from geometry.build_sheet import bom_csv, build_sheet_html
+from geometry.fabricate import stl_points
 from geometry.faceted import faceted
 from geometry.solid import part_from_brep
 from geometry.threemf import threemf_bytes
@@ -29,14 +30,19 @@ HEADER = b"binary STL in millimetres"
 
 
 def stl_bytes(points_mm: np.ndarray, faces: np.ndarray) -> bytes:
-    """A binary STL file [mm]: 80 bytes of header, the count, 50 bytes a triangle."""
-    corners = np.asarray(points_mm, dtype=np.float64)[faces]
+    """A binary STL file [mm]: 80 bytes of header, the count, 50 bytes a triangle.
+
+    Triangles with corners that the file cannot tell apart are left out: to a reader that welds
+    equal corners their sides would be edges of four faces.
+    """
+    corners = stl_points(points_mm)[faces].astype(np.float64)
+    corners = corners[np.any(corners != np.roll(corners, 1, axis=1), axis=2).all(axis=1)]
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
     record = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("spare", "<u2")])
-    rows = np.zeros(len(faces), dtype=record)
+    rows = np.zeros(len(corners), dtype=record)
     rows["normal"], rows["corners"] = normal, corners
-    return HEADER.ljust(80, b"\0") + np.array(len(faces), dtype="<u4").tobytes() + rows.tobytes()
+    return HEADER.ljust(80, b"\0") + np.array(len(corners), dtype="<u4").tobytes() + rows.tobytes()
 
 
 def package_files(

@@ -88,9 +88,17 @@ def durable(solid: Any) -> tuple[np.ndarray, np.ndarray, bool]:
     return points, faces, closed
 
 
+def stl_points(points_mm: np.ndarray) -> np.ndarray:
+    """Vertices as an STL file holds them [mm]: multiples of a nanometre in float32.
+
+    float32 alone keeps 0 and 1e-17 apart, which other programs weld.
+    """
+    return (np.round(points_mm, 6) + 0.0).astype(np.float32)
+
+
 def reloaded(points_mm: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The mesh after an STL file: rounded to float32, equal vertices welded, slivers dropped."""
-    corners = points_mm.astype(np.float32)[faces].reshape(-1, 3)
+    """The mesh after an STL file: rounded, equal vertices welded, slivers dropped."""
+    corners = stl_points(points_mm)[faces].reshape(-1, 3)
     points, found = np.unique(corners, axis=0, return_inverse=True)
     triangles = found.reshape(-1, 3)
     proper = np.all(triangles != np.roll(triangles, 1, axis=1), axis=1)

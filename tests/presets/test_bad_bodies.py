@@ -3,6 +3,9 @@
 Each file is made here, as a CAD program or a scanner would write it.
 """
 
+# OCP has no type stubs.
+# pyright: reportAttributeAccessIssue=false
+
 from __future__ import annotations
 
 import json

@@ -172,3 +172,23 @@ def test_target_far_from_the_skin_is_refused(
     expect_refusal(run, "is 92.0 mm from the skin; the limit is 5 mm", "press.target_mm")
     assert "(8.0, 0.0, 0.0) mm" in run.stderr
     assert not list((tmp_path / "out").glob("*"))
+
+
+def test_a_mould_larger_than_the_bed_is_told(
+    workbench: Any, coarse: Path, stored: dict[str, float], tmp_path: Path
+) -> None:
+    """A bed of 30 mm: exit 0; red checks with ratio, limit and remedy, and on the build sheet."""
+    file = tmp_path / "small_bed.toml"
+    file.write_text(coarse.read_text() + "[mould]\nbed_mm = [30.0, 30.0, 30.0]\n")
+    words = ("--indenter", "sphere", "--size-mm", "4", *PRESS, "--out", tmp_path / "out")
+    run = workbench("run", file, *words)
+    assert run.code == 0
+    summary = json.loads((tmp_path / "out" / "summary.json").read_text())
+    beds = {check["part"]: check for check in summary["checks"] if check["name"] == "bed"}
+    half = beds["half_a"]
+    # The half is as long as the body across and two ears of 17 mm: 16 / 0.998 + 34 mm.
+    assert half["value"] == pytest.approx((16.0 / 0.998 + 34.0) / 30.0, rel=1e-3)
+    assert half["severity"] == "bad"
+    assert "1.67 of the bed, at most 1 of the bed is good" in half["message"]
+    assert "use a larger printer" in half["message"]
+    assert "1.67 of the bed" in (tmp_path / "out" / "build_sheet.html").read_text()

@@ -69,6 +69,25 @@ def test_cavity_is_the_membrane_enlarged_by_the_shrinkage(moulds: MouldSet, fing
     assert moulds.overlap_mm3 <= 1e-6
 
 
+def test_corners_that_float32_cannot_tell_apart_are_left_out_of_stl() -> None:
+    """A cube with one corner split by 1e-9 mm: 12 triangles of 14; the file is closed."""
+    import io
+
+    import trimesh
+
+    cube = trimesh.creation.box(extents=(2.0, 2.0, 2.0))
+    points = np.vstack([cube.vertices, cube.vertices[cube.edges[0, 0]] + [1e-9, 0.0, 0.0]])
+    # The new corner takes the place of the old one on one side of an edge from it.
+    a, b = (int(i) for i in cube.edges[0])
+    new, faces = len(points) - 1, np.array(cube.faces)
+    faces[0][faces[0] == a] = new
+    third = int(next(i for i in cube.faces[0] if i not in (a, b)))
+    slivers = [[new, a, b], [a, new, third]]
+    text = stl_bytes(points, np.vstack([faces, slivers]))
+    assert int.from_bytes(text[80:84], "little") == 12
+    assert trimesh.load_mesh(io.BytesIO(text), file_type="stl").is_watertight
+
+
 def test_a_part_that_reaches_into_the_cast_is_refused(finger: Solid, moulds: MouldSet) -> None:
     """The core 0.01 mm aside takes 0.01 mm times its side view from the wall: 8 mm3."""
     import dataclasses

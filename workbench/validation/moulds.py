@@ -12,9 +12,10 @@ import tempfile
 import time
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from workbench.core.design import MouldOptions
-from workbench.core.errors import DesignError, WorkbenchError
+from workbench.core.errors import WorkbenchError
 from workbench.core.fabrication import FabricationPart, MouldSet, Severity
 from workbench.core.monitor import silent
 from workbench.core.results import Solid
@@ -75,19 +76,16 @@ def _timed(solid: Solid) -> tuple[MouldSet, float]:
 
 
 def is_one_body(part: FabricationPart) -> bool:
-    """Whether the part is one closed body when its STL file is read again."""
+    """Whether the part is one closed body when another program reads its STL file."""
+    import trimesh
+
     from geometry.export import stl_bytes
-    from geometry.fabricate import piece_count
-    from geometry.indenters import load_stl
 
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"{part.name}.stl"
         path.write_bytes(stl_bytes(part.points_mm, part.faces))
-        try:
-            mesh = load_stl(path)
-        except DesignError:
-            return False
-    return piece_count(mesh.points_mm, mesh.faces) == 1
+        mesh: Any = trimesh.load_mesh(path)
+    return mesh.is_watertight and mesh.is_winding_consistent and mesh.body_count == 1
 
 
 def thin_walls_are_told(moulds: MouldSet) -> bool:
