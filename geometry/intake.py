@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from geometry.holes import close_holes
+from geometry.meshlab import crossing_faces
 from geometry.stl import stl_corners, welded
 from geometry.surface import face_areas, mesh_volume, open_edges, pieces
 from workbench.core.errors import DesignError, GeometryError, MeshingError
@@ -236,14 +237,7 @@ def _consistent(points: np.ndarray, faces: np.ndarray, notes: list[str]) -> np.n
 
 def _expect_simple(surface: ReadSurface, name: str) -> None:
     """Refuse faces that cut through each other."""
-    import pymeshlab as library
-
-    pymeshlab: Any = library
-
-    meshes = pymeshlab.MeshSet(verbose=False)
-    meshes.add_mesh(pymeshlab.Mesh(surface.points_mm, surface.faces))
-    meshes.compute_selection_by_self_intersections_per_face()
-    crossing = np.asarray(meshes.current_mesh().face_selection_array(), dtype=bool)
+    crossing = crossing_faces(surface.points_mm, surface.faces)
     if crossing.any():
         x, y, z = surface.points_mm[surface.faces[crossing]].mean(axis=(0, 1))
         raise DesignError(

@@ -6,23 +6,19 @@ vertices slide on the original surface; edges of the body sharper than 35 degree
 runs in two passes, so that small features survive: numbered regions much smaller than the others
 (pins) and what touches them first, with a shorter edge; then all the rest.
 
-pymeshlab is GPL-3: it is called here and nowhere else, and only when this module is used.
 Leaves out: edges that grow with flatness.
 """
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
+from geometry.meshlab import isotropic
 from geometry.surface import face_areas, is_watertight
 from geometry.transfer import face_regions, nearest_source
 from workbench.core.errors import MeshingError
 from workbench.core.results import NO_NUMBER, Label, LabelledSurface
 
-CREASE_DEG = 35.0
-PASSES = 6
 RIM_MM = 0.05
 """Vertices of base faces nearer to z = 0 than this are put there [mm]."""
 SPAN = 18.0
@@ -44,13 +40,13 @@ def remesh(surface: LabelledSurface, edge_mm: float) -> LabelledSurface:
     if small.any():
         touched = np.zeros(len(points), dtype=bool)
         touched[faces[small]] = True
-        points, faces = _isotropic(
+        points, faces = isotropic(
             points, faces, fine_mm, np.flatnonzero(touched[faces].any(axis=1))
         )
         kept = small[nearest_source(surface, points, faces)]
-        points, faces = _isotropic(points, faces, edge_mm, np.flatnonzero(~kept))
+        points, faces = isotropic(points, faces, edge_mm, np.flatnonzero(~kept))
     else:
-        points, faces = _isotropic(points, faces, edge_mm, None)
+        points, faces = isotropic(points, faces, edge_mm, None)
     if not is_watertight(faces):
         raise MeshingError(
             f"the surface is not closed after remeshing to {edge_mm:g} mm",
@@ -76,40 +72,3 @@ def _small_regions(surface: LabelledSurface, edge_mm: float) -> tuple[float, np.
             small |= members
             finest_mm = min(finest_mm, wanted_mm)
     return finest_mm, small
-
-
-def _isotropic(
-    points_mm: np.ndarray, faces: np.ndarray, edge_mm: float, chosen: np.ndarray | None
-) -> tuple[np.ndarray, np.ndarray]:
-    """One run of the filter over the faces of those numbers, or over all."""
-    meshlab = _meshlab()
-    meshes = meshlab.MeshSet(verbose=False)
-    marks = np.zeros(len(faces))
-    marks[chosen] = 1.0
-    meshes.add_mesh(meshlab.Mesh(points_mm, faces, f_scalar_array=marks))
-    if chosen is not None:
-        meshes.compute_selection_by_condition_per_face(condselect="fq > 0.5")
-    meshes.meshing_isotropic_explicit_remeshing(
-        targetlen=meshlab.PureValue(edge_mm),
-        iterations=PASSES,
-        featuredeg=CREASE_DEG,
-        checksurfdist=False,
-        selectedonly=chosen is not None,
-    )
-    result = meshes.current_mesh()
-    points = np.array(result.vertex_matrix(), dtype=np.float64)
-    triangles = np.array(result.face_matrix(), dtype=np.int64)
-    used, compact = np.unique(triangles, return_inverse=True)
-    return points[used], compact.reshape(-1, 3).astype(np.int32)
-
-
-def _meshlab() -> Any:
-    try:
-        import pymeshlab
-    except ImportError as error:
-        raise MeshingError(
-            f"pymeshlab, which divides this shape evenly, cannot be loaded: {error}",
-            hint="install it with `pip install pymeshlab`, or choose a shape that hexahedra suit",
-            at="meshing.hex_mm",
-        ) from error
-    return pymeshlab

@@ -7,9 +7,9 @@ import sys
 import numpy as np
 import pytest
 
-from geometry import remesh as remeshing
-from geometry import tets
+from geometry import meshlab, tets
 from geometry.primitives import rounded_box
+from geometry.remesh import remesh
 from geometry.surface import face_areas, mesh_volume
 from workbench.core.errors import MeshingError
 from workbench.core.results import Label, LabelledSurface
@@ -26,7 +26,7 @@ def box() -> LabelledSurface:
     return LabelledSurface(points_mm=points, faces=faces, labels=labels)
 
 
-@pytest.mark.parametrize(("module", "tool"), [(remeshing, "pymeshlab"), (tets, "pytetwild")])
+@pytest.mark.parametrize(("module", "tool"), [(meshlab, "pymeshlab"), (tets, "pytetwild")])
 def test_missing_tools_are_named(
     module: object, tool: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -40,7 +40,7 @@ def test_missing_tools_are_named(
 
 def test_remeshed_box_keeps_its_corners_regions_and_sense() -> None:
     """Cube of 64 mm3: plane faces and sharp edges stay exact, each region 16 mm2 or 4 x 16."""
-    even = remeshing.remesh(box(), 0.5)
+    even = remesh(box(), 0.5)
     assert mesh_volume(even.points_mm, even.faces) == pytest.approx(64.0, rel=1e-5)
     areas = face_areas(even.points_mm, even.faces)
     for label, area_mm2 in ((Label.BASE, 16.0), (Label.INNER, 16.0), (Label.OUTER, 64.0)):
@@ -52,7 +52,7 @@ def test_remeshed_box_keeps_its_corners_regions_and_sense() -> None:
 
 def test_tetrahedra_of_a_box_fill_it() -> None:
     """Cube of 64 mm3; its free faces enclose the same."""
-    points, cells = tets._fill(remeshing.remesh(box(), 1.5), 1.5)
+    points, cells = tets._fill(remesh(box(), 1.5), 1.5)
     corner = points[cells]
     edges = corner[:, 1:] - corner[:, :1]
     # The envelope lets corners be cut by 3 % of an edge.
