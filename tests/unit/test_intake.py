@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from geometry.export import stl_bytes
 from geometry.intake import read_body, smooth_patches
 from geometry.surface import is_watertight, mesh_volume
 from workbench.core.errors import DesignError
@@ -26,7 +25,11 @@ def drum(radius: float = 12.0, height: float = 20.0) -> tuple[np.ndarray, np.nda
 
 
 def read(points: np.ndarray, faces: np.ndarray, unit: LengthUnit = LengthUnit.AUTO) -> ReadBody:
-    file = body_file("drum.stl", stl_bytes(points, faces))
+    import trimesh
+
+    # Not our own writer, which is for millimetres and leaves out what is degenerate.
+    data: Any = trimesh.Trimesh(points, faces, process=False).export(file_type="stl")
+    file = body_file("drum.stl", data)
     return read_body(ImportedBody(outer=file, unit=unit))
 
 
