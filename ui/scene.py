@@ -19,6 +19,8 @@ from workbench.previews import cell_edges, indenter_shape, standing_pose
 
 INDENTER_COLOUR = (232, 124, 44)
 CELL_COLOUR = (255, 45, 85)
+GRID_FADE_MM = 220.0
+"""Distance from the eye at which the floor is lost; most bodies are nearer than 150 mm."""
 GRID_BELOW_MM = 0.1
 """How far the floor grid lies below the foot: nearer, the two flicker [mm]."""
 
@@ -54,7 +56,13 @@ class Scene:
                 "/fill", sky_color=(255, 255, 255), ground_color=(120, 120, 130), intensity=2.0
             )
         self.grid = self.api.add_grid(
-            "/grid", width=160, height=160, cell_size=5, section_size=20, position=(0, 0, -8.1)
+            "/grid",
+            width=160,
+            height=160,
+            cell_size=5,
+            section_size=20,
+            fade_distance=GRID_FADE_MM,
+            position=(0, 0, -8.1),
         )
 
     def show_solid(self, solid: Solid) -> None:

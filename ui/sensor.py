@@ -20,7 +20,7 @@ ACTUATOR_COLOURS = ((240, 150, 70), (90, 175, 240), (170, 120, 230), (120, 200, 
 SKIN = {"color": SKIN_COLOUR, "opacity": 0.55}
 UNSENSED = {"color": (90, 90, 96), "opacity": 0.8}
 PINS = {"color": (60, 64, 72), "flat_shading": False}
-SUPPORT = {"color": (150, 205, 235), "opacity": 0.16, "cast_shadow": False}
+SUPPORT = {"color": (150, 205, 235), "opacity": 0.12, "cast_shadow": False}
 FOOT = {"color": (92, 98, 108), "flat_shading": True}
 TIP_COLOUR = (245, 245, 245)
 

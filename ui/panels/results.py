@@ -113,6 +113,9 @@ class ResultsPanel:
         """Mark an image and a force that no longer belong to the state."""
         self._caption(int(self.frame.value))
         self._show_forces(int(self.frame.value))
+        if self.timeline.visible and not self.desk.current("press"):
+            # There are no frames on the skin to step through.
+            self.timeline.visible = False
 
     def show(self, stage: str, result: Any) -> None:
         """Follow results and the log."""
