@@ -100,7 +100,7 @@ def build_desk(server: Any, session: Session, conductor: Conductor, *, fast: boo
                 desk.panels.append(panel(desk))
         desk.panels.append(ResultsPanel(desk))
     first_look(desk)
-    threading.Thread(target=desk.pump_forever, name="pump", daemon=True).start()
+    threading.Thread(target=desk.jobs.pump_forever, name="pump", daemon=True).start()
     return desk
 
 

@@ -1,32 +1,31 @@
 """The desk: joins session, conductor, scene and panels; holds no widgets' details and no maths.
 
-Handlers of widgets call `edit` or `run` and return. One pump thread drains the conductor's events
-into widgets ten times a second and saves the session once edits have settled.
+Handlers of widgets call `edit` or `run` and return; what comes of it arrives through `jobs`.
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any, Protocol
 
 import numpy as np
 
-from ui.header import NAMES, Header
+from ui.header import Header
+from ui.jobs import Jobs
 from ui.panels.fields import Fields, read_field, whole_shape
 from ui.reports import Reports
 from ui.scene import Scene
 from ui.session import Session
 from workbench.aim import default_target_mm
 from workbench.bodies import IMPORTED
-from workbench.conductor import LIVE, Conductor, Event, Finished, Progress, StageDone
+from workbench.conductor import LIVE, Conductor, Finished
 from workbench.core.design import SensorDesign
-from workbench.core.errors import Cancelled, WorkbenchError
+from workbench.core.errors import WorkbenchError
 from workbench.core.results import Solid
-from workbench.core.units import human_seconds
 from workbench.forms import resolve_shape
+from workbench.stages import Outcome
 
-PUMP_S = 0.1
 AUTOSAVE_S = 1.0
 """Quiet time after an edit before the design is written [s]."""
 AIM_LIMIT_MM = 4.0
@@ -56,7 +55,6 @@ class Desk:
     def __init__(self, server: Any, session: Session, conductor: Conductor, *, fast: bool) -> None:
         self.server = server
         self.session = session
-        self.conductor = conductor
         self.fields = Fields(server, self.read, self.edit)
         self.reports = Reports(server, session, self.fields)
         self.reports.on_log = lambda lines: self._tell("log", lines)
@@ -68,14 +66,16 @@ class Desk:
         """Set by the panel that shows the parts."""
         self.pick: Callable[[int], bool] = lambda face: False
         """Set by the panel that labels faces: whether it took a click on this membrane face."""
-        self.header = Header(server.gui, self.guarded(lambda event: self.conductor.cancel()))
+        self.header = Header(server.gui, self.guarded(lambda event: conductor.cancel()))
         self.reports.banner = self.header.banner
+        self.jobs = Jobs(conductor, self.reports, self.header)
+        self.jobs.on_done = self._stage_done
+        self.jobs.on_events = self.refresh_header
+        self.jobs.on_idle = self._autosave
         self._edited: float | None = None
         self._framed: tuple[str, str] | None = None
         self._notices: dict[str, str] = {}
-        self._running: dict[str, Progress] = {}
         self._shown: dict[str, str] = {}
-        self._then: dict[str, Callable[[Finished], None]] = {}
         self._lock = self.reports.lock
 
     def read(self, path: str) -> Any:
@@ -108,7 +108,7 @@ class Desk:
         session = self.session
         if not session.store.has("build", session.calls()["build"].key):
             # First of all: the worker builds while the widgets follow.
-            self.conductor.submit(LIVE, session.design, session.case, ("build",))
+            self.jobs.submit(LIVE, session.design, session.case, ("build",))
         self.scene.rig.show_lights(session.design.optics.ring)
         self.scene.rig.show_camera(session.design.optics.camera)
         self.show_stored()
@@ -157,16 +157,13 @@ class Desk:
         self.header.banner.visible = False
         if topic != "parts":
             self.put_parts_away()
-        self.log(f"{topic}: started")
-        self.conductor.submit(topic, self.session.design, self.session.case, wanted)
+        self.jobs.submit(topic, self.session.design, self.session.case, wanted)
 
     def trial(
         self, topic: str, design: SensorDesign, wanted: str, then: Callable[[Finished], None]
     ) -> None:
         """Compute a stage of a design that is not the state; `then` decides by how it ended."""
-        self._then[topic] = then
-        self.log(f"{topic}: started")
-        self.conductor.submit(topic, design, self.session.case, (wanted,))
+        self.jobs.submit(topic, design, self.session.case, (wanted,), then)
 
     def _show(self, stage: str, key: str) -> None:
         if self._shown.get(stage) == key:
@@ -215,63 +212,18 @@ class Desk:
         """Whether what is shown of a stage belongs to the state as it stands."""
         return self._shown.get(stage) == self.session.calls()[stage].key
 
-    def pump_forever(self) -> None:
-        """Drain events into widgets until the process ends."""
-        while True:
-            try:
-                # Wakes at once for an event, and regularly for the autosave.
-                self.pump(self.conductor.wait(PUMP_S))
-            except Exception as bug:
-                self.reports.crash(bug)
+    def _stage_done(self, outcome: Outcome) -> None:
+        calls = self.session.calls()
+        if outcome.stage in SHOWN and calls[outcome.stage].key == outcome.key:
+            self._show(outcome.stage, outcome.key)
 
-    def pump(self, events: Sequence[Event]) -> None:
-        """Handle events, then the autosave."""
-        with self._lock:
-            for event in events:
-                self.guarded(self._handle)(event)
-            if events:
-                self.header.show_progress(self._running)
-                self.refresh_header()
-            if self._edited is not None and time.monotonic() - self._edited > AUTOSAVE_S:
-                self._edited = None
-                self.guarded(lambda event: self.session.autosave())(None)
-
-    def _handle(self, event: Event) -> None:
-        if isinstance(event, Progress):
-            self._running[event.topic] = event
-        elif isinstance(event, StageDone):
-            stage, key = event.outcome.stage, event.outcome.key
-            if not event.outcome.cached:
-                self.log(
-                    f"{NAMES.get(stage, stage)} done in {human_seconds(event.outcome.seconds)}"
-                )
-            calls = self.session.calls()
-            if stage in SHOWN and calls[stage].key == key:
-                self._show(stage, key)
-        else:
-            self._finish(event)
-
-    def _finish(self, event: Finished) -> None:
-        self._running.pop(event.topic, None)
-        error, then = event.error, self._then.pop(event.topic, None)
-        if event.superseded:
-            self.log(f"{event.topic}: replaced by a newer request")
-            if then is not None:
-                # It waits for the newer request's end.
-                self._then[event.topic] = then
-        elif isinstance(error, Cancelled):
-            self.log(f"{event.topic}: cancelled")
-            if event.topic != LIVE:
-                text = f"{event.topic} was stopped; earlier results are kept"
-                self.reports.notify("Cancelled", text)
-        elif then is not None:
-            then(event)
-        elif error is not None:
-            self.reports.report(error)
-        elif event.topic != LIVE:
-            self.log(f"{event.topic}: finished in {human_seconds(event.seconds)}")
+    def _autosave(self) -> None:
+        """Keep the state once edits have settled."""
+        if self._edited is not None and time.monotonic() - self._edited > AUTOSAVE_S:
+            self._edited = None
+            self.session.autosave()
 
     def refresh_header(self) -> None:
         """Show which stages are done and which are stale."""
-        self.header.show_stages(self.session.fresh(), self._running)
+        self.header.show_stages(self.session.fresh(), self.jobs.running)
         self.header.show_design(self.session.design)

@@ -17,7 +17,7 @@ from ui.desk import Desk
 from workbench.bodies import IMPORTED
 from workbench.conductor import Finished
 from workbench.core.design import SensorDesign
-from workbench.core.errors import DesignError
+from workbench.core.errors import Cancelled, DesignError
 from workbench.core.imported import BodyFile, ImportedBody, LengthUnit, Pick, body_file
 
 MAX_BYTES = 40 * 2**20
@@ -125,6 +125,9 @@ class IntakeFolder:
 
     def _read(self, event: Finished) -> None:
         self.said.content = ""
+        if isinstance(event.error, Cancelled):
+            self.trial = None
+            return
         if event.error is not None:
             self.desk.reports.report(event.error, quiet=True)
             return

@@ -1,0 +1,106 @@
+"""What runs for the desk: requests go to the conductor, and one pump thread drains its events.
+
+The pump wakes at once for an event and ten times a second without one; everything it does to
+widgets happens under the lock that widget callbacks take.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from ui.header import NAMES, Header
+from ui.reports import Reports
+from workbench.conductor import LIVE, Conductor, Event, Finished, Progress, StageDone
+from workbench.core.design import SensorDesign
+from workbench.core.errors import Cancelled
+from workbench.core.units import human_seconds
+from workbench.pipeline import PressCase
+from workbench.stages import Outcome
+
+PUMP_S = 0.1
+
+
+class Jobs:
+    """Requests of one desk and how they go."""
+
+    def __init__(self, conductor: Conductor, reports: Reports, header: Header) -> None:
+        self.conductor = conductor
+        self.reports = reports
+        self.header = header
+        self.running: dict[str, Progress] = {}
+        self.on_done: Callable[[Outcome], None] = lambda outcome: None
+        """Set by the desk: shows a stage's result."""
+        self.on_events: Callable[[], None] = lambda: None
+        """Set by the desk: follows after events."""
+        self.on_idle: Callable[[], None] = lambda: None
+        """Set by the desk: called each time the pump turns."""
+        self._then: dict[str, Callable[[Finished], None]] = {}
+
+    def submit(
+        self,
+        topic: str,
+        design: SensorDesign,
+        case: PressCase,
+        wanted: tuple[str, ...],
+        then: Callable[[Finished], None] | None = None,
+    ) -> None:
+        """Ask for stages; `then` takes the place of reporting how it ended."""
+        if then is not None:
+            self._then[topic] = then
+        if topic != LIVE:
+            self.reports.log(f"{topic}: started")
+        self.conductor.submit(topic, design, case, wanted)
+
+    def pump_forever(self) -> None:
+        """Drain events into widgets until the process ends."""
+        while True:
+            try:
+                self.pump(self.conductor.wait(PUMP_S))
+            except Exception as bug:
+                self.reports.crash(bug)
+
+    def pump(self, events: Sequence[Event]) -> None:
+        """Handle events, then what waits for a quiet moment."""
+        guarded = self.reports.guarded
+        with self.reports.lock:
+            for event in events:
+                guarded(self._handle)(event)
+            if events:
+                self.header.show_progress(self.running)
+                self.on_events()
+            guarded(lambda event: self.on_idle())(None)
+
+    def _handle(self, event: Event) -> None:
+        if isinstance(event, Progress):
+            self.running[event.topic] = event
+        elif isinstance(event, StageDone):
+            outcome = event.outcome
+            if not outcome.cached:
+                name = NAMES.get(outcome.stage, outcome.stage)
+                self.reports.log(f"{name} done in {human_seconds(outcome.seconds)}")
+            self.on_done(outcome)
+        else:
+            self._finish(event)
+
+    def _finish(self, event: Finished) -> None:
+        self.running.pop(event.topic, None)
+        error, then = event.error, self._then.pop(event.topic, None)
+        log = self.reports.log
+        if event.superseded:
+            log(f"{event.topic}: replaced by a newer request")
+            if then is not None:
+                # It waits for the newer request's end.
+                self._then[event.topic] = then
+        elif isinstance(error, Cancelled):
+            log(f"{event.topic}: cancelled")
+            if event.topic != LIVE:
+                text = f"{event.topic} was stopped; earlier results are kept"
+                self.reports.notify("Cancelled", text)
+            if then is not None:
+                then(event)
+        elif then is not None:
+            then(event)
+        elif error is not None:
+            self.reports.report(error)
+        elif event.topic != LIVE:
+            log(f"{event.topic}: finished in {human_seconds(event.seconds)}")
