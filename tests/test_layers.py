@@ -49,10 +49,10 @@ def imported(path: Path) -> list[str]:
 
 @pytest.mark.parametrize("path", FILES, ids=lambda p: str(p.relative_to(ROOT)))
 def test_imports_point_one_way(path: Path) -> None:
-    """No module imports a layer above it; `cli serve` may reach the front, lazily."""
+    """No module imports a layer above it; `workbench serve` may reach the front, lazily."""
     room = room_of(path)
     for name in imported(path):
-        lazy_front = path.name == "cli.py" and name.startswith("ui.app")
+        lazy_front = path.name == "commands.py" and name.startswith("ui.app")
         # `from geometry import surface` is named as package and as module: the module decides.
         if name in OURS and may_import(room, f"{name}.surface"):
             continue

@@ -1,12 +1,17 @@
-"""Where a first press of a design makes sense."""
+"""What only a built body can tell: where a first press makes sense, and which LED ring fits."""
 
 from __future__ import annotations
+
+import dataclasses
+import math
 
 import numpy as np
 
 from workbench.bodies import IMPORTED
 from workbench.core.design import SensorDesign
 from workbench.core.results import Label, Solid
+
+RING_STEP_MM = 0.5
 
 
 def default_target_mm(
@@ -28,3 +33,32 @@ def default_target_mm(
     shape = resolve_shape(design.family, design.shape)
     x, y, z = (round(float(c), 3) for c in family(design.family).target(shape, design.layers))
     return x, y, z
+
+
+def with_fitting_ring(design: SensorDesign, solid: Solid) -> tuple[SensorDesign, str]:
+    """An imported design whose LEDs fit inside, and what was changed for that, else "".
+
+    A designer whose body comes from a file has not chosen a ring yet, and the default is that of a
+    finger. The radius is the largest that keeps the LEDs' own size and the clearance from the
+    support, in half millimetres.
+    """
+    ring, room_mm = design.optics.ring, _ring_room_mm(design, solid)
+    if design.family != IMPORTED or ring.radius_mm <= room_mm:
+        return design, ""
+    radius_mm = max(RING_STEP_MM, math.floor(room_mm / RING_STEP_MM) * RING_STEP_MM)
+    notice = f"LED ring: radius {radius_mm:g} mm instead of {ring.radius_mm:g} mm, to fit inside"
+    return design.replace("optics.ring.radius_mm", radius_mm), notice
+
+
+def _ring_room_mm(design: SensorDesign, solid: Solid) -> float:
+    """Largest radius of the LED ring in this support [mm]; infinite where rays miss it."""
+    from geometry.leds import led_places
+    from geometry.rays import RayCaster
+
+    ring, housing = design.optics.ring, design.housing
+    places, _ = led_places(dataclasses.replace(ring, radius_mm=1.0))
+    axis = np.array([0.0, 0.0, ring.height_mm])
+    caster = RayCaster(solid.support.points_mm, solid.support.faces)
+    distance, _, _ = caster.hits(np.broadcast_to(axis, places.shape), places - axis)
+    half_mm = math.hypot(housing.led_width_mm, housing.led_height_mm) / 2
+    return float(distance.min()) - half_mm - 2 * housing.clearance_mm

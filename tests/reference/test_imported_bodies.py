@@ -16,7 +16,8 @@ from geometry.intake import read_body
 from geometry.isosurface import distance_mm, isosurface
 from geometry.offset import inset_surface, inside
 from geometry.surface import face_areas, is_watertight, mesh_volume
-from workbench.core.design import Layers
+from workbench.aim import default_target_mm, with_fitting_ring
+from workbench.core.design import Layers, SensorDesign
 from workbench.core.errors import DesignError
 from workbench.core.imported import ImportedBody, Pick, ReadBody, body_file
 from workbench.core.results import Label, Solid, region_masks
@@ -213,3 +214,21 @@ def test_isosurface_of_a_ball() -> None:
     assert is_watertight(found[1])
     assert mesh_volume(*found) == pytest.approx(4 / 3 * math.pi * 125.0, rel=2.5e-3)
     assert isosurface(np.ones((3, 3, 3)), [0.0] * 3, 1.0) is None
+
+
+def test_leds_of_a_body_from_a_file_are_moved_inside(hollow_drum: Solid) -> None:
+    """Cavity of 9 mm less LED 1.1 mm and gaps 0.3 mm: 7.5 mm instead of 9; a finger's stays."""
+    design = SensorDesign(name="drum", family="imported")
+    fitted, notice = with_fitting_ring(design, hollow_drum)
+    assert fitted.optics.ring.radius_mm == 7.5
+    assert notice == "LED ring: radius 7.5 mm instead of 9 mm, to fit inside"
+    assert with_fitting_ring(fitted, hollow_drum) == (fitted, "")
+    finger = SensorDesign(name="finger", family="finger")
+    assert with_fitting_ring(finger, hollow_drum) == (finger, "")
+
+
+def test_the_top_of_an_imported_body_is_pressed_first(hollow_drum: Solid) -> None:
+    """Known once the body is built; the origin until then."""
+    design = SensorDesign(name="drum", family="imported")
+    assert default_target_mm(design, hollow_drum)[2] == HEIGHT_MM
+    assert default_target_mm(design) == (0.0, 0.0, 0.0)

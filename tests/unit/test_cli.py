@@ -18,7 +18,8 @@ import pytest
 
 from workbench import bench, doctor, outputs, validate
 from workbench.benchmarks.pipeline import rerun_row
-from workbench.cli import main, parser, press_case
+from workbench.cli import main, parser
+from workbench.commands import press_case
 from workbench.core.errors import SolveError
 from workbench.rows import Row, as_json, as_text, bounded, compared, failed
 

@@ -1,0 +1,190 @@
+"""What each command does: calls the pipeline and prints. No logic of its own.
+
+Each handler takes the parsed options and the project, and returns the exit code.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from typing import Any
+
+from workbench.core.design import LightModel, SensorDesign
+from workbench.core.errors import DesignError, DeviceError
+from workbench.core.results import Solid
+from workbench.project import Project
+from workbench.terminal import Progress, complain, say
+
+
+def _looked_at(
+    design: SensorDesign, options: argparse.Namespace, project: Project, printer: Progress
+) -> tuple[SensorDesign, Solid | None]:
+    """An imported body, built, with LEDs that fit if it comes straight from its file."""
+    from workbench.aim import with_fitting_ring
+    from workbench.pipeline import InlineRunner, PressCase, evaluate
+
+    if design.body is None:
+        return design, None
+    runner = InlineRunner(project.store)
+    *_, built = evaluate(design, PressCase(), runner, wanted=("build",), monitor=printer)
+    solid = project.store.load("build", built.key)
+    if not options.design.endswith(".toml"):
+        design, notice = with_fitting_ring(design, solid)
+        if notice:
+            complain(notice)
+    return design, solid
+
+
+def run(options: argparse.Namespace, project: Project) -> int:
+    """Press a design and write images, forces and moulds."""
+    from workbench.aim import default_target_mm
+    from workbench.outputs import prepare, write_all
+    from workbench.pipeline import InlineRunner, evaluate, plan
+    from workbench.project import load_design
+
+    design = load_design(options.design, unit=options.unit)
+    if options.light_model:
+        design = design.replace("optics.light_model", LightModel(options.light_model))
+    # What is wrong with the design or the options is said before anything is written or built.
+    plan(design, press_case(options, default_target_mm(design)))
+    prepare(options.out)
+    project.store.sweep()
+    printer = Progress(as_json=options.json)
+    design, solid = _looked_at(design, options, project, printer)
+    case = press_case(options, default_target_mm(design, solid))
+    calls = plan(design, case)
+    runner = InlineRunner(project.store)
+    outcomes = []
+    for outcome in evaluate(design, case, runner, monitor=printer):
+        printer.done(outcome)
+        outcomes.append(outcome)
+    try:
+        *_, picture = evaluate(design, case, runner, wanted=("picture",), monitor=printer)
+        printer.done(picture)
+        outcomes.append(picture)
+    except DeviceError as error:
+        complain(f"the report has no picture of the mould: {error.message}")
+    summary = write_all(options.out, design, case.press, project.store, calls, outcomes)
+    if not options.json:
+        force = summary["contact"]
+        say(
+            f"{force['normal_N']:.3f} N along the normal at {case.press.depth_mm:g} mm; "
+            f"residual {force['residual']:.1e}, penetration {1e3 * force['penetration_mm']:.0f} um"
+        )
+        say(f"open {options.out / 'report.html'}")
+    return 0
+
+
+def press_case(options: argparse.Namespace, target_mm: tuple[float, float, float]) -> Any:
+    """The press that the options of `run` describe; `target_mm` where they name none.
+
+    Raises:
+        DesignError: If a value is refused or the indenter is unknown.
+    """
+    from workbench.core.press import ContactSettings, Press
+    from workbench.indenter_choice import choose_indenter
+    from workbench.pipeline import PressCase
+
+    settings = {} if options.grid_mm is None else {"grid_mm": options.grid_mm}
+    return PressCase(
+        indenter=choose_indenter(
+            options.indenter, size_mm=options.size_mm, edge_radius_mm=options.edge_radius_mm
+        ),
+        press=Press(
+            target_mm=_numbers(options.target, 3, at="--target") if options.target else target_mm,
+            depth_mm=options.depth_mm,
+            shear_mm=_numbers(options.shear_mm, 2, at="--shear-mm"),
+            twist_deg=options.twist_deg,
+            frames=options.frames,
+        ),
+        settings=ContactSettings(**settings),
+    )
+
+
+def _numbers(text: str, count: int, *, at: str) -> Any:
+    parts = text.split(",")
+    try:
+        values = tuple(float(part) for part in parts)
+    except ValueError:
+        values = ()
+    if len(values) != count:
+        raise DesignError(
+            f"{at} is {text!r}, expected {count} numbers in mm separated by commas",
+            hint=f"for example {at} {','.join(['0'] * count)}",
+            at=at,
+        )
+    return values
+
+
+def export(options: argparse.Namespace, project: Project) -> int:
+    """Write a design's bodies, mould and meshes."""
+    from workbench.exports import export_design
+    from workbench.project import load_design
+
+    printer = Progress(as_json=options.json)
+    design, _ = _looked_at(
+        load_design(options.design, unit=options.unit), options, project, printer
+    )
+    for path in export_design(design, options.out, project.store, printer, tets=options.tets):
+        say(json.dumps({"file": str(path)}) if options.json else path)
+    return 0
+
+
+def presets(options: argparse.Namespace, project: Project) -> int:
+    """List the shipped designs and the families."""
+    from designs.family import families
+    from workbench.project import presets
+
+    rows = [{"name": n, "kind": "preset", "purpose": p} for n, p in presets().items()]
+    rows += [{"name": n, "kind": "family", "purpose": f.title} for n, f in families().items()]
+    for row in rows:
+        say(
+            json.dumps(row)
+            if options.json
+            else f"{row['name']:12} {row['kind']:7} {row['purpose']}"
+        )
+    return 0
+
+
+def validate(options: argparse.Namespace, project: Project) -> int:
+    """Compare with closed forms."""
+    from workbench.validate import ROOMS
+
+    return _print_rows(options, ROOMS)
+
+
+def bench(options: argparse.Namespace, project: Project) -> int:
+    """Measure speed."""
+    from workbench.bench import ROOMS
+
+    return _print_rows(options, ROOMS)
+
+
+def _print_rows(options: argparse.Namespace, rooms: dict[str, Any]) -> int:
+    from workbench.core.mapping import suggest
+    from workbench.rows import as_json, as_text, gathered
+
+    if options.room not in rooms:
+        raise DesignError(
+            f"there is no room {options.room!r}", hint=suggest(options.room, rooms), at="room"
+        )
+    rows = gathered(options.room, rooms[options.room])
+    say(as_json(rows) if options.json else as_text(rows))
+    return 0 if all(row.ok for row in rows) else 1
+
+
+def doctor(options: argparse.Namespace, project: Project) -> int:
+    """Show versions, device and folders."""
+    from workbench.doctor import report
+
+    lines, healthy = report(project.folder)
+    say("\n".join(lines))
+    return 0 if healthy else 3
+
+
+def serve(options: argparse.Namespace, project: Project) -> int:
+    """Open the workbench in a browser."""
+    # The one arrow from the application to its front; everything else points the other way.
+    from ui.app import serve
+
+    return serve(options, project)
