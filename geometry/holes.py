@@ -26,6 +26,9 @@ def close_holes(
         return points_mm, faces
     size = float(np.ptp(points_mm, axis=0).max())
     for loop in open_loops(faces):
+        # Stray triangles on an edge leave chains that enclose nothing; they are counted below.
+        if len(loop) < 3:
+            continue
         rim = points_mm[loop]
         width = float(np.ptp(rim, axis=0).max())
         centre, axes = _plane(rim)
@@ -45,14 +48,12 @@ def close_holes(
                 f"{name} is open: a hole {width:.3g} wide at {place}, larger than "
                 f"{100 * SMALL_SHARE:g} % of the body",
                 hint="close it in the program that made it",
-                at="body.outer",
             )
     left = open_edges(faces)
     if left:
         raise DesignError(
             f"{name} is open: {left} edges have no partner, and faces may be missing or doubled",
             hint="repair it in the program that made it",
-            at="body.outer",
         )
     return points_mm, faces
 

@@ -29,6 +29,8 @@ CORE_FACE = 1_000_000
 FLAT_MM = 1e-6
 LEAST_BASE_MM2 = 10.0
 """Smallest base that can carry a sensor [mm2]."""
+LARGEST_MM = 400.0
+"""Longest body that is offset: twice the largest likely sensor; grids grow with its cube [mm]."""
 LEAST_WALL_MM = 0.2
 """Thinnest elastomer that can be cast [mm]."""
 BORE_SHARE = 0.6
@@ -103,6 +105,13 @@ def _rotation(shape: Any) -> np.ndarray:
 def _placed(surface: ReadSurface, turn: np.ndarray, cut_mm: float) -> tuple[Any, np.ndarray]:
     """The outer body with its cut on z = 0 and its base centred, and the shift that did it."""
     points = surface.points_mm @ turn.T
+    longest_mm = float(np.ptp(points, axis=0).max())
+    if longest_mm > LARGEST_MM:
+        raise DesignError(
+            f"the body is {longest_mm:.4g} mm long, more than {LARGEST_MM:g} mm",
+            hint="choose the unit of the file: mm, cm, m or inch; or scale the body",
+            at="body.unit",
+        )
     low, high = points[:, 2].min(), points[:, 2].max()
     if cut_mm >= high - low:
         raise DesignError(

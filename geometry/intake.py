@@ -29,14 +29,14 @@ from workbench.core.imported import (
 )
 from workbench.core.monitor import Monitor, silent
 
-AT = "body.outer"
+OUTER, INNER = "outer", "inner"
 MM_PER = {LengthUnit.MM: 1.0, LengthUnit.CM: 10.0, LengthUnit.M: 1000.0, LengthUnit.INCH: 25.4}
 LIKELY_MM = (8.0, 200.0)
 """Sizes that a tactile sensor may have: what an unknown unit is judged by [mm]."""
 MERGE_SHARE = 1e-5
 """Vertices nearer than this share of the body's size are one."""
-STRAY_SHARE = 1e-3
-"""Pieces with less than this share of the largest piece's triangles' area are debris."""
+STRAY_SHARE = 1e-5
+"""Pieces with less than this share of the largest piece's area are debris: 0.1 mm on a finger."""
 SHEET_SHARE = 1e-6
 """Volume over that of the bounding box below which a surface encloses nothing."""
 SMOOTH_COSINE = 0.866
@@ -49,61 +49,65 @@ def read_body(body: ImportedBody, monitor: Monitor = silent) -> ReadBody:
     Raises:
         DesignError: Saying what is wrong with the file, where, and what to do.
     """
-    monitor(0.0, f"reading {body.outer.name}")
-    outer, notes = _read(body.outer)
-    unit = _unit(outer, body)
-    if unit is not LengthUnit.MM and body.unit is LengthUnit.AUTO:
-        notes.append(f"its numbers were taken as {unit.value}")
-    said = [f"{body.outer.name}: {note}" for note in notes]
+    monitor(0.0, "reading the outer body")
+    outer, unit, said = _in_mm(body.outer, body.unit, at="body.outer", role=OUTER)
     inner = None
     if body.inner is not None:
-        monitor(0.5, f"reading {body.inner.name}")
-        inner, notes = _read(body.inner)
-        said += [f"{body.inner.name}: {note}" for note in notes]
-        inner = _scaled(inner, unit, body.inner)
-    return ReadBody(
-        outer=_scaled(outer, unit, body.outer),
-        inner=inner,
-        unit=unit.value,
-        notice="; ".join(said),
+        monitor(0.5, "reading the inner body")
+        # Files of one export share their unit; that of a STEP file says nothing about an STL.
+        shared = unit if body.outer.kind is FileKind.STL else body.unit
+        inner, _, more = _in_mm(body.inner, shared, at="body.inner", role=INNER)
+        said += more
+    return ReadBody(outer=outer, inner=inner, unit=unit.value, notice="; ".join(said))
+
+
+def _in_mm(
+    file: BodyFile, wanted: LengthUnit, *, at: str, role: str
+) -> tuple[ReadSurface, LengthUnit, list[str]]:
+    """One file's surface in mm, its unit, and what was done to it.
+
+    Messages name the file, because they are shown once; notices are stored, and the same content
+    under another name must read the same, so they name the role.
+    """
+    try:
+        surface, notes = _read_step(file) if file.kind is FileKind.STEP else _read_stl(file)
+        _expect_simple(surface, file.name)
+        unit = _unit(surface, file, wanted, notes)
+    except DesignError as error:
+        error.at = error.at or at
+        raise
+    # The CAD kernel has already turned a STEP file's own unit into mm.
+    factor = 1.0 if file.kind is FileKind.STEP else MM_PER[unit]
+    scaled = ReadSurface(
+        points_mm=surface.points_mm * factor, faces=surface.faces, patch=surface.patch
     )
+    return scaled, unit, [f"{role} body: {note}" for note in notes]
 
 
-def _read(file: BodyFile) -> tuple[ReadSurface, list[str]]:
-    if file.kind is FileKind.STEP:
-        surface, notes = _read_step(file)
-    else:
-        surface, notes = _read_stl(file)
-    _expect_simple(surface, file.name)
-    return surface, notes
-
-
-def _unit(outer: ReadSurface, body: ImportedBody) -> LengthUnit:
+def _unit(surface: ReadSurface, file: BodyFile, wanted: LengthUnit, notes: list[str]) -> LengthUnit:
     """The unit given, that of a STEP file, or the one that makes an STL as large as a sensor."""
-    if body.outer.kind is FileKind.STEP:
+    if file.kind is FileKind.STEP:
         return LengthUnit.MM
-    if body.unit is not LengthUnit.AUTO:
-        return body.unit
-    size = float(np.ptp(outer.points_mm, axis=0).max())
+    if wanted is not LengthUnit.AUTO:
+        return wanted
+    size = float(np.ptp(surface.points_mm, axis=0).max())
     low, high = LIKELY_MM
     fits = [unit for unit, factor in MM_PER.items() if low <= size * factor <= high]
-    if LengthUnit.MM in fits:
+    if fits[:1] == [LengthUnit.MM]:
+        if len(fits) > 1:
+            notes.append(
+                f"taken as {size:.3g} mm long; if it is {size * MM_PER[fits[1]]:.3g} mm, choose "
+                f"{fits[1].value} as its unit"
+            )
         return LengthUnit.MM
     if len(fits) == 1:
+        notes.append(f"its numbers were taken as {fits[0].value}")
         return fits[0]
     options = ", ".join(f"{u.value}: {size * MM_PER[u]:.3g} mm" for u in fits or MM_PER)
     raise DesignError(
-        f"{body.outer.name} is {size:.3g} units long, and an STL does not say which ({options})",
+        f"{file.name} is {size:.3g} units long, and an STL does not say which ({options})",
         hint="choose the unit of the file: mm, cm, m or inch",
         at="body.unit",
-    )
-
-
-def _scaled(surface: ReadSurface, unit: LengthUnit, file: BodyFile) -> ReadSurface:
-    # The CAD kernel has already turned a STEP file's own unit into mm.
-    factor = 1.0 if file.kind is FileKind.STEP else MM_PER[unit]
-    return ReadSurface(
-        points_mm=surface.points_mm * factor, faces=surface.faces, patch=surface.patch
     )
 
 
@@ -121,7 +125,6 @@ def _read_step(file: BodyFile) -> tuple[ReadSurface, list[str]]:
             raise DesignError(
                 f"{file.name} is not a STEP file: {error}",
                 hint="export the body as STEP AP203, AP214 or AP242",
-                at=AT,
             ) from error
     solids = list(shape.solids())
     if len(solids) != 1:
@@ -135,7 +138,6 @@ def _read_step(file: BodyFile) -> tuple[ReadSurface, list[str]]:
                 f"{file.name} holds a solid that the CAD kernel calls invalid: its faces cut "
                 "through each other or do not meet",
                 hint="repair it in the program that made it, or export it as STL",
-                at=AT,
             )
         notes.append("the CAD kernel repaired the solid")
     try:
@@ -144,13 +146,12 @@ def _read_step(file: BodyFile) -> tuple[ReadSurface, list[str]]:
         raise DesignError(
             f"{file.name} cannot be turned into a closed surface: {error.message}",
             hint="repair it in the program that made it, or export it as STL",
-            at=AT,
         ) from error
     return ReadSurface(points_mm=points, faces=faces, patch=patch), notes
 
 
 def _read_stl(file: BodyFile) -> tuple[ReadSurface, list[str]]:
-    points, faces = welded(stl_corners(file.data.tobytes(), file.name, at=AT))
+    points, faces = welded(stl_corners(file.data.tobytes(), file.name, at=""))
     notes: list[str] = []
     points, faces = _merged(points, faces, notes)
     faces = _one_piece(points, faces, file.name, notes)
@@ -162,7 +163,7 @@ def _read_stl(file: BodyFile) -> tuple[ReadSurface, list[str]]:
     size = float(np.ptp(points, axis=0).max())
     if abs(volume) <= SHEET_SHARE * size**3:
         raise DesignError(
-            f"{file.name} encloses no volume", hint="export a solid body, not a sheet", at=AT
+            f"{file.name} encloses no volume", hint="export a solid body, not a sheet"
         )
     if volume < 0.0:
         faces = faces[:, ::-1]
@@ -210,14 +211,12 @@ def _refuse_count(name: str, volumes: list[float]) -> None:
         raise DesignError(
             f"{name} holds no solid body",
             hint="export a closed solid, not surfaces or wires",
-            at=AT,
         )
     sizes = ", ".join(f"{volume:.4g}" for volume in sorted(volumes, reverse=True)[:4])
     raise DesignError(
         f"{name} holds {len(volumes)} bodies (volumes {sizes} in the file's unit), a membrane is "
         "one",
-        hint="export only the outer body; give the one that hollows it as the inner file",
-        at=AT,
+        hint="union parts that belong together; a body that hollows the other is the inner file",
     )
 
 
@@ -244,7 +243,6 @@ def _expect_simple(surface: ReadSurface, name: str) -> None:
             f"{np.count_nonzero(crossing)} of {len(crossing)} faces of {name} cut through each "
             f"other, near ({x:.3g}, {y:.3g}, {z:.3g}) in the file's own coordinates",
             hint="repair it in the program that made it: union the parts, or remove the fold",
-            at=AT,
         )
 
 

@@ -17,7 +17,7 @@ from ui.panels.fields import Fields, read_field, whole_shape
 from ui.reports import Reports
 from ui.scene import Scene
 from ui.session import Session
-from workbench.aim import default_target_mm
+from workbench.aim import default_target_mm, with_fitting_ring
 from workbench.bodies import IMPORTED
 from workbench.conductor import LIVE, Conductor, Finished
 from workbench.core.design import SensorDesign
@@ -188,8 +188,19 @@ class Desk:
             # Another kind of body; within a family the designer's own view is kept.
             self._framed = origin
             self.scene.frame_body()
+            self._fit_ring(solid)
         self._keep_aim()
         self.scene.show_indenter(self.session.case.indenter, self.session.case.press)
+
+    def _fit_ring(self, solid: Solid) -> None:
+        """Bring the LEDs of a body that has just come from a file inside it, and say so."""
+        fitted, changed = with_fitting_ring(self.session.design, solid)
+        if changed:
+            self.session.amend("design.optics.ring.radius_mm", fitted.optics.ring.radius_mm)
+            self._edited = time.monotonic()
+            self.fields.refresh()
+            self.scene.rig.show_lights(fitted.optics.ring)
+            self.log(changed)
 
     def _tell(self, stage: str, result: Any) -> None:
         for panel in self.panels:

@@ -57,7 +57,7 @@ class Session:
             DesignError: If the named design does not exist; a broken autosave only leaves a notice.
         """
         if name is not None:
-            self.state = fresh_state(load_design(name, unit=unit))
+            self.state = fresh_state(load_design(name, unit=unit, project=self.project))
             return
         path = self.project.design_path(AUTOSAVE)
         if path.exists():

@@ -8,7 +8,7 @@ import math
 import numpy as np
 
 from workbench.bodies import IMPORTED
-from workbench.core.design import SensorDesign
+from workbench.core.design import LedMount, SensorDesign
 from workbench.core.results import Label, Solid
 
 RING_STEP_MM = 0.5
@@ -42,8 +42,11 @@ def with_fitting_ring(design: SensorDesign, solid: Solid) -> tuple[SensorDesign,
     finger. The radius is the largest that keeps the LEDs' own size and the clearance from the
     support, in half millimetres.
     """
-    ring, room_mm = design.optics.ring, _ring_room_mm(design, solid)
-    if design.family != IMPORTED or ring.radius_mm <= room_mm:
+    ring = design.optics.ring
+    if design.family != IMPORTED or ring.mount is not LedMount.CAVITY:
+        return design, ""
+    room_mm = _ring_room_mm(design, solid)
+    if ring.radius_mm <= room_mm:
         return design, ""
     radius_mm = max(RING_STEP_MM, math.floor(room_mm / RING_STEP_MM) * RING_STEP_MM)
     notice = f"LED ring: radius {radius_mm:g} mm instead of {ring.radius_mm:g} mm, to fit inside"
@@ -52,8 +55,8 @@ def with_fitting_ring(design: SensorDesign, solid: Solid) -> tuple[SensorDesign,
 
 def _ring_room_mm(design: SensorDesign, solid: Solid) -> float:
     """Largest radius of the LED ring in this support [mm]; infinite where rays miss it."""
-    from geometry.leds import led_places
     from geometry.rays import RayCaster
+    from workbench.core.leds import led_places
 
     ring, housing = design.optics.ring, design.housing
     places, _ = led_places(dataclasses.replace(ring, radius_mm=1.0))

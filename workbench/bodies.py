@@ -89,16 +89,22 @@ def read_body_table(table: Any, *, roots: Sequence[Path]) -> ImportedBody:
     if "inner" in table:
         inner = _read(table["inner"], table.get("inner_name"), roots, at="body.inner")
     units = {unit.value: unit for unit in LengthUnit}
-    unit = table.get("unit", "auto")
-    if unit not in units:
+    unit, picks = table.get("unit", "auto"), table.get("picks", ())
+    if not isinstance(unit, str) or unit not in units:
         raise DesignError(
             f"body.unit is {unit!r}", hint=f"choose one of {', '.join(units)}", at="body.unit"
+        )
+    if not isinstance(picks, Sequence) or isinstance(picks, str):
+        raise DesignError(
+            f"body.picks is {picks!r}, expected a list",
+            hint="write picks = [{patch = 3, region = 'actuator_0'}]",
+            at="body.picks",
         )
     return ImportedBody(
         outer=_read(table["outer"], table.get("outer_name"), roots, at="body.outer"),
         inner=inner,
         unit=units[unit],
-        picks=tuple(from_table(Pick, pick, at="body.picks") for pick in table.get("picks", ())),
+        picks=tuple(from_table(Pick, pick, at="body.picks") for pick in picks),
     )
 
 
@@ -124,23 +130,29 @@ def _read(name: Any, label: Any, roots: Sequence[Path], *, at: str) -> BodyFile:
             f"{at} is {name!r}, expected the path of a file", hint="write 'file.step'", at=at
         )
     paths = [root / name for root in roots]
-    path = next((path for path in paths if path.is_file()), None)
-    if path is None:
-        raise DesignError(
-            f"there is no file {str(label or name)!r} for the body of this design",
-            hint=f"looked for {' and '.join(str(p) for p in paths)}; load the file again",
-            at=at,
-        )
-    size_mb = path.stat().st_size / 1e6
-    if size_mb > LARGEST_FILE_MB:
-        raise DesignError(
-            f"{path.name} has {size_mb:,.0f} MB, more than {LARGEST_FILE_MB} MB",
-            hint="reduce the mesh, or export it as STEP",
-            at=at,
-        )
     try:
+        path = next((path for path in paths if path.is_file()), None)
+        if path is None:
+            raise DesignError(
+                f"there is no file {str(label or name)!r} for the body of this design",
+                hint=f"looked for {' and '.join(str(p) for p in paths)}; load the file again",
+                at=at,
+            )
+        size_mb = path.stat().st_size / 1e6
+        if size_mb > LARGEST_FILE_MB:
+            raise DesignError(
+                f"{path.name} has {size_mb:,.0f} MB, more than {LARGEST_FILE_MB} MB",
+                hint="reduce the mesh, or export it as STEP",
+                at=at,
+            )
         return body_file(str(label or path.name), path.read_bytes())
-    except OSError as error:
+    except DesignError as error:
+        error.at = at
+        raise
+    except (OSError, ValueError) as error:
+        # A path that is too long, or holds a zero, is refused by the system itself.
         raise DesignError(
-            f"cannot read {path}: {error.strerror or error}", hint="check the file", at=at
+            f"cannot read {name[:80]}: {getattr(error, 'strerror', None) or error}",
+            hint="check the file",
+            at=at,
         ) from error

@@ -6,6 +6,7 @@ Each handler takes the parsed options and the project, and returns the exit code
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import json
 from typing import Any
 
@@ -13,36 +14,53 @@ from workbench.core.design import LightModel, SensorDesign
 from workbench.core.errors import DesignError, DeviceError
 from workbench.core.results import Solid
 from workbench.project import Project
+from workbench.stages import Outcome
 from workbench.terminal import Progress, complain, say
 
 
-def _looked_at(
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class Start:
+    """What a command starts from."""
+
+    design: SensorDesign
+    solid: Solid | None = None
+    """An imported body, which had to be built to be aimed at."""
+    outcomes: tuple[Outcome, ...] = ()
+    changed: str = ""
+    """What was changed of the design, for people."""
+
+
+def _start(
     design: SensorDesign, options: argparse.Namespace, project: Project, printer: Progress
-) -> tuple[SensorDesign, Solid | None]:
-    """An imported body, built, with LEDs that fit if it comes straight from its file."""
+) -> Start:
+    """Build an imported body; one straight from its file gets LEDs that fit inside."""
     from workbench.aim import with_fitting_ring
     from workbench.pipeline import InlineRunner, PressCase, evaluate
 
     if design.body is None:
-        return design, None
-    runner = InlineRunner(project.store)
-    *_, built = evaluate(design, PressCase(), runner, wanted=("build",), monitor=printer)
-    solid = project.store.load("build", built.key)
+        return Start(design=design)
+    runner, outcomes = InlineRunner(project.store), []
+    for outcome in evaluate(design, PressCase(), runner, wanted=("build",), monitor=printer):
+        printer.done(outcome)
+        outcomes.append(outcome)
+    solid = project.store.load("build", outcomes[-1].key)
+    changed = ""
     if not options.design.endswith(".toml"):
-        design, notice = with_fitting_ring(design, solid)
-        if notice:
-            complain(notice)
-    return design, solid
+        design, changed = with_fitting_ring(design, solid)
+    if changed:
+        complain(changed)
+    return Start(design=design, solid=solid, outcomes=tuple(outcomes), changed=changed)
 
 
 def run(options: argparse.Namespace, project: Project) -> int:
     """Press a design and write images, forces and moulds."""
     from workbench.aim import default_target_mm
-    from workbench.outputs import prepare, write_all
+    from workbench.folder import prepare
+    from workbench.outputs import write_all
     from workbench.pipeline import InlineRunner, evaluate, plan
     from workbench.project import load_design
 
-    design = load_design(options.design, unit=options.unit)
+    design = load_design(options.design, unit=options.unit, project=project)
     if options.light_model:
         design = design.replace("optics.light_model", LightModel(options.light_model))
     # What is wrong with the design or the options is said before anything is written or built.
@@ -50,21 +68,24 @@ def run(options: argparse.Namespace, project: Project) -> int:
     prepare(options.out)
     project.store.sweep()
     printer = Progress(as_json=options.json)
-    design, solid = _looked_at(design, options, project, printer)
-    case = press_case(options, default_target_mm(design, solid))
+    start = _start(design, options, project, printer)
+    design, case = start.design, press_case(options, default_target_mm(start.design, start.solid))
     calls = plan(design, case)
-    runner = InlineRunner(project.store)
-    outcomes = []
+    runner, outcomes = InlineRunner(project.store), list(start.outcomes)
+    known = {outcome.key for outcome in outcomes}
     for outcome in evaluate(design, case, runner, monitor=printer):
-        printer.done(outcome)
-        outcomes.append(outcome)
+        if outcome.key not in known:
+            printer.done(outcome)
+            outcomes.append(outcome)
     try:
         *_, picture = evaluate(design, case, runner, wanted=("picture",), monitor=printer)
         printer.done(picture)
         outcomes.append(picture)
     except DeviceError as error:
         complain(f"the report has no picture of the mould: {error.message}")
-    summary = write_all(options.out, design, case.press, project.store, calls, outcomes)
+    summary = write_all(
+        options.out, design, case.press, project.store, calls, outcomes, changed=start.changed
+    )
     if not options.json:
         force = summary["contact"]
         say(
@@ -122,10 +143,9 @@ def export(options: argparse.Namespace, project: Project) -> int:
     from workbench.project import load_design
 
     printer = Progress(as_json=options.json)
-    design, _ = _looked_at(
-        load_design(options.design, unit=options.unit), options, project, printer
-    )
-    for path in export_design(design, options.out, project.store, printer, tets=options.tets):
+    design = load_design(options.design, unit=options.unit, project=project)
+    start = _start(design, options, project, printer)
+    for path in export_design(start.design, options.out, project.store, printer, tets=options.tets):
         say(json.dumps({"file": str(path)}) if options.json else path)
     return 0
 

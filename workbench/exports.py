@@ -9,15 +9,19 @@ from pathlib import Path
 
 import numpy as np
 
+from workbench.bodies import kept_files
 from workbench.core.design import SensorDesign
 from workbench.core.errors import DeviceError
 from workbench.core.results import VolumeMesh
-from workbench.outputs import prepare, write_package
+from workbench.folder import prepare, remove_stale
+from workbench.outputs import write_package
 from workbench.pipeline import InlineRunner, PressCase, StageMonitor, evaluate, plan, results
 from workbench.project import design_to_toml, write_atomically
 from workbench.store import Store
 from workbench.vtkfiles import write_vtk
 
+OPTIONAL = ("mesh.npz", "tets.npz", "exploded.png", "bodies/*")
+"""Files that not every export writes."""
 STAGES = ("mesh", "mould", "housing", "recipe", "package")
 
 
@@ -26,9 +30,11 @@ def export_design(
 ) -> Iterator[Path]:
     """Write the files of a design and yield their paths.
 
-    `design.toml`, `membrane.stl`, `support.stl`, `base.stl`, `mesh.npz` (nodes, hexahedra, labels),
-    `mesh.vtu`, `membrane.vtp`, `exploded.png` (where the machine can render) and everything of the
-    workshop: `moulds/`, `parts/`, `all_parts.3mf`, `build_sheet.html`, `bom.csv`.
+    `design.toml` (with the files of a body of its own under `bodies/`), `membrane.stl`,
+    `support.stl`, `base.stl`, `mesh.npz` (nodes, hexahedra, labels), `mesh.vtu`, `membrane.vtp`,
+    `exploded.png` (where the machine can render) and everything of the workshop: `moulds/`,
+    `parts/`, `all_parts.3mf`, `build_sheet.html`, `bom.csv`. Such files of an earlier export that
+    this one does not replace go.
 
     Args:
         tets: Also write `tets.npz`: nodes, tetrahedra, labels; takes about a minute.
@@ -59,6 +65,9 @@ def export_design(
         files["tets.npz"] = _volume_bytes(found["tets"])
     if "picture" in found:
         files["exploded.png"] = found["picture"].png.tobytes()
+    if design.body is not None:
+        files |= kept_files(design.body)
+    remove_stale(out, OPTIONAL, keep=files)
     for name, content in files.items():
         write_atomically(out / name, content)
         yield out / name

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import contextlib
 import dataclasses
 import io
 import json
 import math
-from collections.abc import Container, Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from workbench.core.design import SensorDesign
-from workbench.core.errors import DesignError, StoreError
 from workbench.core.fabrication import (
     FabricationCheck,
     HousingSet,
@@ -24,6 +22,7 @@ from workbench.core.fabrication import (
 )
 from workbench.core.press import Press
 from workbench.core.results import Bundle, Contact, MembraneMesh, Shot
+from workbench.folder import remove_stale
 from workbench.pipeline import results
 from workbench.project import write_atomically
 from workbench.stages import Call, Outcome
@@ -33,49 +32,14 @@ from workbench.vtkfiles import write_vtk
 SUMMARY_SCHEMA = 1
 
 
-def prepare(out: Path) -> None:
-    """Make the folder and check that it can be written, before anything is computed.
-
-    The summary of an earlier run goes: a run that fails must not leave another one's.
-
-    Raises:
-        DesignError: If a file has that name.
-        StoreError: If the folder cannot be made or written.
-    """
-    if out.exists() and not out.is_dir():
-        raise DesignError(
-            f"{out} is a file, the results need a folder", hint="name another folder", at="--out"
-        )
-    probe = out / ".probe"
-    write_atomically(probe, b"")
-    for stale in (probe, out / "summary.json"):
-        try:
-            stale.unlink(missing_ok=True)
-        except OSError as error:
-            raise StoreError(
-                f"cannot remove {stale}: {error.strerror or error}",
-                hint="remove it yourself, or name another folder",
-                at="--out",
-            ) from error
-
-
 def write_images(out: Path, shot: Shot) -> list[str]:
     """Write `background.png` and `frame_000.png` ...; returns their names in order."""
     names = ["background.png"]
     names += [f"frame_{k:03d}.png" for k in range(len(shot.frames.rgb) - 1)]
-    _remove_stale(out, ("frame_*.png",), keep=names)
+    remove_stale(out, ("frame_*.png",), keep=names)
     for name, rgb in zip(names, shot.frames.rgb, strict=True):
         write_atomically(out / name, png_bytes(rgb))
     return names
-
-
-def _remove_stale(folder: Path, patterns: Iterable[str], *, keep: Container[str]) -> None:
-    """Remove files of an earlier run that this one does not replace."""
-    for pattern in patterns:
-        for path in folder.glob(pattern):
-            if path.name not in keep:
-                with contextlib.suppress(OSError):
-                    path.unlink()
 
 
 def png_bytes(rgb: np.ndarray) -> bytes:
@@ -109,7 +73,7 @@ def write_package(out: Path, bundle: Bundle) -> None:
     """Write every file of the workshop; files of an earlier run that are not among them go."""
     for folder in ("moulds", "parts"):
         keep = {Path(name).name for name in bundle.files if name.startswith(f"{folder}/")}
-        _remove_stale(out / folder, ("*.stl", "*.step", "*.3mf"), keep=keep)
+        remove_stale(out / folder, ("*.stl", "*.step", "*.3mf"), keep=keep)
     for name, content in bundle.files.items():
         write_atomically(out / name, content.tobytes())
 
@@ -231,8 +195,13 @@ def write_all(
     store: Store,
     calls: dict[str, Call],
     outcomes: Sequence[Outcome],
+    *,
+    changed: str = "",
 ) -> dict[str, Any]:
     """Write every file of a run; returns the summary.
+
+    Args:
+        changed: What the command itself changed of the design; stands among the notices.
 
     Raises:
         StoreError: If the folder cannot be written.
@@ -249,6 +218,8 @@ def write_all(
     summary["notices"] = {
         name: value.notice for name, value in load.items() if getattr(value, "notice", "")
     }
+    if changed:
+        summary["notices"]["design"] = changed
     summary |= fabrication_tables(load["mould"], load["housing"], load["recipe"])
     drawn = drawings(load["build"], load["mesh"], load["press"], load.get("picture"))
     html = report_html(design, path, summary, load["shoot"], load["press"], drawn)

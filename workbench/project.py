@@ -131,12 +131,13 @@ def _preset_folder() -> Any:
     return resources.files("designs") / "presets"
 
 
-def load_design(name: str, *, unit: str = "auto") -> SensorDesign:
+def load_design(name: str, *, unit: str = "auto", project: Project | None = None) -> SensorDesign:
     """A preset by name, else a family with its defaults, else a TOML, STL or STEP file.
 
     Args:
         name: Name or path.
         unit: Unit of an STL file.
+        project: Where the files of a design's body may be kept, besides the design's own folder.
 
     Raises:
         DesignError: If there is no such preset, family or file, or the file is not valid.
@@ -151,7 +152,9 @@ def load_design(name: str, *, unit: str = "auto") -> SensorDesign:
         return design_of_file(Path(name), unit)
     if name.endswith(".toml") or os.sep in name:
         path = Path(name)
-        return design_from_toml(_read(path), source=name, roots=(path.parent, path.parent.parent))
+        kept = () if project is None else (project.folder,)
+        roots = (path.parent, path.parent.parent, *kept)
+        return design_from_toml(_read(path), source=name, roots=roots)
     raise DesignError(
         f"there is no preset, family, TOML, STL or STEP file named {name!r}",
         hint=suggest(name, {*presets(), *families()}),
@@ -233,9 +236,11 @@ def check_design(design: SensorDesign) -> None:
         DesignError: Naming the field.
     """
     from designs.family import family, resolve_shape
+    from geometry.silicones import silicone
 
     check_body(design)
     family(design.family).check(resolve_shape(design.family, design.shape), design.layers)
+    silicone(design.casting.silicone)
 
 
 def design_to_toml(design: SensorDesign, **extra: Any) -> str:

@@ -82,8 +82,7 @@ def read_state(text: str, project: Project, *, source: str) -> State:
     }
     if "indenter" in table:
         known["indenter"] = _read_indenter(table["indenter"], project)
-    roots = (project.folder, Path(source).parent)
-    design = design_from_toml(text, source=source, roots=roots)
+    design = design_from_toml(text, source=source, roots=(project.folder,))
     return State(design=design, case=PressCase(**known))
 
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import contextlib
 from collections.abc import Sequence
 from pathlib import Path
 
 from workbench.core.results import Contact, MembraneMesh, Solid, VolumeMesh
+from workbench.folder import remove_stale
 from workbench.project import write_atomically
 
 PATTERNS = ("mesh.vtu", "membrane.vtp", "contact_*.vtp", "contact.pvd")
@@ -42,11 +42,7 @@ def write_vtk(
     files["membrane.vtp"] = membrane_file(mesh, solid.membrane)
     if contact is not None:
         files |= contact_files(mesh, contact, depth_mm)
-    for pattern in PATTERNS:
-        for path in out.glob(pattern):
-            if path.name not in files:
-                with contextlib.suppress(OSError):
-                    path.unlink()
+    remove_stale(out, PATTERNS, keep=files)
     for name, content in files.items():
         write_atomically(out / name, content)
     return list(files)

@@ -19,7 +19,7 @@ from geometry.surface import face_areas, is_watertight, mesh_volume
 from workbench.aim import default_target_mm, with_fitting_ring
 from workbench.core.design import Layers, SensorDesign
 from workbench.core.errors import DesignError
-from workbench.core.imported import ImportedBody, Pick, ReadBody, body_file
+from workbench.core.imported import ImportedBody, LengthUnit, Pick, ReadBody, body_file
 from workbench.core.results import Label, Solid, region_masks
 
 SIDES = 96
@@ -134,7 +134,9 @@ def test_picked_faces_become_regions(read_drum: ReadBody, hollow_drum: Solid) ->
     assert lost == pytest.approx(math.pi * 144.0, rel=2e-3)
 
 
-@pytest.mark.parametrize("region", ["pin_1", "actuator_", "actuator_x", "", "outer"])
+@pytest.mark.parametrize(
+    "region", ["pin_1", "actuator_", "actuator_x", "actuator_²", "actuator_99999", "", "outer"]
+)
 def test_a_pick_must_be_base_or_a_numbered_actuator(region: str) -> None:
     """Anything else is refused with the choices."""
     with pytest.raises(DesignError, match="a picked face cannot be") as caught:
@@ -170,6 +172,17 @@ def test_walls_and_cuts_without_room_are_refused(
     with pytest.raises(DesignError, match=says) as caught:
         build_imported(read_drum, ImportedShape(**shape), Layers(**layers))
     assert caught.value.at == at
+
+
+def test_a_body_in_the_wrong_unit_is_refused_before_it_fills_the_memory() -> None:
+    """A drum of 20 m: a grid of 0.4 mm around it would have 10^14 places."""
+    points, faces = drum()
+    body = read_body(
+        ImportedBody(outer=body_file("o.stl", stl_bytes(points, faces)), unit=LengthUnit.M)
+    )
+    with pytest.raises(DesignError, match=r"2.4e\+04 mm long, more than 400 mm") as caught:
+        build_imported(body, ImportedShape(), Layers())
+    assert caught.value.at == "body.unit"
 
 
 def test_an_inner_body_through_the_wall_is_refused() -> None:

@@ -60,6 +60,26 @@ def test_saved_designs_keep_their_body_and_travel(stl: Path, tmp_path: Path) -> 
     assert design_to_toml(again) == design_to_toml(design)
 
 
+def test_a_design_file_finds_its_body_in_the_project(stl: Path, tmp_path: Path) -> None:
+    """Downloaded to another folder, as long as the project keeps the body."""
+    project = Project(tmp_path / "project")
+    design = load_design(str(stl))
+    project.keep_body(design)
+    path = tmp_path / "downloads" / "w.toml"
+    path.parent.mkdir()
+    path.write_text(design_to_toml(design))
+    assert load_design(str(path), project=project) == design
+    with pytest.raises(DesignError, match="there is no file"):
+        load_design(str(path))
+
+
+def test_an_unknown_silicone_is_refused_with_the_design() -> None:
+    """Not first when parts are made: a browser would start with a list that lacks it."""
+    text = 'schema = 1\nname = "x"\nfamily = "finger"\n[casting]\nsilicone = "nope"\n'
+    with pytest.raises(DesignError, match="no silicone 'nope'"):
+        design_from_toml(text)
+
+
 @pytest.mark.parametrize(
     ("table", "at", "says"),
     [
@@ -69,6 +89,10 @@ def test_saved_designs_keep_their_body_and_travel(stl: Path, tmp_path: Path) -> 
         ({}, "body.outer", "expected a table"),
         ("wrist.STL", "body.outer", "expected a table"),
         ({"outer": "wrist.STL", "unit": "mile"}, "body.unit", "mile"),
+        ({"outer": "wrist.STL", "unit": ["mm"]}, "body.unit", "mm"),
+        ({"outer": "wrist.STL", "picks": 3}, "body.picks", "expected a list"),
+        ({"outer": "x" * 5000}, "body.outer", "cannot read x"),
+        ({"outer": "wrist.STL\0"}, "body.outer", "wrist"),
         ({"outer": "wrist.STL", "wall": 2}, "body.wall", "no field"),
         ({"outer": "wrist.STL", "inner": "gone.step"}, "body.inner", "gone.step"),
         ({"outer": "wrist.STL", "picks": [{"patch": 1}]}, "body.picks", "region"),

@@ -77,6 +77,43 @@ def test_a_size_that_fits_two_units_is_asked_for() -> None:
     assert caught.value.at == "body.unit"
 
 
+def test_small_sensors_in_mm_may_be_large_ones_in_cm() -> None:
+    """9 units are taken as mm, and the notice says what they would be in cm."""
+    body = read(POINTS * 9.0 / 24.0, FACES)
+    assert body.unit == "mm"
+    assert "taken as 9 mm long; if it is 90 mm, choose cm" in body.notice
+
+
+def test_notices_do_not_depend_on_names() -> None:
+    """The same bytes under two names give the same result: the store knows them by content."""
+    data = text_stl(*inside_out())
+    first, second = (
+        read_body(ImportedBody(outer=body_file(name, data))) for name in ("a.stl", "b.stl")
+    )
+    assert first.notice == second.notice != ""
+
+
+def test_an_inner_stl_has_its_own_unit_beside_a_step(tmp_path: Path) -> None:
+    """STEP in mm, STL given in cm: 0.6 x 0.6 x 1 cm are 6 x 6 x 10 mm."""
+    import trimesh
+    from build123d import Box
+
+    outer = body_file("o.step", written(Box(20, 20, 30), tmp_path / "o.step"))
+    box = trimesh.creation.box((0.6, 0.6, 1.0))
+    inner = body_file("i.stl", text_stl(np.asarray(box.vertices), np.asarray(box.faces)))
+    body = read_body(ImportedBody(outer=outer, inner=inner, unit=LengthUnit.CM))
+    assert body.inner is not None
+    assert np.ptp(body.inner.points_mm, axis=0) == pytest.approx([6.0, 6.0, 10.0])
+
+
+def test_a_bad_inner_file_is_refused_at_its_own_field() -> None:
+    """The outer file is fine; the message belongs under the other button."""
+    outer, inner = body_file("o.stl", text_stl(POINTS, FACES)), body_file("i.stl", b"hello")
+    with pytest.raises(DesignError, match=r"i\.stl is not an STL") as caught:
+        read_body(ImportedBody(outer=outer, inner=inner))
+    assert caught.value.at == "body.inner"
+
+
 def open_base() -> tuple[np.ndarray, np.ndarray]:
     return POINTS, FACES[~on_base(POINTS, FACES)]
 
@@ -96,7 +133,7 @@ def wound_wrong() -> tuple[np.ndarray, np.ndarray]:
 
 
 def with_debris() -> tuple[np.ndarray, np.ndarray]:
-    small = POINTS * 0.01 + [30.0, 0.0, 0.0]
+    small = np.add(POINTS * 0.002, [30.0, 0.0, 0.0])
     return np.vstack([POINTS, small]), np.vstack([FACES, FACES + len(POINTS)])
 
 
@@ -139,6 +176,25 @@ def two_bodies() -> tuple[np.ndarray, np.ndarray]:
     )
 
 
+def bumps() -> tuple[np.ndarray, np.ndarray]:
+    """A texture of 40 balls of 0.6 mm that were not united with the drum: not debris."""
+    import trimesh
+
+    ball = trimesh.creation.icosphere(1, 0.6)
+    turn = np.linspace(0.0, 6.0, 40)
+    places = np.column_stack([12 * np.cos(turn), 12 * np.sin(turn), np.linspace(2, 18, 40)])
+    points = [POINTS, *[np.add(ball.vertices, place) for place in places]]
+    starts = np.cumsum([0, *map(len, points[:-1])])
+    faces = [FACES, *[np.add(ball.faces, start) for start in starts[1:]]]
+    return np.vstack(points), np.vstack(faces)
+
+
+def fin() -> tuple[np.ndarray, np.ndarray]:
+    """One stray triangle that stands on an edge."""
+    tip = [*POINTS[FACES[0]].mean(axis=0) + 3.0]
+    return np.vstack([POINTS, tip]), np.vstack([FACES, [[FACES[0, 0], FACES[0, 1], len(POINTS)]]])
+
+
 def folded() -> tuple[np.ndarray, np.ndarray]:
     import trimesh
 
@@ -163,6 +219,8 @@ def broken() -> tuple[np.ndarray, np.ndarray]:
     [
         (side_hole, r"drum\.stl is open: a hole .* wide at \(.*\), larger than 5 % of the body"),
         (two_bodies, "holds 2 bodies"),
+        (bumps, "holds 41 bodies"),
+        (fin, r"drum\.stl is open: \d+ edges have no partner"),
         (folded, r"faces of drum\.stl cut through each other, near \("),
         (sheet, "drum.stl"),
         (broken, "NaN"),
@@ -194,15 +252,19 @@ def test_garbage_is_refused(name: str, data: bytes, says: str) -> None:
         read_body(ImportedBody(outer=body_file(name, data)))
 
 
-def test_a_text_stl_is_read() -> None:
-    """Written by hand with capitals and tabs: the same body as the binary one."""
+def text_stl(points: np.ndarray, faces: np.ndarray) -> bytes:
+    """A text STL with capitals, tabs and ends of lines of another system."""
     lines = ["solid drum"]
-    for corners in POINTS[FACES]:
+    for corners in points[faces]:
         lines += ["\tfacet normal 0 0 0", "outer loop"]
         lines += ["\tvertex " + " ".join(repr(float(c)) for c in corner) for corner in corners]
         lines += ["endloop", "endfacet"]
-    file = body_file("DRUM.STL", "\r\n".join([*lines, "endsolid"]).encode())
-    body = read_body(ImportedBody(outer=file))
+    return "\r\n".join([*lines, "endsolid"]).encode()
+
+
+def test_a_text_stl_is_read() -> None:
+    """The same body as the binary one."""
+    body = read_body(ImportedBody(outer=body_file("DRUM.STL", text_stl(POINTS, FACES))))
     assert mesh_volume(body.outer.points_mm, body.outer.faces) == pytest.approx(VOLUME_MM3)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import zipfile
+from collections.abc import Mapping
 from functools import partial
 from typing import Any
 
@@ -16,6 +17,15 @@ from workbench.core.results import Bundle
 
 FORMATS = ("stl", "step", "3mf")
 NO_PART = "-"
+
+
+def zipped(files: Mapping[str, bytes]) -> bytes:
+    """Files by their path inside a zip archive."""
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in files.items():
+            archive.writestr(name, content)
+    return buffer.getvalue()
 
 
 class Downloads:
@@ -64,9 +74,6 @@ class Downloads:
         event.client.send_file_download(wanted[1:], content, save_immediately=True)
 
     def _all(self, event: Any) -> None:
-        buffer = io.BytesIO()
-        with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
-            for name, content in self._bundle().files.items():
-                archive.writestr(name, content.tobytes())
+        files = {name: data.tobytes() for name, data in self._bundle().files.items()}
         name = f"{self.desk.session.design.name}-parts.zip"
-        event.client.send_file_download(name, buffer.getvalue(), save_immediately=True)
+        event.client.send_file_download(name, zipped(files), save_immediately=True)

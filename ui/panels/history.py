@@ -7,6 +7,8 @@ from typing import Any
 import viser
 
 from ui.desk import Desk
+from ui.panels.downloads import zipped
+from workbench.bodies import kept_files
 from workbench.core.errors import DesignError
 from workbench.project import MAX_TOML_BYTES, design_to_toml
 from workbench.state import case_table, read_state
@@ -43,7 +45,12 @@ class History:
         session.project.keep_body(design)
         press_case = case_table(session.case, session.project)
         content = design_to_toml(design, press_case=press_case).encode()
-        event.client.send_file_download(f"{design.name}.toml", content, save_immediately=True)
+        name = f"{design.name}.toml"
+        if design.body is not None:
+            # A body's files travel with the design that names them.
+            content = zipped({name: content, **kept_files(design.body)})
+            name = f"{design.name}.zip"
+        event.client.send_file_download(name, content, save_immediately=True)
 
     def _load(self, event: Any) -> None:
         file = self.upload.value

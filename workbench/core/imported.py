@@ -75,10 +75,11 @@ class Pick:
 
     def __post_init__(self) -> None:
         head, _, number = self.region.partition("_")
-        if self.region != "base" and not (head == "actuator" and number.isdigit()):
+        numbered = head == "actuator" and number.isascii() and number.isdigit()
+        if self.region != "base" and not (numbered and len(number) < 4):
             raise DesignError(
                 f"a picked face cannot be {self.region!r}",
-                hint="choose base, actuator_0, actuator_1 ...",
+                hint="choose base, actuator_0, actuator_1 ... actuator_999",
                 at="body.picks",
             )
 
