@@ -15,7 +15,9 @@ from tests.ui.widgets import (
     coarse_project,
     labels,
     open_page,
+    slider_value,
     stop_first_press,
+    tab,
     upload,
     view,
     wait_until,
@@ -59,3 +61,28 @@ def test_bad_file_is_refused_and_a_box_becomes_a_sensor(
     page.get_by_text("actuator_1", exact=False).filter(has_text="face").wait_for()
     page.mouse.move(box["x"] + 5, box["y"] + box["height"] - 5)
     wait_until(lambda: changed_share(before, view(page)) > TINTED, 60, "the face is tinted")
+
+
+def test_unit_asked_for_and_leds_brought_inside(
+    tmp_path: Path, page: Any, start_server: Start
+) -> None:
+    """A drum in inches is refused until its unit is chosen; its LEDs then move to fit."""
+    import trimesh
+
+    drum = trimesh.creation.cylinder(12.0 / 25.4, 20.0 / 25.4, sections=48)
+    path = tmp_path / "drum.stl"
+    drum.export(path)
+    server = start_server(coarse_project(tmp_path))
+    open_page(page, server.url)
+    stop_first_press(page)
+    page.get_by_text("Own body (STEP or STL)").click()
+    upload(page, "Load outer body", path)
+    says = "an STL does not say which"
+    wait_until(lambda: page.get_by_text(says).count(), 60, "the unit is asked for")
+    assert page.get_by_text("coarse · finger").count()
+    choose(page, "File unit", "inch")
+    page.get_by_text("drum · imported").wait_for()
+    wait_until(lambda: page.get_by_text("Shape ✓").count(), 60, "the drum is built")
+    tab(page, "Optics").click()
+    # Cavity of 9 mm, less the LED's half diagonal and two gaps, in half millimetres.
+    assert slider_value(page, "Ring radius mm") == 7.5
