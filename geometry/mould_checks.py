@@ -18,10 +18,11 @@ from geometry.castability import (
     thinnest_wall,
     undercut,
 )
-from geometry.channels import POCKET_VENT_MM, Channels
+from geometry.channels import Channels
 from geometry.csg import Body
 from geometry.csg_mesh import evaluate
 from geometry.parting import Parting
+from geometry.trapped import POCKET_VENT_MM
 from workbench.core.fabrication import FabricationCheck, FabricationPart, Severity
 from workbench.core.making import MouldOptions
 from workbench.core.results import Label, LabelledSurface

@@ -21,8 +21,9 @@ import numpy as np
 
 from geometry import csg
 from geometry.cast import Cast
-from geometry.channels import POCKET_VENT_MM, Channels
+from geometry.channels import Channels
 from geometry.parting import Parting
+from geometry.trapped import POCKET_VENT_MM
 from workbench.core.errors import DesignError
 from workbench.core.making import MouldOptions
 

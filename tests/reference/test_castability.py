@@ -15,12 +15,12 @@ from geometry.castability import (
     thinnest_wall,
     undercut,
 )
-from geometry.channels import pockets
 from geometry.csg_brep import checked
 from geometry.csg_mesh import arrays, evaluate, overlaps_mm3
 from geometry.mould_checks import core_strain
 from geometry.primitives import rounded_box, sphere
 from geometry.silicones import SILICONES, doubled_MPa, gent_MPa, nearest, silicone
+from geometry.trapped import pockets
 from workbench.core.errors import DesignError, GeometryError
 
 UP = np.array([0.0, 0.0, 1.0])
