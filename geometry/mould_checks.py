@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Any
 
 import numpy as np
 
@@ -13,19 +12,17 @@ from geometry.castability import (
     Worst,
     bed_ratio,
     draft_deg,
-    removal_strain,
     spread,
     thinnest_wall,
     undercut,
 )
 from geometry.channels import Channels
-from geometry.csg import Body
-from geometry.csg_mesh import evaluate
+from geometry.core_release import bend_strain, core_strain, pin_strain
 from geometry.parting import Parting
 from geometry.trapped import POCKET_VENT_MM
 from workbench.core.fabrication import FabricationCheck, FabricationPart, Severity
 from workbench.core.making import MouldOptions
-from workbench.core.results import Label, LabelledSurface
+from workbench.core.results import LabelledSurface
 
 UNDERCUT_SHARE = 0.02
 """Silicone peels off undercuts that small without a thought."""
@@ -40,8 +37,6 @@ STRAIN_SAFETY = 3.0
 elongation of flawless strips (ASTM D412), and cast skins tear at nicks and seams first."""
 ROUNDING = 1e-6
 """A value that misses its limit by less meets it."""
-CORE_SECTIONS = 60
-PIN_BINS = 12
 
 
 def check(
@@ -178,7 +173,8 @@ def _core(cast: Cast, membrane: LabelledSurface, elongation: float) -> Iterator[
         sense="min",
         message="the core is wider above than below: raise mould.draft_deg or stretch the skin",
     )
-    strain = max(core_strain(cast.core), pin_strain(membrane), key=lambda worst: worst.value)
+    strains = core_strain(cast.core), bend_strain(cast.core, membrane), pin_strain(membrane)
+    strain = max(strains, key=lambda worst: worst.value)
     yield check(
         "core_removal",
         "core",
@@ -188,63 +184,6 @@ def _core(cast: Cast, membrane: LabelledSurface, elongation: float) -> Iterator[
         bad=elongation,
         message="choose a silicone with more elongation, or raise mould.draft_deg",
     )
-
-
-def core_strain(core: Body) -> Worst:
-    """Strain of the elastomer when the core leaves downward, by circumferences of its sections."""
-    body = evaluate(core)
-    low, high = core.points_mm[:, 2].min(), core.points_mm[:, 2].max()
-    heights = low + (high - low) * (np.arange(CORE_SECTIONS) + 0.5) / CORE_SECTIONS
-    around = np.array([_around(body.slice(float(height))) for height in heights])
-    strain = removal_strain(heights, around)
-    middle = core.points_mm.mean(axis=0)
-    return Worst(strain.value, (float(middle[0]), float(middle[1]), strain.place_mm[2]))
-
-
-def _around(section: Any) -> float:
-    """Length of the outlines of a section without its holes [mm]."""
-    total = 0.0
-    for outline in section.to_polygons():
-        points = np.asarray(outline)
-        ahead = np.roll(points, -1, axis=0)
-        if (points[:, 0] * ahead[:, 1] - points[:, 1] * ahead[:, 0]).sum() > 0.0:
-            total += float(np.linalg.norm(ahead - points, axis=1).sum())
-    return total
-
-
-def pin_strain(membrane: LabelledSurface) -> Worst:
-    """Strain of the internal pins when the core leaves: the widest place toward the tip over the
-    narrowest toward the root, less 1; the worst of all pins."""
-    worst = Worst(0.0, (0.0, 0.0, 0.0))
-    pins = membrane.has(Label.PIN)
-    for number in np.unique(membrane.numbers[pins]):
-        faces = membrane.faces[pins & (membrane.numbers == number)]
-        points = membrane.points_mm[np.unique(faces)]
-        bins = _pin_profile(points)
-        if len(bins) < 2:
-            continue
-        # From the root (highest) down: what is above the tip-side width must have let it pass.
-        narrow = np.minimum.accumulate(bins[::-1, 1])
-        strain = bins[::-1, 1] / narrow - 1.0
-        if strain.max() > worst.value:
-            spot = points.mean(axis=0)
-            worst = Worst(float(strain.max()), (float(spot[0]), float(spot[1]), float(spot[2])))
-    return worst
-
-
-def _pin_profile(points: np.ndarray) -> np.ndarray:
-    """Height and greatest radius of a pin in slices, rising, shape (B, 2); rounded tip left out."""
-    axis = (points[:, :2].min(axis=0) + points[:, :2].max(axis=0)) / 2
-    radius = np.linalg.norm(points[:, :2] - axis, axis=1)
-    height = points[:, 2]
-    edges = np.linspace(height.min(), height.max() + 1e-9, PIN_BINS + 1)
-    slices = np.digitize(height, edges) - 1
-    found = [
-        (float(height[slices == k].mean()), float(radius[slices == k].max()))
-        for k in range(PIN_BINS)
-        if (slices == k).any()
-    ]
-    return np.array(found).reshape(-1, 2)
 
 
 def _trapped(channels: Channels) -> FabricationCheck:

@@ -15,9 +15,9 @@ from geometry.castability import (
     thinnest_wall,
     undercut,
 )
+from geometry.core_release import core_strain
 from geometry.csg_brep import checked
 from geometry.csg_mesh import arrays, evaluate, overlaps_mm3
-from geometry.mould_checks import core_strain
 from geometry.primitives import rounded_box, sphere
 from geometry.silicones import SILICONES, doubled_MPa, gent_MPa, nearest, silicone
 from geometry.trapped import pockets
