@@ -10,6 +10,9 @@ from typing import Any
 
 from workbench.core.marks import NO_MARKS, Field, Marks
 
+WALL_SHARE = 0.5
+"""Least wall over its nominal thickness, in every family."""
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Bodies:
@@ -26,8 +29,6 @@ class Bodies:
     base: Any
     """The rigid foot below z = 0 that carries camera and LEDs."""
     marks: Marks = NO_MARKS
-    notice: str = ""
-    """What had to be changed to build it, for the designer."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -44,3 +45,6 @@ class Fields:
     high_mm: tuple[float, float, float]
     """Box around the outer body [mm]; z = 0 is the base plane, which the fields need not cut."""
     marks: Marks = NO_MARKS
+    wall_mm: float = 0.0
+    """Thickness that the elastomer has at its thinnest by design [mm]; 0 where it runs out to an
+    edge, as a slab does."""

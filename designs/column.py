@@ -68,6 +68,19 @@ class Column:
         return (*(bend * lean for bend in self.bend_mm), self.length_mm + self.tip_mm)  # pyright: ignore[reportReturnType]
 
     @property
+    def wall_share(self) -> float:
+        """Thinnest wall of a round column over its inset, along the normal.
+
+        A side of slope s leaves 1 / sqrt(1 + s^2): s changes evenly from that of the taper at the
+        base to that of the bend at the root of the tip. A sphere sheared by s leaves the shear's
+        least stretch (sqrt(s^2 + 4) - s) / 2.
+        """
+        narrowing = max(abs(a - b) for a, b in zip(self.foot_mm, self.head_mm, strict=True))
+        taper, bend = (2.0 * v / self.length_mm for v in (narrowing, math.hypot(*self.bend_mm)))
+        side = 1.0 / math.hypot(1.0, max(taper, bend))
+        return min(side, (math.hypot(bend, 2.0) - bend) / 2.0)
+
+    @property
     def volume_mm3(self) -> float:
         """Closed form of the module docstring [mm3]; the integral is Gauss's, exact here."""
         node, weight = np.polynomial.legendre.leggauss(4)

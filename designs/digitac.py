@@ -58,6 +58,13 @@ CAVITY_MM = 2.5
 """Smallest half width and height of the cavity under the window [mm]."""
 BETWEEN_MM = 0.6
 """Smallest gap between neighbouring pins, and from a pin to the side of the loaf [mm]."""
+CLEAR_MM = 0.1
+"""Least distance from a tip's rim to the window, and least length of a pin on its short side
+[mm]: the dome falls under a pin, so both are less there than on the pin's axis."""
+DOME_SHARE = 0.8
+"""Farthest a pin's axis stands out on the dome, over the half width: it falls steeply beyond."""
+RIM_PLACES = 32
+"""Places on a tip's rim that are looked at; the farthest out is off by at most 0.5 % of r."""
 ROOT_SHARE = 0.5
 """How deep a pin is rooted in the skin, over the skin's thickness."""
 DIGITAC = "DigiTac (Lepora and others, RA-L 2022)"
@@ -116,7 +123,9 @@ class Digitac:
     shape_type: type = DigitacShape
 
     def check(self, shape: DigitacShape, layers: Layers) -> None:
-        """Refuse windows without room for a camera, pins that touch, and clamps in the dome.
+        """Refuse windows without room for a camera, clamps in the dome, and pins that touch.
+
+        Pins must stand clear of each other and of the window, and out of the skin.
 
         Raises:
             DesignError: Naming the field, its value and its limit.
@@ -135,21 +144,7 @@ class Digitac:
                     hint=f"choose {round(count)}",
                     at=f"shape.{name}",
                 )
-        inside_mm = layers.elastomer_mm + shape.gap_mm + layers.support_mm
-        room_mm = min(shape.width_mm / 2, shape.dome_mm) - inside_mm
-        half = "width" if shape.width_mm / 2 < shape.dome_mm else "dome"
-        if (
-            min(shape.width_mm / 2 - inside_mm, shape.dome_mm + shape.wall_mm - inside_mm)
-            < (CAVITY_MM)
-            or room_mm < CAVITY_MM / 5
-        ):
-            raise DesignError(
-                f"skin, gap and window together {inside_mm:g} mm leave {room_mm:g} mm of cavity "
-                f"under the {half}, less than {CAVITY_MM / 5:g} mm",
-                hint="raise shape.width_mm or shape.dome_mm, or lower shape.pin_length_mm, "
-                "shape.pin_gap_mm, layers.elastomer_mm or layers.support_mm",
-                at=f"shape.{half}_mm",
-            )
+        _check_room(shape, layers)
         if shape.clamp_mm > shape.wall_mm:
             raise DesignError(
                 f"clamp {shape.clamp_mm:g} mm is higher than the upright part of "
@@ -216,13 +211,33 @@ class Digitac:
             core=core,
             cavity=cavity,
             base=_foot(shape, layers),
+            wall_mm=skin_mm,
             low_mm=(-half, -long, 0.0),
             high_mm=(half, long, outside.top_mm),
             marks=_marks(shape, layers),
         )
 
 
+def _check_room(shape: DigitacShape, layers: Layers) -> None:
+    """Refuse skins and gaps that leave no cavity under the window."""
+    inside_mm = layers.elastomer_mm + shape.gap_mm + layers.support_mm
+    for what, whole_mm, least_mm, at in (
+        ("half width", shape.width_mm / 2, CAVITY_MM, "shape.width_mm"),
+        ("height", shape.wall_mm + shape.dome_mm, CAVITY_MM, "shape.dome_mm"),
+        ("dome", shape.dome_mm, CAVITY_MM / 5, "shape.dome_mm"),
+    ):
+        if whole_mm - inside_mm < least_mm:
+            raise DesignError(
+                f"skin, gap and window together {inside_mm:g} mm leave {whole_mm - inside_mm:.3g} "
+                f"mm of the {what} of {whole_mm:g} mm, less than {least_mm:g} mm",
+                hint=f"raise {at}, or lower shape.pin_length_mm, shape.pin_gap_mm, "
+                "layers.elastomer_mm or layers.support_mm",
+                at=at,
+            )
+
+
 def _check_pins(shape: DigitacShape, layers: Layers) -> None:
+    """Refuse pins that touch, stand in the window or stay in the skin, and skins without any."""
     reach_x, reach_y = _pin_reach(shape, layers)
     for name, count, reach in (
         ("pin_rows", shape.pin_rows, reach_x),
@@ -237,6 +252,40 @@ def _check_pins(shape: DigitacShape, layers: Layers) -> None:
                 hint=f"lower shape.{name} or shape.pin_radius_mm, or raise the size of the skin",
                 at=f"shape.{name}",
             )
+    tips = np.array(_pins(shape, layers))
+    if not len(tips):
+        raise DesignError(
+            f"none of {shape.pin_rows:g} x {shape.pin_columns:g} pins stands within "
+            f"{DOME_SHARE:.0%} of the dome, at least 1 must: all are corners",
+            hint="choose 1 or 3 and more for shape.pin_rows or shape.pin_columns",
+            at="shape.pin_rows",
+        )
+    turn = np.linspace(0.0, 2 * np.pi, RIM_PLACES, endpoint=False)
+    circle = np.column_stack([np.cos(turn), np.sin(turn), np.zeros(RIM_PLACES)])
+    rims = (tips[:, None] + shape.pin_radius_mm * circle).reshape(-1, 3)
+    _check_rims(rims, shape, layers)
+
+
+def _check_rims(rims_mm: np.ndarray, shape: DigitacShape, layers: Layers) -> None:
+    inside = shape.loaf(layers.elastomer_mm)
+    # Beyond the inner face's outline there is skin only.
+    out_mm = np.where(inside.share(rims_mm) < 1.0, inside.roof_mm(rims_mm) - rims_mm[:, 2], 0.0)
+    if out_mm.min() < CLEAR_MM:
+        raise DesignError(
+            f"a pin of {shape.pin_length_mm:g} mm stands {out_mm.min():.2f} mm out of the skin on "
+            f"its short side, less than {CLEAR_MM:g} mm",
+            hint="raise shape.pin_length_mm, or lower shape.pin_radius_mm or shape.dome_mm",
+            at="shape.pin_length_mm",
+        )
+    # The clamp ring comes no nearer: pins end within the inner 80 % of the dome.
+    clear_mm = shape.loaf(layers.elastomer_mm + shape.gap_mm).distance(rims_mm).min()
+    if clear_mm < CLEAR_MM:
+        raise DesignError(
+            f"a pin's tip stands {clear_mm:.2f} mm from the window on its long side, less than "
+            f"{CLEAR_MM:g} mm (negative: inside it)",
+            hint="raise shape.pin_gap_mm, or lower shape.pin_radius_mm or shape.pin_length_mm",
+            at="shape.pin_gap_mm",
+        )
 
 
 def _pin_reach(shape: DigitacShape, layers: Layers) -> tuple[float, float]:
@@ -262,8 +311,8 @@ def _pins(shape: DigitacShape, layers: Layers) -> list[tuple[float, float, float
         for y in spread(shape.pin_columns, reach_y):
             roof = float(inside.roof_mm(np.array([[x, y]]))[0])
             rim = float(inside.share(np.array([[x, y]]))[0])
-            # The dome falls steeply near its rim: a pin there would leave it sideways.
-            if rim <= 0.8:
+            # A pin nearer the dome's rim would leave it sideways.
+            if rim <= DOME_SHARE:
                 places.append((float(x), float(y), roof - shape.pin_length_mm))
     return places
 

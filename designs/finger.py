@@ -150,6 +150,7 @@ class Finger:
             core=_field(shape, wall_mm),
             cavity=_field(shape, wall_mm + layers.support_mm),
             base=_foot(shape, layers),
+            wall_mm=wall_mm,
             low_mm=(-radius, -radius, 0.0),
             high_mm=(radius, radius, top),
         )

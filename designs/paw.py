@@ -270,6 +270,7 @@ class Paw:
             core=_prism_field(shape, layers.elastomer_mm),
             cavity=_prism_field(shape, layers.elastomer_mm + layers.support_mm),
             base=_foot(shape, layers),
+            wall_mm=layers.elastomer_mm,
             low_mm=(float(low[0]), float(low[1]), 0.0),
             high_mm=(float(high[0]), float(high[1]), shape.height_mm + shape.pad_mm),
         )

@@ -16,13 +16,12 @@ from workbench.core.booleans import expect_volume, volume
 from workbench.core.errors import GeometryError
 
 FLAT_MM = 1e-6
+VOLUME_ERROR = 1e-3
+"""Tolerance of the difference of two volumes: the kernel integrates splines to about 1e-4."""
 
 
-def hollow(outer: Any, core: Any, *, what: str, relative: float = 1e-3) -> Any:
+def hollow(outer: Any, core: Any, *, what: str) -> Any:
     """The outer body without a core that stands inside it on the same base plane z = 0.
-
-    Args:
-        relative: Tolerance of the difference of the volumes.
 
     Raises:
         GeometryError: If a body has not one flat face on z = 0, or the faces cannot be sewn.
@@ -33,7 +32,7 @@ def hollow(outer: Any, core: Any, *, what: str, relative: float = 1e-3) -> Any:
     walls, opening = _base_apart(core, what)
     ring = Face(base.outer_wire(), [opening.outer_wire()])
     body = sewn([*sides, *walls, ring], what=what)
-    return expect_volume(body, volume(outer) - volume(core), what=what, relative=relative)
+    return expect_volume(body, volume(outer) - volume(core), what=what, relative=VOLUME_ERROR)
 
 
 def sewn(faces: list[Any], *, what: str) -> Any:

@@ -45,7 +45,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from designs import distance
-from designs.bodies import Bodies, Fields
+from designs.bodies import WALL_SHARE, Bodies, Fields
 from designs.column import Column, column_body, column_field
 from designs.prisms import elliptic_foot
 from designs.shells import hollow
@@ -136,7 +136,7 @@ class Tentacle:
     shape_type: type = TentacleShape
 
     def check(self, shape: TentacleShape, layers: Layers) -> None:
-        """Refuse arms that widen, walls that leave no room, and suckers that touch.
+        """Refuse arms that widen or narrow too fast, walls without room, and suckers that touch.
 
         Raises:
             DesignError: Naming the field, its value and its limit.
@@ -156,6 +156,7 @@ class Tentacle:
                 hint="lower layers.elastomer_mm or layers.support_mm, or raise shape.tip_radius_mm",
                 at="layers.elastomer_mm",
             )
+        _check_slope(shape, layers)
         _check_suckers(shape)
 
     def soften(self, shape: TentacleShape) -> None:
@@ -212,6 +213,7 @@ class Tentacle:
             core=column_field(column.inset(layers.elastomer_mm)),
             cavity=column_field(column.inset(layers.elastomer_mm + layers.support_mm)),
             base=_foot(shape, layers),
+            wall_mm=layers.elastomer_mm,
             low_mm=tuple(low.tolist()),
             high_mm=tuple(high.tolist()),
         )
@@ -237,6 +239,19 @@ def _suckers(shape: TentacleShape) -> list[Sucker]:
             )
         )
     return found
+
+
+def _check_slope(shape: TentacleShape, layers: Layers) -> None:
+    """Refuse tapers and bends so steep that the wall, even level by level, gets thin."""
+    share = shape.column.wall_share
+    if share < WALL_SHARE:
+        raise DesignError(
+            f"taper and bend over {shape.length_mm:g} mm thin the elastomer wall to "
+            f"{share * layers.elastomer_mm:.2f} mm, less than {WALL_SHARE:.0%} of "
+            f"{layers.elastomer_mm:g} mm",
+            hint="raise shape.length_mm or shape.tip_radius_mm, or lower shape.base_radius_mm",
+            at="shape.length_mm",
+        )
 
 
 def _check_suckers(shape: TentacleShape) -> None:

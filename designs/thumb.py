@@ -208,6 +208,7 @@ class Thumb:
             core=column_field(column.inset(layers.elastomer_mm)),
             cavity=column_field(column.inset(layers.elastomer_mm + layers.support_mm)),
             base=_foot(shape, layers),
+            wall_mm=layers.elastomer_mm * (1.0 - shape.nail_ratio),
             low_mm=low,
             high_mm=high,
         )

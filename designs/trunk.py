@@ -43,7 +43,7 @@ from typing import Any
 import numpy as np
 
 from designs import distance
-from designs.bodies import Bodies, Fields
+from designs.bodies import WALL_SHARE, Bodies, Fields
 from designs.prisms import (
     CORNER,
     ellipse_area_mm2,
@@ -63,6 +63,8 @@ from workbench.core.results import Label
 
 CAVITY_MM = 4.0
 """Smallest half width and height of the cavity: room for camera and LEDs [mm]."""
+RIM_GRID = (91, 9)
+"""Places around a quarter of the core's rim, and up its rounding, where the wall is measured."""
 ACTUATED_SHARE = 0.5
 """Height above the saddle from which a lobe is driven, over the lobe's height."""
 CORE_RIM_SHARE = 0.3
@@ -132,11 +134,11 @@ class Trunk:
     shape_type: type = TrunkShape
 
     def check(self, shape: TrunkShape, layers: Layers) -> None:
-        """Refuse walls that leave no room inside.
+        """Refuse walls that leave no room inside, and rims that eat the wall.
 
         Raises:
             DesignError: If skin and support leave less than 4 mm of cavity in any half width or
-                in height.
+                in height, or if the rounded rim leaves less than half of the skin.
         """
         both_mm = layers.elastomer_mm + layers.support_mm
         for what, room_mm in (
@@ -152,6 +154,15 @@ class Trunk:
                     "shape.width_mm, shape.depth_mm or shape.valley_mm",
                     at="layers.elastomer_mm",
                 )
+        wall_mm, limit_mm = least_wall_mm(shape, layers), WALL_SHARE * layers.elastomer_mm
+        if wall_mm < limit_mm:
+            raise DesignError(
+                f"the rim of radius {shape.rim_mm:g} mm leaves {max(wall_mm, 0.0):.2f} mm of the "
+                f"elastomer wall of {layers.elastomer_mm:g} mm, less than {limit_mm:g} mm",
+                hint="lower shape.rim_mm or shape.lobe_mm, or raise shape.lobe_ratio or "
+                "layers.elastomer_mm",
+                at="shape.rim_mm",
+            )
 
     def soften(self, shape: TrunkShape) -> TrunkShape:
         """The trunk with half the rim radius."""
@@ -191,10 +202,30 @@ class Trunk:
             core=_core_field(shape, layers.elastomer_mm),
             cavity=_core_field(shape, layers.elastomer_mm + layers.support_mm),
             base=_foot(shape, layers),
+            wall_mm=layers.elastomer_mm,
             low_mm=(-half_x, -half_y, 0.0),
             high_mm=(half_x, half_y, shape.valley_mm + shape.lobe_mm),
             marks=_marks(shape),
         )
+
+
+def least_wall_mm(shape: TrunkShape, layers: Layers) -> float:
+    """Thinnest skin over the rounded rim of the core [mm], by the outer field.
+
+    Over a square edge with radii R outside and r inside, the wall t is still
+    sqrt(2) t - (sqrt(2) - 1) (R - r) thick. Where the lobes' ridge, of radius
+    2 peak^2 / (pi^2 lobe), is sharper than the rim, the edge is not square and more is lost.
+    """
+    skin_mm = layers.elastomer_mm
+    half, rim_mm = shape.half_mm(skin_mm), _rim_mm(shape, skin_mm)
+    around, up = (np.linspace(0.0, np.pi / 2, count) for count in RIM_GRID)
+    edge = np.column_stack([half[0] * np.cos(around), half[1] * np.sin(around)])
+    normal = edge / np.square(half)
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    plan = edge[:, None] - rim_mm * (1.0 - np.cos(up))[None, :, None] * normal[:, None]
+    height = shape.valley_mm - skin_mm - rim_mm * (1.0 - np.sin(up))
+    places = np.concatenate([plan, np.broadcast_to(height[:, None], (*plan.shape[:2], 1))], axis=2)
+    return float(-_outer_field(shape)(places.reshape(-1, 3)).max())
 
 
 def saddle_mm3(shape: TrunkShape) -> float:

@@ -2,8 +2,10 @@
 
 The gel is a Winkler foundation: every point of the skin's inner face is held to its place by a
 spring per area k = E_gel / gap, the stiffness of a column of gel that may bulge freely. It is a
-lower bound for a thin layer, which cannot bulge. Pins hang free in the gel, which moves with them.
-With air (E_gel = 0) only the clamped rim holds the skin.
+lower bound for a thin layer, which cannot bulge. Sideways the column is sheared instead, by
+G_gel / gap = k / (2 (1 + nu)), a third of k for gel that keeps its volume. Pins
+hang free in the gel, which moves with them. With air (E_gel = 0) only the clamped rim holds the
+skin.
 
 A plate of thickness t on such a foundation bends within the length l = (D / k)^(1/4),
 D = E t^3 / (12 (1 - nu^2)). Source: Timoshenko and Woinowsky-Krieger, Theory of Plates and
@@ -20,6 +22,8 @@ import numpy as np
 from workbench.core.design import Elastomer
 from workbench.core.results import Label, MembraneMesh
 
+SIDEWAYS = 1.0 / 3.0
+"""Shear over Young's modulus of gel, 1 / (2 (1 + nu)) at nu = 0.5."""
 DECAY_LENGTHS = 4.0
 """Lengths l after which a plate on a foundation is at rest: exp(-4 / sqrt 2) = 6 %, and the
 curvature of the shell shortens it further."""
@@ -54,10 +58,14 @@ def decay_mm(mesh: MembraneMesh, material: Elastomer, wall_mm: float) -> float:
 def support_points_mm(mesh: MembraneMesh) -> np.ndarray:
     """Points of the rigid support that an object must not reach [mm], shape (N, 3).
 
-    Bonded vertices lie on it; backed ones are a gap away from it along their normals.
+    Bonded vertices lie on it; backed ones are a gap away from it along the normals of the skin
+    without its pins: the sides of a pin would tilt the normals at its root.
     """
+    from geometry.surface import vertex_normals
+
     inner = mesh.inner
     bonded = np.unique(inner.faces[bonded_faces(mesh)])
-    backed = np.unique(inner.faces[backed_faces(mesh)])
-    window = inner.points_mm[backed] - mesh.backing_mm * inner.normals[backed]
+    resting = inner.faces[backed_faces(mesh)]
+    backed, normals = np.unique(resting), vertex_normals(inner.points_mm, resting)
+    window = inner.points_mm[backed] - mesh.backing_mm * normals[backed]
     return np.concatenate([inner.points_mm[bonded], window])

@@ -9,8 +9,9 @@ consecutive and `rows` holds only the first of each of the nine rows. Cell a own
 
 Fictitious masses make a time step of 1 stable: one point's stiffness has the largest eigenvalue
 lambda against its own mass split by the weights, so mass = stiffness / lambda holds for every sum
-of points, and a penalty spring k adds k / lambda (element-by-element bound; Belytschko and others,
-Nonlinear Finite Elements, 2nd ed., 6.2). The step is stable below 4.
+of points, and a penalty spring k adds k / lambda, k in its stiffest direction
+(element-by-element bound; Belytschko and others, Nonlinear Finite Elements, 2nd ed., 6.2). The
+step is stable below 4.
 """
 
 from __future__ import annotations

@@ -122,6 +122,8 @@ def _surface_force(
     moved,
     positions: ti.template(),
     stiffness: ti.template(),
+    axes: ti.template(),
+    sideways: ti.template(),
     bonded: ti.template(),
     anchors: ti.template(),
     states: ti.template(),
@@ -134,7 +136,9 @@ def _surface_force(
     friction,
 ):
     """Force [N] on the membrane at a surface point, in the sensor frame."""
-    force = -stiffness[point] * moved
+    axis = ti.Vector([axes[3 * point + c] for c in range(3)])
+    along = axis.dot(moved) * axis
+    force = -stiffness[point] * (along + sideways[point] * (moved - along))
     if bonded[point] == 0:
         force = ti.Vector([0.0, 0.0, 0.0])
         place = moved
@@ -169,6 +173,8 @@ def surface_pass(
     weights: ti.template(),
     positions: ti.template(),
     stiffness: ti.template(),
+    axes: ti.template(),
+    sideways: ti.template(),
     bonded: ti.template(),
     anchors: ti.template(),
     states: ti.template(),
@@ -187,7 +193,7 @@ def surface_pass(
         for point in range(starts[owner], starts[owner + 1]):
             moved = _point_displacement(displacement, rows, weights, cell, point)
             force = _surface_force(
-                point, moved, positions, stiffness, bonded, anchors, states,
+                point, moved, positions, stiffness, axes, sideways, bonded, anchors, states,
                 poses, step, shape, size, coefficients, counts, friction,
             )  # fmt: skip
             for c in ti.static(range(3)):
@@ -256,6 +262,8 @@ def substep(
     weights: Floats,
     positions: Floats,
     stiffness: Floats,
+    axes: Floats,
+    sideways: Floats,
     bonded: Integers,
     anchors: Floats,
     states: Integers,
@@ -278,8 +286,8 @@ def substep(
     """Forces at the present displacement, then one damped step of the nodes if `moving`."""
     stress_pass(displacement, rows, volumes, slots, inverse_edge, shear, bulk)
     surface_pass(
-        displacement, rows, slots, owners, starts, weights, positions, stiffness, bonded,
-        anchors, states, point_forces, poses, step, shape, size, coefficients,
+        displacement, rows, slots, owners, starts, weights, positions, stiffness, axes, sideways,
+        bonded, anchors, states, point_forces, poses, step, shape, size, coefficients,
         counts, friction,
     )  # fmt: skip
     node_pass(

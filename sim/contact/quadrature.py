@@ -23,6 +23,10 @@ class SurfacePoints:
     """Undeformed position [mm], shape (P, 3), float64."""
     stiffness_N_mm: np.ndarray
     """Spring of the point [N/mm], shape (P,)."""
+    axis: np.ndarray
+    """Unit normal of the skin around the point, shape (P, 3)."""
+    sideways: np.ndarray
+    """Spring across the axis over that along it, of a held point; at most 1. Shape (P,)."""
     bonded: np.ndarray
     """True: held at its place (inner skin). False: may meet the indenter. Shape (P,), bool."""
     vertex: np.ndarray
@@ -33,6 +37,8 @@ class SurfacePoints:
         return SurfacePoints(
             position_mm=self.position_mm[chosen],
             stiffness_N_mm=self.stiffness_N_mm[chosen],
+            axis=self.axis[chosen],
+            sideways=self.sideways[chosen],
             bonded=self.bonded[chosen],
             vertex=self.vertex[chosen],
         )
@@ -90,13 +96,16 @@ def facets_of(skin: Skin, faces: np.ndarray, *, spacing_mm: float) -> Facets:
     return facets
 
 
-def corner_points(facets: Facets, *, stiffness_N_mm3: float, bonded: bool) -> SurfacePoints:
+def corner_points(
+    facets: Facets, *, stiffness_N_mm3: float, bonded: bool, sideways: float = 1.0
+) -> SurfacePoints:
     """Points at the corners of triangles.
 
     Args:
         facets: The triangles.
-        stiffness_N_mm3: Spring per area.
+        stiffness_N_mm3: Spring per area, along the skin's normal.
         bonded: Whether the points are held.
+        sideways: Spring in the skin's plane over that along its normal.
     """
     points, triangles = facets.points_mm, facets.triangles
     corners = facets.corners_mm()
@@ -104,9 +113,12 @@ def corner_points(facets: Facets, *, stiffness_N_mm3: float, bonded: bool) -> Su
     third = np.repeat(np.linalg.norm(normal, axis=1) / 6.0, 3)
     area = np.bincount(triangles.ravel(), third, len(points))
     used = np.flatnonzero(area > 0.0)
+    axis = _column_sums(triangles.ravel(), np.repeat(normal, 3, axis=0), len(points))
     return SurfacePoints(
         position_mm=points[used],
         stiffness_N_mm=stiffness_N_mm3 * area[used],
+        axis=_unit(axis[used]),
+        sideways=np.full(len(used), sideways),
         bonded=np.full(len(used), bonded),
         vertex=facets.vertex[used],
     )
@@ -117,6 +129,8 @@ def join(first: SurfacePoints, second: SurfacePoints) -> SurfacePoints:
     return SurfacePoints(
         position_mm=np.concatenate([first.position_mm, second.position_mm]),
         stiffness_N_mm=np.concatenate([first.stiffness_N_mm, second.stiffness_N_mm]),
+        axis=np.concatenate([first.axis, second.axis]),
+        sideways=np.concatenate([first.sideways, second.sideways]),
         bonded=np.concatenate([first.bonded, second.bonded]),
         vertex=np.concatenate([first.vertex, second.vertex]),
     )
@@ -126,16 +140,28 @@ def merge(points: SurfacePoints, grid_mm: float) -> SurfacePoints:
     """One point per grid cell: the stiffness-weighted mean of those in it.
 
     A bond needs no more points than the grid has freedoms; fewer points cost less per substep.
-    The vertex of a merged point is that of its first member.
+    Vertex and spring sideways of a merged point are those of its first member.
     """
     cell = np.round(points.position_mm / grid_mm).astype(np.int64)
     _, first, group = np.unique(cell, axis=0, return_index=True, return_inverse=True)
     stiffness = np.bincount(group.ravel(), points.stiffness_N_mm)
-    moment = points.stiffness_N_mm[:, None] * points.position_mm
-    centre = np.stack([np.bincount(group.ravel(), moment[:, c]) for c in range(3)], axis=1)
+    weight = points.stiffness_N_mm[:, None]
+    centre = _column_sums(group.ravel(), weight * points.position_mm, len(stiffness))
+    axis = _column_sums(group.ravel(), weight * points.axis, len(stiffness))
     return SurfacePoints(
         position_mm=centre / stiffness[:, None],
         stiffness_N_mm=stiffness,
+        axis=_unit(axis),
+        sideways=points.sideways[first],
         bonded=points.bonded[first],
         vertex=points.vertex[first],
     )
+
+
+def _column_sums(group: np.ndarray, vectors: np.ndarray, count: int) -> np.ndarray:
+    """Sums of vectors (N, 3) by group (N,), shape (count, 3)."""
+    return np.stack([np.bincount(group, vectors[:, c], count) for c in range(3)], axis=1)
+
+
+def _unit(vectors: np.ndarray) -> np.ndarray:
+    return vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-30)

@@ -72,7 +72,10 @@ def surface_forces(
 ) -> np.ndarray:
     """Forces on the membrane at the surface points [N], shape (P, 3); sets first anchors."""
     moved = _point_displacement(domain, displacement)
-    forces = -domain.points.stiffness_N_mm[:, None] * moved
+    axis, sideways = domain.points.axis, domain.points.sideways[:, None]
+    along = np.einsum("pc,pc->p", axis, moved)[:, None] * axis
+    spring = along + sideways * (moved - along)
+    forces = -domain.points.stiffness_N_mm[:, None] * spring
     origin, rotation = pose
     place = (domain.points.position_mm + moved - origin) @ rotation
     distance, gradient = collider.distance(place)

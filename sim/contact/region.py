@@ -8,6 +8,8 @@ mm (12 mm: 0.03 % and 0.003 mm). See `tests/convergence/test_contact_region.py`.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from sim.contact.approach import Approach
@@ -23,6 +25,9 @@ MARGIN_WALLS = 3.1
 LEAST_MARGIN_MM = 4.0
 LEAST_MARGIN_WALLS = 1.5
 """Margin that a radius chosen by hand must leave around the patch, in walls."""
+LEAST_DECAY = 0.75
+"""The same over gel, in lengths after which the skin is at rest: where a plate on a foundation is
+down to 4 % of its deflection, exp(-x) (cos x + sin x) with x = 3 / sqrt 2."""
 POSES = 12
 """Poses of the path at which the patch is looked at."""
 
@@ -41,21 +46,29 @@ def region_radius_mm(
     air all of it takes part.
 
     Raises:
-        DesignError: If the designer's radius leaves less than 1.5 walls around the patch.
+        DesignError: If the designer's radius leaves less than 1.5 walls around the patch, cuts a
+            skin over gel where it still bends, or a skin over air anywhere.
     """
     to_support = np.linalg.norm(mesh.inner.points_mm - approach.target_mm, axis=1)
     wall_mm = float(to_support.min())
     patch_mm = _patch_radius_mm(mesh, approach, collider)
     chosen_mm = settings.active_radius_mm
+    decays_mm = decay_mm(mesh, material, wall_mm)
+    from_target = np.linalg.norm(mesh.outer.points_mm - approach.target_mm, axis=1)
+    whole_mm = float(from_target.max()) + wall_mm
     if chosen_mm == 0.0:
-        margin_mm = max(LEAST_MARGIN_MM, MARGIN_WALLS * wall_mm, decay_mm(mesh, material, wall_mm))
-        from_target = np.linalg.norm(mesh.outer.points_mm - approach.target_mm, axis=1)
-        return min(patch_mm + margin_mm, float(from_target.max()) + wall_mm)
-    least_mm = patch_mm + LEAST_MARGIN_WALLS * wall_mm
+        return min(patch_mm + max(LEAST_MARGIN_MM, MARGIN_WALLS * wall_mm, decays_mm), whole_mm)
+    walls_mm, bends_mm = LEAST_MARGIN_WALLS * wall_mm, LEAST_DECAY * decays_mm
+    least_mm = min(patch_mm + max(walls_mm, bends_mm), whole_mm)
     if chosen_mm < least_mm:
+        needed = f"patch and {LEAST_MARGIN_WALLS:g} walls need"
+        if bends_mm > walls_mm:
+            needed = "patch and the bending of the skin on its gel need"
+        if math.isinf(bends_mm):
+            needed = "a skin over air moves as a whole and needs"
         raise DesignError(
-            f"active radius {chosen_mm:g} mm is smaller than the contact: patch and "
-            f"{LEAST_MARGIN_WALLS:g} walls need {least_mm:.1f} mm",
+            f"active radius {chosen_mm:g} mm is smaller than the contact: {needed} "
+            f"{least_mm:.1f} mm",
             hint="raise contact.active_radius_mm, or 0, and the contact patch and the wall decide",
             at="contact.active_radius_mm",
         )

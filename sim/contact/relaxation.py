@@ -82,6 +82,8 @@ class Relaxation:
         self._weights = _floats(domain.point_weights)
         self._positions = _floats(domain.points.position_mm - domain.target_mm)
         self._stiffness = _floats(domain.points.stiffness_N_mm)
+        self._axes = _floats(domain.points.axis)
+        self._sideways = _floats(domain.points.sideways)
         self._bonded = _integers(domain.points.bonded)
         self._anchors = _floats(np.zeros(3 * points))
         self._states = _integers(np.zeros(points))
@@ -168,7 +170,7 @@ class Relaxation:
             self._displacement, self._velocity, self._forces, self._slots, self._rows,
             self._volumes, self._node_starts, self._node_slots, self._masses, self._fixed,
             self._powers, self._owners, self._owner_starts, self._weights, self._positions,
-            self._stiffness, self._bonded, self._anchors, self._states,
+            self._stiffness, self._axes, self._sideways, self._bonded, self._anchors, self._states,
             self._point_forces, self._poses, self._size, self._coefficients, self._counts,
             step, int(self.collider.shape), int(moving), 1.0 / grid_mm, self._solid.shear_MPa,
             self._solid.bulk_MPa, self.friction, self.mass_scale, self.damping,

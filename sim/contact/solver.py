@@ -17,6 +17,7 @@ import numpy as np
 
 from sim.contact.approach import Approach, plan_approach
 from sim.contact.backing import (
+    SIDEWAYS,
     backed_faces,
     bonded_faces,
     foundation_N_mm3,
@@ -137,14 +138,16 @@ def prepare(
     touching = touching.take(gap_mm < reach_mm(approach, grid_mm))
     held = touching
     springs = (
-        (bonded_faces(mesh), BOND_PENALTY * unit),
-        (backed_faces(mesh), foundation_N_mm3(mesh, material)),
+        (bonded_faces(mesh), BOND_PENALTY * unit, 1.0),
+        (backed_faces(mesh), foundation_N_mm3(mesh, material), SIDEWAYS),
     )
-    for faces, stiffness_N_mm3 in springs:
+    for faces, stiffness_N_mm3, sideways in springs:
         members = np.flatnonzero(faces & near(inner_centre))
         if stiffness_N_mm3 > 0.0 and len(members):
             facets = facets_of(mesh.inner, members, spacing_mm=spacing_mm)
-            bond = corner_points(facets, stiffness_N_mm3=stiffness_N_mm3, bonded=True)
+            bond = corner_points(
+                facets, stiffness_N_mm3=stiffness_N_mm3, bonded=True, sideways=sideways
+            )
             held = join(held, merge(bond, grid_mm))
     return build_domain(
         mesh,

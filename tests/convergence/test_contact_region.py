@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -13,6 +15,7 @@ from sim.contact.solver import press_membrane
 from workbench.core.design import Elastomer
 from workbench.core.errors import DesignError
 from workbench.core.press import ContactSettings, Indenter, IndenterKind, Press
+from workbench.core.results import Label
 
 
 @pytest.mark.slow
@@ -72,3 +75,39 @@ def test_region_smaller_than_the_contact_is_refused() -> None:
         radius_mm(end, checks.at_45_degrees(), fixed_mm=6.0)
     assert raised.value.at == "contact.active_radius_mm"
     assert "or 0" in raised.value.hint
+
+
+def backed_radius_mm(backing_MPa: float, fixed_mm: float) -> float:
+    """The same finger on 1.5 mm of gel, or of air."""
+    mesh, _ = specimens.finger(grid_mm=1.0)
+    labels = np.full(len(mesh.inner.faces), Label.INNER | Label.BACKED, dtype=np.uint8)
+    inner = dataclasses.replace(mesh.inner, labels=labels)
+    mesh = dataclasses.replace(mesh, inner=inner, backing_mm=1.5)
+    collider = make_collider(Indenter(size_mm=4.0), grid_mm=1.0)
+    settings = ContactSettings(active_radius_mm=fixed_mm)
+    approach = plan_approach(mesh.outer, collider, checks.at_45_degrees())
+    return region_radius_mm(mesh, Elastomer(backing_MPa=backing_MPa), approach, collider, settings)
+
+
+def test_a_chosen_radius_must_hold_the_bending_over_gel() -> None:
+    """3/4 of the decay of 4 (D / k)^(1/4) = 6.6 mm, beyond the patch: 6 mm is too little."""
+    free_mm = backed_radius_mm(0.02, 0.0)
+    skin = Elastomer(backing_MPa=0.02)
+    decay_mm = 4.0 * (skin.young_MPa * 8.0 / 12.0 / (1.0 - skin.poisson**2) * 75.0) ** 0.25
+    least_mm = free_mm - 0.25 * decay_mm
+    with pytest.raises(DesignError, match=r"6 mm .* on its gel need \d+\.\d mm") as raised:
+        backed_radius_mm(0.02, 6.0)
+    assert raised.value.at == "contact.active_radius_mm"
+    # The wall is measured to the nearest vertex of a skin with edges of 0.4 mm.
+    assert backed_radius_mm(0.02, least_mm + 0.1) == least_mm + 0.1
+    with pytest.raises(DesignError, match="gel"):
+        backed_radius_mm(0.02, least_mm - 0.1)
+
+
+def test_a_chosen_radius_over_air_must_hold_the_whole_skin() -> None:
+    """Nothing but the rim holds it: 20 mm of a finger 42 mm long are refused, all of it is not."""
+    whole_mm = backed_radius_mm(0.0, 0.0)
+    assert whole_mm > 40.0
+    with pytest.raises(DesignError, match="moves as a whole and needs"):
+        backed_radius_mm(0.0, 20.0)
+    assert backed_radius_mm(0.0, whole_mm + 0.1) == whole_mm + 0.1

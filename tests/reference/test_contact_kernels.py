@@ -1,5 +1,7 @@
 """Each Taichi kernel against its NumPy twin."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -13,6 +15,7 @@ from sim.contact.specimens import flat_block
 from sim.material import neo_hookean
 from workbench.core.design import Elastomer
 from workbench.core.press import ContactSettings, Indenter, IndenterKind, IndenterMesh, Press
+from workbench.core.results import Label
 
 MATERIAL = Elastomer()
 ANALYTIC = [kind for kind in IndenterKind if kind is not IndenterKind.MESH]
@@ -28,8 +31,12 @@ def box_mesh(half_mm: float = 2.0) -> IndenterMesh:
     return IndenterMesh(points_mm=corners.astype(float), faces=np.array(faces, np.int32))
 
 
-def setup(indenter: Indenter, depth_mm: float = 0.4):
+def setup(indenter: Indenter, depth_mm: float = 0.4, backing_mm: float = 0.0):
     mesh, points = flat_block(width_mm=6.0, height_mm=2.0, grid_mm=0.5, skin_mm=0.5)
+    if backing_mm:
+        labels = np.full(len(mesh.inner.faces), Label.INNER | Label.BACKED, dtype=np.uint8)
+        inner = dataclasses.replace(mesh.inner, labels=labels)
+        mesh = dataclasses.replace(mesh, inner=inner, backing_mm=backing_mm)
     collider = make_collider(indenter, grid_mm=0.5)
     press = Press(target_mm=(0.1, 0.2, 2.0), depth_mm=depth_mm, twist_deg=20.0, frames=1)
     approach = plan_approach(mesh.outer, collider, press)
@@ -62,6 +69,46 @@ def test_forces_equal_the_twin(taichi_device: str, kind: IndenterKind) -> None:
     bound = RELATIVE * np.abs(point_forces).max()
     assert np.abs(relaxation.point_forces() - point_forces).max() < bound
     assert np.abs(relaxation.node_forces() - exact).max() < RELATIVE * np.abs(exact).max()
+
+
+def test_gel_is_sheared_by_a_third_of_what_it_is_pushed_by(taichi_device: str) -> None:
+    """A block moved by (1, 2, 3) um on gel: k (1/3, 2/3, 3) um per area, k = E_gel / 1.5 mm."""
+    domain, _, approach, relaxation = setup(Indenter(size_mm=4.0), depth_mm=0.0, backing_mm=1.5)
+    moved_mm = np.array([1e-3, 2e-3, 3e-3])
+    relaxation.restart(np.tile(moved_mm, (len(domain.node_mm), 1)))
+    relaxation.evaluate(approach.pose(0.0))
+    held = domain.points.bonded
+    per_mm = MATERIAL.backing_MPa / 1.5 * moved_mm * [1 / 3, 1 / 3, 1.0]
+    stiffness = domain.points.stiffness_N_mm[held] / (MATERIAL.backing_MPa / 1.5)
+    exact = -stiffness[:, None] * per_mm
+    assert held.sum() > 50
+    np.testing.assert_allclose(relaxation.point_forces()[held], exact, rtol=RELATIVE)
+
+
+def test_gel_forces_equal_the_twin_for_any_normal(taichi_device: str) -> None:
+    """Axes in all directions and any spring sideways, with an indenter in contact."""
+    flat, collider, approach, _ = setup(Indenter(size_mm=4.0), backing_mm=1.5)
+    random = np.random.default_rng(8)
+    axis = random.normal(size=flat.points.axis.shape)
+    points = dataclasses.replace(
+        flat.points,
+        axis=axis / np.linalg.norm(axis, axis=1, keepdims=True),
+        sideways=random.uniform(0.0, 1.0, len(axis)),
+    )
+    domain = dataclasses.replace(flat, points=points)
+    relaxation = Relaxation(domain, collider, neo_hookean(MATERIAL), friction=0.3)
+    displacement, pose = wobble(domain), approach.pose(1.0)
+    relaxation.restart(displacement)
+    relaxation.evaluate(pose)
+    history = reference.ContactHistory.fresh(len(points.vertex))
+    exact = reference.surface_forces(
+        domain, displacement.astype(float), history, collider, pose, friction=0.3
+    )
+    held = points.bonded
+    for group in (held, ~held):
+        bound = RELATIVE * np.abs(exact[group]).max()
+        assert bound > 0.0
+        assert np.abs(relaxation.point_forces()[group] - exact[group]).max() < bound
 
 
 def test_commit_equals_the_twin(taichi_device: str) -> None:

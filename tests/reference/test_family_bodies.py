@@ -22,6 +22,8 @@ from workbench.core.design import Layers
 from workbench.core.errors import DesignError, GeometryError
 from workbench.core.results import Label
 
+SHARP = {"width_mm": 50.0, "depth_mm": 24.0, "lobe_mm": 12.0, "lobe_ratio": 0.6, "rim_mm": 3.0}
+"""A trunk whose ridges, of radius 0.88 mm, are sharper than its rim."""
 BENT = Column(
     foot_mm=(13.0, 11.0), head_mm=(12.0, 8.0), length_mm=30.0, tip_mm=9.0, bend_mm=(2.0, 6.0)
 )
@@ -51,6 +53,40 @@ def test_column_field_vanishes_on_the_kernels_surface_with_slope_one() -> None:
     slope = [(field(points + step * e) - field(points - step * e)) / (2 * step) for e in np.eye(3)]
     # Central differences of 1e-5 mm: rounding 1e-10 relative.
     assert np.linalg.norm(slope, axis=0) == pytest.approx(1.0, abs=1e-5)
+
+
+def test_wall_share_of_a_column_is_that_of_its_slope() -> None:
+    """Slope 2 (24 - 6) / 20 = 1.8 leaves 1 / sqrt(1 + 1.8^2) = 0.486; a tip sheared by 1.2, 0.566.
+
+    Both are measured on the fields too, the wall being the distance from core to outside.
+    """
+    for foot, head, bend, exact in ((24.0, 6.0, 0.0, 0.4856), (10.0, 10.0, 12.0, 0.5662)):
+        column = Column(
+            foot_mm=(foot, foot),
+            head_mm=(head, head),
+            length_mm=20.0,
+            tip_mm=head,
+            bend_mm=(0.0, bend),
+        )
+        assert column.wall_share == pytest.approx(exact, abs=1e-4)
+        core = column.inset(0.1)
+        z = np.concatenate([np.linspace(0.0, 20.0, 801), 20.0 + np.linspace(0.0, head - 0.1, 801)])
+        above = np.clip((z - 20.0) / (head - 0.1), 0.0, 1.0)
+        width = core.half_axes(z)[:, 1] * np.sqrt(1.0 - above**2)
+        sides = [np.column_stack([0.0 * z, core.centres(z)[:, 1] + s * width, z]) for s in (-1, 1)]
+        wall = -column_field(column)(np.concatenate(sides)).max()
+        # A wall of 0.1 mm on radii of 6 mm and more: first order is good to 2 %.
+        assert wall / 0.1 == pytest.approx(exact, rel=0.02)
+
+
+def test_a_rim_on_a_square_edge_leaves_what_the_closed_form_says() -> None:
+    """Flat trunk: sqrt(2) t - (sqrt(2) - 1) (R - r) over the core's rim."""
+    shape, layers = TrunkShape(lobe_mm=0.0, depth_mm=20.0, rim_mm=3.0), Layers(elastomer_mm=1.0)
+    core_mm = 0.3 * 9.0**2 / 16.0
+    exact = math.sqrt(2.0) - (math.sqrt(2.0) - 1.0) * (3.0 - core_mm)
+    assert exact < 0.85
+    # Between its axes the inset ellipse is not quite parallel: 1 % of the wall of 1 mm.
+    assert trunk.least_wall_mm(shape, layers) == pytest.approx(exact, abs=0.015)
 
 
 def test_rounded_prism_volume() -> None:
@@ -157,6 +193,7 @@ def test_one_lost_sucker_is_named() -> None:
     ("name", "shape", "layers", "at"),
     [
         ("trunk", {"depth_mm": 20.0}, {"elastomer_mm": 5.5}, "layers.elastomer_mm"),
+        ("trunk", SHARP, {"elastomer_mm": 0.8, "support_mm": 0.4}, "shape.rim_mm"),
         ("paw", {"pad_mm": 4.0}, {}, "shape.pad_mm"),
         ("paw", {"toe_pad_mm": 5.0, "radius_mm": 11.0}, {}, "shape.toe_pad_mm"),
         ("paw", {"large_pad_mm": 8.0}, {}, "shape.large_pad_mm"),
@@ -172,6 +209,12 @@ def test_one_lost_sucker_is_named() -> None:
         ("tentacle", {"sucker_count": 6.0}, {}, "shape.sucker_count"),
         ("tentacle", {"sucker_count": 2.5}, {}, "shape.sucker_count"),
         ("tentacle", {"cup_ratio": 0.8, "sucker_ratio": 0.2}, {}, "shape.cup_ratio"),
+        (
+            "tentacle",
+            {"base_radius_mm": 24.0, "tip_radius_mm": 6.0, "length_mm": 20.0, "sucker_count": 1.0},
+            {},
+            "shape.length_mm",
+        ),
         ("tentacle", {"tip_radius_mm": 5.0}, {"elastomer_mm": 3.0}, "layers.elastomer_mm"),
     ],
 )

@@ -21,6 +21,9 @@ from workbench.core.design import Layers
 from workbench.core.errors import DesignError, GeometryError
 from workbench.core.results import Label
 
+THIN = {"elastomer_mm": 1.2}
+WIDE_PINS = {"pin_rows": 3.0, "pin_columns": 5.0, "pin_radius_mm": 0.8}
+LONG_PINS = {"pin_rows": 4.0, "pin_columns": 1.0, "pin_length_mm": 3.0, "width_mm": 26.0}
 LOAF = Loaf(half_mm=10.0, straight_mm=6.0, wall_mm=4.0, dome_mm=7.0)
 
 
@@ -135,6 +138,9 @@ def test_a_kernel_that_returns_the_uncut_body_is_found_out(
         ("pad", {"corner_mm": 8.0, "depth_mm": 12.0}, {}, "shape.corner_mm"),
         ("pad", {"standoff_mm": 8.0}, {"support_mm": 4.5}, "layers.support_mm"),
         ("digitac", {"length_mm": 19.0}, {}, "shape.length_mm"),
+        ("digitac", {"pin_rows": 2.0, "pin_columns": 2.0}, THIN, "shape.pin_rows"),
+        ("digitac", {"dome_mm": 15.0, **WIDE_PINS}, THIN, "shape.pin_length_mm"),
+        ("digitac", {"dome_mm": 6.0, "pin_gap_mm": 0.2, **LONG_PINS}, THIN, "shape.pin_gap_mm"),
         ("digitac", {"pin_rows": 2.5}, {}, "shape.pin_rows"),
         ("digitac", {"pin_length_mm": 3.0}, {"elastomer_mm": 3.0}, "shape.dome_mm"),
         ("digitac", {"clamp_mm": 6.0}, {"elastomer_mm": 1.0}, "shape.clamp_mm"),
@@ -155,3 +161,58 @@ def test_contradictions_are_refused_with_their_place(
     assert caught.value.at == at
     assert caught.value.hint
     assert any(letter.isdigit() for letter in caught.value.message)
+
+
+def test_every_accepted_pin_is_clear_of_window_and_skin() -> None:
+    """On 3000 places of each tip's disc: 0.1 mm or more of pin, and no point inside the window."""
+    layers = Layers(elastomer_mm=1.2)
+    random = np.random.default_rng(2)
+    radius, turn = np.sqrt(random.uniform(0.0, 1.0, 3000)), random.uniform(0.0, 2 * np.pi, 3000)
+    disc = np.column_stack([radius * np.cos(turn), radius * np.sin(turn), np.zeros(3000)])
+    accepted = 0
+    for _ in range(300):
+        shape = DigitacShape(
+            dome_mm=random.uniform(5.0, 15.0),
+            pin_radius_mm=random.uniform(0.3, 1.0),
+            pin_length_mm=random.uniform(0.5, 3.0),
+            pin_gap_mm=random.uniform(0.2, 1.0),
+            pin_rows=float(random.integers(1, 6)),
+            pin_columns=float(random.integers(1, 8)),
+        )
+        try:
+            digitac.FAMILY.check(shape, layers)
+        except DesignError:
+            continue
+        accepted += 1
+        tips = np.array(digitac._pins(shape, layers))
+        places = (tips[:, None] + shape.pin_radius_mm * disc).reshape(-1, 3)
+        window = shape.loaf(layers.elastomer_mm + shape.gap_mm)
+        height = np.where(window.share(places) < 1.0, places[:, 2] - window.roof_mm(places), 9.0)
+        # The rim is looked at in 32 places: the farthest out is missed by 0.5 % of its radius.
+        assert height.min() > 0.09
+        inside = shape.loaf(layers.elastomer_mm)
+        assert (inside.roof_mm(places) - places[:, 2]).min() > 0.09
+    assert accepted > 30
+
+
+def test_the_narrow_side_is_named_with_its_own_limit() -> None:
+    """Half of 16 mm less 5.7 mm of walls is 2.3 mm, and 2.5 mm are needed there."""
+    shape = DigitacShape(width_mm=16.0, dome_mm=12.0, wall_mm=6.0)
+    with pytest.raises(DesignError, match=r"2\.3 mm of the half width of 8 mm, less than 2\.5 mm"):
+        digitac.FAMILY.check(shape, Layers(support_mm=2.0, elastomer_mm=2.0))
+
+
+@pytest.mark.slow
+def test_support_points_of_a_digitac_lie_on_its_window() -> None:
+    """The roots of pins as well: -0.08 to +0.001 mm, where pins' sides once made it 0.3 mm."""
+    from geometry.hexmesh import mesh_membrane
+    from sim.contact.backing import backed_faces, bonded_faces, support_points_mm
+    from workbench.core.design import Meshing
+
+    shape, layers = DigitacShape(), Layers(elastomer_mm=1.2)
+    mesh = mesh_membrane(build_solid(family("digitac"), shape, layers), Meshing())
+    bonded = len(np.unique(mesh.inner.faces[bonded_faces(mesh)]))
+    assert backed_faces(mesh).any()
+    window = shape.loaf(layers.elastomer_mm + shape.gap_mm)
+    # An ellipse less by the gap is not parallel to the skin: 0.08 mm at most here.
+    assert np.abs(window.distance(support_points_mm(mesh)[bonded:])).max() < 0.1

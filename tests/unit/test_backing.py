@@ -56,3 +56,11 @@ def test_the_window_lies_a_gap_behind_the_skin(mixed: MembraneMesh) -> None:
     """Normals of the specimen point up: backed vertices' window is at z = -1.5, bonded at 0."""
     points = backing.support_points_mm(mixed)
     assert set(np.unique(points[:, 2])) == {-1.5, 0.0}
+
+
+def test_pins_do_not_tilt_the_window(mixed: MembraneMesh) -> None:
+    """Normals that the sides of pins have tilted by 45 degrees change nothing: z = -1.5 and 0."""
+    tilted = np.tile([math.sqrt(0.5), 0.0, math.sqrt(0.5)], (len(mixed.inner.normals), 1))
+    inner = dataclasses.replace(mixed.inner, normals=tilted)
+    points = backing.support_points_mm(dataclasses.replace(mixed, inner=inner))
+    assert set(np.unique(points[:, 2])) == {-1.5, 0.0}
