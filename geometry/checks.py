@@ -31,14 +31,6 @@ def capped_cylinder_mm2(radius_mm: float, cylinder_mm: float) -> float:
     return 2.0 * math.pi * radius_mm * (cylinder_mm + radius_mm)
 
 
-def finger_volume_ratio(
-    solid: Solid, *, radius_mm: float, cylinder_mm: float, wall_mm: float
-) -> float:
-    """Elastomer of a hemispherical finger by the CAD kernel over the closed form."""
-    outer = capped_cylinder_mm3(radius_mm, cylinder_mm)
-    return solid.volume_mm3 / (outer - capped_cylinder_mm3(radius_mm - wall_mm, cylinder_mm))
-
-
 def watertight(solid: Solid) -> bool:
     """Whether membrane, support and base are all closed."""
     return all(is_watertight(s.faces) for s in (solid.membrane, solid.support, solid.base))

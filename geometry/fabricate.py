@@ -13,7 +13,8 @@ import numpy as np
 from geometry import csg
 from geometry.csg_mesh import arrays, evaluate
 from geometry.solid import part_from_brep
-from geometry.surface import is_watertight
+from geometry.stl import welded
+from geometry.surface import is_watertight, pieces
 from workbench.core.errors import GeometryError
 from workbench.core.fabrication import FabricationPart, PartGroup
 
@@ -48,10 +49,10 @@ def fabricate(
     if not whole:
         solid = max(pieces_of, key=lambda piece: piece.volume(), default=solid)
     points, faces, closed = durable(solid)
-    pieces = piece_count(points, faces) if len(faces) else 0
-    if pieces != 1:
+    count = int(pieces(faces).max()) + 1 if len(faces) else 0
+    if count != 1:
         raise GeometryError(
-            f"part {name} falls into {pieces} pieces",
+            f"part {name} falls into {count} pieces",
             hint="raise mould.wall_mm or housing.wall_mm, or lower mould.gate_diameter_mm",
             at="mould" if group is PartGroup.MOULD else "housing",
         )
@@ -82,7 +83,7 @@ def durable(solid: Any) -> tuple[np.ndarray, np.ndarray, bool]:
     points, faces, closed = *arrays(solid), False
     for shortest_mm in SHORTEST_MM:
         points, faces = arrays(solid.simplify(shortest_mm) if shortest_mm else solid)
-        closed = is_watertight(reloaded(points, faces)[1])
+        closed = is_watertight(welded(stl_points(points)[faces])[1])
         if closed:
             break
     return points, faces, closed
@@ -94,26 +95,6 @@ def stl_points(points_mm: np.ndarray) -> np.ndarray:
     float32 alone keeps 0 and 1e-17 apart, which other programs weld.
     """
     return (np.round(points_mm, 6) + 0.0).astype(np.float32)
-
-
-def reloaded(points_mm: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The mesh after an STL file: rounded, equal vertices welded, slivers dropped."""
-    corners = stl_points(points_mm)[faces].reshape(-1, 3)
-    points, found = np.unique(corners, axis=0, return_inverse=True)
-    triangles = found.reshape(-1, 3)
-    proper = np.all(triangles != np.roll(triangles, 1, axis=1), axis=1)
-    return points, triangles[proper]
-
-
-def piece_count(points_mm: np.ndarray, faces: np.ndarray) -> int:
-    """Bodies in a closed mesh, told by vertices that faces connect."""
-    from scipy.sparse import coo_matrix
-    from scipy.sparse.csgraph import connected_components
-
-    start, stop = faces.ravel(), np.roll(faces, 1, axis=1).ravel()
-    links = coo_matrix((np.ones(len(start)), (start, stop)), (len(points_mm), len(points_mm)))
-    group = connected_components(links, directed=False)[1]
-    return len(np.unique(group[faces[:, 0]]))
 
 
 def _brep(node: csg.Node, volume_mm3: float, name: str) -> tuple[np.ndarray, str, float]:

@@ -52,7 +52,7 @@ SLACK = 2.0
 FLAT_MM = 1e-6
 
 
-def solid_from_fields(fields: Any, *, wall_mm: float, support_mm: float, notice: str = "") -> Solid:
+def solid_from_fields(fields: Any, *, wall_mm: float, support_mm: float) -> Solid:
     """The body whose surfaces are the zero sets of a family's fields.
 
     Args:
@@ -82,7 +82,6 @@ def solid_from_fields(fields: Any, *, wall_mm: float, support_mm: float, notice:
         tips_mm=np.asarray(fields.marks.tips_mm, dtype=np.float64).reshape(-1, 3),
         tip_radius_mm=fields.marks.tip_radius_mm,
         backing_mm=fields.marks.backing_mm,
-        notice=notice,
     )
 
 

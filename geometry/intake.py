@@ -73,7 +73,7 @@ def _in_mm(
         surface, notes = _read_step(file) if file.kind is FileKind.STEP else _read_stl(file)
         _expect_simple(surface, file.name)
         unit = _unit(surface, file, wanted, notes)
-    except DesignError as error:
+    except (DesignError, MeshingError) as error:
         error.at = error.at or at
         raise
     # The CAD kernel has already turned a STEP file's own unit into mm.

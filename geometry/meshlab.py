@@ -1,7 +1,7 @@
 """The only door to pymeshlab.
 
-pymeshlab is GPL-3 and optional: it is imported here and nowhere else, and only when one of these
-functions runs.
+pymeshlab is GPL-3 and may be left out: it is imported here and nowhere else, and only when one of
+these functions runs.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def isotropic(
     Raises:
         MeshingError: If pymeshlab is not installed.
     """
-    meshlab = _meshlab()
+    meshlab = _meshlab(at="meshing.hex_mm", hint=", or choose a shape that hexahedra suit")
     meshes = meshlab.MeshSet(verbose=False)
     marks = np.zeros(len(faces))
     marks[chosen] = 1.0
@@ -55,7 +55,7 @@ def crossing_faces(points_mm: np.ndarray, faces: np.ndarray) -> np.ndarray:
     """Which faces cut through another one, shape (M,), bool.
 
     Raises:
-        MeshingError: If pymeshlab is not installed.
+        MeshingError: If pymeshlab is not installed; whoever reads a file says which.
     """
     meshlab = _meshlab()
     meshes = meshlab.MeshSet(verbose=False)
@@ -64,13 +64,13 @@ def crossing_faces(points_mm: np.ndarray, faces: np.ndarray) -> np.ndarray:
     return np.asarray(meshes.current_mesh().face_selection_array(), dtype=bool)
 
 
-def _meshlab() -> Any:
+def _meshlab(*, at: str = "", hint: str = "") -> Any:
     try:
         import pymeshlab
     except ImportError as error:
         raise MeshingError(
             f"pymeshlab, which reads and divides shapes like this one, cannot be loaded: {error}",
-            hint="install it with `pip install pymeshlab`, or choose a shape that hexahedra suit",
-            at="meshing.hex_mm",
+            hint=f"install it with `pip install pymeshlab`{hint}",
+            at=at,
         ) from error
     return pymeshlab

@@ -13,11 +13,16 @@ from workbench.core.results import MembraneMesh, MeshQuality, QualityReport, Ski
 
 BINS = 20
 PERCENT = (0.0, 1.0, 5.0, 50.0, 95.0, 100.0)
-HEX_EDGES = (
-    *((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4)),
-    *((0, 4), (1, 5), (2, 6), (3, 7)),
-)
 TET_EDGES = ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3))
+CELL_EDGES = {
+    3: ((0, 1), (1, 2), (2, 0)),
+    4: TET_EDGES,
+    8: (
+        *((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4)),
+        *((0, 4), (1, 5), (2, 6), (3, 7)),
+    ),
+}
+"""Pairs of corners in VTK order by number of corners."""
 
 
 def quality_report(mesh: MembraneMesh, volume_mm3: float) -> QualityReport:
@@ -37,7 +42,7 @@ def quality_report(mesh: MembraneMesh, volume_mm3: float) -> QualityReport:
 
 def volume_quality(mesh: VolumeMesh, volume_mm3: float) -> MeshQuality:
     """Quality of hexahedra or tetrahedra; cells are judged by their scaled Jacobian."""
-    pairs = np.array(HEX_EDGES if mesh.cells.shape[1] == 8 else TET_EDGES)
+    pairs = np.array(CELL_EDGES[mesh.cells.shape[1]])
     ends = np.sort(mesh.cells[:, pairs].reshape(-1, 2).astype(np.int64), axis=1)
     span = len(mesh.points_mm)
     both = np.unique(ends[:, 0] * span + ends[:, 1])

@@ -14,12 +14,6 @@ import numpy as np
 
 from workbench.core.check import expect
 
-STEP_MM = 1e-4
-"""Distance behind a hit at which the search for the next one starts [mm]; float32 resolves 4e-6
-at 50 mm. Two surfaces closer than this along a ray count as one."""
-MOST_HITS = 64
-"""Hits along one ray before giving up."""
-
 
 class RayCaster:
     """A triangle mesh ready for rays. Distances are in units of the direction's length."""
@@ -80,42 +74,6 @@ class RayCaster:
         limit = np.broadcast_to(np.asarray(max_distance, dtype=np.float32), (len(origins),))
         limit = np.array(limit)  # Embree writes here, and a broadcast view is read-only.
         return self._scene.run(_single(origins), _single(directions), limit, query="OCCLUDED") >= 0
-
-    def all_hits(
-        self, origins: np.ndarray, directions: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Every crossing along each ray, sorted by ray and then by distance.
-
-        A ray through a shared edge crosses once: the search goes on `STEP_MM` behind each hit.
-
-        Returns:
-            Ray number, shape (H,), int64; distance in direction lengths, shape (H,), float64;
-            face, shape (H,), int32.
-        """
-        start = np.asarray(origins, dtype=np.float64)
-        along = np.asarray(directions, dtype=np.float64)
-        step = STEP_MM / np.linalg.norm(along, axis=1)
-        reached = np.zeros(len(start))
-        alive = np.arange(len(start))
-        rays, distances, faces = [], [], []
-        for _ in range(MOST_HITS):
-            here = start[alive] + reached[alive, None] * along[alive]
-            ahead, face, _ = self.hits(here, along[alive])
-            hit = face >= 0
-            alive, face = alive[hit], face[hit]
-            if not len(alive):
-                break
-            # Refined distances may fall a hair behind the restart, which must still move on.
-            distance = reached[alive] + np.maximum(ahead[hit], 0.0)
-            rays.append(alive)
-            distances.append(distance)
-            faces.append(face)
-            reached[alive] = distance + step[alive]
-        if not rays:
-            return np.zeros(0, np.int64), np.zeros(0), np.zeros(0, np.int32)
-        ray, distance, face = map(np.concatenate, (rays, distances, faces))
-        order = np.lexsort((distance, ray))
-        return ray[order], distance[order], face[order]
 
     def _refine(
         self, start: np.ndarray, along: np.ndarray, face: np.ndarray

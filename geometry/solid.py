@@ -54,7 +54,6 @@ def assemble(
     support: Any,
     base: Any,
     marks: Marks = NO_MARKS,
-    notice: str = "",
     fineness: float = 1.0,
 ) -> Solid:
     """Turn the B-rep bodies of a family into arrays.
@@ -81,7 +80,6 @@ def assemble(
         tips_mm=np.asarray(marks.tips_mm, dtype=np.float64).reshape(-1, 3),
         tip_radius_mm=marks.tip_radius_mm,
         backing_mm=marks.backing_mm,
-        notice=notice,
     )
 
 

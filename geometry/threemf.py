@@ -28,21 +28,6 @@ def threemf_bytes(parts: Sequence[FabricationPart]) -> bytes:
     return bytes(model.QueryWriter("3mf").WriteToBuffer())
 
 
-def read_threemf(data: bytes) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-    """Points (N, 3) [mm] and faces (M, 3) of every object of a 3MF file by name."""
-    model = _wrapper().CreateModel()
-    buffer = (ctypes.c_ubyte * len(data)).from_buffer_copy(data)
-    model.QueryReader("3mf").ReadFromBuffer(buffer)
-    found = {}
-    objects = model.GetMeshObjects()
-    while objects.MoveNext():
-        mesh = objects.GetCurrentMeshObject()
-        points = np.array([list(vertex.Coordinates) for vertex in mesh.GetVertices()])
-        faces = np.array([list(triangle.Indices) for triangle in mesh.GetTriangleIndices()])
-        found[mesh.GetName()] = (points, faces)
-    return found
-
-
 def _geometry(points_mm: np.ndarray, faces: np.ndarray) -> tuple[Any, Any]:
     """Arrays of lib3mf's own structures, filled as blocks of memory rather than one by one."""
     library = _lib3mf()

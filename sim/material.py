@@ -36,11 +36,6 @@ class NeoHookean:
         return self.bulk_MPa - 2.0 * self.shear_MPa / 3.0
 
     @property
-    def wave_modulus_MPa(self) -> float:
-        """Modulus of a pressure wave, K + 4 mu / 3."""
-        return self.bulk_MPa + 4.0 * self.shear_MPa / 3.0
-
-    @property
     def c10_MPa(self) -> float:
         """First constant of W [MPa]."""
         return 0.5 * self.shear_MPa

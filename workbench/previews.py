@@ -9,6 +9,7 @@ import itertools
 
 import numpy as np
 
+from geometry.quality import CELL_EDGES, volume_quality
 from workbench.core.frames import quaternion, tangent
 from workbench.core.press import Indenter
 from workbench.core.results import Label, LabelledSurface, MeshQuality, VolumeMesh, region_masks
@@ -21,15 +22,6 @@ UNUSUAL_MM = 0.5
 """Material that one looks through rather than from the opposite side, per unit of 1 - cosine."""
 EDGE_ON_MM = 1.0
 """Material that one looks through rather than at a surface edge-on."""
-CELL_EDGES = {
-    3: ((0, 1), (1, 2), (2, 0)),
-    4: ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)),
-    8: (
-        *((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4)),
-        *((0, 4), (1, 5), (2, 6), (3, 7)),
-    ),
-}
-"""Pairs of corners in VTK order by number of corners."""
 PLANE_MM = 1e-3
 """Faces nearer to the base plane than this lie on it [mm]."""
 
@@ -139,8 +131,6 @@ def cell_edges(corners_mm: np.ndarray) -> np.ndarray:
 
 def judged(mesh: VolumeMesh, volume_mm3: float) -> MeshQuality:
     """How good the cells of a volume mesh are, beside the volume of its body [mm3]."""
-    from geometry.quality import volume_quality
-
     return volume_quality(mesh, volume_mm3)
 
 

@@ -15,7 +15,7 @@ from workbench.core.errors import DeviceError
 from workbench.core.mapping import to_table
 from workbench.core.press import Press
 from workbench.core.results import Contact, MembraneMesh, Picture, Shot, Skin, Solid
-from workbench.outputs import png_bytes
+from workbench.outputs import frame_depths_mm, png_bytes
 from workbench.project import design_table
 
 NO_RENDERER = "<p>No picture: this machine has no off-screen renderer (libegl1).</p>"
@@ -75,7 +75,7 @@ def report_html(
             for m in summary["moulds"]
         ),
         "<h2>Design</h2>" + _drawn(drawings.membrane, "Membrane", width=310),
-        _table(_flat(design_table(design))),
+        _table([*_flat(design_table(design)), *_constants(design)]),
         "<h2>Press</h2>" + _table(_flat(to_table(path))),
         "<h2>Stages</h2>"
         + _table(
@@ -88,6 +88,14 @@ def report_html(
         f"<!doctype html><html lang='en'><meta charset='utf-8'><title>{title}</title>"
         f"<style>{STYLE}</style><body>{body}</body></html>"
     )
+
+
+def _constants(design: SensorDesign) -> list[tuple[str, float]]:
+    """The elastomer as finite element programs ask for it."""
+    from sim.material import neo_hookean
+
+    solid = neo_hookean(design.material)
+    return [("elastomer C10 [MPa]", solid.c10_MPa), ("elastomer D1 [1/MPa]", solid.d1_per_MPa)]
 
 
 def _images(shot: Shot) -> str:
@@ -147,7 +155,7 @@ def _displacement_png(mesh: MembraneMesh, contact: Contact) -> bytes:
 
 def _force_curve(path: Press, contact: Contact) -> str:
     """Normal force of the approach frames as an inline SVG with labelled axes."""
-    depth = np.r_[0.0, path.depth_mm * np.arange(1, path.frames + 1) / path.frames]
+    depth = np.r_[0.0, frame_depths_mm(path)[: path.frames]]
     force = np.r_[0.0, contact.normal_N[: path.frames]]
     width, height, left, bottom = 560, 260, 60, 40
     top = max(float(force.max()), 1e-9)

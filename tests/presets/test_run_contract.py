@@ -171,6 +171,7 @@ def test_report_needs_nothing_from_outside(out: Path) -> None:
     """No src, href, url() or import leads to another file or machine."""
     text = (out / "report.html").read_text()
     assert "coarse" in text
+    assert "elastomer C10 [MPa]" in text
     links = re.findall(r"(?:src|href)\s*=\s*[\"']?([^\"'\s>]*)|url\(([^)]*)\)", text)
     assert all((a or b).startswith(("data:", "#")) for a, b in links)
     assert "@import" not in text

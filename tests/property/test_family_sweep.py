@@ -10,7 +10,8 @@ from typing import Any
 import pytest
 
 from workbench.validation import sweep as sweeps
-from workbench.validation.sweep import Finding, Trial, draw, family_names, judge, sweep, sweep_row
+from workbench.validation.meshes import family_names
+from workbench.validation.sweep import Finding, Trial, draw, judge, sweep, sweep_row
 
 
 @pytest.mark.parametrize("name", family_names())

@@ -77,12 +77,6 @@ def test_silent_failures_are_refused(operation: Any, result: Any, reason: str) -
     assert caught.value.hint
 
 
-def test_pieces_may_be_announced() -> None:
-    """A cut that is meant to part the body passes with pieces=2."""
-    halves = Fake(8.5, pieces=2)
-    assert cut(Fake(10.0, result=halves), TOOL, what="slot", pieces=2) is halves
-
-
 def test_kernel_calls_a_missed_cut_valid_and_we_do_not() -> None:
     """OCCT returns the whole 1000 mm3 body with is_valid True when the tool misses it."""
     from build123d import Box, Pos

@@ -8,10 +8,13 @@ import numpy as np
 import pytest
 
 from geometry import meshlab, tets
+from geometry.export import stl_bytes
+from geometry.intake import read_body
 from geometry.primitives import rounded_box
 from geometry.remesh import remesh
 from geometry.surface import face_areas, mesh_volume
 from workbench.core.errors import MeshingError
+from workbench.core.imported import ImportedBody, LengthUnit, body_file
 from workbench.core.results import Label, LabelledSurface
 
 
@@ -36,6 +39,18 @@ def test_missing_tools_are_named(
     with pytest.raises(MeshingError, match=tool) as caught:
         load()
     assert f"pip install {tool}" in caught.value.hint
+
+
+def test_a_file_that_cannot_be_read_without_a_tool_is_named(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The message belongs under the file's button, not under the mesh size."""
+    monkeypatch.setitem(sys.modules, "pymeshlab", None)
+    cube = box()
+    file = body_file("cube.stl", stl_bytes(cube.points_mm, cube.faces))
+    with pytest.raises(MeshingError, match="pymeshlab") as caught:
+        read_body(ImportedBody(outer=file, unit=LengthUnit.MM))
+    assert caught.value.at == "body.outer"
 
 
 def test_remeshed_box_keeps_its_corners_regions_and_sense() -> None:

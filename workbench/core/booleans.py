@@ -28,12 +28,11 @@ class Limits(NamedTuple):
     high_mm3: float
 
 
-def cut(body: Any, tool: Any, *, what: str, pieces: int = 1) -> Any:
+def cut(body: Any, tool: Any, *, what: str) -> Any:
     """The body without the tool; the volume must fall, and by no more than the tool's.
 
     Args:
         what: Name of the feature, for the message.
-        pieces: Solids the result must have.
 
     Raises:
         GeometryError: If the tool missed, the body vanished, fell apart or grew.
@@ -41,31 +40,32 @@ def cut(body: Any, tool: Any, *, what: str, pieces: int = 1) -> Any:
     before, removed = volume(body), volume(tool)
     limits = Limits(max(0.0, before - removed - _slack(before)), before)
     result = body - tool
-    return _checked(result, "cut", what, (before, removed), limits, (body,), pieces)
+    return _checked(result, "cut", what, (before, removed), limits, (body,))
 
 
-def fuse(body: Any, tool: Any, *, what: str, pieces: int = 1) -> Any:
+def fuse(body: Any, tool: Any, *, what: str) -> Any:
     """The body and the tool as one; the volume must grow, and by no more than the tool's.
 
     Raises:
-        GeometryError: If nothing was added, or the result is not `pieces` solids.
+        GeometryError: If nothing was added, or the result is not one solid.
     """
     before, added = volume(body), volume(tool)
     limits = Limits(max(before, added), before + added + _slack(before))
     result = body + tool
-    return _checked(result, "fuse", what, (before, added), limits, (body, tool), pieces)
+    return _checked(result, "fuse", what, (before, added), limits, (body, tool))
 
 
-def intersect(body: Any, tool: Any, *, what: str, pieces: int = 1) -> Any:
+def intersect(body: Any, tool: Any, *, what: str) -> Any:
     """The common part of body and tool; it must not be empty, nor all of the body.
 
     Raises:
-        GeometryError: If they do not overlap, the tool holds the whole body, or pieces differ.
+        GeometryError: If they do not overlap, the tool holds the whole body, or the
+            result is not one solid.
     """
     before, other = volume(body), volume(tool)
     limits = Limits(0.0, min(before, other + _slack(other)))
     result = body & tool
-    return _checked(result, "intersect", what, (before, other), limits, (body,), pieces)
+    return _checked(result, "intersect", what, (before, other), limits, (body,))
 
 
 def fillet(
@@ -98,7 +98,7 @@ def fillet(
     # build123d turns the kernel's refusal into a ValueError; OCCT's own are RuntimeErrors.
     except (ValueError, RuntimeError) as error:
         raise _failed(f"fillet of {name}", f"the kernel gave up ({error})") from error
-    return _checked(result, "fillet", name, (before, most), limits, (body,), 1)
+    return _checked(result, "fillet", name, (before, most), limits, (body,))
 
 
 def expect_volume(body: Any, expected_mm3: float, *, what: str, relative: float = 1e-6) -> Any:
@@ -144,7 +144,6 @@ def _checked(
     volumes: tuple[float, float],
     limits: Limits,
     within: tuple[Any, ...],
-    pieces: int,
 ) -> Any:
     after = volume(result)
     story = (
@@ -159,8 +158,8 @@ def _checked(
     if not _inside(result, within):
         raise _failed(story, "the body grew beyond its bounding box")
     found = len(result.solids())
-    if found != pieces:
-        raise _failed(story, f"{found} pieces instead of {pieces}")
+    if found != 1:
+        raise _failed(story, f"{found} pieces instead of 1")
     return result
 
 

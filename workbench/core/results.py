@@ -339,7 +339,7 @@ class Contact:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class LightField:
-    """Light arriving at each outer vertex from each LED, independent of the camera."""
+    """Light arriving at each vertex of the skin that the camera looks at (`MembraneMesh.seen`)."""
 
     model: str
     """Name of the `LightModel`."""

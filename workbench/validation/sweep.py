@@ -25,6 +25,7 @@ from workbench.core.design import Layers
 from workbench.core.errors import DesignError, WorkbenchError
 from workbench.core.results import BodyMethod, Solid
 from workbench.rows import Row, bounded, failed
+from workbench.validation.meshes import family_names
 
 SETS = 200
 SEED = 20260705
@@ -40,8 +41,6 @@ FINEST_MM = 0.3
 """The same where it stands in for the kernel's volume [mm]: within 0.04 % of a grid of 0.15 mm on
 16 random sensors."""
 SIZE_LIMIT_MM = 1.0
-WITHOUT_SHAPE = frozenset({"imported"})
-"""Families whose body comes from a file, not from parameters."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -71,13 +70,6 @@ class Finding:
     """Of the triangles' volume, relative to the fields' integral."""
     size_error_mm: float = 0.0
     seconds: float = 0.0
-
-
-def family_names() -> list[str]:
-    """Every registered family that is built from parameters."""
-    from designs.family import families
-
-    return sorted(set(families()) - WITHOUT_SHAPE)
 
 
 def draw(name: str, count: int, *, seed: int = SEED) -> Iterator[Trial]:
