@@ -43,7 +43,7 @@ APART_MM = 25.0
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Slider:
+class ActuatorRod:
     """One slider and what it needs of the base."""
 
     name: str
@@ -55,16 +55,16 @@ class Slider:
     explode: tuple[float, float, float]
 
 
-def make_sliders(solid: Solid, options: Housing) -> tuple[Slider, ...]:
+def make_rods(solid: Solid, options: Housing) -> tuple[ActuatorRod, ...]:
     """A slider for each actuator on the outer face, in the order of their numbers."""
     membrane = solid.membrane
     driven = membrane.has(Label.ACTUATOR) & membrane.has(Label.OUTER)
     return tuple(
-        _slider(int(number), solid, options) for number in np.unique(membrane.numbers[driven])
+        _rod(int(number), solid, options) for number in np.unique(membrane.numbers[driven])
     )
 
 
-def _slider(number: int, solid: Solid, options: Housing) -> Slider:
+def _rod(number: int, solid: Solid, options: Housing) -> ActuatorRod:
     membrane = solid.membrane
     region = membrane.has(Label.ACTUATOR) & (membrane.numbers == number)
     spot, normal, radius = _paddle_place(membrane.points_mm, membrane.faces[region])
@@ -87,10 +87,10 @@ def _slider(number: int, solid: Solid, options: Housing) -> Slider:
     half = ARM_SHARE * ROD_MM
     bar = csg.Box(low_mm=(-half, -half, 0.0), high_mm=(half, half, float(np.linalg.norm(arm))))
     beam = csg.along(bar, arm, (*behind[:2], top))
-    rod = csg.moved(csg.cylinder(ROD_MM, bottom, top + ROD_MM), (*rod_xy, 0.0))
-    return Slider(
+    shaft = csg.moved(csg.cylinder(ROD_MM, bottom, top + ROD_MM), (*rod_xy, 0.0))
+    return ActuatorRod(
         name=f"slider_{number}",
-        body=csg.Union(parts=(rod, beam, post, paddle)),
+        body=csg.Union(parts=(shaft, beam, post, paddle)),
         guide=_guide(rod_xy, aside, reach, bottom, options),
         bore=csg.moved(csg.cylinder(ROD_MM + gap, bottom - 1.0, top), (*rod_xy, 0.0)),
         explode=(float(aside[0]) * APART_MM, float(aside[1]) * APART_MM, 0.0),

@@ -44,7 +44,7 @@ def build_sheet_html(
         "<h2>Steps</h2><ol>"
         + "".join(f"<li>{html.escape(s)}</li>" for s in recipe.steps)
         + "</ol>",
-        "<h2>Checks</h2>" + _checks((*moulds.checks, *housing.checks)),
+        "<h2>Checks</h2>" + _checks((*moulds.checks, *housing.checks, *recipe.checks)),
         "<h2>Prints</h2>" + _table(PRINT_HEAD, map(_print_row, recipe.prints)),
         "<h2>LEDs</h2>" + _leds(recipe),
     ]

@@ -167,11 +167,19 @@ def _enlarged(body: csg.Body, factor: float, base_mm: float) -> csg.Body:
     base = np.array([0.0, 0.0, base_mm])
     brep = body.brep
     if brep.size and factor != 1.0:
-        from geometry.csg_brep import evaluate
-        from geometry.solid import brep_bytes
-
-        brep = brep_bytes(evaluate(csg.scaled(body, factor, base), what="the enlarged body"))
+        brep = _enlarged_brep(csg.scaled(body, factor, base))
     return csg.Body(points_mm=base + factor * (body.points_mm - base), faces=body.faces, brep=brep)
+
+
+def _enlarged_brep(body: csg.Node) -> np.ndarray:
+    """The B-rep of a scaled body; none where the kernel refuses, as for bodies without one."""
+    from geometry.csg_brep import evaluate, translated
+    from geometry.solid import brep_bytes
+
+    try:
+        return translated(lambda: brep_bytes(evaluate(body, what="the enlarged body")))
+    except GeometryError:
+        return NO_BREP
 
 
 def _uncapped(reason: str) -> GeometryError:

@@ -3,6 +3,8 @@
 Every boolean is checked by `workbench.core.booleans`. Tools are subtracted in one operation: the
 kernel then intersects each pair of faces once. The result is accepted only if its volume is that
 of the triangles, because a kernel that lost a feature says nothing.
+
+The kernel's own errors become ours in `translated`, the one place that knows their kinds.
 """
 
 # OCP has no type stubs.
@@ -11,15 +13,47 @@ of the triangles, because a kernel that lost a feature says nothing.
 from __future__ import annotations
 
 import functools
-from typing import Any
+from collections.abc import Callable
+from typing import Any, TypeVar
 
 from geometry import csg
 from geometry.solid import part_from_brep
 from workbench.core.booleans import cut, fuse, intersect
 from workbench.core.errors import GeometryError
 
+Built = TypeVar("Built")
+
 SAME_VOLUME = 0.003
 """Largest relative difference of B-rep and triangles: chords of 0.02 mm cost up to 0.16 %."""
+
+
+def translated(built: Callable[[], Built], *, what: str = "") -> Built:
+    """What is built; errors of the CAD kernel and its wrapper become ours.
+
+    Args:
+        what: Name of the part, for the message.
+
+    Raises:
+        GeometryError: If the kernel refused.
+    """
+    try:
+        return built()
+    # OCP's errors have no base of their own: `StdFail_NotDone` and sixty others stand beside
+    # `Standard_Failure`, each straight below Exception. Their module alone tells them.
+    except Exception as error:
+        if not of_kernel(error):
+            raise
+        raise GeometryError(
+            f"{what}{': ' if what else ''}the CAD kernel failed: "
+            f"{str(error).strip() or type(error).__name__}",
+            hint="change the last shape parameter a little",
+            at="shape",
+        ) from error
+
+
+def of_kernel(error: Exception) -> bool:
+    """Whether OCP or build123d raised it; build123d raises plain ValueError and RuntimeError."""
+    return isinstance(error, ValueError | RuntimeError) or type(error).__module__.startswith("OCP.")
 
 
 def has_brep(node: csg.Node) -> bool:
@@ -33,11 +67,15 @@ def checked(node: csg.Node, volume_mm3: float, *, what: str) -> Any:
     Raises:
         GeometryError: If the kernel failed, or the volume differs by more than 0.3 %.
     """
-    solid = evaluate(node, what=what)
-    found = solid.solids()
-    if len(found) != 1 or abs(solid.volume - volume_mm3) > SAME_VOLUME * volume_mm3:
+
+    def measured() -> tuple[list[Any], float]:
+        solid = evaluate(node, what=what)
+        return solid.solids(), float(solid.volume)
+
+    found, made_mm3 = translated(measured, what=what)
+    if len(found) != 1 or abs(made_mm3 - volume_mm3) > SAME_VOLUME * volume_mm3:
         raise GeometryError(
-            f"{what} by the CAD kernel has {len(found)} solids and {solid.volume:.6g} mm3, "
+            f"{what} by the CAD kernel has {len(found)} solids and {made_mm3:.6g} mm3, "
             f"its triangles {volume_mm3:.6g} mm3",
             hint="change the last shape parameter a little",
             at="shape",

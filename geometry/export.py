@@ -6,6 +6,7 @@ cannot hold gets none, and the build sheet says so.
 
 from __future__ import annotations
 
+import dataclasses
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
@@ -14,7 +15,8 @@ from typing import Any
 import numpy as np
 
 from geometry.build_sheet import bom_csv, build_sheet_html
-from geometry.fabricate import stl_points
+from geometry.csg_brep import translated
+from geometry.fabricate import NO_BREP, stl_points
 from geometry.faceted import faceted
 from geometry.solid import part_from_brep
 from geometry.threemf import threemf_bytes
@@ -59,20 +61,36 @@ def package_files(
         files[f"{stem}.stl"] = stl_bytes(part.points_mm, part.faces)
         files[f"{stem}.3mf"] = threemf_bytes([part])
         try:
-            bodies[part.name] = step_body(part)
+            bodies[part.name], files[f"{stem}.step"] = step_file(part)
         except GeometryError as error:
             missing.append(error.message)
-            continue
-        files[f"{stem}.step"] = step_bytes([bodies[part.name]], part.name)
     monitor(0.7, "writing the assemblies")
     for group, name in ASSEMBLIES.items():
         found = [bodies[p.name] for p in parts if p.group is group and p.name in bodies]
-        if found:
-            files[f"{FOLDERS[group]}/{name}.step"] = step_bytes(found, name)
+        try:
+            if found:
+                files[f"{FOLDERS[group]}/{name}.step"] = step_bytes(found, name)
+        except GeometryError as error:
+            missing.append(error.message)
     files[ALL_PARTS] = threemf_bytes(parts)
     files["build_sheet.html"] = build_sheet_html(moulds, housing, recipe, missing).encode()
     files["bom.csv"] = bom_csv(recipe).encode()
     return {name: np.frombuffer(data, dtype=np.uint8).copy() for name, data in files.items()}
+
+
+def step_file(part: FabricationPart) -> tuple[Any, bytes]:
+    """The part's body and its STEP file; of flat facets where the kernel refuses the B-rep.
+
+    Raises:
+        GeometryError: If it refuses the facets too.
+    """
+    try:
+        body = step_body(part)
+        return body, step_bytes([body], part.name)
+    except GeometryError:
+        if not part.brep.size:
+            raise
+    return step_file(dataclasses.replace(part, brep=NO_BREP))
 
 
 def step_body(part: FabricationPart) -> Any:
@@ -82,9 +100,11 @@ def step_body(part: FabricationPart) -> Any:
         GeometryError: If it has neither.
     """
     if part.brep.size:
-        body = part_from_brep(part.brep)
+        body = translated(lambda: part_from_brep(part.brep), what=part.name)
     else:
-        body = faceted(part.points_mm, part.faces, what=part.name)
+        body = translated(
+            lambda: faceted(part.points_mm, part.faces, what=part.name), what=part.name
+        )
     body.label = part.name
     return body
 
@@ -103,15 +123,18 @@ def write_step(bodies: Sequence[Any], name: str, path: Path) -> None:
 
     Raises:
         StoreError: If the file cannot be written.
+        GeometryError: If the kernel cannot turn a body into STEP.
     """
     from build123d import Compound, export_step
 
-    shape = bodies[0] if len(bodies) == 1 else Compound(label=name, children=list(bodies))
-    try:
-        written = export_step(shape, str(path), timestamp="2000-01-01T00:00:00")
-    except (OSError, RuntimeError) as error:
-        raise _unwritten(path) from error
-    if not written:
+    def written() -> bool:
+        shape = bodies[0] if len(bodies) == 1 else Compound(label=name, children=list(bodies))
+        try:
+            return export_step(shape, str(path), timestamp="2000-01-01T00:00:00")
+        except (OSError, RuntimeError) as error:
+            raise _unwritten(path) from error
+
+    if not translated(written, what=name):
         raise _unwritten(path)
 
 

@@ -6,11 +6,13 @@ than the rounding would tear it; they are collapsed first.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from geometry import csg
+from geometry.castability import Worst
 from geometry.csg_mesh import arrays, evaluate
 from geometry.solid import part_from_brep
 from geometry.stl import welded
@@ -21,6 +23,21 @@ from workbench.core.fabrication import FabricationPart, PartGroup
 NO_BREP = np.zeros(0, dtype=np.uint8)
 SHORTEST_MM = (0.0, 1e-5, 1e-4, 1e-3)
 """Edges collapsed in turn until the part survives an STL file [mm]; float32 resolves 4e-6 at 50."""
+TRIVIAL_SHARE = 1e-9
+GIVEN_SHARE = 0.01
+"""Largest relative difference of a part's triangles from the B-rep that the design has of it:
+chords of 0.05 mm cost a thin shell 0.5 %."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Made:
+    """A part and what its making has cost it."""
+
+    part: FabricationPart
+    reason: str
+    """Why it has no exact B-rep; empty when it has."""
+    lost: Worst
+    """Share of its volume in loose pieces that were left away, and the middle of the largest."""
 
 
 def fabricate(
@@ -33,21 +50,21 @@ def fabricate(
     process: str = "3D print",
     keep_largest: bool = False,
     brep: np.ndarray | None = None,
-) -> tuple[FabricationPart, str]:
-    """The part, and why it has no exact B-rep (empty when it has).
+) -> Made:
+    """The part, as one closed body.
 
     Args:
-        keep_largest: Leave crumbs that cuts have separated away, instead of refusing the part.
+        keep_largest: Leave crumbs that cuts have separated away, instead of refusing the part; how
+            much that was is told, for the caller to judge.
         brep: The part's B-rep where the design already has it; empty when it has none.
 
     Raises:
         GeometryError: If the part is empty or falls into pieces.
     """
     solid = evaluate(node)
-    pieces_of = solid.decompose() if keep_largest else [solid]
-    whole = len(pieces_of) == 1
-    if not whole:
-        solid = max(pieces_of, key=lambda piece: piece.volume(), default=solid)
+    lost = Worst(0.0, (0.0, 0.0, 0.0))
+    if keep_largest:
+        solid, lost = _largest(solid)
     points, faces, closed = durable(solid)
     count = int(pieces(faces).max()) + 1 if len(faces) else 0
     if count != 1:
@@ -56,13 +73,12 @@ def fabricate(
             hint="raise mould.wall_mm or housing.wall_mm, or lower mould.gate_diameter_mm",
             at="mould" if group is PartGroup.MOULD else "housing",
         )
-    reason, volume_mm3 = "", float(solid.volume())
-    if brep is None and whole:
-        brep, reason, volume_mm3 = _brep(node, volume_mm3, name)
-    elif brep is None:
-        brep, reason = NO_BREP, f"{name} had loose pieces, which are left away"
-    elif brep.size:
-        volume_mm3 = float(part_from_brep(brep).volume)
+    volume_mm3 = float(solid.volume())
+    if lost.value > 0.0:
+        reason = f"{name} had loose pieces, {100 * lost.value:.2g} % of it, which are left away"
+        brep = NO_BREP
+    else:
+        brep, reason, volume_mm3 = _brep(node, brep, volume_mm3, name)
     part = FabricationPart(
         name=name,
         group=group,
@@ -75,7 +91,19 @@ def fabricate(
         pull=pull,
         process=process,
     )
-    return part, reason
+    return Made(part=part, reason=reason, lost=lost)
+
+
+def _largest(solid: Any) -> tuple[Any, Worst]:
+    """The largest piece of a manifold, and what the others are of the whole."""
+    loose = sorted(solid.decompose(), key=lambda piece: piece.volume(), reverse=True)
+    if len(loose) < 2:
+        return solid, Worst(0.0, (0.0, 0.0, 0.0))
+    share = 1.0 - float(loose[0].volume()) / sum(float(piece.volume()) for piece in loose)
+    box = np.array(loose[1].bounding_box())
+    x, y, z = (float(value) for value in (box[:3] + box[3:]) / 2)
+    # Crumbs may have no volume at all; that they were there is told all the same.
+    return loose[0], Worst(max(share, TRIVIAL_SHARE), (x, y, z))
 
 
 def durable(solid: Any) -> tuple[np.ndarray, np.ndarray, bool]:
@@ -97,15 +125,35 @@ def stl_points(points_mm: np.ndarray) -> np.ndarray:
     return (np.round(points_mm, 6) + 0.0).astype(np.float32)
 
 
-def _brep(node: csg.Node, volume_mm3: float, name: str) -> tuple[np.ndarray, str, float]:
+def _brep(
+    node: csg.Node, given: np.ndarray | None, volume_mm3: float, name: str
+) -> tuple[np.ndarray, str, float]:
     """The exact body, why there is none, and the best volume there is [mm3]."""
-    from geometry.csg_brep import checked, has_brep
+    from geometry.csg_brep import checked, has_brep, translated
     from geometry.solid import brep_bytes
 
-    if not has_brep(node):
+    if not (has_brep(node) if given is None else given.size):
         return NO_BREP, f"{name} has no exact CAD body: its STEP file has flat facets", volume_mm3
+
+    def exact() -> tuple[np.ndarray, float]:
+        if given is None:
+            body = checked(node, volume_mm3, what=name)
+            return brep_bytes(body), float(body.volume)
+        return given, _same(float(part_from_brep(given).volume), volume_mm3)
+
     try:
-        body = checked(node, volume_mm3, what=name)
+        brep, exact_mm3 = translated(exact)
     except GeometryError as error:
         return NO_BREP, f"{name}: its STEP file has flat facets ({error.message})", volume_mm3
-    return brep_bytes(body), "", float(body.volume)
+    return brep, "", exact_mm3
+
+
+def _same(brep_mm3: float, volume_mm3: float) -> float:
+    """The volume of a B-rep that was not made from the part's description, if it is the part's."""
+    if abs(brep_mm3 - volume_mm3) > GIVEN_SHARE * volume_mm3:
+        raise GeometryError(
+            f"the CAD body has {brep_mm3:.6g} mm3, its triangles {volume_mm3:.6g} mm3",
+            hint="change the last shape parameter a little",
+            at="shape",
+        )
+    return brep_mm3

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from geometry.csg_brep import translated
 from geometry.csg_mesh import arrays, closed
 from workbench.core.errors import GeometryError
 
@@ -61,8 +62,6 @@ def _on_mesh(points_mm: np.ndarray, faces: np.ndarray) -> Any | None:
     from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeShapeOnMesh
     from OCP.gp import gp_Pnt
     from OCP.Poly import Poly_Triangle, Poly_Triangulation
-    from OCP.Standard import Standard_Failure
-    from OCP.StdFail import StdFail_NotDone
     from OCP.TopAbs import TopAbs_ShapeEnum
     from OCP.TopExp import TopExp_Explorer
     from OCP.TopoDS import TopoDS_Shell, TopoDS_Solid
@@ -74,8 +73,8 @@ def _on_mesh(points_mm: np.ndarray, faces: np.ndarray) -> Any | None:
         mesh.SetTriangle(number, Poly_Triangle(*corners))
     maker = BRepBuilderAPI_MakeShapeOnMesh(mesh)
     try:
-        maker.Build()
-    except (Standard_Failure, StdFail_NotDone):
+        translated(maker.Build)
+    except GeometryError:
         return None
     builder, shell, solid = BRep_Builder(), TopoDS_Shell(), TopoDS_Solid()
     builder.MakeShell(shell)

@@ -4,7 +4,7 @@ What is bought (camera module, LEDs) takes its room first; each printed part is 
 grown outlines of those before it, so nothing overlaps. Parts:
 
 - `support`: the design's transparent shell, as it is;
-- `led_ring_holder`: a ring under the LEDs with a pocket for each;
+- `led_ring_holder`: a ring under the LEDs with a pocket for each, see `led_holder`;
 - `camera_mount`: a cup on the camera's axis that the module slides into from the front;
 - `base`: the design's foot with seats for holder and mount, open to below for the mount;
 - `slider_0`, ...: for bodies with actuators, see `actuation`.
@@ -20,14 +20,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from geometry import csg
-from geometry.actuation import Slider, make_sliders
-from geometry.csg_mesh import evaluate
+from geometry.actuation import ActuatorRod, make_rods
+from geometry.castability import Worst, thinnest_wall
+from geometry.csg_mesh import arrays, evaluate
 from geometry.fabricate import fabricate
-from geometry.housing_checks import housing_checks
-from geometry.leds import led_places
+from geometry.housing_checks import LEAST_WALL_MM, housing_checks
+from geometry.led_holder import shaped_holder
 from workbench.core.design import Camera, LedMount, LedRing
 from workbench.core.fabrication import FabricationPart, HousingSet, PartGroup
-from workbench.core.making import Housing, MouldOptions
+from workbench.core.leds import led_places
+from workbench.core.making import Housing
 from workbench.core.monitor import Monitor, silent
 from workbench.core.results import LabelledSurface, Solid
 
@@ -35,6 +37,8 @@ LED_DEPTH_MM = 0.8
 """Height of an LED with its solder. Source: WS2812 packages are 0.5 to 0.7 mm high."""
 FLOOR_MM = 1.2
 """Material under the LEDs: three layers of a resin print or a flexible circuit [mm]."""
+HOLDER_MM = LED_DEPTH_MM + FLOOR_MM
+"""Height of the LEDs' holder [mm]."""
 FRONT_SHARE = 0.3
 """How much of the camera module stands out of its mount: the lens."""
 CABLE_SHARE = 0.5
@@ -61,23 +65,29 @@ def make_housing(
     *,
     ring: LedRing,
     camera: Camera,
-    mould: MouldOptions,
+    bed_mm: tuple[float, float, float],
     monitor: Monitor = silent,
 ) -> HousingSet:
     """Make the rigid parts of a sensor.
 
+    Args:
+        ring: Of the LEDs; power, colours and emission are not looked at.
+        camera: Only its pose is looked at.
+        bed_mm: Room of the printer.
+
     Raises:
         GeometryError: If a part does not come out as one body.
     """
-    sliders = make_sliders(solid, options)
+    rods = make_rods(solid, options)
     bought = Bought(module=_module(camera, options, 0.0), leds=_leds(ring, options, 0.0))
-    nodes = _nodes(solid, options, ring, camera, sliders)
-    places = _exploded(solid, sliders)
+    nodes = _nodes(solid, options, ring, camera, rods)
+    places = _exploded(solid, rods)
     parts: list[FabricationPart] = []
     reasons: list[str] = []
+    lost: dict[str, Worst] = {}
     for number, (name, node) in enumerate(nodes.items()):
         monitor(0.8 * number / len(nodes), f"making {name}")
-        part, reason = fabricate(
+        made = fabricate(
             name,
             node,
             group=PartGroup.SENSOR,
@@ -86,8 +96,9 @@ def make_housing(
             keep_largest=True,
             brep=solid.support_brep if name == "support" else None,
         )
-        parts.append(part)
-        reasons += [reason] if reason else []
+        parts.append(made.part)
+        lost[name] = made.lost
+        reasons += [made.reason] if made.reason else []
     monitor(0.8, "checking")
     checks = housing_checks(
         parts,
@@ -96,13 +107,14 @@ def make_housing(
         bought.leds,
         options,
         in_shell=ring.mount is LedMount.SHELL,
-        bed_mm=mould.bed_mm,
+        bed_mm=bed_mm,
+        lost=lost,
     )
     return HousingSet(parts=tuple(parts), checks=checks, notice="; ".join(reasons))
 
 
 def _nodes(
-    solid: Solid, options: Housing, ring: LedRing, camera: Camera, sliders: tuple[Slider, ...]
+    solid: Solid, options: Housing, ring: LedRing, camera: Camera, rods: tuple[ActuatorRod, ...]
 ) -> dict[str, csg.Node]:
     gap = options.clearance_mm
     # Without its B-rep: only parts that do not fit meet the skin, and cutting splines is slow.
@@ -117,15 +129,50 @@ def _nodes(
     seat = _ring(ring, options, gap)
     leds = _leds(ring, options, gap)
     cup = _cup(camera, options, front_mm, 0.0)
-    foot = csg.together(_body(solid.base, solid.base_brep), [slider.guide for slider in sliders])
-    room = [seat, _cup(camera, options, front_mm + gap, gap), _cable(camera, options), module]
+    foot = csg.together(_body(solid.base, solid.base_brep), [rod.guide for rod in rods])
+    # A ledge between the two seats thinner than a wall is cut away with the lower seat.
+    ledge = ring.height_mm - HOLDER_MM - camera.position_mm[2] - front_mm - 2.0 * gap
+    cup_seat_mm = front_mm + gap + (LEAST_WALL_MM if 0.0 <= ledge < LEAST_WALL_MM else 0.0)
+    room = [seat, _cup(camera, options, cup_seat_mm, gap), _cable(camera, options), module]
     return {
         "support": _cut(support, [membrane]),
-        "led_ring_holder": _cut(_ring(ring, options, 0.0), [*shells, module, *leds]),
+        "led_ring_holder": _holder(ring, options, shells, module, leds),
         "camera_mount": _cut(cup, [*shells, seat, module, _cable(camera, options)]),
-        "base": _cut(foot, [*shells, *room, *(slider.bore for slider in sliders)]),
-        **{slider.name: _cut(slider.body, [membrane]) for slider in sliders},
+        "base": _cut(foot, [*shells, *room, *(rod.bore for rod in rods)]),
+        **{rod.name: _cut(rod.body, [membrane]) for rod in rods},
     }
+
+
+def _holder(
+    ring: LedRing,
+    options: Housing,
+    shells: Sequence[csg.Node],
+    module: csg.Node,
+    leds: tuple[csg.Node, ...],
+) -> csg.Node:
+    """The ring less all it must clear; shaped anew if that leaves walls thinner than can be."""
+    whole = _ring(ring, options, 0.0)
+    plain = _cut(whole, [*shells, module, *leds])
+    if _wall_mm(plain) >= LEAST_WALL_MM:
+        return plain
+    shaped = shaped_holder(
+        whole,
+        shells[:2],
+        module,
+        leds,
+        gap_mm=options.clearance_mm,
+        wall_mm=LEAST_WALL_MM,
+        tilt_deg=ring.tilt_deg,
+    )
+    return plain if shaped is None or _wall_mm(shaped) <= _wall_mm(plain) else shaped
+
+
+def _wall_mm(node: csg.Node) -> float:
+    """Thinnest wall of a body's largest piece [mm]; 0 for nothing."""
+    pieces = evaluate(node).decompose()
+    if not pieces:
+        return 0.0
+    return thinnest_wall(*arrays(max(pieces, key=lambda piece: piece.volume()))).value
 
 
 def _cut(body: csg.Node, tools: Sequence[csg.Node]) -> csg.Node:
@@ -142,7 +189,7 @@ def _cup_front_mm(camera: Camera, ring: LedRing, options: Housing) -> float:
     """
     front = -FRONT_SHARE * options.camera_depth_mm
     upright = (_rotation(camera) @ [0.0, 0.0, 1.0])[2] > UPRIGHT_COSINE
-    low = ring.height_mm - LED_DEPTH_MM - FLOOR_MM - 2.0 * options.clearance_mm
+    low = ring.height_mm - HOLDER_MM - 2.0 * options.clearance_mm
     below = low - camera.position_mm[2]
     # A cup too low to hold the module is worse than one that the ring cuts into.
     return min(front, below) if upright and below > -0.7 * options.camera_depth_mm else front
@@ -211,7 +258,7 @@ def _ring(ring: LedRing, options: Housing, gap_mm: float) -> csg.Node:
     """Outline of the LEDs' ring; with a gap, its seat."""
     half = max(options.led_width_mm, options.led_height_mm) / 2 + options.wall_mm
     top = ring.height_mm + gap_mm
-    low = ring.height_mm - LED_DEPTH_MM - FLOOR_MM - gap_mm
+    low = ring.height_mm - HOLDER_MM - gap_mm
     disc = csg.cylinder(ring.radius_mm + half + gap_mm, low, top)
     hole = ring.radius_mm - half - gap_mm
     if hole <= options.wall_mm:
@@ -219,7 +266,7 @@ def _ring(ring: LedRing, options: Housing, gap_mm: float) -> csg.Node:
     return csg.without(disc, [csg.cylinder(hole, low - 1.0, top + 1.0)])
 
 
-def _exploded(solid: Solid, sliders: tuple[Slider, ...]) -> dict[str, tuple[float, float, float]]:
+def _exploded(solid: Solid, rods: tuple[ActuatorRod, ...]) -> dict[str, tuple[float, float, float]]:
     height = float(np.ptp(solid.support.points_mm[:, 2])) + APART_MM
     foot = float(np.ptp(solid.base.points_mm[:, 2])) + APART_MM
     return {
@@ -227,5 +274,5 @@ def _exploded(solid: Solid, sliders: tuple[Slider, ...]) -> dict[str, tuple[floa
         "led_ring_holder": (0.0, 0.0, APART_MM),
         "camera_mount": (0.0, 0.0, -2.0 * foot),
         "base": (0.0, 0.0, 0.0),
-        **{slider.name: slider.explode for slider in sliders},
+        **{rod.name: rod.explode for rod in rods},
     }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,7 +10,7 @@ import numpy as np
 from geometry.castability import Worst
 from geometry.csg import Node
 from geometry.csg_mesh import closed, evaluate
-from geometry.mould_checks import check, wall_and_bed
+from geometry.mould_checks import PrintLimits, check, wall_and_bed
 from workbench.core.fabrication import FabricationCheck, FabricationPart
 from workbench.core.making import Housing
 from workbench.core.results import Solid
@@ -19,6 +19,14 @@ SEARCH_MM = 50.0
 """Gaps wider than this are not measured [mm]."""
 LEAST_WALL_MM = 0.8
 """Thinnest printed wall of a part that carries no bolts: two lines of a 0.4 mm nozzle [mm]."""
+
+HOUSING_LIMITS = PrintLimits(
+    LEAST_WALL_MM,
+    thin="raise housing.wall_mm, or move the LED ring or the camera away from what is near it",
+    large="lower housing.wall_mm or the shape's own sizes, or use a larger printer",
+)
+MOST_LOST = 0.01
+"""Share of a part that may be left away as crumbs between cuts [1]."""
 
 
 def housing_checks(
@@ -30,6 +38,7 @@ def housing_checks(
     *,
     in_shell: bool,
     bed_mm: tuple[float, float, float],
+    lost: Mapping[str, Worst],
 ) -> tuple[FabricationCheck, ...]:
     """Gaps around the bought parts, and walls and sizes of the printed ones.
 
@@ -37,6 +46,7 @@ def housing_checks(
         module: Room of the camera module.
         leds: Room of each LED.
         in_shell: Whether LEDs touch the support on purpose, to feed light into it.
+        lost: Share of each part in loose pieces, which are left away.
     """
     walls = [solid.membrane] if in_shell else [solid.membrane, solid.support]
     shells = [closed("shell", surface.points_mm, surface.faces) for surface in walls]
@@ -47,8 +57,23 @@ def housing_checks(
         _camera_clearance(camera, shells, solid, options),
     ]
     for part in parts:
-        checks += wall_and_bed(part, bed_mm, LEAST_WALL_MM)
+        checks += wall_and_bed(part, bed_mm, limits=HOUSING_LIMITS)
+    checks += [_whole(name, share) for name, share in lost.items() if share.value > 0.0]
     return tuple(checks)
+
+
+def _whole(name: str, lost: Worst) -> FabricationCheck:
+    """Whether cuts have parted more than crumbs from a part."""
+    return check(
+        "loose_pieces",
+        name,
+        lost,
+        unit="of its volume",
+        limit=MOST_LOST,
+        bad=MOST_LOST,
+        message="camera, LEDs or shell cut the part in two: use a smaller camera module, move it "
+        "by optics.camera.position_mm, or make room for it in the shape",
+    )
 
 
 def _led_clearance(lights: list[Any], others: list[Any], options: Housing) -> FabricationCheck:

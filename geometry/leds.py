@@ -1,8 +1,4 @@
-"""Where the LEDs of a ring sit, for the parts that hold them and the list of what to solder.
-
-The same circle as the light model's: evenly spaced about +Z, tilted outward from +Z, colours in
-equal sectors in the order of azimuth. Leaves out: LEDs that are not on a ring.
-"""
+"""The LEDs of a ring as the list of what to solder, in the order of azimuth."""
 
 from __future__ import annotations
 
@@ -10,25 +6,17 @@ import numpy as np
 
 from workbench.core.design import LedRing
 from workbench.core.fabrication import LedItem
-
-
-def led_places(ring: LedRing) -> tuple[np.ndarray, np.ndarray]:
-    """Positions [mm] and unit emission axes of the LEDs, shape (L, 3) each."""
-    azimuth = np.radians(ring.phase_deg + 360.0 * np.arange(ring.count) / ring.count)
-    outward = np.column_stack([np.cos(azimuth), np.sin(azimuth), np.zeros(ring.count)])
-    up = np.array([0.0, 0.0, 1.0])
-    tilt = np.radians(ring.tilt_deg)
-    places = ring.radius_mm * outward + ring.height_mm * up
-    return places, np.cos(tilt) * up + np.sin(tilt) * outward
+from workbench.core.leds import colour_sectors, led_places
 
 
 def led_items(ring: LedRing) -> tuple[LedItem, ...]:
     """The LEDs as rows of the bill of materials, numbered from 1."""
     places, axes = led_places(ring)
+    sectors = colour_sectors(ring)
     return tuple(
         LedItem(
             number=number + 1,
-            colour=ring.colours[number * len(ring.colours) // ring.count],
+            colour=ring.colours[sectors[number]],
             position_mm=_triple(places[number]),
             axis=_triple(axes[number]),
         )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from geometry.castability import (
 )
 from geometry.channels import Channels
 from geometry.core_release import bend_strain, core_strain, pin_strain
+from geometry.csg import Body
 from geometry.parting import Parting
 from geometry.trapped import POCKET_VENT_MM
 from workbench.core.fabrication import FabricationCheck, FabricationPart, Severity
@@ -82,24 +84,33 @@ def mould_checks(
     parting: Parting,
     channels: Channels,
     options: MouldOptions,
-    *,
-    membrane: LabelledSurface,
-    elongation: float,
 ) -> tuple[FabricationCheck, ...]:
-    """All checks of a mould.
-
-    Args:
-        membrane: The elastomer's surface, for its pins.
-        elongation: Strain at break of the silicone [1].
-    """
-    checks = [*_release(cast, parting), *_core(cast, membrane, elongation)]
+    """All checks of a mould that hold for every silicone."""
+    checks = [*_release(cast, parting), *_core(cast)]
     for part in parts:
-        checks += wall_and_bed(part, options.bed_mm)
+        checks += wall_and_bed(part, options.bed_mm, limits=MOULD_LIMITS)
     return (*checks, _trapped(channels), _feature(channels, options))
 
 
+class PrintLimits(NamedTuple):
+    """What a printed part must keep, and what to do where it does not."""
+
+    wall_mm: float
+    thin: str
+    """Remedy for a wall that is too thin."""
+    large: str
+    """Remedy for a part that is too large for the printer."""
+
+
+MOULD_LIMITS = PrintLimits(
+    WALL_MM,
+    thin="raise mould.wall_mm or the shape's own sizes there, or print in tough resin",
+    large="lower mould.wall_mm, raise mould.outer_parts or use a larger printer",
+)
+
+
 def wall_and_bed(
-    part: FabricationPart, bed_mm: tuple[float, float, float], wall_mm: float = WALL_MM
+    part: FabricationPart, bed_mm: tuple[float, float, float], *, limits: PrintLimits
 ) -> tuple[FabricationCheck, FabricationCheck]:
     """Thinnest wall and room on the printer of one part."""
     place = (part.points_mm.min(axis=0) + part.points_mm.max(axis=0)) / 2
@@ -110,9 +121,9 @@ def wall_and_bed(
             part.name,
             thinnest_wall(part.points_mm, part.faces),
             unit="mm",
-            limit=wall_mm,
+            limit=limits.wall_mm,
             sense="min",
-            message="raise mould.wall_mm or the shape's own sizes there, or print in tough resin",
+            message=limits.thin,
         ),
         check(
             "bed",
@@ -121,7 +132,7 @@ def wall_and_bed(
             unit="of the bed",
             limit=1.0,
             bad=1.0,
-            message="lower mould.wall_mm, raise mould.outer_parts or use a larger printer",
+            message=limits.large,
         ),
     )
 
@@ -155,7 +166,7 @@ def _release(cast: Cast, parting: Parting) -> Iterator[FabricationCheck]:
         )
 
 
-def _core(cast: Cast, membrane: LabelledSurface, elongation: float) -> Iterator[FabricationCheck]:
+def _core(cast: Cast) -> Iterator[FabricationCheck]:
     """How the core leaves the cast."""
     if cast.core is None:
         return
@@ -173,9 +184,21 @@ def _core(cast: Cast, membrane: LabelledSurface, elongation: float) -> Iterator[
         sense="min",
         message="the core is wider above than below: raise mould.draft_deg or stretch the skin",
     )
-    strains = core_strain(cast.core), bend_strain(cast.core, membrane), pin_strain(membrane)
-    strain = max(strains, key=lambda worst: worst.value)
-    yield check(
+
+
+def release_strain(core: Body, membrane: LabelledSurface) -> Worst:
+    """Strain of the silicone when the core leaves: of its sections, its bend or the pins."""
+    strains = core_strain(core), bend_strain(core, membrane), pin_strain(membrane)
+    return max(strains, key=lambda worst: worst.value)
+
+
+def core_removal(strain: Worst, elongation: float) -> FabricationCheck:
+    """Whether a silicone bears to be pulled off its core.
+
+    Args:
+        elongation: Its strain at break [1].
+    """
+    return check(
         "core_removal",
         "core",
         strain,

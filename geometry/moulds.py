@@ -17,7 +17,7 @@ from geometry import csg
 from geometry.cast import Cast, footprint, make_cast
 from geometry.channels import Channels, make_channels
 from geometry.fabricate import fabricate
-from geometry.mould_checks import mould_checks
+from geometry.mould_checks import mould_checks, release_strain
 from geometry.mould_fit import measure_fit
 from geometry.mould_parts import Layout, air_holes, core_with_flange, make_layout, outer_part
 from geometry.parting import COUNTS, Parting, best_parting
@@ -28,20 +28,14 @@ from workbench.core.results import Solid
 
 APART_MM = 15.0
 """Gap between the parts of the exploded view [mm]."""
-ELONGATION = 5.0
-"""Strain at break when no silicone is named: the least of the table's soft silicones is above."""
 
 
 def make_mould(
     solid: Solid,
     options: MouldOptions,
-    elongation: float = ELONGATION,
     monitor: Monitor = silent,
 ) -> MouldSet:
     """Make the mould of a body that stands on its base plane with its tip up.
-
-    Args:
-        elongation: Strain at break of the silicone [1], for the check of core removal.
 
     Raises:
         DesignError: If the gate does not fit.
@@ -56,15 +50,15 @@ def make_mould(
     parts, reasons = [], []
     for number, (name, node) in enumerate(nodes.items()):
         monitor(0.1 + 0.6 * number / len(nodes), f"making {name}")
-        part, reason = fabricate(
+        made = fabricate(
             name,
             node,
             group=PartGroup.MOULD,
             explode=_explode(number, layout),
             pull=_pull(number, parting),
         )
-        parts.append(part)
-        reasons += [reason] if reason else []
+        parts.append(made.part)
+        reasons += [made.reason] if made.reason else []
     monitor(0.7, "checking")
     found = measure_fit(parts, cast, air_holes(channels.pockets_mm, layout, 0.0))
     checks = mould_checks(
@@ -73,15 +67,16 @@ def make_mould(
         parting,
         channels,
         options,
-        membrane=solid.membrane,
-        elongation=elongation,
     )
+    strain = None if cast.core is None else release_strain(cast.core, solid.membrane)
     return MouldSet(
         parts=tuple(parts),
         split_azimuth_deg=parting.azimuth_deg,
         overlap_mm3=found.overlap_mm3,
         thinnest_wall_mm=min(c.value for c in checks if c.name == "minimum_wall"),
         cast_volume_mm3=found.cavity_mm3,
+        release_strain=None if strain is None else strain.value,
+        release_mm=(0.0, 0.0, 0.0) if strain is None else strain.place_mm,
         checks=checks,
         notice="; ".join(reasons),
     )

@@ -8,11 +8,20 @@ from __future__ import annotations
 
 import numpy as np
 
+from geometry.castability import Worst
 from geometry.leds import led_items
-from geometry.silicones import NEAR, Silicone, nearest, silicone
+from geometry.mould_checks import core_removal
+from geometry.silicones import NEAR, Silicone, elongation, nearest, silicone
 from geometry.surface import face_areas
-from workbench.core.design import Elastomer, LedRing
-from workbench.core.fabrication import FabricationPart, HousingSet, MouldSet, PrintItem, Recipe
+from workbench.core.design import LedRing
+from workbench.core.fabrication import (
+    FabricationCheck,
+    FabricationPart,
+    HousingSet,
+    MouldSet,
+    PrintItem,
+    Recipe,
+)
 from workbench.core.making import Casting
 from workbench.core.results import Label, Solid
 
@@ -24,21 +33,26 @@ def make_recipe(
     *,
     ring: LedRing,
     casting: Casting,
-    material: Elastomer,
+    young_MPa: float,
+    density_g_cm3: float,
 ) -> Recipe:
     """Everything the workshop needs besides the files.
+
+    Args:
+        young_MPa: Young's modulus that the design asks for.
+        density_g_cm3: Density to weigh with where the table has none.
 
     Raises:
         DesignError: If the silicone is not in the table.
     """
     chosen = silicone(casting.silicone)
-    density = chosen.density_g_cm3 or material.density_g_cm3
+    density = chosen.density_g_cm3 or density_g_cm3
     cast_ml = moulds.cast_volume_mm3 / 1000.0
     pour_ml = cast_ml * (1.0 + casting.waste_percent / 100.0)
     mass_g = pour_ml * density
     share_a = chosen.parts_a / (chosen.parts_a + chosen.parts_b)
     sensing = solid.membrane.faces[solid.membrane.has(Label.OUTER)]
-    recipe = Recipe(
+    return Recipe(
         silicone=chosen.name,
         source=chosen.source,
         density_g_cm3=density,
@@ -50,9 +64,16 @@ def make_recipe(
         leds=led_items(ring),
         prints=tuple(print_item(part) for part in (*moulds.parts, *housing.parts)),
         steps=_steps(solid, moulds, housing, chosen, pour_ml, mass_g, share_a),
-        notice=_notice(chosen, material),
+        checks=_checks(moulds, chosen),
+        notice=_notice(chosen, young_MPa, density_g_cm3),
     )
-    return recipe
+
+
+def _checks(moulds: MouldSet, chosen: Silicone) -> tuple[FabricationCheck, ...]:
+    if moulds.release_strain is None:
+        return ()
+    strain = Worst(moulds.release_strain, moulds.release_mm)
+    return (core_removal(strain, elongation(chosen.name)),)
 
 
 def print_item(part: FabricationPart) -> PrintItem:
@@ -67,20 +88,20 @@ def print_item(part: FabricationPart) -> PrintItem:
     )
 
 
-def _notice(chosen: Silicone, material: Elastomer) -> str:
+def _notice(chosen: Silicone, young_MPa: float, density_g_cm3: float) -> str:
     words = []
-    off = abs(chosen.young_MPa / material.young_MPa - 1.0)
+    off = abs(chosen.young_MPa / young_MPa - 1.0)
     if off > NEAR:
-        near = nearest(material.young_MPa)
+        near = nearest(young_MPa)
         words.append(
-            f"the design has E {material.young_MPa:.3g} MPa, {chosen.name} has "
+            f"the design has E {young_MPa:.3g} MPa, {chosen.name} has "
             f"{chosen.young_MPa:.3g} MPa, {100 * off:.0f} % off; nearest in the table is "
             f"{near.name} with {near.young_MPa:.3g} MPa"
         )
     if chosen.density_g_cm3 is None:
         words.append(
             f"no density of {chosen.name} is on record: masses use the design's "
-            f"{material.density_g_cm3:g} g/cm3"
+            f"{density_g_cm3:g} g/cm3"
         )
     return "; ".join(words)
 

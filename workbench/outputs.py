@@ -104,7 +104,7 @@ def fabrication_tables(moulds: MouldSet, housing: HousingSet, recipe: Recipe) ->
             }
             for part in (*moulds.parts, *housing.parts)
         ],
-        "checks": [_plain(check) for check in (*moulds.checks, *housing.checks)],
+        "checks": [_plain(check) for check in (*moulds.checks, *housing.checks, *recipe.checks)],
         "recipe": _plain(recipe),
     }
 

@@ -9,14 +9,16 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
 
 from workbench.bodies import IMPORTED, check_body
-from workbench.core.design import SensorDesign
+from workbench.core.design import Elastomer, LedRing, SensorDesign
 from workbench.core.monitor import Monitor, silent
 from workbench.core.press import ContactSettings, Indenter, Press
 from workbench.stages import Call, Outcome, run
 from workbench.store import Store
+
+Design = TypeVar("Design", Elastomer, LedRing)
 
 NEEDED = (
     "build",
@@ -80,11 +82,12 @@ def plan(design: SensorDesign, case: PressCase) -> dict[str, Call]:
         DesignError: If the family or the silicone is unknown, or the family refuses the shape.
     """
     from designs.family import family, resolve_shape
-    from geometry.silicones import elongation
+    from geometry.silicones import silicone
 
     shape = resolve_shape(design.family, design.shape)
     family(design.family).check(shape, design.layers)
     check_body(design)
+    silicone(design.casting.silicone)
     sources: tuple[Call, ...] = ()
     build = Call("build", (design.family, shape, design.layers))
     if design.body is not None and design.family == IMPORTED:
@@ -96,21 +99,20 @@ def plan(design: SensorDesign, case: PressCase) -> dict[str, Call]:
     tets = Call("tets", (build.ref, design.meshing.tet_mm))
     lattice = Call("lattice", (build.ref, case.settings.grid_mm))
     bake = Call("bake", (mesh.ref, design.optics.ring, design.optics.light_model))
+    material, optics, eye = design.material, design.optics, design.optics.camera
+    soft = at_defaults(material, "density_g_cm3")
     press = Call(
         "press",
-        (mesh.ref, lattice.ref, design.material, case.indenter, case.press, case.settings),
+        (mesh.ref, lattice.ref, soft, case.indenter, case.press, case.settings),
     )
     shoot = Call("shoot", (mesh.ref, bake.ref, design.optics, press.ref))
-    stretch = elongation(design.casting.silicone)
-    mould = Call("mould", (build.ref, design.mould, stretch))
-    optics, eye = design.optics, design.optics.camera
-    housing = Call(
-        "housing", (build.ref, design.housing, optics.ring, eye.position_mm, eye.wxyz, design.mould)
-    )
-    recipe = Call(
-        "recipe",
-        (build.ref, mould.ref, housing.ref, optics.ring, design.casting, design.material),
-    )
+    mould = Call("mould", (build.ref, design.mould))
+    coloured = at_defaults(optics.ring, "power", "emission_exponent")
+    dark = at_defaults(coloured, "colours")
+    pose = (eye.position_mm, eye.wxyz)
+    housing = Call("housing", (build.ref, design.housing, dark, *pose, design.mould.bed_mm))
+    bought = (coloured, design.casting, material.young_MPa, material.density_g_cm3)
+    recipe = Call("recipe", (build.ref, mould.ref, housing.ref, *bought))
     package = Call("package", (mould.ref, housing.ref, recipe.ref))
     picture = Call("picture", (build.ref, mould.ref, housing.ref))
     calls = (
@@ -130,6 +132,15 @@ def plan(design: SensorDesign, case: PressCase) -> dict[str, Call]:
         picture,
     )
     return {call.stage: call for call in calls}
+
+
+def at_defaults(value: Design, *names: str) -> Design:
+    """A part of the design with the fields a stage does not read at their defaults.
+
+    The stage's key then does not hold them, so that changing them cannot re-run it.
+    """
+    fields = {item.name: item.default for item in dataclasses.fields(value)}
+    return dataclasses.replace(value, **{name: fields[name] for name in names})
 
 
 def needed(calls: dict[str, Call], wanted: Iterable[str]) -> list[str]:

@@ -210,11 +210,11 @@ def shoot(
     return Shot(frames=frames, metrics=measure(mesh, contact, frames, light))
 
 
-def mould(solid: Solid, options: MouldOptions, elongation: float, *, monitor: Monitor) -> MouldSet:
-    """Printable mould of the body; the silicone's strain at break is for a check."""
+def mould(solid: Solid, options: MouldOptions, *, monitor: Monitor) -> MouldSet:
+    """Printable mould of the body."""
     from geometry.moulds import make_mould
 
-    return make_mould(solid, options, elongation, monitor=monitor)
+    return make_mould(solid, options, monitor=monitor)
 
 
 def housing(
@@ -223,15 +223,15 @@ def housing(
     ring: LedRing,
     camera_mm: tuple[float, float, float],
     camera_wxyz: tuple[float, float, float, float],
-    mould: MouldOptions,
+    bed_mm: tuple[float, float, float],
     *,
     monitor: Monitor,
 ) -> HousingSet:
-    """Rigid parts of the sensor; of the camera only its pose, so that a lens re-runs nothing."""
+    """Rigid parts of the sensor; of camera and ring only what has a size or a place."""
     from geometry.housing import make_housing
 
     camera = Camera(position_mm=camera_mm, wxyz=camera_wxyz)
-    return make_housing(solid, options, ring=ring, camera=camera, mould=mould, monitor=monitor)
+    return make_housing(solid, options, ring=ring, camera=camera, bed_mm=bed_mm, monitor=monitor)
 
 
 def recipe(
@@ -240,14 +240,23 @@ def recipe(
     housing: HousingSet,
     ring: LedRing,
     casting: Casting,
-    material: Elastomer,
+    young_MPa: float,
+    density_g_cm3: float,
     *,
     monitor: Monitor,
 ) -> Recipe:
     """What to weigh, pour, coat, solder and print."""
     from geometry.recipe import make_recipe
 
-    return make_recipe(solid, moulds, housing, ring=ring, casting=casting, material=material)
+    return make_recipe(
+        solid,
+        moulds,
+        housing,
+        ring=ring,
+        casting=casting,
+        young_MPa=young_MPa,
+        density_g_cm3=density_g_cm3,
+    )
 
 
 def picture(solid: Solid, moulds: MouldSet, housing: HousingSet, *, monitor: Monitor) -> Picture:
@@ -277,8 +286,8 @@ STAGES = {
         Stage(name="press", version=5, lane="sim", function=press),
         Stage(name="shoot", version=2, lane="sim", function=shoot),
         Stage(name="mould", version=2, lane="cad", function=mould),
-        Stage(name="housing", version=1, lane="cad", function=housing),
-        Stage(name="recipe", version=1, lane="cad", function=recipe),
+        Stage(name="housing", version=2, lane="cad", function=housing),
+        Stage(name="recipe", version=2, lane="cad", function=recipe),
         Stage(name="package", version=2, lane="cad", function=package),
         Stage(name="picture", version=2, lane="cad", function=picture),
     )

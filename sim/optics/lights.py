@@ -12,8 +12,8 @@ import numpy as np
 
 from workbench.core.design import Camera, LedMount, LedRing
 from workbench.core.errors import DesignError
+from workbench.core.leds import colour_sectors, led_places
 from workbench.core.results import MembraneMesh, Skin
-from workbench.core.units import radians
 
 FEWEST_PIXELS = 0.01
 """Least share of pixels that must see the skin [1]; below it an image carries nothing."""
@@ -35,17 +35,9 @@ class Leds:
 
 def place_leds(ring: LedRing) -> Leds:
     """The LEDs of a ring; colours fill equal sectors in the order of azimuth."""
-    azimuth = radians(ring.phase_deg) + np.arange(ring.count) * (2 * np.pi / ring.count)
-    outward = np.column_stack([np.cos(azimuth), np.sin(azimuth), np.zeros(ring.count)])
-    up = np.array([0.0, 0.0, 1.0])
-    tilt = radians(ring.tilt_deg)
-    sector = np.arange(ring.count) * len(ring.colours) // ring.count
+    position_mm, axis = led_places(ring)
     colours = np.array([linear_rgb(colour) for colour in ring.colours])
-    return Leds(
-        position_mm=ring.radius_mm * outward + ring.height_mm * up,
-        axis=np.cos(tilt) * up + np.sin(tilt) * outward,
-        rgb=ring.power * colours[sector],
-    )
+    return Leds(position_mm=position_mm, axis=axis, rgb=ring.power * colours[colour_sectors(ring)])
 
 
 def linear_rgb(colour: str) -> tuple[float, float, float]:

@@ -11,6 +11,7 @@ import pytest
 import trimesh
 
 from designs.family import resolve_shape
+from geometry.housing_checks import LEAST_WALL_MM
 from workbench.core.fabrication import Severity
 from workbench.core.monitor import silent
 from workbench.core.press import ContactSettings
@@ -71,7 +72,7 @@ def test_leds_and_camera_of_a_preset_have_their_gaps(name: str) -> None:
         ring,
         camera.position_mm,
         camera.wxyz,
-        design.mould,
+        design.mould.bed_mm,
         monitor=silent,
     )
     gaps = {check.name: check for check in made.checks if check.name.endswith("_clearance")}
@@ -80,3 +81,8 @@ def test_leds_and_camera_of_a_preset_have_their_gaps(name: str) -> None:
         # The kernel's boxes and gaps are good to a thousandth.
         assert check.value >= design.housing.clearance_mm - 1e-3, check.message
     assert all(check.severity is not Severity.BAD for check in made.checks)
+    walls = {check.part: check for check in made.checks if check.name == "minimum_wall"}
+    # What is thinner than half a millimetre is told; what is thinner than a nozzle is not shipped.
+    assert min(check.value for check in walls.values()) > 0.3
+    if design.optics.ring.tilt_deg == 0.0:
+        assert walls["led_ring_holder"].value >= LEAST_WALL_MM - 1e-6

@@ -22,6 +22,8 @@ from workbench.core.fabrication import HousingSet, MouldSet, PartGroup, Recipe
 from workbench.core.making import Casting, Housing
 from workbench.core.results import Solid
 
+BED_MM = MouldOptions().bed_mm
+
 
 @pytest.fixture(scope="module")
 def moulds(finger: Solid) -> MouldSet:
@@ -32,14 +34,20 @@ def moulds(finger: Solid) -> MouldSet:
 @pytest.fixture(scope="module")
 def housing(finger: Solid) -> HousingSet:
     """The rigid parts of the default finger."""
-    return make_housing(finger, Housing(), ring=LedRing(), camera=Camera(), mould=MouldOptions())
+    return make_housing(finger, Housing(), ring=LedRing(), camera=Camera(), bed_mm=BED_MM)
 
 
 @pytest.fixture(scope="module")
 def recipe(finger: Solid, moulds: MouldSet, housing: HousingSet) -> Recipe:
     """Its casting recipe."""
     return make_recipe(
-        finger, moulds, housing, ring=LedRing(), casting=Casting(), material=Elastomer()
+        finger,
+        moulds,
+        housing,
+        ring=LedRing(),
+        casting=Casting(),
+        young_MPa=Elastomer().young_MPa,
+        density_g_cm3=Elastomer().density_g_cm3,
     )
 
 
@@ -180,7 +188,7 @@ def test_housing_parts_clear_each_other_and_the_skin(housing: HousingSet, finger
 def test_leds_too_far_out_are_told(finger: Solid) -> None:
     """A ring of radius 12 mm meets the support, whose inside has radius 12: bad, with its place."""
     ring = LedRing(radius_mm=12.0)
-    found = make_housing(finger, Housing(), ring=ring, camera=Camera(), mould=MouldOptions())
+    found = make_housing(finger, Housing(), ring=ring, camera=Camera(), bed_mm=BED_MM)
     check = next(check for check in found.checks if check.name == "led_clearance")
     assert check.severity == "bad"
     assert check.value < 0.0

@@ -101,8 +101,9 @@ class MakePanel:
             found = {stage: session.result(stage) for stage in STAGES[:3]}
             sets = [found[stage] for stage in ("mould", "housing") if found[stage] is not None]
             parts: tuple[FabricationPart, ...] = tuple(p for made in sets for p in made.parts)
-            checks: tuple[FabricationCheck, ...] = tuple(c for made in sets for c in made.checks)
-            notices = [made.notice for made in found.values() if made is not None and made.notice]
+            judged = [made for made in found.values() if made is not None]
+            checks: tuple[FabricationCheck, ...] = tuple(c for made in judged for c in made.checks)
+            notices = [made.notice for made in judged if made.notice]
             self.status.content = summary(parts, checks) if parts else NOTHING
             self.notes_folder.visible = bool(notices)
             self.notes.content = html.escape("\n\n".join(notices).replace("; ", "\n\n"))

@@ -12,7 +12,6 @@ from workbench.stages import build, lattice, mesh, mould
 from workbench.validation.meshes import default_solid, family_names
 
 CASE = "default finger"
-ELONGATION = 3.0
 HEX_BUILD_LIMIT_S = 1.0
 BUILD_LIMIT_S = 3.0
 """Where every sucker or pin is a boolean of its own."""
@@ -45,7 +44,7 @@ def _family_rows() -> list[Row]:
             return mesh(default_solid(name), Meshing(), monitor=silent)
 
         def moulded(name: str = name) -> object:
-            return mould(default_solid(name), MouldOptions(), ELONGATION, monitor=silent)
+            return mould(default_solid(name), MouldOptions(), monitor=silent)
 
         structured = meshed().hexes is not None
         limit_s = HEX_BUILD_LIMIT_S if structured else BUILD_LIMIT_S

@@ -92,6 +92,11 @@ class MouldSet:
     thinnest_wall_mm: float
     cast_volume_mm3: float
     """Silicone in the cavity [mm3], compensated for shrinkage and draft."""
+    release_strain: float | None = None
+    """Strain of the silicone when the core leaves [1]; None without a core. `Recipe.checks` holds
+    it against what the chosen silicone bears."""
+    release_mm: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Where that is [mm]."""
     checks: tuple[FabricationCheck, ...] = ()
     notice: str = ""
 
@@ -149,5 +154,7 @@ class Recipe:
     prints: tuple[PrintItem, ...]
     steps: tuple[str, ...]
     """What to do, in order."""
+    checks: tuple[FabricationCheck, ...] = ()
+    """What the choice of silicone decides."""
     notice: str = ""
     """For example that no silicone of the table has the design's modulus."""

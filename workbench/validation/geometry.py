@@ -14,7 +14,6 @@ from workbench.stages import mould
 from workbench.validation import meshes as mesh_rows
 from workbench.validation import moulds as mould_rows
 from workbench.validation import sweep
-from workbench.validation.moulds import ELONGATION
 
 CASE = "finger R 15, wall 2, cylinder 27 mm"
 RADIUS_MM, CYLINDER_MM, WALL_MM = 15.0, 27.0, 2.0
@@ -32,7 +31,7 @@ def rows() -> list[Row]:
 
     @functools.cache
     def moulds() -> MouldSet:
-        return mould(finger_solid(), MouldOptions(), ELONGATION, monitor=silent)
+        return mould(finger_solid(), MouldOptions(), monitor=silent)
 
     wall_mm3 = checks.capped_cylinder_mm3(RADIUS_MM, CYLINDER_MM)
     wall_mm3 -= checks.capped_cylinder_mm3(RADIUS_MM - WALL_MM, CYLINDER_MM)

@@ -29,7 +29,6 @@ WALL_MM = 2.0
 SECONDS = 5.0
 TRIES = 3
 """A shared machine may be late once; a slow mould is late every time."""
-ELONGATION = 3.0
 
 
 def rows(names: Sequence[str] = ()) -> list[Row]:
@@ -68,7 +67,7 @@ def _timed(solid: Solid) -> tuple[MouldSet, float]:
     options, least = MouldOptions(shrink_percent=0.0, draft_deg=0.0), math.inf
     for _ in range(TRIES):
         begin, worked = time.perf_counter(), time.process_time()
-        moulds = mould(solid, options, ELONGATION, monitor=silent)
+        moulds = mould(solid, options, monitor=silent)
         least = min(least, time.perf_counter() - begin, time.process_time() - worked)
         if least <= SECONDS:
             break

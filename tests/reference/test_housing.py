@@ -1,0 +1,133 @@
+"""Rigid parts: nothing is lost unsaid, no wall is a knife edge, and remedies name the housing."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from geometry import csg
+from geometry.castability import thinnest_wall
+from geometry.csg_mesh import arrays, evaluate
+from geometry.housing import make_housing
+from geometry.led_holder import opened, shadow, shaped_holder
+from geometry.recipe import make_recipe
+from geometry.surface import mesh_volume
+from workbench.core.design import Camera, LedRing, MouldOptions
+from workbench.core.fabrication import FabricationCheck, HousingSet, MouldSet, Severity
+from workbench.core.making import Casting, Housing
+from workbench.core.results import Solid
+
+RING = csg.without(csg.cylinder(10.0, -1.0, 1.0), [csg.cylinder(5.0, -2.0, 2.0)])
+NOWHERE = csg.moved(csg.cylinder(1.0, 0.0, 1.0), (0.0, 0.0, -50.0))
+
+
+def housed(solid: Solid, options: Housing) -> HousingSet:
+    """Rigid parts with the default ring and camera."""
+    bed_mm = MouldOptions().bed_mm
+    return make_housing(solid, options, ring=LedRing(), camera=Camera(), bed_mm=bed_mm)
+
+
+def named(made: HousingSet, name: str) -> dict[str, FabricationCheck]:
+    """Checks of a name by part."""
+    return {check.part: check for check in made.checks if check.name == name}
+
+
+def test_a_base_cut_in_two_is_bad(finger: Solid) -> None:
+    """A module of 26 mm leaves a base of 353 mm3 of some 5900: more than nine tenths are lost."""
+    made = housed(finger, Housing(camera_width_mm=26.0, camera_height_mm=26.0))
+    check = named(made, "loose_pieces")["base"]
+    assert check.severity is Severity.BAD
+    assert check.value > 0.5
+    assert "smaller camera" in check.message
+    assert "base had loose pieces" in made.notice
+    assert not named(housed(finger, Housing()), "loose_pieces")
+
+
+def test_remedies_name_the_housing(finger: Solid) -> None:
+    """A base of walls below 0.8 mm is told to raise housing.wall_mm, not the mould's."""
+    made = housed(finger, Housing(wall_mm=0.5))
+    thin = [c for c in named(made, "minimum_wall").values() if c.severity is not Severity.GOOD]
+    assert thin
+    assert all("housing.wall_mm" in check.message for check in thin)
+    assert not any("mould." in check.message for check in made.checks)
+
+
+def test_a_pocket_that_nearly_breaks_through_is_opened() -> None:
+    """0.2 mm is left between pocket and outside of a ring: it goes, and 0.8 mm are left all
+    around; a skin of 0.1 mm over the camera goes too."""
+    pocket = csg.Box(low_mm=(7.5, -1.0, 0.0), high_mm=(9.75, 1.0, 3.0))
+    camera = csg.Box(low_mm=(-20.0, -20.0, -5.0), high_mm=(0.0, 20.0, 0.9))
+    plain = csg.without(RING, [pocket, camera])
+    assert thinnest_wall(*arrays(evaluate(plain))).value < 0.3
+    shaped = shaped_holder(RING, [], camera, [pocket], gap_mm=0.15, wall_mm=0.8, tilt_deg=0.0)
+    assert shaped is not None
+    solid = evaluate(shaped)
+    points, faces = arrays(solid)
+    assert thinnest_wall(points, faces).value >= 0.8 - 1e-6
+    assert solid.num_tri() and len(solid.decompose()) == 1
+    # Half a ring, less a pocket of 2.25 to 2.5 mm by 2 mm by 1 mm, less what the disc rounds off.
+    half_mm3 = np.pi * (10.0**2 - 5.0**2)
+    assert half_mm3 - 8.0 < mesh_volume(points, faces) < half_mm3 - 4.5
+    assert points[:, 0].min() > -1e-6
+    # Within the plain one: rounding the outline never adds.
+    assert (solid - evaluate(plain)).volume() < 0.05
+
+
+def test_opening_keeps_what_is_wide_and_drops_what_is_narrow() -> None:
+    """A bar of 0.7 mm vanishes, a square of 4 mm loses (4 - pi) r^2 at its corners."""
+    bar = csg.Box(low_mm=(5.0, 0.0, 0.0), high_mm=(9.0, 0.7, 1.0))
+    square = csg.Box(low_mm=(0.0, 0.0, 0.0), high_mm=(4.0, 4.0, 1.0))
+    area = shadow(csg.Union(parts=(square, bar)), 0.0, 1.0)
+    # The disc has the spare of 0.02 mm; its chords of 5 micrometres cost 0.006 mm2.
+    left_mm2 = 16.0 - (4.0 - np.pi) * 0.41**2
+    assert opened(area, 0.8).area == pytest.approx(left_mm2, abs=0.01)
+
+
+def test_slivers_beside_the_shell_are_cut_away() -> None:
+    """A shell that cuts a ring to a crescent of 0 to 5 mm leaves no wall below 0.8 mm."""
+    shell = csg.moved(csg.cylinder(10.0, -3.0, 3.0), (6.0, 0.0, 0.0))
+    led = csg.moved(csg.cylinder(0.5, 0.0, 3.0), (-7.5, 0.0, 0.0))
+    assert thinnest_wall(*arrays(evaluate(csg.without(RING, [shell])))).value < 0.1
+    shaped = shaped_holder(RING, [shell], NOWHERE, [led], gap_mm=0.15, wall_mm=0.8, tilt_deg=0.0)
+    assert shaped is not None
+    assert thinnest_wall(*arrays(evaluate(shaped))).value >= 0.8 - 1e-6
+    assert evaluate(shaped).min_gap(evaluate(shell), 5.0) >= 0.15 - 0.005  # chords
+
+
+@pytest.mark.parametrize(
+    ("silicone", "strain", "severity"),
+    [
+        ("Ecoflex 00-10", 2.0, Severity.GOOD),
+        ("Solaris", 2.0, Severity.WARNING),
+        ("Sylgard 184", 2.0, Severity.BAD),
+    ],
+)
+def test_the_silicone_decides_whether_the_core_leaves(
+    finger: Solid, silicone: str, strain: float, severity: Severity
+) -> None:
+    """Strain 2 against a third of 8, 2.9 and 1.2: good, a warning, bad; no core, no check."""
+    mould = MouldSet(
+        parts=(),
+        split_azimuth_deg=0.0,
+        overlap_mm3=0.0,
+        thinnest_wall_mm=2.0,
+        cast_volume_mm3=1000.0,
+        release_strain=strain,
+    )
+
+    def checks(mould: MouldSet) -> tuple[FabricationCheck, ...]:
+        return make_recipe(
+            finger,
+            mould,
+            HousingSet(parts=()),
+            ring=LedRing(),
+            casting=Casting(silicone=silicone),
+            young_MPa=0.145,
+            density_g_cm3=1.0,
+        ).checks
+
+    (check,) = checks(mould)
+    assert (check.name, check.value, check.severity) == ("core_removal", strain, severity)
+    assert checks(dataclasses.replace(mould, release_strain=None)) == ()
