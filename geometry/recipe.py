@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from geometry.castability import Worst
+from geometry.gel import gel_step
 from geometry.leds import led_items
 from geometry.mould_checks import core_removal
 from geometry.silicones import NEAR, Silicone, elongation, nearest, silicone
@@ -35,12 +36,14 @@ def make_recipe(
     casting: Casting,
     young_MPa: float,
     density_g_cm3: float,
+    backing_MPa: float,
 ) -> Recipe:
     """Everything the workshop needs besides the files.
 
     Args:
         young_MPa: Young's modulus that the design asks for.
         density_g_cm3: Density to weigh with where the table has none.
+        backing_MPa: Young's modulus of the gel behind a skin that stands off; 0 is air.
 
     Raises:
         DesignError: If the silicone is not in the table.
@@ -63,7 +66,7 @@ def make_recipe(
         coating_mm2=float(face_areas(solid.membrane.points_mm, sensing).sum()),
         leds=led_items(ring),
         prints=tuple(print_item(part) for part in (*moulds.parts, *housing.parts)),
-        steps=_steps(solid, moulds, housing, chosen, pour_ml, mass_g, share_a),
+        steps=_steps(solid, moulds, housing, chosen, pour_ml, mass_g, share_a, backing_MPa),
         checks=_checks(moulds, chosen),
         notice=_notice(chosen, young_MPa, density_g_cm3),
     )
@@ -114,6 +117,7 @@ def _steps(
     pour_ml: float,
     mass_g: float,
     share_a: float,
+    backing_MPa: float,
 ) -> tuple[str, ...]:
     outer = [part.name for part in moulds.parts if part.name != "core"]
     pins = len(solid.tips_mm)
@@ -134,13 +138,14 @@ def _steps(
     ]
     if pins:
         steps.append(f"Dab white silicone paint on the tips of the {pins} pins.")
-    if solid.backing_mm > 0.0:
-        steps.append(
-            f"Fill the gap of {solid.backing_mm:g} mm between skin and window with the soft gel."
-        )
     steps += [
         "Coat the outside with pigmented silicone paint, reflective or opaque as the optics ask.",
         "Prime the support and bond the skin to it with the same silicone.",
+    ]
+    # The gap is closed only once the skin is bonded.
+    if solid.backing_mm > 0.0 and backing_MPa > 0.0:
+        steps.append(gel_step(solid, backing_MPa))
+    steps += [
         "Solder the LEDs in the order of the list and press them into led_ring_holder; put camera "
         "and camera_mount into the base from below, then holder and support on top.",
     ]

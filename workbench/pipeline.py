@@ -112,7 +112,7 @@ def plan(design: SensorDesign, case: PressCase) -> dict[str, Call]:
     pose = (eye.position_mm, eye.wxyz)
     housing = Call("housing", (build.ref, design.housing, dark, *pose, design.mould.bed_mm))
     bought = (coloured, design.casting, material.young_MPa, material.density_g_cm3)
-    recipe = Call("recipe", (build.ref, mould.ref, housing.ref, *bought))
+    recipe = Call("recipe", (build.ref, mould.ref, housing.ref, *bought, material.backing_MPa))
     package = Call("package", (mould.ref, housing.ref, recipe.ref))
     picture = Call("picture", (build.ref, mould.ref, housing.ref))
     calls = (

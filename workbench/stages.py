@@ -242,6 +242,7 @@ def recipe(
     casting: Casting,
     young_MPa: float,
     density_g_cm3: float,
+    backing_MPa: float,
     *,
     monitor: Monitor,
 ) -> Recipe:
@@ -256,6 +257,7 @@ def recipe(
         casting=casting,
         young_MPa=young_MPa,
         density_g_cm3=density_g_cm3,
+        backing_MPa=backing_MPa,
     )
 
 

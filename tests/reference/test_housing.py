@@ -126,6 +126,7 @@ def test_the_silicone_decides_whether_the_core_leaves(
             casting=Casting(silicone=silicone),
             young_MPa=0.145,
             density_g_cm3=1.0,
+            backing_MPa=0.0,
         ).checks
 
     (check,) = checks(mould)

@@ -48,6 +48,7 @@ def recipe(finger: Solid, moulds: MouldSet, housing: HousingSet) -> Recipe:
         casting=Casting(),
         young_MPa=Elastomer().young_MPa,
         density_g_cm3=Elastomer().density_g_cm3,
+        backing_MPa=Elastomer().backing_MPa,
     )
 
 
