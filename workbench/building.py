@@ -3,27 +3,25 @@
 Three rungs: the family's B-rep; once more with its fillets softened; its signed distance fields.
 Each result must be watertight, one body, and of the volume that two other ways agree on: the
 kernel's own for the same body, and a coarse integral of the fields, which knows nothing of the
-kernel. What had to be changed stands in `Solid.notice`.
+kernel. A body from fields must also have its wall everywhere. What had to be
+changed stands in `Solid.notice`.
 
 The kernel (OCCT) reports failures as errors of its own, or not at all; both lead one rung down.
 Leaves out: features smaller than the tolerances here; families check for those one by one.
 """
 
-# OCP has no type stubs.
-# pyright: reportAttributeAccessIssue=false
-
 from __future__ import annotations
 
 import dataclasses
 import functools
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
+from designs.bodies import WALL_SHARE
 from workbench.core.design import Layers
 from workbench.core.errors import GeometryError, MeshingError
-from workbench.core.results import Solid
+from workbench.core.results import Label, Solid
 
 SURFACE_LIMIT = 0.003
 """Triangles' volume against the kernel's."""
@@ -127,33 +125,19 @@ def _by_kernel(family: Any, shape: Any, layers: Layers, expected_mm3: float) -> 
         GeometryError: Also where the kernel raised an error of its own.
         MeshingError: If the body is not what it should be.
     """
-    from OCP.Standard import Standard_Failure
-
+    from geometry.csg_brep import translated
     from geometry.solid import assemble
 
     def bodies() -> dict[str, Any]:
         found = family.build(shape, layers)
         return {field.name: getattr(found, field.name) for field in dataclasses.fields(found)}
 
-    parts = _translated(bodies, Standard_Failure)
+    parts = translated(bodies)
     first, finer = (functools.partial(assemble, **parts, fineness=value) for value in FINENESS)
-    solid = _translated(first, Standard_Failure)
+    solid = translated(first)
     if surface_error(solid) > SURFACE_LIMIT:
-        solid = _translated(finer, Standard_Failure)
+        solid = translated(finer)
     return check_solid(solid, expected_mm3)
-
-
-def _translated(built: Callable[[], Any], kernel_error: type[Exception]) -> Any:
-    """What is built; errors of the kernel and its wrapper become ours."""
-    try:
-        return built()
-    # build123d reports failures of the kernel as ValueError, OCP as RuntimeError or its own.
-    except (kernel_error, RuntimeError, ValueError) as error:
-        raise GeometryError(
-            f"the CAD kernel failed: {str(error).strip() or type(error).__name__}",
-            hint="change the last shape parameter a little",
-            at="shape",
-        ) from error
 
 
 def _by_distance(
@@ -161,17 +145,41 @@ def _by_distance(
 ) -> Solid:
     from geometry.implicit import solid_from_fields, step_for
 
-    solid = solid_from_fields(
-        family.fields(shape, layers),
-        wall_mm=layers.elastomer_mm,
-        support_mm=layers.support_mm,
-    )
+    fields = family.fields(shape, layers)
+    solid = solid_from_fields(fields, wall_mm=layers.elastomer_mm, support_mm=layers.support_mm)
+    _check_wall(solid, fields.wall_mm)
     step_mm = step_for(layers.elastomer_mm)
     return _noted(
         check_solid(solid, expected_mm3),
         f"the CAD kernel failed, so the body was built by signed distance at {step_mm:g} mm: "
         f"edges are rounded by about that, and STEP files hold triangles ({failure})",
     )
+
+
+def least_wall_mm(solid: Solid) -> float:
+    """Shortest way from a vertex of the inner side to one of the outer side [mm].
+
+    It is longer than the wall by at most the triangles' edge, so no sound wall reads thin.
+    """
+    from scipy.spatial import KDTree
+
+    membrane = solid.membrane
+    outer, inner = (
+        membrane.points_mm[np.unique(membrane.faces[membrane.has(label)])]
+        for label in (Label.OUTER, Label.INNER)
+    )
+    return float(KDTree(outer).query(inner)[0].min())
+
+
+def _check_wall(solid: Solid, nominal_mm: float) -> None:
+    limit_mm = WALL_SHARE * nominal_mm
+    if nominal_mm > 0.0 and (wall_mm := least_wall_mm(solid)) < limit_mm:
+        raise MeshingError(
+            f"the elastomer wall is {wall_mm:.2g} mm at its thinnest, less than {limit_mm:.2g} mm, "
+            f"half of what it should be",
+            hint="raise layers.elastomer_mm, or round and bend the shape less",
+            at="layers.elastomer_mm",
+        )
 
 
 def _changed(shape: Any, softer: Any) -> str:

@@ -71,6 +71,25 @@ def test_a_failed_kernel_is_replaced_by_signed_distance_and_said() -> None:
     assert solid.volume_mm3 == pytest.approx(exact.volume_mm3, rel=0.01)
 
 
+def test_a_wall_that_vanishes_in_a_body_by_distance_is_refused() -> None:
+    """A core that comes within 0.8 mm of the skin, 2 mm by design: value and limit are told."""
+    real = family("finger")
+    shape = resolve_shape("finger", {"cylinder_mm": 10.0})
+
+    class Lopsided(Broken):
+        def build(self, shape: Any, layers: Layers) -> Any:
+            raise self.error
+
+        def fields(self, shape: Any, layers: Layers) -> Any:
+            fields = self.real.fields(shape, layers)
+            shift = np.array([1.2, 0.0, 0.0])
+            return dataclasses.replace(fields, core=lambda points: fields.core(points - shift))
+
+    broken = Lopsided(real=real, widest_mm=0.0, error=GeometryError("no"))
+    with pytest.raises(MeshingError, match=r"wall is 0\.\d+ mm at its thinnest, less than 1 mm"):
+        build_solid(broken, shape, Layers())
+
+
 def test_a_refusal_is_not_a_failure() -> None:
     """A wall thicker than the finger stays a DesignError; nothing else is tried."""
     with pytest.raises(DesignError):
