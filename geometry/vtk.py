@@ -19,14 +19,8 @@ import numpy as np
 
 from geometry.skins import region_skin
 from geometry.transfer import node_regions
-from workbench.core.results import (
-    Contact,
-    Label,
-    LabelledSurface,
-    MembraneMesh,
-    Skin,
-    VolumeMesh,
-)
+from workbench.core.results import Label, LabelledSurface, MembraneMesh, Skin, VolumeMesh
+from workbench.core.sensing import Contact
 
 SERIES = "contact.pvd"
 

@@ -10,7 +10,8 @@ from __future__ import annotations
 import numpy as np
 
 from workbench.core.design import LightModel
-from workbench.core.results import Contact, LightField, MembraneMesh, Metrics, Skin, TactileFrames
+from workbench.core.results import MembraneMesh, Skin
+from workbench.core.sensing import Contact, LightField, Metrics, TactileFrames
 
 PEAK = 255.0
 """Largest grey level."""

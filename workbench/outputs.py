@@ -21,7 +21,8 @@ from workbench.core.fabrication import (
     Recipe,
 )
 from workbench.core.press import Press
-from workbench.core.results import Bundle, Contact, MembraneMesh, Shot
+from workbench.core.results import Bundle, MembraneMesh
+from workbench.core.sensing import Contact, Shot
 from workbench.folder import remove_stale
 from workbench.pipeline import results
 from workbench.project import write_atomically

@@ -14,7 +14,8 @@ from workbench.core.design import SensorDesign
 from workbench.core.errors import DeviceError
 from workbench.core.mapping import to_table
 from workbench.core.press import Press
-from workbench.core.results import Contact, MembraneMesh, Picture, Shot, Skin, Solid
+from workbench.core.results import MembraneMesh, Picture, Skin, Solid
+from workbench.core.sensing import Contact, Shot
 from workbench.outputs import frame_depths_mm, png_bytes
 from workbench.project import design_table
 

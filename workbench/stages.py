@@ -29,16 +29,14 @@ from workbench.core.monitor import Monitor, part, silent
 from workbench.core.press import ContactSettings, Indenter, Press
 from workbench.core.results import (
     Bundle,
-    Contact,
-    LightField,
     MaterialPoints,
     MembraneMesh,
     Picture,
     QualityReport,
-    Shot,
     Solid,
     VolumeMesh,
 )
+from workbench.core.sensing import Contact, LightField, Shot
 from workbench.store import Store, timed
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from workbench.core.errors import DesignError
-from workbench.core.results import Shot
+from workbench.core.sensing import Shot
 from workbench.project import Project, design_to_toml, write_atomically
 from workbench.stages import Call
 from workbench.state import State, case_table, read_state

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from workbench.core.results import Contact, MembraneMesh, Solid, VolumeMesh
+from workbench.core.results import MembraneMesh, Solid, VolumeMesh
+from workbench.core.sensing import Contact
 from workbench.folder import remove_stale
 from workbench.project import write_atomically
 

@@ -20,7 +20,8 @@ from sim.contact import specimens
 from sim.contact.solver import press_membrane
 from workbench.core.design import Elastomer
 from workbench.core.press import ContactSettings, Indenter, IndenterKind, Press
-from workbench.core.results import Contact, Label
+from workbench.core.results import Label
+from workbench.core.sensing import Contact
 
 BLOCK_HEIGHT_MM = 5.0
 BLOCK_WIDTH_MM = 16.0

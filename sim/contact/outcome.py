@@ -13,7 +13,8 @@ from sim.contact.collider import Collider
 from sim.contact.domain import Domain
 from sim.contact.relaxation import Balance, Relaxation
 from workbench.core.frames import quaternion
-from workbench.core.results import Contact, Skin
+from workbench.core.results import Skin
+from workbench.core.sensing import Contact
 
 SLIDING_SHARE = 0.999
 """Share of the friction cone at which a point counts as sliding."""

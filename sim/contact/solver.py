@@ -36,7 +36,8 @@ from workbench.core.design import Elastomer
 from workbench.core.errors import SolveError
 from workbench.core.monitor import Monitor, silent
 from workbench.core.press import ContactSettings, Indenter, Press
-from workbench.core.results import Contact, MaterialPoints, MembraneMesh
+from workbench.core.results import MaterialPoints, MembraneMesh
+from workbench.core.sensing import Contact
 
 RAMP_SUBSTEPS_PER_MM = 100.0
 """Substeps for the indenter to move 1 mm without a prediction."""

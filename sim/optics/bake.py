@@ -26,7 +26,8 @@ from sim.optics.lights import check_lights, place_leds
 from workbench.core.design import LedRing, LightModel
 from workbench.core.errors import DesignError
 from workbench.core.monitor import Monitor, silent
-from workbench.core.results import LightField, MembraneMesh
+from workbench.core.results import MembraneMesh
+from workbench.core.sensing import LightField
 
 DEGENERATE_SINE = 1e-3
 """Sine of the angle of L and n below which their plane is not defined in single precision."""

@@ -21,7 +21,8 @@ from sim.optics.render import shoot
 from sim.optics.specimen import dent, finger
 from workbench.core.design import Camera, LedRing, LensModel, LightModel, Optics
 from workbench.core.errors import OpticsError
-from workbench.core.results import MembraneMesh, TactileFrames
+from workbench.core.results import MembraneMesh
+from workbench.core.sensing import TactileFrames
 
 DENT_MM = (15.0, 0.0, 22.0)
 """Place of the test dent, on the cylinder at +X."""

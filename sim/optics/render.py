@@ -34,7 +34,8 @@ from workbench.core.check import expect
 from workbench.core.design import LightModel, Optics
 from workbench.core.errors import OpticsError
 from workbench.core.monitor import Monitor, silent
-from workbench.core.results import LightField, MembraneMesh, TactileFrames
+from workbench.core.results import MembraneMesh
+from workbench.core.sensing import LightField, TactileFrames
 
 LEAST_ALBEDO = 0.01
 """Darkest skin that white tips are compared with [1]: carbon-black silicone returns 2 to 5 %."""

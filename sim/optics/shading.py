@@ -24,7 +24,7 @@ from sim.optics.bake import SKIN_OFFSET_MM, emitted, toward
 from sim.optics.camera import Rays
 from sim.optics.gbuffer import MOVED_MM, GBuffer
 from workbench.core.design import Coating, LightModel
-from workbench.core.results import LightField
+from workbench.core.sensing import LightField
 
 EDGE_ON = 1e-6
 """Cosine below which light grazes the skin: single-precision rounding of a tangential field."""

@@ -14,7 +14,7 @@ from workbench.core.design import Elastomer
 from workbench.core.errors import Cancelled, SolveError
 from workbench.core.monitor import silent
 from workbench.core.press import ContactSettings, Indenter, IndenterKind, IndenterMesh, Press
-from workbench.core.results import Contact
+from workbench.core.sensing import Contact
 
 pytestmark = pytest.mark.usefixtures("taichi_device")
 

@@ -11,7 +11,7 @@ from sim.optics.bake import bake_light
 from sim.optics.render import shoot
 from sim.optics.specimen import dent, finger
 from workbench.core.design import Camera, LedRing, LightModel, Optics
-from workbench.core.results import TactileFrames
+from workbench.core.sensing import TactileFrames
 
 SMALL = Camera(width_px=120, height_px=120, fov_x_deg=90.0)
 DENT_MM = (15.0, 0.0, 22.0)

@@ -12,7 +12,7 @@ from sim.optics.bake import bake_light
 from sim.optics.render import shoot
 from sim.optics.specimen import dent, finger
 from workbench.core.design import Camera, Optics
-from workbench.core.results import Contact, Metrics, TactileFrames
+from workbench.core.sensing import Contact, Metrics, TactileFrames
 
 
 def plain(level: int) -> np.ndarray:

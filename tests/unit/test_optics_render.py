@@ -26,7 +26,8 @@ from workbench.core.design import (
     Optics,
 )
 from workbench.core.errors import Cancelled, DesignError, OpticsError
-from workbench.core.results import MembraneMesh, TactileFrames
+from workbench.core.results import MembraneMesh
+from workbench.core.sensing import TactileFrames
 
 SMALL = Camera(width_px=160, height_px=120)
 DENT_MM = (15.0, 0.0, 22.0)

@@ -13,7 +13,7 @@ from sim.optics.display import choose_exposure, encode, srgb_decode, srgb_encode
 from sim.optics.shading import glossy, phong, shade
 from sim.optics.specimen import finger
 from workbench.core.design import Coating, LedRing, LightModel
-from workbench.core.results import LightField
+from workbench.core.sensing import LightField
 
 UP = np.array([[0.0, 0.0, 1.0]], dtype=np.float32)
 SINGLE = 1e-6

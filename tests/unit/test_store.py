@@ -11,7 +11,8 @@ import pytest
 
 from workbench.core.design import LightModel, SensorDesign
 from workbench.core.errors import StoreError
-from workbench.core.results import Bundle, Metrics, Picture, Shot, TactileFrames
+from workbench.core.results import Bundle, Picture
+from workbench.core.sensing import Metrics, Shot, TactileFrames
 from workbench.store import META, Store
 
 

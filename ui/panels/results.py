@@ -14,7 +14,7 @@ from viser import uplot
 from ui.desk import Desk
 from ui.imaging import difference, legend, placeholder
 from ui.sensor import SKIN_COLOUR
-from workbench.core.results import Contact, Shot
+from workbench.core.sensing import Contact, Shot
 from workbench.outputs import force_balance
 
 FRAME_S = 0.15

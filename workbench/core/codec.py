@@ -16,6 +16,7 @@ import numpy as np
 
 _MODULES = (
     "workbench.core.results",
+    "workbench.core.sensing",
     "workbench.core.fabrication",
     "workbench.core.imported",
     "workbench.core.design",

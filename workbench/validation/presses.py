@@ -8,7 +8,7 @@ import math
 from workbench.core.design import Elastomer
 from workbench.core.monitor import silent
 from workbench.core.press import ContactSettings, Indenter, Press
-from workbench.core.results import Contact
+from workbench.core.sensing import Contact
 from workbench.specimens import finger_mesh, finger_points
 from workbench.stages import press
 

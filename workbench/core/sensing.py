@@ -1,0 +1,113 @@
+"""What the stages of pressing and looking return: contact, light, images and their metrics.
+
+Sensor frame; mm, N, MPa; float32 fields. V outer-surface vertices, N mesh nodes, K frames, L LEDs,
+C grid cells.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Contact:
+    """What the solver found, frame by frame. Forces act on the indenter, in the sensor frame."""
+
+    displacement_mm: np.ndarray
+    """Displacement of the outer skin's vertices [mm], shape (K, V, 3), float32."""
+    reaction_N: np.ndarray
+    """Force on the indenter [N], shape (K, 3), float64."""
+    moment_Nmm: np.ndarray
+    """Moment on the indenter about its own origin [N mm], shape (K, 3), float64."""
+    indenter_pose: np.ndarray
+    """x, y, z [mm], qw, qx, qy, qz of the indenter's body frame, shape (K, 7), float64."""
+    residual: np.ndarray
+    """Out-of-balance force over the larger of reaction and 1 % of the peak reaction, shape (K,)."""
+    penetration_mm: np.ndarray
+    """Deepest overlap of skin and indenter [mm], shape (K,), float64."""
+    support_N: np.ndarray
+    """Force of the rigid support on the membrane [N], shape (K, 3), float64."""
+    cut_N: np.ndarray
+    """Force of elastomer left out of the region on the part that took part [N], shape (K, 3).
+
+    reaction = support + cut, to within the residual.
+    """
+    friction_ratio: np.ndarray
+    """Largest pointwise tangential over normal contact force, shape (K,), float64."""
+    sliding: np.ndarray
+    """Outer vertices whose contact slips, shape (K, V), bool."""
+    target_mm: np.ndarray
+    """Target on the undeformed skin [mm], shape (3,), float64."""
+    normal: np.ndarray
+    """Outward unit normal there, shape (3,), float64."""
+    tangent_u: np.ndarray
+    """Unit U: +Z projected on the tangent plane, shape (3,), float64."""
+    grid_mm: float
+    active_radius_mm: float
+    """Radius of the region that took part, about the target [mm]."""
+    particles: int
+    """Material points in the active region."""
+    substeps: int
+    """Relaxation steps of all frames together."""
+    device: str
+    inner_mm: np.ndarray = field(default_factory=lambda: np.zeros((0, 0, 3), dtype=np.float32))
+    """Displacement of the inner skin's vertices [mm], shape (K, W, 3), float32; W = 0 where that
+    skin is bonded and stays where it is."""
+
+    @property
+    def normal_N(self) -> np.ndarray:
+        """Reaction along the outward target normal [N], shape (K,)."""
+        return self.reaction_N @ self.normal
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class LightField:
+    """Light arriving at each vertex of the skin that the camera looks at (`MembraneMesh.seen`)."""
+
+    model: str
+    """Name of the `LightModel`."""
+    direction: np.ndarray
+    """Unit vector from vertex to light along its path, shape (L, V, 3), float32."""
+    irradiance: np.ndarray
+    """Perpendicular irradiance of the undeformed vertex, shadowed, shape (L, V), float32."""
+    led_mm: np.ndarray
+    """LED positions [mm], shape (L, 3), float64."""
+    led_axis: np.ndarray
+    """Unit emission axes, shape (L, 3), float64."""
+    led_rgb: np.ndarray
+    """Linear RGB power, shape (L, 3), float64."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class TactileFrames:
+    """Images of a press: frame 0 of `rgb` is the background, then one per contact frame."""
+
+    rgb: np.ndarray
+    """sRGB images, shape (1 + K, H, W, 3), uint8."""
+    depth_z_mm: np.ndarray
+    """Depth along the optical axis [mm], not the range; (1 + K, H, W), float32, NaN misses."""
+    normal: np.ndarray
+    """Unit normals facing the camera, sensor frame, shape (1 + K, H, W, 3), float16."""
+    moved: np.ndarray
+    """Pixels that see a displaced part of the skin, shape (1 + K, H, W), bool."""
+    marker_uv_px: np.ndarray
+    """Marker centres [px], shape (1 + K, M, 2), float32; NaN when hidden."""
+    exposure: float
+    """Gain from linear radiance to display value, chosen once per design."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Metrics:
+    """Scalars of a variant by name; each name ends in its unit."""
+
+    values: dict[str, float]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Shot:
+    """What the camera saw during a press, and the measures of it."""
+
+    frames: TactileFrames
+    metrics: Metrics
