@@ -64,7 +64,7 @@ def fabricate(
     solid = evaluate(node)
     lost = Worst(0.0, (0.0, 0.0, 0.0))
     if keep_largest:
-        solid, lost = _largest(solid)
+        solid, lost = largest(solid)
     points, faces, closed = durable(solid)
     count = int(pieces(faces).max()) + 1 if len(faces) else 0
     if count != 1:
@@ -94,7 +94,7 @@ def fabricate(
     return Made(part=part, reason=reason, lost=lost)
 
 
-def _largest(solid: Any) -> tuple[Any, Worst]:
+def largest(solid: Any) -> tuple[Any, Worst]:
     """The largest piece of a manifold, and what the others are of the whole."""
     loose = sorted(solid.decompose(), key=lambda piece: piece.volume(), reverse=True)
     if len(loose) < 2:

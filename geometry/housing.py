@@ -23,7 +23,7 @@ from geometry import csg
 from geometry.actuation import ActuatorRod, make_rods
 from geometry.castability import Worst, thinnest_wall
 from geometry.csg_mesh import arrays, evaluate
-from geometry.fabricate import fabricate
+from geometry.fabricate import fabricate, largest
 from geometry.housing_checks import LEAST_WALL_MM, housing_checks
 from geometry.led_holder import shaped_holder
 from workbench.core.design import Camera, LedMount, LedRing
@@ -169,10 +169,8 @@ def _holder(
 
 def _wall_mm(node: csg.Node) -> float:
     """Thinnest wall of a body's largest piece [mm]; 0 for nothing."""
-    pieces = evaluate(node).decompose()
-    if not pieces:
-        return 0.0
-    return thinnest_wall(*arrays(max(pieces, key=lambda piece: piece.volume()))).value
+    solid = largest(evaluate(node))[0]
+    return 0.0 if solid.is_empty() else thinnest_wall(*arrays(solid)).value
 
 
 def _cut(body: csg.Node, tools: Sequence[csg.Node]) -> csg.Node:

@@ -132,3 +132,11 @@ def test_the_silicone_decides_whether_the_core_leaves(
     (check,) = checks(mould)
     assert (check.name, check.value, check.severity) == ("core_removal", strain, severity)
     assert checks(dataclasses.replace(mould, release_strain=None)) == ()
+
+
+def test_a_holder_held_together_by_a_skin_is_in_pieces(finger: Solid) -> None:
+    """A module of 15 mm leaves four arcs joined by skins below 0.03 mm: bad, 3 of 4 are lost."""
+    options = Housing(camera_width_mm=15.0, camera_height_mm=15.0, led_width_mm=2.0, wall_mm=0.6)
+    check = named(housed(finger, options), "loose_pieces")["led_ring_holder"]
+    assert check.severity is Severity.BAD
+    assert check.value == pytest.approx(0.75, abs=0.05)

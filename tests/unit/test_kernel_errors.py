@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -132,3 +133,18 @@ def test_lost_pieces_are_measured_and_end_the_exact_body() -> None:
         assert made.part.volume_mm3 == pytest.approx(24.0)
         assert made.part.brep.size == 0
         assert "loose pieces, 20 % of it" in made.reason
+
+
+def test_every_error_of_the_kernel_leads_one_rung_down() -> None:
+    """A family whose B-rep is refused is built by signed distance; the kernel's words are told."""
+    from designs.family import family, resolve_shape
+    from workbench.building import build_solid
+    from workbench.core.design import Layers
+    from workbench.core.results import BodyMethod
+
+    real = family("finger")
+    for error in refusals():
+        broken = SimpleNamespace(fields=real.fields, soften=real.soften, build=refuse(error))
+        solid = build_solid(broken, resolve_shape("finger", {"cylinder_mm": 10.0}), Layers())
+        assert solid.method is BodyMethod.SIGNED_DISTANCE
+        assert "no luck" in solid.notice
