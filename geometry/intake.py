@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from geometry.csg_brep import translated
 from geometry.holes import close_holes
 from geometry.meshlab import crossing_faces
 from geometry.stl import stl_corners, welded
@@ -120,10 +121,10 @@ def _read_step(file: BodyFile) -> tuple[ReadSurface, list[str]]:
         path = Path(folder) / "body.step"
         path.write_bytes(file.data.tobytes())
         try:
-            shape: Any = import_step(str(path))
-        except (RuntimeError, ValueError, OSError) as error:
+            shape: Any = translated(lambda: import_step(str(path)))
+        except GeometryError as error:
             raise DesignError(
-                f"{file.name} is not a STEP file: {error}",
+                f"{file.name} is not a STEP file: {error.message}",
                 hint="export the body as STEP AP203, AP214 or AP242",
             ) from error
     solids = list(shape.solids())
@@ -132,8 +133,8 @@ def _read_step(file: BodyFile) -> tuple[ReadSurface, list[str]]:
     solid = solids[0]
     notes = []
     if not solid.is_valid:
-        solid = solid.fix()
-        if not solid.is_valid or len(solid.solids()) != 1:
+        solid = _fixed(solid)
+        if solid is None or not solid.is_valid or len(solid.solids()) != 1:
             raise DesignError(
                 f"{file.name} holds a solid that the CAD kernel calls invalid: its faces cut "
                 "through each other or do not meet",
@@ -141,13 +142,21 @@ def _read_step(file: BodyFile) -> tuple[ReadSurface, list[str]]:
             )
         notes.append("the CAD kernel repaired the solid")
     try:
-        points, faces, patch = tessellate(solid)
+        points, faces, patch = translated(lambda: tessellate(solid))
     except (MeshingError, GeometryError) as error:
         raise DesignError(
             f"{file.name} cannot be turned into a closed surface: {error.message}",
             hint="repair it in the program that made it, or export it as STL",
         ) from error
     return ReadSurface(points_mm=points, faces=faces, patch=patch), notes
+
+
+def _fixed(solid: Any) -> Any:
+    """The solid as the CAD kernel repairs it, or None if it gave up."""
+    try:
+        return translated(solid.fix)
+    except GeometryError:
+        return None
 
 
 def _read_stl(file: BodyFile) -> tuple[ReadSurface, list[str]]:
