@@ -205,7 +205,8 @@ def core_removal(strain: Worst, elongation: float) -> FabricationCheck:
         unit="strain",
         limit=elongation / STRAIN_SAFETY,
         bad=elongation,
-        message="choose a silicone with more elongation, bend the shape less or raise mould.draft_deg",
+        message="choose a silicone with more elongation, bend the shape less, or raise "
+        "mould.draft_deg",
     )
 
 
