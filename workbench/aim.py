@@ -12,6 +12,8 @@ from workbench.core.design import LedMount, SensorDesign
 from workbench.core.results import Label, Solid
 
 RING_STEP_MM = 0.5
+FLAT_TOP_MM = 0.02
+"""Faces this near to the highest point are its flat top [mm]."""
 
 
 def default_target_mm(
@@ -27,8 +29,18 @@ def default_target_mm(
 
     if design.family == IMPORTED and solid is not None:
         membrane = solid.membrane
-        outer = membrane.points_mm[np.unique(membrane.faces[membrane.has(Label.OUTER)])]
-        x, y, z = (round(float(c), 3) for c in outer[np.argmax(outer[:, 2])])
+        faces = membrane.faces[membrane.has(Label.OUTER)]
+        corners = membrane.points_mm[faces]
+        top_mm = corners[:, :, 2].max()
+        highest = corners[(corners[:, :, 2] > top_mm - FLAT_TOP_MM).all(axis=1)]
+        if len(highest):
+            # In the middle of a flat top, not at one of its corners.
+            edges = highest[:, 1:] - highest[:, :1]
+            area = np.linalg.norm(np.cross(edges[:, 0], edges[:, 1]), axis=1)
+            point = area @ highest.mean(axis=1) / area.sum()
+        else:
+            point = corners.reshape(-1, 3)[np.argmax(corners[:, :, 2])]
+        x, y, z = (round(float(c), 3) for c in point)
         return x, y, z
     shape = resolve_shape(design.family, design.shape)
     x, y, z = (round(float(c), 3) for c in family(design.family).target(shape, design.layers))
