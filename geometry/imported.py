@@ -73,7 +73,7 @@ def build_imported(
         cavity = _offset(core, layers.support_mm, at="layers.support_mm")
     monitor(0.8, "labelling")
     membrane = _labelled(outer - _renumbered(core), picks)
-    _expect_one_body(membrane)
+    _expect_one_body(membrane, from_file=body.inner is not None)
     return Solid(
         membrane=membrane,
         support=_labelled(_renumbered(core, 0) - _renumbered(cavity), ()),
@@ -220,14 +220,19 @@ def _patches(outer: Any, core: Any) -> np.ndarray:
     return np.where(flat | (source >= CORE_FACE), -1, source).astype(np.int32)
 
 
-def _expect_one_body(membrane: LabelledSurface) -> None:
-    for label in (Label.OUTER, Label.INNER):
-        if not membrane.has(label).any():
-            raise DesignError(
-                f"the membrane has no {str(label.name).lower()} side",
-                hint="check the inner file and the wall",
-                at="body.inner",
-            )
+def _expect_one_body(membrane: LabelledSurface, *, from_file: bool) -> None:
+    if not membrane.has(Label.OUTER).any():
+        raise DesignError(
+            "the labels leave no face on the sensing side: at least one face must stay sensing",
+            hint="take back the label base of one face",
+            at="body.picks",
+        )
+    if not membrane.has(Label.INNER).any():
+        raise DesignError(
+            "the membrane has no inner side",
+            hint="check the inner file" if from_file else "lower layers.elastomer_mm",
+            at="body.inner" if from_file else "layers.elastomer_mm",
+        )
 
 
 def _foot(outer: Any, cavity: Any, shape: Any) -> LabelledSurface:

@@ -19,11 +19,12 @@ from ui.scene import Scene
 from ui.session import Session
 from workbench.aim import default_target_mm, with_fitting_ring
 from workbench.bodies import IMPORTED
-from workbench.conductor import LIVE, Conductor, Finished
+from workbench.conductor import LIVE, Conductor, Finished, Request
 from workbench.core.design import SensorDesign
 from workbench.core.errors import WorkbenchError
 from workbench.core.results import Solid
 from workbench.forms import resolve_shape
+from workbench.pipeline import plan
 from workbench.stages import Outcome
 
 AUTOSAVE_S = 1.0
@@ -70,6 +71,7 @@ class Desk:
         self.reports.banner = self.header.banner
         self.jobs = Jobs(conductor, self.reports, self.header)
         self.jobs.on_done = self._stage_done
+        self.jobs.asked_now = self._asked_now
         self.jobs.on_events = self.refresh_header
         self.jobs.on_idle = self._autosave
         self._edited: float | None = None
@@ -92,9 +94,10 @@ class Desk:
             try:
                 self.session.change(path, value)
             except WorkbenchError as error:
-                self.reports.report(error, quiet=True)
+                self.fields.refuse(path)
+                self.reports.report(error, edited=path)
                 return
-            self.reports.settle()
+            self.reports.settle(path)
             if not path.startswith(("design.mould", "design.housing", "design.casting")):
                 self.put_parts_away()
             self.changed()
@@ -154,7 +157,7 @@ class Desk:
 
     def run(self, topic: str, wanted: tuple[str, ...]) -> None:
         """Compute stages for the state as it stands."""
-        self.header.banner.visible = False
+        self.reports.begin()
         if topic != "parts":
             self.put_parts_away()
         self.jobs.submit(topic, self.session.design, self.session.case, wanted)
@@ -222,6 +225,12 @@ class Desk:
     def current(self, stage: str) -> bool:
         """Whether what is shown of a stage belongs to the state as it stands."""
         return self._shown.get(stage) == self.session.calls()[stage].key
+
+    def _asked_now(self, request: Request, failed: str) -> bool:
+        """Whether the stage of a request that failed is a stage of the state as it stands."""
+        if not failed:
+            return request.design == self.session.design
+        return self.session.calls()[failed].key == plan(request.design, request.case)[failed].key
 
     def _stage_done(self, outcome: Outcome) -> None:
         calls = self.session.calls()

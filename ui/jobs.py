@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 
 from ui.header import NAMES, Header
 from ui.reports import Reports
-from workbench.conductor import LIVE, Conductor, Event, Finished, Progress, StageDone
+from workbench.conductor import LIVE, Conductor, Event, Finished, Progress, Request, StageDone
 from workbench.core.design import SensorDesign
 from workbench.core.errors import Cancelled
 from workbench.core.units import human_seconds
@@ -34,6 +34,8 @@ class Jobs:
         """Set by the desk: follows after events."""
         self.on_idle: Callable[[], None] = lambda: None
         """Set by the desk: called each time the pump turns."""
+        self.asked_now: Callable[[Request, str], bool] = lambda request, failed: True
+        """Set by the desk: whether a stage that failed still belongs to the state."""
         self._then: dict[str, Callable[[Finished], None]] = {}
 
     def submit(
@@ -100,7 +102,10 @@ class Jobs:
                 then(event)
         elif then is not None:
             then(event)
+        elif error is not None and not self.asked_now(event.request, event.failed):
+            # Its message would stand above a design that it does not tell of.
+            log(f"{event.topic}, of an earlier design: {error.message}")
         elif error is not None:
-            self.reports.report(error)
+            self.reports.report(error, topic="" if event.topic == LIVE else event.topic)
         elif event.topic != LIVE:
             log(f"{event.topic}: finished in {human_seconds(event.seconds)}")

@@ -32,7 +32,14 @@ class Reports:
         """Set by the desk: shows the lines."""
         self.banner: Any = None
         """Set by the header: stays until the next edit."""
+        self.places: dict[str, Any] = {}
+        """Hidden markdown beside the button of each topic."""
         self.lock = threading.RLock()
+
+    def beside(self, *topics: str) -> None:
+        """Make a place under the button just made, for what became of these topics' requests."""
+        handle = self.server.gui.add_markdown("", visible=False)
+        self.places.update(dict.fromkeys(topics, handle))
 
     def guarded(self, handler: Callable[[Any], None]) -> Callable[[Any], None]:
         """A widget callback whose errors reach the designer instead of the terminal only."""
@@ -50,29 +57,45 @@ class Reports:
 
         return call
 
-    def report(self, error: WorkbenchError, *, quiet: bool = False) -> None:
-        """Show an error at its field; in a banner too, unless it answers an edit there."""
+    def report(self, error: WorkbenchError, *, edited: str = "", topic: str = "") -> None:
+        """Show an error at its field, and where the designer looks.
+
+        Args:
+            error: What went wrong.
+            edited: Field that was just edited: a message about itself needs no banner.
+            topic: Request that failed: it is told beside its button, and in a notification, since
+                the field may be on another page.
+        """
         at_field = self.fields.complain(error)
-        words = self.fields.in_words(error.message)
+        words = self.fields.in_words(error.message, error.at)
         hint = ""
         if error.hint and "\n" not in error.hint:
-            hint = self.fields.in_words(f" {error.hint[0].upper()}{error.hint[1:]}.")
+            hint = self.fields.in_words(f" {error.hint[0].upper()}{error.hint[1:]}.", error.at)
         self.log(f"{type(error).__name__}: {words} {error.hint}")
-        if not (quiet and at_field):
-            text = html.escape(f"{words}.{hint}")
+        text = html.escape(f"{words}.{hint}")
+        if not (at_field and at_field == edited):
             self.banner.content = f"<span style='color:{RED}'>**{text}**</span>"
             self.banner.visible = True
-        if not at_field:
+        if topic in self.places:
+            self.places[topic].content = f"<span style='color:{RED}'>{text}</span>"
+            self.places[topic].visible = True
+        if topic or not at_field:
             self.notify("Not possible", f"{words}.{hint}", color="red")
         if "\n" in error.hint:
             # A traceback from a worker; a full disk must not hide the message itself.
             with contextlib.suppress(WorkbenchError):
                 self.session.project.write_crash(error.hint)
 
-    def settle(self) -> None:
-        """Take back what was complained about: a good value has come."""
-        self.fields.clear_complaints()
+    def settle(self, path: str = "") -> None:
+        """Take back what was complained about: a good value has come, of the field `path`."""
+        self.fields.settle(path)
+        self.begin()
+
+    def begin(self) -> None:
+        """Take back what was said of the last request."""
         self.banner.visible = False
+        for place in self.places.values():
+            place.visible = False
 
     def crash(self, bug: Exception) -> None:
         """Keep the traceback of a bug and tell the designer where it is."""

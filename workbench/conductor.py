@@ -20,7 +20,7 @@ from typing import Protocol
 from workbench.core.design import SensorDesign
 from workbench.core.errors import Cancelled, WorkbenchError
 from workbench.core.monitor import Monitor, seconds_left
-from workbench.pipeline import PressCase, evaluate
+from workbench.pipeline import PressCase, evaluate, needed, plan
 from workbench.stages import Call, Outcome
 from workbench.store import Store
 
@@ -79,6 +79,8 @@ class Finished:
     seconds: float
     superseded: bool = False
     """Whether it was stopped for a newer request, which is nothing to tell the designer."""
+    failed: str = ""
+    """Stage that raised the error; empty without one, or when no stage had begun."""
 
 
 Event = Progress | StageDone | Finished
@@ -193,6 +195,7 @@ class _Topic:
         *,
         seconds: float,
         superseded: bool = False,
+        failed: str = "",
     ) -> None:
         self.conductor.events.put(
             Finished(
@@ -201,6 +204,7 @@ class _Topic:
                 error=error,
                 seconds=seconds,
                 superseded=superseded,
+                failed=failed,
             )
         )
 
@@ -208,7 +212,9 @@ class _Topic:
         started = time.monotonic()
         error: WorkbenchError | None = None
         events = self.conductor.events
+        waiting: list[str] = []
         try:
+            waiting = needed(plan(request.design, request.case), request.wanted)
             for outcome in evaluate(
                 request.design,
                 request.case,
@@ -216,6 +222,7 @@ class _Topic:
                 wanted=request.wanted,
                 monitor=_Reporter(self.name, events, stop),
             ):
+                waiting.pop(0)
                 events.put(StageDone(topic=self.name, outcome=outcome, request=request))
         except WorkbenchError as raised:
             error = raised
@@ -227,7 +234,13 @@ class _Topic:
         with self._wake:
             # Together, so that whoever reads the event finds the topic free.
             self._stop = None
-            self._finished(request, error, seconds=seconds, superseded=superseded)
+            self._finished(
+                request,
+                error,
+                seconds=seconds,
+                superseded=superseded,
+                failed=waiting[0] if error is not None and waiting else "",
+            )
 
 
 class _Reporter:

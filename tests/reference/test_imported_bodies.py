@@ -144,6 +144,19 @@ def test_a_pick_must_be_base_or_a_numbered_actuator(region: str) -> None:
     assert "actuator_0" in caught.value.hint
 
 
+def test_the_last_sensing_face_keeps_its_side(read_drum: ReadBody) -> None:
+    """All faces of the drum as base leave no sensing side: refused at the labels, no file named."""
+    picks = tuple(
+        Pick(patch=int(n), region="base")
+        for n in np.unique(build_imported(read_drum, ImportedShape(), Layers()).patches)
+        if n >= 0
+    )
+    with pytest.raises(DesignError, match="at least one face must stay sensing") as caught:
+        build_imported(read_drum, ImportedShape(), Layers(), picks)
+    assert caught.value.at == "body.picks"
+    assert "file" not in f"{caught.value.message} {caught.value.hint}"
+
+
 def test_a_pick_that_the_body_has_not_is_refused(read_drum: ReadBody) -> None:
     """Face 99 of a drum with three."""
     with pytest.raises(DesignError, match="picked face 99") as caught:

@@ -5,12 +5,13 @@ from __future__ import annotations
 import queue
 import threading
 import time
+from pathlib import Path
 
 import pytest
 
 from workbench.conductor import LIVE, Conductor, Finished
 from workbench.core.design import SensorDesign
-from workbench.core.errors import Cancelled
+from workbench.core.errors import Cancelled, MeshingError
 from workbench.core.monitor import Monitor
 from workbench.pipeline import PressCase
 from workbench.stages import Call, Outcome
@@ -78,6 +79,21 @@ def test_newer_press_stops_the_running_one(conductor: Conductor, slow: Slow) -> 
     done = finished(conductor)
     assert (done.request.design.name, done.error, done.superseded) == ("second", None, False)
     assert not conductor.busy
+
+
+def test_the_stage_that_failed_is_named(tmp_path: Path) -> None:
+    """The body is built and its mesh fails: the end names `mesh`, the second of the two."""
+
+    class Failing(Slow):
+        def run(self, call: Call, monitor: Monitor) -> Outcome:
+            if call.stage == "mesh":
+                raise MeshingError("no mesh")
+            return Outcome(stage=call.stage, key=call.key, cached=False, seconds=0.0)
+
+    conductor = Conductor(Store(tmp_path), Failing())
+    conductor.submit("mesh", design("any"), PressCase(), ("mesh",))
+    end = finished(conductor)
+    assert (end.failed, type(end.error)) == ("mesh", MeshingError)
 
 
 def test_live_body_is_not_stopped_by_the_next(conductor: Conductor, slow: Slow) -> None:

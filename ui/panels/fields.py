@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 import html
-from collections.abc import Callable, Mapping, Sequence
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -34,6 +35,7 @@ class Fields:
         self._read = read
         self._edit = edit
         self._fields: dict[str, Field] = {}
+        self._refused: set[str] = set()
 
     def slider(
         self,
@@ -49,7 +51,13 @@ class Fields:
         kind = int if whole else float
         value = min(max(kind(self._read(path)), low), high)
         handle = self.gui.add_slider(label, low, high, step, kind(value), hint=hint or None)
-        return self._bind(path, handle, kind, lambda v: min(max(kind(v), low), high))
+        span_text = f"this slider goes from {low:g} to {high:g}"
+
+        def ended(value: Any) -> str:
+            # The page cuts what is typed beyond the ends; nothing else tells the designer.
+            return span_text if value in (low, high) else ""
+
+        return self._bind(path, handle, kind, lambda v: min(max(kind(v), low), high), remark=ended)
 
     def number(self, label: str, path: str, *, step: float, hint: str = "") -> Any:
         """A number box without limits of its own; the design refuses what is wrong."""
@@ -94,6 +102,7 @@ class Fields:
         handle: Any,
         to_field: Callable[[Any], Any],
         to_widget: Callable[[Any], Any],
+        remark: Callable[[Any], str] = lambda value: "",
     ) -> Any:
         complaint = self.gui.add_markdown("", visible=False)
         field = Field(
@@ -110,7 +119,11 @@ class Fields:
         def _(event: Any) -> None:
             # Values set by `refresh` come back here without a client.
             if event.client is not None:
-                self._edit(path, to_field(handle.value))
+                value = to_field(handle.value)
+                self._edit(path, value)
+                if path not in self._refused and not complaint.visible and remark(value):
+                    complaint.content = f"<small>{remark(value)}</small>"
+                    complaint.visible = True
 
         return handle
 
@@ -118,25 +131,25 @@ class Fields:
         """Remove the widgets whose path begins so."""
         for path in [p for p in self._fields if p.startswith(prefix)]:
             field = self._fields.pop(path)
+            self._refused.discard(path)
             if field.handle is not None:
                 field.handle.remove()
             field.complaint.remove()
 
     def refresh(self) -> None:
         """Show the session's values in every widget."""
-        for path, field in self._fields.items():
-            if field.handle is None:
-                continue
-            value = field.to_widget(self._read(path))
-            if field.handle.value != value:
-                field.handle.value = value
+        self._restore(self._fields)
 
-    def complain(self, error: WorkbenchError) -> bool:
-        """Show an error under the widget it names; False when there is no such widget."""
+    def refuse(self, path: str) -> None:
+        """Remember that the widget holds a value that the design did not take."""
+        self._refused.add(path)
+
+    def complain(self, error: WorkbenchError) -> str:
+        """Show an error under the widget it names; returns its path, "" without such a widget."""
         field = self._named(error.at)
         if field is None:
-            return False
-        parts = [self.in_words(error.message), self.in_words(error.hint)]
+            return ""
+        parts = [self.in_words(error.message, error.at), self.in_words(error.hint, error.at)]
         if field.handle is not None:
             kept = field.to_widget(self._read(field.path))
             if isinstance(kept, (int, float)) and kept != field.handle.value:
@@ -145,22 +158,49 @@ class Fields:
         text = f"<span style='color:#e5484d'>{words}</span>"
         field.complaint.content = text
         field.complaint.visible = True
-        return True
+        return field.path
 
-    def in_words(self, text: str) -> str:
-        """A message with the labels of widgets in place of the names of fields."""
-        for path, field in sorted(self._fields.items(), key=lambda item: -len(item[0])):
+    def in_words(self, text: str, at: str = "") -> str:
+        """A message with the labels of widgets in place of the names of fields.
+
+        Args:
+            text: The message.
+            at: The field it is about: a name without its path is taken from the same part of the
+                design, for example `radius_mm` from the ring.
+        """
+        labels = {
+            path: f"\N{LEFT DOUBLE QUOTATION MARK}{field.label}\N{RIGHT DOUBLE QUOTATION MARK}"
+            for path, field in self._fields.items()
+        }
+        for path in sorted(labels, key=lambda path: -len(path)):
             short = path.split(".", 1)[1].replace("settings.", "contact.", 1)
-            text = text.replace(
-                short, f"\N{LEFT DOUBLE QUOTATION MARK}{field.label}\N{RIGHT DOUBLE QUOTATION MARK}"
-            )
+            text = text.replace(short, labels[path])
+        about = self._named(at)
+        part = about.path.rpartition(".")[0] if about is not None else ""
+        for path, label in labels.items():
+            parent, _, name = path.rpartition(".")
+            if part and parent == part:
+                # A name that is a common word counts only where a value follows.
+                ends = r"(?![\w.])" if "_" in name else r"(?= = )"
+                text = re.sub(rf"(?<![\w.]){re.escape(name)}{ends}", label, text)
         return text
 
-    def clear_complaints(self) -> None:
-        """Hide the messages under all widgets."""
+    def settle(self, path: str = "") -> None:
+        """Hide all messages; widgets with a refused value, but `path`, show the design's again."""
         for field in self._fields.values():
             if field.complaint.visible:
                 field.complaint.visible = False
+        refused, self._refused = self._refused - {path}, set()
+        self._restore(refused)
+
+    def _restore(self, paths: Iterable[str]) -> None:
+        for path in paths:
+            field = self._fields.get(path)
+            if field is None or field.handle is None:
+                continue
+            value = field.to_widget(self._read(path))
+            if field.handle.value != value:
+                field.handle.value = value
 
     def _named(self, at: str) -> Field | None:
         names = (f"design.{at}", f"case.{at}", at.replace("contact.", "case.settings.", 1))

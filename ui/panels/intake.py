@@ -114,10 +114,11 @@ class IntakeFolder:
     def _try(self, body: ImportedBody) -> None:
         """Have the worker read the files; the design follows once they are read."""
         design, self.trial = self.desk.session.design, body
-        if design.family == IMPORTED:
-            candidate = dataclasses.replace(design, body=body)
+        name, old = _name(body), design.body
+        if design.family == IMPORTED and old is not None:
+            kept = design.name if design.name != _name(old) else name
+            candidate = dataclasses.replace(design, name=kept, body=body)
         else:
-            name = Path(body.outer.name).stem[:80] or IMPORTED
             candidate = SensorDesign(name=name, family=IMPORTED, body=body)
         self.desk.reports.settle()
         self.said.content = f"reading {body.outer.name} ..."
@@ -129,12 +130,14 @@ class IntakeFolder:
             self.trial = None
             return
         if event.error is not None:
-            self.desk.reports.report(event.error, quiet=True)
+            self.desk.reports.report(event.error, edited=f"design.{event.error.at}")
             return
         self.trial = None
         session, design = self.desk.session, event.request.design
         if session.design.family == IMPORTED:
-            session.change(BODY, design.body)
+            # What was edited while the file was read stays.
+            own = dataclasses.replace(session.design, name=design.name, body=design.body)
+            session.replace_state(dataclasses.replace(session.state, design=own))
         else:
             session.replace_design(design)
         self.desk.replaced()
@@ -167,6 +170,11 @@ class IntakeFolder:
 
     def show(self, stage: str, result: Any) -> None:
         """Nothing here follows results."""
+
+
+def _name(body: ImportedBody) -> str:
+    """What a design of this body is called until the designer says otherwise."""
+    return Path(body.outer.name).stem[:80] or IMPORTED
 
 
 def _summary(body: ImportedBody) -> str:

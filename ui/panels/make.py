@@ -34,6 +34,7 @@ class MakePanel:
         hint = "Mould, housing, recipe and files; half a minute or so"
         button = gui.add_button("Make parts", icon=viser.Icon.PRINTER, hint=hint)
         button.on_click(desk.guarded(self._make))
+        desk.reports.beside("parts")
         self.status = gui.add_markdown(NOTHING)
         self.tree = PartsTree(desk)
         desk.put_parts_away = self.tree.put_away

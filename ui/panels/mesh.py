@@ -34,6 +34,7 @@ class MeshPanel:
         hint = "Conforming tetrahedra for other solvers; a minute or so, Cancel stops it"
         tets = gui.add_button("Tetrahedra", icon=viser.Icon.PYRAMID, hint=hint)
         tets.on_click(desk.guarded(lambda event: desk.run("tetrahedra", ("tets",))))
+        desk.reports.beside("mesh", "tetrahedra")
         self.found: dict[str, MeshQuality] = {}
         self.notice = ""
         self.choice = gui.add_dropdown("Mesh shown", ("-",), visible=False)

@@ -37,6 +37,7 @@ class OpticsPanel:
             fields.slider("Marker pitch mm", "design.optics.markers.spacing_mm", span=span)
         button = gui.add_button("Render image", icon=viser.Icon.BULB, hint="Bake, then shoot (B)")
         button.on_click(desk.guarded(self._render))
+        desk.reports.beside("image")
         command = gui.add_command("Render image", hotkey="B")
         command.on_trigger(desk.guarded(self._render))
 

@@ -55,6 +55,7 @@ class SimulatePanel:
             fields.number("Region mm", "case.settings.active_radius_mm", step=1.0, hint=hint)
         button = gui.add_button("Run press", icon=viser.Icon.PLAYER_PLAY, hint="Contact, image (R)")
         button.on_click(desk.guarded(self._run))
+        desk.reports.beside("press")
         command = gui.add_command("Run press", hotkey="R")
         command.on_trigger(desk.guarded(self._run))
         self.numbers = gui.add_markdown("")
