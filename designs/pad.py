@@ -42,7 +42,7 @@ import numpy as np
 from designs.bodies import Bodies, Fields
 from designs.plates import bored_plate, rectangle_distance, rounded_prism
 from designs.sliders import slider
-from workbench.core.booleans import cut, expect_volume, intersect
+from workbench.core.booleans import cut, expect_volume, fuse, intersect
 from workbench.core.design import Layers
 from workbench.core.errors import DesignError
 from workbench.core.marks import Field
@@ -194,10 +194,17 @@ def _slab(shape: PadShape, layers: Layers, from_mm: float) -> Any:
     from build123d import Pos, Sphere
 
     top_mm = shape.standoff_mm + layers.elastomer_mm + shape.dome_mm
-    body = _prism(shape, 0.0, from_mm, top_mm)
     if shape.dome_mm > 0.0:
-        dome = Pos(0, 0, top_mm - shape.sphere_mm) * Sphere(shape.sphere_mm)
-        body = intersect(body, dome, what="dome of the gel")
+        middle_mm = top_mm - shape.sphere_mm
+        # Below its middle the sphere narrows again and would cut off what the gel stands on.
+        foot_mm = max(from_mm, middle_mm)
+        dome = Pos(0, 0, middle_mm) * Sphere(shape.sphere_mm)
+        body = intersect(_prism(shape, 0.0, foot_mm, top_mm), dome, what="dome of the gel")
+        if foot_mm > from_mm:
+            below = _prism(shape, 0.0, from_mm, foot_mm)
+            body = fuse(below, body, what="dome to what is below it")
+    else:
+        body = _prism(shape, 0.0, from_mm, top_mm)
     area = shape.width_mm * shape.depth_mm - (4 - math.pi) * shape.corner_mm**2
     expected_mm3 = slab_mm3(shape, layers) + area * (shape.standoff_mm - from_mm)
     return expect_volume(body, expected_mm3, what="gel slab", relative=1e-5)
@@ -244,8 +251,9 @@ def _domed(shape: PadShape, top_mm: float) -> Field:
     centre = np.array([0.0, 0.0, top_mm - shape.sphere_mm])
 
     def distance(points_mm: np.ndarray) -> np.ndarray:
-        below = np.linalg.norm(points_mm - centre, axis=1) - shape.sphere_mm
-        return np.maximum(prism(points_mm), below)
+        # Below its middle the sphere goes on as a cylinder, which is wider than the prism.
+        above = np.maximum(points_mm - centre, [-np.inf, -np.inf, 0.0])
+        return np.maximum(prism(points_mm), np.linalg.norm(above, axis=1) - shape.sphere_mm)
 
     return distance
 

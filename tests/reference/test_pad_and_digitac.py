@@ -16,7 +16,7 @@ from designs.loaf import Loaf, loaf_body, loaf_shell
 from designs.pad import PadShape, slab_mm3
 from designs.plates import rectangle_distance
 from geometry.surface import face_areas
-from workbench.building import build_solid
+from workbench.building import build_solid, coarse_volume_mm3
 from workbench.core.design import Layers
 from workbench.core.errors import DesignError, GeometryError
 from workbench.core.results import Label
@@ -50,6 +50,21 @@ def test_domed_pad_holds_what_a_fine_sum_says() -> None:
     # At the farthest corner the dome has come down to the elastomer's thickness.
     corner = shape.half_diagonal_mm
     assert 1.0 - radius + math.sqrt(radius**2 - corner**2) == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("name", ["outer", "membrane"])
+def test_a_steep_dome_on_a_high_pad_cuts_only_its_top(name: str) -> None:
+    """Sphere of 9.9 mm on a gel 24 mm up: the prism below stays whole, by kernel and fields."""
+    shape = PadShape(width_mm=10.7, depth_mm=12.0, corner_mm=2.0, dome_mm=3.15, standoff_mm=24.0)
+    layers = Layers(elastomer_mm=2.4, support_mm=2.0)
+    area = 10.7 * 12.0 - (4 - math.pi) * 4.0
+    below = 24.0 * area if name == "outer" else 0.0
+    exact = slab_mm3(shape, layers) + below
+    assert getattr(pad.FAMILY.build(shape, layers), name).volume == pytest.approx(exact, rel=1e-5)
+    # A grid of 0.3 mm is good to 4e-4.
+    if name == "membrane":
+        fields = pad.FAMILY.fields(shape, layers)
+        assert coarse_volume_mm3(fields, 0.3) == pytest.approx(exact, rel=2e-3)
 
 
 def test_loaf_has_the_volume_of_prism_and_half_ellipsoid() -> None:
