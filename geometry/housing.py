@@ -6,7 +6,8 @@ grown outlines of those before it, so nothing overlaps. Parts:
 - `support`: the design's transparent shell, as it is;
 - `led_ring_holder`: a ring under the LEDs with a pocket for each, see `led_holder`;
 - `camera_mount`: a cup on the camera's axis that the module slides into from the front;
-- `base`: the design's foot with seats for holder and mount, open to below for the mount;
+- `base`: the design's foot with seats for holder and mount, open to below for the mount; with a
+  sleeve up to a holder that would float above it, see `holder_seat`;
 - `slider_0`, ...: for bodies with actuators, see `actuation`.
 
 Leaves out: wiring, screws between the parts, cable glands.
@@ -24,8 +25,9 @@ from geometry.actuation import ActuatorRod, make_rods
 from geometry.castability import Worst, thinnest_wall
 from geometry.csg_mesh import arrays, evaluate
 from geometry.fabricate import fabricate, largest
+from geometry.holder_seat import holder_seat
 from geometry.housing_checks import LEAST_WALL_MM, housing_checks
-from geometry.led_holder import shaped_holder
+from geometry.led_holder import SPARE_MM, shaped_holder
 from workbench.core.design import Camera, LedMount, LedRing
 from workbench.core.fabrication import FabricationPart, HousingSet, PartGroup
 from workbench.core.leds import led_places
@@ -37,8 +39,6 @@ LED_DEPTH_MM = 0.8
 """Height of an LED with its solder. Source: WS2812 packages are 0.5 to 0.7 mm high."""
 FLOOR_MM = 1.2
 """Material under the LEDs: three layers of a resin print or a flexible circuit [mm]."""
-HOLDER_MM = LED_DEPTH_MM + FLOOR_MM
-"""Height of the LEDs' holder [mm]."""
 FRONT_SHARE = 0.3
 """How much of the camera module stands out of its mount: the lens."""
 CABLE_SHARE = 0.5
@@ -131,14 +131,28 @@ def _nodes(
     cup = _cup(camera, options, front_mm, 0.0)
     foot = csg.together(_body(solid.base, solid.base_brep), [rod.guide for rod in rods])
     # A ledge between the two seats thinner than a wall is cut away with the lower seat.
-    ledge = ring.height_mm - HOLDER_MM - camera.position_mm[2] - front_mm - 2.0 * gap
+    ledge = (
+        ring.height_mm - _holder_mm(ring, options) - camera.position_mm[2] - front_mm - 2.0 * gap
+    )
     cup_seat_mm = front_mm + gap + (LEAST_WALL_MM if 0.0 <= ledge < LEAST_WALL_MM else 0.0)
     room = [seat, _cup(camera, options, cup_seat_mm, gap), _cable(camera, options), module]
+    holder = _holder(ring, options, shells, module, leds)
+    base = _cut(foot, [*shells, *room, *(rod.bore for rod in rods)])
+    sleeve = holder_seat(
+        holder,
+        base,
+        [membrane, support],
+        [_cup(camera, options, cup_seat_mm, gap), module],
+        hole_mm=_hole_mm(ring, options),
+        gap_mm=gap,
+        wall_mm=max(options.wall_mm, LEAST_WALL_MM),
+        least_mm=LEAST_WALL_MM,
+    )
     return {
         "support": _cut(support, [membrane]),
-        "led_ring_holder": _holder(ring, options, shells, module, leds),
+        "led_ring_holder": holder,
         "camera_mount": _cut(cup, [*shells, seat, module, _cable(camera, options)]),
-        "base": _cut(foot, [*shells, *room, *(rod.bore for rod in rods)]),
+        "base": csg.together(base, sleeve),
         **{rod.name: _cut(rod.body, [membrane]) for rod in rods},
     }
 
@@ -187,7 +201,7 @@ def _cup_front_mm(camera: Camera, ring: LedRing, options: Housing) -> float:
     """
     front = -FRONT_SHARE * options.camera_depth_mm
     upright = (_rotation(camera) @ [0.0, 0.0, 1.0])[2] > UPRIGHT_COSINE
-    low = ring.height_mm - HOLDER_MM - 2.0 * options.clearance_mm
+    low = ring.height_mm - _holder_mm(ring, options) - 2.0 * options.clearance_mm
     below = low - camera.position_mm[2]
     # A cup too low to hold the module is worse than one that the ring cuts into.
     return min(front, below) if upright and below > -0.7 * options.camera_depth_mm else front
@@ -254,14 +268,35 @@ def _leds(ring: LedRing, options: Housing, gap_mm: float) -> tuple[csg.Node, ...
 
 def _ring(ring: LedRing, options: Housing, gap_mm: float) -> csg.Node:
     """Outline of the LEDs' ring; with a gap, its seat."""
-    half = max(options.led_width_mm, options.led_height_mm) / 2 + options.wall_mm
     top = ring.height_mm + gap_mm
-    low = ring.height_mm - HOLDER_MM - gap_mm
-    disc = csg.cylinder(ring.radius_mm + half + gap_mm, low, top)
-    hole = ring.radius_mm - half - gap_mm
-    if hole <= options.wall_mm:
+    low = ring.height_mm - _holder_mm(ring, options) - gap_mm
+    disc = csg.cylinder(ring.radius_mm + _half_mm(options) + gap_mm, low, top)
+    hole = _hole_mm(ring, options, gap_mm)
+    if hole <= 0.0:
         return disc
     return csg.without(disc, [csg.cylinder(hole, low - 1.0, top + 1.0)])
+
+
+def _holder_mm(ring: LedRing, options: Housing) -> float:
+    """Height of the LEDs' holder: enough for a wall below the pockets of tilted LEDs.
+
+    The lowest corner of an LED of width w tilted by t is sin t (w / 2 + gap) + cos t depth below.
+    """
+    tilt = np.radians(min(abs(ring.tilt_deg), 90.0))
+    beside = options.led_width_mm / 2 + options.clearance_mm
+    corner = np.sin(tilt) * beside + np.cos(tilt) * LED_DEPTH_MM
+    return max(LED_DEPTH_MM + FLOOR_MM, float(corner) + LEAST_WALL_MM + SPARE_MM)
+
+
+def _half_mm(options: Housing) -> float:
+    """Half the width of the LEDs' ring."""
+    return max(options.led_width_mm, options.led_height_mm) / 2 + options.wall_mm
+
+
+def _hole_mm(ring: LedRing, options: Housing, gap_mm: float = 0.0) -> float:
+    """Radius of the hole of the LEDs' ring; 0 where it is too small to be made."""
+    hole = ring.radius_mm - _half_mm(options) - gap_mm
+    return 0.0 if hole <= options.wall_mm else hole
 
 
 def _exploded(solid: Solid, rods: tuple[ActuatorRod, ...]) -> dict[str, tuple[float, float, float]]:

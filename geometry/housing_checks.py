@@ -10,6 +10,7 @@ import numpy as np
 from geometry.castability import Worst
 from geometry.csg import Node
 from geometry.csg_mesh import closed, evaluate
+from geometry.holder_seat import seat_gap
 from geometry.mould_checks import PrintLimits, check, wall_and_bed
 from workbench.core.fabrication import FabricationCheck, FabricationPart
 from workbench.core.making import Housing
@@ -25,6 +26,8 @@ HOUSING_LIMITS = PrintLimits(
     thin="raise housing.wall_mm, or move the LED ring or the camera away from what is near it",
     large="lower housing.wall_mm or the shape's own sizes, or use a larger printer",
 )
+LARGEST_DROP_MM = 1.0
+"""What glue under a part still fills [mm]."""
 MOST_LOST = 0.01
 """Share of a part that may be left away as crumbs between cuts [1]."""
 
@@ -55,6 +58,7 @@ def housing_checks(
     checks = [
         _led_clearance(lights, [*shells, camera], options),
         _camera_clearance(camera, shells, solid, options),
+        _holder_seat(parts, options),
     ]
     for part in parts:
         checks += wall_and_bed(part, bed_mm, limits=HOUSING_LIMITS)
@@ -112,6 +116,27 @@ def _camera_clearance(
         sense="min",
         bad=0.0,
         message="move optics.camera.position_mm, raise shape.base_height_mm or take a smaller one",
+    )
+
+
+def _holder_seat(parts: Sequence[FabricationPart], options: Housing) -> FabricationCheck:
+    """How far the holder of the LEDs is above what it stands on."""
+    named = {part.name: part for part in parts}
+    holder, base = (
+        closed(name, named[name].points_mm, named[name].faces)
+        for name in ("led_ring_holder", "base")
+    )
+    gap = seat_gap(holder, base)
+    return check(
+        "led_holder_seat",
+        "led_ring_holder",
+        # The parts' triangles are good to a thousandth.
+        gap._replace(value=round(gap.value, 3)),
+        unit="mm",
+        limit=options.clearance_mm,
+        bad=LARGEST_DROP_MM,
+        message="nothing under it carries it: lower optics.ring.height_mm, or bring "
+        "optics.ring.radius_mm nearer to the wall of the cavity, or use a smaller camera module",
     )
 
 

@@ -67,7 +67,7 @@ def shaped_holder(
         if bottom >= floor_mm:
             for pocket in pockets:
                 area -= shadow(pocket, floor_mm, top_mm)
-        slabs += _prisms(opened(area, wall_mm), bottom, end)
+        slabs += prisms(opened(area, wall_mm), bottom, end)
     if not slabs:
         return None
     stack = csg.together(slabs[0], slabs[1:])
@@ -109,7 +109,7 @@ def opened(area: Any, wall_mm: float) -> Any:
     return shapely.MultiPolygon(found)
 
 
-def _prisms(area: Any, low_mm: float, high_mm: float) -> list[csg.Node]:
+def prisms(area: Any, low_mm: float, high_mm: float) -> list[csg.Node]:
     """One body for each piece of an area, extruded."""
     import shapely
 

@@ -7,17 +7,21 @@ import dataclasses
 import numpy as np
 import pytest
 
+from designs.family import resolve_shape
 from geometry import csg
 from geometry.castability import thinnest_wall
-from geometry.csg_mesh import arrays, evaluate
+from geometry.csg_mesh import arrays, closed, evaluate, overlaps_mm3
+from geometry.holder_seat import FARTHEST_MM, seat_gap
 from geometry.housing import make_housing
 from geometry.led_holder import opened, shadow, shaped_holder
 from geometry.recipe import make_recipe
 from geometry.surface import mesh_volume
-from workbench.core.design import Camera, LedRing, MouldOptions
+from workbench.core.design import Camera, Layers, LedRing, MouldOptions
 from workbench.core.fabrication import FabricationCheck, HousingSet, MouldSet, Severity
 from workbench.core.making import Casting, Housing
+from workbench.core.monitor import silent
 from workbench.core.results import Solid
+from workbench.stages import build
 
 RING = csg.without(csg.cylinder(10.0, -1.0, 1.0), [csg.cylinder(5.0, -2.0, 2.0)])
 NOWHERE = csg.moved(csg.cylinder(1.0, 0.0, 1.0), (0.0, 0.0, -50.0))
@@ -140,3 +144,65 @@ def test_a_holder_held_together_by_a_skin_is_in_pieces(finger: Solid) -> None:
     check = named(housed(finger, options), "loose_pieces")["led_ring_holder"]
     assert check.severity is Severity.BAD
     assert check.value == pytest.approx(0.75, abs=0.05)
+
+
+def pad(height_mm: float, radius_mm: float, options: Housing) -> tuple[Solid, HousingSet]:
+    """The pad's rigid parts with a ring of tilted LEDs."""
+    solid = build("pad", resolve_shape("pad", {}), Layers(support_mm=1.0), monitor=silent)
+    ring = LedRing(count=12, radius_mm=radius_mm, height_mm=height_mm, tilt_deg=-60.0)
+    camera = Camera(position_mm=(0.0, 0.0, 0.3))
+    bed_mm = MouldOptions().bed_mm
+    return solid, make_housing(solid, options, ring=ring, camera=camera, bed_mm=bed_mm)
+
+
+@pytest.mark.parametrize(
+    ("height_mm", "radius_mm", "outside_mm"),
+    # Of the cavity's 22 mm less the clearance; far from the wall, of the holder: 4.0 + 2.8 mm.
+    [(13.0, 7.2, 10.85), (5.0, 7.2, 10.85), (13.0, 4.0, 6.8)],
+)
+def test_a_holder_above_the_base_stands_on_a_sleeve(
+    height_mm: float, radius_mm: float, outside_mm: float
+) -> None:
+    """The sleeve ends 0.15 mm below the holder, follows the wall, and overlaps nothing."""
+    solid, made = pad(height_mm, radius_mm, Housing())
+    check = named(made, "led_holder_seat")["led_ring_holder"]
+    assert check.value == pytest.approx(0.15, abs=1e-3)
+    assert check.severity is Severity.GOOD
+    parts = {part.name: closed(part.name, part.points_mm, part.faces) for part in made.parts}
+    parts["skin"] = closed("skin", solid.membrane.points_mm, solid.membrane.faces)
+    assert max(overlaps_mm3(parts).values()) < 1e-6
+    sleeve = parts["base"].trim_by_plane((0.0, 0.0, 1.0), 0.01)
+    box = sleeve.bounding_box()
+    assert box[5] == pytest.approx(height_mm - 2.15, abs=1e-6)
+    # The opening's outline has chords of 5 micrometres.
+    assert box[3] == pytest.approx(outside_mm, abs=0.02)
+    assert sleeve.min_gap(parts["support"], 5.0) >= 0.15 - 0.005
+    points, faces = arrays(sleeve)
+    assert thinnest_wall(points, faces).value >= 0.8 - 1e-6
+    # The camera sees no more of it than of the holder: nothing nearer to the axis than its hole.
+    hole_mm = np.linalg.norm(arrays(parts["led_ring_holder"])[0][:, :2], axis=1).min()
+    assert np.linalg.norm(points[:, :2], axis=1).min() >= hole_mm - 0.02
+    assert next(part for part in made.parts if part.name == "base").brep.size > 0
+
+
+def test_a_holder_held_on_one_side_does_not_stand() -> None:
+    """A ring at z 5 mm over a plate at 0 with posts up to 4.9 mm: one post, or two beside each
+    other, let it fall 5 mm; three around it hold it at 0.1; without a plate nothing does."""
+    ring = evaluate(csg.moved(RING, (0.0, 0.0, 6.0)))
+    plate = csg.cylinder(12.0, -2.0, 0.0)
+    posts = [
+        csg.turned(csg.moved(csg.cylinder(1.0, -1.0, 4.9), (8.0, 0.0, 0.0)), turn)
+        for turn in (0.0, 30.0, 120.0, 240.0)
+    ]
+    for number, drop_mm in ((1, 5.0), (2, 5.0), (4, 0.1)):
+        base = evaluate(csg.together(plate, posts[:number]))
+        assert seat_gap(ring, base).value == pytest.approx(drop_mm, abs=1e-6)
+    assert seat_gap(ring, evaluate(posts[0])).value == FARTHEST_MM
+
+
+def test_a_holder_in_the_foot_needs_no_sleeve(finger: Solid) -> None:
+    """A ring at 0.5 mm sits 1.5 mm deep in the foot: it stands there, and the foot stays flat."""
+    made = housed(finger, Housing())
+    assert named(made, "led_holder_seat")["led_ring_holder"].severity is Severity.GOOD
+    base = next(part for part in made.parts if part.name == "base")
+    assert base.points_mm[:, 2].max() == pytest.approx(0.0, abs=1e-6)
