@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from geometry.castability import Worst
+from geometry.castability import Worst, thinnest_wall
 from geometry.csg import Node
 from geometry.csg_mesh import closed, evaluate
 from geometry.holder_seat import seat_gap
@@ -26,6 +26,10 @@ HOUSING_LIMITS = PrintLimits(
     thin="raise housing.wall_mm, or move the LED ring or the camera away from what is near it",
     large="lower housing.wall_mm or the shape's own sizes, or use a larger printer",
 )
+SPOT_MM = 0.01
+"""Size of a place that gaps are measured from [mm]."""
+BESIDE_MM = 0.3
+"""What a pocket is wider than its LED and the clearance, at most, where it is open [mm]."""
 LARGEST_DROP_MM = 1.0
 """What glue under a part still fills [mm]."""
 MOST_LOST = 0.01
@@ -61,9 +65,49 @@ def housing_checks(
         _holder_seat(parts, options),
     ]
     for part in parts:
-        checks += wall_and_bed(part, bed_mm, limits=HOUSING_LIMITS)
+        if part.name == "led_ring_holder":
+            wall = thinnest_wall(part.points_mm, part.faces)
+            shell = closed("support", solid.support.points_mm, solid.support.faces)
+            limits = HOUSING_LIMITS._replace(thin=holder_advice(wall, lights, shell, options))
+            checks += wall_and_bed(part, bed_mm, limits=limits, wall=wall)
+        else:
+            checks += wall_and_bed(part, bed_mm, limits=HOUSING_LIMITS)
     checks += [_whole(name, share) for name, share in lost.items() if share.value > 0.0]
     return tuple(checks)
+
+
+def holder_advice(wall: Worst, lights: Sequence[Any], support: Any, options: Housing) -> str:
+    """What makes a thin wall of the LEDs' holder thicker, from what it is between.
+
+    More of `housing.wall_mm` does not help between two pockets, nor between a pocket and the
+    cavity's wall, where the holder cannot grow.
+
+    Args:
+        wall: Its value and middle.
+        lights: Room of each LED.
+    """
+    import manifold3d
+
+    spot = manifold3d.Manifold.cube((SPOT_MM,) * 3, True).translate(wall.place_mm)
+    reach_mm = wall.value / 2 + options.clearance_mm + BESIDE_MM
+    near = [light for light in lights if _gap(light, spot) < reach_mm]
+    smaller = "use smaller LEDs (housing.led_width_mm and led_height_mm)"
+    if len(near) > 1:
+        return (
+            "it is between the pockets of two LEDs: lower optics.ring.count, raise "
+            f"optics.ring.radius_mm where there is room, or {smaller}"
+        )
+    if not near or _gap(support, spot) > reach_mm:
+        return HOUSING_LIMITS.thin
+    x, y, _ = _centre(near[0])
+    if np.hypot(x, y) > np.hypot(*wall.place_mm[:2]):
+        return HOUSING_LIMITS.thin
+    # Pockets leave the wall at up to 35 degrees to the ring's radius: 1.2 is one over the cosine.
+    nearer_mm = np.ceil(12.0 * (LEAST_WALL_MM - wall.value)) / 10.0
+    return (
+        "it is between the pocket of an LED and the wall of the cavity: lower "
+        f"optics.ring.radius_mm by {nearer_mm:.1f} mm, or {smaller}"
+    )
 
 
 def _whole(name: str, lost: Worst) -> FabricationCheck:

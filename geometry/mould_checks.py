@@ -37,6 +37,8 @@ WALL_MM = 2.0
 STRAIN_SAFETY = 3.0
 """Share of the elongation at break that demoulding may take, as 1 / 3: data sheets give the
 elongation of flawless strips (ASTM D412), and cast skins tear at nicks and seams first."""
+DECIMALS = 4
+"""Of a measure: the rest is rounding."""
 ROUNDING = 1e-6
 """A value that misses its limit by less meets it."""
 
@@ -51,10 +53,12 @@ def check(
     message: str,
     sense: str = "max",
     bad: float | None = None,
+    title: str = "",
 ) -> FabricationCheck:
     """A check; a warning beyond the limit, bad beyond `bad` (never, when None).
 
     Args:
+        title: What is measured, in words; made of the name when empty.
         message: What to do about it, added when it is not good.
     """
     sign = 1.0 if sense == "max" else -1.0
@@ -63,8 +67,11 @@ def check(
     if over and bad is not None and sign * worst.value > sign * bad:
         severity = Severity.BAD
     bound = "at most" if sense == "max" else "at least"
-    title = name.replace("_", " ")
-    text = f"{part}: {title} {worst.value:.3g} {unit}, {bound} {limit:.3g} {unit} is good"
+    title = title or name.replace("_", " ")
+    value = legible(worst.value)
+    text = f"{part}: {title} {value} {unit}, {bound} {limit:.3g} {unit} is good"
+    if tolerated(worst.value, limit, sense=sense) and not over:
+        text = f"{part}: {title} {value} {unit} is within tolerance, {limit:.3g} {unit}"
     return FabricationCheck(
         name=name,
         part=part,
@@ -76,6 +83,16 @@ def check(
         place_mm=worst.place_mm,
         message=f"{text}; {message}." if over else f"{text}.",
     )
+
+
+def legible(value: float) -> str:
+    """Three digits of a measure; what is only rounding of the computer is 0."""
+    return f"{round(value, DECIMALS) + 0.0:.3g}"
+
+
+def tolerated(value: float, limit: float, *, sense: str) -> bool:
+    """Whether a measure that should not be negative is, and its limit lets it."""
+    return sense == "min" and limit < 0.0 and round(value, DECIMALS) < 0.0
 
 
 def mould_checks(
@@ -110,16 +127,24 @@ MOULD_LIMITS = PrintLimits(
 
 
 def wall_and_bed(
-    part: FabricationPart, bed_mm: tuple[float, float, float], *, limits: PrintLimits
+    part: FabricationPart,
+    bed_mm: tuple[float, float, float],
+    *,
+    limits: PrintLimits,
+    wall: Worst | None = None,
 ) -> tuple[FabricationCheck, FabricationCheck]:
-    """Thinnest wall and room on the printer of one part."""
+    """Thinnest wall and room on the printer of one part.
+
+    Args:
+        wall: The thinnest wall where it is known.
+    """
     place = (part.points_mm.min(axis=0) + part.points_mm.max(axis=0)) / 2
     middle = (float(place[0]), float(place[1]), float(place[2]))
     return (
         check(
             "minimum_wall",
             part.name,
-            thinnest_wall(part.points_mm, part.faces),
+            wall or thinnest_wall(part.points_mm, part.faces),
             unit="mm",
             limit=limits.wall_mm,
             sense="min",
@@ -128,10 +153,11 @@ def wall_and_bed(
         check(
             "bed",
             part.name,
-            Worst(bed_ratio(part.points_mm, bed_mm), middle),
-            unit="of the bed",
-            limit=1.0,
-            bad=1.0,
+            Worst(100.0 * bed_ratio(part.points_mm, bed_mm), middle),
+            unit="%",
+            title="share of the bed",
+            limit=100.0,
+            bad=100.0,
             message=limits.large,
         ),
     )

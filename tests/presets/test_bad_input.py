@@ -187,8 +187,8 @@ def test_a_mould_larger_than_the_bed_is_told(
     beds = {check["part"]: check for check in summary["checks"] if check["name"] == "bed"}
     half = beds["half_a"]
     # The half is as long as the body across and two ears of 17 mm: 16 / 0.998 + 34 mm.
-    assert half["value"] == pytest.approx((16.0 / 0.998 + 34.0) / 30.0, rel=1e-3)
+    assert half["value"] == pytest.approx(100 * (16.0 / 0.998 + 34.0) / 30.0, rel=1e-3)
     assert half["severity"] == "bad"
-    assert "1.67 of the bed, at most 1 of the bed is good" in half["message"]
+    assert "share of the bed 167 %, at most 100 % is good" in half["message"]
     assert "use a larger printer" in half["message"]
-    assert "1.67 of the bed" in (tmp_path / "out" / "build_sheet.html").read_text()
+    assert "share of the bed 167 %" in (tmp_path / "out" / "build_sheet.html").read_text()

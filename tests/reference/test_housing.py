@@ -173,7 +173,8 @@ def test_a_holder_above_the_base_stands_on_a_sleeve(
     assert max(overlaps_mm3(parts).values()) < 1e-6
     sleeve = parts["base"].trim_by_plane((0.0, 0.0, 1.0), 0.01)
     box = sleeve.bounding_box()
-    assert box[5] == pytest.approx(height_mm - 2.15, abs=1e-6)
+    # LEDs tilted by 60 degrees need 0.8 + sin 60 0.95 + cos 60 0.8 mm, and 0.02 to spare.
+    assert box[5] == pytest.approx(height_mm - 2.043 - 0.15, abs=1e-3)
     # The opening's outline has chords of 5 micrometres.
     assert box[3] == pytest.approx(outside_mm, abs=0.02)
     assert sleeve.min_gap(parts["support"], 5.0) >= 0.15 - 0.005
@@ -206,3 +207,22 @@ def test_a_holder_in_the_foot_needs_no_sleeve(finger: Solid) -> None:
     assert named(made, "led_holder_seat")["led_ring_holder"].severity is Severity.GOOD
     base = next(part for part in made.parts if part.name == "base")
     assert base.points_mm[:, 2].max() == pytest.approx(0.0, abs=1e-6)
+
+
+def test_advice_for_a_pocket_at_the_cavity_wall_helps() -> None:
+    """0.42 mm at a ring of 7.6 mm: the message says 0.5 mm less, and 7.1 mm has 0.8 mm of wall."""
+    check = named(pad(13.0, 7.6, Housing())[1], "minimum_wall")["led_ring_holder"]
+    assert check.value == pytest.approx(0.42, abs=0.02)
+    assert "lower optics.ring.radius_mm by 0.5 mm" in check.message
+    assert "housing.wall_mm" not in check.message
+    assert check.severity is Severity.WARNING
+    check = named(pad(13.0, 7.1, Housing())[1], "minimum_wall")["led_ring_holder"]
+    assert check.severity is Severity.GOOD
+
+
+def test_advice_for_crowded_leds_is_fewer() -> None:
+    """12 LEDs of 1.6 mm on a ring of 4 mm are 2.1 mm apart: fewer of them, not thicker walls."""
+    check = named(pad(13.0, 4.0, Housing())[1], "minimum_wall")["led_ring_holder"]
+    assert check.severity is Severity.WARNING
+    assert "lower optics.ring.count" in check.message
+    assert "housing.wall_mm" not in check.message
