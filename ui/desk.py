@@ -67,7 +67,11 @@ class Desk:
         """Set by the panel that shows the parts."""
         self.pick: Callable[[int], bool] = lambda face: False
         """Set by the panel that labels faces: whether it took a click on this membrane face."""
-        self.header = Header(server.gui, self.guarded(lambda event: conductor.cancel()))
+        self.header = Header(
+            server.gui,
+            on_cancel=self.guarded(lambda event: conductor.cancel()),
+            on_fit=self.guarded(lambda event: self.scene.fit_view()),
+        )
         self.reports.banner = self.header.banner
         self.jobs = Jobs(conductor, self.reports, self.header)
         self.jobs.on_done = self._stage_done
@@ -76,6 +80,7 @@ class Desk:
         self.jobs.on_idle = self._autosave
         self._edited: float | None = None
         self._framed: tuple[str, str] | None = None
+        self._sensor: tuple[str, str] | None = None
         self._notices: dict[str, str] = {}
         self._shown: dict[str, str] = {}
         self._lock = self.reports.lock
@@ -109,6 +114,7 @@ class Desk:
         """Follow a change of state: live view, stage strip, autosave."""
         self._edited = time.monotonic()
         session = self.session
+        self._follow_sensor()
         if not session.store.has("build", session.calls()["build"].key):
             # First of all: the worker builds while the widgets follow.
             self.jobs.submit(LIVE, session.design, session.case, ("build",))
@@ -125,6 +131,23 @@ class Desk:
         for panel in self.panels:
             panel.refresh()
         self.refresh_header()
+
+    def parts_on_show(self, shown: bool) -> None:
+        """Tell all panels whether parts stand in place of the sensor."""
+        self._tell("parts", shown)
+
+    def _follow_sensor(self) -> None:
+        """Take away what was pressed and rendered of another family or another file."""
+        sensor = self._origin()
+        if self._sensor not in (None, sensor):
+            self._shown.clear()
+            self.scene.rig.forget_image()
+            self._tell("sensor", None)
+        self._sensor = sensor
+
+    def _origin(self) -> tuple[str, str]:
+        design = self.session.design
+        return design.family, design.body.outer.sha256 if design.body is not None else ""
 
     def replaced(self) -> None:
         """Follow a change of many fields at once: undo, a preset, an upload."""
@@ -160,6 +183,7 @@ class Desk:
         self.reports.begin()
         if topic != "parts":
             self.put_parts_away()
+        self._tell("run", topic)
         self.jobs.submit(topic, self.session.design, self.session.case, wanted)
 
     def trial(
@@ -184,9 +208,8 @@ class Desk:
         self._tell(stage, result)
 
     def _show_body(self, solid: Solid) -> None:
-        design = self.session.design
         self.scene.show_solid(solid)
-        origin = (design.family, design.body.outer.sha256 if design.body is not None else "")
+        origin = self._origin()
         if origin != self._framed:
             # Another kind of body; within a family the designer's own view is kept.
             self._framed = origin

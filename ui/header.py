@@ -37,11 +37,16 @@ AMBER = "#f5a623"
 class Header:
     """Widgets that every page of the left dock has above it."""
 
-    def __init__(self, gui: Any, on_cancel: Callable[[Any], None]) -> None:
+    def __init__(
+        self, gui: Any, *, on_cancel: Callable[[Any], None], on_fit: Callable[[Any], None]
+    ) -> None:
         self.title = gui.add_markdown("")
         self.strip = gui.add_markdown("")
         self.banner = gui.add_markdown("", visible=False)
         self.notice = gui.add_markdown("", visible=False)
+        hint = "Look at all that is on show, from where you look now (F)"
+        gui.add_button("Fit view", icon=viser.Icon.FOCUS_CENTERED, hint=hint).on_click(on_fit)
+        gui.add_command("Fit view", hotkey="F").on_trigger(on_fit)
         # A panel of its own: widgets must not move under the mouse when a job starts or ends.
         self.job = gui.add_panel(visible=False)
         with self.job.add_tab("Running", viser.Icon.LOADER):

@@ -63,6 +63,11 @@ class RigView:
             if image is not None:
                 self.camera.image = image
 
+    def forget_image(self) -> None:
+        """Take away what the camera of another sensor saw."""
+        if self.camera is not None:
+            self.camera.image = None
+
     def show(self, visible: bool) -> None:
         """Show or hide LEDs and camera."""
         for node in (self.camera, *self.leds):

@@ -20,6 +20,7 @@ from workbench.previews import cell_edges, indenter_shape, standing_pose
 
 INDENTER_COLOUR = (232, 124, 44)
 CELL_COLOUR = (255, 45, 85)
+EDGE_COLOUR = (20, 60, 120)
 GRID_FADE_MM = 220.0
 """Distance from the eye at which the floor is lost; most bodies are nearer than 150 mm."""
 GRID_BELOW_MM = 0.1
@@ -43,6 +44,7 @@ class Scene:
         self._shown = 0
         self._lowest_mm = 0.0
         self._cell: Any = None
+        self._edges: Any = None
         self.indenter: Any = None
         self.grid: Any = None
         self._prepare(fast)
@@ -71,6 +73,7 @@ class Scene:
         with self.server.atomic():
             self.clear_frames()
             self.clear_cell()
+            self.show_edges(None)
             self.parts.clear()
             self.body.show_solid(solid)
             low, _ = self.body.bounds_mm
@@ -79,6 +82,31 @@ class Scene:
     def frame_body(self) -> None:
         """Look at the whole body."""
         self.views.frame(*self.body.bounds_mm)
+
+    def fit_view(self) -> None:
+        """Look at all that is on show: the parts, else the body."""
+        shown = self._hidden and self.parts.shown
+        self.views.fit(*(self.parts.bounds_mm() if shown else self.body.bounds_mm))
+
+    def show_edges(self, ends_mm: np.ndarray | None) -> None:
+        """Draw the edges of a mesh, shape (E, 2, 3), on the body at rest; None takes them away."""
+        if self._edges is not None:
+            self._edges.remove()
+            self._edges = None
+        if ends_mm is not None:
+            self._edges = self.api.add_line_segments(
+                "/edges",
+                np.asarray(ends_mm, dtype=np.float32),
+                colors=EDGE_COLOUR,
+                thickness=1.0,
+                thickness_units="screen",
+            )
+            self._follow_edges()
+
+    def _follow_edges(self) -> None:
+        """The mesh is that of the body at rest."""
+        if self._edges is not None:
+            self._edges.visible = not self._hidden and self._shown == 0
 
     def show_indenter(self, indenter: Indenter, path: Press) -> None:
         """Show the indenter standing on the skin at the target."""
@@ -127,6 +155,7 @@ class Scene:
         self._frames.clear()
         self._contact = None
         self._shown = 0
+        self._follow_edges()
         if not self._hidden:
             self.body.show_skin(True)
 
@@ -136,6 +165,7 @@ class Scene:
             return
         number = min(number, len(self._frames))
         self._shown = number
+        self._follow_edges()
         if self._hidden:
             return
         with self.server.atomic():
@@ -156,6 +186,11 @@ class Scene:
             line_width=3.0,
         )
 
+    @property
+    def marked(self) -> bool:
+        """Whether a cell is drawn."""
+        return self._cell is not None
+
     def clear_cell(self) -> None:
         """Take the cell and its mark away."""
         self.views.unmark()
@@ -166,6 +201,7 @@ class Scene:
     def show_sensor(self, visible: bool) -> None:
         """Show or hide everything but the parts."""
         self._hidden = not visible
+        self._follow_edges()
         with self.server.atomic():
             self.body.show(visible)
             self.rig.show(visible)

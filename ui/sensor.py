@@ -17,6 +17,8 @@ from workbench.previews import corner_normals, first_hit, outer_faces, skin_part
 
 SKIN_COLOUR = (196, 206, 220)
 ACTUATOR_COLOURS = ((240, 150, 70), (90, 175, 240), (170, 120, 230), (120, 200, 110))
+ACTUATOR_NAMES = ("orange", "blue", "purple", "green")
+"""What those colours are called."""
 SKIN = {"color": SKIN_COLOUR, "opacity": 0.55}
 UNSENSED = {"color": (90, 90, 96), "opacity": 0.8}
 PINS = {"color": (60, 64, 72), "flat_shading": False}
@@ -74,6 +76,14 @@ class SensorView:
                 batched_positions=np.asarray(solid.tips_mm),
                 batched_colors=TIP_COLOUR,
             )
+
+    def tints(self) -> str:
+        """Which driven region has which colour; empty without driven regions."""
+        numbers = sorted(
+            int(name.partition("_")[2]) for name in self.skin.nodes if name.startswith("actuator_")
+        )
+        names = (f"actuator_{n} {ACTUATOR_NAMES[n % len(ACTUATOR_NAMES)]}" for n in numbers)
+        return ", ".join(names)
 
     def show(self, visible: bool) -> None:
         """Show or hide all of it."""

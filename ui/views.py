@@ -33,6 +33,8 @@ class Views:
         self.server = server
         self._before: dict[int, tuple[Any, Any]] = {}
         self._mark: list[Any] = []
+        self.close = False
+        """Whether the last thing that moved the eye was a flight to a place."""
         server.initial_camera.fov = FOV_RAD
 
     def frame(self, low_mm: np.ndarray, high_mm: np.ndarray) -> None:
@@ -42,21 +44,43 @@ class Views:
         self.server.initial_camera.position = tuple(centre + _distance_mm(size_mm) * AWAY)
         self.server.initial_camera.look_at = tuple(centre)
         self._before.clear()
+        self.close = False
         self._fit(centre, size_mm, AWAY)
+
+    def fit(self, low_mm: np.ndarray, high_mm: np.ndarray) -> None:
+        """Look at a box from the side each tab looks from."""
+        self.close = False
+        centre = (low_mm + high_mm) / 2
+        size_mm = float(np.linalg.norm(high_mm - low_mm))
+        for client in self.server.get_clients().values():
+            away = np.asarray(client.camera.position) - np.asarray(client.camera.look_at)
+            length = float(np.linalg.norm(away))
+            side = away / length if length > 0 else AWAY
+            distance_mm = _distance_mm(size_mm, client.camera.aspect)
+            with client.atomic():
+                client.camera.position = centre + distance_mm * side
+                client.camera.look_at = centre
 
     def step_back(self, low_mm: np.ndarray, high_mm: np.ndarray) -> None:
         """Look at another box for a while; remembers where each tab was."""
         for number, client in self.server.get_clients().items():
-            self._before.setdefault(number, (client.camera.position, client.camera.look_at))
+            # A close look at one place is not where a tab was: the whole sensor is.
+            if not self.close:
+                self._before.setdefault(number, (client.camera.position, client.camera.look_at))
+        self.close = False
         centre = (low_mm + high_mm) / 2
         self._fit(centre, float(np.linalg.norm(high_mm - low_mm)), USUAL_VIEW)
 
-    def step_forward(self) -> None:
-        """Give every tab its place before `step_back` again."""
+    def step_forward(self, low_mm: np.ndarray, high_mm: np.ndarray) -> None:
+        """Give every tab its place before `step_back` again; one that came since sees the box."""
+        self.close = False
+        centre = (low_mm + high_mm) / 2
+        size_mm = float(np.linalg.norm(high_mm - low_mm))
         for number, client in self.server.get_clients().items():
-            if number in self._before:
-                with client.atomic():
-                    client.camera.position, client.camera.look_at = self._before.pop(number)
+            away = _distance_mm(size_mm, client.camera.aspect) * AWAY
+            position, look_at = self._before.pop(number, (centre + away, centre))
+            with client.atomic():
+                client.camera.position, client.camera.look_at = position, look_at
 
     def fly_to(
         self,
@@ -77,6 +101,7 @@ class Views:
             ball: Whether a ball stands at the place; it would hide what is as small.
         """
         place = np.asarray(place_mm, dtype=float)
+        self.close = True
         pointer = POINTER_SHARE * distance_mm * (np.asarray(toward) + POINTER_UP)
         self._put_mark(place, place + pointer, text)
         if ball:

@@ -12,7 +12,14 @@ import numpy as np
 from geometry.quality import CELL_EDGES, volume_quality
 from workbench.core.frames import quaternion, tangent
 from workbench.core.press import Indenter
-from workbench.core.results import Label, LabelledSurface, MeshQuality, VolumeMesh, region_masks
+from workbench.core.results import (
+    Label,
+    LabelledSurface,
+    MeshQuality,
+    Skin,
+    VolumeMesh,
+    region_masks,
+)
 
 LEAST_SINE = 1e-12
 """Rays flatter to a triangle than this do not meet it."""
@@ -22,6 +29,11 @@ UNUSUAL_MM = 0.5
 """Material that one looks through rather than from the opposite side, per unit of 1 - cosine."""
 EDGE_ON_MM = 1.0
 """Material that one looks through rather than at a surface edge-on."""
+CELL_SIDES = {
+    8: ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)),
+    4: ((0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)),
+}
+"""Corners of the faces of a cell in VTK order, by its number of corners."""
 PLANE_MM = 1e-3
 """Faces nearer to the base plane than this lie on it [mm]."""
 
@@ -127,6 +139,26 @@ def clear_view(
 def cell_edges(corners_mm: np.ndarray) -> np.ndarray:
     """Ends of the edges of one cell [mm], shape (E, 2, 3), from its corners (8|4|3, 3)."""
     return np.asarray(corners_mm)[np.array(CELL_EDGES[len(corners_mm)])]
+
+
+def mesh_edges(mesh: VolumeMesh | Skin) -> np.ndarray:
+    """Ends of the edges on the outside of a mesh [mm], shape (E, 2, 3), each edge once.
+
+    The outside of a volume mesh are the faces that one cell alone has; a skin is all outside.
+    """
+    faces = mesh.faces if isinstance(mesh, Skin) else _boundary(np.asarray(mesh.cells))
+    ends = np.stack([faces, np.roll(faces, -1, axis=1)], axis=-1).reshape(-1, 2)
+    edges = np.unique(np.sort(ends, axis=1), axis=0)
+    return np.asarray(mesh.points_mm)[edges]
+
+
+def _boundary(cells: np.ndarray) -> np.ndarray:
+    """Faces of hexahedra (M, 8) or tetrahedra (M, 4) that no other cell has, (B, 4) or (B, 3)."""
+    sides = cells[:, np.array(CELL_SIDES[cells.shape[1]])].reshape(-1, 3 + (cells.shape[1] == 8))
+    _, first, count = np.unique(
+        np.sort(sides, axis=1), axis=0, return_index=True, return_counts=True
+    )
+    return sides[first[count == 1]]
 
 
 def judged(mesh: VolumeMesh, volume_mm3: float) -> MeshQuality:

@@ -51,7 +51,10 @@ def test_shape_press_and_look(tmp_path: Path, page: Any, start_server: Start) ->
 def test_refused_value_is_explained_and_the_design_kept(
     tmp_path: Path, page: Any, start_server: Start
 ) -> None:
-    """A wall that does not fit is refused under its slider; the next good value clears it."""
+    """A wall that does not fit is refused under its slider; the next good value clears it.
+
+    A good value of another slider puts the wall of the design back.
+    """
     server = start_server(coarse_project(tmp_path))
     open_page(page, server.url)
     set_number(page, "Outer radius mm", 6)
@@ -59,6 +62,10 @@ def test_refused_value_is_explained_and_the_design_kept(
     wait_until(lambda: page.get_by_text("leave less than").count(), 20, "the refusal is shown")
     set_number(page, "Elastomer mm", 1.5)
     wait_until(lambda: not page.get_by_text("leave less than").first.is_visible(), 20, "cleared")
+    set_number(page, "Elastomer mm", 5.5)
+    wait_until(lambda: page.get_by_text("leave less than").count(), 20, "the refusal is shown")
+    set_number(page, "Straight length mm", 24)
+    wait_until(lambda: slider_value(page, "Elastomer mm") == 1.5, 20, "the wall is the design's")
 
 
 def test_cancel_stops_a_press_within_three_seconds(

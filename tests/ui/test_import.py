@@ -53,6 +53,7 @@ def test_bad_file_is_refused_and_a_box_becomes_a_sensor(
     wait_until(lambda: page.get_by_text("Shape ✓").count(), 60, "the brick is built")
     assert "Cut off below mm" in labels(page)
     assert not page.get_by_text("bad.stl has no faces").count()
+    assert page.get_by_text("No press of this sensor yet").count()
     choose(page, "Clicks label", "actuator_1")
     page.wait_for_timeout(1000)
     before = view(page)
@@ -61,6 +62,12 @@ def test_bad_file_is_refused_and_a_box_becomes_a_sensor(
     page.get_by_text("actuator_1", exact=False).filter(has_text="face").wait_for()
     page.mouse.move(box["x"] + 5, box["y"] + box["height"] - 5)
     wait_until(lambda: changed_share(before, view(page)) > TINTED, 60, "the face is tinted")
+    assert page.get_by_text("actuator_1 blue").count()
+
+    other = tmp_path / "slab.stl"
+    trimesh.creation.box((30.0, 30.0, 30.0)).export(other)
+    upload(page, "Load outer body", other)
+    page.get_by_text("slab · imported").wait_for()
 
 
 def test_unit_asked_for_and_leds_brought_inside(

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ui.panels.checks import amount, line
+from ui.panels.checks import amount, line, said
 from ui.panels.mesh import steps
 from workbench.core.fabrication import FabricationCheck, Severity
-from workbench.core.results import Label, LabelledSurface
+from workbench.core.results import Label, LabelledSurface, Skin, VolumeMesh
 from workbench.forms import choices, purpose
-from workbench.previews import cell_edges, clear_view, first_hit, skin_parts
+from workbench.previews import cell_edges, clear_view, first_hit, mesh_edges, skin_parts
 
 
 def cube(edge_mm: float = 2.0) -> tuple[np.ndarray, np.ndarray]:
@@ -106,3 +106,43 @@ def test_a_family_without_its_file_is_not_offered() -> None:
     assert "imported" not in choices()
     assert {"trunk", "pad", "finger"} <= set(choices())
     assert all(purpose(name) for name in choices())
+
+
+def test_edges_of_a_mesh_are_those_of_its_outside() -> None:
+    """Two cubes side by side have 20 edges, all outside; a cut cube of 12 triangles has 18."""
+    grid = np.stack(np.meshgrid(range(3), range(2), range(2), indexing="ij"), axis=-1)
+    points = grid.reshape(-1, 3).astype(float)
+    first = np.array([0, 4, 6, 2, 1, 5, 7, 3])
+    mesh = VolumeMesh(
+        points_mm=points,
+        cells=np.stack([first, first + 4]).astype(np.int32),
+        labels=np.zeros(12, np.uint8),
+        quality=np.ones(2, np.float32),
+        layers=1,
+        volume_mm3=2.0,
+    )
+    edges = mesh_edges(mesh)
+    assert edges.shape == (20, 2, 3)
+    assert np.linalg.norm(edges[:, 1] - edges[:, 0], axis=1) == pytest.approx(1.0)
+    corners, faces = cube()
+    skin = Skin(points_mm=corners, faces=faces, normals=corners)
+    assert mesh_edges(skin).shape == (18, 2, 3)
+
+
+def test_shares_are_told_in_percent_and_rounding_as_nought() -> None:
+    """0.62 of the bed is 62 %, at most 1 is 100 %; -7e-15 mm is 0 mm."""
+    message = "half_a: bed 0.62 of the bed, at most 1 of the bed is good; off by -7.1e-15 mm."
+    check = FabricationCheck(
+        name="bed",
+        part="half_a",
+        value=0.62,
+        unit="of the bed",
+        limit=1.0,
+        sense="max",
+        severity=Severity.GOOD,
+        place_mm=(0.0, 0.0, 0.0),
+        message=message,
+    )
+    assert amount(check) == "62 % of the bed (≤ 100 %)"
+    text = "half_a: bed 62 % of the bed, at most 100 % of the bed is good; off by 0 mm."
+    assert said(check) == text

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -19,6 +20,10 @@ LOOKS = {
     Severity.GOOD: ("✓", (32, 110, 72)),
 }
 """Sign and colour, worst first; the sign is for those who do not see the colour."""
+SHARE = "of "
+"""Units that begin so are shares of a whole."""
+NOISE = re.compile(r"-?\b\d(\.\d+)?e-(0[6-9]|[1-9]\d)\b")
+"""Numbers that are nought but for rounding."""
 NEAR_MM = (30.0, 160.0)
 """Nearest and farthest that the eye comes to a place [mm]."""
 NEAR_SHARE = 1.3
@@ -49,7 +54,7 @@ class ChecksList:
         with self.folder:
             for check in sorted(checks, key=lambda check: order.index(check.severity)):
                 _, colour = LOOKS[check.severity]
-                button = gui.add_button(line(check), color=colour, hint=check.message)
+                button = gui.add_button(line(check), color=colour, hint=said(check))
                 button.on_click(self.desk.guarded(self._flight(check)))
                 self.made.append(button)
 
@@ -74,7 +79,7 @@ class ChecksList:
             place, toward, distance_mm, f"{check.name.replace('_', ' ')}: {amount(check)}"
         )
         x, y, z = check.place_mm
-        self.detail.content = f"{html.escape(check.message)} At {x:.1f}, {y:.1f}, {z:.1f} mm."
+        self.detail.content = f"{html.escape(said(check))} At {x:.1f}, {y:.1f}, {z:.1f} mm."
         self.desk.log(f"{check.part}: looking at {check.name}, {x:.1f}, {y:.1f}, {z:.1f} mm")
 
 
@@ -93,7 +98,18 @@ def amount(check: FabricationCheck) -> str:
     sense = "≤" if check.sense == "max" else "≥"
     # Rounding noise is nought to a reader: five digits below the limit's own size.
     value = 0.0 if abs(check.value) < 1e-5 * max(abs(check.limit), 1.0) else check.value
-    return f"{value:.3g} {check.unit} ({sense} {check.limit:.3g})"
+    if not check.unit.startswith(SHARE):
+        return f"{value:.3g} {check.unit} ({sense} {check.limit:.3g})"
+    return f"{100 * value:.3g} % {check.unit} ({sense} {100 * check.limit:.3g} %)"
+
+
+def said(check: FabricationCheck) -> str:
+    """The message of a check with shares in percent and rounding noise as nought."""
+    text = NOISE.sub("0", check.message)
+    if check.unit.startswith(SHARE):
+        number = rf"([\d.]+(?:e[-+]\d+)?) {re.escape(check.unit)}"
+        text = re.sub(number, lambda m: f"{100 * float(m[1]):.3g} % {check.unit}", text)
+    return text
 
 
 def line(check: FabricationCheck) -> str:

@@ -11,9 +11,11 @@ from viser import uplot
 from ui.desk import Desk
 from workbench.core.results import MeshQuality, QualityReport
 from workbench.core.units import volume_ml
-from workbench.previews import clear_view, judged
+from workbench.previews import clear_view, judged, mesh_edges
 
 NOTHING = "No numbers yet: press *Check mesh*."
+TOPICS = ("mesh", "tetrahedra")
+"""Requests after which the edges stay on show."""
 CLOSE = 25.0
 """Distance of the eye from a cell over the cell's diagonal."""
 KINDS = {8: "hexahedra", 4: "tetrahedra", 3: "triangles"}
@@ -30,20 +32,29 @@ class MeshPanel:
         hint = "Edge of a tetrahedron; halving it takes four times as long"
         fields.slider("Tet edge mm", "design.meshing.tet_mm", span=(0.6, 4.0, 0.1), hint=hint)
         check = gui.add_button("Check mesh", icon=viser.Icon.CHART_HISTOGRAM)
-        check.on_click(desk.guarded(lambda event: desk.run("mesh", ("quality",))))
+        check.on_click(desk.guarded(lambda event: self._run("mesh", "quality")))
         hint = "Conforming tetrahedra for other solvers; a minute or so, Cancel stops it"
         tets = gui.add_button("Tetrahedra", icon=viser.Icon.PYRAMID, hint=hint)
-        tets.on_click(desk.guarded(lambda event: desk.run("tetrahedra", ("tets",))))
-        desk.reports.beside("mesh", "tetrahedra")
+        tets.on_click(desk.guarded(lambda event: self._run("tetrahedra", "tets")))
+        desk.reports.beside(*TOPICS)
         self.found: dict[str, MeshQuality] = {}
         self.notice = ""
         self.choice = gui.add_dropdown("Mesh shown", ("-",), visible=False)
         self.choice.on_update(desk.guarded(lambda event: self._tell()))
+        hint = "Of the mesh shown, on the body at rest"
+        self.edges = gui.add_checkbox("Show edges", False, visible=False, hint=hint)
+        self.edges.on_update(desk.guarded(lambda event: self._draw()))
+        self.drawn = ""
+        """Name and key of the mesh whose edges are drawn."""
         self.numbers = gui.add_markdown(NOTHING)
         self.measure = self._plot("% of cells", "#3b82f6")
         self.lengths = self._plot("% of edges", "#30a46c")
         self.worst = gui.add_button("Show worst cell", icon=viser.Icon.ZOOM_IN, visible=False)
         self.worst.on_click(desk.guarded(lambda event: self._fly()))
+
+    def _run(self, topic: str, stage: str) -> None:
+        self.edges.value = True
+        self.desk.run(topic, (stage,))
 
     def _plot(self, label: str, colour: str) -> Any:
         return self.desk.server.gui.add_uplot(
@@ -61,7 +72,7 @@ class MeshPanel:
         names = tuple(self.found) or ("-",)
         if tuple(self.choice.options) != names:
             self.choice.options = names
-        for handle in (self.choice, self.measure, self.lengths, self.worst):
+        for handle in (self.choice, self.edges, self.measure, self.lengths, self.worst):
             handle.visible = bool(self.found)
         self._tell()
 
@@ -70,7 +81,10 @@ class MeshPanel:
 
     def _tell(self) -> None:
         quality = self._chosen()
+        self._draw()
         if quality is None:
+            if self.desk.scene.marked:
+                self.desk.scene.clear_cell()
             self.numbers.content = NOTHING
             return
         name = self.choice.value
@@ -79,6 +93,24 @@ class MeshPanel:
         self.measure.data = steps(quality.measure_borders, quality.measure_counts)
         self.lengths.title = f"{name}: edge length [mm]"
         self.lengths.data = steps(quality.edge_borders_mm, quality.edge_counts)
+        if self.desk.scene.marked:
+            # The mark follows the mesh that is chosen.
+            self._fly()
+
+    def _draw(self) -> None:
+        """Draw the edges of the chosen mesh, or none."""
+        scene, name = self.desk.scene, self.choice.value
+        if not self.edges.value or name not in self.found:
+            self.drawn = ""
+            scene.show_edges(None)
+            return
+        stage = "tets" if name == "tetrahedra" else "mesh"
+        drawn = f"{name} {self.desk.session.calls()[stage].key}"
+        mesh = None if drawn == self.drawn else self.desk.session.result(stage)
+        if mesh is not None:
+            self.drawn = drawn
+            scene.show_edges(mesh_edges(_member(mesh, name)))
+            scene.show_frame(0)
 
     def _fly(self) -> None:
         """Look at the worst cell of the chosen mesh."""
@@ -115,8 +147,12 @@ class MeshPanel:
 
     def show(self, stage: str, result: Any) -> None:
         """Follow results."""
-        if stage == "build":
+        if stage == "run":
+            if str(result) not in TOPICS:
+                self.edges.value = False
+        elif stage == "build":
             self.found.clear()
+            self.drawn = ""
             self._offer()
         elif stage == "quality":
             self._take(result)
@@ -133,6 +169,12 @@ class MeshPanel:
         self.found = {**volume, "outer skin": report.outer, "inner skin": report.inner, **tets}
         self.notice = report.notice
         self._offer()
+
+
+def _member(mesh: Any, name: str) -> Any:
+    """The mesh of that name in a result of its stage."""
+    members = {"hexahedra": "hexes", "outer skin": "outer", "inner skin": "inner"}
+    return getattr(mesh, members[name]) if name in members else mesh
 
 
 def measure_name(quality: MeshQuality) -> str:

@@ -21,7 +21,7 @@ class PartsTree:
         self.view.on_update(desk.guarded(lambda event: self._view()))
         hint = "How far the parts stand apart, over the full way"
         self.spread = gui.add_slider("Explode", 0.0, 1.0, 0.05, 1.0, visible=False, hint=hint)
-        self.spread.on_update(desk.guarded(lambda event: self._show()))
+        self.spread.on_update(desk.guarded(self._moved))
         self.folder = gui.add_folder("Parts", visible=False)
         self.boxes: dict[str, Any] = {}
         self.groups: dict[PartGroup, Any] = {}
@@ -67,10 +67,23 @@ class PartsTree:
                 if part.group is group:
                     self.boxes[part.name].value = self.groups[group].value
             self._bring_or_show()
+            self._back_off()
 
     def _ticked(self, event: Any) -> None:
         if event.client is not None:
             self._bring_or_show()
+            self._back_off()
+
+    def _moved(self, event: Any) -> None:
+        self._show()
+        if event.client is not None:
+            self._back_off()
+
+    def _back_off(self) -> None:
+        """An eye that flew to a place would stand inside parts that come or move."""
+        scene = self.desk.scene
+        if self.view.value and scene.views.close and scene.parts.shown:
+            scene.views.step_back(*scene.parts.bounds_mm())
 
     def _bring_or_show(self) -> None:
         if self.view.value:
@@ -109,7 +122,8 @@ class PartsTree:
         else:
             scene.parts.show(set(), self.spread.value)
             scene.show_sensor(True)
-            scene.views.step_forward()
+            scene.views.step_forward(*scene.body.bounds_mm)
+        self.desk.parts_on_show(bool(self.view.value and self.parts))
 
     def _show(self) -> None:
         if self.view.value:

@@ -20,6 +20,8 @@ from workbench.outputs import force_balance
 FRAME_S = 0.15
 """Time between frames while playing [s]."""
 LOG_ROWS = 60
+NO_IMAGE = "No press of this sensor yet: *Run press* makes an image."
+NO_PRESS = "No press of this sensor yet."
 
 
 class ResultsPanel:
@@ -30,15 +32,19 @@ class ResultsPanel:
         self.shot: Shot | None = None
         self.contact: Contact | None = None
         self.playing = threading.Event()
+        self.stepping = False
+        """Whether there are frames to step through."""
+        self.covered = False
+        """Whether parts stand in place of the skin."""
         gui = desk.server.gui
         self.dock = gui.add_panel()
         with self.dock.add_tab("Tactile image", viser.Icon.PHOTO):
-            self.caption = gui.add_markdown("Press *Run press* to see an image.")
+            self.caption = gui.add_markdown(NO_IMAGE)
             self.image = gui.add_image(placeholder(), label="camera", format="jpeg")
             self.difference_text = gui.add_markdown("")
             self.difference = gui.add_image(placeholder(), label="difference", format="jpeg")
         with self.dock.add_tab("Forces", viser.Icon.CHART_LINE):
-            self.force_text = gui.add_markdown("No press yet.")
+            self.force_text = gui.add_markdown(NO_PRESS)
             self.plot = gui.add_uplot(
                 (np.zeros(2), np.zeros(2)),
                 (
@@ -113,9 +119,10 @@ class ResultsPanel:
         """Mark an image and a force that no longer belong to the state."""
         self._caption(int(self.frame.value))
         self._show_forces(int(self.frame.value))
-        if self.timeline.visible and not self.desk.current("press"):
+        if not self.desk.current("press"):
             # There are no frames on the skin to step through.
-            self.timeline.visible = False
+            self.stepping = False
+            self._offer_timeline()
 
     def show(self, stage: str, result: Any) -> None:
         """Follow results and the log."""
@@ -129,6 +136,11 @@ class ResultsPanel:
             camera = self.desk.session.design.optics.camera
             image = np.asarray(result.frames.rgb[int(self.frame.value)])
             self.desk.scene.rig.show_camera(camera, image[::4, ::4])
+        elif stage == "sensor":
+            self._blank()
+        elif stage == "parts":
+            self.covered = result
+            self._offer_timeline()
         elif stage == "log":
             rows = "<br>".join(html.escape(line) for line in reversed(result[-LOG_ROWS:]))
             self.log.content = f"<div style='font:12px monospace;margin:8px'>{rows}</div>"
@@ -138,7 +150,23 @@ class ResultsPanel:
             self.frame.value = min(int(self.frame.value), count)
             self.frame.max = count
         self.frame.value = count
-        self.timeline.visible = True
+        self.stepping = True
+        self._offer_timeline()
+
+    def _offer_timeline(self) -> None:
+        visible = self.stepping and not self.covered
+        if self.timeline.visible != visible:
+            self.timeline.visible = visible
+
+    def _blank(self) -> None:
+        """What was seen and felt belongs to another sensor."""
+        self.shot = self.contact = None
+        self.playing.clear()
+        with self.desk.server.atomic():
+            self.caption.content, self.force_text.content = NO_IMAGE, NO_PRESS
+            self.difference_text.content = ""
+            self.image.image = self.difference.image = placeholder()
+            self.plot.data = (np.zeros(2), np.zeros(2))
 
     def _show_contact(self, contact: Contact) -> None:
         path = self.desk.session.case.press

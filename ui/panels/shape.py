@@ -21,7 +21,7 @@ class ShapePanel:
         gui = desk.server.gui
         self.start = gui.add_dropdown(
             "Start from",
-            (*choices(), OWN),
+            self._offered(),
             initial_value=self._origin(),
             hint="Replaces the whole design; Undo brings yours back",
         )
@@ -81,6 +81,10 @@ class ShapePanel:
         name = self.desk.session.design.name
         return name if name in choices() else OWN
 
+    def _offered(self) -> tuple[str, ...]:
+        """All one can start from; a design of one's own only names where one is."""
+        return (*choices(), OWN) if self._origin() == OWN else choices()
+
     def _start_from(self, event: Any) -> None:
         if event.client is not None and self.start.value != OWN:
             self.desk.session.replace_design(load_design(self.start.value))
@@ -92,7 +96,8 @@ class ShapePanel:
 
     def _tell_about(self) -> None:
         origin = self._origin()
-        text = "" if origin == OWN else f"*{purpose(origin)}*"
+        parts = ("" if origin == OWN else f"*{purpose(origin)}*", self.desk.scene.body.tints())
+        text = "\n\n".join(part for part in parts if part)
         if self.about.content != text:
             self.about.content = text
 
@@ -100,9 +105,13 @@ class ShapePanel:
         """Show the state as it stands."""
         self._fill()
         self.intake.refresh()
-        origin = self._origin()
+        origin, offered = self._origin(), self._offered()
+        if origin not in self.start.options:
+            self.start.options = offered
         if self.start.value != origin:
             self.start.value = origin
+        if tuple(self.start.options) != offered:
+            self.start.options = offered
         self._tell_about()
         if self.name.value != self.desk.session.design.name:
             self.name.value = self.desk.session.design.name
@@ -110,3 +119,5 @@ class ShapePanel:
     def show(self, stage: str, result: Any) -> None:
         """An imported body's faces can be picked once it is built."""
         self.intake.show(stage, result)
+        if stage == "build":
+            self._tell_about()

@@ -121,6 +121,8 @@ class SimulatePanel:
 
     def show(self, stage: str, result: Any) -> None:
         """Show the force of the last frame, with its residual and penetration beside it."""
+        if stage == "sensor":
+            self.found = self.numbers.content = ""
         if stage == "press":
             self.found = (
                 f"**{result.normal_N[-1]:.3f} N** along the normal · residual "

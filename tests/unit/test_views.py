@@ -1,0 +1,74 @@
+"""Where tabs look from: a whole thing is framed, and parts put away give the view back."""
+
+from __future__ import annotations
+
+import contextlib
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from ui.views import Views
+
+LOW, HIGH = np.array([-10.0, -10.0, 0.0]), np.array([10.0, 10.0, 40.0])
+MIDDLE = (LOW + HIGH) / 2
+PLACE = (3.0, 4.0, 5.0)
+
+
+def client() -> Any:
+    """A tab that looks along -X."""
+    camera = SimpleNamespace(position=(200.0, 0.0, 0.0), look_at=(0.0, 0.0, 0.0), aspect=1.0)
+    return SimpleNamespace(camera=camera, atomic=contextlib.nullcontext)
+
+
+class Page:
+    """A server with tabs and a scene that takes everything."""
+
+    def __init__(self) -> None:
+        self.clients = {0: client()}
+        self.initial_camera = SimpleNamespace()
+        node = SimpleNamespace(remove=lambda: None)
+        names = ("add_line_segments", "add_label", "add_icosphere")
+        self.scene = SimpleNamespace(**{name: lambda *a, **k: node for name in names})
+
+    def get_clients(self) -> dict[int, Any]:
+        return self.clients
+
+
+@pytest.fixture
+def page() -> Page:
+    return Page()
+
+
+def test_parts_put_away_give_back_the_view_before_a_flight(page: Page) -> None:
+    """A flight to a place of a part does not outlive the parts: the eye is at (200, 0, 0) again."""
+    views = Views(page)
+    views.step_back(LOW, HIGH)
+    views.fly_to(PLACE, np.array([0.0, 1.0, 0.0]), 20.0, "here")
+    assert views.close
+    views.step_forward(LOW, HIGH)
+    assert page.clients[0].camera.position == (200.0, 0.0, 0.0)
+    assert not views.close
+
+
+def test_a_tab_opened_among_parts_sees_the_sensor_when_they_go(page: Page) -> None:
+    """Without a view of before, the tab looks at the middle of the sensor."""
+    views = Views(page)
+    views.step_back(LOW, HIGH)
+    page.clients[1] = client()
+    views.fly_to(PLACE, np.array([0.0, 1.0, 0.0]), 20.0, "here")
+    views.step_forward(LOW, HIGH)
+    assert page.clients[1].camera.look_at == pytest.approx(MIDDLE)
+    assert page.clients[0].camera.look_at == (0.0, 0.0, 0.0)
+
+
+def test_fit_keeps_the_side_one_looks_from(page: Page) -> None:
+    """An eye on +X stays on +X of the middle, farther than half the diagonal."""
+    views = Views(page)
+    views.fit(LOW, HIGH)
+    camera = page.clients[0].camera
+    assert camera.look_at == pytest.approx(MIDDLE)
+    away = np.asarray(camera.position) - MIDDLE
+    assert away[1:] == pytest.approx([0.0, 0.0])
+    assert away[0] > np.linalg.norm(HIGH - LOW) / 2
