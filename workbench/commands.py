@@ -8,11 +8,13 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import json
+import time
 from typing import Any
 
 from workbench.core.design import LightModel, SensorDesign
 from workbench.core.errors import DesignError, DeviceError
 from workbench.core.results import Solid
+from workbench.core.units import human_seconds
 from workbench.project import Project
 from workbench.stages import Outcome
 from workbench.terminal import Progress, complain, say
@@ -182,13 +184,20 @@ def bench(options: argparse.Namespace, project: Project) -> int:
 
 def _print_rows(options: argparse.Namespace, rooms: dict[str, Any]) -> int:
     from workbench.core.mapping import suggest
-    from workbench.rows import as_json, as_text, gathered
+    from workbench.rows import Row, as_json, as_text, gathered, listening
+
+    started = time.monotonic()
+
+    def heard(row: Row) -> None:
+        state = "ok" if row.ok else "FAIL"
+        complain(f"{state:4} {row.name} after {human_seconds(time.monotonic() - started)}")
 
     if options.room not in rooms:
         raise DesignError(
             f"there is no room {options.room!r}", hint=suggest(options.room, rooms), at="room"
         )
-    rows = gathered(options.room, rooms[options.room])
+    with listening(heard):
+        rows = gathered(options.room, rooms[options.room])
     say(as_json(rows) if options.json else as_text(rows))
     return 0 if all(row.ok for row in rows) else 1
 

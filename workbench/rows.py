@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import json
 import math
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextvars import ContextVar
 from dataclasses import dataclass
 from typing import Any, overload
 
@@ -58,19 +60,21 @@ def compared(
     except WorkbenchError as problem:
         return failed(name, case, unit=unit, why=problem.message)
     error = abs(value - reference) / (abs(reference) if relative else 1.0)
-    return Row(
-        name=name,
-        case=case,
-        value=value,
-        unit=unit,
-        reference=reference,
-        null=null,
-        ceiling=ceiling,
-        error=error,
-        error_kind="relative" if relative else "absolute",
-        limit=limit,
-        sense="max",
-        ok=math.isfinite(error) and error <= limit,
+    return _told(
+        Row(
+            name=name,
+            case=case,
+            value=value,
+            unit=unit,
+            reference=reference,
+            null=null,
+            ceiling=ceiling,
+            error=error,
+            error_kind="relative" if relative else "absolute",
+            limit=limit,
+            sense="max",
+            ok=math.isfinite(error) and error <= limit,
+        )
     )
 
 
@@ -90,15 +94,17 @@ def bounded(
     except WorkbenchError as problem:
         return failed(name, case, unit=unit, why=problem.message)
     good = value <= limit if sense == "max" else value >= limit
-    return Row(
-        name=name,
-        case=case,
-        value=value,
-        unit=unit,
-        null=null,
-        limit=limit,
-        sense=sense,
-        ok=math.isfinite(value) and good,
+    return _told(
+        Row(
+            name=name,
+            case=case,
+            value=value,
+            unit=unit,
+            null=null,
+            limit=limit,
+            sense=sense,
+            ok=math.isfinite(value) and good,
+        )
     )
 
 
@@ -112,9 +118,29 @@ def _measure(value: Measurement | None) -> float | None:
 
 def failed(name: str, case: str, *, unit: str = "", why: str = "") -> Row:
     """A row whose measurement could not be made: never ok."""
-    return Row(
-        name=name, case=f"{case}; not measured: {why}" if why else case, value=None, unit=unit
+    return _told(
+        Row(name=name, case=f"{case}; not measured: {why}" if why else case, value=None, unit=unit)
     )
+
+
+_LISTENER: ContextVar[Callable[[Row], None] | None] = ContextVar("listener", default=None)
+
+
+@contextlib.contextmanager
+def listening(listener: Callable[[Row], None]) -> Iterator[None]:
+    """Call `listener` with each row as soon as it is measured; a room may take minutes."""
+    token = _LISTENER.set(listener)
+    try:
+        yield
+    finally:
+        _LISTENER.reset(token)
+
+
+def _told(row: Row) -> Row:
+    listener = _LISTENER.get()
+    if listener is not None:
+        listener(row)
+    return row
 
 
 def gathered(room: str, rows: Callable[[], Sequence[Row]]) -> Sequence[Row]:

@@ -259,6 +259,29 @@ def test_row_that_cannot_be_measured_fails_alone(
     assert run(tmp_path, "validate", "fem") == 1
 
 
+def test_rows_are_told_as_they_are_measured(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Rooms take minutes: each row has its line beside the answer, before the next one starts."""
+    heard: list[str] = []
+
+    def measured() -> float:
+        heard.append(capsys.readouterr().err)
+        return 2.0
+
+    monkeypatch.setitem(
+        validate.ROOMS,
+        "fem",
+        lambda: [bounded(n, "x", measured, unit="N", limit=3.0 - k) for k, n in enumerate("abc")],
+    )
+    assert run(tmp_path, "validate", "fem", "--json") == 1
+    said = capsys.readouterr()
+    assert heard[0] == ""
+    assert heard[1].startswith("ok   a after")
+    assert said.err.startswith("FAIL c after")
+    assert len(json.loads(said.out)) == 3
+
+
 @pytest.mark.parametrize("command", ["validate", "bench"])
 def test_room_that_cannot_begin_is_a_failed_row(
     tmp_path: Path,
