@@ -47,6 +47,8 @@ class ActuatorRod:
     """One slider and what it needs of the base."""
 
     name: str
+    title: str
+    """What it is for, in words."""
     body: csg.Node
     guide: csg.Node
     """Block beside the foot, to be joined to it."""
@@ -90,6 +92,7 @@ def _rod(number: int, solid: Solid, options: Housing) -> ActuatorRod:
     shaft = csg.moved(csg.cylinder(ROD_MM, bottom, top + ROD_MM), (*rod_xy, 0.0))
     return ActuatorRod(
         name=f"slider_{number}",
+        title=f"actuator rod for lobe {number}",
         body=csg.Union(parts=(shaft, beam, post, paddle)),
         guide=_guide(rod_xy, aside, reach, bottom, options),
         bore=csg.moved(csg.cylinder(ROD_MM + gap, bottom - 1.0, top), (*rod_xy, 0.0)),

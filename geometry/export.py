@@ -21,7 +21,14 @@ from geometry.faceted import faceted
 from geometry.solid import part_from_brep
 from geometry.threemf import threemf_bytes
 from workbench.core.errors import GeometryError, StoreError
-from workbench.core.fabrication import FabricationPart, HousingSet, MouldSet, PartGroup, Recipe
+from workbench.core.fabrication import (
+    FabricationPart,
+    HousingSet,
+    MouldSet,
+    PartGroup,
+    Recipe,
+    SheetHead,
+)
 from workbench.core.monitor import Monitor, silent
 
 ASSEMBLIES = {PartGroup.MOULD: "mould_assembly", PartGroup.SENSOR: "sensor_assembly"}
@@ -48,7 +55,11 @@ def stl_bytes(points_mm: np.ndarray, faces: np.ndarray) -> bytes:
 
 
 def package_files(
-    moulds: MouldSet, housing: HousingSet, recipe: Recipe, monitor: Monitor = silent
+    moulds: MouldSet,
+    housing: HousingSet,
+    recipe: Recipe,
+    head: SheetHead,
+    monitor: Monitor = silent,
 ) -> dict[str, np.ndarray]:
     """Every file of the workshop, by its path within the results, shape (bytes,), uint8."""
     parts = (*moulds.parts, *housing.parts)
@@ -73,7 +84,8 @@ def package_files(
         except GeometryError as error:
             missing.append(error.message)
     files[ALL_PARTS] = threemf_bytes(parts)
-    files["build_sheet.html"] = build_sheet_html(moulds, housing, recipe, missing).encode()
+    sheet = build_sheet_html(moulds, housing, recipe, missing, head=head)
+    files["build_sheet.html"] = sheet.encode()
     files["bom.csv"] = bom_csv(recipe).encode()
     return {name: np.frombuffer(data, dtype=np.uint8).copy() for name, data in files.items()}
 

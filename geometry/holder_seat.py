@@ -28,6 +28,10 @@ ROOT_MM = 0.5
 """How deep the sleeve is rooted in the base [mm]."""
 REST_MM = 0.1
 """Thickness of the slab in which plans are taken [mm]."""
+PLAY_MM = 0.5
+"""A support that can shift by less is centred [mm]."""
+LIFT_MM = 0.01
+TOUCH_MM3 = 1e-6
 FACING_COSINE = 0.9
 FARTHEST_MM = 50.0
 """Gaps wider than this are not measured [mm]."""
@@ -113,6 +117,19 @@ def seat_gap(holder: Any, base: Any) -> Worst:
     if many > len(order):
         return Worst(FARTHEST_MM, place)
     return Worst(min(float(drop[order[many - 1]]), FARTHEST_MM), place)
+
+
+def centred(support: Any, others: Sequence[Any]) -> bool:
+    """Whether holder or base stop the support, once shifted a little to any of four sides.
+
+    Args:
+        support: Manifold of the support.
+        others: Manifolds of holder and base.
+    """
+    sides = ((PLAY_MM, 0.0), (-PLAY_MM, 0.0), (0.0, PLAY_MM), (0.0, -PLAY_MM))
+    # Lifted off the base by a hair: faces in one plane may share slivers.
+    moved = [support.translate((x, y, LIFT_MM)) for x, y in sides]
+    return all(any((one ^ other).volume() > TOUCH_MM3 for other in others) for one in moved)
 
 
 def _stands(places_mm: np.ndarray, middle_mm: np.ndarray) -> bool:

@@ -28,6 +28,7 @@ from geometry.fabricate import fabricate, largest
 from geometry.holder_seat import holder_seat
 from geometry.housing_checks import LEAST_WALL_MM, housing_checks
 from geometry.led_holder import SPARE_MM, shaped_holder
+from geometry.supplies import camera_module
 from workbench.core.design import Camera, LedMount, LedRing
 from workbench.core.fabrication import FabricationPart, HousingSet, PartGroup
 from workbench.core.leds import led_places
@@ -82,6 +83,7 @@ def make_housing(
     bought = Bought(module=_module(camera, options, 0.0), leds=_leds(ring, options, 0.0))
     nodes = _nodes(solid, options, ring, camera, rods)
     places = _exploded(solid, rods)
+    processes = {"support": CLEAR_RESIN, **{rod.name: f"{TOUGH}; {rod.title}" for rod in rods}}
     parts: list[FabricationPart] = []
     reasons: list[str] = []
     lost: dict[str, Worst] = {}
@@ -92,7 +94,7 @@ def make_housing(
             node,
             group=PartGroup.SENSOR,
             explode=places[name],
-            process=CLEAR_RESIN if name == "support" else TOUGH,
+            process=processes.get(name, TOUGH),
             keep_largest=True,
             brep=solid.support_brep if name == "support" else None,
         )
@@ -110,7 +112,12 @@ def make_housing(
         bed_mm=bed_mm,
         lost=lost,
     )
-    return HousingSet(parts=tuple(parts), checks=checks, notice="; ".join(reasons))
+    return HousingSet(
+        parts=tuple(parts),
+        checks=checks,
+        notice="; ".join(reasons),
+        bought=(camera_module(options),),
+    )
 
 
 def _nodes(

@@ -9,10 +9,13 @@ from __future__ import annotations
 import numpy as np
 
 from geometry.castability import Worst
+from geometry.csg_mesh import closed
 from geometry.gel import gel_step
+from geometry.holder_seat import centred
 from geometry.leds import led_items
 from geometry.mould_checks import core_removal
 from geometry.silicones import NEAR, Silicone, elongation, nearest, silicone
+from geometry.supplies import ADHESIVE, bolts, rim_mm2, supplies
 from geometry.surface import face_areas
 from workbench.core.design import LedRing
 from workbench.core.fabrication import (
@@ -69,6 +72,8 @@ def make_recipe(
         steps=_steps(solid, moulds, housing, chosen, pour_ml, mass_g, share_a, backing_MPa),
         checks=_checks(moulds, chosen),
         notice=_notice(chosen, young_MPa, density_g_cm3),
+        supplies=supplies(solid, moulds, housing, casting, backing_MPa),
+        size_mm=_size_mm(solid, housing),
     )
 
 
@@ -77,6 +82,22 @@ def _checks(moulds: MouldSet, chosen: Silicone) -> tuple[FabricationCheck, ...]:
         return ()
     strain = Worst(moulds.release_strain, moulds.release_mm)
     return (core_removal(strain, elongation(chosen.name)),)
+
+
+def _placing(housing: HousingSet) -> str:
+    """What puts the support in its place on the base."""
+    found = {part.name: closed(part.name, part.points_mm, part.faces) for part in housing.parts}
+    others = [found[name] for name in ("led_ring_holder", "base") if name in found]
+    if "support" in found and centred(found["support"], others):
+        return "which centres it"
+    return "measure that it is in the middle"
+
+
+def _size_mm(solid: Solid, housing: HousingSet) -> tuple[float, float, float]:
+    """Bounding box of skin and rigid parts [mm]."""
+    clouds = [solid.membrane.points_mm, *(part.points_mm for part in housing.parts)]
+    x, y, z = (float(size) for size in np.ptp(np.concatenate(clouds), axis=0))
+    return x, y, z
 
 
 def print_item(part: FabricationPart) -> PrintItem:
@@ -127,7 +148,8 @@ def _steps(
         f"{', '.join(part.name for part in housing.parts)}; wash, cure and sand the cavity.",
         "Coat all mould faces with release agent: printed resin stops platinum silicone from "
         "curing, so bake it or seal it with clear acrylic lacquer first.",
-        f"Bolt {' and '.join(outer)} together with M3 bolts and turn them tip down.",
+        f"Bolt {' and '.join(outer)} together with {bolts(moulds)[0]} M3 bolts, a washer under "
+        "each head and nut, and turn them tip down.",
         f"Weigh {mass_g * share_a:.2f} g of part A and {mass_g * (1 - share_a):.2f} g of part B of "
         f"{chosen.name} ({pour_ml:.2f} ml in all), stir slowly and degas under vacuum.",
         f"Close the mould with the core, flange up, and fill it through the gate{life}, until "
@@ -147,8 +169,13 @@ def _steps(
         steps.append(gel_step(solid, backing_MPa))
     steps += [
         "Solder the LEDs in the order of the list and press them into led_ring_holder; put camera "
-        "and camera_mount into the base from below, then holder and support on top.",
+        "and camera_mount into the base from below, then the holder on top.",
     ]
+    if rim_mm2(solid.support):
+        steps.append(
+            f"Glue the support onto the base: a thin bead of {ADHESIVE} under its rim, "
+            f"lower it over the holder, {_placing(housing)}, wipe off what comes out and cure it."
+        )
     if any(part.name.startswith("slider") for part in housing.parts):
         steps.append("Push the sliders through their guides and tie them to the actuators.")
     return tuple(steps)

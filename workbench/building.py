@@ -53,7 +53,8 @@ def build_solid(family: Any, shape: Any, layers: Layers) -> Solid:
     if softer is not None:
         try:
             solid = _by_kernel(family, softer, layers, expected_mm3)
-            return _noted(solid, f"{_changed(shape, softer)} ({first.message})")
+            # Why the kernel gave up names its library, and helps no designer.
+            return _noted(solid, _changed(shape, softer))
         except (GeometryError, MeshingError) as error:
             first = error
     return _by_distance(family, shape, layers, expected_mm3, first)
@@ -189,7 +190,7 @@ def _changed(shape: Any, softer: Any) -> str:
         before, after = getattr(shape, field.name), getattr(softer, field.name)
         if before != after:
             label, unit = field.metadata.get("label", field.name), field.metadata.get("unit", "")
-            parts.append(f"{label} {before:g} {unit} failed; built with {after:g} {unit}")
+            parts.append(f"{label} {before:g} {unit} could not be built; {after:g} {unit} was")
     return ", ".join(parts)
 
 

@@ -113,7 +113,8 @@ def plan(design: SensorDesign, case: PressCase) -> dict[str, Call]:
     housing = Call("housing", (build.ref, design.housing, dark, *pose, design.mould.bed_mm))
     bought = (coloured, design.casting, material.young_MPa, material.density_g_cm3)
     recipe = Call("recipe", (build.ref, mould.ref, housing.ref, *bought, material.backing_MPa))
-    package = Call("package", (mould.ref, housing.ref, recipe.ref))
+    head = (design.name, design.family, design.mould.shrink_percent, design.mould.draft_deg)
+    package = Call("package", (mould.ref, housing.ref, recipe.ref, *head))
     picture = Call("picture", (build.ref, mould.ref, housing.ref))
     calls = (
         *sources,

@@ -22,7 +22,7 @@ from workbench.core.design import (
     Optics,
 )
 from workbench.core.digest import digest
-from workbench.core.fabrication import HousingSet, MouldSet, Recipe
+from workbench.core.fabrication import HousingSet, MouldSet, Recipe, SheetHead
 from workbench.core.imported import ImportedBody, Pick, ReadBody
 from workbench.core.making import Casting, Housing
 from workbench.core.monitor import Monitor, part, silent
@@ -266,11 +266,22 @@ def picture(solid: Solid, moulds: MouldSet, housing: HousingSet, *, monitor: Mon
     return Picture(png=exploded_sensor(solid, moulds, housing))
 
 
-def package(moulds: MouldSet, housing: HousingSet, recipe: Recipe, *, monitor: Monitor) -> Bundle:
+def package(
+    moulds: MouldSet,
+    housing: HousingSet,
+    recipe: Recipe,
+    name: str,
+    family: str,
+    shrink_percent: float,
+    draft_deg: float,
+    *,
+    monitor: Monitor,
+) -> Bundle:
     """Every part as STL, STEP and 3MF, the assemblies, the build sheet and the parts list."""
     from geometry.export import package_files
 
-    return Bundle(files=package_files(moulds, housing, recipe, monitor=monitor))
+    head = SheetHead(name=name, family=family, shrink_percent=shrink_percent, draft_deg=draft_deg)
+    return Bundle(files=package_files(moulds, housing, recipe, head, monitor=monitor))
 
 
 STAGES = {

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from geometry.actuation import make_rods
 from geometry.cast import make_cast
 from geometry.export import package_files, step_body, stl_bytes, write_step
 from geometry.housing import make_housing
@@ -15,10 +16,11 @@ from geometry.indenters import load_stl
 from geometry.mould_fit import measure_fit
 from geometry.moulds import make_mould
 from geometry.recipe import make_recipe
+from geometry.supplies import ADHESIVE, bolt_length_mm, bolts, rim_mm2
 from geometry.surface import is_watertight, mesh_volume, pieces
-from workbench.core.design import Camera, Elastomer, LedRing, MouldOptions
+from workbench.core.design import Camera, Elastomer, Layers, LedRing, MouldOptions
 from workbench.core.errors import DesignError, GeometryError, StoreError
-from workbench.core.fabrication import HousingSet, MouldSet, PartGroup, Recipe
+from workbench.core.fabrication import HousingSet, MouldSet, PartGroup, Recipe, SheetHead
 from workbench.core.making import Casting, Housing
 from workbench.core.results import Solid
 
@@ -233,7 +235,8 @@ def test_files_are_complete_and_keep_volumes_and_names(
     """STL, STEP, 3MF of each part; assemblies read back with the parts' volumes."""
     from build123d import import_step
 
-    files = package_files(moulds, housing, recipe)
+    head = SheetHead(name="one <finger>", family="finger", shrink_percent=0.2, draft_deg=0.0)
+    files = package_files(moulds, housing, recipe, head)
     parts = (*moulds.parts, *housing.parts)
     for part in parts:
         folder = "moulds" if part.group is PartGroup.MOULD else "parts"
@@ -281,3 +284,38 @@ def test_every_family_has_a_mould(name: str) -> None:
 
     (row,) = rows([name])
     assert row.ok, row.case
+
+
+def test_what_to_buy_follows_from_the_parts(
+    finger: Solid, moulds: MouldSet, housing: HousingSet, recipe: Recipe
+) -> None:
+    """Two bolts across 30 / 0.998 + 2 x 6 mm: 50 mm long; glue under a rim of pi (13^2 - 12^2)."""
+    found = {item.name: item for item in recipe.supplies}
+    count, clamped_mm = bolts(moulds)
+    assert count == 2
+    assert clamped_mm == pytest.approx(30.0 / 0.998 + 12.0, abs=0.05)
+    # 42.1 + 2 x 0.5 + 2.4 + 0.5 = 46.
+    assert found["M3 bolt, 50 mm"].amount == found["M3 nut"].amount == 2
+    assert found["M3 washer"].amount == 4
+    assert found["camera module"].details == "8.5 x 8.5 x 6 mm with its lens"
+    support = next(part for part in housing.parts if part.name == "support")
+    outside_mm = np.hypot(*support.points_mm[:, :2].T).max()
+    rim = np.pi * (outside_mm**2 - (outside_mm - Layers().support_mm) ** 2)
+    assert rim_mm2(finger.support) == pytest.approx(rim, rel=0.02)  # chords
+    assert found[ADHESIVE].amount == pytest.approx(0.1 * rim / 1000.0, rel=0.02)
+    assert any("Glue the support" in s and "which centres it" in s for s in recipe.steps)
+
+
+def test_bolts_of_more_parts_and_of_wide_moulds() -> None:
+    """16 mm are clamped by 20 mm, 96.1 mm by 100 mm, and more by no standard bolt."""
+    assert bolt_length_mm(16.0) == 20.0
+    assert bolt_length_mm(96.1) == 100.0
+    assert bolt_length_mm(96.2) is None
+
+
+def test_a_rod_says_what_it_is_for() -> None:
+    """`slider_0` of the trunk is the actuator rod for lobe 0."""
+    from workbench.validation.meshes import default_solid
+
+    rods = make_rods(default_solid("trunk"), Housing())
+    assert [rod.title for rod in rods] == [f"actuator rod for lobe {n}" for n in (0, 1)]

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from workbench.core.booleans import cut, expect_volume, fuse, intersect
+from workbench.core.booleans import cut, expect_volume, fillet, fuse, intersect
 from workbench.core.errors import GeometryError
 
 
@@ -101,3 +101,15 @@ def test_expected_volume_is_held_to() -> None:
         expect_volume(Fake(10.0), 11.0, what="plug")
     with pytest.raises(GeometryError, match="not one valid solid"):
         expect_volume(Fake(10.0, pieces=2), 10.0, what="plug")
+
+
+def test_a_fillet_that_fails_names_no_library() -> None:
+    """The words of the CAD library stay in the cause; the message names feature and radius."""
+
+    class Unroundable(Fake):
+        def fillet(self, radius_mm: float, edges: Any) -> Any:
+            raise ValueError("use max_fillet() to find the largest")
+
+    with pytest.raises(GeometryError, match=r"rim 3 mm; it could not be built") as caught:
+        fillet(Unroundable(10.0), 3.0, [object()], what="rim", removes_mm3=(0.0, 1.0))
+    assert "max_fillet" not in caught.value.message

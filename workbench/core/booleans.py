@@ -97,7 +97,8 @@ def fillet(
         result = body.fillet(radius_mm, edges)
     # build123d turns the kernel's refusal into a ValueError; OCCT's own are RuntimeErrors.
     except (ValueError, RuntimeError) as error:
-        raise _failed(f"fillet of {name}", f"the kernel gave up ({error})") from error
+        # Its words name functions of the library, which mean nothing to a designer.
+        raise _failed(f"fillet of {name}", "it could not be built") from error
     return _checked(result, "fillet", name, (before, most), limits, (body,))
 
 

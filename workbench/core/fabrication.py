@@ -102,12 +102,27 @@ class MouldSet:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
+class SupplyItem:
+    """Something to buy that is neither silicone, print nor LED."""
+
+    kind: str
+    """For example `bolt`."""
+    name: str
+    amount: float
+    unit: str
+    """`piece`, `ml` or `mm2`."""
+    details: str = ""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
 class HousingSet:
     """The rigid parts of the finished sensor, and clearances around LEDs and camera."""
 
     parts: tuple[FabricationPart, ...]
     checks: tuple[FabricationCheck, ...] = ()
     notice: str = ""
+    bought: tuple[SupplyItem, ...] = ()
+    """What the parts are made to hold."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -158,3 +173,20 @@ class Recipe:
     """What the choice of silicone decides."""
     notice: str = ""
     """For example that no silicone of the table has the design's modulus."""
+    supplies: tuple[SupplyItem, ...] = ()
+    """What else to have at hand, in the order in which it is needed."""
+    size_mm: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Bounding box of the finished sensor [mm]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SheetHead:
+    """What a build sheet is for."""
+
+    name: str
+    """Of the design."""
+    family: str
+    shrink_percent: float
+    """That the cavity is larger by [%]."""
+    draft_deg: float
+    """Taper of the core [degree]."""
