@@ -81,6 +81,7 @@ class Desk:
         self._edited: float | None = None
         self._framed: tuple[str, str] | None = None
         self._sensor: tuple[str, str] | None = None
+        self._covering: set[str] = set()
         self._notices: dict[str, str] = {}
         self._shown: dict[str, str] = {}
         self._lock = self.reports.lock
@@ -132,9 +133,15 @@ class Desk:
             panel.refresh()
         self.refresh_header()
 
-    def parts_on_show(self, shown: bool) -> None:
-        """Tell all panels whether parts stand in place of the sensor."""
-        self._tell("parts", shown)
+    def cover(self, what: str, shown: bool) -> None:
+        """Tell all panels whether parts, or the edges of a mesh, are looked at, not the press."""
+        before = bool(self._covering)
+        if shown:
+            self._covering.add(what)
+        else:
+            self._covering.discard(what)
+        if bool(self._covering) != before:
+            self._tell("covered", not before)
 
     def _follow_sensor(self) -> None:
         """Take away what was pressed and rendered of another family or another file."""

@@ -34,6 +34,8 @@ class Reports:
         """Set by the header: stays until the next edit."""
         self.places: dict[str, Any] = {}
         """Hidden markdown beside the button of each topic."""
+        self.notices: list[Any] = []
+        """Notifications of errors; they go with what they tell of."""
         self.lock = threading.RLock()
 
     def beside(self, *topics: str) -> None:
@@ -80,7 +82,8 @@ class Reports:
             self.places[topic].content = f"<span style='color:{RED}'>{text}</span>"
             self.places[topic].visible = True
         if topic or not at_field:
-            self.notify("Not possible", f"{words}.{hint}", color="red")
+            title = f"{topic.capitalize()} failed" if topic else "Not possible"
+            self.notices += self.notify(title, f"{words}.{hint}", color="red")
         if "\n" in error.hint:
             # A traceback from a worker; a full disk must not hide the message itself.
             with contextlib.suppress(WorkbenchError):
@@ -96,6 +99,9 @@ class Reports:
         self.banner.visible = False
         for place in self.places.values():
             place.visible = False
+        for notice in self.notices:
+            notice.remove()
+        self.notices.clear()
 
     def crash(self, bug: Exception) -> None:
         """Keep the traceback of a bug and tell the designer where it is."""
@@ -108,10 +114,12 @@ class Reports:
         self.log(f"internal error: {bug!r}; see {where}")
         self.notify("Internal error", f"{bug!r}; the details are in {where}", color="red")
 
-    def notify(self, title: str, body: str, *, color: Any = None) -> None:
+    def notify(self, title: str, body: str, *, color: Any = None) -> list[Any]:
         """A passing message in every tab."""
-        for client in self.server.get_clients().values():
+        return [
             client.add_notification(title, body, color=color, auto_close_seconds=NOTICE_S)
+            for client in self.server.get_clients().values()
+        ]
 
     def log(self, text: str) -> None:
         """Add a line to the log."""

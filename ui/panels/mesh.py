@@ -103,6 +103,7 @@ class MeshPanel:
         if not self.edges.value or name not in self.found:
             self.drawn = ""
             scene.show_edges(None)
+            self.desk.cover("edges", False)
             return
         stage = "tets" if name == "tetrahedra" else "mesh"
         drawn = f"{name} {self.desk.session.calls()[stage].key}"
@@ -111,6 +112,7 @@ class MeshPanel:
             self.drawn = drawn
             scene.show_edges(mesh_edges(_member(mesh, name)))
             scene.show_frame(0)
+            self.desk.cover("edges", True)
 
     def _fly(self) -> None:
         """Look at the worst cell of the chosen mesh."""
@@ -147,9 +149,8 @@ class MeshPanel:
 
     def show(self, stage: str, result: Any) -> None:
         """Follow results."""
-        if stage == "run":
-            if str(result) not in TOPICS:
-                self.edges.value = False
+        if stage == "press" or (stage == "run" and str(result) not in TOPICS):
+            self.edges.value = False
         elif stage == "build":
             self.found.clear()
             self.drawn = ""

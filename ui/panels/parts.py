@@ -123,7 +123,7 @@ class PartsTree:
             scene.parts.show(set(), self.spread.value)
             scene.show_sensor(True)
             scene.views.step_forward(*scene.body.bounds_mm)
-        self.desk.parts_on_show(bool(self.view.value and self.parts))
+        self.desk.cover("parts", bool(self.view.value and self.parts))
 
     def _show(self) -> None:
         if self.view.value:

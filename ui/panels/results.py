@@ -35,7 +35,7 @@ class ResultsPanel:
         self.stepping = False
         """Whether there are frames to step through."""
         self.covered = False
-        """Whether parts stand in place of the skin."""
+        """Whether parts or a mesh are looked at instead of the press."""
         gui = desk.server.gui
         self.dock = gui.add_panel()
         with self.dock.add_tab("Tactile image", viser.Icon.PHOTO):
@@ -138,9 +138,11 @@ class ResultsPanel:
             self.desk.scene.rig.show_camera(camera, image[::4, ::4])
         elif stage == "sensor":
             self._blank()
-        elif stage == "parts":
+        elif stage == "covered":
             self.covered = result
             self._offer_timeline()
+            if not self.covered:
+                self.desk.scene.show_frame(int(self.frame.value))
         elif stage == "log":
             rows = "<br>".join(html.escape(line) for line in reversed(result[-LOG_ROWS:]))
             self.log.content = f"<div style='font:12px monospace;margin:8px'>{rows}</div>"
