@@ -1,0 +1,76 @@
+"""How requests end: a failed one is told where it was asked for, one of another design is not."""
+
+from __future__ import annotations
+
+import contextlib
+import threading
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from ui.jobs import Jobs
+from workbench.conductor import LIVE, Finished, Request
+from workbench.core.design import SensorDesign
+from workbench.core.errors import DesignError
+from workbench.pipeline import PressCase
+
+
+class Told:
+    """Reports that remember what was told."""
+
+    def __init__(self) -> None:
+        self.lock = contextlib.nullcontext(threading.RLock())
+        self.errors: list[tuple[str, str]] = []
+        self.lines: list[str] = []
+        self.log = self.lines.append
+
+    def guarded(self, handler: Any) -> Any:
+        return handler
+
+    def report(self, error: DesignError, *, topic: str) -> None:
+        self.errors.append((error.message, topic))
+
+
+def failed(topic: str) -> Finished:
+    """A request whose body could not be built."""
+    request = Request(design=SensorDesign(name="any"), case=PressCase(), wanted=("press",))
+    error = DesignError("no face is sensing")
+    return Finished(topic=topic, request=request, error=error, seconds=1.0, failed="build")
+
+
+@pytest.fixture
+def told() -> Told:
+    return Told()
+
+
+@pytest.fixture
+def jobs(told: Told) -> Jobs:
+    reports: Any = told
+    conductor: Any = None
+    header: Any = SimpleNamespace(show_progress=lambda running: None)
+    return Jobs(conductor, reports, header)
+
+
+@pytest.mark.parametrize(("topic", "place"), [("press", "press"), ("parts", "parts"), (LIVE, "")])
+def test_a_failed_request_is_told_by_its_topic(
+    jobs: Jobs, told: Told, topic: str, place: str
+) -> None:
+    """The message goes to the button of its topic; the live body has none."""
+    jobs.pump([failed(topic)])
+    assert told.errors == [("no face is sensing", place)]
+
+
+def test_an_error_of_another_design_is_only_logged(jobs: Jobs, told: Told) -> None:
+    """After an undo the state's body is another: nothing red, one line in the log."""
+    asked: list[str] = []
+
+    def asked_now(request: Request, stage: str) -> bool:
+        asked.append(stage)
+        return False
+
+    jobs.asked_now = asked_now
+    jobs.pump([failed("press")])
+    assert told.errors == []
+    assert asked == ["build"]
+    assert told.lines == ["press, of an earlier design: no face is sensing"]
