@@ -137,19 +137,14 @@ def _nodes(
     leds = _leds(ring, options, gap)
     cup = _cup(camera, options, front_mm, 0.0)
     foot = csg.together(_body(solid.base, solid.base_brep), [rod.guide for rod in rods])
-    # A ledge between the two seats thinner than a wall is cut away with the lower seat.
-    ledge = (
-        ring.height_mm - _holder_mm(ring, options) - camera.position_mm[2] - front_mm - 2.0 * gap
-    )
-    cup_seat_mm = front_mm + gap + (LEAST_WALL_MM if 0.0 <= ledge < LEAST_WALL_MM else 0.0)
-    room = [seat, _cup(camera, options, cup_seat_mm, gap), _cable(camera, options), module]
+    room = [seat, *_cup_seat(camera, ring, options, front_mm), _cable(camera, options), module]
     holder = _holder(ring, options, shells, module, leds)
     base = _cut(foot, [*shells, *room, *(rod.bore for rod in rods)])
     sleeve = holder_seat(
         holder,
         base,
         [membrane, support],
-        [_cup(camera, options, cup_seat_mm, gap), module],
+        room[1:],
         hole_mm=_hole_mm(ring, options),
         gap_mm=gap,
         wall_mm=max(options.wall_mm, LEAST_WALL_MM),
@@ -234,6 +229,28 @@ def _cup(camera: Camera, options: Housing, front_mm: float, gap_mm: float) -> cs
     if gap_mm:
         back = -FAR_MM
     return _at_camera(csg.Box(low_mm=(-x, -y, back), high_mm=(x, y, front_mm)), camera)
+
+
+def _cup_seat(
+    camera: Camera, ring: LedRing, options: Housing, front_mm: float
+) -> tuple[csg.Node, ...]:
+    """What the mount's seat takes from the base.
+
+    A ledge between it and the ring's seat that is thinner than a wall goes too, but only where the
+    ring's seat is: beside it the base keeps its full height above the mount.
+    """
+    gap = options.clearance_mm
+    seat = _cup(camera, options, front_mm + gap, gap)
+    low_mm = ring.height_mm - _holder_mm(ring, options)
+    ledge_mm = low_mm - camera.position_mm[2] - front_mm - 2.0 * gap
+    if not 0.0 <= ledge_mm < LEAST_WALL_MM:
+        return (seat,)
+    higher = _cup(camera, options, front_mm + gap + LEAST_WALL_MM, gap)
+    outside_mm = ring.radius_mm + _half_mm(options) + gap
+    if np.linalg.norm(arrays(evaluate(higher))[0][:, :2], axis=1).max() <= outside_mm:
+        return (higher,)
+    around = csg.cylinder(outside_mm, -FAR_MM, FAR_MM)
+    return seat, csg.Intersection(body=higher, other=around)
 
 
 def _cable(camera: Camera, options: Housing) -> csg.Node:

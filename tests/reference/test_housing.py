@@ -226,3 +226,17 @@ def test_advice_for_crowded_leds_is_fewer() -> None:
     assert check.severity is Severity.WARNING
     assert "lower optics.ring.count" in check.message
     assert "housing.wall_mm" not in check.message
+
+
+def test_a_thin_ledge_goes_without_thinning_the_base_beside_it() -> None:
+    """DIGITac: above the corners of the mount's seat, beyond the ring's, 1.35 mm of base are left;
+    the ledge of 0.5 mm between the two seats is gone."""
+    solid = build("digitac", resolve_shape("digitac", {}), Layers(), monitor=silent)
+    ring = LedRing(count=6, radius_mm=5.0, height_mm=1.3)
+    camera = Camera(position_mm=(0.0, 0.0, 0.3))
+    bed_mm = MouldOptions().bed_mm
+    made = make_housing(solid, Housing(), ring=ring, camera=camera, bed_mm=bed_mm)
+    check = named(made, "minimum_wall")["base"]
+    assert check.value == pytest.approx(1.35, abs=1e-3)
+    base = next(part for part in made.parts if part.name == "base")
+    assert base.brep.size > 0
