@@ -19,7 +19,8 @@ from geometry.channels import Channels, make_channels
 from geometry.fabricate import fabricate
 from geometry.mould_checks import mould_checks, release_strain
 from geometry.mould_fit import measure_fit
-from geometry.mould_parts import Layout, air_holes, core_with_flange, make_layout, outer_part
+from geometry.mould_layout import Layout, make_layout
+from geometry.mould_parts import air_holes, core_with_flange, outer_part
 from geometry.parting import COUNTS, Parting, best_parting
 from workbench.core.fabrication import MouldSet, PartGroup
 from workbench.core.making import MouldOptions

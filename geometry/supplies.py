@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from geometry.gel import gap_ml
-from geometry.mould_parts import GRIP_MM
+from geometry.seams import GRIP_MM
 from geometry.surface import face_areas
 from workbench.core.fabrication import FabricationPart, HousingSet, MouldSet, SupplyItem
 from workbench.core.making import Casting, Housing
