@@ -74,8 +74,9 @@ APEX_MM = 1e-3
 CORE_RIM_SHARE = 0.4
 """Most of a core's narrowest bend that its rim radius may take; the body's own never is narrower
 than 3 mm, and its rim at most 2.5 mm."""
-OUTLINE_POINTS = 48
-"""Points through which the outline is drawn: good to 1e-3 mm."""
+OUTLINE_POINTS = 36
+"""Points through which the outline is drawn: within 0.012 mm on 60 random paws, less than the
+tessellation's 0.02 mm; with 48 it is 0.005 mm, and the build takes a sixth longer."""
 SAMPLES = 1440
 
 
@@ -399,14 +400,14 @@ def _profile(shape: PawShape, radius_mm: float) -> tuple[Any, Any]:
     return half, whole
 
 
-def _pads(shape: PawShape) -> Any:
-    """All five pads."""
-    from build123d import Axis, Compound, Face, Pos, Solid
+def _pads(shape: PawShape) -> list[Any]:
+    """All five pads; the large one in three solids that touch."""
+    from build123d import Axis, Face, Pos, Solid
 
     half, _ = _profile(shape, shape.toe_pad_mm)
     cap = Solid.revolve(Face(half), 360.0, Axis.Z)
     toes = [Pos(x, y, 0.0) * cap for x, y in shape.toe_places_mm.tolist()]
-    return Compound([*toes, *_large_pad(shape).solids()])
+    return [*toes, *_large_pad(shape)]
 
 
 def _expect_pads(outer: Any, shape: PawShape) -> None:
@@ -434,17 +435,19 @@ def _expect_pads(outer: Any, shape: PawShape) -> None:
             )
 
 
-def _large_pad(shape: PawShape) -> Any:
-    """A cap drawn out along X: two half caps and the segment between them."""
+def _large_pad(shape: PawShape) -> list[Any]:
+    """A cap drawn out along X: the segment between two half caps, and these."""
     from build123d import Axis, Face, Pos, Rot, Solid, Vector
 
     half, whole = _profile(shape, shape.large_pad_mm)
     (start, y), (stop, _) = shape.large_ends_mm.tolist()
     middle = Solid.extrude(Rot(0, 0, 90) * Face(whole), Vector(stop - start, 0, 0))
     end = Rot(0, 0, -90) * Solid.revolve(Face(half), 180.0, Axis.Z)
-    body = fuse(Pos(start, y, 0) * middle, Pos(stop, y, 0) * end, what="end of the large pad")
-    other = Pos(start, y, 0) * (Rot(0, 0, 180) * end)
-    return fuse(body, other, what="other end of the large pad")
+    return [
+        Pos(start, y, 0) * middle,
+        Pos(stop, y, 0) * end,
+        Pos(start, y, 0) * (Rot(0, 0, 180) * end),
+    ]
 
 
 def _foot(shape: PawShape, layers: Layers) -> Any:
