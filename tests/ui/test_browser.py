@@ -44,7 +44,7 @@ def test_shape_press_and_look(tmp_path: Path, page: Any, start_server: Start) ->
     button(page, "Run press").click()
     wait_until(lambda: page.get_by_text("Image ✓").count(), 180, "the image is rendered")
     wait_until(lambda: image_source(page) != before, 20, "the tactile image changed")
-    assert page.get_by_text("along the normal").count()
+    page.get_by_text("along the normal").first.wait_for()
     page.screenshot(path=str(tmp_path / "pressed.png"))
 
 
@@ -86,7 +86,7 @@ def test_cancel_stops_a_press_within_three_seconds(
     button(page, "Cancel").wait_for(state="hidden", timeout=10_000)
     # The promise is 3 s; the browser's own polling adds up to half a second.
     assert time.monotonic() - clicked < 3.5
-    assert page.get_by_text("Contact ○").count()
+    page.get_by_text("Contact ○").first.wait_for()
     set_number(page, "Frames", 1)
     button(page, "Run press").click()
     wait_until(lambda: page.get_by_text("Contact ✓").count(), 180, "the next press is done")
@@ -110,7 +110,7 @@ def test_restart_after_kill_finds_design_and_results(
     again = start_server(project)
     open_page(page, again.url)
     wait_until(lambda: page.get_by_text("Mesh ✓").count(), 30, "the mesh is found")
-    assert page.get_by_text("Contact ○").count()
+    page.get_by_text("Contact ○").first.wait_for()
     assert "coarse" in page.locator("body").inner_text()
     tab(page, "Simulate").click()
     assert slider_value(page, "Frames") == 40

@@ -45,7 +45,7 @@ def test_bad_file_is_refused_and_a_box_becomes_a_sensor(
     page.get_by_text("Own body (STEP or STL)").click()
     upload(page, "Load outer body", bad)
     wait_until(lambda: page.get_by_text("bad.stl has no faces").count(), 60, "the refusal is shown")
-    assert page.get_by_text("coarse · finger").count()
+    page.get_by_text("coarse · finger").first.wait_for()
     assert "Outer radius mm" in labels(page)
 
     upload(page, "Load outer body", good)
@@ -53,7 +53,7 @@ def test_bad_file_is_refused_and_a_box_becomes_a_sensor(
     wait_until(lambda: page.get_by_text("Shape ✓").count(), 60, "the brick is built")
     assert "Cut off below mm" in labels(page)
     assert not page.get_by_text("bad.stl has no faces").count()
-    assert page.get_by_text("No press of this sensor yet").count()
+    page.get_by_text("No press of this sensor yet").first.wait_for()
     choose(page, "Clicks label", "actuator_1")
     page.wait_for_timeout(1000)
     before = view(page)
@@ -62,7 +62,7 @@ def test_bad_file_is_refused_and_a_box_becomes_a_sensor(
     page.get_by_text("actuator_1", exact=False).filter(has_text="face").wait_for()
     page.mouse.move(box["x"] + 5, box["y"] + box["height"] - 5)
     wait_until(lambda: changed_share(before, view(page)) > TINTED, 60, "the face is tinted")
-    assert page.get_by_text("actuator_1 blue").count()
+    page.get_by_text("actuator_1 blue").first.wait_for()
 
     other = tmp_path / "slab.stl"
     trimesh.creation.box((30.0, 30.0, 30.0)).export(other)
@@ -86,7 +86,7 @@ def test_unit_asked_for_and_leds_brought_inside(
     upload(page, "Load outer body", path)
     says = "an STL does not say which"
     wait_until(lambda: page.get_by_text(says).count(), 60, "the unit is asked for")
-    assert page.get_by_text("coarse · finger").count()
+    page.get_by_text("coarse · finger").first.wait_for()
     choose(page, "File unit", "inch")
     page.get_by_text("drum · imported").wait_for()
     wait_until(lambda: page.get_by_text("Shape ✓").count(), 60, "the drum is built")

@@ -60,7 +60,7 @@ def test_parts_checks_recipe_and_files(tmp_path: Path, page: Any, start_server: 
     before = view(page)
     checks.filter(has_text="minimum wall, half a").click()
     wait_until(lambda: changed_share(before, view(page)) > MOVED, 20, "the eye moved")
-    assert page.get_by_text(re.compile(r"minimum wall .* At -?\d+\.\d, ")).count()
+    page.get_by_text(re.compile(r"minimum wall .* At -?\d+\.\d, ")).first.wait_for()
 
     page.get_by_text("Recipe", exact=True).click()
     page.get_by_text("mix, waste included").wait_for()
