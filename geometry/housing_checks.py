@@ -88,7 +88,7 @@ def holder_advice(wall: Worst, lights: Sequence[Any], support: Any, options: Hou
     """
     import manifold3d
 
-    spot = manifold3d.Manifold.cube((SPOT_MM,) * 3, True).translate(wall.place_mm)
+    spot = manifold3d.Manifold.cube((SPOT_MM, SPOT_MM, SPOT_MM), True).translate(wall.place_mm)
     reach_mm = wall.value / 2 + options.clearance_mm + BESIDE_MM
     near = [light for light in lights if _gap(light, spot) < reach_mm]
     smaller = "use smaller LEDs (housing.led_width_mm and led_height_mm)"

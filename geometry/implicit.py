@@ -23,6 +23,7 @@ from typing import Any
 
 import numpy as np
 
+from geometry.csg_mesh import arrays
 from geometry.isosurface import isosurface
 from geometry.regions import mark_regions
 from geometry.solid import (
@@ -120,10 +121,7 @@ def between(
     closed = Manifold(Mesh64(found[0], found[1].astype(np.uint64)))
     if closed.is_empty():
         raise _unusable(what, f"is not closed ({closed.status().name})")
-    cut = closed.trim_by_plane((0.0, 0.0, 1.0), 0.0).to_mesh64()
-    # Copies: the views into the kernel are read-only.
-    points = np.array(cut.vert_properties[:, :3], order="C")
-    faces = np.array(cut.tri_verts, dtype=np.int32, order="C")
+    points, faces = arrays(closed.trim_by_plane((0.0, 0.0, 1.0), 0.0))
     gaps = open_edges(faces)
     if gaps or not len(faces):
         raise _unusable(what, f"has {gaps} open edges")

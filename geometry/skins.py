@@ -15,7 +15,7 @@ from geometry.ogrid import axis_of, on_base, ray_grid
 from geometry.rays import RayCaster
 from geometry.remesh import remesh
 from geometry.solid import COARSE_TOLERANCE_MM, TOLERANCE_MM
-from geometry.surface import face_areas, vertex_normals
+from geometry.surface import face_areas, pieces, vertex_normals
 from geometry.transfer import face_regions
 from workbench.core.errors import MeshingError
 from workbench.core.results import Label, LabelledSurface, Skin
@@ -107,15 +107,9 @@ def _facing_the_camera(support: LabelledSurface) -> LabelledSurface:
 
     A support that stands off from a backed skin has faces toward the gap too.
     """
-    from scipy.sparse import coo_matrix
-    from scipy.sparse.csgraph import connected_components
-
     members = np.flatnonzero(support.has(Label.INNER))
     faces = labelled_faces(support, Label.INNER)
-    count = len(support.points_mm)
-    ends = np.stack([faces, np.roll(faces, 1, axis=1)]).reshape(2, -1)
-    links = coo_matrix((np.ones(ends.shape[1]), (ends[0], ends[1])), (count, count))
-    piece = connected_components(links, directed=False)[1][faces[:, 0]]
+    piece = pieces(faces)
     turn = np.arange(LOOKS) / LOOKS * 2.0 * np.pi
     around = np.column_stack([np.cos(turn), np.sin(turn), np.full(LOOKS, 0.1)])
     height = support.points_mm[faces, 2]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -11,15 +10,16 @@ import pytest
 
 from designs import paw, tentacle, thumb, trunk
 from designs.column import Column, column_body, column_field
-from designs.family import family, resolve_shape
+from designs.family import family
 from designs.paw import PawShape, pads_mm3
 from designs.prisms import rounded_prism_mm3
 from designs.tentacle import TentacleShape
 from designs.thumb import ThumbShape, nail_mm3
 from designs.trunk import TrunkShape, saddle_mm3
+from tests.families import expect_found_out, expect_refusal
 from workbench.building import build_solid
 from workbench.core.design import Layers
-from workbench.core.errors import DesignError, GeometryError
+from workbench.core.errors import GeometryError
 from workbench.core.results import Label
 
 SHARP = {"width_mm": 50.0, "depth_mm": 24.0, "lobe_mm": 12.0, "lobe_ratio": 0.6, "rim_mm": 3.0}
@@ -168,14 +168,7 @@ def test_a_kernel_that_returns_the_uncut_body_is_found_out(
     monkeypatch: pytest.MonkeyPatch, module: Any, name: str, boolean: str, feature: str, says: str
 ) -> None:
     """The boolean's own checks are taken away too: the feature's check must still see it."""
-    real: Callable[..., Any] = getattr(module, boolean)
-
-    def lazy(body: Any, tool: Any, *, what: str, **rest: Any) -> Any:
-        return body if what.startswith(feature) else real(body, tool, what=what, **rest)
-
-    monkeypatch.setattr(module, boolean, lazy)
-    with pytest.raises(GeometryError, match=says):
-        family(name).build(resolve_shape(name, {}), Layers())
+    expect_found_out(monkeypatch, name, Layers(), (module, boolean, feature), says)
 
 
 def test_one_lost_sucker_is_named() -> None:
@@ -222,8 +215,4 @@ def test_contradictions_are_refused_with_their_place(
     name: str, shape: dict[str, float], layers: dict[str, float], at: str
 ) -> None:
     """Each names value, limit and unit, and what to change."""
-    with pytest.raises(DesignError) as caught:
-        family(name).check(resolve_shape(name, shape), Layers(**layers))
-    assert caught.value.at == at
-    assert caught.value.hint
-    assert any(letter.isdigit() for letter in caught.value.message)
+    expect_refusal(name, shape, layers, at)

@@ -16,9 +16,10 @@ from designs.loaf import Loaf, loaf_body, loaf_shell
 from designs.pad import PadShape, slab_mm3
 from designs.plates import rectangle_distance
 from geometry.surface import face_areas
+from tests.families import expect_found_out, expect_refusal
 from workbench.building import build_solid, coarse_volume_mm3
 from workbench.core.design import Layers
-from workbench.core.errors import DesignError, GeometryError
+from workbench.core.errors import DesignError
 from workbench.core.results import Label
 
 THIN = {"elastomer_mm": 1.2}
@@ -137,14 +138,7 @@ def test_a_kernel_that_returns_the_uncut_body_is_found_out(
     monkeypatch: pytest.MonkeyPatch, module: Any, name: str, boolean: str, feature: str, says: str
 ) -> None:
     """The boolean's own checks are taken away too: the family's check must still see it."""
-    real = getattr(module, boolean)
-
-    def lazy(body: Any, tool: Any, *, what: str, **rest: Any) -> Any:
-        return body if what.startswith(feature) else real(body, tool, what=what, **rest)
-
-    monkeypatch.setattr(module, boolean, lazy)
-    with pytest.raises(GeometryError, match=says):
-        family(name).build(resolve_shape(name, {}), Layers(elastomer_mm=1.2))
+    expect_found_out(monkeypatch, name, Layers(elastomer_mm=1.2), (module, boolean, feature), says)
 
 
 @pytest.mark.parametrize(
@@ -171,11 +165,7 @@ def test_contradictions_are_refused_with_their_place(
     name: str, shape: dict[str, float], layers: dict[str, float], at: str
 ) -> None:
     """Each names value, limit and unit, and what to change."""
-    with pytest.raises(DesignError) as caught:
-        family(name).check(resolve_shape(name, shape), Layers(**layers))
-    assert caught.value.at == at
-    assert caught.value.hint
-    assert any(letter.isdigit() for letter in caught.value.message)
+    expect_refusal(name, shape, layers, at)
 
 
 def test_every_accepted_pin_is_clear_of_window_and_skin() -> None:

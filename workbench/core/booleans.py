@@ -11,7 +11,7 @@ Bodies are duck-typed (as build123d's `Shape`: `volume`, `is_valid`, `bounding_b
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 from workbench.core.errors import GeometryError
 
@@ -52,7 +52,7 @@ def fuse(body: Any, tool: Any, *, what: str) -> Any:
     before, added = volume(body), volume(tool)
     limits = Limits(max(before, added), before + added + _slack(before))
     result = body + tool
-    tools = tool if isinstance(tool, list) else [tool]
+    tools: Sequence[Any] = cast("list[Any]", tool) if isinstance(tool, list) else [tool]
     return _checked(result, "fuse", what, (before, added), limits, (body, *tools))
 
 
