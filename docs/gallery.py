@@ -20,7 +20,8 @@ from designs.family import family
 from geometry.pictures import exploded_sensor, thumbnail
 from workbench.aim import default_target_mm
 from workbench.core.design import SensorDesign
-from workbench.core.press import Indenter, Press
+from workbench.core.indenter import Indenter
+from workbench.core.press import Press
 from workbench.pipeline import InlineRunner, PressCase, evaluate, plan, results
 from workbench.project import Project, load_design
 

@@ -14,7 +14,7 @@ from geometry.primitives import rounded_box, rounded_revolution, sphere
 from geometry.stl import stl_corners, welded
 from geometry.surface import mesh_volume, open_edges
 from workbench.core.errors import DesignError
-from workbench.core.press import Indenter, IndenterKind, IndenterMesh
+from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
 
 LARGEST_FILE_MB = 64
 SMALLEST_SHARE = 1e-6

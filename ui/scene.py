@@ -13,7 +13,8 @@ from ui.parts import PartsView
 from ui.rig import RigView
 from ui.sensor import SKIN_COLOUR, SensorView
 from ui.views import Views
-from workbench.core.press import Indenter, Press
+from workbench.core.indenter import Indenter
+from workbench.core.press import Press
 from workbench.core.results import Skin, Solid
 from workbench.core.sensing import Contact
 from workbench.previews import cell_edges, indenter_shape, standing_pose

@@ -13,7 +13,7 @@ from typing import Any
 
 from workbench.core.design import SensorDesign
 from workbench.core.errors import WorkbenchError
-from workbench.core.press import Indenter
+from workbench.core.indenter import Indenter
 from workbench.pipeline import EVERYTHING, PressCase, plan
 from workbench.project import AUTOSAVE, Project, check_design, load_design
 from workbench.stages import Call

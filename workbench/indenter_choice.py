@@ -5,13 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from workbench.core.errors import DesignError
+from workbench.core.indenter import DEFAULT_EDGE_RADIUS_MM, DEFAULT_SIZE_MM, Indenter, IndenterKind
 from workbench.core.mapping import suggest
-from workbench.core.press import (
-    DEFAULT_EDGE_RADIUS_MM,
-    DEFAULT_SIZE_MM,
-    Indenter,
-    IndenterKind,
-)
 
 ALIASES = {"cylinder": "cylinder_end", "cylinder-end": "cylinder_end"} | {
     "cylinder-side": "cylinder_side"

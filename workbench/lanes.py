@@ -24,8 +24,9 @@ from typing import Any
 
 from workbench.core.design import Elastomer
 from workbench.core.errors import Cancelled, LaneError, WorkbenchError
+from workbench.core.indenter import Indenter
 from workbench.core.monitor import Monitor, silent
-from workbench.core.press import ContactSettings, Indenter, Press
+from workbench.core.press import ContactSettings, Press
 from workbench.stages import STAGES, Call, Outcome, run
 from workbench.store import Store
 

@@ -13,8 +13,9 @@ from typing import Any, Protocol, TypeVar
 
 from workbench.bodies import IMPORTED, check_body
 from workbench.core.design import Elastomer, LedRing, SensorDesign
+from workbench.core.indenter import Indenter
 from workbench.core.monitor import Monitor, silent
-from workbench.core.press import ContactSettings, Indenter, Press
+from workbench.core.press import ContactSettings, Press
 from workbench.stages import Call, Outcome, run
 from workbench.store import Store
 

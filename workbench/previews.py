@@ -11,7 +11,7 @@ import numpy as np
 
 from geometry.quality import CELL_EDGES, volume_quality
 from workbench.core.frames import quaternion, tangent
-from workbench.core.press import Indenter
+from workbench.core.indenter import Indenter
 from workbench.core.results import (
     Label,
     LabelledSurface,

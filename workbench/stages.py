@@ -24,9 +24,10 @@ from workbench.core.design import (
 from workbench.core.digest import digest
 from workbench.core.fabrication import HousingSet, MouldSet, Recipe, SheetHead
 from workbench.core.imported import ImportedBody, Pick, ReadBody
+from workbench.core.indenter import Indenter
 from workbench.core.making import Casting, Housing
 from workbench.core.monitor import Monitor, part, silent
-from workbench.core.press import ContactSettings, Indenter, Press
+from workbench.core.press import ContactSettings, Press
 from workbench.core.results import (
     Bundle,
     MaterialPoints,

@@ -19,8 +19,9 @@ from workbench.aim import default_target_mm
 from workbench.core.design import SensorDesign
 from workbench.core.digest import digest
 from workbench.core.errors import DesignError
+from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
 from workbench.core.mapping import from_table, to_table
-from workbench.core.press import ContactSettings, Indenter, IndenterKind, IndenterMesh, Press
+from workbench.core.press import ContactSettings, Press
 from workbench.pipeline import PressCase
 from workbench.project import Project, design_from_toml, parse_toml, write_atomically
 

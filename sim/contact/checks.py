@@ -19,7 +19,8 @@ import numpy as np
 from sim.contact import specimens
 from sim.contact.solver import press_membrane
 from workbench.core.design import Elastomer
-from workbench.core.press import ContactSettings, Indenter, IndenterKind, Press
+from workbench.core.indenter import Indenter, IndenterKind
+from workbench.core.press import ContactSettings, Press
 from workbench.core.results import Label
 from workbench.core.sensing import Contact
 

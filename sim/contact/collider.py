@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim.contact.shapes import SHAPE_OF_KIND, Shape, analytic_size, evaluate, half_height_mm
-from workbench.core.press import Indenter
+from workbench.core.indenter import Indenter
 
 SAMPLES_PER_CELL = 2.5
 """Distance samples of a mesh per grid cell: h = 0.4 cell loses 0.12 % of the force."""

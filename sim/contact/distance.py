@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from workbench.core.errors import DesignError
-from workbench.core.press import IndenterMesh
+from workbench.core.indenter import IndenterMesh
 
 MOST_SAMPLES = 3_000_000
 """12 MB in single precision; the spacing grows with the cube root of the excess."""

@@ -16,7 +16,7 @@ import numpy as np
 
 from sim.contact.stencil import line_slopes, line_weights
 from workbench.core.errors import DesignError
-from workbench.core.press import Indenter, IndenterKind
+from workbench.core.indenter import Indenter, IndenterKind
 
 ROOT_HALF = 0.5**0.5
 TINY_MM = 1e-9

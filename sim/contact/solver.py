@@ -34,8 +34,9 @@ from sim.contact.verdict import check_depth, check_frame
 from sim.material import neo_hookean
 from workbench.core.design import Elastomer
 from workbench.core.errors import SolveError
+from workbench.core.indenter import Indenter
 from workbench.core.monitor import Monitor, silent
-from workbench.core.press import ContactSettings, Indenter, Press
+from workbench.core.press import ContactSettings, Press
 from workbench.core.results import MaterialPoints, MembraneMesh
 from workbench.core.sensing import Contact
 

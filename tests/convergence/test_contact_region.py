@@ -14,7 +14,8 @@ from sim.contact.region import MARGIN_WALLS, region_radius_mm
 from sim.contact.solver import press_membrane
 from workbench.core.design import Elastomer
 from workbench.core.errors import DesignError
-from workbench.core.press import ContactSettings, Indenter, IndenterKind, Press
+from workbench.core.indenter import Indenter, IndenterKind
+from workbench.core.press import ContactSettings, Press
 from workbench.core.results import Label
 
 

@@ -15,7 +15,8 @@ import trimesh
 
 from ui.session import Session
 from workbench.cli import main
-from workbench.core.press import ContactSettings, Indenter, Press
+from workbench.core.indenter import Indenter
+from workbench.core.press import ContactSettings, Press
 from workbench.project import Project
 
 pytestmark = pytest.mark.slow

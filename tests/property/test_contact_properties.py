@@ -12,8 +12,9 @@ from sim.contact.solver import press_membrane
 from sim.contact.specimens import flat_block
 from workbench.core.design import Elastomer
 from workbench.core.errors import Cancelled, SolveError
+from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
 from workbench.core.monitor import silent
-from workbench.core.press import ContactSettings, Indenter, IndenterKind, IndenterMesh, Press
+from workbench.core.press import ContactSettings, Press
 from workbench.core.sensing import Contact
 
 pytestmark = pytest.mark.usefixtures("taichi_device")

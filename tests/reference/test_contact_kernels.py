@@ -14,7 +14,8 @@ from sim.contact.solver import prepare
 from sim.contact.specimens import flat_block
 from sim.material import neo_hookean
 from workbench.core.design import Elastomer
-from workbench.core.press import ContactSettings, Indenter, IndenterKind, IndenterMesh, Press
+from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
+from workbench.core.press import ContactSettings, Press
 from workbench.core.results import Label
 
 MATERIAL = Elastomer()

@@ -9,7 +9,8 @@ from sim.contact.collider import make_collider
 from sim.contact.specimens import finger, flat_block
 from workbench.core.errors import DesignError
 from workbench.core.frames import quaternion
-from workbench.core.press import Indenter, IndenterKind, Press
+from workbench.core.indenter import Indenter, IndenterKind
+from workbench.core.press import Press
 from workbench.core.results import Skin
 
 BLOCK, _ = flat_block(width_mm=16.0, height_mm=4.0, grid_mm=1.0)

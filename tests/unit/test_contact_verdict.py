@@ -17,7 +17,8 @@ from sim.contact.verdict import check_depth, check_frame, least_volume_ratio
 from sim.material import neo_hookean
 from workbench.core.design import Elastomer
 from workbench.core.errors import DesignError, SolveError
-from workbench.core.press import ContactSettings, Indenter, IndenterKind, Press
+from workbench.core.indenter import Indenter, IndenterKind
+from workbench.core.press import ContactSettings, Press
 
 pytestmark = pytest.mark.usefixtures("taichi_device")
 

@@ -9,7 +9,8 @@ import pytest
 from workbench.core import errors
 from workbench.core.design import Camera, Elastomer, Layers, LedRing, Meshing, SensorDesign
 from workbench.core.errors import DesignError, SolveError, WorkbenchError
-from workbench.core.press import ContactSettings, Indenter, IndenterKind, Press
+from workbench.core.indenter import Indenter, IndenterKind
+from workbench.core.press import ContactSettings, Press
 
 CLASSES = [
     value

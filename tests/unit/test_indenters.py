@@ -13,7 +13,7 @@ from geometry.indenters import display_mesh, largest_width, load_stl, scaled
 from geometry.primitives import rounded_box, sphere
 from geometry.surface import is_watertight, mesh_volume
 from workbench.core.errors import DesignError
-from workbench.core.press import Indenter, IndenterKind
+from workbench.core.indenter import Indenter, IndenterKind
 
 PRIMITIVES = [kind for kind in IndenterKind if kind is not IndenterKind.MESH]
 

@@ -9,7 +9,7 @@ import pytest
 
 from ui.session import Session
 from workbench.core.errors import DesignError
-from workbench.core.press import Indenter, IndenterKind
+from workbench.core.indenter import Indenter, IndenterKind
 from workbench.project import Project, design_to_toml
 
 

@@ -5,7 +5,7 @@ import pytest
 
 from sim.contact.collider import make_collider
 from workbench.core.errors import DesignError
-from workbench.core.press import Indenter, IndenterKind
+from workbench.core.indenter import Indenter, IndenterKind
 
 ANALYTIC = [kind for kind in IndenterKind if kind is not IndenterKind.MESH]
 

@@ -10,7 +10,7 @@ import viser
 
 from ui.desk import Desk
 from workbench.core.errors import DesignError
-from workbench.core.press import IndenterKind
+from workbench.core.indenter import IndenterKind
 from workbench.indenter_choice import choose_indenter
 
 MAX_STL_BYTES = 40 * 2**20

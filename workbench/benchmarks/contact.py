@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from workbench.benchmarks.timing import timed_row
 from workbench.core.design import Elastomer
+from workbench.core.indenter import Indenter
 from workbench.core.monitor import silent
-from workbench.core.press import ContactSettings, Indenter, Press
+from workbench.core.press import ContactSettings, Press
 from workbench.rows import Row
 from workbench.specimens import finger_mesh, finger_points
 from workbench.stages import press

@@ -6,8 +6,9 @@ import functools
 import math
 
 from workbench.core.design import Elastomer
+from workbench.core.indenter import Indenter
 from workbench.core.monitor import silent
-from workbench.core.press import ContactSettings, Indenter, Press
+from workbench.core.press import ContactSettings, Press
 from workbench.core.sensing import Contact
 from workbench.specimens import finger_mesh, finger_points
 from workbench.stages import press
