@@ -63,6 +63,33 @@ class Approach:
         across = math.cos(angle) * self.tangent_v - math.sin(angle) * self.tangent_u
         return origin, np.stack([along, across, self.normal], axis=1)
 
+    @property
+    def frame_count(self) -> int:
+        """Frames of object and actuators together."""
+        return self.press.frame_count
+
+    @property
+    def deepest_mm(self) -> float:
+        """Largest depth along the inward normal on the path [mm]."""
+        return self.press.depth_mm
+
+    @property
+    def aside_mm(self) -> float:
+        """Largest shift in the tangent plane on the path [mm]."""
+        return math.hypot(*self.press.shear_mm)
+
+    def travel_mm(self, frame: int, arm_mm: float) -> float:
+        """Farthest way of a point of the object, `arm_mm` from its origin, within a frame [mm]."""
+        (start, turned), (end, turned_on) = self.pose(frame), self.pose(frame + 1.0)
+        spin = 0.5 * (np.trace(turned.T @ turned_on) - 1.0)
+        angle = math.acos(min(1.0, max(-1.0, spin)))
+        return float(np.linalg.norm(end - start)) + arm_mm * angle
+
+    def continues(self, frame: int) -> int:
+        """Frames up to and including this one that go straight on at one speed, 0 at rest."""
+        frames = self.press.frames
+        return frame % frames + 1 if frame < 2 * frames else 0
+
 
 def plan_approach(skin: Skin, collider: Collider, press: Press) -> Approach:
     """Project the target on the outer skin and find the first touch.

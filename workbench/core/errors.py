@@ -68,6 +68,8 @@ class SolveError(WorkbenchError):
         frame: Frame that failed, counted from 0.
         residual: Relative residual that was reached.
         last_good: Last frame that settled, -1 when none did.
+        partial: The result of the frames that settled, until a store has taken it, else None.
+        kept: Key under which a store keeps those frames, or "".
     """
 
     def __init__(
@@ -79,11 +81,14 @@ class SolveError(WorkbenchError):
         frame: int = -1,
         residual: float = float("nan"),
         last_good: int = -1,
+        partial: Any = None,
     ) -> None:
         super().__init__(message, hint=hint, at=at)
         self.frame = frame
         self.residual = residual
         self.last_good = last_good
+        self.partial = partial
+        self.kept = ""
 
 
 class DeviceError(WorkbenchError):

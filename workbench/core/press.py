@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import enum
 import math
 from dataclasses import dataclass
 
+from workbench.core.actuation import Actuation
 from workbench.core.check import within
 from workbench.core.errors import DesignError
 
@@ -23,6 +25,8 @@ class Press:
     """Rotation about the outward normal at full depth [degree]."""
     frames: int = 10
     """Frames of the approach; as many again follow when there is shear or twist."""
+    actuations: tuple[Actuation, ...] = ()
+    """Regions of the membrane that are driven meanwhile; each lasts until its last key."""
 
     def __post_init__(self) -> None:
         if not all(math.isfinite(x) for x in (*self.target_mm, *self.shear_mm)):
@@ -49,7 +53,26 @@ class Press:
     @property
     def frame_count(self) -> int:
         """Frames in all."""
-        return self.frames * (2 if self.sliding else 1)
+        driven = max((actuation.last_frame for actuation in self.actuations), default=0)
+        return max(self.frames * (2 if self.sliding else 1), driven)
+
+
+class Extent(enum.StrEnum):
+    """How much of the membrane takes part."""
+
+    ACTIVE = "active"
+    """The region around the contact."""
+    FULL = "full"
+    """All of it."""
+
+
+class Method(enum.StrEnum):
+    """How the contact is computed."""
+
+    LATTICE = "lattice"
+    """Total-Lagrangian B-spline MPM with penalty contact: the workbench's own."""
+    PARTICLES = "particles"
+    """The published way, for comparison: updated-Lagrangian MPM, the indenter made of particles."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -60,6 +83,10 @@ class ContactSettings:
     """Edge of a background grid cell [mm]; a quarter of a 2 mm wall."""
     active_radius_mm: float = 0.0
     """Cells within this distance of the target take part [mm]; 0 lets patch and wall decide."""
+    region_error: float = 3e-3
+    """Error of the force that the automatic radius may cost, relative [1]."""
+    extent: Extent = Extent.ACTIVE
+    method: Method = Method.LATTICE
     penalty: float = 100.0
     """Contact stiffness per area in units of E / grid_mm [1]."""
     tolerance: float = 1e-3
@@ -75,6 +102,8 @@ class ContactSettings:
             hint = "or 0, and the contact patch and the wall decide"
             radius_mm = self.active_radius_mm
             within(radius_mm, 3.0, 200.0, what="active radius", unit="mm", at=at, hint=hint)
+        at = "contact.region_error"
+        within(self.region_error, 1e-5, 0.05, what="error of the region", unit="", at=at)
         within(self.penalty, 1.0, 1e4, what="contact penalty", unit="", at="contact.penalty")
         within(self.tolerance, 1e-6, 0.1, what="tolerance", unit="", at="contact.tolerance")
         at = "contact.max_substeps"

@@ -11,6 +11,10 @@ from dataclasses import dataclass, field
 import numpy as np
 
 
+def _none(*shape: int) -> np.ndarray:
+    return np.zeros(shape, dtype=np.float32)
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Contact:
     """What the solver found, frame by frame. Forces act on the indenter, in the sensor frame."""
@@ -55,6 +59,38 @@ class Contact:
     inner_mm: np.ndarray = field(default_factory=lambda: np.zeros((0, 0, 3), dtype=np.float32))
     """Displacement of the inner skin's vertices [mm], shape (K, W, 3), float32; W = 0 where that
     skin is bonded and stays where it is."""
+    contact_force_N: np.ndarray = field(default_factory=lambda: _none(0, 0, 3))
+    """Force of the object on the skin, shared out to the outer vertices [N], shape (K, V, 3);
+    their sum is minus the reaction."""
+    pressure_MPa: np.ndarray = field(default_factory=lambda: _none(0, 0))
+    """Contact force along the object's normal per undeformed area of the vertex, (K, V)."""
+    cauchy_MPa: np.ndarray = field(default_factory=lambda: _none(0, 0, 6))
+    """Cauchy stress at the outer vertices: xx, yy, zz, xy, yz, zx, shape (K, V, 6)."""
+    energy_MPa: np.ndarray = field(default_factory=lambda: _none(0, 0))
+    """Strain energy per undeformed volume at the outer vertices [MPa = N mm / mm3], (K, V)."""
+    slip_mm: np.ndarray = field(default_factory=lambda: _none(0, 0))
+    """Way that each vertex has slid on the object since it first touched [mm], shape (K, V)."""
+    tangential_N: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    """Sum over points of the tangential contact force's magnitude [N], shape (K,), float64."""
+    pressing_N: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    """Sum over points of the normal contact force [N], shape (K,), float64."""
+    support_moment_Nmm: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
+    """Moment of the support on the membrane about the sensor's origin [N mm], shape (K, 3)."""
+    actuator_N: np.ndarray = field(default_factory=lambda: np.zeros((0, 0, 3)))
+    """Force of each driven region's drive on the membrane [N], (K, A, 3), as in the press."""
+    actuator_moment_Nmm: np.ndarray = field(default_factory=lambda: np.zeros((0, 0, 3)))
+    """Its moment about the axis point of the actuation [N mm], shape (K, A, 3)."""
+    strain_energy_Nmm: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    """Strain energy of the active region [N mm], shape (K,), float64."""
+    kinetic_ratio: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    """Energy of the relaxation's motion over the strain energy, shape (K,), float64."""
+    least_volume_ratio: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    """Least J = det F of a material point, shape (K,), float64."""
+    frame_seconds: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    """Time each frame took [s], shape (K,), float64; differs from run to run."""
+    sensor_pose: np.ndarray = field(default_factory=lambda: np.zeros((0, 7)))
+    """Pose of the sensor in the room where the sensor is what moves, as `indenter_pose`, else
+    (0, 7); all other fields stay in the sensor frame."""
 
     @property
     def normal_N(self) -> np.ndarray:
