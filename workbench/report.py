@@ -93,9 +93,9 @@ def report_html(
 
 def _constants(design: SensorDesign) -> list[tuple[str, float]]:
     """The elastomer as finite element programs ask for it."""
-    from sim.material import neo_hookean
+    from sim.material import elastic_solid
 
-    solid = neo_hookean(design.material)
+    solid = elastic_solid(design.material)
     return [("elastomer C10 [MPa]", solid.c10_MPa), ("elastomer D1 [1/MPa]", solid.d1_per_MPa)]
 
 

@@ -20,9 +20,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sim.contact.materials import moduli_MPa_at
 from sim.contact.quadrature import SurfacePoints
-from sim.contact.stencil import gradient_table, point_weights, weight_table
-from sim.material import NeoHookean
+from sim.contact.stencil import gradient_table, point_slopes, point_weights, weight_table
+from workbench.core.design import Elastomer, Law
 from workbench.core.errors import DesignError
 from workbench.core.results import MaterialPoints, MembraneMesh
 
@@ -44,10 +45,19 @@ class Readout:
     """V."""
     vertices: np.ndarray
     """Vertices in active cells, shape (A,), int64; the others are at rest."""
+    cells: np.ndarray
+    """Their cells, shape (A,), int64."""
     nodes: np.ndarray
     """Their 27 nodes, shape (A, 27)."""
     weights: np.ndarray
     """Their 27 weights, shape (A, 27)."""
+    local: np.ndarray
+    """Their places in their cells, in cell edges from the centre, shape (A, 3)."""
+
+    def gradient(self, nodal_mm: np.ndarray, grid_mm: float) -> np.ndarray:
+        """Displacement gradient at the active vertices, shape (A, 3, 3)."""
+        slopes = point_slopes(self.local) / grid_mm
+        return np.einsum("anr,anc->arc", nodal_mm[self.nodes], slopes)
 
     def displacement_mm(self, nodal_mm: np.ndarray) -> np.ndarray:
         """Displacement of all vertices, shape (V, 3), float32, from that of nodes (N, 3)."""
@@ -69,6 +79,10 @@ class Domain:
     """First node of each of the nine z-rows of a cell, shape (C, 9), int32."""
     volumes_mm3: np.ndarray
     """Volume of the 8 points of a cell [mm3], shape (C, 8)."""
+    moduli_MPa: np.ndarray
+    """Shear and bulk modulus of a cell, shape (C, 2)."""
+    linear: bool
+    """Hooke's law instead of the neo-Hookean one."""
     node_starts: np.ndarray
     """Where a node's entries start in `node_slots`, shape (N + 1,), int32."""
     node_slots: np.ndarray
@@ -104,13 +118,13 @@ def slot_index(cell: np.ndarray, node: np.ndarray | int, component: int = 0) -> 
     return block + (3 * node + component) * SLOT_BLOCK
 
 
-def largest_point_eigenvalue(solid: NeoHookean) -> float:
+def largest_point_eigenvalue(shear_MPa: float, bulk_MPa: float) -> float:
     """Largest eigenvalue [MPa] of a point's unit stiffness against its weights, unit cell edge.
 
     K_iajb = lambda B_ia B_jb + mu (B_ib B_ja + B_ic B_jc delta_ab) of the undeformed solid.
     """
     slopes, weights = gradient_table()[7], weight_table()[7]
-    shear, lame = solid.shear_MPa, solid.lame_MPa
+    shear, lame = shear_MPa, bulk_MPa - 2.0 * shear_MPa / 3.0
     stiffness = lame * np.einsum("ia,jb->iajb", slopes, slopes)
     stiffness += shear * np.einsum("ib,ja->iajb", slopes, slopes)
     stiffness += shear * np.einsum("ic,jc,ab->iajb", slopes, slopes, np.eye(3))
@@ -118,11 +132,17 @@ def largest_point_eigenvalue(solid: NeoHookean) -> float:
     return float(np.linalg.eigvalsh(stiffness.reshape(81, 81) * np.outer(scale, scale))[-1])
 
 
+def _eigenvalues(moduli_MPa: np.ndarray) -> np.ndarray:
+    """`largest_point_eigenvalue` of each cell's moduli, (C, 2), shape (C,)."""
+    kinds, which = np.unique(moduli_MPa, axis=0, return_inverse=True)
+    return np.array([largest_point_eigenvalue(*kind) for kind in kinds])[which.ravel()]
+
+
 def build_domain(
     mesh: MembraneMesh,
     material_points: MaterialPoints,
     surface_points: SurfacePoints,
-    solid: NeoHookean,
+    material: Elastomer,
     *,
     target_mm: np.ndarray,
     active_radius_mm: float,
@@ -133,7 +153,7 @@ def build_domain(
         mesh: Its outer vertices receive displacements.
         material_points: Filled fractions of all cells.
         surface_points: Candidates; those in cells outside the region are dropped.
-        solid: Elastic constants, for the masses.
+        material: Elastic constants of all parts.
         target_mm: Centre of the region [mm], shape (3,).
         active_radius_mm: Radius of the region.
 
@@ -160,7 +180,8 @@ def build_domain(
     local = points.position_mm / grid_mm - point_cells[order]
     weights = point_weights(local)
 
-    stiffness = largest_point_eigenvalue(solid) / grid_mm**2
+    moduli_MPa = moduli_MPa_at(material, mesh.outer, cells * grid_mm)
+    stiffness = _eigenvalues(moduli_MPa)[:, None] / grid_mm**2
     masses = _spread(volumes_mm3 @ weight_table() * (stiffness / EIGENVALUE), rows, len(node_keys))
     spring = weights * (points.stiffness_N_mm / EIGENVALUE)[:, None]
     masses += _spread(spring, rows[owner[order]], len(node_keys))
@@ -176,6 +197,8 @@ def build_domain(
         node_mm=node_mm,
         rows=rows,
         volumes_mm3=volumes_mm3,
+        moduli_MPa=moduli_MPa,
+        linear=material.law is Law.LINEAR,
         node_starts=node_starts,
         node_slots=node_slots,
         masses=masses,
@@ -196,11 +219,14 @@ def _readout(
     """Readout of vertices at `place` (V, 3), in cell edges, that lie in cells `place_cells`."""
     owner, inside = _look_up(cell_keys, _keys(place_cells))
     vertices = np.flatnonzero(inside)
+    local = place[vertices] - place_cells[vertices]
     return Readout(
         count=len(place),
         vertices=vertices,
+        cells=owner[vertices],
         nodes=stencil_nodes(rows[owner[vertices]]),
-        weights=point_weights(place[vertices] - place_cells[vertices]),
+        weights=point_weights(local),
+        local=local,
     )
 
 

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import fields
 
 import numpy as np
 import taichi as ti
 from taichi.lang.impl import current_cfg
 
-from sim.contact.approach import Approach
-from sim.contact.collider import Collider
 from sim.contact.domain import Domain
+from sim.contact.fields import skin_stress, volume_state
+from sim.contact.frame import FrameOutcome, deepest_overlap_mm
+from sim.contact.problem import Problem
+from sim.contact.quadrature import SurfacePoints
 from sim.contact.relaxation import Balance, Relaxation
 from workbench.core.frames import quaternion
-from workbench.core.results import Skin
 from workbench.core.sensing import Contact
 
 SLIDING_SHARE = 0.999
@@ -24,69 +25,75 @@ LEAST_PRESSURE_SHARE = 1e-3
 """Points that carry less than this share of the largest normal force have no friction ratio."""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class FrameOutcome:
-    """One frame of `Contact`; the fields have the same names and units."""
-
-    displacement_mm: np.ndarray
-    inner_mm: np.ndarray
-    reaction_N: np.ndarray
-    moment_Nmm: np.ndarray
-    indenter_pose: np.ndarray
-    residual: float
-    penetration_mm: float
-    support_N: np.ndarray
-    cut_N: np.ndarray
-    friction_ratio: float
-    sliding: np.ndarray
-
-
 def frame_outcome(
     relaxation: Relaxation,
-    outer: Skin,
-    approach: Approach,
+    case: int,
+    problem: Problem,
     balance: Balance,
     frame: int,
     *,
-    scale_N: float,
+    load_N: float,
+    seconds: float,
 ) -> FrameOutcome:
     """Read a settled frame, evaluated at its pose and not yet committed.
 
     Args:
         relaxation: The state.
-        outer: The skin whose displacement and overlap are wanted.
-        approach: The path.
+        case: Which case of it.
+        problem: The press.
         balance: Forces of the state.
         frame: Which frame.
-        scale_N: Force that the residual is relative to, the same as for the stop test.
+        load_N: Force that the residual is relative to, the same as for the stop test.
+        seconds: Time the frame took [s].
     """
-    domain = relaxation.domain
-    origin, rotation = approach.pose(frame + 1.0)
-    nodal = relaxation.displacement().astype(np.float64)
+    domain = problem.domain
+    origin, rotation = problem.approach.pose(frame + 1.0)
+    nodal = relaxation.displacement(case).astype(np.float64)
     displacement = domain.outer.displacement_mm(nodal)
     inner = domain.inner
-    open_points = ~domain.points.bonded
-    forces = relaxation.point_forces()[open_points].astype(np.float64)
-    place = (domain.points.position_mm + point_displacement(domain, nodal))[open_points]
-    distance, gradient = relaxation.collider.distance((place - origin) @ rotation)
-    normal = gradient @ rotation.T
-    friction_ratio, sliding_points = _friction(forces, normal, friction=relaxation.friction)
-    sliding = np.zeros(len(outer.points_mm), bool)
-    sliding[domain.points.vertex[open_points][sliding_points]] = True
-    vertex_mm = outer.points_mm + displacement
-    overlap_mm = deepest_overlap_mm(vertex_mm, relaxation.collider, origin, rotation)
+    point_forces = relaxation.point_forces(case).astype(np.float64)
+    place = domain.points.position_mm + point_displacement(domain, nodal)
+    touching = ~domain.points.bonded
+    points, forces, at = domain.points.take(touching), point_forces[touching], place[touching]
+    distance, gradient = problem.collider.distance((at - origin) @ rotation)
+    normal = _unit(gradient) @ rotation.T
+    pressing = np.einsum("pc,pc->p", forces, normal)
+    aside = np.linalg.norm(forces - pressing[:, None] * normal, axis=1)
+    ratio, sliding = _friction(pressing, aside, friction=problem.material.friction)
+    count = domain.outer.count
+    area_mm2 = np.maximum(points.to_vertices(points.area_mm2, count), LEAST)
+    vertex_mm = problem.mesh.outer.points_mm + displacement
+    overlap_mm = deepest_overlap_mm(vertex_mm, problem.collider, origin, rotation)
+    drives = _drives(problem, point_forces, place)
+    held = domain.points.bonded & (domain.points.drive < 0)
+    volume = volume_state(domain, nodal)
+    cauchy, energy = skin_stress(domain, nodal)
     return FrameOutcome(
         displacement_mm=displacement,
         inner_mm=np.zeros((0, 3), np.float32) if inner is None else inner.displacement_mm(nodal),
         reaction_N=balance.reaction_N,
-        moment_Nmm=-np.cross(place - origin, forces).sum(axis=0),
+        moment_Nmm=-np.cross(at - origin, forces).sum(axis=0),
         indenter_pose=np.concatenate([origin, quaternion(rotation)]),
-        residual=balance.unbalanced_N / scale_N,
+        residual=balance.unbalanced_N / load_N,
         penetration_mm=max(overlap_mm, -float(distance.min(initial=0.0))),
-        support_N=balance.bond_N,
-        cut_N=-relaxation.node_forces()[domain.fixed].sum(axis=0, dtype=np.float64),
-        friction_ratio=friction_ratio,
-        sliding=sliding,
+        support_N=point_forces[held].sum(axis=0),
+        support_moment_Nmm=np.cross(place[held], point_forces[held]).sum(axis=0),
+        cut_N=-relaxation.node_forces(case)[domain.fixed].sum(axis=0, dtype=np.float64),
+        actuator_N=drives[0],
+        actuator_moment_Nmm=drives[1],
+        friction_ratio=ratio,
+        sliding=_flags(points, sliding, count),
+        slip_mm=_slip(points, relaxation.slips_mm(case)[touching], count),
+        contact_force_N=points.to_vertices(forces, count).astype(np.float32),
+        pressure_MPa=(points.to_vertices(pressing, count) / area_mm2).astype(np.float32),
+        tangential_N=float(aside.sum()),
+        pressing_N=float(pressing.sum()),
+        cauchy_MPa=cauchy,
+        energy_MPa=energy,
+        strain_energy_Nmm=volume.strain_energy_Nmm,
+        kinetic_ratio=0.5 * balance.inertia_Nmm / max(volume.strain_energy_Nmm, LEAST),
+        least_volume_ratio=volume.least_volume_ratio,
+        frame_seconds=seconds,
     )
 
 
@@ -97,63 +104,66 @@ def point_displacement(domain: Domain, nodal: np.ndarray) -> np.ndarray:
     return np.einsum("pn,pnc->pc", domain.point_weights, nodal[nodes])
 
 
-def deepest_overlap_mm(
-    places_mm: np.ndarray, collider: Collider, origin: np.ndarray, rotation: np.ndarray
-) -> float:
-    """How deep the deepest of some places, (N, 3), lies inside the indenter [mm]; 0 if none."""
-    body = places_mm - origin
-    body = body[np.einsum("nc,nc->n", body, body) < collider.reach_mm**2]
-    distance, _ = collider.distance(body @ rotation)
-    return -float(distance.min(initial=0.0))
+def _unit(vectors: np.ndarray) -> np.ndarray:
+    return vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), LEAST)
 
 
 def _friction(
-    forces: np.ndarray, normal: np.ndarray, *, friction: float
+    pressing: np.ndarray, aside: np.ndarray, *, friction: float
 ) -> tuple[float, np.ndarray]:
-    """Largest tangential over normal force, and which points slide.
+    """Largest tangential over normal force, and which points slide, (P,).
 
-    Taken from the forces and the indenter's surface, not from the solver's own return to the cone.
+    Taken from the forces and the object's surface, not from the solver's own return to the cone.
     """
-    normal = normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), LEAST)
-    pressing = np.einsum("pc,pc->p", forces, normal)
-    aside = np.linalg.norm(forces - pressing[:, None] * normal, axis=1)
-    size = np.linalg.norm(forces, axis=1)
+    size = np.hypot(pressing, aside)
     pressed = size > LEAST_PRESSURE_SHARE * size.max(initial=0.0)
     ratio = aside / np.maximum(pressing, LEAST)
     return float(ratio[pressed].max(initial=0.0)), pressed & (ratio >= SLIDING_SHARE * friction)
 
 
-def collect(
-    outcomes: list[FrameOutcome],
-    *,
-    approach: Approach,
-    domain: Domain,
-    radius_mm: float,
-    substeps: int,
-) -> Contact:
+def _flags(points: SurfacePoints, chosen: np.ndarray, count: int) -> np.ndarray:
+    """Vertices nearest to the chosen points, shape (count,), bool."""
+    flags = np.zeros(count, bool)
+    nearest = points.shares.argmax(axis=1)
+    flags[points.vertices[np.arange(points.count), nearest][chosen]] = True
+    return flags
+
+
+def _slip(points: SurfacePoints, slips_mm: np.ndarray, count: int) -> np.ndarray:
+    """Mean way of the points around each vertex that have slid at all [mm], (count,), float32."""
+    slid = (slips_mm > 0.0).astype(float)
+    share = points.to_vertices(slid, count)
+    return (points.to_vertices(slips_mm, count) / np.maximum(share, LEAST)).astype(np.float32)
+
+
+def _drives(
+    problem: Problem, forces: np.ndarray, place: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Force [N] and moment about its axis point [N mm] of each drive on the membrane, (A, 3)."""
+    found = []
+    for number, actuation in enumerate(problem.press.actuations):
+        members = problem.domain.points.drive == number
+        arm = place[members] - np.asarray(actuation.about_mm)
+        found.append((forces[members].sum(axis=0), np.cross(arm, forces[members]).sum(axis=0)))
+    pairs = np.array(found).reshape(-1, 2, 3)
+    return pairs[:, 0], pairs[:, 1]
+
+
+def collect(outcomes: list[FrameOutcome], problem: Problem, *, substeps: int) -> Contact:
     """All frames as one result."""
-
-    def stack(name: str) -> np.ndarray:
-        return np.stack([np.asarray(getattr(outcome, name)) for outcome in outcomes])
-
+    stacked = {
+        field.name: np.stack([np.asarray(getattr(outcome, field.name)) for outcome in outcomes])
+        for field in fields(FrameOutcome)
+    }
+    approach = problem.approach
     return Contact(
-        displacement_mm=stack("displacement_mm"),
-        inner_mm=stack("inner_mm"),
-        reaction_N=stack("reaction_N"),
-        moment_Nmm=stack("moment_Nmm"),
-        indenter_pose=stack("indenter_pose"),
-        residual=stack("residual"),
-        penetration_mm=stack("penetration_mm"),
-        support_N=stack("support_N"),
-        cut_N=stack("cut_N"),
-        friction_ratio=stack("friction_ratio"),
-        sliding=stack("sliding"),
+        **stacked,
         target_mm=approach.target_mm,
         normal=approach.normal,
         tangent_u=approach.tangent_u,
-        grid_mm=domain.grid_mm,
-        active_radius_mm=radius_mm,
-        particles=domain.particles,
+        grid_mm=problem.domain.grid_mm,
+        active_radius_mm=problem.radius_mm,
+        particles=problem.domain.particles,
         substeps=substeps,
         device="cuda" if current_cfg().arch == ti.cuda else "cpu",
     )

@@ -13,7 +13,7 @@ import numpy as np
 from sim.contact.collider import Collider
 from sim.contact.domain import Domain, stencil_nodes
 from sim.contact.stencil import gradient_table
-from sim.material import NeoHookean, first_piola
+from sim.material import stress_of
 
 FREE, TOUCHED, HELD = 0, 1, 2
 
@@ -28,19 +28,24 @@ class ContactHistory:
     """Anchors in the body frame [mm], shape (P, 3)."""
     states: np.ndarray
     """FREE, TOUCHED or HELD, shape (P,)."""
+    slips: np.ndarray
+    """Way slid in settled frames [mm], shape (P,)."""
 
     @staticmethod
     def fresh(count: int) -> ContactHistory:
         """No contact yet."""
-        return ContactHistory(anchors=np.zeros((count, 3)), states=np.zeros(count, int))
+        return ContactHistory(
+            anchors=np.zeros((count, 3)), states=np.zeros(count, int), slips=np.zeros(count)
+        )
 
 
-def stress_forces(domain: Domain, displacement: np.ndarray, solid: NeoHookean) -> np.ndarray:
+def stress_forces(domain: Domain, displacement: np.ndarray) -> np.ndarray:
     """Elastic forces on the nodes [N], shape (N, 3): -sum of volume P grad(weight)."""
     slopes = gradient_table() / domain.grid_mm
     nodes = stencil_nodes(domain.rows)
     gradient = np.einsum("anr,pnc->aprc", displacement[nodes], slopes)
-    stress = first_piola(gradient, solid)
+    shear, bulk = domain.moduli_MPa[:, None, 0], domain.moduli_MPa[:, None, 1]
+    stress = stress_of(gradient, shear, bulk, linear=domain.linear)
     forces = np.zeros_like(displacement)
     cell_forces = -np.einsum("ap,aprc,pnc->anr", domain.volumes_mm3, stress, slopes)
     np.add.at(forces, nodes, cell_forces)
@@ -69,12 +74,17 @@ def surface_forces(
     pose: Pose,
     *,
     friction: float,
+    goals_mm: np.ndarray | float = 0.0,
 ) -> np.ndarray:
-    """Forces on the membrane at the surface points [N], shape (P, 3); sets first anchors."""
+    """Forces on the membrane at the surface points [N], shape (P, 3); sets first anchors.
+
+    Held points belong at `goals_mm`, shape (P, 3).
+    """
     moved = _point_displacement(domain, displacement)
     axis, sideways = domain.points.axis, domain.points.sideways[:, None]
-    along = np.einsum("pc,pc->p", axis, moved)[:, None] * axis
-    spring = along + sideways * (moved - along)
+    away = moved - goals_mm
+    along = np.einsum("pc,pc->p", axis, away)[:, None] * axis
+    spring = along + sideways * (away - along)
     forces = -domain.points.stiffness_N_mm[:, None] * spring
     origin, rotation = pose
     place = (domain.points.position_mm + moved - origin) @ rotation
@@ -114,13 +124,16 @@ def commit_history(
     *,
     friction: float,
 ) -> None:
-    """Close a frame: anchors follow the points that slid."""
+    """Close a frame: anchors follow the points that slid, and their way is added up."""
     origin, rotation = pose
     place = (point_places(domain, displacement) - origin) @ rotation
     distance, gradient = collider.distance(place)
     for p in np.flatnonzero(~domain.points.bonded):
         if distance[p] < 0.0 and history.states[p] != FREE:
             slip = returned_slip(place[p], history.anchors[p], distance[p], gradient[p], friction)
+            way = place[p] - slip - history.anchors[p]
+            normal = gradient[p] / np.linalg.norm(gradient[p])
+            history.slips[p] += np.linalg.norm(way - (way @ normal) * normal)
             history.states[p], history.anchors[p] = HELD, place[p] - slip
         else:
             history.states[p] = FREE

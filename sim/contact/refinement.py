@@ -8,8 +8,6 @@ touches a spot smaller than any triangle. Neighbours of different fineness are a
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from sim.contact.approach import Approach
@@ -27,15 +25,20 @@ MARGIN = 0.5
 MOST_ADDED = 12_000
 """Triangles that halving may add at each of its two tasks."""
 FEWEST_TOUCHING = 4
-POSES = 12
-"""Poses of the path at which distances are looked at."""
+MOST_POSES = 60
+"""Poses of the path at which distances are looked at; one for each frame of shorter paths."""
+
+
+def path_samples(approach: Approach) -> np.ndarray:
+    """Progress [frames] at which a path is looked at, from first touch to its end."""
+    count = approach.frame_count
+    return np.linspace(0.0, count, min(count, MOST_POSES) + 1)
 
 
 def path_distance_mm(places_mm: np.ndarray, approach: Approach, collider: Collider) -> np.ndarray:
     """Least signed distance [mm] of undeformed places, (N, 3), over the path, shape (N,)."""
     nearest = np.full(len(places_mm), np.inf)
-    count = approach.press.frame_count
-    for progress in np.linspace(0.0, count, min(count, POSES) + 1):
+    for progress in path_samples(approach):
         nearest = np.minimum(nearest, _distance_mm(places_mm, approach, collider, float(progress)))
     return nearest
 
@@ -56,7 +59,7 @@ def refine(facets: Facets, approach: Approach, collider: Collider, *, grid_mm: f
         room = max(1, (most - len(facets.triangles)) // 3)
         order = np.argsort(gap[gap < MARGIN * grid_mm], kind="stable")
         facets = facets.halve(near[order[:room]])
-    return _refine_first_touch(facets, approach, collider) if approach.press.depth_mm else facets
+    return _refine_first_touch(facets, approach, collider) if approach.deepest_mm else facets
 
 
 def _refine_first_touch(facets: Facets, approach: Approach, collider: Collider) -> Facets:
@@ -89,5 +92,4 @@ def _distance_mm(
 
 def reach_mm(approach: Approach, grid_mm: float) -> float:
     """Gap to the path [mm] at which the bulging skin may still be met."""
-    press = approach.press
-    return 2.0 * grid_mm + 0.5 * press.depth_mm + 0.5 * math.hypot(*press.shear_mm)
+    return 2.0 * grid_mm + 0.5 * approach.deepest_mm + 0.5 * approach.aside_mm

@@ -15,21 +15,24 @@ import numpy as np
 from sim.contact.approach import Approach
 from sim.contact.backing import decay_mm
 from sim.contact.collider import Collider
+from sim.contact.refinement import path_samples
 from workbench.core.design import Elastomer
 from workbench.core.errors import DesignError
-from workbench.core.press import ContactSettings
+from workbench.core.press import ContactSettings, Extent
 from workbench.core.results import MembraneMesh
 
 MARGIN_WALLS = 3.1
-"""Margin around the patch over the thickness of the wall."""
+"""Margin around the patch, over the thickness of the wall, that costs `MARGIN_ERROR`."""
+MARGIN_ERROR = 3e-3
+DECAY_WALLS = 1.09
+"""Rate at which the error falls with the margin in walls: on the default press from 0.3 % at 3.1
+walls to 0.04 % at 4.95."""
 LEAST_MARGIN_MM = 4.0
 LEAST_MARGIN_WALLS = 1.5
 """Margin that a radius chosen by hand must leave around the patch, in walls."""
 LEAST_DECAY = 0.75
 """The same over gel, in lengths after which the skin is at rest: where a plate on a foundation is
 down to 4 % of its deflection, exp(-x) (cos x + sin x) with x = 3 / sqrt 2."""
-POSES = 12
-"""Poses of the path at which the patch is looked at."""
 
 
 def region_radius_mm(
@@ -56,8 +59,11 @@ def region_radius_mm(
     decays_mm = decay_mm(mesh, material, wall_mm)
     from_target = np.linalg.norm(mesh.outer.points_mm - approach.target_mm, axis=1)
     whole_mm = float(from_target.max()) + wall_mm
+    if settings.extent is Extent.FULL or approach.press.actuations:
+        return whole_mm
     if chosen_mm == 0.0:
-        return min(patch_mm + max(LEAST_MARGIN_MM, MARGIN_WALLS * wall_mm, decays_mm), whole_mm)
+        margin_mm = margin_walls(settings.region_error) * wall_mm
+        return min(patch_mm + max(LEAST_MARGIN_MM, margin_mm, decays_mm), whole_mm)
     walls_mm, bends_mm = LEAST_MARGIN_WALLS * wall_mm, LEAST_DECAY * decays_mm
     least_mm = min(patch_mm + max(walls_mm, bends_mm), whole_mm)
     if chosen_mm < least_mm:
@@ -75,12 +81,16 @@ def region_radius_mm(
     return chosen_mm
 
 
+def margin_walls(error: float) -> float:
+    """Margin around the patch, in walls, that costs a relative error of the force."""
+    return max(LEAST_MARGIN_WALLS, MARGIN_WALLS + math.log(MARGIN_ERROR / error) / DECAY_WALLS)
+
+
 def _patch_radius_mm(mesh: MembraneMesh, approach: Approach, collider: Collider) -> float:
     """Farthest skin vertex from the target that the indenter covers on its path."""
     from_target = np.linalg.norm(mesh.outer.points_mm - approach.target_mm, axis=1)
     patch_mm = 0.0
-    count = approach.press.frame_count
-    for progress in np.linspace(0.0, count, min(count, POSES) + 1):
+    for progress in path_samples(approach):
         origin, rotation = approach.pose(float(progress))
         inside = collider.distance((mesh.outer.points_mm - origin) @ rotation)[0] < 0.0
         patch_mm = max(patch_mm, float(from_target[inside].max(initial=0.0)))

@@ -4,7 +4,8 @@
 
 with a time step of 1; l, the Rayleigh quotient of the last step, estimates the lowest frequency
 that is still moving. Source: Underwood, Dynamic relaxation, 1983; Papadrakakis, 1981.
-Nothing bulky leaves the device while it relaxes: sums come back as partial sums of fixed chunks.
+Each case of a batch has its own damping and masses. Nothing bulky leaves the device while it
+relaxes: only the sums of `Balances` do.
 """
 
 from __future__ import annotations
@@ -16,188 +17,242 @@ import numpy as np
 import taichi as ti
 
 from sim.contact import kernels
-from sim.contact.collider import Collider
-from sim.contact.domain import Domain
-from sim.material import NeoHookean
+from sim.contact.batch import Batch, Case
 
 STEP_CAP = 0.1
 """Largest displacement of a node in one substep and axis, in cells."""
 FIRST_DAMPING = 0.5
 DAMPING_RANGE = (0.004, 1.5)
-BATCH = 20
-"""Most substeps between two looks at the residual."""
+STEPS = 5
+"""Substeps between two looks at the residual."""
 
 Pose = tuple[np.ndarray, np.ndarray]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Balance:
-    """Forces [N] at one moment."""
+    """Forces [N] of one case; the fields are those of `Balances`."""
 
     reaction_N: np.ndarray
-    """Force on the indenter, shape (3,)."""
-    bond_N: np.ndarray
-    """Force of the bonded points on the membrane, shape (3,)."""
+    held_N: np.ndarray
     unbalanced_N: float
-    """Euclidean norm of the forces on free nodes."""
     net_N: np.ndarray
-    """Sum of the forces on free nodes, shape (3,)."""
+    inertia_Nmm: float
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Balances:
+    """Forces [N] of B cases at one moment."""
+
+    reaction_N: np.ndarray
+    """Force on the object, shape (B, 3)."""
+    held_N: np.ndarray
+    """Force of the held points on the membrane, shape (B, 3)."""
+    unbalanced_N: np.ndarray
+    """Euclidean norm of the forces on free nodes, shape (B,)."""
+    net_N: np.ndarray
+    """Sum of the forces on free nodes, shape (B, 3)."""
+    inertia_Nmm: np.ndarray
+    """Twice the kinetic energy of the relaxation, m v^2 at a time step of 1, shape (B,)."""
+
+    def of(self, case: int) -> Balance:
+        """The forces of one case."""
+        return Balance(
+            reaction_N=self.reaction_N[case],
+            held_N=self.held_N[case],
+            unbalanced_N=float(self.unbalanced_N[case]),
+            net_N=self.net_N[case],
+            inertia_Nmm=float(self.inertia_Nmm[case]),
+        )
 
     @property
-    def finite(self) -> bool:
-        """Whether no force has overflowed."""
-        forces = [self.unbalanced_N, *self.reaction_N, *self.bond_N, *self.net_N]
-        return bool(np.isfinite(forces).all())
+    def finite(self) -> np.ndarray:
+        """Whether no force has overflowed, shape (B,), bool."""
+        found = np.isfinite(self.unbalanced_N)
+        for forces in (self.reaction_N, self.held_N, self.net_N):
+            found &= np.isfinite(forces).all(axis=1)
+        return found
 
 
 class Relaxation:
-    """Displacement, velocity and contact history of one press on the device."""
+    """Displacement, velocity and contact history of a batch of presses on the device."""
 
-    def __init__(
-        self, domain: Domain, collider: Collider, solid: NeoHookean, *, friction: float
-    ) -> None:
-        self.domain = domain
-        self.damping = FIRST_DAMPING
-        self.mass_scale = 1.0
-        self.substeps = 0
-        self.collider = collider
-        self._solid = solid
-        self.friction = friction
-        self._moved = False
-        nodes, points = len(domain.masses), len(domain.points.vertex)
-        slots = (len(domain.rows) // kernels.BLOCK + 1) * kernels.BLOCK * 81
-        self._displacement = _floats(np.zeros(3 * nodes))
-        self._velocity = _floats(np.zeros(3 * nodes))
-        self._forces = _floats(np.zeros(3 * nodes))
-        self._slots = _floats(np.zeros(slots))
-        self._rows = _integers(domain.rows)
-        self._volumes = _floats(domain.volumes_mm3)
-        self._node_starts = _integers(domain.node_starts)
-        self._node_slots = _integers(domain.node_slots)
-        self._masses = _floats(domain.masses)
-        self._fixed = _integers(domain.fixed)
-        self._powers = _floats(np.zeros(2 * nodes))
-        self._owners = _integers(domain.owners)
-        self._owner_starts = _integers(domain.owner_starts)
-        self._weights = _floats(domain.point_weights)
-        self._positions = _floats(domain.points.position_mm - domain.target_mm)
-        self._stiffness = _floats(domain.points.stiffness_N_mm)
-        self._axes = _floats(domain.points.axis)
-        self._sideways = _floats(domain.points.sideways)
-        self._bonded = _integers(domain.points.bonded)
-        self._anchors = _floats(np.zeros(3 * points))
-        self._states = _integers(np.zeros(points))
-        self._point_forces = _floats(np.zeros(3 * points))
-        self._poses = _floats(np.zeros(12 * BATCH))
-        self._size = _floats(collider.size)
-        self._coefficients = _floats(collider.samples)
-        self._counts = _integers(np.array(collider.samples.shape))
-        self._node_partial = ti.ndarray(ti.f64, 6 * _chunks(nodes))
-        self._surface_partial = ti.ndarray(ti.f64, 6 * _chunks(points))
+    def __init__(self, cases: list[Case]) -> None:
+        self.cases = cases
+        self.batch = batch = Batch(cases, STEPS)
+        count = len(cases)
+        self.damping = np.full(count, FIRST_DAMPING)
+        self.mass_scale = np.ones(count)
+        self._moved = np.zeros(count, bool)
+        self._poses = np.zeros((STEPS, count, kernels.POSE), np.float32)
+        self._poses[:, :, 3::4] = 1.0
+        self._numbers = np.zeros((count, kernels.NUMBERS), np.float32)
+        self._choices = np.zeros((count, kernels.CHOICES), np.int32)
+        self._modes = np.zeros(count, np.int32)
+        for row, case in enumerate(cases):
+            grid_mm = case.domain.grid_mm
+            self._numbers[row, kernels.FRICTION] = case.friction
+            self._numbers[row, kernels.LARGEST_STEP] = STEP_CAP * grid_mm
+            self._numbers[row, kernels.INVERSE_EDGE] = 1.0 / grid_mm
+            self._numbers[row, kernels.SIZE :] = case.collider.size
+            self._choices[row, kernels.SHAPE] = int(case.collider.shape)
+            self._choices[row, kernels.FIRST_COEFFICIENT] = batch.first_coefficients[row]
+            self._choices[row, kernels.COUNTS :] = case.collider.samples.shape
+        self._stale_poses = True
+        self._substep = _Launcher(batch, linear=_one_law(cases))
 
-    def advance(self, poses: list[Pose]) -> None:
-        """One substep at each pose, at most `BATCH` of them."""
-        self._upload(poses)
-        for step in range(len(poses)):
-            self._substep(step, moving=True)
-        self.substeps += len(poses)
+    def set_poses(self, case: int, rows: np.ndarray) -> None:
+        """Poses of a case in the next substeps, shape (n <= STEPS, POSE); the last one stays.
 
-    def evaluate(self, pose: Pose) -> Balance:
-        """Forces at the present displacement; nothing moves."""
-        self._upload([pose])
-        self._substep(0, moving=False)
-        return self.balance()
+        A row is origin [mm, sensor frame], rotation body to sensor by rows, share of the drives.
+        """
+        table = self._poses[:, case]
+        table[: len(rows)] = rows
+        table[: len(rows), :3] = rows[:, :3] - self.cases[case].domain.target_mm
+        table[len(rows) :] = table[len(rows) - 1]
+        self._stale_poses = True
 
-    def balance(self) -> Balance:
-        """Forces of the last substep; also adapts the damping for the next ones."""
-        kernels.node_sums(self._forces, self._powers, self._fixed, self._node_partial)
-        kernels.surface_sums(self._point_forces, self._bonded, self._surface_partial)
-        work, inertia, square, *net = _total(self._node_partial)
-        surface = _total(self._surface_partial)
-        if self._moved and inertia > 0.0:
-            lowest = max(work / inertia, 0.0)
-            self.damping = float(np.clip(2.0 * np.sqrt(lowest), *DAMPING_RANGE))
-        return Balance(
-            reaction_N=-surface[:3],
-            bond_N=surface[3:],
-            unbalanced_N=float(np.sqrt(square)),
-            net_N=np.array(net),
+    def advance(self, moving: np.ndarray) -> None:
+        """`STEPS` substeps of the cases that are marked, (B,) bool; the others stay as they are."""
+        self._prepare(np.where(moving, kernels.MOVING, kernels.IDLE))
+        self._substep.run(STEPS)
+        self._moved = self._moved | moving
+
+    def evaluate(self, chosen: np.ndarray) -> Balances:
+        """Forces of the chosen cases, (B,) bool, at their displacements and first poses."""
+        self._prepare(np.where(chosen, kernels.STILL, kernels.IDLE))
+        self._substep.run(1)
+        self._moved = self._moved & ~chosen
+        return self.balances(np.zeros(len(self.cases), bool))
+
+    def balances(self, adapting: np.ndarray) -> Balances:
+        """Forces of the last substep; adapts the damping of the marked cases, (B,), that moved."""
+        batch = self.batch
+        sums = batch.node_sums
+        kernels.node_sums(batch.forces, batch.powers, batch.fixed, sums.bounds, sums.partial)
+        nodes = sums.collect()
+        sums = batch.point_sums
+        kernels.surface_sums(batch.point_forces, batch.held, sums.bounds, sums.partial)
+        surface = sums.collect()
+        work, inertia = nodes[:, 0], nodes[:, 1]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            lowest = np.maximum(work / inertia, 0.0)
+        adapted = np.clip(2.0 * np.sqrt(lowest), *DAMPING_RANGE)
+        known = adapting & self._moved & (inertia > 0.0) & np.isfinite(adapted)
+        self.damping = np.where(known, adapted, self.damping)
+        return Balances(
+            reaction_N=-surface[:, :3],
+            held_N=surface[:, 3:],
+            unbalanced_N=np.sqrt(nodes[:, 2]),
+            net_N=nodes[:, 3:],
+            inertia_Nmm=inertia,
         )
 
-    def commit(self, pose: Pose) -> None:
-        """Make the anchors of this settled frame the friction history of the next."""
-        self._upload([pose])
+    def commit(self, case: int) -> None:
+        """Make the anchors of a settled frame, at its first pose, the history of the next."""
+        batch = self.batch
+        self._upload()
         kernels.commit_anchors(
-            self._displacement, self._rows, self._owners, self._owner_starts, self._weights,
-            self._positions, self._bonded, self._anchors, self._states, self._poses, self._size,
-            self._coefficients, self._counts, 0, int(self.collider.shape), self.friction,
+            batch.displacement, batch.rows, batch.cell_cases, batch.owners, batch.starts,
+            batch.weights, batch.positions, batch.held, batch.anchors, batch.states, batch.slips,
+            batch.poses, batch.numbers, batch.choices, batch.coefficients, case,
         )  # fmt: skip
 
-    def restart(self, displacement_mm: np.ndarray) -> None:
-        """Come to rest at a nodal displacement, shape (N, 3); anchors of this frame are lost."""
-        states = self._states.to_numpy()
-        self._states.from_numpy(np.where(states == kernels.HELD, states, kernels.FREE))
-        self._displacement.from_numpy(np.ascontiguousarray(displacement_mm, np.float32).ravel())
-        self._velocity.fill(0.0)
-        self._moved = False
-        self.damping = FIRST_DAMPING
+    def restart(self, case: int, displacement_mm: np.ndarray) -> None:
+        """Come to rest at a nodal displacement, (N, 3); anchors of this frame are lost."""
+        span = self.batch.spans[case]
+        self.batch.write(self.batch.displacement, 3 * span.first_node, displacement_mm)
+        kernels.rest(
+            self.batch.velocity, self.batch.states, span.first_node, span.nodes, span.first_point,
+            span.points,
+        )  # fmt: skip
+        self._moved[case] = False
+        self.damping[case] = FIRST_DAMPING
 
-    def displacement(self) -> np.ndarray:
-        """Nodal displacement [mm], shape (N, 3), float32."""
-        return self._displacement.to_numpy().reshape(-1, 3)
+    def drive(self, case: int, start_mm: np.ndarray, end_mm: np.ndarray) -> None:
+        """Where held points belong at share 0 and 1 of the coming frame, each (P, 3)."""
+        goals = np.concatenate([start_mm, end_mm], axis=1)
+        self.batch.write(self.batch.goals, 6 * self.batch.spans[case].first_point, goals)
 
-    def node_forces(self) -> np.ndarray:
-        """Force on every node [N], shape (N, 3), float32."""
-        return self._forces.to_numpy().reshape(-1, 3)
+    def displacement(self, case: int = 0) -> np.ndarray:
+        """Nodal displacement of a case [mm], shape (N, 3), float32."""
+        return self._of_nodes(self.batch.displacement, case)
 
-    def point_forces(self) -> np.ndarray:
-        """Force on the membrane at every surface point [N], shape (P, 3), float32."""
-        return self._point_forces.to_numpy().reshape(-1, 3)
+    def node_forces(self, case: int = 0) -> np.ndarray:
+        """Force on every node of a case [N], shape (N, 3), float32."""
+        return self._of_nodes(self.batch.forces, case)
 
-    def contact_history(self) -> tuple[np.ndarray, np.ndarray]:
+    def point_forces(self, case: int = 0) -> np.ndarray:
+        """Force on the membrane at every surface point of a case [N], shape (P, 3), float32."""
+        return self._of_points(self.batch.point_forces, case, 3)
+
+    def slips_mm(self, case: int = 0) -> np.ndarray:
+        """Way that each surface point has slid in settled frames [mm], shape (P,)."""
+        return self._of_points(self.batch.slips, case, 1)[:, 0]
+
+    def contact_history(self, case: int = 0) -> tuple[np.ndarray, np.ndarray]:
         """Anchors in the body frame [mm], (P, 3), and states, (P,), of all surface points."""
-        return self._anchors.to_numpy().reshape(-1, 3), self._states.to_numpy()
+        span = self.batch.spans[case]
+        states = self.batch.states.to_numpy()[span.first_point : span.first_point + span.points]
+        return self._of_points(self.batch.anchors, case, 3), states
 
-    def _upload(self, poses: list[Pose]) -> None:
-        table = np.zeros((BATCH, 12), np.float32)
-        for row, (origin, rotation) in zip(table, poses, strict=False):
-            row[:3], row[3:] = origin - self.domain.target_mm, rotation.ravel()
-        self._poses.from_numpy(table.ravel())
+    def _of_nodes(self, array: Any, case: int) -> np.ndarray:
+        span = self.batch.spans[case]
+        return self.batch.read(array, 3 * span.first_node, 3 * span.nodes).reshape(-1, 3)
 
-    def _substep(self, step: int, *, moving: bool) -> None:
-        grid_mm = self.domain.grid_mm
-        kernels.substep(
-            self._displacement, self._velocity, self._forces, self._slots, self._rows,
-            self._volumes, self._node_starts, self._node_slots, self._masses, self._fixed,
-            self._powers, self._owners, self._owner_starts, self._weights, self._positions,
-            self._stiffness, self._axes, self._sideways, self._bonded, self._anchors, self._states,
-            self._point_forces, self._poses, self._size, self._coefficients, self._counts,
-            step, int(self.collider.shape), int(moving), 1.0 / grid_mm, self._solid.shear_MPa,
-            self._solid.bulk_MPa, self.friction, self.mass_scale, self.damping,
-            STEP_CAP * grid_mm,
-        )  # fmt: skip
-        self._moved = moving
+    def _of_points(self, array: Any, case: int, width: int) -> np.ndarray:
+        span = self.batch.spans[case]
+        first, count = width * span.first_point, width * span.points
+        return self.batch.read(array, first, count).reshape(-1, width)
 
+    def _prepare(self, modes: np.ndarray) -> None:
+        self._numbers[:, kernels.MASS_SCALE] = self.mass_scale
+        self._numbers[:, kernels.DAMPING] = self.damping
+        self._modes = modes
+        self._upload()
 
-def _chunks(rows: int) -> int:
-    return max(1, -(-rows // kernels.CHUNK))
-
-
-def _total(partial: Any) -> np.ndarray:
-    return partial.to_numpy().reshape(-1, 6).sum(axis=0)
+    def _upload(self) -> None:
+        self._choices[:, kernels.MODE] = self._modes
+        self.batch.choices.from_numpy(self._choices.ravel())
+        self.batch.numbers.from_numpy(self._numbers.ravel())
+        if self._stale_poses:
+            self.batch.poses.from_numpy(self._poses.ravel())
+            self._stale_poses = False
 
 
-def _floats(values: np.ndarray) -> Any:
-    return _device(values, ti.f32, np.float32)
+class _Launcher:
+    """Substeps of a batch as a compute graph: its arguments are bound once, not at each launch."""
+
+    def __init__(self, batch: Batch, *, linear: bool) -> None:
+        kernel = kernels.SUBSTEP[linear]
+        names = kernels.SUBSTEP_ARRAYS
+        kinds = {name: ti.i32 if name in kernels.INTEGER_ARRAYS else ti.f32 for name in names}
+        arrays = [
+            ti.graph.Arg(ti.graph.ArgKind.NDARRAY, name, kinds[name], ndim=1) for name in names
+        ]
+        scalars = [
+            ti.graph.Arg(ti.graph.ArgKind.SCALAR, f"step_{step}", ti.i32) for step in range(STEPS)
+        ]
+        cases = ti.graph.Arg(ti.graph.ArgKind.SCALAR, "cases", ti.i32)
+        self._graphs = {}
+        for count in (1, STEPS):
+            builder = ti.graph.GraphBuilder()
+            for step in range(count):
+                builder.dispatch(kernel, *arrays, cases, scalars[step])
+            self._graphs[count] = builder.compile()
+        self._arguments = {name: getattr(batch, name) for name in names}
+        self._arguments["cases"] = len(batch.cases)
+        self._steps = {f"step_{step}": step for step in range(STEPS)}
+
+    def run(self, count: int) -> None:
+        """Run 1 or `STEPS` substeps, at the poses of the table's first rows."""
+        steps = dict(list(self._steps.items())[:count])
+        self._graphs[count].run({**self._arguments, **steps})
 
 
-def _integers(values: np.ndarray) -> Any:
-    return _device(values, ti.i32, np.int32)
-
-
-def _device(values: np.ndarray, kind: Any, host: type) -> Any:
-    # Taichi has no empty arrays: an empty one is a single number that no kernel reads.
-    flat = np.ascontiguousarray(values, dtype=host).ravel()
-    array = ti.ndarray(kind, max(1, flat.size))
-    array.from_numpy(flat if flat.size else np.zeros(1, host))
-    return array
+def _one_law(cases: list[Case]) -> bool:
+    """Whether the law of all cases is the linear one."""
+    laws = {case.domain.linear for case in cases}
+    if len(laws) > 1:
+        raise ValueError("a batch holds linear and neo-Hookean cases; solve them apart")
+    return laws.pop()

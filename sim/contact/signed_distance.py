@@ -78,7 +78,7 @@ def _box(position, half):
 
 
 @ti.func
-def _sampled(position, size: ti.template(), coefficients: ti.template(), counts: ti.template()):
+def _sampled(position, size, coefficients: ti.template(), counts, begin):
     """Quadratic B-spline through samples on a grid; outside it a positive lower bound."""
     inside = ti.Vector([0.0, 0.0, 0.0])
     for c in ti.static(range(3)):
@@ -96,7 +96,7 @@ def _sampled(position, size: ti.template(), coefficients: ti.template(), counts:
                 wy, sy = _line(local[1], j)
                 wz, sz = _line(local[2], k)
                 row = (base[0] + i - 1) * counts[1] + base[1] + j - 1
-                value = coefficients[row * counts[2] + base[2] + k - 1]
+                value = coefficients[begin + row * counts[2] + base[2] + k - 1]
                 distance += value * wx * wy * wz
                 gradient += value * ti.Vector([sx * wy * wz, wx * sy * wz, wx * wy * sz])
     gradient *= size[3]
@@ -121,10 +121,11 @@ def _line(local, node):
 
 
 @ti.func
-def signed_distance(
-    position, shape, size: ti.template(), coefficients: ti.template(), counts: ti.template()
-):
-    """Signed distance [mm] and its gradient at a position in the body frame."""
+def signed_distance(position, shape, size, coefficients: ti.template(), counts, begin):
+    """Signed distance [mm] and its gradient at a position in the body frame.
+
+    `size` and `counts` are vectors; the object's own coefficients start at `begin`.
+    """
     distance = position.norm() - size[0]
     gradient = position / ti.max(position.norm(), _TINY_MM)
     if shape == CYLINDER_Z or shape == CYLINDER_Y or shape == CONE:
@@ -146,5 +147,5 @@ def signed_distance(
         distance, gradient = _box(position, size[0])
         distance -= size[2]
     elif shape != SPHERE:
-        distance, gradient = _sampled(position, size, coefficients, counts)
+        distance, gradient = _sampled(position, size, coefficients, counts, begin)
     return distance, gradient

@@ -1,37 +1,27 @@
-"""Quasi-static press of a rigid indenter into a membrane, frame by frame.
+"""Quasi-static presses, frame by frame, one or many at once.
 
-Each frame moves the indenter along its path in a short ramp and then relaxes until the forces
-balance. From the second frame on, the displacement is first extrapolated along the path. A frame
-has settled when the out-of-balance force is below `tolerance` of the reaction, its sum below half
-a percent, and the reaction has stopped changing; at nearly zero load 1 % of the peak reaction
-stands in for the reaction.
-Left out: self-contact, inertia, viscosity.
+Each frame moves the object along its path in a short ramp and then relaxes until the forces
+balance. Where the path goes straight on, the displacement is first extrapolated along it. A frame
+has settled when the out-of-balance force is below `tolerance` of the load, its sum below half a
+percent, and the reaction has stopped changing; at nearly zero load 1 % of the peak stands in for
+the load. The load is the reaction, plus the forces of driven regions.
+Many presses are relaxed in one launch; each settles, moves on and fails by itself.
+Left out: self-contact, inertia, viscosity; speed enters nowhere.
 """
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, field
+from collections.abc import Sequence
 
 import numpy as np
 
-from sim.contact.approach import Approach, plan_approach
-from sim.contact.backing import (
-    SIDEWAYS,
-    backed_faces,
-    bonded_faces,
-    foundation_N_mm3,
-    support_points_mm,
-)
-from sim.contact.collider import Collider, make_collider
-from sim.contact.domain import Domain, build_domain
-from sim.contact.outcome import FrameOutcome, collect, frame_outcome
-from sim.contact.quadrature import corner_points, facets_of, join, merge
-from sim.contact.refinement import LONGEST_EDGE, path_distance_mm, reach_mm, refine
-from sim.contact.region import region_radius_mm
-from sim.contact.relaxation import BATCH, Balance, Relaxation
-from sim.contact.verdict import check_depth, check_frame
-from sim.material import neo_hookean
+from sim.contact.batch import Case
+from sim.contact.frame import FrameOutcome
+from sim.contact.outcome import collect, frame_outcome
+from sim.contact.problem import Problem, make_problem
+from sim.contact.relaxation import STEPS, Balance, Balances, Relaxation
+from sim.contact.track import Track
+from sim.contact.verdict import check_frame
 from workbench.core.design import Elastomer
 from workbench.core.errors import SolveError
 from workbench.core.indenter import Indenter
@@ -40,22 +30,15 @@ from workbench.core.press import ContactSettings, Press
 from workbench.core.results import MaterialPoints, MembraneMesh
 from workbench.core.sensing import Contact
 
-RAMP_SUBSTEPS_PER_MM = 100.0
-"""Substeps for the indenter to move 1 mm without a prediction."""
-SHORTEST_RAMP = 10
-LOOK_EVERY = 5
-"""Substeps between two looks at the residual while settling."""
 FORCE_CHANGE = 2e-4
 """Largest relative change of the reaction between two looks of a settled frame."""
 NET_FORCE = 5e-3
-"""Largest sum of the forces on free nodes over the reaction: what the support would miss."""
+"""Largest sum of the forces on free nodes over the load: what the support would miss."""
 LEAST_OF_PEAK = 0.01
-"""Share of the peak reaction that stands in for a vanishing one."""
+"""Share of the peak load that stands in for a vanishing one."""
 PATIENCE = 300
 """Substeps without a lower residual before the fictitious masses are doubled."""
 MOST_RETRIES = 4
-BOND_PENALTY = 100.0
-"""Stiffness of the bond to the support per area, in units of E / grid."""
 
 
 def press_membrane(
@@ -68,221 +51,203 @@ def press_membrane(
     *,
     monitor: Monitor = silent,
 ) -> Contact:
-    """Press the indenter along its path; Taichi must have been initialised in this thread.
+    """Press an object along its path; Taichi must have been initialised in this thread.
 
     Args:
         mesh: Skins: contact on `outer`, bond or gel on `inner`.
         points: Material points; their `grid_mm` is the grid of the solution.
-        material: The elastomer, with its friction against the indenter.
+        material: The elastomer, with its friction against the object.
         indenter: The rigid object.
-        press: Its path.
+        press: Its path, and the regions that are driven meanwhile.
         settings: Region, penalty, tolerance.
         monitor: Told the frame and residual; raises `Cancelled` to stop.
 
     Raises:
-        DesignError: If the target is off the skin, the indenter cannot be made or would reach the
-            support, or the region is too small.
-        SolveError: If a frame does not settle or is not sound; carries frame, residual and last
-            good frame.
+        DesignError: If the target is off the skin, the object cannot be made or would reach the
+            support, the region is too small, or memory is short.
+        SolveError: If a frame does not settle or is not sound; carries frame, residual, last
+            good frame, and the result of the frames that settled.
     """
-    monitor(0.0, "placing the indenter")
-    collider = make_collider(indenter, grid_mm=points.grid_mm)
-    approach = plan_approach(mesh.outer, collider, press)
-    check_depth(support_points_mm(mesh), approach, collider)
-    radius_mm = region_radius_mm(mesh, material, approach, collider, settings)
-    domain = prepare(mesh, points, material, approach, collider, settings, radius_mm=radius_mm)
-    relaxation = Relaxation(domain, collider, neo_hookean(material), friction=material.friction)
-    run = _Run(relaxation=relaxation, approach=approach, settings=settings, monitor=monitor)
-    outcomes: list[FrameOutcome] = []
-    for frame in range(press.frame_count):
-        balance = _solve_frame(run, frame)
-        scale_N = run.scale_N(balance)
-        outcome = frame_outcome(relaxation, mesh.outer, approach, balance, frame, scale_N=scale_N)
-        check_frame(outcome, relaxation, approach, frame)
-        outcomes.append(outcome)
-        relaxation.commit(approach.pose(frame + 1.0))
-    monitor(1.0, "settled")
-    return collect(
-        outcomes,
-        approach=approach,
-        domain=domain,
-        radius_mm=radius_mm,
-        substeps=relaxation.substeps,
-    )
+    monitor(0.0, "placing the object")
+    problem = make_problem(mesh, points, material, indenter, press, settings)
+    (result,) = solve([problem], monitor=monitor)
+    if isinstance(result, SolveError):
+        raise result
+    return result
 
 
-def prepare(
-    mesh: MembraneMesh,
-    points: MaterialPoints,
-    material: Elastomer,
-    approach: Approach,
-    collider: Collider,
-    settings: ContactSettings,
-    *,
-    radius_mm: float,
-) -> Domain:
-    """Surface points that may take part, and the active region around them."""
-    grid_mm = points.grid_mm
-    unit = material.young_MPa / grid_mm
+def solve(problems: Sequence[Problem], *, monitor: Monitor = silent) -> list[Contact | SolveError]:
+    """Solve presses side by side; the result of each is what it would be alone, bit by bit."""
+    return _Solver(problems, monitor).run()
 
-    def near(skin_points_mm: np.ndarray) -> np.ndarray:
-        distance = np.linalg.norm(skin_points_mm - approach.target_mm, axis=1)
-        return distance < radius_mm + 2.0 * grid_mm
 
-    outer_centre = mesh.outer.points_mm[mesh.outer.faces].mean(axis=1)
-    inner_centre = mesh.inner.points_mm[mesh.inner.faces].mean(axis=1)
-    spacing_mm = LONGEST_EDGE * grid_mm
-    facets = facets_of(mesh.outer, np.flatnonzero(near(outer_centre)), spacing_mm=spacing_mm)
-    facets = refine(facets, approach, collider, grid_mm=grid_mm)
-    touching = corner_points(facets, stiffness_N_mm3=settings.penalty * unit, bonded=False)
-    gap_mm = path_distance_mm(touching.position_mm, approach, collider)
-    # Only points that the indenter comes near get contact springs and their mass.
-    touching = touching.take(gap_mm < reach_mm(approach, grid_mm))
-    held = touching
-    springs = (
-        (bonded_faces(mesh), BOND_PENALTY * unit, 1.0),
-        (backed_faces(mesh), foundation_N_mm3(mesh, material), SIDEWAYS),
-    )
-    for faces, stiffness_N_mm3, sideways in springs:
-        members = np.flatnonzero(faces & near(inner_centre))
-        if stiffness_N_mm3 > 0.0 and len(members):
-            facets = facets_of(mesh.inner, members, spacing_mm=spacing_mm)
-            bond = corner_points(
-                facets, stiffness_N_mm3=stiffness_N_mm3, bonded=True, sideways=sideways
+class _Solver:
+    """Presses under way; arrays have an entry for each."""
+
+    def __init__(self, problems: Sequence[Problem], monitor: Monitor) -> None:
+        self.monitor = monitor
+        self.relaxation = Relaxation(
+            [
+                Case(domain=p.domain, collider=p.collider, friction=p.material.friction)
+                for p in problems
+            ]
+        )
+        self.tracks = [
+            Track(problem, self.relaxation, number) for number, problem in enumerate(problems)
+        ]
+        count = len(problems)
+        self.tolerance = np.array([p.settings.tolerance for p in problems])
+        self.most = np.array([p.settings.max_substeps for p in problems])
+        self.settling = np.zeros(count, bool)
+        self.active = np.ones(count, bool)
+        self.substeps = np.zeros(count, int)
+        self.spent = np.zeros(count, int)
+        self.lowest = np.full(count, np.inf)
+        self.lowest_at = np.zeros(count, int)
+        self.before_N = np.full((count, 3), np.inf)
+        self.peak_N = np.zeros(count)
+        self.retries = np.zeros(count, int)
+        self.residual = np.full(count, np.inf)
+        for case in range(count):
+            self._begin(case)
+
+    def run(self) -> list[Contact | SolveError]:
+        """Relax until every press has ended."""
+        while self.active.any():
+            for case in np.flatnonzero(self.active & ~self.settling):
+                self.tracks[case].feed()
+            self.relaxation.advance(self.active)
+            self.substeps[self.active] += STEPS
+            if self.settling.any():
+                self._look()
+            for case in np.flatnonzero(self.active & ~self.settling):
+                if self.tracks[case].arrived:
+                    self.tracks[case].stay()
+                    self.settling[case] = True
+            self._tell()
+        self.monitor(1.0, "settled")
+        return [
+            track.error
+            or collect(track.outcomes, track.problem, substeps=int(self.substeps[track.number]))
+            for track in self.tracks
+        ]
+
+    def _begin(self, case: int) -> None:
+        """Start the next frame of a press, or an attempt at the same one."""
+        self.tracks[case].begin()
+        self.settling[case] = self.tracks[case].arrived
+        self.spent[case] = 0
+        self.lowest[case] = np.inf
+        self.lowest_at[case] = 0
+        self.before_N[case] = np.inf
+
+    def _look(self) -> None:
+        """Judge the settling presses by the forces of the last substep."""
+        looked = self.settling.copy()
+        self.spent[looked] += STEPS
+        balances = self.relaxation.balances(looked)
+        for case in np.flatnonzero(looked & ~balances.finite):
+            self._unstable(case)
+        looked &= balances.finite
+        load_N = self._load_N(balances, looked)
+        with np.errstate(invalid="ignore", over="ignore"):
+            self.residual = np.where(looked, balances.unbalanced_N / load_N, self.residual)
+            change = np.linalg.norm(balances.reaction_N - self.before_N, axis=1) / load_N
+        self.before_N[looked] = balances.reaction_N[looked]
+        still = looked & (change < FORCE_CHANGE) & self._balanced(balances, load_N)
+        if still.any():
+            looked &= ~self._close(still)
+        lower = looked & (self.residual < self.lowest)
+        self.lowest[lower] = self.residual[lower]
+        self.lowest_at[lower] = self.spent[lower]
+        stalled = looked & (self.spent - self.lowest_at > PATIENCE) & (self.retries < MOST_RETRIES)
+        # A residual that will not fall is an oscillation at the limit of stability.
+        self.relaxation.mass_scale[stalled] *= 2.0
+        self.retries[stalled] += 1
+        self.lowest_at[stalled] = self.spent[stalled]
+        for case in np.flatnonzero(looked & (self.spent >= self.most)):
+            self._end(case, self.tracks[case].unsettled(float(self.residual[case])))
+
+    def _close(self, still: np.ndarray) -> np.ndarray:
+        """End the frame of presses whose forces balance where the nodes are now; which did."""
+        # The balance was from before the last move.
+        final = self.relaxation.evaluate(still)
+        load_N = self._load_N(final, still & final.finite)
+        settled = still & final.finite & self._balanced(final, load_N)
+        for case in np.flatnonzero(still):
+            track = self.tracks[case]
+            if not (final.finite[case] and np.isfinite(self.relaxation.displacement(case)).all()):
+                self._unstable(case)
+                settled[case] = True
+            elif settled[case]:
+                try:
+                    outcome = self._outcome(case, final.of(case), float(load_N[case]))
+                except SolveError as error:
+                    self._end(case, error)
+                    continue
+                track.finish(outcome)
+                if track.frame < track.problem.approach.frame_count:
+                    self._begin(case)
+                else:
+                    self._end(case, None)
+        return settled
+
+    def _outcome(self, case: int, balance: Balance, load_N: float) -> FrameOutcome:
+        """The settled frame of a press.
+
+        Raises:
+            SolveError: If it is no contact of this elastomer.
+        """
+        track = self.tracks[case]
+        problem, frame = track.problem, track.frame
+        outcome = frame_outcome(
+            self.relaxation, case, problem, balance, frame, load_N=load_N, seconds=track.seconds
+        )
+        check_frame(outcome, problem.approach, frame, grid_mm=problem.domain.grid_mm)
+        return outcome
+
+    def _load_N(self, balances: Balances, looked: np.ndarray) -> np.ndarray:
+        """Force against which residual and change are measured, shape (B,)."""
+        load_N = np.linalg.norm(balances.reaction_N, axis=1)
+        for case in np.flatnonzero(looked):
+            load_N[case] += self.tracks[case].driving_N()
+        self.peak_N = np.where(looked, np.maximum(self.peak_N, load_N), self.peak_N)
+        return np.maximum(np.maximum(load_N, LEAST_OF_PEAK * self.peak_N), 1e-12)
+
+    def _balanced(self, balances: Balances, load_N: np.ndarray) -> np.ndarray:
+        """Whether residual and net force are within their tolerances, shape (B,), bool."""
+        net_N = np.linalg.norm(balances.net_N, axis=1)
+        small = balances.unbalanced_N < self.tolerance * load_N
+        return small & (net_N < NET_FORCE * load_N)
+
+    def _unstable(self, case: int) -> None:
+        """Try the frame again with heavier nodes and a gentler ramp, or give up."""
+        track = self.tracks[case]
+        if track.attempt >= MOST_RETRIES:
+            self._end(case, track.unstable())
+            return
+        track.attempt += 1
+        self.relaxation.mass_scale[case] *= 2.0
+        self._begin(case)
+
+    def _end(self, case: int, error: SolveError | None) -> None:
+        track = self.tracks[case]
+        if error is not None and track.outcomes:
+            error.partial = collect(
+                track.outcomes, track.problem, substeps=int(self.substeps[track.number])
             )
-            held = join(held, merge(bond, grid_mm))
-    return build_domain(
-        mesh,
-        points,
-        held,
-        neo_hookean(material),
-        target_mm=approach.target_mm,
-        active_radius_mm=radius_mm,
-    )
+        track.error = error
+        self.active[case] = self.settling[case] = False
 
-
-@dataclass(kw_only=True, slots=True)
-class _Run:
-    """A press under way."""
-
-    relaxation: Relaxation
-    approach: Approach
-    settings: ContactSettings
-    monitor: Monitor
-    settled: list[np.ndarray] = field(default_factory=list)
-    """Nodal displacements of the last settled frames, newest last."""
-    peak_N: float = 0.0
-    retries: int = 0
-
-    def scale_N(self, balance: Balance) -> float:
-        """Force against which residual and change are measured."""
-        reaction_N = float(np.linalg.norm(balance.reaction_N))
-        self.peak_N = max(self.peak_N, reaction_N)
-        return max(reaction_N, LEAST_OF_PEAK * self.peak_N, 1e-12)
-
-
-def _solve_frame(run: _Run, frame: int) -> Balance:
-    """Ramp to the pose of a frame and settle there."""
-    relaxation, press = run.relaxation, run.approach.press
-    if frame < press.frames and press.depth_mm == 0.0:
-        return relaxation.evaluate(run.approach.pose(frame + 1.0))
-    if not run.settled:
-        run.settled = [relaxation.displacement()]
-    rest = run.settled[-1]
-    for attempt in range(MOST_RETRIES + 1):
-        predicted = attempt == 0 and _predict(run, frame)
-        _ramp(run, frame, short=predicted, gentler=2**attempt)
-        balance = _settle(run, frame)
-        if balance is not None:
-            run.settled = [*run.settled[-2:], relaxation.displacement()]
-            return balance
-        relaxation.mass_scale *= 2.0
-        relaxation.restart(rest)
-    raise SolveError(
-        f"frame {frame + 1} of {press.frame_count} became unstable {MOST_RETRIES + 1} times",
-        hint="lower press.depth_mm or raise press.frames",
-        frame=frame,
-        last_good=frame - 1,
-    )
-
-
-def _predict(run: _Run, frame: int) -> bool:
-    """Extrapolate the displacement of the last frames along the path; False if it turns."""
-    frames = run.approach.press.frames
-    known = min(len(run.settled), frame % frames + 1)
-    if known < 2:
-        return False
-    *older, before, last = run.settled
-    guess = 2.0 * last - before
-    if known >= 3:
-        guess = 3.0 * last - 3.0 * before + older[-1]
-    run.relaxation.restart(guess)
-    return True
-
-
-def _ramp(run: _Run, frame: int, *, short: bool, gentler: int) -> None:
-    """Move the indenter from its last pose to that of a frame."""
-    press = run.approach.press
-    travel_mm = press.depth_mm / press.frames
-    if frame >= press.frames:
-        reach_mm = run.relaxation.domain.grid_mm * 10.0
-        turn_mm = abs(math.radians(press.twist_deg)) * reach_mm
-        travel_mm = (math.hypot(*press.shear_mm) + turn_mm) / press.frames
-    count = max(SHORTEST_RAMP, math.ceil(RAMP_SUBSTEPS_PER_MM * travel_mm)) * gentler
-    if short:
-        count = 1
-    steps = frame + (np.arange(count) + 1.0) / count
-    for first in range(0, count, BATCH):
-        batch = [run.approach.pose(float(step)) for step in steps[first : first + BATCH]]
-        run.relaxation.advance(batch)
-        run.monitor(frame / press.frame_count, f"frame {frame + 1} of {press.frame_count}")
-
-
-def _balanced(run: _Run, balance: Balance) -> bool:
-    """Whether residual and net force are within their tolerances."""
-    scale_N = run.scale_N(balance)
-    net_N = float(np.linalg.norm(balance.net_N))
-    return balance.unbalanced_N < run.settings.tolerance * scale_N and net_N < NET_FORCE * scale_N
-
-
-def _settle(run: _Run, frame: int) -> Balance | None:
-    """Relax at the pose of a frame until forces balance; None if they overflow."""
-    relaxation, settings, press = run.relaxation, run.settings, run.approach.press
-    pose = run.approach.pose(frame + 1.0)
-    start = relaxation.substeps
-    lowest, lowest_at, before_N = np.inf, 0, np.full(3, np.inf)
-    while (spent := relaxation.substeps - start) < settings.max_substeps:
-        relaxation.advance([pose] * LOOK_EVERY)
-        balance = relaxation.balance()
-        if not balance.finite:
-            return None
-        scale_N = run.scale_N(balance)
-        residual = balance.unbalanced_N / scale_N
-        change = float(np.linalg.norm(balance.reaction_N - before_N)) / scale_N
-        before_N = balance.reaction_N
-        if change < FORCE_CHANGE and _balanced(run, balance):
-            # The balance is from before the last move: what counts is where the nodes are now.
-            final = relaxation.evaluate(pose)
-            if not (final.finite and np.isfinite(relaxation.displacement()).all()):
-                return None
-            if _balanced(run, final):
-                return final
-        if residual < lowest:
-            lowest, lowest_at = residual, spent
-        elif spent - lowest_at > PATIENCE and run.retries < MOST_RETRIES:
-            # A residual that will not fall is an oscillation at the limit of stability.
-            relaxation.mass_scale *= 2.0
-            run.retries += 1
-            lowest_at = spent
-        share = min(1.0, spent / 200.0)
-        note = f"frame {frame + 1} of {press.frame_count}, residual {residual:.0e}"
-        run.monitor((frame + share) / press.frame_count, note)
-    raise SolveError(
-        f"frame {frame + 1} of {press.frame_count} has a residual of {residual:.1e} after "
-        f"{settings.max_substeps} substeps; the limit is {settings.tolerance:.1e}",
-        hint="raise contact.max_substeps or contact.tolerance, or press less deep",
-        at="contact.max_substeps",
-        frame=frame,
-        residual=residual,
-        last_good=frame - 1,
-    )
+    def _tell(self) -> None:
+        """Report the progress of all presses, and which frame the slowest is at."""
+        share = np.where(self.settling, np.minimum(1.0, self.spent / 200.0), 0.0)
+        done = [track.progress(float(s)) for track, s in zip(self.tracks, share, strict=True)]
+        case = int(np.argmin(np.where(self.active, done, 2.0)))
+        track = self.tracks[case]
+        note = track.label
+        if self.settling[case]:
+            note += f", residual {self.residual[case]:.0e}"
+        if len(self.tracks) > 1:
+            note = f"{int(self.active.sum())} of {len(self.tracks)} presses under way; {note}"
+        self.monitor(min(1.0, float(np.mean(done))), note)

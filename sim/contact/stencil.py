@@ -149,6 +149,16 @@ def point_weights(local: np.ndarray) -> np.ndarray:
     return np.einsum("pi,pj,pk->pijk", x, y, z).reshape(len(local), 27)
 
 
+def point_slopes(local: np.ndarray) -> np.ndarray:
+    """Gradients of the 27 weights, times the cell edge, at points (P, 3), shape (P, 27, 3)."""
+    weights, slopes = line_weights(local), line_slopes(local)
+    axes = []
+    for axis in range(3):
+        x, y, z = (slopes[:, c] if c == axis else weights[:, c] for c in range(3))
+        axes.append(np.einsum("pi,pj,pk->pijk", x, y, z).reshape(len(local), 27))
+    return np.stack(axes, axis=-1)
+
+
 def point_offsets() -> np.ndarray:
     """Positions of the 8 points from the cell's centre, in cells, shape (8, 3)."""
     bits = np.array(list(itertools.product(_BITS, repeat=3)))
@@ -162,9 +172,4 @@ def weight_table() -> np.ndarray:
 
 def gradient_table() -> np.ndarray:
     """Weight gradients, times the cell edge, at the 8 points, shape (8, 27, 3)."""
-    weights, slopes = line_weights(point_offsets()), line_slopes(point_offsets())
-    axes = []
-    for axis in range(3):
-        x, y, z = (slopes[:, c] if c == axis else weights[:, c] for c in range(3))
-        axes.append(np.einsum("pi,pj,pk->pijk", x, y, z).reshape(8, 27))
-    return np.stack(axes, axis=-1)
+    return point_slopes(point_offsets())

@@ -9,10 +9,7 @@ import numpy as np
 
 from sim.contact.approach import Approach
 from sim.contact.collider import Collider
-from sim.contact.domain import Domain, stencil_nodes
-from sim.contact.outcome import FrameOutcome, deepest_overlap_mm
-from sim.contact.relaxation import Relaxation
-from sim.contact.stencil import gradient_table
+from sim.contact.frame import FrameOutcome, deepest_overlap_mm
 from workbench.core.errors import DesignError, SolveError
 
 POSES = 12
@@ -21,10 +18,6 @@ DEEPEST_OVERLAP = 0.5
 """Overlap of a settled frame that is still a contact, in cells."""
 LEAST_VOLUME_RATIO = 0.02
 """J below which a point counts as crushed: the material law ends at 0."""
-LEAST_FILLED = 0.1
-"""Filled fraction below which a point is fringe, whose J says nothing."""
-LEAST_MOVE = 0.1
-"""Cells with no node moved by more have J far above the limit, in cells."""
 SHALLOW_MM = 1e-3
 """Depth up to which a frame may have no reaction."""
 
@@ -70,16 +63,14 @@ def _meets_support(
     )
 
 
-def check_frame(
-    outcome: FrameOutcome, relaxation: Relaxation, approach: Approach, frame: int
-) -> None:
+def check_frame(outcome: FrameOutcome, approach: Approach, frame: int, *, grid_mm: float) -> None:
     """Refuse a settled frame that is no contact of this elastomer.
 
     Raises:
         SolveError: If skin and object overlap, the elastomer is crushed, or there is no force.
     """
-    press, grid_mm = approach.press, relaxation.domain.grid_mm
-    label = f"frame {frame + 1} of {press.frame_count}"
+    press = approach.press
+    label = f"frame {frame + 1} of {approach.frame_count}"
     depth_mm = press.depth_mm * min(1.0, (frame + 1) / press.frames)
     fault = {"frame": frame, "residual": outcome.residual, "last_good": frame - 1}
     if frame < press.frames and depth_mm > SHALLOW_MM and not outcome.reaction_N.any():
@@ -99,7 +90,7 @@ def check_frame(
             at="contact.grid_mm",
             **fault,
         )
-    least = least_volume_ratio(relaxation.domain, relaxation.displacement())
+    least = outcome.least_volume_ratio
     if not least >= LEAST_VOLUME_RATIO:
         raise SolveError(
             f"{label}: the elastomer is crushed to {least:.3f} of its volume; the limit is "
@@ -108,21 +99,3 @@ def check_frame(
             at="press.depth_mm",
             **fault,
         )
-
-
-def least_volume_ratio(domain: Domain, displacement_mm: np.ndarray) -> float:
-    """Least J = det(I + H) over the points with at least a tenth of their volume filled.
-
-    Args:
-        domain: The active region.
-        displacement_mm: Nodal displacement, shape (N, 3).
-    """
-    filled = domain.volumes_mm3 >= LEAST_FILLED * domain.grid_mm**3 / 8.0
-    nodes = stencil_nodes(domain.rows)
-    moved = (np.abs(displacement_mm).max(axis=1) > LEAST_MOVE * domain.grid_mm)[nodes].any(axis=1)
-    filled, nodes = filled[moved], nodes[moved]
-    slopes = (gradient_table() / domain.grid_mm).transpose(1, 0, 2).reshape(27, 24)
-    nodal = displacement_mm[nodes].transpose(0, 2, 1).reshape(-1, 27)
-    gradient = (nodal @ slopes.astype(nodal.dtype)).reshape(-1, 3, 8, 3).transpose(0, 2, 1, 3)
-    ratio = np.linalg.det(gradient[filled] + np.eye(3, dtype=nodal.dtype))
-    return float(ratio.min(initial=1.0))

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from sim.contact.checks import at_45_degrees, penetration_and_balance, press_finger
-from sim.contact.relaxation import Balance, Relaxation
+from sim.contact.relaxation import Balances, Relaxation
 from sim.contact.solver import press_membrane
 from sim.contact.specimens import flat_block
 from workbench.core.design import Elastomer
@@ -47,6 +47,8 @@ def test_same_press_twice_is_the_same_bit_by_bit(pressed: Contact) -> None:
     """No atomic sums: displacement, reaction and substeps are identical."""
     again = press_block()
     for field in dataclasses.fields(Contact):
+        if field.name == "frame_seconds":
+            continue
         first, second = getattr(pressed, field.name), getattr(again, field.name)
         assert np.array_equal(first, second), field.name
 
@@ -163,8 +165,8 @@ def test_settled_frame_is_the_one_that_was_tested(monkeypatch: pytest.MonkeyPatc
     """A final evaluation out of balance is not accepted: the press goes on and tries again."""
     evaluate, seen = Relaxation.evaluate, []
 
-    def spoilt(self: Relaxation, pose: tuple) -> Balance:
-        seen.append(evaluate(self, pose))
+    def spoilt(self: Relaxation, chosen: np.ndarray) -> Balances:
+        seen.append(evaluate(self, chosen))
         excess = 1.0 if len(seen) == 1 else 0.0
         return dataclasses.replace(seen[-1], unbalanced_N=seen[-1].unbalanced_N + excess)
 
@@ -180,9 +182,9 @@ def test_displacement_that_is_not_a_number_is_never_a_result(
     """Finite forces with one NaN node: the frame is unstable, however often it is tried."""
     displacement = Relaxation.displacement
 
-    def spoilt(self: Relaxation) -> np.ndarray:
-        nodes = displacement(self)
-        nodes[0] = np.nan if self.substeps else 0.0
+    def spoilt(self: Relaxation, case: int = 0) -> np.ndarray:
+        nodes = displacement(self, case)
+        nodes[0] = np.nan
         return nodes
 
     monkeypatch.setattr(Relaxation, "displacement", spoilt)

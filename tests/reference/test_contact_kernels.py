@@ -9,12 +9,14 @@ from sim.contact import reference
 from sim.contact.approach import plan_approach
 from sim.contact.collider import make_collider
 from sim.contact.domain import stencil_nodes
-from sim.contact.relaxation import STEP_CAP, Relaxation
-from sim.contact.solver import prepare
+from sim.contact.batch import Case
+from sim.contact.problem import prepare
+from sim.contact.relaxation import STEP_CAP, STEPS, Relaxation
 from sim.contact.specimens import flat_block
-from sim.material import neo_hookean
-from workbench.core.design import Elastomer
+from sim.material import elastic_solid
+from workbench.core.design import Elastomer, Law
 from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
+from workbench.core.inclusion import Inclusion, Where
 from workbench.core.press import ContactSettings, Press
 from workbench.core.results import Label
 
@@ -32,7 +34,29 @@ def box_mesh(half_mm: float = 2.0) -> IndenterMesh:
     return IndenterMesh(points_mm=corners.astype(float), faces=np.array(faces, np.int32))
 
 
-def setup(indenter: Indenter, depth_mm: float = 0.4, backing_mm: float = 0.0):
+ONE = np.ones(1, bool)
+
+
+def alone(domain, collider) -> Relaxation:
+    return Relaxation([Case(domain=domain, collider=collider, friction=0.3)])
+
+
+def row(pose, share: float = 1.0) -> np.ndarray:
+    origin, rotation = pose
+    return np.concatenate([origin, rotation.ravel(), [share]])[None]
+
+
+def evaluate(relaxation: Relaxation, pose, share: float = 1.0):
+    relaxation.set_poses(0, row(pose, share))
+    return relaxation.evaluate(ONE).of(0)
+
+
+def setup(
+    indenter: Indenter,
+    depth_mm: float = 0.4,
+    backing_mm: float = 0.0,
+    material: Elastomer = MATERIAL,
+):
     mesh, points = flat_block(width_mm=6.0, height_mm=2.0, grid_mm=0.5, skin_mm=0.5)
     if backing_mm:
         labels = np.full(len(mesh.inner.faces), Label.INNER | Label.BACKED, dtype=np.uint8)
@@ -41,8 +65,8 @@ def setup(indenter: Indenter, depth_mm: float = 0.4, backing_mm: float = 0.0):
     collider = make_collider(indenter, grid_mm=0.5)
     press = Press(target_mm=(0.1, 0.2, 2.0), depth_mm=depth_mm, twist_deg=20.0, frames=1)
     approach = plan_approach(mesh.outer, collider, press)
-    domain = prepare(mesh, points, MATERIAL, approach, collider, ContactSettings(), radius_mm=3.0)
-    relaxation = Relaxation(domain, collider, neo_hookean(MATERIAL), friction=0.3)
+    domain = prepare(mesh, points, material, approach, collider, ContactSettings(), radius_mm=3.0)
+    relaxation = alone(domain, collider)
     return domain, collider, approach, relaxation
 
 
@@ -55,16 +79,16 @@ def wobble(domain, amplitude_mm: float = 0.02) -> np.ndarray:
 def test_forces_equal_the_twin(taichi_device: str, kind: IndenterKind) -> None:
     """Elastic, bonding, contact and friction forces on all nodes, with a slipping contact."""
     domain, collider, approach, relaxation = setup(Indenter(kind=kind, size_mm=4.0))
-    displacement, solid = wobble(domain), neo_hookean(MATERIAL)
-    history = reference.ContactHistory.fresh(len(domain.points.vertex))
-    relaxation.restart(displacement)
+    displacement = wobble(domain)
+    history = reference.ContactHistory.fresh(domain.points.count)
+    relaxation.restart(0, displacement)
     for progress in (1.0, 1.05):
         pose = approach.pose(progress)
-        relaxation.evaluate(pose)
+        evaluate(relaxation, pose)
         point_forces = reference.surface_forces(
             domain, displacement.astype(float), history, collider, pose, friction=0.3
         )
-    exact = reference.stress_forces(domain, displacement.astype(float), solid)
+    exact = reference.stress_forces(domain, displacement.astype(float))
     exact += reference.spread_to_nodes(domain, point_forces)
     assert np.count_nonzero(history.states) > 5
     bound = RELATIVE * np.abs(point_forces).max()
@@ -76,8 +100,8 @@ def test_gel_is_sheared_by_a_third_of_what_it_is_pushed_by(taichi_device: str) -
     """A block moved by (1, 2, 3) um on gel: k (1/3, 2/3, 3) um per area, k = E_gel / 1.5 mm."""
     domain, _, approach, relaxation = setup(Indenter(size_mm=4.0), depth_mm=0.0, backing_mm=1.5)
     moved_mm = np.array([1e-3, 2e-3, 3e-3])
-    relaxation.restart(np.tile(moved_mm, (len(domain.node_mm), 1)))
-    relaxation.evaluate(approach.pose(0.0))
+    relaxation.restart(0, np.tile(moved_mm, (len(domain.node_mm), 1)))
+    evaluate(relaxation, approach.pose(0.0))
     held = domain.points.bonded
     per_mm = MATERIAL.backing_MPa / 1.5 * moved_mm * [1 / 3, 1 / 3, 1.0]
     stiffness = domain.points.stiffness_N_mm[held] / (MATERIAL.backing_MPa / 1.5)
@@ -97,11 +121,11 @@ def test_gel_forces_equal_the_twin_for_any_normal(taichi_device: str) -> None:
         sideways=random.uniform(0.0, 1.0, len(axis)),
     )
     domain = dataclasses.replace(flat, points=points)
-    relaxation = Relaxation(domain, collider, neo_hookean(MATERIAL), friction=0.3)
+    relaxation = alone(domain, collider)
     displacement, pose = wobble(domain), approach.pose(1.0)
-    relaxation.restart(displacement)
-    relaxation.evaluate(pose)
-    history = reference.ContactHistory.fresh(len(points.vertex))
+    relaxation.restart(0, displacement)
+    evaluate(relaxation, pose)
+    history = reference.ContactHistory.fresh(points.count)
     exact = reference.surface_forces(
         domain, displacement.astype(float), history, collider, pose, friction=0.3
     )
@@ -116,30 +140,100 @@ def test_commit_equals_the_twin(taichi_device: str) -> None:
     """Anchors after a frame in which the indenter turned by 10 degrees; places are good to 1e-6."""
     domain, collider, approach, relaxation = setup(Indenter(size_mm=4.0))
     displacement = wobble(domain)
-    history = reference.ContactHistory.fresh(len(domain.points.vertex))
-    relaxation.restart(displacement)
+    history = reference.ContactHistory.fresh(domain.points.count)
+    relaxation.restart(0, displacement)
     for progress in (1.0, 1.5):
         pose = approach.pose(progress)
-        relaxation.evaluate(pose)
+        evaluate(relaxation, pose)
         arguments = (domain, displacement.astype(float), history, collider, pose)
         reference.surface_forces(*arguments, friction=0.3)
-    relaxation.commit(pose)
+    relaxation.commit(0)
     reference.commit_history(*arguments, friction=0.3)
     anchors, states = relaxation.contact_history()
     np.testing.assert_array_equal(states, history.states)
     held = states == reference.HELD
     np.testing.assert_allclose(anchors[held], history.anchors[held], atol=2e-6)
+    assert history.slips.max() > 0.05
+    np.testing.assert_allclose(relaxation.slips_mm(), history.slips, atol=2e-6)
+
+
+def test_driven_points_are_pulled_to_their_goals(taichi_device: str) -> None:
+    """Held points at share 0.25 of a way of (1, 2, 3) um: k times what is left, exactly."""
+    domain, collider, approach, relaxation = setup(Indenter(size_mm=4.0), depth_mm=0.0)
+    displacement, count = wobble(domain, 1e-3), domain.points.count
+    goal_mm = np.tile([1e-3, 2e-3, 3e-3], (count, 1))
+    relaxation.restart(0, displacement)
+    relaxation.drive(0, np.zeros((count, 3)), goal_mm)
+    pose = approach.pose(0.0)
+    evaluate(relaxation, pose, 0.25)
+    exact = reference.surface_forces(
+        domain, displacement.astype(float), reference.ContactHistory.fresh(count), collider, pose,
+        friction=0.3, goals_mm=0.25 * goal_mm,
+    )  # fmt: skip
+    held = domain.points.bonded
+    bound = RELATIVE * np.abs(exact[held]).max()
+    assert np.abs(relaxation.point_forces()[held] - exact[held]).max() < bound
+
+
+@pytest.mark.parametrize("law", Law)
+def test_two_elastomers_and_both_laws_equal_the_twin(taichi_device: str, law: Law) -> None:
+    """A box ten times as stiff inside the block; forces of every node as the twin has them."""
+    stiff = Inclusion(
+        where=Where.BOX, centre_mm=(1.0, 0.0, 1.0), size_mm=(2.0, 9.0, 9.0), young_MPa=1.45
+    )
+    material = dataclasses.replace(MATERIAL, law=law, inclusions=(stiff,))
+    domain, collider, approach, relaxation = setup(Indenter(size_mm=4.0), material=material)
+    displacement = wobble(domain)
+    relaxation.restart(0, displacement)
+    evaluate(relaxation, approach.pose(-3.0))
+    forces = reference.stress_forces(domain, displacement.astype(float))
+    history = reference.ContactHistory.fresh(domain.points.count)
+    held = reference.surface_forces(
+        domain, displacement.astype(float), history, collider, approach.pose(-3.0), friction=0.3
+    )
+    exact = forces + reference.spread_to_nodes(domain, held)
+    assert len(np.unique(domain.moduli_MPa[:, 0])) == 2
+    assert np.abs(relaxation.node_forces() - exact).max() < RELATIVE * np.abs(exact).max()
+
+
+def test_a_batch_relaxes_each_case_as_if_alone(taichi_device: str) -> None:
+    """Three different presses side by side: the same bits as one by one, even when one rests."""
+    kinds = (IndenterKind.SPHERE, IndenterKind.CUBE, IndenterKind.CONE)
+    cases, rows, starts = [], [], []
+    for number, kind in enumerate(kinds):
+        domain, collider, approach, _ = setup(Indenter(kind=kind, size_mm=4.0 + number))
+        cases.append(Case(domain=domain, collider=collider, friction=0.3))
+        rows.append(row(approach.pose(1.0)))
+        starts.append(wobble(domain))
+
+    def relax(chosen: list[int], resting: int | None) -> list[np.ndarray]:
+        relaxation = Relaxation([cases[number] for number in chosen])
+        for place, number in enumerate(chosen):
+            relaxation.set_poses(place, rows[number])
+            relaxation.restart(place, starts[number])
+        moving = np.ones(len(chosen), bool)
+        for turn in range(4):
+            if resting is not None:
+                moving[resting] = turn < 2
+            relaxation.advance(moving)
+            relaxation.balances(moving)
+        return [relaxation.displacement(place) for place in range(len(chosen))]
+
+    together = relax([0, 1, 2], resting=1)
+    for number in (0, 2):
+        (alone_mm,) = relax([number], resting=None)
+        np.testing.assert_array_equal(together[number], alone_mm)
 
 
 def test_step_equals_the_twin(taichi_device: str) -> None:
-    """Two damped steps from rest; the cap of 0.1 cell holds for the wildest nodes."""
+    """Five damped steps from rest; the cap of 0.1 cell holds for the wildest nodes."""
     domain, collider, approach, relaxation = setup(Indenter(size_mm=4.0))
-    displacement, solid = wobble(domain, 0.1).astype(float), neo_hookean(MATERIAL)
-    relaxation.restart(displacement)
-    history = reference.ContactHistory.fresh(len(domain.points.vertex))
+    displacement = wobble(domain, 0.1).astype(float)
+    relaxation.restart(0, displacement)
+    history = reference.ContactHistory.fresh(domain.points.count)
     velocity, pose = np.zeros_like(displacement), approach.pose(1.0)
-    for _ in range(2):
-        forces = reference.stress_forces(domain, displacement, solid)
+    for _ in range(STEPS):
+        forces = reference.stress_forces(domain, displacement)
         forces += reference.spread_to_nodes(
             domain,
             reference.surface_forces(domain, displacement, history, collider, pose, friction=0.3),
@@ -148,12 +242,13 @@ def test_step_equals_the_twin(taichi_device: str) -> None:
             domain,
             velocity,
             forces,
-            damping=relaxation.damping,
+            damping=relaxation.damping[0],
             mass_scale=1.0,
             largest_step=STEP_CAP * domain.grid_mm,
         )
         displacement = displacement + velocity
-    relaxation.advance([pose, pose])
+    relaxation.set_poses(0, row(pose))
+    relaxation.advance(ONE)
     assert np.abs(velocity).max() <= STEP_CAP * domain.grid_mm + 1e-12
     np.testing.assert_allclose(relaxation.displacement(), displacement, atol=2e-6)
 
@@ -161,8 +256,8 @@ def test_step_equals_the_twin(taichi_device: str) -> None:
 def test_sums_equal_numpy(taichi_device: str) -> None:
     """Residual, reaction and net force from fixed chunks equal sums on the host."""
     domain, _, approach, relaxation = setup(Indenter(size_mm=4.0))
-    relaxation.restart(wobble(domain))
-    balance = relaxation.evaluate(approach.pose(1.0))
+    relaxation.restart(0, wobble(domain))
+    balance = evaluate(relaxation, approach.pose(1.0))
     free = relaxation.node_forces()[~domain.fixed].astype(float)
     touching = relaxation.point_forces()[~domain.points.bonded].astype(float)
     np.testing.assert_allclose(balance.unbalanced_N, np.linalg.norm(free), rtol=1e-12)
@@ -174,8 +269,8 @@ def test_affine_field_has_no_interior_force(taichi_device: str) -> None:
     """The patch test: a homogeneous deformation is in balance; 1e-6 of the stress times dx^2."""
     domain, _, approach, relaxation = setup(Indenter(size_mm=4.0), depth_mm=0.0)
     gradient = np.array([[0.1, 0.05, 0.0], [-0.02, -0.08, 0.03], [0.0, 0.04, 0.12]])
-    relaxation.restart(domain.node_mm @ gradient.T)
-    relaxation.evaluate(approach.pose(0.0))
+    relaxation.restart(0, domain.node_mm @ gradient.T)
+    evaluate(relaxation, approach.pose(0.0))
     full = np.isclose(domain.volumes_mm3.sum(axis=1), domain.grid_mm**3)
     touches = np.bincount(stencil_nodes(domain.rows)[full].ravel(), minlength=len(domain.masses))
     spoilt = np.zeros(len(domain.masses), bool)
@@ -183,7 +278,7 @@ def test_affine_field_has_no_interior_force(taichi_device: str) -> None:
     interior = (touches == 27) & ~spoilt
     from sim.material import first_piola
 
-    stress = first_piola(gradient[None], neo_hookean(MATERIAL))[0]
+    stress = first_piola(gradient[None], elastic_solid(MATERIAL))[0]
     scale_N = np.abs(stress).max() * domain.grid_mm**2
     assert interior.sum() >= 20
     assert np.abs(relaxation.node_forces()[interior]).max() < 2e-6 * scale_N

@@ -14,7 +14,7 @@ from sim.contact.relaxation import Relaxation
 from sim.contact.solver import prepare
 from sim.contact.specimens import flat_block
 from sim.contact.verdict import check_depth, check_frame, least_volume_ratio
-from sim.material import neo_hookean
+from sim.material import elastic_solid
 from workbench.core.design import Elastomer
 from workbench.core.errors import DesignError, SolveError
 from workbench.core.indenter import Indenter, IndenterKind
@@ -35,7 +35,7 @@ def frame(scale_N: float = 1.0) -> tuple[FrameOutcome, Relaxation, Approach]:
     """A frame of the undeformed block under the ball; nothing has settled."""
     (approach, collider), material = plan(), Elastomer()
     domain = prepare(MESH, POINTS, material, approach, collider, ContactSettings(), radius_mm=3.0)
-    relaxation = Relaxation(domain, collider, neo_hookean(material), friction=0.3)
+    relaxation = Relaxation(domain, collider, elastic_solid(material), friction=0.3)
     balance = relaxation.evaluate(approach.pose(1.0))
     outcome = frame_outcome(relaxation, MESH.outer, approach, balance, 0, scale_N=scale_N)
     return outcome, relaxation, approach

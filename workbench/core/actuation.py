@@ -32,6 +32,8 @@ class Actuation:
     """Direction of the axis."""
     about_mm: Place = (0.0, 0.0, 0.0)
     """A point of the axis [mm]."""
+    facing: Place = (0.0, 0.0, 0.0)
+    """Only faces whose outward normal has a part along this direction move; zero: all of them."""
     keys: tuple[Key, ...] = ((0.0, 0.0), (10.0, 1.0))
     """(frame, share) pairs in the order of frames; frame 0 is before the first frame."""
 

@@ -17,6 +17,7 @@ from typing import Any, cast
 from workbench.core.check import within
 from workbench.core.errors import DesignError
 from workbench.core.imported import ImportedBody
+from workbench.core.inclusion import Inclusion
 from workbench.core.making import Casting, Housing, MouldOptions
 
 SCHEMA = 1
@@ -73,9 +74,18 @@ class Layers:
         within(self.elastomer_mm, 0.2, 20.0, what="elastomer wall", unit="mm", at=at)
 
 
+class Law(enum.StrEnum):
+    """Stress from strain."""
+
+    NEO_HOOKEAN = "neo_hookean"
+    """Compressible neo-Hookean: large strains."""
+    LINEAR = "linear"
+    """Hooke's law of small strains and small turns, to compare with closed forms."""
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Elastomer:
-    """A neo-Hookean silicone: C10 = mu / 2, D1 = 2 / K."""
+    """A silicone: neo-Hookean with C10 = mu / 2, D1 = 2 / K, or linear elastic."""
 
     young_MPa: float = 0.145
     """Young's modulus [MPa]. Source: SimTac, 1.45e5 Pa (the paper prints kPa)."""
@@ -90,7 +100,26 @@ class Elastomer:
 
     Source: our choice, a very soft silicone gel (Shore 00-10 or below) as in TacTips.
     """
+    law: Law = Law.NEO_HOOKEAN
+    inclusions: tuple[Inclusion, ...] = ()
+    """Parts of another elastomer."""
     source: str = field(default="SimTac, Supplementary", metadata={"cosmetic": True})
+
+    @staticmethod
+    def of_constants(*, c10_MPa: float, d1_per_MPa: float, **others: Any) -> Elastomer:
+        """The elastomer of given neo-Hookean constants; `others` are further fields.
+
+        E = 9 K mu / (3 K + mu), nu = (3 K - 2 mu) / (6 K + 2 mu) with mu = 2 C10, K = 2 / D1.
+
+        Raises:
+            DesignError: If a constant is not positive or Poisson's ratio leaves its range.
+        """
+        within(c10_MPa, 1e-5, 1e3, what="C10", unit="MPa", at="material.c10_MPa")
+        within(d1_per_MPa, 1e-5, 1e5, what="D1", unit="1/MPa", at="material.d1_per_MPa")
+        shear, bulk = 2.0 * c10_MPa, 2.0 / d1_per_MPa
+        young_MPa = 9.0 * bulk * shear / (3.0 * bulk + shear)
+        poisson = (3.0 * bulk - 2.0 * shear) / (6.0 * bulk + 2.0 * shear)
+        return Elastomer(young_MPa=young_MPa, poisson=poisson, **others)
 
     def __post_init__(self) -> None:
         hint = "silicones for tactile skins have 0.03 to 3 MPa"

@@ -1,0 +1,196 @@
+"""Several presses (cases) as one set of device arrays.
+
+Every case keeps its own copy of its region; nodes, cells and surface points of the cases follow
+each other. Cells of a case are padded to a multiple of `SLOT_BLOCK`, so that its slots stay
+together. Sums are taken in chunks that never span two cases: what one case does cannot change a
+bit of another.
+"""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import taichi as ti
+
+from sim.contact import kernels
+from sim.contact.collider import Collider
+from sim.contact.domain import SLOT_BLOCK, Domain
+
+CHUNK = 128
+"""Rows summed by one thread of a reduction; fixed, so that the order of sums is too."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Case:
+    """One press: its region, its object, and the friction between them."""
+
+    domain: Domain
+    collider: Collider
+    friction: float
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Span:
+    """Where a case lies in the arrays of a batch."""
+
+    first_node: int
+    nodes: int
+    first_point: int
+    points: int
+
+
+class Batch:
+    """Device arrays of all cases; names and layouts are those of `kernels`."""
+
+    def __init__(self, cases: list[Case], steps: int) -> None:
+        domains = [case.domain for case in cases]
+        nodes = np.array([len(domain.masses) for domain in domains])
+        cells = np.array([_padded(len(domain.rows)) for domain in domains])
+        points = np.array([domain.points.count for domain in domains])
+        node_at, cell_at, point_at = _starts(nodes), _starts(cells), _starts(points)
+        self.cases = cases
+        self.spans = [
+            Span(first_node=int(a), nodes=int(n), first_point=int(b), points=int(p))
+            for a, n, b, p in zip(node_at, nodes, point_at, points, strict=False)
+        ]
+        everything = list(zip(domains, node_at, cell_at, point_at, strict=False))
+        total = int(node_at[-1])
+        self.displacement = floats(np.zeros(3 * total))
+        self.velocity = floats(np.zeros(3 * total))
+        self.forces = floats(np.zeros(3 * total))
+        self.slots = floats(np.zeros(81 * int(cell_at[-1])))
+        self.rows = integers(_joined([_pad(d.rows) + n for d, n, _, _ in everything]))
+        self.volumes = floats(_joined([_pad(d.volumes_mm3) for d in domains]))
+        self.moduli = floats(_joined([_pad(d.moduli_MPa) for d in domains]))
+        self.cell_cases = integers(np.repeat(np.arange(len(cases)), cells))
+        entries = _starts(np.array([len(d.node_slots) for d in domains]))
+        starts = [d.node_starts[:-1] + e for d, e in zip(domains, entries, strict=False)]
+        self.node_starts = integers(np.append(_joined(starts), entries[-1]))
+        self.node_slots = integers(_joined([d.node_slots + 81 * c for d, _, c, _ in everything]))
+        self.node_cases = integers(np.repeat(np.arange(len(cases)), nodes))
+        self.masses = floats(_joined([d.masses for d in domains]))
+        self.fixed = integers(_joined([d.fixed for d in domains]))
+        self.powers = floats(np.zeros(2 * total))
+        self.owners = integers(_joined([d.owners + c for d, _, c, _ in everything]))
+        owned = [d.owner_starts[:-1] + p for d, _, _, p in everything]
+        # Without any surface point the one owner that stands for none owns nothing.
+        ends = [point_at[-1]] * (2 if not len(_joined(owned)) else 1)
+        self.starts = integers(np.append(_joined(owned), ends))
+        self.weights = floats(_joined([d.point_weights for d in domains]))
+        places = [d.points.position_mm - d.target_mm for d in domains]
+        self.positions = floats(_joined(places))
+        self.stiffness = floats(_joined([d.points.stiffness_N_mm for d in domains]))
+        self.axes = floats(_joined([d.points.axis for d in domains]))
+        self.sideways = floats(_joined([d.points.sideways for d in domains]))
+        self.held = integers(_joined([d.points.bonded for d in domains]))
+        self.goals = floats(np.zeros(6 * int(point_at[-1])))
+        self.anchors = floats(np.zeros(3 * int(point_at[-1])))
+        self.states = integers(np.zeros(int(point_at[-1])))
+        self.slips = floats(np.zeros(int(point_at[-1])))
+        self.point_forces = floats(np.zeros(3 * int(point_at[-1])))
+        self.poses = floats(np.zeros(steps * len(cases) * kernels.POSE))
+        self.numbers = floats(np.zeros(len(cases) * kernels.NUMBERS))
+        self.choices = integers(np.zeros(len(cases) * kernels.CHOICES))
+        samples, self.first_coefficients = _shared_samples(cases)
+        self.coefficients = floats(samples)
+        self.node_sums = _Sums(node_at)
+        self.point_sums = _Sums(point_at)
+        self._staging = floats(np.zeros(max(3 * int(nodes.max()), 6 * int(points.max()), 1)))
+
+    def read(self, array: Any, first: int, count: int) -> np.ndarray:
+        """Some entries of a device array of floats, shape (count,)."""
+        kernels.copy_out(array, self._staging, first, count)
+        return self._staging.to_numpy()[:count]
+
+    def write(self, array: Any, first: int, values: np.ndarray) -> None:
+        """Replace some entries of a device array of floats."""
+        staged = np.zeros(self._staging.shape[0], np.float32)
+        staged[: values.size] = values.ravel()
+        self._staging.from_numpy(staged)
+        kernels.copy_in(self._staging, array, first, values.size)
+
+
+class _Sums:
+    """Chunks of rows, case by case, and their sums."""
+
+    def __init__(self, starts: np.ndarray) -> None:
+        bounds: list[tuple[int, int]] = []
+        first_chunks = [0]
+        for first, last in itertools.pairwise(starts):
+            edges = [*range(int(first), int(last), CHUNK), int(last)]
+            bounds += list(itertools.pairwise(edges))
+            first_chunks.append(len(bounds))
+        self.bounds = integers(np.array(bounds or [(0, 0)]))
+        self.partial = ti.ndarray(ti.f64, 6 * max(1, len(bounds)))
+        self.first_chunks = integers(np.array(first_chunks))
+        self.totals = ti.ndarray(ti.f64, 6 * (len(starts) - 1))
+
+    def collect(self) -> np.ndarray:
+        """Six sums of each case, shape (cases, 6), from the chunks' partial sums."""
+        kernels.case_sums(self.partial, self.first_chunks, self.totals)
+        return self.totals.to_numpy().reshape(-1, 6)
+
+
+def needed_bytes(cells: int, points: int) -> int:
+    """Device memory that a case of so many cells and surface points takes, at most.
+
+    A cell has 81 slots, 9 rows, 8 volumes, 2 moduli and its case; there are up to twice as many
+    nodes as cells in a thin wall, of 3 x 3 floats and 7 numbers, and 27 slot entries per cell.
+    """
+    per_cell = 4 * (81 + 9 + 8 + 3 + 27 + 2 * (9 + 7))
+    per_point = 4 * (27 + 3 + 1 + 3 + 1 + 1 + 6 + 3 + 1 + 1 + 3)
+    return cells * per_cell + points * per_point
+
+
+def _padded(count: int) -> int:
+    return -(-count // SLOT_BLOCK) * SLOT_BLOCK
+
+
+def _pad(rows: np.ndarray) -> np.ndarray:
+    """Cells up to a multiple of the block; the added ones hold nothing and reach no node."""
+    return np.pad(rows, ((0, _padded(len(rows)) - len(rows)), (0, 0)))
+
+
+def _starts(counts: np.ndarray) -> np.ndarray:
+    return np.concatenate([[0], np.cumsum(counts)])
+
+
+def _joined(parts: list[np.ndarray]) -> np.ndarray:
+    return np.concatenate([np.asarray(part).ravel() for part in parts])
+
+
+def _shared_samples(cases: list[Case]) -> tuple[np.ndarray, list[int]]:
+    """Samples of all objects, those that cases share once, and where each case's begin."""
+    known: dict[int, int] = {}
+    parts: list[np.ndarray] = []
+    first: list[int] = []
+    length = 0
+    for case in cases:
+        samples = case.collider.samples
+        if id(samples) not in known:
+            known[id(samples)] = length
+            parts.append(samples)
+            length += samples.size
+        first.append(known[id(samples)])
+    return _joined(parts), first
+
+
+def floats(values: np.ndarray) -> Any:
+    """A device array of single precision with these values."""
+    return _device(values, ti.f32, np.float32)
+
+
+def integers(values: np.ndarray) -> Any:
+    """A device array of 32-bit integers with these values."""
+    return _device(values, ti.i32, np.int32)
+
+
+def _device(values: np.ndarray, kind: Any, host: type) -> Any:
+    # Taichi has no empty arrays: an empty one is a single number that no kernel reads.
+    flat = np.ascontiguousarray(values, dtype=host).ravel()
+    array = ti.ndarray(kind, max(1, flat.size))
+    array.from_numpy(flat if flat.size else np.zeros(1, host))
+    return array

@@ -1,0 +1,57 @@
+"""Driven regions: which faces an actuation moves, and where their points belong when."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sim.contact.quadrature import SurfacePoints
+from workbench.core.actuation import Actuation
+from workbench.core.errors import DesignError
+from workbench.core.press import Press
+from workbench.core.results import MembraneMesh, Skin, region_masks
+
+UNDRIVEN = -1
+
+
+def driven_faces(mesh: MembraneMesh, press: Press) -> tuple[np.ndarray, np.ndarray]:
+    """Which actuation drives each outer and inner face, -1 for none, shapes (F,) and (G,).
+
+    Raises:
+        DesignError: If the membrane has no region of that name.
+    """
+    skins = (mesh.outer, mesh.inner)
+    found = tuple(np.full(len(skin.faces), UNDRIVEN) for skin in skins)
+    regions = [region_masks(skin.labels, skin.numbers) for skin in skins]
+    for number, actuation in enumerate(press.actuations):
+        chosen = [
+            _facing(skin, actuation) & named.get(actuation.region, np.zeros(len(skin.faces), bool))
+            for skin, named in zip(skins, regions, strict=True)
+        ]
+        if not any(mask.any() for mask in chosen):
+            names = ", ".join(sorted(set(regions[0]) | set(regions[1])))
+            raise DesignError(
+                f"the membrane has no region {actuation.region!r} to drive; it has {names}",
+                hint="name one of them, or choose a family with actuators, such as the trunk",
+                at="press.actuations",
+            )
+        for drives, mask in zip(found, chosen, strict=True):
+            drives[mask] = number
+    return found
+
+
+def _facing(skin: Skin, actuation: Actuation) -> np.ndarray:
+    """Faces on the side that the actuation names; all where it names none, shape (F,), bool."""
+    if not any(actuation.facing):
+        return np.ones(len(skin.faces), bool)
+    corners = skin.points_mm[skin.faces]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return normal @ np.asarray(actuation.facing) > 0.0
+
+
+def driven_displacement_mm(points: SurfacePoints, press: Press, progress: float) -> np.ndarray:
+    """Displacement that drives prescribe after `progress` frames [mm], (P, 3); 0 elsewhere."""
+    found = np.zeros((points.count, 3))
+    for number, actuation in enumerate(press.actuations):
+        members = points.drive == number
+        found[members] = actuation.displacement_mm(points.position_mm[members], progress)
+    return found

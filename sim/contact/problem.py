@@ -1,0 +1,175 @@
+"""A press made ready to be solved: object, path, surface points and active region."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sim.contact.approach import Approach, plan_approach
+from sim.contact.backing import (
+    SIDEWAYS,
+    backed_faces,
+    bonded_faces,
+    foundation_N_mm3,
+    support_points_mm,
+)
+from sim.contact.collider import Collider, make_collider
+from sim.contact.domain import Domain, build_domain
+from sim.contact.drives import driven_faces
+from sim.contact.materials import stiffest_MPa, young_MPa_at
+from sim.contact.memory import check_memory
+from sim.contact.quadrature import SurfacePoints, corner_points, facets_of, join, merge
+from sim.contact.refinement import LONGEST_EDGE, path_distance_mm, reach_mm, refine
+from sim.contact.region import region_radius_mm
+from sim.contact.verdict import check_depth
+from workbench.core.design import Elastomer
+from workbench.core.indenter import Indenter
+from workbench.core.press import ContactSettings, Press
+from workbench.core.results import MaterialPoints, MembraneMesh
+
+BOND_PENALTY = 100.0
+"""Stiffness of the bond to the support per area, in units of E / grid."""
+DRIVE_PENALTY = 20.0
+"""The same for driven faces: an actuator's pad gives a little, and large turns stay stable."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Problem:
+    """One press, ready."""
+
+    mesh: MembraneMesh
+    material: Elastomer
+    settings: ContactSettings
+    approach: Approach
+    collider: Collider
+    domain: Domain
+    radius_mm: float
+
+    @property
+    def press(self) -> Press:
+        """The path."""
+        return self.approach.press
+
+
+def make_problem(
+    mesh: MembraneMesh,
+    points: MaterialPoints,
+    material: Elastomer,
+    indenter: Indenter,
+    press: Press,
+    settings: ContactSettings,
+) -> Problem:
+    """Place the object and number the region.
+
+    Raises:
+        DesignError: If the target is off the skin, the object cannot be made or would reach the
+            support, the region is too small, a driven region does not exist, or memory is short.
+        SolveError: If the first touch cannot be found.
+    """
+    collider = make_collider(indenter, grid_mm=points.grid_mm)
+    approach = plan_approach(mesh.outer, collider, press)
+    check_depth(support_points_mm(mesh), approach, collider)
+    radius_mm = region_radius_mm(mesh, material, approach, collider, settings)
+    return Problem(
+        mesh=mesh,
+        material=material,
+        settings=settings,
+        approach=approach,
+        collider=collider,
+        domain=prepare(mesh, points, material, approach, collider, settings, radius_mm=radius_mm),
+        radius_mm=radius_mm,
+    )
+
+
+def prepare(
+    mesh: MembraneMesh,
+    points: MaterialPoints,
+    material: Elastomer,
+    approach: Approach,
+    collider: Collider,
+    settings: ContactSettings,
+    *,
+    radius_mm: float,
+) -> Domain:
+    """Surface points that may take part, and the active region around them."""
+    check_memory(points, approach.target_mm, radius_mm)
+    held = contact_points(
+        mesh, material, approach, collider, settings, points.grid_mm, radius_mm=radius_mm
+    )
+    for group in held_points(mesh, material, approach, points.grid_mm, radius_mm=radius_mm):
+        held = join(held, group)
+    return build_domain(
+        mesh,
+        points,
+        held,
+        material,
+        target_mm=approach.target_mm,
+        active_radius_mm=radius_mm,
+    )
+
+
+def contact_points(
+    mesh: MembraneMesh,
+    material: Elastomer,
+    approach: Approach,
+    collider: Collider,
+    settings: ContactSettings,
+    grid_mm: float,
+    *,
+    radius_mm: float,
+) -> SurfacePoints:
+    """Points of the outer skin that the object comes near: others get no spring and no mass."""
+    centre = mesh.outer.points_mm[mesh.outer.faces].mean(axis=1)
+    near = np.flatnonzero(_near(centre, approach, radius_mm, grid_mm))
+    facets = facets_of(mesh.outer, near, spacing_mm=LONGEST_EDGE * grid_mm)
+    facets = refine(facets, approach, collider, grid_mm=grid_mm)
+    unit = settings.penalty / grid_mm
+    points = corner_points(facets, stiffness_N_mm3=unit, bonded=False)
+    gap_mm = path_distance_mm(points.position_mm, approach, collider)
+    points = points.take(gap_mm < reach_mm(approach, grid_mm))
+    return points.scaled(young_MPa_at(material, mesh.outer, points.position_mm))
+
+
+def held_points(
+    mesh: MembraneMesh,
+    material: Elastomer,
+    approach: Approach,
+    grid_mm: float,
+    *,
+    radius_mm: float,
+) -> list[SurfacePoints]:
+    """Points bonded to the support, resting on gel, or driven by an actuation of the press."""
+    unit = stiffest_MPa(material) / grid_mm
+    spacing_mm = LONGEST_EDGE * grid_mm
+    outer_drives, inner_drives = driven_faces(mesh, approach.press)
+    free = inner_drives < 0
+    groups = [
+        (mesh.inner, bonded_faces(mesh) & free, BOND_PENALTY * unit, 1.0, -1),
+        (mesh.inner, backed_faces(mesh) & free, foundation_N_mm3(mesh, material), SIDEWAYS, -1),
+    ]
+    for drive in range(len(approach.press.actuations)):
+        for skin, drives in ((mesh.outer, outer_drives), (mesh.inner, inner_drives)):
+            groups.append((skin, drives == drive, DRIVE_PENALTY * unit, 1.0, drive))
+    found = []
+    for skin, chosen, stiffness_N_mm3, sideways, drive in groups:
+        centre = skin.points_mm[skin.faces].mean(axis=1)
+        members = np.flatnonzero(chosen & _near(centre, approach, radius_mm, grid_mm))
+        if stiffness_N_mm3 > 0.0 and len(members):
+            facets = facets_of(skin, members, spacing_mm=spacing_mm)
+            points = corner_points(
+                facets,
+                stiffness_N_mm3=stiffness_N_mm3,
+                bonded=True,
+                sideways=sideways,
+                drive=drive,
+            )
+            found.append(merge(points, grid_mm))
+    return found
+
+
+def _near(
+    places_mm: np.ndarray, approach: Approach, radius_mm: float, grid_mm: float
+) -> np.ndarray:
+    distance = np.linalg.norm(places_mm - approach.target_mm, axis=1)
+    return distance < radius_mm + 2.0 * grid_mm

@@ -1,0 +1,173 @@
+"""One press on its way through the frames: ramps, predictions, drives, and what settled."""
+
+from __future__ import annotations
+
+import math
+import time
+
+import numpy as np
+
+from sim.contact.drives import driven_displacement_mm
+from sim.contact.frame import FrameOutcome
+from sim.contact.kernels import POSE
+from sim.contact.problem import Problem
+from sim.contact.relaxation import STEPS, Relaxation
+from workbench.core.errors import SolveError
+
+RAMP_SUBSTEPS_PER_MM = 100.0
+"""Substeps for the object to move 1 mm without a prediction."""
+SHORTEST_RAMP = 10
+ARM_CELLS = 10.0
+"""Distance from its origin at which a turn of the object counts as travel, in cells."""
+MOST_KEPT = 3
+"""Settled displacements kept to extrapolate from."""
+STILL_MM = 1e-9
+"""Travel below which nothing moves."""
+
+
+class Track:
+    """State of one press; `number` is its case in the relaxation."""
+
+    def __init__(self, problem: Problem, relaxation: Relaxation, number: int) -> None:
+        self.problem = problem
+        self.relaxation = relaxation
+        self.number = number
+        self.frame = 0
+        self.attempt = 0
+        self.outcomes: list[FrameOutcome] = []
+        self.error: SolveError | None = None
+        nodes = len(problem.domain.masses)
+        self._settled = [np.zeros((nodes, 3), np.float32)]
+        self._ramp = np.zeros((0, POSE))
+        self._fed = 0
+        self._begun_s = time.perf_counter()
+
+    @property
+    def arrived(self) -> bool:
+        """Whether the object is where the frame wants it."""
+        return self._fed >= len(self._ramp)
+
+    @property
+    def label(self) -> str:
+        """The frame as people count it."""
+        return f"frame {self.frame + 1} of {self.problem.approach.frame_count}"
+
+    def progress(self, share: float) -> float:
+        """Share of the frames that are done; `share` is that of the present one."""
+        return min(1.0, (self.frame + share) / self.problem.approach.frame_count)
+
+    def begin(self) -> None:
+        """Start the present frame, or its next attempt, from the last settled displacement."""
+        if self.attempt == 0:
+            self._begun_s = time.perf_counter()
+        predicted = self.attempt == 0 and self._predict()
+        if self.attempt:
+            self.relaxation.restart(self.number, self._settled[-1])
+        self._drive()
+        count = 0 if predicted else self._ramp_length()
+        steps = (np.arange(count) + 1.0) / max(count, 1)
+        self._ramp = self._rows(steps)
+        self._fed = 0
+        if not count:
+            self.stay()
+
+    def feed(self) -> None:
+        """Hand the next poses of the ramp to the relaxation."""
+        rows = self._ramp[self._fed : self._fed + STEPS]
+        self.relaxation.set_poses(self.number, rows)
+        self._fed += STEPS
+
+    def stay(self) -> None:
+        """Leave the object where the frame wants it."""
+        self.relaxation.set_poses(self.number, self._rows(np.ones(1)))
+
+    def finish(self, outcome: FrameOutcome) -> None:
+        """Close the settled frame."""
+        self.outcomes.append(outcome)
+        self._settled = [*self._settled, self.relaxation.displacement(self.number)][-MOST_KEPT:]
+        self.relaxation.commit(self.number)
+        self.frame += 1
+        self.attempt = 0
+
+    @property
+    def seconds(self) -> float:
+        """Time spent on the present frame [s]."""
+        return time.perf_counter() - self._begun_s
+
+    def driving_N(self) -> float:
+        """Sum of the magnitudes of the drives' forces [N]."""
+        actuations = self.problem.press.actuations
+        if not actuations:
+            return 0.0
+        drive = self.problem.domain.points.drive
+        forces = self.relaxation.point_forces(self.number)
+        return float(
+            sum(np.linalg.norm(forces[drive == n].sum(axis=0)) for n in range(len(actuations)))
+        )
+
+    def unsettled(self, residual: float) -> SolveError:
+        """The error of a frame that ran out of substeps."""
+        settings = self.problem.settings
+        return SolveError(
+            f"{self.label} has a residual of {residual:.1e} after {settings.max_substeps} "
+            f"substeps; the limit is {settings.tolerance:.1e}",
+            hint="raise contact.max_substeps or contact.tolerance, or press less deep",
+            at="contact.max_substeps",
+            frame=self.frame,
+            residual=residual,
+            last_good=self.frame - 1,
+        )
+
+    def unstable(self) -> SolveError:
+        """The error of a frame whose forces overflowed in every attempt."""
+        return SolveError(
+            f"{self.label} became unstable {self.attempt + 1} times",
+            hint="lower press.depth_mm or raise press.frames",
+            frame=self.frame,
+            last_good=self.frame - 1,
+        )
+
+    def _predict(self) -> bool:
+        """Extrapolate the last frames' displacement along a straight path; False if it turns."""
+        known = min(len(self._settled), self.problem.approach.continues(self.frame))
+        if known < 2 or self.problem.press.actuations:
+            return False
+        *older, before, last = self._settled
+        guess = 2.0 * last - before
+        if known >= MOST_KEPT:
+            guess = 3.0 * last - 3.0 * before + older[-1]
+        self.relaxation.restart(self.number, guess)
+        return True
+
+    def _drive(self) -> None:
+        """Tell held points where they go in this frame."""
+        press, points = self.problem.press, self.problem.domain.points
+        if press.actuations:
+            start_mm, end_mm = (
+                driven_displacement_mm(points, press, self.frame + share) for share in (0.0, 1.0)
+            )
+            self.relaxation.drive(self.number, start_mm, end_mm)
+
+    def _ramp_length(self) -> int:
+        """Substeps of the ramp, a multiple of `STEPS`; 0 where nothing moves."""
+        press, points = self.problem.press, self.problem.domain.points
+        arm_mm = ARM_CELLS * self.problem.domain.grid_mm
+        travel_mm = self.problem.approach.travel_mm(self.frame, arm_mm)
+        if press.actuations:
+            start_mm, end_mm = (
+                driven_displacement_mm(points, press, self.frame + share) for share in (0.0, 1.0)
+            )
+            driven_mm = np.linalg.norm(end_mm - start_mm, axis=1).max(initial=0.0)
+            travel_mm = max(travel_mm, float(driven_mm))
+        if travel_mm < STILL_MM:
+            return 0
+        count = max(SHORTEST_RAMP, math.ceil(RAMP_SUBSTEPS_PER_MM * travel_mm)) * 2**self.attempt
+        return -(-count // STEPS) * STEPS
+
+    def _rows(self, steps: np.ndarray) -> np.ndarray:
+        """Rows of the pose table at shares of the frame, (n,), shape (n, POSE)."""
+        rows = np.zeros((len(steps), POSE))
+        for row, step in zip(rows, steps, strict=True):
+            origin, rotation = self.problem.approach.pose(self.frame + float(step))
+            row[:3], row[3:12], row[12] = origin, rotation.ravel(), step
+        return rows
