@@ -32,19 +32,6 @@ def pose_rows(origins_mm: np.ndarray, turned: np.ndarray) -> np.ndarray:
     return np.concatenate([origins_mm, np.reshape(wxyz, (-1, 4))], axis=1)
 
 
-def in_frame_of(frames: np.ndarray, poses: np.ndarray) -> np.ndarray:
-    """Poses as seen from frames given in the same room, shape (K, 7): frame^-1 pose.
-
-    Args:
-        frames: Poses of the frames, shape (K, 7) or (1, 7).
-        poses: Poses to express in them, shape (K, 7) or (1, 7).
-    """
-    frames, poses = np.broadcast_arrays(frames, poses)
-    back = np.swapaxes(rotations(frames[:, 3:]), 1, 2)
-    origins = np.einsum("kij,kj->ki", back, poses[:, :3] - frames[:, :3])
-    return pose_rows(origins, back @ rotations(poses[:, 3:]))
-
-
 def composed(frames: np.ndarray, poses: np.ndarray) -> np.ndarray:
     """Poses given in frames, as seen from the room of the frames, shape (K, 7): frame pose."""
     frames, poses = np.broadcast_arrays(frames, poses)
@@ -57,6 +44,18 @@ def inverses(poses: np.ndarray) -> np.ndarray:
     """Pose of the outer frame as seen from the body, shape (K, 7)."""
     back = np.swapaxes(rotations(poses[:, 3:]), 1, 2)
     return pose_rows(-np.einsum("kij,kj->ki", back, poses[:, :3]), back)
+
+
+def sensor_poses(object_poses: np.ndarray, first: np.ndarray) -> np.ndarray:
+    """Poses in the room of a sensor that moves against a fixed object, shape (K, 7).
+
+    Args:
+        object_poses: The object as seen from the sensor, frame by frame, shape (K, 7).
+        first: The sensor's first pose in the room, shape (7,).
+    """
+    placed = composed(first[None], object_poses[:1])
+    # The sensor is the object in the room times the inverse of the object in the sensor.
+    return composed(placed, inverses(object_poses))
 
 
 def between(first: np.ndarray, second: np.ndarray, shares: np.ndarray) -> np.ndarray:

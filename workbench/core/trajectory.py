@@ -160,16 +160,22 @@ class Trajectory:
         count = self.frame_count
         return np.append(self.times_s[0] + self.every_s * np.arange(count), self.times_s[-1])
 
-    def at_times(self, times_s: np.ndarray) -> np.ndarray:
-        """Poses at times [s], shape (P,), held before the first and after the last; (P, 7)."""
-        known = np.array(self.times_s)
-        times = np.clip(times_s, known[0], known[-1])
-        row = np.clip(np.searchsorted(known, times, side="right") - 1, 0, len(known) - 2)
-        shares = (times - known[row]) / (known[row + 1] - known[row])
-        table = np.array(self.poses)
-        return between(table[row], table[row + 1], shares)
-
     def at_progress(self, progress: np.ndarray) -> np.ndarray:
         """Poses after so many frames, shape (P,), in between by time; shape (P, 7)."""
-        times_s = self.frame_times_s()
-        return self.at_times(np.interp(progress, np.arange(len(times_s)), times_s))
+        labels_s = self.frame_times_s()
+        times_s = np.interp(progress, np.arange(len(labels_s)), labels_s)
+        return poses_at(np.array(self.times_s), np.array(self.poses), times_s)
+
+
+def poses_at(known_s: np.ndarray, rows: np.ndarray, times_s: np.ndarray) -> np.ndarray:
+    """Poses at times [s], shape (P,), held before the first row and after the last; (P, 7).
+
+    Args:
+        known_s: Rising time of each row [s], shape (R,).
+        rows: Poses, shape (R, 7).
+        times_s: When.
+    """
+    times = np.clip(times_s, known_s[0], known_s[-1])
+    row = np.clip(np.searchsorted(known_s, times, side="right") - 1, 0, len(known_s) - 2)
+    shares = (times - known_s[row]) / (known_s[row + 1] - known_s[row])
+    return between(rows[row], rows[row + 1], shares)
