@@ -23,10 +23,11 @@ from workbench import __version__, commands
 from workbench.core.design import LightModel
 from workbench.core.errors import Cancelled, StoreError, WorkbenchError
 from workbench.core.imported import LengthUnit
+from workbench.core.motion import Mover
 from workbench.project import Project
 from workbench.terminal import complain, say
 
-NUMBERS = ("--target", "--shear-mm", "--twist-deg", "--depth-mm", "--size-mm")
+NUMBERS = ("--target", "--shear-mm", "--twist-deg", "--depth-mm", "--size-mm", "--object-pose")
 """Options whose value may begin with a minus sign."""
 INDENTERS = "sphere, cylinder_end, cylinder_side, cube, cone, or the path of an STL file"
 
@@ -170,6 +171,19 @@ def _run_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--shear-mm", default="0,0", metavar="U,V")
     sub.add_argument("--twist-deg", type=float, default=0.0)
     sub.add_argument("--frames", type=int, default=10)
+    sub.add_argument(
+        "--stroke",
+        action="append",
+        default=[],
+        metavar="KIND:AMOUNT[:FRAMES]",
+        help="a move after the approach; may be given several times (see the README)",
+    )
+    sub.add_argument("--trajectory", type=Path, metavar="FILE.csv", help="timed poses instead")
+    sub.add_argument(
+        "--every-s", type=float, default=0.0, help="time between frames (default: rows)"
+    )
+    sub.add_argument("--mover", choices=[m.value for m in Mover], default=Mover.OBJECT.value)
+    sub.add_argument("--object-pose", metavar="X,Y,Z,QW,QX,QY,QZ", help="of --mover sensor")
     sub.add_argument("--grid-mm", type=float, help="grid cell of the contact solver (default 0.5)")
     sub.add_argument("--light-model", choices=[m.value for m in LightModel])
     sub.add_argument("--out", required=True, type=Path, metavar="DIR")

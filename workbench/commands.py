@@ -66,7 +66,11 @@ def run(options: argparse.Namespace, project: Project) -> int:
     if options.light_model:
         design = design.replace("optics.light_model", LightModel(options.light_model))
     # What is wrong with the design or the options is said before anything is written or built.
-    plan(design, press_case(options, default_target_mm(design)))
+    first = press_case(options, default_target_mm(design))
+    plan(design, first)
+    for notice in (design.material.notice, first.press.notice):
+        if notice:
+            complain(f"notice: {notice}")
     prepare(options.out)
     project.store.sweep()
     printer = Progress(as_json=options.json)
@@ -90,8 +94,9 @@ def run(options: argparse.Namespace, project: Project) -> int:
     )
     if not options.json:
         force = summary["contact"]
+        depth_mm = force["frames"][-1]["depth_mm"]
         say(
-            f"{force['normal_N']:.3f} N along the normal at {case.press.depth_mm:g} mm; "
+            f"{force['normal_N']:.3f} N along the normal at {depth_mm:.3g} mm; "
             f"residual {force['residual']:.1e}, penetration {1e3 * force['penetration_mm']:.0f} um"
         )
         say(f"open {options.out / 'report.html'}")
@@ -104,10 +109,24 @@ def press_case(options: argparse.Namespace, target_mm: tuple[float, float, float
     Raises:
         DesignError: If a value is refused or the indenter is unknown.
     """
+    from workbench.core.motion import Mover
     from workbench.core.press import ContactSettings, Press
     from workbench.indenter_choice import choose_indenter
     from workbench.pipeline import PressCase
+    from workbench.strokes import read_stroke
+    from workbench.trajectories import read_trajectory
 
+    trajectory, standing = None, None
+    if options.trajectory is not None:
+        trajectory = read_trajectory(options.trajectory, every_s=options.every_s)
+    elif options.every_s:
+        raise DesignError(
+            f"--every-s {options.every_s:g} s is given without a trajectory",
+            hint="add --trajectory FILE.csv, or leave --every-s out",
+            at="--every-s",
+        )
+    if options.object_pose is not None:
+        standing = _numbers(options.object_pose, 7, at="--object-pose")
     settings = {} if options.grid_mm is None else {"grid_mm": options.grid_mm}
     return PressCase(
         indenter=choose_indenter(
@@ -119,6 +138,10 @@ def press_case(options: argparse.Namespace, target_mm: tuple[float, float, float
             shear_mm=_numbers(options.shear_mm, 2, at="--shear-mm"),
             twist_deg=options.twist_deg,
             frames=options.frames,
+            strokes=tuple(read_stroke(text, frames=options.frames) for text in options.stroke),
+            trajectory=trajectory,
+            mover=Mover(options.mover),
+            object_pose=standing,
         ),
         settings=ContactSettings(**settings),
     )

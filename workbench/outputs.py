@@ -28,6 +28,7 @@ from workbench.pipeline import results
 from workbench.project import write_atomically
 from workbench.stages import Call, Outcome
 from workbench.store import Store
+from workbench.trajectories import pose_csv, press_poses
 from workbench.vtkfiles import write_vtk
 
 SUMMARY_SCHEMA = 1
@@ -121,15 +122,17 @@ def _plain(value: FabricationCheck | Recipe) -> dict[str, Any]:
 
 def contact_summary(contact: Contact, path: Press, seconds: float) -> dict[str, Any]:
     """The `contact` table of `summary.json`: last frame's force, worst residual and penetration."""
+    times_s = path.times_s()
     frames = [
         {
+            "t_s": float(times_s[k + 1]),
             "depth_mm": depth,
             "reaction_N": contact.reaction_N[k].tolist(),
             "normal_N": float(contact.normal_N[k]),
             "residual": float(contact.residual[k]),
             "penetration_mm": float(contact.penetration_mm[k]),
         }
-        for k, depth in enumerate(frame_depths_mm(path))
+        for k, depth in enumerate(frame_depths_mm(path, contact))
     ]
     return {
         "reaction_N": contact.reaction_N[-1].tolist(),
@@ -147,10 +150,19 @@ def contact_summary(contact: Contact, path: Press, seconds: float) -> dict[str, 
     }
 
 
-def frame_depths_mm(path: Press) -> list[float]:
-    """Depth of each frame of a press from first touch [mm]."""
-    shares = (min(k + 1, path.frames) / path.frames for k in range(path.frame_count))
-    return [float(path.depth_mm * share) for share in shares]
+def frame_depths_mm(path: Press, contact: Contact) -> list[float]:
+    """Depth of each frame from first touch along the inward normal [mm], negative when lifted off.
+
+    The object of a trajectory touches anywhere: its depth is how far the skin was pushed inward.
+    """
+    if path.trajectory is not None:
+        pushed_mm = -(contact.displacement_mm @ contact.normal).min(axis=1)
+        return [max(0.0, float(depth_mm)) for depth_mm in pushed_mm]
+    if path.strokes:
+        way_mm = (contact.indenter_pose[0, :3] - contact.indenter_pose[:, :3]) @ contact.normal
+        return [float(path.depth_mm / path.frames + inward_mm) for inward_mm in way_mm]
+    frames = range(len(contact.reaction_N))
+    return [float(path.depth_mm * min(k + 1, path.frames) / path.frames) for k in frames]
 
 
 def force_balance(contact: Contact) -> float:
@@ -213,14 +225,15 @@ def write_all(
     summary = summary_table(design, path, store, calls, outcomes)
     summary["images"] = write_images(out, load["shoot"])
     write_contact(out, load["mesh"], load["press"])
-    depths_mm = frame_depths_mm(path)
+    write_atomically(out / "poses.csv", pose_csv(*press_poses(path, load["press"])).encode())
+    depths_mm = frame_depths_mm(path, load["press"])
     write_vtk(out, load["build"], load["mesh"], contact=load["press"], depth_mm=depths_mm)
     write_package(out, load["package"])
     summary["notices"] = {
         name: value.notice for name, value in load.items() if getattr(value, "notice", "")
     }
-    if changed:
-        summary["notices"]["design"] = changed
+    told = {"press": path.notice, "material": design.material.notice, "design": changed}
+    summary["notices"] |= {name: notice for name, notice in told.items() if notice}
     summary |= fabrication_tables(load["mould"], load["housing"], load["recipe"])
     drawn = drawings(load["build"], load["mesh"], load["press"], load.get("picture"))
     html = report_html(design, path, summary, load["shoot"], load["press"], drawn)

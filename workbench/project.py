@@ -253,5 +253,4 @@ def design_to_toml(design: SensorDesign, **extra: Any) -> str:
 def design_table(design: SensorDesign) -> dict[str, Any]:
     """A design as nested tables, an imported body by the names of its files."""
     table = to_table(without_body(design))
-    del table["body"]
     return table if design.body is None else {**table, "body": body_table(design.body)}

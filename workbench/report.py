@@ -77,7 +77,7 @@ def report_html(
         ),
         "<h2>Design</h2>" + _drawn(drawings.membrane, "Membrane", width=310),
         _table([*_flat(design_table(design)), *_constants(design)]),
-        "<h2>Press</h2>" + _table(_flat(to_table(path))),
+        "<h2>Press</h2>" + _table(_flat(_press_table(path))),
         "<h2>Stages</h2>"
         + _table(
             (s["stage"], f"{'cached' if s['cached'] else format(s['seconds'], '.2f') + ' s'}")
@@ -155,12 +155,16 @@ def _displacement_png(mesh: MembraneMesh, contact: Contact) -> bytes:
 
 
 def _force_curve(path: Press, contact: Contact) -> str:
-    """Normal force of the approach frames as an inline SVG with labelled axes."""
-    depth = np.r_[0.0, frame_depths_mm(path)[: path.frames]]
-    force = np.r_[0.0, contact.normal_N[: path.frames]]
+    """Normal force of the approach frames as an inline SVG with labelled axes.
+
+    A trajectory has no approach: all of its frames, against how far the skin was pushed in.
+    """
+    frames = path.frames if path.trajectory is None else path.frame_count
+    depth = np.r_[0.0, frame_depths_mm(path, contact)[:frames]]
+    force = np.r_[0.0, contact.normal_N[:frames]]
     width, height, left, bottom = 560, 260, 60, 40
     top = max(float(force.max()), 1e-9)
-    across = max(path.depth_mm, 1e-9)
+    across = max(float(depth.max()), 1e-9)
     x = left + (width - left - 20) * depth / across
     y = (height - bottom) - (height - bottom - 20) * force / top
     points = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(x, y, strict=True))
@@ -176,10 +180,21 @@ def _force_curve(path: Press, contact: Contact) -> str:
         f"<g fill='#2563eb'>{dots}</g><g font-size='12' fill='#333'>"
         f"<text x='{left - 6}' y='24' text-anchor='end'>{top:.3g} N</text>"
         f"<text x='{left - 6}' y='{axis}' text-anchor='end'>0</text>"
-        f"<text x='{width - 20}' y='{axis + 18}' text-anchor='end'>{path.depth_mm:g} mm</text>"
+        f"<text x='{width - 20}' y='{axis + 18}' text-anchor='end'>{across:.3g} mm</text>"
         f"<text x='{(left + width) / 2}' y='{axis + 32}' text-anchor='middle'>depth from first "
         "touch</text></g></svg>"
     )
+
+
+def _press_table(path: Press) -> dict[str, Any]:
+    """A press without the rows of its trajectory, which stand in poses.csv."""
+    table = to_table(path)
+    if path.strokes:
+        table["strokes"] = ", ".join(stroke.text for stroke in path.strokes)
+    if path.trajectory is not None:
+        trajectory = path.trajectory
+        table["trajectory"] = f"{len(trajectory.poses)} rows, {trajectory.duration_s:g} s"
+    return table
 
 
 def _table(rows: Iterable[Sequence[Any]]) -> str:

@@ -51,7 +51,6 @@ def case_table(case: PressCase, project: Project) -> dict[str, Any]:
     """
     table = to_table(dataclasses.replace(case, indenter=Indenter()))
     indenter = to_table(dataclasses.replace(case.indenter, kind=IndenterKind.SPHERE, mesh=None))
-    del indenter["mesh"]
     mesh = case.indenter.mesh
     if mesh is not None:
         key = digest(mesh)

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import taichi as ti
 
-from sim.contact import kernels
+from sim.contact import layout, sum_kernels
 from sim.contact.collider import Collider
 from sim.contact.domain import SLOT_BLOCK, Domain
 
@@ -91,9 +91,9 @@ class Batch:
         self.states = integers(np.zeros(int(point_at[-1])))
         self.slips = floats(np.zeros(int(point_at[-1])))
         self.point_forces = floats(np.zeros(3 * int(point_at[-1])))
-        self.poses = floats(np.zeros(steps * len(cases) * kernels.POSE))
-        self.numbers = floats(np.zeros(len(cases) * kernels.NUMBERS))
-        self.choices = integers(np.zeros(len(cases) * kernels.CHOICES))
+        self.poses = floats(np.zeros(steps * len(cases) * layout.POSE))
+        self.numbers = floats(np.zeros(len(cases) * layout.NUMBERS))
+        self.choices = integers(np.zeros(len(cases) * layout.CHOICES))
         samples, self.first_coefficients = _shared_samples(cases)
         self.coefficients = floats(samples)
         self.node_sums = _Sums(node_at)
@@ -102,7 +102,7 @@ class Batch:
 
     def read(self, array: Any, first: int, count: int) -> np.ndarray:
         """Some entries of a device array of floats, shape (count,)."""
-        kernels.copy_out(array, self._staging, first, count)
+        sum_kernels.copy_out(array, self._staging, first, count)
         return self._staging.to_numpy()[:count]
 
     def write(self, array: Any, first: int, values: np.ndarray) -> None:
@@ -110,7 +110,7 @@ class Batch:
         staged = np.zeros(self._staging.shape[0], np.float32)
         staged[: values.size] = values.ravel()
         self._staging.from_numpy(staged)
-        kernels.copy_in(self._staging, array, first, values.size)
+        sum_kernels.copy_in(self._staging, array, first, values.size)
 
 
 class _Sums:
@@ -130,7 +130,7 @@ class _Sums:
 
     def collect(self) -> np.ndarray:
         """Six sums of each case, shape (cases, 6), from the chunks' partial sums."""
-        kernels.case_sums(self.partial, self.first_chunks, self.totals)
+        sum_kernels.case_sums(self.partial, self.first_chunks, self.totals)
         return self.totals.to_numpy().reshape(-1, 6)
 
 

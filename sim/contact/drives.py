@@ -20,7 +20,7 @@ def driven_faces(mesh: MembraneMesh, press: Press) -> tuple[np.ndarray, np.ndarr
         DesignError: If the membrane has no region of that name.
     """
     skins = (mesh.outer, mesh.inner)
-    found = tuple(np.full(len(skin.faces), UNDRIVEN) for skin in skins)
+    outer, inner = (np.full(len(skin.faces), UNDRIVEN) for skin in skins)
     regions = [region_masks(skin.labels, skin.numbers) for skin in skins]
     for number, actuation in enumerate(press.actuations):
         chosen = [
@@ -34,9 +34,9 @@ def driven_faces(mesh: MembraneMesh, press: Press) -> tuple[np.ndarray, np.ndarr
                 hint="name one of them, or choose a family with actuators, such as the trunk",
                 at="press.actuations",
             )
-        for drives, mask in zip(found, chosen, strict=True):
+        for drives, mask in zip((outer, inner), chosen, strict=True):
             drives[mask] = number
-    return found
+    return outer, inner
 
 
 def _facing(skin: Skin, actuation: Actuation) -> np.ndarray:

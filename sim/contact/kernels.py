@@ -18,88 +18,32 @@ The plain twin of each kernel is in `reference`. Layouts are described in `domai
 # pyright: reportInvalidTypeForm=false, reportGeneralTypeIssues=false, reportIndexIssue=false
 
 import taichi as ti
-from taichi.lang.impl import expr_init
 
+from sim.contact.cell_kernel import slot_base, stress_pass
 from sim.contact.domain import SLOT_BLOCK as BLOCK
+from sim.contact.layout import (
+    CHOICES,
+    COUNTS,
+    DAMPING,
+    FIRST_COEFFICIENT,
+    FREE,
+    FRICTION,
+    HELD,
+    IDLE,
+    LARGEST_STEP,
+    MASS_SCALE,
+    MODE,
+    MOVING,
+    NUMBERS,
+    POSE,
+    SHAPE,
+    SIZE,
+    TOUCHED,
+)
 from sim.contact.signed_distance import signed_distance
-from sim.contact.stencil import gather_gradient, scatter_gradient
-from sim.material import SMALLEST_VOLUME_RATIO, first_piola_rows
-
-CHUNK = 128
-"""Rows summed by one thread of a reduction; fixed, so that the order of sums is too."""
-FREE, TOUCHED, HELD = 0, 1, 2
-"""States of a contact point: apart; anchored within this frame; anchored by a settled frame."""
-IDLE, MOVING, STILL = 0, 1, 2
-"""Modes of a case: left alone; relaxing; forces only."""
-FRICTION, MASS_SCALE, DAMPING, LARGEST_STEP, INVERSE_EDGE, SIZE = 0, 1, 2, 3, 4, 5
-NUMBERS = 13
-"""Floats of a case: the above, with the eight of the object's size at the end."""
-MODE, SHAPE, FIRST_COEFFICIENT, COUNTS = 0, 1, 2, 3
-CHOICES = 6
-"""Integers of a case: the above, with the three counts of distance samples at the end."""
-POSE = 13
-"""Floats of a pose: origin from the target, rotation by rows, share of the drives' way."""
 
 Floats = ti.types.ndarray(dtype=ti.f32, ndim=1)
 Integers = ti.types.ndarray(dtype=ti.i32, ndim=1)
-Doubles = ti.types.ndarray(dtype=ti.f64, ndim=1)
-
-
-def _inverse_cube_root(ratio):
-    """J^(-1/3) by Newton's iteration: `exp` and `log` would take a third of the substep."""
-    guarded = expr_init(ti.max(ratio, SMALLEST_VOLUME_RATIO))
-    root = expr_init(ti.select(guarded < 0.6, 1.6 - guarded, 4.0 / (3.0 + guarded)))
-    for _ in range(4):
-        root = expr_init(root * (4.0 - guarded * root * root * root) * (1.0 / 3.0))
-    return root
-
-
-def _cell_forces(nodal, volumes, inverse_edge, moduli, linear):
-    """Forces [N] on 27 nodes of a cell: -sum over points of volume P grad(weight)."""
-    gradients = [gather_gradient(component, expr_init) for component in nodal]
-    flux = [[[] for _ in range(8)] for _ in range(3)]
-    for p in range(8):
-        rows = [[expr_init(gradients[r][p][c] * inverse_edge) for c in range(3)] for r in range(3)]
-        stress = first_piola_rows(rows, moduli, _inverse_cube_root, keep=expr_init, linear=linear)
-        scale = expr_init(-volumes[p] * inverse_edge)
-        for r in range(3):
-            flux[r][p] = [expr_init(scale * stress[r][c]) for c in range(3)]
-    return [scatter_gradient(component, expr_init) for component in flux]
-
-
-@ti.func
-def slot_base(cell):
-    """Index of the first slot of a cell; slot v follows at v * BLOCK."""
-    return (cell // BLOCK) * (81 * BLOCK) + cell % BLOCK
-
-
-@ti.func
-def stress_pass(
-    displacement: ti.template(),
-    rows: ti.template(),
-    volumes: ti.template(),
-    moduli: ti.template(),
-    cell_cases: ti.template(),
-    slots: ti.template(),
-    numbers: ti.template(),
-    choices: ti.template(),
-    linear: ti.template(),
-):
-    for cell in range(cell_cases.shape[0]):
-        case = cell_cases[cell]
-        if choices[CHOICES * case + MODE] != IDLE:
-            first = [rows[9 * cell + r] for r in range(9)]
-            volume = [volumes[8 * cell + p] for p in range(8)]
-            nodal = [
-                [displacement[3 * (first[n // 3] + n % 3) + c] for n in range(27)] for c in range(3)
-            ]
-            inverse_edge = numbers[NUMBERS * case + INVERSE_EDGE]
-            shear, bulk = moduli[2 * cell], moduli[2 * cell + 1]
-            forces = ti.static(_cell_forces(nodal, volume, inverse_edge, (shear, bulk), linear))
-            base = slot_base(cell)
-            for n in ti.static(range(27)):
-                for c in ti.static(range(3)):
-                    slots[base + (3 * n + c) * BLOCK] = forces[c][n]
 
 
 @ti.func
@@ -465,78 +409,3 @@ def commit_anchors(
                             anchors[3 * point + c] = new[c]
                     else:
                         states[point] = FREE
-
-
-@ti.kernel
-def node_sums(forces: Floats, powers: Floats, fixed: Integers, bounds: Integers, partial: Doubles):
-    """Per chunk of nodes: work, inertia, squared free force, and the free force by component."""
-    for chunk in range(bounds.shape[0] // 2):
-        total = ti.Vector([0.0] * 6, dt=ti.f64)
-        for node in range(bounds[2 * chunk], bounds[2 * chunk + 1]):
-            total[0] += powers[2 * node]
-            total[1] += powers[2 * node + 1]
-            if fixed[node] == 0:
-                for c in ti.static(range(3)):
-                    force = ti.cast(forces[3 * node + c], ti.f64)
-                    total[2] += force * force
-                    total[3 + c] += force
-        for c in ti.static(range(6)):
-            partial[6 * chunk + c] = total[c]
-
-
-@ti.kernel
-def surface_sums(point_forces: Floats, held: Integers, bounds: Integers, partial: Doubles):
-    """Per chunk of surface points: contact force, then holding force, by component."""
-    for chunk in range(bounds.shape[0] // 2):
-        total = ti.Vector([0.0] * 6, dt=ti.f64)
-        for point in range(bounds[2 * chunk], bounds[2 * chunk + 1]):
-            for c in ti.static(range(3)):
-                if held[point] == 0:
-                    total[c] += point_forces[3 * point + c]
-                else:
-                    total[3 + c] += point_forces[3 * point + c]
-        for c in ti.static(range(6)):
-            partial[6 * chunk + c] = total[c]
-
-
-@ti.kernel
-def case_sums(partial: Doubles, first_chunks: Integers, totals: Doubles):
-    """Sums of a case's chunks, in their order."""
-    for case in range(first_chunks.shape[0] - 1):
-        total = ti.Vector([0.0] * 6, dt=ti.f64)
-        for chunk in range(first_chunks[case], first_chunks[case + 1]):
-            for c in ti.static(range(6)):
-                total[c] += partial[6 * chunk + c]
-        for c in ti.static(range(6)):
-            totals[6 * case + c] = total[c]
-
-
-@ti.kernel
-def copy_out(source: Floats, target: Floats, first: ti.i32, count: ti.i32):
-    """Copy entries `first` and following of a long array to the start of a short one."""
-    for i in range(count):
-        target[i] = source[first + i]
-
-
-@ti.kernel
-def copy_in(source: Floats, target: Floats, first: ti.i32, count: ti.i32):
-    """Copy the start of a short array to entries `first` and following of a long one."""
-    for i in range(count):
-        target[first + i] = source[i]
-
-
-@ti.kernel
-def rest(
-    velocity: Floats,
-    states: Integers,
-    first_node: ti.i32,
-    nodes: ti.i32,
-    first_point: ti.i32,
-    points: ti.i32,
-):
-    """Stop a case's nodes and forget the anchors of the frame under way."""
-    for i in range(3 * nodes):
-        velocity[3 * first_node + i] = 0.0
-    for i in range(points):
-        if states[first_point + i] == TOUCHED:
-            states[first_point + i] = FREE

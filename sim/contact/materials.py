@@ -46,6 +46,6 @@ def _inside(inclusion: Inclusion, outer: Skin, places_mm: np.ndarray) -> np.ndar
     if inclusion.where is Where.BALL:
         return np.linalg.norm(away, axis=1) <= inclusion.radius_mm
     if inclusion.where is Where.BOX:
-        return (np.abs(away) <= 0.5 * np.asarray(inclusion.size_mm)).all(axis=1)
+        return np.abs(away / inclusion.size_mm).max(axis=1) <= 0.5
     _, distance, _ = closest_point(outer.points_mm, outer.faces, places_mm)
     return distance <= inclusion.depth_mm

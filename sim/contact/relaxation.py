@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import taichi as ti
 
-from sim.contact import kernels
+from sim.contact import kernels, layout, sum_kernels
 from sim.contact.batch import Batch, Case
 
 STEP_CAP = 0.1
@@ -84,20 +84,20 @@ class Relaxation:
         self.damping = np.full(count, FIRST_DAMPING)
         self.mass_scale = np.ones(count)
         self._moved = np.zeros(count, bool)
-        self._poses = np.zeros((STEPS, count, kernels.POSE), np.float32)
+        self._poses = np.zeros((STEPS, count, layout.POSE), np.float32)
         self._poses[:, :, 3::4] = 1.0
-        self._numbers = np.zeros((count, kernels.NUMBERS), np.float32)
-        self._choices = np.zeros((count, kernels.CHOICES), np.int32)
+        self._numbers = np.zeros((count, layout.NUMBERS), np.float32)
+        self._choices = np.zeros((count, layout.CHOICES), np.int32)
         self._modes = np.zeros(count, np.int32)
         for row, case in enumerate(cases):
             grid_mm = case.domain.grid_mm
-            self._numbers[row, kernels.FRICTION] = case.friction
-            self._numbers[row, kernels.LARGEST_STEP] = STEP_CAP * grid_mm
-            self._numbers[row, kernels.INVERSE_EDGE] = 1.0 / grid_mm
-            self._numbers[row, kernels.SIZE :] = case.collider.size
-            self._choices[row, kernels.SHAPE] = int(case.collider.shape)
-            self._choices[row, kernels.FIRST_COEFFICIENT] = batch.first_coefficients[row]
-            self._choices[row, kernels.COUNTS :] = case.collider.samples.shape
+            self._numbers[row, layout.FRICTION] = case.friction
+            self._numbers[row, layout.LARGEST_STEP] = STEP_CAP * grid_mm
+            self._numbers[row, layout.INVERSE_EDGE] = 1.0 / grid_mm
+            self._numbers[row, layout.SIZE :] = case.collider.size
+            self._choices[row, layout.SHAPE] = int(case.collider.shape)
+            self._choices[row, layout.FIRST_COEFFICIENT] = batch.first_coefficients[row]
+            self._choices[row, layout.COUNTS :] = case.collider.samples.shape
         self._stale_poses = True
         self._substep = _Launcher(batch, linear=_one_law(cases))
 
@@ -114,13 +114,13 @@ class Relaxation:
 
     def advance(self, moving: np.ndarray) -> None:
         """`STEPS` substeps of the cases that are marked, (B,) bool; the others stay as they are."""
-        self._prepare(np.where(moving, kernels.MOVING, kernels.IDLE))
+        self._prepare(np.where(moving, layout.MOVING, layout.IDLE))
         self._substep.run(STEPS)
         self._moved = self._moved | moving
 
     def evaluate(self, chosen: np.ndarray) -> Balances:
         """Forces of the chosen cases, (B,) bool, at their displacements and first poses."""
-        self._prepare(np.where(chosen, kernels.STILL, kernels.IDLE))
+        self._prepare(np.where(chosen, layout.STILL, layout.IDLE))
         self._substep.run(1)
         self._moved = self._moved & ~chosen
         return self.balances(np.zeros(len(self.cases), bool))
@@ -129,10 +129,10 @@ class Relaxation:
         """Forces of the last substep; adapts the damping of the marked cases, (B,), that moved."""
         batch = self.batch
         sums = batch.node_sums
-        kernels.node_sums(batch.forces, batch.powers, batch.fixed, sums.bounds, sums.partial)
+        sum_kernels.node_sums(batch.forces, batch.powers, batch.fixed, sums.bounds, sums.partial)
         nodes = sums.collect()
         sums = batch.point_sums
-        kernels.surface_sums(batch.point_forces, batch.held, sums.bounds, sums.partial)
+        sum_kernels.surface_sums(batch.point_forces, batch.held, sums.bounds, sums.partial)
         surface = sums.collect()
         work, inertia = nodes[:, 0], nodes[:, 1]
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -162,7 +162,7 @@ class Relaxation:
         """Come to rest at a nodal displacement, (N, 3); anchors of this frame are lost."""
         span = self.batch.spans[case]
         self.batch.write(self.batch.displacement, 3 * span.first_node, displacement_mm)
-        kernels.rest(
+        sum_kernels.rest(
             self.batch.velocity, self.batch.states, span.first_node, span.nodes, span.first_point,
             span.points,
         )  # fmt: skip
@@ -206,13 +206,13 @@ class Relaxation:
         return self.batch.read(array, first, count).reshape(-1, width)
 
     def _prepare(self, modes: np.ndarray) -> None:
-        self._numbers[:, kernels.MASS_SCALE] = self.mass_scale
-        self._numbers[:, kernels.DAMPING] = self.damping
+        self._numbers[:, layout.MASS_SCALE] = self.mass_scale
+        self._numbers[:, layout.DAMPING] = self.damping
         self._modes = modes
         self._upload()
 
     def _upload(self) -> None:
-        self._choices[:, kernels.MODE] = self._modes
+        self._choices[:, layout.MODE] = self._modes
         self.batch.choices.from_numpy(self._choices.ravel())
         self.batch.numbers.from_numpy(self._numbers.ravel())
         if self._stale_poses:

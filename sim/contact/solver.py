@@ -20,7 +20,7 @@ from sim.contact.frame import FrameOutcome
 from sim.contact.outcome import collect, frame_outcome
 from sim.contact.problem import Problem, make_problem
 from sim.contact.relaxation import STEPS, Balance, Balances, Relaxation
-from sim.contact.track import Track
+from sim.contact.run import Run
 from sim.contact.verdict import check_frame
 from workbench.core.design import Elastomer
 from workbench.core.errors import SolveError
@@ -92,8 +92,8 @@ class _Solver:
                 for p in problems
             ]
         )
-        self.tracks = [
-            Track(problem, self.relaxation, number) for number, problem in enumerate(problems)
+        self.runs = [
+            Run(problem, self.relaxation, number) for number, problem in enumerate(problems)
         ]
         count = len(problems)
         self.tolerance = np.array([p.settings.tolerance for p in problems])
@@ -114,28 +114,27 @@ class _Solver:
     def run(self) -> list[Contact | SolveError]:
         """Relax until every press has ended."""
         while self.active.any():
-            for case in np.flatnonzero(self.active & ~self.settling):
-                self.tracks[case].feed()
+            for case in np.flatnonzero(self.active & ~self.settling).tolist():
+                self.runs[case].feed()
             self.relaxation.advance(self.active)
             self.substeps[self.active] += STEPS
             if self.settling.any():
                 self._look()
-            for case in np.flatnonzero(self.active & ~self.settling):
-                if self.tracks[case].arrived:
-                    self.tracks[case].stay()
+            for case in np.flatnonzero(self.active & ~self.settling).tolist():
+                if self.runs[case].arrived:
+                    self.runs[case].stay()
                     self.settling[case] = True
             self._tell()
         self.monitor(1.0, "settled")
         return [
-            track.error
-            or collect(track.outcomes, track.problem, substeps=int(self.substeps[track.number]))
-            for track in self.tracks
+            run.error or collect(run.outcomes, run.problem, substeps=int(self.substeps[run.number]))
+            for run in self.runs
         ]
 
     def _begin(self, case: int) -> None:
         """Start the next frame of a press, or an attempt at the same one."""
-        self.tracks[case].begin()
-        self.settling[case] = self.tracks[case].arrived
+        self.runs[case].begin()
+        self.settling[case] = self.runs[case].arrived
         self.spent[case] = 0
         self.lowest[case] = np.inf
         self.lowest_at[case] = 0
@@ -146,7 +145,7 @@ class _Solver:
         looked = self.settling.copy()
         self.spent[looked] += STEPS
         balances = self.relaxation.balances(looked)
-        for case in np.flatnonzero(looked & ~balances.finite):
+        for case in np.flatnonzero(looked & ~balances.finite).tolist():
             self._unstable(case)
         looked &= balances.finite
         load_N = self._load_N(balances, looked)
@@ -165,8 +164,8 @@ class _Solver:
         self.relaxation.mass_scale[stalled] *= 2.0
         self.retries[stalled] += 1
         self.lowest_at[stalled] = self.spent[stalled]
-        for case in np.flatnonzero(looked & (self.spent >= self.most)):
-            self._end(case, self.tracks[case].unsettled(float(self.residual[case])))
+        for case in np.flatnonzero(looked & (self.spent >= self.most)).tolist():
+            self._end(case, self.runs[case].unsettled(float(self.residual[case])))
 
     def _close(self, still: np.ndarray) -> np.ndarray:
         """End the frame of presses whose forces balance where the nodes are now; which did."""
@@ -174,8 +173,8 @@ class _Solver:
         final = self.relaxation.evaluate(still)
         load_N = self._load_N(final, still & final.finite)
         settled = still & final.finite & self._balanced(final, load_N)
-        for case in np.flatnonzero(still):
-            track = self.tracks[case]
+        for case in np.flatnonzero(still).tolist():
+            run = self.runs[case]
             if not (final.finite[case] and np.isfinite(self.relaxation.displacement(case)).all()):
                 self._unstable(case)
                 settled[case] = True
@@ -185,8 +184,8 @@ class _Solver:
                 except SolveError as error:
                     self._end(case, error)
                     continue
-                track.finish(outcome)
-                if track.frame < track.problem.approach.frame_count:
+                run.finish(outcome)
+                if run.frame < run.problem.approach.frame_count:
                     self._begin(case)
                 else:
                     self._end(case, None)
@@ -198,10 +197,10 @@ class _Solver:
         Raises:
             SolveError: If it is no contact of this elastomer.
         """
-        track = self.tracks[case]
-        problem, frame = track.problem, track.frame
+        run = self.runs[case]
+        problem, frame = run.problem, run.frame
         outcome = frame_outcome(
-            self.relaxation, case, problem, balance, frame, load_N=load_N, seconds=track.seconds
+            self.relaxation, case, problem, balance, frame, load_N=load_N, seconds=run.seconds
         )
         check_frame(outcome, problem.approach, frame, grid_mm=problem.domain.grid_mm)
         return outcome
@@ -209,8 +208,8 @@ class _Solver:
     def _load_N(self, balances: Balances, looked: np.ndarray) -> np.ndarray:
         """Force against which residual and change are measured, shape (B,)."""
         load_N = np.linalg.norm(balances.reaction_N, axis=1)
-        for case in np.flatnonzero(looked):
-            load_N[case] += self.tracks[case].driving_N()
+        for case in np.flatnonzero(looked).tolist():
+            load_N[case] += self.runs[case].driving_N()
         self.peak_N = np.where(looked, np.maximum(self.peak_N, load_N), self.peak_N)
         return np.maximum(np.maximum(load_N, LEAST_OF_PEAK * self.peak_N), 1e-12)
 
@@ -222,32 +221,32 @@ class _Solver:
 
     def _unstable(self, case: int) -> None:
         """Try the frame again with heavier nodes and a gentler ramp, or give up."""
-        track = self.tracks[case]
-        if track.attempt >= MOST_RETRIES:
-            self._end(case, track.unstable())
+        run = self.runs[case]
+        if run.attempt >= MOST_RETRIES:
+            self._end(case, run.unstable())
             return
-        track.attempt += 1
+        run.attempt += 1
         self.relaxation.mass_scale[case] *= 2.0
         self._begin(case)
 
     def _end(self, case: int, error: SolveError | None) -> None:
-        track = self.tracks[case]
-        if error is not None and track.outcomes:
+        run = self.runs[case]
+        if error is not None and run.outcomes:
             error.partial = collect(
-                track.outcomes, track.problem, substeps=int(self.substeps[track.number])
+                run.outcomes, run.problem, substeps=int(self.substeps[run.number])
             )
-        track.error = error
+        run.error = error
         self.active[case] = self.settling[case] = False
 
     def _tell(self) -> None:
         """Report the progress of all presses, and which frame the slowest is at."""
         share = np.where(self.settling, np.minimum(1.0, self.spent / 200.0), 0.0)
-        done = [track.progress(float(s)) for track, s in zip(self.tracks, share, strict=True)]
+        done = [run.progress(float(s)) for run, s in zip(self.runs, share, strict=True)]
         case = int(np.argmin(np.where(self.active, done, 2.0)))
-        track = self.tracks[case]
-        note = track.label
+        run = self.runs[case]
+        note = run.label
         if self.settling[case]:
             note += f", residual {self.residual[case]:.0e}"
-        if len(self.tracks) > 1:
-            note = f"{int(self.active.sum())} of {len(self.tracks)} presses under way; {note}"
+        if len(self.runs) > 1:
+            note = f"{int(self.active.sum())} of {len(self.runs)} presses under way; {note}"
         self.monitor(min(1.0, float(np.mean(done))), note)

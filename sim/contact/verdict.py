@@ -7,19 +7,22 @@ import math
 
 import numpy as np
 
-from sim.contact.approach import Approach
+from sim.contact.approach import SHALLOW_MM, Approach
 from sim.contact.collider import Collider
 from sim.contact.frame import FrameOutcome, deepest_overlap_mm
 from workbench.core.errors import DesignError, SolveError
+from workbench.core.press import Press
 
 POSES = 12
-"""Poses of shear and twist at which the support is looked at."""
+"""Least number of poses of shear and twist at which the support is looked at."""
+POSE_EVERY_MM = 0.5
+"""Way between two poses at which the support is looked at."""
+MOST_POSES = 50
+"""Poses of one frame at which the support is looked at."""
 DEEPEST_OVERLAP = 0.5
 """Overlap of a settled frame that is still a contact, in cells."""
 LEAST_VOLUME_RATIO = 0.02
 """J below which a point counts as crushed: the material law ends at 0."""
-SHALLOW_MM = 1e-3
-"""Depth up to which a frame may have no reaction."""
 
 
 def check_depth(support_mm: np.ndarray, approach: Approach, collider: Collider) -> None:
@@ -31,8 +34,16 @@ def check_depth(support_mm: np.ndarray, approach: Approach, collider: Collider) 
         collider: The indenter.
 
     Raises:
-        DesignError: With the largest depth that fits.
+        DesignError: With the largest depth that fits, or with the frame and row that does not.
     """
+    if approach.track is None:
+        _check_press(support_mm, approach, collider)
+    if approach.track is not None or approach.legs:
+        _check_frames(support_mm, approach, collider)
+
+
+def _check_press(support_mm: np.ndarray, approach: Approach, collider: Collider) -> None:
+    """Approach, shear and twist."""
     press = approach.press
     if not _meets_support(support_mm, approach, collider, press.depth_mm):
         return
@@ -54,12 +65,56 @@ def check_depth(support_mm: np.ndarray, approach: Approach, collider: Collider) 
 def _meets_support(
     support_mm: np.ndarray, approach: Approach, collider: Collider, depth_mm: float
 ) -> bool:
-    press = dataclasses.replace(approach.press, depth_mm=depth_mm)
-    path = dataclasses.replace(approach, press=press)
-    slides = press.frame_count - press.frames
-    poses = np.linspace(press.frames, press.frame_count, POSES if slides else 1)
+    press = dataclasses.replace(approach.press, depth_mm=depth_mm, strokes=())
+    path = dataclasses.replace(approach, press=press, legs=())
+    count = 1
+    if press.sliding:
+        way_mm = sum(path.travel_mm(k, collider.reach_mm) for k in _sideways(press))
+        count = max(POSES, math.ceil(way_mm / POSE_EVERY_MM))
+    origins, turned = path.poses(np.linspace(press.frames, press.approach_frames, count))
     return any(
-        deepest_overlap_mm(support_mm, collider, *path.pose(float(pose))) > 0.0 for pose in poses
+        deepest_overlap_mm(support_mm, collider, origin, rotation) > 0.0
+        for origin, rotation in zip(origins, turned, strict=True)
+    )
+
+
+def _sideways(press: Press) -> range:
+    """Frames of shear and twist."""
+    return range(press.frames, press.approach_frames)
+
+
+def _check_frames(support_mm: np.ndarray, approach: Approach, collider: Collider) -> None:
+    """Strokes and trajectories, frame by frame and on the way."""
+    begin = 0 if approach.track is not None else approach.press.approach_frames
+    for frame in range(begin, approach.frame_count):
+        way_mm = approach.travel_mm(frame, collider.reach_mm)
+        count = min(max(1, math.ceil(way_mm / POSE_EVERY_MM)), MOST_POSES)
+        origins, turned = approach.poses(frame + (np.arange(count) + 1.0) / count)
+        deepest_mm = max(
+            deepest_overlap_mm(support_mm, collider, origin, rotation)
+            for origin, rotation in zip(origins, turned, strict=True)
+        )
+        if deepest_mm > 0.0:
+            raise _support_met(approach, frame, deepest_mm)
+
+
+def _support_met(approach: Approach, frame: int, deepest_mm: float) -> DesignError:
+    label = f"frame {frame + 1} of {approach.frame_count}"
+    reaches = f"the object reaches {deepest_mm:.2g} mm into the rigid support"
+    trajectory = approach.press.trajectory
+    if trajectory is not None:
+        row = int(np.searchsorted(trajectory.times_s, trajectory.frame_times_s()[frame + 1])) + 1
+        return DesignError(
+            f"{label} (row {row} of the trajectory): {reaches}",
+            hint=f"move that row outward by at least {deepest_mm:.2g} mm",
+            at="press.trajectory",
+        )
+    number = sum(leg.first <= frame for leg in approach.legs)
+    text = approach.press.strokes[number - 1].text
+    return DesignError(
+        f"{label} (stroke {number}, {text}): {reaches}",
+        hint="make the stroke shorter, lower press.depth_mm or raise layers.elastomer_mm",
+        at="press.strokes",
     )
 
 
@@ -69,14 +124,12 @@ def check_frame(outcome: FrameOutcome, approach: Approach, frame: int, *, grid_m
     Raises:
         SolveError: If skin and object overlap, the elastomer is crushed, or there is no force.
     """
-    press = approach.press
     label = f"frame {frame + 1} of {approach.frame_count}"
-    depth_mm = press.depth_mm * min(1.0, (frame + 1) / press.frames)
     fault = {"frame": frame, "residual": outcome.residual, "last_good": frame - 1}
-    if frame < press.frames and depth_mm > SHALLOW_MM and not outcome.reaction_N.any():
+    if approach.pressing(frame) and not outcome.reaction_N.any():
         raise SolveError(
-            f"{label} is {depth_mm:.3f} mm deep with no force: the object passed between contact "
-            f"points; forces are due from {SHALLOW_MM:g} mm",
+            f"{label} is {approach.depth_mm(frame):.3f} mm deep with no force: the object passed "
+            f"between contact points; forces are due from {SHALLOW_MM:g} mm",
             hint="lower contact.grid_mm or meshing.hex_mm, or raise indenter.edge_radius_mm",
             at="contact.grid_mm",
             **fault,

@@ -7,16 +7,16 @@ import pytest
 
 from sim.contact import reference
 from sim.contact.approach import plan_approach
+from sim.contact.batch import Case
 from sim.contact.collider import make_collider
 from sim.contact.domain import stencil_nodes
-from sim.contact.batch import Case
 from sim.contact.problem import prepare
 from sim.contact.relaxation import STEP_CAP, STEPS, Relaxation
 from sim.contact.specimens import flat_block
 from sim.material import elastic_solid
 from workbench.core.design import Elastomer, Law
-from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
 from workbench.core.inclusion import Inclusion, Where
+from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
 from workbench.core.press import ContactSettings, Press
 from workbench.core.results import Label
 

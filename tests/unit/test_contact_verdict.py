@@ -6,15 +6,17 @@ import numpy as np
 import pytest
 
 from sim.contact.approach import Approach, plan_approach
+from sim.contact.batch import Case
 from sim.contact.collider import Collider, make_collider
-from sim.contact.outcome import FrameOutcome, _friction, frame_outcome
+from sim.contact.fields import volume_state
+from sim.contact.frame import FrameOutcome
+from sim.contact.outcome import _friction, frame_outcome
+from sim.contact.problem import Problem, prepare
 from sim.contact.quadrature import facets_of
 from sim.contact.refinement import refine
 from sim.contact.relaxation import Relaxation
-from sim.contact.solver import prepare
 from sim.contact.specimens import flat_block
-from sim.contact.verdict import check_depth, check_frame, least_volume_ratio
-from sim.material import elastic_solid
+from sim.contact.verdict import check_depth, check_frame
 from workbench.core.design import Elastomer
 from workbench.core.errors import DesignError, SolveError
 from workbench.core.indenter import Indenter, IndenterKind
@@ -31,66 +33,78 @@ def plan(press: Press = PRESS, indenter: Indenter | None = None) -> tuple[Approa
     return plan_approach(MESH.outer, collider, press), collider
 
 
-def frame(scale_N: float = 1.0) -> tuple[FrameOutcome, Relaxation, Approach]:
+def frame(load_N: float = 1.0) -> tuple[FrameOutcome, Problem]:
     """A frame of the undeformed block under the ball; nothing has settled."""
     (approach, collider), material = plan(), Elastomer()
     domain = prepare(MESH, POINTS, material, approach, collider, ContactSettings(), radius_mm=3.0)
-    relaxation = Relaxation(domain, collider, elastic_solid(material), friction=0.3)
-    balance = relaxation.evaluate(approach.pose(1.0))
-    outcome = frame_outcome(relaxation, MESH.outer, approach, balance, 0, scale_N=scale_N)
-    return outcome, relaxation, approach
+    problem = Problem(
+        mesh=MESH,
+        material=material,
+        settings=ContactSettings(),
+        approach=approach,
+        collider=collider,
+        domain=domain,
+        radius_mm=3.0,
+    )
+    relaxation = Relaxation([Case(domain=domain, collider=collider, friction=0.3)])
+    origin, rotation = approach.pose(1.0)
+    relaxation.set_poses(0, np.concatenate([origin, rotation.ravel(), [1.0]])[None])
+    balance = relaxation.evaluate(np.ones(1, bool)).of(0)
+    outcome = frame_outcome(relaxation, 0, problem, balance, 0, load_N=load_N, seconds=0.0)
+    return outcome, problem
 
 
 def test_overlap_is_looked_for_on_the_whole_skin() -> None:
     """The ball lies 0.4 mm in the undeformed skin, more than half a cell of 0.5 mm."""
-    outcome, relaxation, approach = frame()
+    outcome, problem = frame()
+    approach = problem.approach
     # The nearest vertex is 0.2 sqrt(2) mm off the axis and 1.6 mm below the centre.
     assert outcome.penetration_mm == pytest.approx(2.0 - np.hypot(0.2 * 2**0.5, 1.6), abs=1e-4)
     with pytest.raises(SolveError, match=r"overlap by 0\.375 mm; the limit is 0\.250 mm") as raised:
-        check_frame(outcome, relaxation, approach, 0)
+        check_frame(outcome, approach, 0, grid_mm=0.5)
     assert "penalty" in raised.value.hint
     nan = dataclasses.replace(outcome, penetration_mm=float("nan"))
     with pytest.raises(SolveError, match="overlap"):
-        check_frame(nan, relaxation, approach, 0)
+        check_frame(nan, approach, 0, grid_mm=0.5)
 
 
 def test_depth_without_force_is_an_error_but_release_is_not() -> None:
     """No reaction at 0.4 mm of depth is refused; at a depth of 0.001 mm it is not."""
-    outcome, relaxation, approach = frame()
+    outcome, problem = frame()
+    approach = problem.approach
     empty = dataclasses.replace(outcome, reaction_N=np.zeros(3), penetration_mm=0.0)
     with pytest.raises(SolveError, match="passed between contact points"):
-        check_frame(empty, relaxation, approach, 0)
+        check_frame(empty, approach, 0, grid_mm=0.5)
     shallow = dataclasses.replace(approach.press, depth_mm=1e-3)
-    check_frame(empty, relaxation, dataclasses.replace(approach, press=shallow), 0)
+    check_frame(empty, dataclasses.replace(approach, press=shallow), 0, grid_mm=0.5)
     sliding = dataclasses.replace(approach.press, shear_mm=(9.0, 0.0))
-    check_frame(empty, relaxation, dataclasses.replace(approach, press=sliding), 1)
+    check_frame(empty, dataclasses.replace(approach, press=sliding), 1, grid_mm=0.5)
 
 
 def test_crushed_elastomer_is_an_error() -> None:
     """J of u = H x is det(I + H): 1.1 x 0.9 x 0.8, then 0.01 by squeezing along z."""
-    outcome, relaxation, approach = frame()
-    domain = relaxation.domain
+    outcome, problem = frame()
+    domain = problem.domain
     spread = domain.node_mm * [0.1, -0.1, -0.2]
     # Single precision has 6e-8 and the nodes lie 6 cells out.
-    assert least_volume_ratio(domain, spread) == pytest.approx(0.792, abs=1e-5)
-    relaxation.restart(domain.node_mm * [0.0, 0.0, -0.99])
-    fine = dataclasses.replace(outcome, penetration_mm=0.0)
+    assert volume_state(domain, spread).least_volume_ratio == pytest.approx(0.792, abs=1e-5)
+    flat = volume_state(domain, domain.node_mm * [0.0, 0.0, -0.99]).least_volume_ratio
+    fine = dataclasses.replace(outcome, penetration_mm=0.0, least_volume_ratio=flat)
     with pytest.raises(SolveError, match=r"crushed to 0\.010 .* limit is 0\.02"):
-        check_frame(fine, relaxation, approach, 0)
+        check_frame(fine, problem.approach, 0, grid_mm=0.5)
 
 
 def test_residual_has_the_scale_of_the_stop_test() -> None:
     """Out-of-balance force over the given scale, whatever the reaction."""
-    coarse, fine = frame(scale_N=2.0)[0], frame(scale_N=0.5)[0]
+    coarse, fine = frame(load_N=2.0)[0], frame(load_N=0.5)[0]
     assert coarse.residual > 0.0
     assert fine.residual == pytest.approx(4.0 * coarse.residual, rel=1e-12)
 
 
 def test_friction_ratio_comes_from_forces_alone() -> None:
-    """Forces (0.5, 0, 1), (0.1, 0, 1) and a faint one under normals of any length: 0.5 and 0.1."""
-    forces = np.array([[0.5, 0.0, 1.0], [0.1, 0.0, 1.0], [1e-6, 0.0, 1e-7], [0.0, 0.0, 0.0]])
-    normal = np.array([[0.0, 0.0, 2.0]] * 3 + [[0.0, 0.0, 0.0]])
-    largest, sliding = _friction(forces, normal, friction=0.3)
+    """Forces 0.5 and 0.1 aside per 1 along the normal, and a faint one: 0.5 is the largest."""
+    aside, pressing = np.array([0.5, 0.1, 1e-6, 0.0]), np.array([1.0, 1.0, 1e-7, 0.0])
+    largest, sliding = _friction(pressing, aside, friction=0.3)
     assert largest == pytest.approx(0.5)
     assert sliding.tolist() == [True, False, False, False]
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sim.material import first_piola, elastic_solid
+from sim.material import elastic_solid, first_piola
 from workbench.core.design import Elastomer
 
 

@@ -83,6 +83,11 @@ class Law(enum.StrEnum):
     """Hooke's law of small strains and small turns, to compare with closed forms."""
 
 
+STIFFEST_MPa = 1e3
+USUAL_YOUNG_MPa = (0.005, 10.0)
+"""Softer than any silicone gel that stands by itself, stiffer than any rubber used for a skin."""
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Elastomer:
     """A silicone: neo-Hookean with C10 = mu / 2, D1 = 2 / K, or linear elastic."""
@@ -124,7 +129,10 @@ class Elastomer:
     def __post_init__(self) -> None:
         hint = "silicones for tactile skins have 0.03 to 3 MPa"
         at = "material.young_MPa"
-        within(self.young_MPa, 1e-4, 1e3, what="Young's modulus", unit="MPa", at=at, hint=hint)
+        if self.young_MPa > STIFFEST_MPa and math.isfinite(self.young_MPa):
+            hint = f"this looks like Pa: type {self.young_MPa * 1e-6:.6g}; {hint}"
+        most = STIFFEST_MPa
+        within(self.young_MPa, 1e-4, most, what="Young's modulus", unit="MPa", at=at, hint=hint)
         hint = "use 0.45 to 0.49 for silicone; 0.5 cannot be simulated"
         at = "material.poisson"
         within(self.poisson, 0.0, 0.495, what="Poisson's ratio", unit="", at=at, hint=hint)
@@ -134,6 +142,20 @@ class Elastomer:
         within(self.density_g_cm3, 0.1, 10.0, what="density", unit="g/cm3", at=at)
         at = "material.backing_MPa"
         within(self.backing_MPa, 0.0, 1.0, what="modulus of the backing", unit="MPa", at=at)
+
+    @property
+    def notice(self) -> str:
+        """What is unlikely about this material but allowed, else ""."""
+        low_MPa, high_MPa = USUAL_YOUNG_MPa
+        if low_MPa <= self.young_MPa <= high_MPa:
+            return ""
+        kilo = ""
+        if self.young_MPa > high_MPa:
+            kilo = f"; if it was meant in kPa, type {self.young_MPa * 1e-3:.4g}"
+        return (
+            f"Young's modulus {self.young_MPa:g} MPa is unlikely for a silicone skin, which has "
+            f"{low_MPa:g} to {high_MPa:g} MPa{kilo}"
+        )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -8,6 +8,7 @@ from __future__ import annotations
 import dataclasses
 import difflib
 import enum
+import types
 import typing
 from collections.abc import Mapping
 from typing import Any, cast
@@ -50,9 +51,10 @@ def from_table(cls: type[Any], table: Any, *, at: str = "") -> Any:
 
 
 def to_table(value: Any) -> Any:
-    """A dataclass as nested plain tables, lists, numbers and strings."""
+    """A dataclass as nested plain tables, lists, numbers and strings; TOML has no None."""
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
-        return {f.name: to_table(getattr(value, f.name)) for f in dataclasses.fields(value)}
+        held = {f.name: getattr(value, f.name) for f in dataclasses.fields(value)}
+        return {name: to_table(item) for name, item in held.items() if item is not None}
     if isinstance(value, enum.Enum):
         return value.value
     if isinstance(value, Mapping):
@@ -70,6 +72,9 @@ def suggest(name: str, known: typing.Iterable[str]) -> str:
 
 
 def _convert(hint: Any, raw: Any, at: str) -> Any:
+    if isinstance(hint, types.UnionType):
+        # A field that may be missing: X | None.
+        (hint,) = (part for part in typing.get_args(hint) if part is not type(None))
     origin = typing.get_origin(hint)
     if dataclasses.is_dataclass(hint):
         return from_table(cast("type[Any]", hint), raw, at=at)

@@ -9,7 +9,7 @@ import numpy as np
 
 from sim.contact.drives import driven_displacement_mm
 from sim.contact.frame import FrameOutcome
-from sim.contact.kernels import POSE
+from sim.contact.layout import POSE
 from sim.contact.problem import Problem
 from sim.contact.relaxation import STEPS, Relaxation
 from workbench.core.errors import SolveError
@@ -25,7 +25,7 @@ STILL_MM = 1e-9
 """Travel below which nothing moves."""
 
 
-class Track:
+class Run:
     """State of one press; `number` is its case in the relaxation."""
 
     def __init__(self, problem: Problem, relaxation: Relaxation, number: int) -> None:
@@ -66,7 +66,7 @@ class Track:
         self._drive()
         count = 0 if predicted else self._ramp_length()
         steps = (np.arange(count) + 1.0) / max(count, 1)
-        self._ramp = self._rows(steps)
+        self._ramp = self._rows(steps) if count else np.zeros((0, POSE))
         self._fed = 0
         if not count:
             self.stay()
@@ -166,8 +166,5 @@ class Track:
 
     def _rows(self, steps: np.ndarray) -> np.ndarray:
         """Rows of the pose table at shares of the frame, (n,), shape (n, POSE)."""
-        rows = np.zeros((len(steps), POSE))
-        for row, step in zip(rows, steps, strict=True):
-            origin, rotation = self.problem.approach.pose(self.frame + float(step))
-            row[:3], row[3:12], row[12] = origin, rotation.ravel(), step
-        return rows
+        origins, turned = self.problem.approach.poses(self.frame + steps)
+        return np.concatenate([origins, turned.reshape(-1, 9), steps[:, None]], axis=1)

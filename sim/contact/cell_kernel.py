@@ -1,0 +1,72 @@
+"""Pass 1 of a substep: elastic forces of each cell into the cell's own slots.
+
+Taichi function; its plain twin is `reference.stress_forces`.
+"""
+
+# Taichi reads annotations and operators in its own way.
+# pyright: reportInvalidTypeForm=false, reportGeneralTypeIssues=false, reportIndexIssue=false, reportOperatorIssue=false
+
+import taichi as ti
+from taichi.lang.impl import expr_init
+
+from sim.contact.domain import SLOT_BLOCK as BLOCK
+from sim.contact.layout import CHOICES, IDLE, INVERSE_EDGE, MODE, NUMBERS
+from sim.contact.stencil import gather_gradient, scatter_gradient
+from sim.material import SMALLEST_VOLUME_RATIO, first_piola_rows
+
+
+def _inverse_cube_root(ratio):
+    """J^(-1/3) by Newton's iteration: `exp` and `log` would take a third of the substep."""
+    guarded = expr_init(ti.max(ratio, SMALLEST_VOLUME_RATIO))
+    root = expr_init(ti.select(guarded < 0.6, 1.6 - guarded, 4.0 / (3.0 + guarded)))
+    for _ in range(4):
+        root = expr_init(root * (4.0 - guarded * root * root * root) * (1.0 / 3.0))
+    return root
+
+
+def _cell_forces(nodal, volumes, inverse_edge, moduli, linear):
+    """Forces [N] on 27 nodes of a cell: -sum over points of volume P grad(weight)."""
+    gradients = [gather_gradient(component, expr_init) for component in nodal]
+    flux = [[[] for _ in range(8)] for _ in range(3)]
+    for p in range(8):
+        rows = [[expr_init(gradients[r][p][c] * inverse_edge) for c in range(3)] for r in range(3)]
+        stress = first_piola_rows(rows, moduli, _inverse_cube_root, keep=expr_init, linear=linear)
+        scale = expr_init(-volumes[p] * inverse_edge)
+        for r in range(3):
+            flux[r][p] = [expr_init(scale * stress[r][c]) for c in range(3)]
+    return [scatter_gradient(component, expr_init) for component in flux]
+
+
+@ti.func
+def slot_base(cell):
+    """Index of the first slot of a cell; slot v follows at v * BLOCK."""
+    return (cell // BLOCK) * (81 * BLOCK) + cell % BLOCK
+
+
+@ti.func
+def stress_pass(
+    displacement: ti.template(),
+    rows: ti.template(),
+    volumes: ti.template(),
+    moduli: ti.template(),
+    cell_cases: ti.template(),
+    slots: ti.template(),
+    numbers: ti.template(),
+    choices: ti.template(),
+    linear: ti.template(),
+):
+    for cell in range(cell_cases.shape[0]):
+        case = cell_cases[cell]
+        if choices[CHOICES * case + MODE] != IDLE:
+            first = [rows[9 * cell + r] for r in range(9)]
+            volume = [volumes[8 * cell + p] for p in range(8)]
+            nodal = [
+                [displacement[3 * (first[n // 3] + n % 3) + c] for n in range(27)] for c in range(3)
+            ]
+            inverse_edge = numbers[NUMBERS * case + INVERSE_EDGE]
+            shear, bulk = moduli[2 * cell], moduli[2 * cell + 1]
+            forces = ti.static(_cell_forces(nodal, volume, inverse_edge, (shear, bulk), linear))
+            base = slot_base(cell)
+            for n in ti.static(range(27)):
+                for c in ti.static(range(3)):
+                    slots[base + (3 * n + c) * BLOCK] = forces[c][n]

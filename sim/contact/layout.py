@@ -1,0 +1,14 @@
+"""Numbers that kernels and their orchestration agree on: states, modes, and rows of tables."""
+
+FREE, TOUCHED, HELD = 0, 1, 2
+"""States of a contact point: apart; anchored within this frame; anchored by a settled frame."""
+IDLE, MOVING, STILL = 0, 1, 2
+"""Modes of a case: left alone; relaxing; forces only."""
+FRICTION, MASS_SCALE, DAMPING, LARGEST_STEP, INVERSE_EDGE, SIZE = 0, 1, 2, 3, 4, 5
+NUMBERS = 13
+"""Floats of a case: the above, with the eight of the object's size at the end."""
+MODE, SHAPE, FIRST_COEFFICIENT, COUNTS = 0, 1, 2, 3
+CHOICES = 6
+"""Integers of a case: the above, with the three counts of distance samples at the end."""
+POSE = 13
+"""Floats of a pose: origin from the target, rotation by rows, share of the drives' way."""
