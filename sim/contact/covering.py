@@ -46,7 +46,7 @@ def overlaps_along(
     """Depth of the deepest skin vertex in the object at each pose [mm], shape (P,); 0 if none."""
     return np.array(
         [
-            -_inside(skin.points_mm, collider, origin, rotation)[1].min(initial=0.0)
+            max(0.0, -_inside(skin.points_mm, collider, origin, rotation)[1].min(initial=0.0))
             for origin, rotation in zip(origins_mm, turned, strict=True)
         ]
     )
