@@ -15,6 +15,9 @@ from workbench.core.press import Press
 
 POSES = 12
 """Least number of poses of shear and twist at which the support is looked at."""
+INWARD_EVERY_MM = 0.25
+"""Way of the approach between two poses at which the support is looked at: half of the smallest
+indenter."""
 POSE_EVERY_MM = 0.5
 """Way between two poses at which the support is looked at."""
 MOST_POSES = 50
@@ -67,11 +70,14 @@ def _meets_support(
 ) -> bool:
     press = dataclasses.replace(approach.press, depth_mm=depth_mm, strokes=())
     path = dataclasses.replace(approach, press=press, legs=())
-    count = 1
+    # On the way down too: a depth of 50 mm passes right through a finger.
+    inward = math.ceil(depth_mm / INWARD_EVERY_MM) + 1
+    progress = np.linspace(press.frames, 0.0, inward)
     if press.sliding:
         way_mm = sum(path.travel_mm(k, collider.reach_mm) for k in _sideways(press))
         count = max(POSES, math.ceil(way_mm / POSE_EVERY_MM))
-    origins, turned = path.poses(np.linspace(press.frames, press.approach_frames, count))
+        progress = np.append(progress, np.linspace(press.frames, press.approach_frames, count))
+    origins, turned = path.poses(progress)
     return any(
         deepest_overlap_mm(support_mm, collider, origin, rotation) > 0.0
         for origin, rotation in zip(origins, turned, strict=True)

@@ -118,6 +118,12 @@ def test_depth_that_reaches_the_support_is_refused() -> None:
     check_depth(MESH.inner.points_mm, *plan(dataclasses.replace(PRESS, depth_mm=1.9)))
 
 
+def test_depth_that_passes_right_through_is_refused() -> None:
+    """A ball of 4 mm ends 48 mm below the support of a 2 mm wall: it met it at 2.0 mm."""
+    with pytest.raises(DesignError, match=r"50 mm .* that fits is 2\.0 mm"):
+        check_depth(MESH.inner.points_mm, *plan(dataclasses.replace(PRESS, depth_mm=50.0)))
+
+
 @pytest.mark.parametrize(
     ("indenter", "depth_mm", "longest_mm"),
     [
