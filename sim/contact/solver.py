@@ -16,7 +16,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from sim.contact.batch import Case
-from sim.contact.frame import FrameOutcome
 from sim.contact.outcome import collect, frame_outcome
 from sim.contact.problem import Problem, make_problem
 from sim.contact.relaxation import STEPS, Balance, Balances, Relaxation
@@ -78,10 +77,12 @@ def press_membrane(
 
 def solve(problems: Sequence[Problem], *, monitor: Monitor = silent) -> list[Contact | SolveError]:
     """Solve presses side by side; the result of each is what it would be alone, bit by bit."""
-    return _Solver(problems, monitor).run()
+    solver = Solver(problems, monitor)
+    solver.run()
+    return solver.results()
 
 
-class _Solver:
+class Solver:
     """Presses under way; arrays have an entry for each."""
 
     def __init__(self, problems: Sequence[Problem], monitor: Monitor) -> None:
@@ -111,7 +112,7 @@ class _Solver:
         for case in range(count):
             self._begin(case)
 
-    def run(self) -> list[Contact | SolveError]:
+    def run(self) -> None:
         """Relax until every press has ended."""
         while self.active.any():
             for case in np.flatnonzero(self.active & ~self.settling).tolist():
@@ -126,6 +127,9 @@ class _Solver:
                     self.settling[case] = True
             self._tell()
         self.monitor(1.0, "settled")
+
+    def results(self) -> list[Contact | SolveError]:
+        """What each press came to."""
         return [
             run.error or collect(run.outcomes, run.problem, substeps=int(self.substeps[run.number]))
             for run in self.runs
@@ -165,7 +169,7 @@ class _Solver:
         self.retries[stalled] += 1
         self.lowest_at[stalled] = self.spent[stalled]
         for case in np.flatnonzero(looked & (self.spent >= self.most)).tolist():
-            self._end(case, self.runs[case].unsettled(float(self.residual[case])))
+            self.end(case, self.runs[case].unsettled(float(self.residual[case])))
 
     def _close(self, still: np.ndarray) -> np.ndarray:
         """End the frame of presses whose forces balance where the nodes are now; which did."""
@@ -174,36 +178,32 @@ class _Solver:
         load_N = self._load_N(final, still & final.finite)
         settled = still & final.finite & self._balanced(final, load_N)
         for case in np.flatnonzero(still).tolist():
-            run = self.runs[case]
-            if not (final.finite[case] and np.isfinite(self.relaxation.displacement(case)).all()):
+            if not final.finite[case]:
                 self._unstable(case)
-                settled[case] = True
             elif settled[case]:
-                try:
-                    outcome = self._outcome(case, final.of(case), float(load_N[case]))
-                except SolveError as error:
-                    self._end(case, error)
-                    continue
-                run.finish(outcome)
-                if run.frame < run.problem.approach.frame_count:
-                    self._begin(case)
-                else:
-                    self._end(case, None)
-        return settled
+                self.close_frame(case, final.of(case), float(load_N[case]))
+        return settled | (still & ~final.finite)
 
-    def _outcome(self, case: int, balance: Balance, load_N: float) -> FrameOutcome:
-        """The settled frame of a press.
-
-        Raises:
-            SolveError: If it is no contact of this elastomer.
-        """
+    def close_frame(self, case: int, balance: Balance, load_N: float) -> None:
+        """Read a settled frame and go on to the next, or end the press."""
         run = self.runs[case]
         problem, frame = run.problem, run.frame
+        if not np.isfinite(self.relaxation.displacement(case)).all():
+            self._unstable(case)
+            return
         outcome = frame_outcome(
             self.relaxation, case, problem, balance, frame, load_N=load_N, seconds=run.seconds
         )
-        check_frame(outcome, problem.approach, frame, grid_mm=problem.domain.grid_mm)
-        return outcome
+        try:
+            check_frame(outcome, problem.approach, frame, grid_mm=problem.domain.grid_mm)
+        except SolveError as error:
+            self.end(case, error)
+            return
+        run.finish(outcome)
+        if run.frame < problem.approach.frame_count:
+            self._begin(case)
+        else:
+            self.end(case, None)
 
     def _load_N(self, balances: Balances, looked: np.ndarray) -> np.ndarray:
         """Force against which residual and change are measured, shape (B,)."""
@@ -223,13 +223,14 @@ class _Solver:
         """Try the frame again with heavier nodes and a gentler ramp, or give up."""
         run = self.runs[case]
         if run.attempt >= MOST_RETRIES:
-            self._end(case, run.unstable())
+            self.end(case, run.unstable())
             return
         run.attempt += 1
         self.relaxation.mass_scale[case] *= 2.0
         self._begin(case)
 
-    def _end(self, case: int, error: SolveError | None) -> None:
+    def end(self, case: int, error: SolveError | None) -> None:
+        """Take a press out of the batch, with its error if it has one."""
         run = self.runs[case]
         if error is not None and run.outcomes:
             error.partial = collect(
