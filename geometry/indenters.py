@@ -1,7 +1,7 @@
-"""Indenters: STL files in, closed meshes out, and display meshes of every kind.
+"""Indenters: STL, OBJ and STEP files in, closed meshes out, and meshes of the simplest kinds.
 
-Body frame as in `workbench.core.press`: the origin is the shape's centre, +Z points away from the
-skin, so the -Z side meets it.
+Body frame as in `workbench.core.indenter`: the origin is the shape's centre, +Z points away from
+the skin, so the -Z side meets it.
 """
 
 from __future__ import annotations
@@ -10,16 +10,38 @@ from pathlib import Path
 
 import numpy as np
 
+from geometry.intake import read_body
+from geometry.obj import obj_corners
 from geometry.primitives import rounded_box, rounded_revolution, sphere
 from geometry.stl import stl_corners, welded
 from geometry.surface import mesh_volume, open_edges
 from workbench.core.errors import DesignError
+from workbench.core.imported import ImportedBody, body_file
 from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
 
 LARGEST_FILE_MB = 64
+MOST_TRIANGLES = 1_000_000
+"""Sampling the distance of more takes minutes."""
 SMALLEST_SHARE = 1e-6
 """Volume over that of the bounding box below which a mesh encloses nothing."""
+ENDINGS = (".stl", ".obj", ".step", ".stp")
 AT = "indenter"
+
+
+def load_mesh(path: str | Path) -> IndenterMesh:
+    """Read an STL, OBJ or STEP file as a closed body about the origin.
+
+    Raises:
+        DesignError: If the file is missing, too large, of another kind, or not a closed body.
+    """
+    file = Path(path)
+    ending = file.suffix.lower()
+    if ending in (".step", ".stp"):
+        return _load_step(file)
+    if ending != ".obj":
+        return load_stl(file)
+    _check_size(file)
+    return _closed_mesh(obj_corners(file.read_bytes(), file.name, at=AT), file.name)
 
 
 def load_stl(path: str | Path) -> IndenterMesh:
@@ -33,6 +55,17 @@ def load_stl(path: str | Path) -> IndenterMesh:
     return _closed_mesh(stl_corners(file.read_bytes(), file.name, at=AT), file.name)
 
 
+def _load_step(file: Path) -> IndenterMesh:
+    """The one solid of a STEP file, in mm whatever the file's unit."""
+    _check_size(file)
+    try:
+        body = read_body(ImportedBody(outer=body_file(file.name, file.read_bytes())))
+    except DesignError as error:
+        error.at = AT
+        raise
+    return _oriented(body.outer.points_mm, body.outer.faces, file.name)
+
+
 def largest_width(mesh: IndenterMesh) -> float:
     """Longest side of the bounding box [mm]."""
     return float(np.ptp(mesh.points_mm, axis=0).max())
@@ -41,11 +74,13 @@ def largest_width(mesh: IndenterMesh) -> float:
 def scaled(mesh: IndenterMesh, size_mm: float) -> IndenterMesh:
     """The mesh with its largest width made `size_mm`."""
     factor = size_mm / largest_width(mesh)
-    return IndenterMesh(points_mm=mesh.points_mm * factor, faces=mesh.faces)
+    return IndenterMesh(points_mm=mesh.points_mm * factor, faces=mesh.faces, notice=mesh.notice)
 
 
-def display_mesh(indenter: Indenter) -> tuple[np.ndarray, np.ndarray]:
-    """Closed outward mesh of any indenter in its body frame; a loaded mesh as it is.
+def primitive_mesh(indenter: Indenter) -> tuple[np.ndarray, np.ndarray]:
+    """Closed outward mesh of a sphere, cube, cone or cylinder, or a loaded mesh as it is.
+
+    Texture and the rounding of a mesh are left out; see `workbench.indenter_display`.
 
     Returns:
         Points [mm], shape (N, 3), float64; faces, shape (M, 3), int32.
@@ -88,19 +123,27 @@ def _check_cone(indenter: Indenter) -> None:
 def _check_size(file: Path) -> None:
     if not file.is_file():
         raise DesignError(
-            f"there is no file {str(file)!r}", hint="give the path of an STL file", at=AT
+            f"there is no file {str(file)!r}",
+            hint="give the path of an STL, OBJ or STEP file",
+            at=AT,
         )
     size_mb = file.stat().st_size / 1e6
     if size_mb > LARGEST_FILE_MB:
         raise DesignError(
             f"{file.name} has {size_mb:,.0f} MB, more than {LARGEST_FILE_MB} MB",
-            hint="reduce the mesh to under a million triangles before loading it",
+            hint=f"reduce the mesh to under {MOST_TRIANGLES:,} triangles before loading it",
             at=AT,
         )
 
 
 def _closed_mesh(corners: np.ndarray, name: str) -> IndenterMesh:
     """Weld triangles (M, 3, 3) into a closed body, refusing what is none."""
+    if len(corners) > MOST_TRIANGLES:
+        raise DesignError(
+            f"{name} has {len(corners):,} triangles, more than {MOST_TRIANGLES:,}",
+            hint="reduce the mesh, for example by quadric decimation in MeshLab",
+            at=AT,
+        )
     points, faces = welded(corners)
     gaps = open_edges(faces)
     if gaps:
@@ -125,8 +168,11 @@ def _oriented(points: np.ndarray, faces: np.ndarray, name: str) -> IndenterMesh:
             at=AT,
         )
     low, high = points.min(axis=0), points.max(axis=0)
-    if volume_mm3 < 0.0:
+    turned = volume_mm3 < 0.0
+    if turned:
         faces = faces[:, ::-1]
     return IndenterMesh(
-        points_mm=points - (low + high) / 2, faces=np.ascontiguousarray(faces, dtype=np.int32)
+        points_mm=points - (low + high) / 2,
+        faces=np.ascontiguousarray(faces, dtype=np.int32),
+        notice=f"{name} was inside out and has been turned" if turned else "",
     )

@@ -29,7 +29,15 @@ from workbench.terminal import complain, say
 
 NUMBERS = ("--target", "--shear-mm", "--twist-deg", "--depth-mm", "--size-mm", "--object-pose")
 """Options whose value may begin with a minus sign."""
-INDENTERS = "sphere, cylinder_end, cylinder_side, cube, cone, or the path of an STL file"
+INDENTERS = (
+    "sphere, cylinder_end, cylinder_side, cube, cone, cross, triangle, pacman, hexagon, ellipsoid, "
+    "double_cylinder, diamond, flower, ring, rhombus, torus; mug, screwdriver, banana; or the path "
+    "of an STL, OBJ or STEP file"
+)
+TEXTURES = (
+    "raised on the object: grid, dots or waves, letters=TEXT, or a picture's path; "
+    "PATTERN:HEIGHT:PITCH in mm"
+)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -165,7 +173,10 @@ def _run_options(sub: argparse.ArgumentParser) -> None:
     _unit_option(sub)
     sub.add_argument("--indenter", default="sphere", help=INDENTERS)
     sub.add_argument("--size-mm", type=float, help="diameter, else the largest width (default 6)")
-    sub.add_argument("--edge-radius-mm", type=float, help="rounding of edges (default 0.45)")
+    sub.add_argument(
+        "--edge-radius-mm", type=float, help="rounding of edges (default 0.45; of a file 0)"
+    )
+    sub.add_argument("--texture", metavar="PATTERN", help=TEXTURES)
     sub.add_argument("--target", help="x,y,z near the skin [mm]; default: where the family says")
     sub.add_argument("--depth-mm", type=float, default=1.0)
     sub.add_argument("--shear-mm", default="0,0", metavar="U,V")

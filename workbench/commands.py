@@ -111,7 +111,7 @@ def press_case(options: argparse.Namespace, target_mm: tuple[float, float, float
     """
     from workbench.core.motion import Mover
     from workbench.core.press import ContactSettings, Press
-    from workbench.indenter_choice import choose_indenter
+    from workbench.indenter_choice import choose_indenter, choose_texture
     from workbench.pipeline import PressCase
     from workbench.strokes import read_stroke
     from workbench.trajectories import read_trajectory
@@ -130,7 +130,10 @@ def press_case(options: argparse.Namespace, target_mm: tuple[float, float, float
     settings = {} if options.grid_mm is None else {"grid_mm": options.grid_mm}
     return PressCase(
         indenter=choose_indenter(
-            options.indenter, size_mm=options.size_mm, edge_radius_mm=options.edge_radius_mm
+            options.indenter,
+            size_mm=options.size_mm,
+            edge_radius_mm=options.edge_radius_mm,
+            texture=choose_texture(options.texture) if options.texture else None,
         ),
         press=Press(
             target_mm=_numbers(options.target, 3, at="--target") if options.target else target_mm,

@@ -1,48 +1,176 @@
-"""An indenter by name or by STL file, as the command line and the browser choose it."""
+"""An indenter by name or by file, as the command line and the browser choose it."""
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
-from workbench.core.errors import DesignError
-from workbench.core.indenter import DEFAULT_EDGE_RADIUS_MM, DEFAULT_SIZE_MM, Indenter, IndenterKind
-from workbench.core.mapping import suggest
+import numpy as np
 
-ALIASES = {"cylinder": "cylinder_end", "cylinder-end": "cylinder_end"} | {
-    "cylinder-side": "cylinder_side"
+from workbench.core.check import within
+from workbench.core.errors import DesignError
+from workbench.core.indenter import (
+    DEFAULT_EDGE_RADIUS_MM,
+    DEFAULT_SIZE_MM,
+    EDGELESS,
+    LARGEST_MESH_MM,
+    Indenter,
+    IndenterKind,
+    IndenterMesh,
+    widest_edge_mm,
+)
+from workbench.core.mapping import suggest
+from workbench.core.texture import SMOOTH, HeightImage, Pattern, Texture
+
+ALIASES = {
+    "cylinder": "cylinder_end",
+    "cylinder-end": "cylinder_end",
+    "cylinder-side": "cylinder_side",
+    "x": "cross",
+    "pac-man": "pacman",
+    "double-cylinder": "double_cylinder",
+    "octahedron": "diamond",
 }
+PRIMITIVES = tuple(k.value for k in IndenterKind if k is not IndenterKind.MESH)
+PICTURES = (".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff")
+LETTER_MM, PICTURE_MM = 3.0, 6.0
+"""Height of a capital and width of a picture where none is given."""
+MOST_PIXELS = 4_000_000
 
 
 def choose_indenter(
-    name: str, *, size_mm: float | None = None, edge_radius_mm: float | None = None
+    name: str,
+    *,
+    size_mm: float | None = None,
+    edge_radius_mm: float | None = None,
+    texture: Texture | None = None,
 ) -> Indenter:
-    """A primitive by name, or the closed mesh of an STL file scaled to `size_mm`.
+    """A primitive or an everyday object by name, or the closed mesh of an STL, OBJ or STEP file.
 
-    Without a size a primitive has 6 mm, and a file its own size in mm. The edge radius shrinks
-    with small primitives so that the default always fits.
+    Without a size a primitive has 6 mm, and all others their own size in mm. The edge radius
+    shrinks with small primitives so that the default always fits; a mesh keeps its edges unless
+    one is stated.
 
     Raises:
         DesignError: If the name is unknown or the file is not a usable closed mesh.
     """
-    kind = ALIASES.get(name, name)
-    primitives = [k.value for k in IndenterKind if k is not IndenterKind.MESH]
-    if kind in primitives:
-        size = DEFAULT_SIZE_MM if size_mm is None else size_mm
-        if kind == IndenterKind.SPHERE:
-            # It has no edge; a value here would only split one press into two keys.
-            return Indenter(kind=IndenterKind.SPHERE, size_mm=size)
-        edge = min(DEFAULT_EDGE_RADIUS_MM, size / 4) if edge_radius_mm is None else edge_radius_mm
-        return Indenter(kind=IndenterKind(kind), size_mm=size, edge_radius_mm=max(edge, 0.0))
-    if name.lower().endswith(".stl") or Path(name).exists():
-        from geometry.indenters import largest_width, load_stl, scaled
+    from geometry.everyday import EVERYDAY, everyday
+    from geometry.indenters import ENDINGS, load_mesh
 
-        mesh = load_stl(Path(name))
-        size = largest_width(mesh) if size_mm is None else size_mm
-        # Checked before scaling, so that a size of zero is refused by name.
-        Indenter(size_mm=size)
-        return Indenter(kind=IndenterKind.MESH, size_mm=size, mesh=scaled(mesh, size))
+    kind = ALIASES.get(name.lower(), name)
+    texture = texture or SMOOTH
+    if kind in PRIMITIVES:
+        return _primitive(IndenterKind(kind), size_mm, edge_radius_mm, texture)
+    if name in EVERYDAY:
+        return _of_mesh(everyday(name), size_mm, edge_radius_mm, texture)
+    if name.lower().endswith(ENDINGS) or Path(name).exists():
+        return _of_mesh(load_mesh(Path(name)), size_mm, edge_radius_mm, texture)
     raise DesignError(
         f"there is no indenter {name!r}",
-        hint=f"{suggest(kind, primitives)}; or give the path of an STL file",
+        hint=f"{suggest(kind, [*PRIMITIVES, *EVERYDAY])}; or give the path of an STL, OBJ or "
+        "STEP file",
         at="indenter",
+    )
+
+
+def choose_texture(words: str) -> Texture:
+    """A texture as typed: PATTERN[:HEIGHT[:PITCH]], a picture's path, or letters=TEXT.
+
+    Raises:
+        DesignError: If it names no pattern, a number is none, or the picture cannot be read.
+    """
+    name, *numbers = words.split(":")
+    at = "--texture"
+    try:
+        values = [float(number) for number in numbers]
+    except ValueError:
+        values = [math.nan]
+    if len(values) > 2 or not all(math.isfinite(value) for value in values):
+        raise DesignError(
+            f"--texture is {words!r}, expected PATTERN or PATTERN:HEIGHT:PITCH in mm",
+            hint="for example --texture waves:0.2:2",
+            at=at,
+        )
+    height_mm = values[0] if values else SMOOTH.height_mm
+
+    def pitch_mm(usual: float) -> float:
+        return values[1] if len(values) == 2 else usual
+
+    head, _, text = name.partition("=")
+    if head == Pattern.LETTERS and text:
+        return Texture(
+            pattern=Pattern.LETTERS, text=text, height_mm=height_mm, pitch_mm=pitch_mm(LETTER_MM)
+        )
+    if name.lower().endswith(PICTURES):
+        picture = load_heights(Path(name))
+        return Texture(
+            pattern=Pattern.IMAGE, image=picture, height_mm=height_mm, pitch_mm=pitch_mm(PICTURE_MM)
+        )
+    plain = [Pattern.NONE.value, Pattern.GRID.value, Pattern.DOTS.value, Pattern.WAVES.value]
+    if name not in plain:
+        raise DesignError(
+            f"there is no texture {name!r}",
+            hint=f"{suggest(name, plain)}; or letters=TEXT, or the path of a greyscale picture",
+            at=at,
+        )
+    pitch = pitch_mm(SMOOTH.pitch_mm)
+    return Texture(pattern=Pattern(name), height_mm=height_mm, pitch_mm=pitch)
+
+
+def load_heights(path: Path) -> HeightImage:
+    """A picture as heights, white high.
+
+    Raises:
+        DesignError: If it cannot be read or is too large.
+    """
+    import cv2
+
+    data = np.fromfile(path, dtype=np.uint8) if path.is_file() else np.zeros(0, np.uint8)
+    picture = cv2.imdecode(data, cv2.IMREAD_GRAYSCALE) if len(data) else None
+    at = "indenter.texture.image"
+    if picture is None:
+        raise DesignError(
+            f"{str(path)!r} is not a picture that can be read",
+            hint="give a greyscale PNG, JPEG, BMP or TIFF",
+            at=at,
+        )
+    if picture.size > MOST_PIXELS:
+        raise DesignError(
+            f"{path.name} has {picture.size:,} pixels, more than {MOST_PIXELS:,}",
+            hint="reduce the picture; contact resolves a few pixels per mm",
+            at=at,
+        )
+    return HeightImage(heights=np.asarray(picture, dtype=np.float64) / 255.0)
+
+
+def _primitive(
+    kind: IndenterKind, size_mm: float | None, edge_radius_mm: float | None, texture: Texture
+) -> Indenter:
+    size = DEFAULT_SIZE_MM if size_mm is None else size_mm
+    if kind in EDGELESS:
+        # It has no edge; a value here would only split one press into two keys.
+        return Indenter(kind=kind, size_mm=size, texture=texture)
+    widest = widest_edge_mm(kind, size)
+    edge = min(DEFAULT_EDGE_RADIUS_MM, widest) if edge_radius_mm is None else edge_radius_mm
+    if edge_radius_mm is None:
+        edge = max(edge, 0.0)
+    return Indenter(kind=kind, size_mm=size, edge_radius_mm=edge, texture=texture)
+
+
+def _of_mesh(
+    mesh: IndenterMesh, size_mm: float | None, rounding_mm: float | None, texture: Texture
+) -> Indenter:
+    from geometry.indenters import largest_width, scaled
+
+    size = largest_width(mesh) if size_mm is None else size_mm
+    # Checked before scaling, so that a size of zero is refused by name.
+    hint = "" if size_mm is not None else "is the file in mm? give its size in mm"
+    at = "indenter.size_mm"
+    within(size, 0.5, LARGEST_MESH_MM, what="indenter size", unit="mm", at=at, hint=hint)
+    return Indenter(
+        kind=IndenterKind.MESH,
+        size_mm=size,
+        mesh=scaled(mesh, size),
+        mesh_rounding_mm=rounding_mm or 0.0,
+        texture=texture,
     )

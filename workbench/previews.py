@@ -40,7 +40,7 @@ PLANE_MM = 1e-3
 
 def indenter_shape(indenter: Indenter) -> tuple[np.ndarray, np.ndarray]:
     """Vertices [mm] (N, 3) in the body frame and triangles (M, 3) of an indenter."""
-    from geometry.indenters import display_mesh
+    from workbench.indenter_display import display_mesh
 
     return display_mesh(indenter)
 

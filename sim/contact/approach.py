@@ -22,7 +22,7 @@ from sim.contact.touch import first_touch
 from workbench.core.errors import DesignError
 from workbench.core.frames import tangent
 from workbench.core.motion import Mover
-from workbench.core.poses import composed, pose_rows
+from workbench.core.poses import composed, pose_rows, sensor_poses
 from workbench.core.press import Press
 from workbench.core.results import Skin
 from workbench.core.trajectory import Trajectory
@@ -96,6 +96,16 @@ class Approach:
         origin = origin + u_mm * self.tangent_u + v_mm * self.tangent_v
         frame = np.stack([self.tangent_u, self.tangent_v, self.normal], axis=1)
         return origin, frame @ state.rotation
+
+    def sensor_poses(self) -> np.ndarray:
+        """Poses of a moving sensor in the room, (K, 7), frame by frame; (0, 7) if it rests."""
+        if self.press.mover is Mover.OBJECT:
+            return np.zeros((0, 7))
+        seen = pose_rows(*self.poses(np.arange(self.frame_count + 1.0)))
+        first = np.array([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
+        if self.press.trajectory is not None:
+            first = np.array(self.press.trajectory.poses[0])
+        return sensor_poses(seen, first)[1:]
 
     @property
     def frame_count(self) -> int:

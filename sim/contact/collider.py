@@ -1,19 +1,25 @@
-"""A rigid indenter ready for contact: its shape number, dimensions and, for a mesh, samples."""
+"""A rigid indenter ready for contact: its shape number, dimensions and samples where it has any."""
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
 
 import numpy as np
 
-from sim.contact.shapes import SHAPE_OF_KIND, Shape, analytic_size, evaluate, half_height_mm
+from sim.contact import textures
+from sim.contact.samples import SampledDistance, Window
+from sim.contact.sampling import box_mm, kept_samples
+from sim.contact.shapes import SHAPE_OF_KIND, Shape, analytic_size, evaluate
+from sim.contact.solids import lowest_mm, sharpest_mm
 from workbench.core.indenter import Indenter
-
-SAMPLES_PER_CELL = 2.5
-"""Distance samples of a mesh per grid cell: h = 0.4 cell loses 0.12 % of the force."""
 
 SHARPEST_MESH_CELLS = 2.4
 """Least radius taken for a mesh, whose edges are not known, in cells."""
+MOST_COARSE_SAMPLES = 400_000
+"""Samples of a whole body around a window."""
+COARSE_SLACK = 1.0
+"""Coarse distances are lowered by this many of their samples, so that they are lower bounds."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -31,38 +37,81 @@ class Collider:
     """Distance from the origin to the lowest point."""
     least_radius_mm: float
     """Radius of the sharpest part: the ball or the edge; `SHARPEST_MESH_CELLS` for a mesh."""
+    whole: Collider | None = None
+    """The whole body, sampled coarsely, where `samples` hold only the part in a window."""
 
     def distance(self, position_mm: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Signed distances [mm], (N,), and gradients, (N, 3), at body positions, (N, 3)."""
-        return evaluate(position_mm, self.shape, self.size, self.samples)
+        """Signed distances [mm], (N,), and gradients, (N, 3), at body positions, (N, 3).
+
+        Outside a window that cut the body they are a coarse lower bound; the kernels see no
+        contact there.
+        """
+        distance, gradient = evaluate(position_mm, self.shape, self.size, self.samples)
+        if self.whole is not None:
+            steps = (position_mm - self.size[:3]) * self.size[3]
+            last = np.array(self.samples.shape) - 2.5
+            out = ((steps < 1.5) | (steps > last)).any(axis=1)
+            coarse, slopes = self.whole.distance(position_mm[out])
+            distance[out] = coarse - COARSE_SLACK / self.whole.size[3]
+            gradient[out] = slopes
+        return distance, gradient
 
 
-def make_collider(indenter: Indenter, *, grid_mm: float) -> Collider:
-    """Prepare an indenter; a mesh is sampled at 0.4 of the contact grid.
+def make_collider(
+    indenter: Indenter, *, grid_mm: float, window_mm: Window | None = None
+) -> Collider:
+    """Prepare an indenter; all but spheres, cylinders, cubes and cones are sampled.
+
+    Args:
+        indenter: The object.
+        grid_mm: Edge of a cell of the contact grid; distances are sampled at 0.4 of it.
+        window_mm: Lower and upper corner, in the body frame, of what can come near the skin. A
+            large object is then sampled finely there only. Outside, `distance` is a coarse lower
+            bound, while the kernels see no contact: choose it to hold all that may touch.
 
     Raises:
         DesignError: If the shape cannot be made.
     """
     shape = SHAPE_OF_KIND[indenter.kind]
-    if indenter.mesh is not None:
-        from sim.contact.distance import sample_mesh
-
-        field = sample_mesh(indenter.mesh, spacing_mm=grid_mm / SAMPLES_PER_CELL)
-        size = np.zeros(8)
-        size[:3], size[3] = field.origin_mm, 1.0 / field.spacing_mm
-        reach_mm = float(np.linalg.norm(indenter.mesh.points_mm, axis=1).max())
-        samples = field.coefficients
-        least_radius_mm = SHARPEST_MESH_CELLS * grid_mm
-    else:
-        size, samples = analytic_size(indenter), np.zeros((1, 1, 1))
-        ball = shape is Shape.SPHERE
-        reach_mm = indenter.size_mm * (0.5 if ball else 0.5 * 3.0**0.5)
-        least_radius_mm = 0.5 * indenter.size_mm if ball else indenter.edge_radius_mm
+    if shape is Shape.GRID or indenter.texture.raised:
+        return _sampled(indenter, grid_mm, window_mm)
+    ball = shape is Shape.SPHERE
     return Collider(
         shape=shape,
+        size=analytic_size(indenter),
+        samples=np.zeros((1, 1, 1)),
+        reach_mm=indenter.size_mm * (0.5 if ball else 0.5 * 3.0**0.5),
+        half_height_mm=lowest_mm(indenter),
+        least_radius_mm=sharpest_mm(indenter),
+    )
+
+
+def _sampled(indenter: Indenter, grid_mm: float, window_mm: Window | None) -> Collider:
+    field = kept_samples(indenter, grid_mm=grid_mm, window_mm=window_mm)
+    fine = _collider(indenter, grid_mm, field)
+    if not field.partial:
+        return fine
+    most = MOST_COARSE_SAMPLES
+    whole = _collider(indenter, grid_mm, kept_samples(indenter, grid_mm=grid_mm, most=most))
+    return dataclasses.replace(fine, whole=whole)
+
+
+def _collider(indenter: Indenter, grid_mm: float, field: SampledDistance) -> Collider:
+    size = np.zeros(8)
+    size[:3], size[3] = field.origin_mm, 1.0 / field.spacing_mm
+    raised_mm = indenter.texture.height_mm if indenter.texture.raised else 0.0
+    if indenter.mesh is not None:
+        reach_mm = float(np.linalg.norm(indenter.mesh.points_mm, axis=1).max()) + raised_mm
+        least_radius_mm = indenter.mesh_rounding_mm or SHARPEST_MESH_CELLS * grid_mm
+    else:
+        low, high = box_mm(indenter)
+        reach_mm = float(np.linalg.norm(np.maximum(-low, high)))
+        least_radius_mm = sharpest_mm(indenter)
+    return Collider(
+        shape=Shape.GRID,
         size=size,
-        samples=samples,
+        samples=field.coefficients,
         reach_mm=reach_mm,
-        half_height_mm=half_height_mm(indenter),
-        least_radius_mm=least_radius_mm,
+        half_height_mm=lowest_mm(indenter) + raised_mm,
+        least_radius_mm=min(least_radius_mm, textures.sharpest_mm(indenter.texture)),
     )

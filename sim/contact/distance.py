@@ -1,92 +1,119 @@
-"""Signed distance of a closed triangle mesh, sampled on a grid for quadratic B-splines.
+"""Signed distance of a closed triangle mesh on a grid of samples.
 
 Exact distance in a band around the surface; beyond it a lower bound from a Euclidean distance
 transform, which is all that first touch needs.
 The sign is a vote of three winding numbers, each counted along the columns of one axis, so that a
-few missing or doubled faces do no harm. Sharp edges are rounded by about a sample.
-Left out: bodies with more than `MOST_SAMPLES` samples are sampled more coarsely than asked.
+few missing or doubled faces do no harm. Sharp edges are rounded by about a sample, or by a stated
+radius: {d <= -r} is the body shrunk by r, and its own distance less r the shrunk body grown again
+(a morphological opening), which is the body with its convex edges rounded.
+Left out: what is thinner than twice the radius vanishes.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from sim.contact.redistance import Exact, redistanced
+from sim.contact.samples import SampleGrid, read_spline, spline
 from workbench.core.errors import DesignError
 from workbench.core.indenter import IndenterMesh
 
-MOST_SAMPLES = 3_000_000
-"""12 MB in single precision; the spacing grows with the cube root of the excess."""
 BAND_SAMPLES = 5.0
-PADDING_SAMPLES = 6
+OUTER_SAMPLES = 2.5
+"""Samples outside a rounded mesh up to which its distance is exact."""
 STAIRCASE = 3.0**0.5
 """Samples by which the band's rim on the lattice falls short of the true rim, at most."""
 COLUMN_SHIFT = np.array([1.37e-4, 2.33e-4, 3.15e-4])
 """Shift of the columns [samples], so that none runs along an edge of a tidy mesh."""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class SampledDistance:
-    """A distance field on a grid."""
-
-    coefficients: np.ndarray
-    """Quadratic B-spline coefficients [mm], shape (A, B, C), float64."""
-    origin_mm: np.ndarray
-    """Position of sample (0, 0, 0) [mm], shape (3,)."""
-    spacing_mm: float
-    """Distance of samples; larger than asked where memory bounds it."""
-
-
-def sample_mesh(mesh: IndenterMesh, *, spacing_mm: float) -> SampledDistance:
-    """Sample the signed distance of a closed mesh.
+def mesh_distance(
+    mesh: IndenterMesh, grid: SampleGrid, *, band_samples: float = BAND_SAMPLES
+) -> np.ndarray:
+    """Signed distance of a closed mesh at all samples [mm], shape (A, B, C).
 
     Raises:
         DesignError: If the mesh encloses nothing: it is open or turned inside out.
     """
-    from scipy.ndimage import spline_filter
-
-    points = np.asarray(mesh.points_mm, dtype=np.float64)
-    extent = np.ptp(points, axis=0)
-    count = np.prod(extent / spacing_mm + 2 * PADDING_SAMPLES + 1)
-    spacing_mm *= max(1.0, float(count / MOST_SAMPLES) ** (1.0 / 3.0))
-    origin_mm = points.min(axis=0) - PADDING_SAMPLES * spacing_mm
-    shape = np.ceil(extent / spacing_mm).astype(int) + 2 * PADDING_SAMPLES + 1
-    corners = points[mesh.faces] - origin_mm
-    inside = _inside(corners, shape, spacing_mm)
-    if not inside.any():
+    shape = np.array(grid.shape)
+    corners = np.asarray(mesh.points_mm, dtype=np.float64)[mesh.faces] - grid.origin_mm
+    inside = _inside(corners, shape, grid.spacing_mm)
+    if not inside.any() and not grid.partial:
         raise DesignError(
             f"the indenter mesh of {len(mesh.faces)} triangles encloses no volume",
             hint="repair it so that it is closed and its normals point outwards",
             at="indenter.mesh",
         )
-    distance = _distance(corners, shape, spacing_mm)
-    signed = np.where(inside, -distance, distance)
-    coefficients = spline_filter(signed, order=2, mode="mirror", output=np.float64)
-    return SampledDistance(
-        coefficients=coefficients, origin_mm=origin_mm, spacing_mm=float(spacing_mm)
-    )
+    distance = _distance(corners, grid, band_samples)
+    return np.where(inside, -distance, distance)
 
 
-def _distance(corners: np.ndarray, shape: np.ndarray, spacing_mm: float) -> np.ndarray:
+def rounded_mesh_distance(mesh: IndenterMesh, grid: SampleGrid, *, radius_mm: float) -> np.ndarray:
+    """Signed distance of a mesh with its convex edges rounded [mm], shape (A, B, C).
+
+    Raises:
+        DesignError: If the mesh is nowhere thicker than twice the radius.
+    """
+    band_samples = radius_mm / grid.spacing_mm + BAND_SAMPLES
+    shrunk = mesh_distance(mesh, grid, band_samples=band_samples) + radius_mm
+    if not (shrunk < 0.0).any() and not grid.partial:
+        raise DesignError(
+            f"a rounding of {radius_mm:g} mm leaves nothing of the indenter mesh: it is nowhere "
+            f"thicker than {2.0 * radius_mm:g} mm",
+            hint="lower indenter.mesh_rounding_mm",
+            at="indenter.mesh_rounding_mm",
+        )
+    # Beyond, the distance of the sharp mesh is the lower bound that first touch needs.
+    band_mm = radius_mm + OUTER_SAMPLES * grid.spacing_mm
+    exact = _shrunk_function(mesh, grid, shrunk - radius_mm, radius_mm)
+    return redistanced(shrunk, grid.spacing_mm, band_mm=band_mm, exact=exact) - radius_mm
+
+
+def _shrunk_function(
+    mesh: IndenterMesh, grid: SampleGrid, sampled: np.ndarray, radius_mm: float
+) -> Exact:
+    """The signed distance to the mesh plus the radius, in samples; its sign from the samples."""
+    from geometry.surface import closest_point
+
+    coefficients = spline(sampled)
+
+    def exact(steps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        side = np.where(read_spline(coefficients, steps) < 0.0, -1.0, 1.0)
+        places = grid.origin_mm + grid.spacing_mm * steps
+        feet, away, _ = closest_point(mesh.points_mm, mesh.faces, places)
+        slopes = (side / np.maximum(away, 1e-9))[:, None] * (places - feet)
+        return (side * away + radius_mm) / grid.spacing_mm, slopes
+
+    return exact
+
+
+def _distance(corners: np.ndarray, grid: SampleGrid, band_samples: float) -> np.ndarray:
     """Unsigned distance of all samples [mm]: exact within the band, a lower bound beyond.
 
     The straight line to the surface meets a band sample no more than half a cell diagonal aside
     and half a diagonal inside the rim, so the distance is at least that to the nearest band
-    sample plus the band less a diagonal.
+    sample plus the band less a diagonal. Where a window cuts the body, what lies beyond is no
+    nearer than the window's side.
     """
     from scipy.ndimage import distance_transform_edt
 
     from sim.contact.distance_kernels import band_distance
 
-    band_mm = BAND_SAMPLES * spacing_mm
-    squared = np.full(tuple(shape), 4.0 * band_mm**2, np.float32)
+    spacing_mm = grid.spacing_mm
+    band_mm = band_samples * spacing_mm
+    squared = np.full(grid.shape, 4.0 * band_mm**2, np.float32)
     triangles = np.ascontiguousarray(corners, dtype=np.float32)
     band_distance(triangles, squared, float(spacing_mm), float(band_mm))
     distance = np.sqrt(squared.astype(np.float64))
     far = squared >= band_mm**2
-    beyond = np.asarray(distance_transform_edt(far)) + BAND_SAMPLES - STAIRCASE
-    return np.where(far, spacing_mm * beyond, distance)
+    if far.all():
+        # scipy's transform has no meaning without a sample to measure to.
+        diagonal_mm = spacing_mm * float(np.linalg.norm(grid.shape))
+        return np.clip(grid.to_cut_mm(), band_mm, max(band_mm, diagonal_mm))
+    beyond = spacing_mm * (np.asarray(distance_transform_edt(far)) + band_samples - STAIRCASE)
+    if grid.partial:
+        beyond = np.maximum(np.minimum(beyond, grid.to_cut_mm()), band_mm)
+    return np.where(far, beyond, distance)
 
 
 def _inside(corners: np.ndarray, shape: np.ndarray, spacing_mm: float) -> np.ndarray:

@@ -33,14 +33,29 @@ class Shape(enum.IntEnum):
     GRID = 5
 
 
+SAMPLED = (
+    IndenterKind.CROSS,
+    IndenterKind.TRIANGLE,
+    IndenterKind.PACMAN,
+    IndenterKind.HEXAGON,
+    IndenterKind.ELLIPSOID,
+    IndenterKind.DOUBLE_CYLINDER,
+    IndenterKind.DIAMOND,
+    IndenterKind.FLOWER,
+    IndenterKind.RING,
+    IndenterKind.RHOMBUS,
+    IndenterKind.TORUS,
+    IndenterKind.MESH,
+)
+"""Kinds that the kernels know by samples only, as any kind with a texture."""
+
 SHAPE_OF_KIND = {
     IndenterKind.SPHERE: Shape.SPHERE,
     IndenterKind.CYLINDER_END: Shape.CYLINDER_Z,
     IndenterKind.CYLINDER_SIDE: Shape.CYLINDER_Y,
     IndenterKind.CUBE: Shape.CUBE,
     IndenterKind.CONE: Shape.CONE,
-    IndenterKind.MESH: Shape.GRID,
-}
+} | dict.fromkeys(SAMPLED, Shape.GRID)
 
 
 def analytic_size(indenter: Indenter) -> np.ndarray:

@@ -21,19 +21,26 @@ Specimen = tuple[MembraneMesh, MaterialPoints]
 
 
 def flat_block(
-    *, width_mm: float, height_mm: float, grid_mm: float, skin_mm: float = 0.4
+    *,
+    width_mm: float,
+    height_mm: float,
+    grid_mm: float,
+    skin_mm: float = 0.4,
+    length_mm: float | None = None,
 ) -> Specimen:
-    """A square block bonded at z = 0 with its free face at z = height."""
-    half = 0.5 * width_mm
+    """A block bonded at z = 0 with its free face at z = height; square unless `length_mm`, along
+    y, is given."""
+    half = 0.5 * np.array([width_mm, length_mm or width_mm])
 
     def distance(x: np.ndarray) -> np.ndarray:
-        lateral = np.maximum(np.abs(x[..., 0]), np.abs(x[..., 1])) - half
+        lateral = np.maximum(np.abs(x[..., 0]) - half[0], np.abs(x[..., 1]) - half[1])
         return np.maximum(lateral, np.maximum(x[..., 2] - height_mm, -x[..., 2]))
 
-    low, high = np.array([-half, -half, 0.0]), np.array([half, half, height_mm])
-    count = round(width_mm / skin_mm)
-    u, v = np.meshgrid(*[np.linspace(-half, half, count + 1)] * 2, indexing="ij")
-    faces = grid_faces(count, count)
+    low, high = np.array([*-half, 0.0]), np.array([*half, height_mm])
+    counts = [max(1, round(2.0 * side / skin_mm)) for side in half]
+    sides = [np.linspace(-s, s, count + 1) for s, count in zip(half, counts, strict=True)]
+    u, v = np.meshgrid(*sides, indexing="ij")
+    faces = grid_faces(*counts)
     up = np.tile([0.0, 0.0, 1.0], (u.size, 1))
     top = np.stack([u.ravel(), v.ravel(), np.full(u.size, height_mm)], axis=1)
     outer = Skin(points_mm=top, faces=faces, normals=up)

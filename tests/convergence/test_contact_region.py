@@ -7,8 +7,9 @@ import dataclasses
 import numpy as np
 import pytest
 
-from sim.contact import checks, specimens
+from sim.contact import specimens
 from sim.contact.approach import plan_approach
+from sim.contact.checks.finger import at_45_degrees
 from sim.contact.collider import make_collider
 from sim.contact.region import MARGIN_WALLS, region_radius_mm
 from sim.contact.solver import press_membrane
@@ -32,7 +33,7 @@ def test_chosen_region_gives_the_force_of_a_large_one(kind: IndenterKind) -> Non
             points,
             Elastomer(),
             indenter,
-            checks.at_45_degrees(),
+            at_45_degrees(),
             ContactSettings(active_radius_mm=radius_mm),
         )
         for radius_mm in (0.0, 16.0)
@@ -54,17 +55,17 @@ def radius_mm(indenter: Indenter, press: Press, *, fixed_mm: float = 0.0) -> flo
 
 def test_region_follows_size_and_shear() -> None:
     """A larger object, and shear, widen the region; a fixed radius is kept."""
-    press = checks.at_45_degrees()
+    press = at_45_degrees()
     small = radius_mm(Indenter(size_mm=4.0), press)
     assert radius_mm(Indenter(size_mm=20.0), press) > small + 1.0
-    sheared = checks.at_45_degrees(shear_mm=(0.0, 3.0))
+    sheared = at_45_degrees(shear_mm=(0.0, 3.0))
     assert radius_mm(Indenter(size_mm=4.0), sheared) > small + 2.0
     assert radius_mm(Indenter(), press, fixed_mm=6.0) == 6.0
 
 
 def test_region_without_touch_is_the_margin() -> None:
     """At depth 0 the patch is empty: 3.1 walls of 2 mm remain."""
-    press = checks.at_45_degrees(depth_mm=0.0)
+    press = at_45_degrees(depth_mm=0.0)
     # The nearest skin vertices lie up to half a millimetre beside the target.
     assert radius_mm(Indenter(), press) == pytest.approx(MARGIN_WALLS * 2.0, abs=0.5)
 
@@ -73,7 +74,7 @@ def test_region_smaller_than_the_contact_is_refused() -> None:
     """A flat end 20 mm wide cannot be solved within 6 mm; value, limit and remedy are told."""
     end = Indenter(kind=IndenterKind.CYLINDER_END, size_mm=20.0)
     with pytest.raises(DesignError, match=r"active radius 6 mm .* need \d+\.\d mm") as raised:
-        radius_mm(end, checks.at_45_degrees(), fixed_mm=6.0)
+        radius_mm(end, at_45_degrees(), fixed_mm=6.0)
     assert raised.value.at == "contact.active_radius_mm"
     assert "or 0" in raised.value.hint
 
@@ -86,7 +87,7 @@ def backed_radius_mm(backing_MPa: float, fixed_mm: float) -> float:
     mesh = dataclasses.replace(mesh, inner=inner, backing_mm=1.5)
     collider = make_collider(Indenter(size_mm=4.0), grid_mm=1.0)
     settings = ContactSettings(active_radius_mm=fixed_mm)
-    approach = plan_approach(mesh.outer, collider, checks.at_45_degrees())
+    approach = plan_approach(mesh.outer, collider, at_45_degrees())
     return region_radius_mm(mesh, Elastomer(backing_MPa=backing_MPa), approach, collider, settings)
 
 

@@ -163,3 +163,25 @@ def test_poses_of_a_run_can_be_run_again(workbench: Any, coarse: Path, tmp_path:
     depths = [frame["depth_mm"] for frame in summary["contact"]["frames"]]
     # A release ends half a millimetre above the skin, which curves away: R 8 under R 2.
     np.testing.assert_allclose(depths, [0.5, 0.5, -0.5], atol=0.02)
+
+
+def test_sensor_moving_up_is_the_object_moving_down(
+    workbench: Any, coarse: Path, tmp_path: Path
+) -> None:
+    """The sensor rises by 0.5 mm against a ball that stands on its tip: the force of the press."""
+    still, rising = tmp_path / "still", tmp_path / "rising"
+    run = workbench("run", coarse, *BALL, *PRESS, "--out", still)
+    assert run.code == 0, run.stderr
+    rows = ((0, 1, 2, 3, 1, 0, 0, 0), (1, 1, 2, 3.5, 1, 0, 0, 0))
+    words = ("--trajectory", write(tmp_path / "up.csv", *rows), "--mover", "sensor")
+    run = workbench("run", coarse, *BALL, *PRESS[:2], *words, "--out", rising)
+    assert run.code == 0, run.stderr
+    forces = [
+        json.loads((folder / "summary.json").read_text())["contact"]["normal_N"]
+        for folder in (still, rising)
+    ]
+    # The region has its middle among the covered vertices, not on the target: 0.3 % of the force.
+    assert forces[1] == pytest.approx(forces[0], rel=1e-2)
+    table = np.loadtxt(rising / "poses.csv", delimiter=",", skiprows=1)
+    # The normal of the faceted tip is +Z to 1e-3.
+    np.testing.assert_allclose(table, rows, atol=1e-3)

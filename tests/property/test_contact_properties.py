@@ -6,7 +6,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from sim.contact.checks import at_45_degrees, penetration_and_balance, press_finger
+from sim.contact.checks.finger import at_45_degrees, penetration_and_balance, press_finger
 from sim.contact.relaxation import Balances, Relaxation
 from sim.contact.solver import press_membrane
 from sim.contact.specimens import flat_block

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from sim.contact.approach import plan_approach
-from sim.contact.checks import at_45_degrees
+from sim.contact.checks.finger import at_45_degrees
 from sim.contact.collider import make_collider
 from sim.contact.specimens import finger, flat_block
 from sim.contact.touch import first_touch

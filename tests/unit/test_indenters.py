@@ -9,13 +9,15 @@ import numpy as np
 import pytest
 
 from geometry.export import stl_bytes
-from geometry.indenters import display_mesh, largest_width, load_stl, scaled
+from geometry.indenters import largest_width, load_stl, scaled
 from geometry.primitives import rounded_box, sphere
 from geometry.surface import is_watertight, mesh_volume
+from sim.contact.shapes import SAMPLED
 from workbench.core.errors import DesignError
 from workbench.core.indenter import Indenter, IndenterKind
+from workbench.indenter_display import display_mesh
 
-PRIMITIVES = [kind for kind in IndenterKind if kind is not IndenterKind.MESH]
+PRIMITIVES = [kind for kind in IndenterKind if kind not in SAMPLED]
 
 
 def written(folder: Path, data: bytes) -> Path:

@@ -305,6 +305,8 @@ def test_sensor_pushed_up_is_a_press_down() -> None:
     down = plan_approach(BLOCK.outer, COLLIDER, Press(target_mm=(0.0, 0.0, 4.0), frames=2))
     for progress in (0.0, 0.7, 2.0):
         np.testing.assert_allclose(approach.pose(progress)[0], down.pose(progress)[0], atol=1e-9)
+    np.testing.assert_allclose(approach.sensor_poses(), path.poses[1:], atol=1e-9)
+    assert down.sensor_poses().shape == (0, 7)
 
 
 @pytest.mark.parametrize("mover", list(Mover))

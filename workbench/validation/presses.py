@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import functools
 import math
+from collections.abc import Callable
 
 from workbench.core.design import Elastomer
 from workbench.core.indenter import Indenter
 from workbench.core.monitor import silent
 from workbench.core.press import ContactSettings, Press
 from workbench.core.sensing import Contact
+from workbench.devices import open_device
 from workbench.specimens import finger_mesh, finger_points
 from workbench.stages import press
 
@@ -17,6 +19,16 @@ TIP_CENTRE_MM = 27.0
 RADIUS_MM = 15.0
 REGION_MM = 12.0
 NAME = "finger_45: sphere R 3 mm, tip at 45 degrees, E .145 MPa, nu .45, mu .3, 1 mm deep"
+
+
+def on_device(value: Callable[[], float]) -> Callable[[], float]:
+    """The measurement with Taichi opened first, in the thread that computes."""
+
+    def measured() -> float:
+        open_device()
+        return value()
+
+    return measured
 
 
 def tip_target(polar_deg: float, azimuth_deg: float) -> tuple[float, float, float]:
@@ -39,6 +51,7 @@ def finger_press(
     grid_mm: float = 0.5,
     friction: float = 0.3,
     region_mm: float = REGION_MM,
+    frames: int = 1,
 ) -> Contact:
     """The press `finger_45` of the validation, varied."""
     return press(
@@ -46,7 +59,7 @@ def finger_press(
         finger_points(grid_mm),
         Elastomer(young_MPa=young_MPa, friction=friction),
         Indenter(size_mm=6.0),
-        Press(target_mm=tip_target(45.0, azimuth_deg), shear_mm=shear_mm, frames=1),
+        Press(target_mm=tip_target(45.0, azimuth_deg), shear_mm=shear_mm, frames=frames),
         ContactSettings(grid_mm=grid_mm, active_radius_mm=region_mm),
         monitor=silent,
     )

@@ -1,0 +1,182 @@
+"""Contact: the finger at 45 degrees beside finite elements, its regions and its balance.
+
+The finite elements (`workbench.validation.fem`) are a patch of 7 mm held all around, pressed in
+ten steps; so are the grids here. Both ways are extrapolated by F(h) = F0 + c h^p through three
+meshes, p observed: the finite elements fall, material points rise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from workbench.core.press import ContactSettings
+from workbench.core.sensing import Contact
+from workbench.outputs import force_balance
+from workbench.rows import Row, bounded, compared
+from workbench.validation.presses import NAME, finger_press, on_device
+
+FEM_MM = (0.9, 0.45, 0.3)
+FEM_N = (1.424, 1.308, 1.291)
+"""Normal force at 1 mm of an independent finite-element solver, by edge of its hexahedra."""
+FRICTIONLESS_FEM_N = 1.130
+"""At 0.30 mm: what a solver without friction would score."""
+PATCH_MM = 7.0
+"""Radius of the patch of both."""
+GRIDS_MM = (0.5, 0.36, 0.26)
+LIMIT = 0.04
+DEFAULT_LIMIT = 0.06
+SHEAR_FEM_N = 0.267
+SHEAR_LIMIT = 0.04
+WIDE_MM = 20.0
+REGIONS = {9.0: 5e-3, 12.0: 1e-3}
+"""Largest error of the force by radius of the region [mm]."""
+PENETRATION_CELLS = 0.01
+BALANCE_LIMIT = 5e-3
+
+
+def rows() -> list[Row]:
+    """All rows of the finger."""
+    return [*_grids(), *_regions(), _sheared(), *_state()]
+
+
+def _grids() -> list[Row]:
+    from sim.contact.checks import finger
+    from sim.contact.checks.refinement import extrapolate
+
+    fem = extrapolate(FEM_MM, FEM_N)
+    forces = ", ".join(f"{force_N:g}" for force_N in FEM_N)
+    case = f"{NAME}; patch of {PATCH_MM:g} mm, ten steps"
+    reference = (
+        f"FEM extrapolated from {forces} N at .9/.45/.30 mm with order {fem.order:.1f}; "
+        "null: frictionless FEM"
+    )
+
+    def at(grid_mm: float, depth_mm: float = 1.0) -> float:
+        return finger.finger_45(grid_mm=grid_mm, active_radius_mm=PATCH_MM, depth_mm=depth_mm)
+
+    def limit_N(depth_mm: float) -> float:
+        return extrapolate(GRIDS_MM, tuple(at(grid_mm, depth_mm) for grid_mm in GRIDS_MM)).value
+
+    found = [
+        compared(
+            "finger_45",
+            f"{case}, {grid_mm:g} mm grid; {reference}",
+            on_device(lambda grid_mm=grid_mm: at(grid_mm)),
+            fem.value,
+            unit="N",
+            limit=DEFAULT_LIMIT,
+            null=FRICTIONLESS_FEM_N,
+        )
+        for grid_mm in GRIDS_MM
+    ]
+    grids = "/".join(f"{grid_mm:g}" for grid_mm in GRIDS_MM)
+    found.append(
+        compared(
+            "finger_45",
+            f"{case}, extrapolated from grids of {grids} mm; {reference}",
+            on_device(lambda: limit_N(1.0)),
+            fem.value,
+            unit="N",
+            limit=LIMIT,
+            null=FRICTIONLESS_FEM_N,
+        )
+    )
+    half = "0.5 mm deep, for which no finite-element figure is recorded"
+    found.append(
+        compared(
+            "finger_45",
+            f"{half}: 0.5 mm grid; reference: extrapolated from grids of {grids} mm",
+            on_device(lambda: at(GRIDS_MM[0], 0.5)),
+            on_device(lambda: limit_N(0.5)),
+            unit="N",
+            limit=DEFAULT_LIMIT,
+        )
+    )
+    return found
+
+
+def _regions() -> list[Row]:
+    from sim.contact.checks import finger
+
+    def force_N(radius_mm: float) -> float:
+        return finger.finger_45(active_radius_mm=radius_mm, frames=1)
+
+    return [
+        compared(
+            "region_error",
+            f"region of {radius_mm:g} mm: force of a 1 mm press in one step against all of the "
+            f"membrane within {WIDE_MM:g} mm",
+            on_device(lambda radius_mm=radius_mm: force_N(radius_mm)),
+            on_device(lambda: force_N(WIDE_MM)),
+            unit="N",
+            limit=limit,
+        )
+        for radius_mm, limit in REGIONS.items()
+    ]
+
+
+def _sheared() -> Row:
+    from sim.contact.checks import finger
+
+    return compared(
+        "sheared_sphere",
+        "1 mm deep, then 0.5 mm along V, five steps each, 0.5 mm grid; reference: FEM 0.30 mm; "
+        "null: mu times the normal force, everything slipping",
+        on_device(lambda: -float(finger.finger_45_sheared()[2])),
+        SHEAR_FEM_N,
+        unit="N",
+        limit=SHEAR_LIMIT,
+        null=on_device(lambda: 0.3 * float(finger.finger_45_sheared()[0])),
+    )
+
+
+def _state() -> list[Row]:
+    """Overlap, balance and residual of the default finger, built by the CAD kernel."""
+    from sim.contact.checks import finger
+
+    penalty = ContactSettings().penalty
+    steps = "ten steps of 0.1 mm"
+
+    def of_all(measure: Callable[[Contact], float]) -> Callable[[], float]:
+        return on_device(lambda: max(measure(finger.press_45()), measure(finger_press())))
+
+    return [
+        bounded(
+            "penetration",
+            f"{NAME}; one step, and {steps}; penalty {penalty:g} E/dx",
+            of_all(lambda contact: float(contact.penetration_mm.max()) / contact.grid_mm),
+            unit="cell",
+            limit=PENETRATION_CELLS,
+        ),
+        bounded(
+            "force_balance",
+            f"{NAME}; 12 mm region: reaction against support and left-out elastomer",
+            of_all(force_balance),
+            unit="1",
+            limit=BALANCE_LIMIT,
+        ),
+        bounded(
+            "force_balance",
+            f"{NAME}; {WIDE_MM:g} mm region: reaction against the support alone",
+            on_device(_wide_balance),
+            unit="1",
+            limit=BALANCE_LIMIT,
+        ),
+        bounded(
+            "residual",
+            f"{NAME}; one step, and {steps}",
+            of_all(lambda contact: float(contact.residual.max())),
+            unit="1",
+            limit=1e-3,
+        ),
+    ]
+
+
+def _wide_balance() -> float:
+    from sim.contact.checks import finger
+
+    contact = finger.press_45(active_radius_mm=WIDE_MM, frames=1)
+    reaction_N, support_N = contact.reaction_N[-1], contact.support_N[-1]
+    return float(np.linalg.norm(reaction_N - support_N) / np.linalg.norm(reaction_N))
