@@ -1,8 +1,8 @@
 """Several presses (cases) as one set of device arrays.
 
 Every case keeps its own copy of its region; nodes, cells and surface points of the cases follow
-each other. Cells of a case are padded to a multiple of `SLOT_BLOCK`, so that its slots stay
-together. Sums are taken in chunks that never span two cases: what one case does cannot change a
+each other. Cells and nodes of a case are padded to a multiple of `BLOCK`, so that its rows of the
+interleaved tables stay together. Sums are taken in chunks that never span two cases: what one case does cannot change a
 bit of another.
 """
 
@@ -17,7 +17,7 @@ import taichi as ti
 
 from sim.contact import layout, sum_kernels
 from sim.contact.collider import Collider
-from sim.contact.domain import SLOT_BLOCK, Domain
+from sim.contact.domain import BLOCK, NO_SLOT, Domain
 
 CHUNK = 128
 """Rows summed by one thread of a reduction; fixed, so that the order of sums is too."""
@@ -47,32 +47,32 @@ class Batch:
 
     def __init__(self, cases: list[Case], steps: int) -> None:
         domains = [case.domain for case in cases]
-        nodes = np.array([len(domain.masses) for domain in domains])
-        cells = np.array([_padded(len(domain.rows)) for domain in domains])
-        points = np.array([domain.points.count for domain in domains])
+        nodes = [_padded(len(domain.masses)) for domain in domains]
+        cells = [_padded(len(domain.rows)) for domain in domains]
+        points = [domain.points.count for domain in domains]
         node_at, cell_at, point_at = _starts(nodes), _starts(cells), _starts(points)
         self.cases = cases
         self.spans = [
-            Span(first_node=int(a), nodes=int(n), first_point=int(b), points=int(p))
-            for a, n, b, p in zip(node_at, nodes, point_at, points, strict=False)
+            Span(first_node=n, nodes=len(d.masses), first_point=p, points=d.points.count)
+            for d, n, p in zip(domains, node_at, point_at, strict=False)
         ]
         everything = list(zip(domains, node_at, cell_at, point_at, strict=False))
-        total = int(node_at[-1])
+        total = node_at[-1]
         self.displacement = floats(np.zeros(3 * total))
         self.velocity = floats(np.zeros(3 * total))
         self.forces = floats(np.zeros(3 * total))
-        self.slots = floats(np.zeros(81 * int(cell_at[-1])))
-        self.rows = integers(_joined([_pad(d.rows) + n for d, n, _, _ in everything]))
-        self.volumes = floats(_joined([_pad(d.volumes_mm3) for d in domains]))
-        self.moduli = floats(_joined([_pad(d.moduli_MPa) for d in domains]))
+        self.slots = floats(np.zeros(81 * cell_at[-1]))
+        self.rows = integers(_joined([interleaved(d.rows + n, n) for d, n, _, _ in everything]))
+        self.volumes = floats(_joined([interleaved(d.volumes_mm3, 0.0) for d in domains]))
+        self.moduli = floats(_joined([interleaved(d.moduli_MPa, 0.0) for d in domains]))
         self.cell_cases = integers(np.repeat(np.arange(len(cases)), cells))
-        entries = _starts(np.array([len(d.node_slots) for d in domains]))
-        starts = [d.node_starts[:-1] + e for d, e in zip(domains, entries, strict=False)]
-        self.node_starts = integers(np.append(_joined(starts), entries[-1]))
-        self.node_slots = integers(_joined([d.node_slots + 81 * c for d, _, c, _ in everything]))
+        self.node_slots = integers(
+            _joined([interleaved(_shifted(d.node_slots, c), NO_SLOT) for d, _, c, _ in everything])
+        )
         self.node_cases = integers(np.repeat(np.arange(len(cases)), nodes))
-        self.masses = floats(_joined([d.masses for d in domains]))
-        self.fixed = integers(_joined([d.fixed for d in domains]))
+        # A padding node is fixed, and its mass only keeps it from dividing by nothing.
+        self.masses = floats(_joined([_extended(d.masses, 1.0) for d in domains]))
+        self.fixed = integers(_joined([_extended(d.fixed, True) for d in domains]))
         self.powers = floats(np.zeros(2 * total))
         self.owners = integers(_joined([d.owners + c for d, _, c, _ in everything]))
         owned = [d.owner_starts[:-1] + p for d, _, _, p in everything]
@@ -86,11 +86,11 @@ class Batch:
         self.axes = floats(_joined([d.points.axis for d in domains]))
         self.sideways = floats(_joined([d.points.sideways for d in domains]))
         self.held = integers(_joined([d.points.bonded for d in domains]))
-        self.goals = floats(np.zeros(6 * int(point_at[-1])))
-        self.anchors = floats(np.zeros(3 * int(point_at[-1])))
-        self.states = integers(np.zeros(int(point_at[-1])))
-        self.slips = floats(np.zeros(int(point_at[-1])))
-        self.point_forces = floats(np.zeros(3 * int(point_at[-1])))
+        self.goals = floats(np.zeros(6 * point_at[-1]))
+        self.anchors = floats(np.zeros(3 * point_at[-1]))
+        self.states = integers(np.zeros(point_at[-1]))
+        self.slips = floats(np.zeros(point_at[-1]))
+        self.point_forces = floats(np.zeros(3 * point_at[-1]))
         self.poses = floats(np.zeros(steps * len(cases) * layout.POSE))
         self.numbers = floats(np.zeros(len(cases) * layout.NUMBERS))
         self.choices = integers(np.zeros(len(cases) * layout.CHOICES))
@@ -98,7 +98,7 @@ class Batch:
         self.coefficients = floats(samples)
         self.node_sums = _Sums(node_at)
         self.point_sums = _Sums(point_at)
-        self._staging = floats(np.zeros(max(3 * int(nodes.max()), 6 * int(points.max()), 1)))
+        self._staging = floats(np.zeros(max(3 * max(nodes), 6 * max(points), 1)))
 
     def read(self, array: Any, first: int, count: int) -> np.ndarray:
         """Some entries of a device array of floats, shape (count,)."""
@@ -116,11 +116,11 @@ class Batch:
 class _Sums:
     """Chunks of rows, case by case, and their sums."""
 
-    def __init__(self, starts: np.ndarray) -> None:
+    def __init__(self, starts: list[int]) -> None:
         bounds: list[tuple[int, int]] = []
         first_chunks = [0]
         for first, last in itertools.pairwise(starts):
-            edges = [*range(int(first), int(last), CHUNK), int(last)]
+            edges = [*range(first, last, CHUNK), last]
             bounds += list(itertools.pairwise(edges))
             first_chunks.append(len(bounds))
         self.bounds = integers(np.array(bounds or [(0, 0)]))
@@ -146,16 +146,31 @@ def needed_bytes(cells: int, points: int) -> int:
 
 
 def _padded(count: int) -> int:
-    return -(-count // SLOT_BLOCK) * SLOT_BLOCK
+    return -(-count // BLOCK) * BLOCK
 
 
-def _pad(rows: np.ndarray) -> np.ndarray:
-    """Cells up to a multiple of the block; the added ones hold nothing and reach no node."""
-    return np.pad(rows, ((0, _padded(len(rows)) - len(rows)), (0, 0)))
+def _extended(values: np.ndarray, filling: Any) -> np.ndarray:
+    """Rows up to a multiple of the block; the added ones hold the filling."""
+    pad = [(0, _padded(len(values)) - len(values))] + [(0, 0)] * (values.ndim - 1)
+    return np.pad(values, pad, constant_values=filling)
 
 
-def _starts(counts: np.ndarray) -> np.ndarray:
-    return np.concatenate([[0], np.cumsum(counts)])
+def interleaved(table: np.ndarray, filling: Any) -> np.ndarray:
+    """A table (R, W) as the kernels read it: W runs of a column for each block of rows, flat.
+
+    Entry (r, w) is at `cell_kernel.entry(r, w, W)`.
+    """
+    blocks = _extended(table, filling).reshape(-1, BLOCK, table.shape[1])
+    return blocks.transpose(0, 2, 1).ravel()
+
+
+def _shifted(node_slots: np.ndarray, first_cell: int) -> np.ndarray:
+    """Slots of a case whose first cell is not the first of the batch."""
+    return np.where(node_slots == NO_SLOT, NO_SLOT, node_slots + 81 * first_cell)
+
+
+def _starts(counts: list[int]) -> list[int]:
+    return [0, *itertools.accumulate(counts)]
 
 
 def _joined(parts: list[np.ndarray]) -> np.ndarray:

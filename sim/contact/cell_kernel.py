@@ -9,7 +9,7 @@ Taichi function; its plain twin is `reference.stress_forces`.
 import taichi as ti
 from taichi.lang.impl import expr_init
 
-from sim.contact.domain import SLOT_BLOCK as BLOCK
+from sim.contact.domain import BLOCK
 from sim.contact.layout import CHOICES, IDLE, INVERSE_EDGE, MODE, NUMBERS
 from sim.contact.stencil import gather_gradient, scatter_gradient
 from sim.material import SMALLEST_VOLUME_RATIO, first_piola_rows
@@ -38,9 +38,9 @@ def _cell_forces(nodal, volumes, inverse_edge, moduli, linear):
 
 
 @ti.func
-def slot_base(cell):
-    """Index of the first slot of a cell; slot v follows at v * BLOCK."""
-    return (cell // BLOCK) * (81 * BLOCK) + cell % BLOCK
+def entry(row, column, width):
+    """Index of an entry of a table whose rows interleave in blocks (`batch.interleaved`)."""
+    return (row // BLOCK) * (width * BLOCK) + column * BLOCK + row % BLOCK
 
 
 @ti.func
@@ -58,15 +58,15 @@ def stress_pass(
     for cell in range(cell_cases.shape[0]):
         case = cell_cases[cell]
         if choices[CHOICES * case + MODE] != IDLE:
-            first = [rows[9 * cell + r] for r in range(9)]
-            volume = [volumes[8 * cell + p] for p in range(8)]
+            first = [rows[entry(cell, r, 9)] for r in range(9)]
+            volume = [volumes[entry(cell, p, 8)] for p in range(8)]
             nodal = [
                 [displacement[3 * (first[n // 3] + n % 3) + c] for n in range(27)] for c in range(3)
             ]
             inverse_edge = numbers[NUMBERS * case + INVERSE_EDGE]
-            shear, bulk = moduli[2 * cell], moduli[2 * cell + 1]
+            shear, bulk = moduli[entry(cell, 0, 2)], moduli[entry(cell, 1, 2)]
             forces = ti.static(_cell_forces(nodal, volume, inverse_edge, (shear, bulk), linear))
-            base = slot_base(cell)
+            base = entry(cell, 0, 81)
             for n in ti.static(range(27)):
                 for c in ti.static(range(3)):
                     slots[base + (3 * n + c) * BLOCK] = forces[c][n]

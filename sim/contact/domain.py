@@ -5,7 +5,7 @@ out are fixed. Positions are stored from the target, so that single precision re
 
 Layouts: nodes are sorted by x, y, z, so the three z-neighbours of a cell's stencil row are
 consecutive and `rows` holds only the first of each of the nine rows. Cell a owns 81 slots,
-`slot_index(a, n, c)`; a node finds its slots through `node_starts` and `node_slots`.
+`slot_index(a, n, c)`; a node finds its slots through `node_slots`.
 
 Fictitious masses make a time step of 1 stable: one point's stiffness has the largest eigenvalue
 lambda against its own mass split by the weights, so mass = stiffness / lambda holds for every sum
@@ -31,8 +31,10 @@ EIGENVALUE = 3.0
 """Largest eigenvalue aimed at; below 4 by a margin for stiffening under load."""
 LEAST_FRACTION = 0.02
 """Filled fraction given to empty sub-cells of cut cells: without it fringe nodes drift to NaN."""
-SLOT_BLOCK = 16
-"""Cells whose slots interleave, so that neighbouring threads write neighbouring words."""
+BLOCK = 32
+"""Rows of a table that interleave, so that neighbouring threads reach neighbouring words."""
+NO_SLOT = -1
+"""Entry of `node_slots` where the lattice has no cell."""
 
 _STENCIL = np.stack(np.meshgrid(*[[-1, 0, 1]] * 3, indexing="ij"), axis=-1).reshape(27, 3)
 
@@ -83,10 +85,9 @@ class Domain:
     """Shear and bulk modulus of a cell, shape (C, 2)."""
     linear: bool
     """Hooke's law instead of the neo-Hookean one."""
-    node_starts: np.ndarray
-    """Where a node's entries start in `node_slots`, shape (N + 1,), int32."""
     node_slots: np.ndarray
-    """Index of the first of three slots of each cell that touches a node, int32."""
+    """First of the three slots that each of the 27 cells around a node keeps for it, by the node's
+    place in the cell, or `NO_SLOT`; shape (N, 27), int32."""
     masses: np.ndarray
     """Fictitious masses [N/mm at unit time step], shape (N,)."""
     fixed: np.ndarray
@@ -113,9 +114,8 @@ def stencil_nodes(rows: np.ndarray) -> np.ndarray:
 
 
 def slot_index(cell: np.ndarray, node: np.ndarray | int, component: int = 0) -> np.ndarray:
-    """Index of a slot among all slots (`kernels.slot_base`)."""
-    block = (cell // SLOT_BLOCK) * (81 * SLOT_BLOCK) + cell % SLOT_BLOCK
-    return block + (3 * node + component) * SLOT_BLOCK
+    """Index of a slot among all slots (`cell_kernel.entry`)."""
+    return (cell // BLOCK) * (81 * BLOCK) + (3 * node + component) * BLOCK + cell % BLOCK
 
 
 def largest_point_eigenvalue(shear_MPa: float, bulk_MPa: float) -> float:
@@ -190,7 +190,6 @@ def build_domain(
         _readout(skin.points_mm / grid_mm, cells_of_skin, cell_keys, rows)
         for skin, cells_of_skin in zip(skins, skin_cells, strict=True)
     ]
-    node_starts, node_slots = _node_slots(rows, len(node_keys))
     return Domain(
         grid_mm=grid_mm,
         target_mm=target_mm,
@@ -199,8 +198,7 @@ def build_domain(
         volumes_mm3=volumes_mm3,
         moduli_MPa=moduli_MPa,
         linear=material.law is Law.LINEAR,
-        node_starts=node_starts,
-        node_slots=node_slots,
+        node_slots=_node_slots(rows, len(node_keys)),
         masses=masses,
         fixed=cut,
         points=points,
@@ -267,14 +265,11 @@ def _number_nodes(cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return nodes, inverse.reshape(-1, 27)[:, ::3].astype(np.int32)
 
 
-def _node_slots(rows: np.ndarray, node_count: int) -> tuple[np.ndarray, np.ndarray]:
-    nodes = stencil_nodes(rows)
-    cell = np.repeat(np.arange(len(rows)), 27)
-    slots = slot_index(cell, np.tile(np.arange(27), len(rows)))
-    order = np.argsort(nodes.ravel(), kind="stable")
-    counts = np.bincount(nodes.ravel(), minlength=node_count)
-    starts = np.concatenate([[0], np.cumsum(counts)])
-    return starts.astype(np.int32), slots[order].astype(np.int32)
+def _node_slots(rows: np.ndarray, node_count: int) -> np.ndarray:
+    slots = np.full((node_count, 27), NO_SLOT, np.int32)
+    place = np.broadcast_to(np.arange(27), (len(rows), 27))
+    slots[stencil_nodes(rows), place] = slot_index(np.arange(len(rows))[:, None], place)
+    return slots
 
 
 def _spread(values: np.ndarray, rows: np.ndarray, node_count: int) -> np.ndarray:

@@ -19,8 +19,8 @@ The plain twin of each kernel is in `reference`. Layouts are described in `domai
 
 import taichi as ti
 
-from sim.contact.cell_kernel import slot_base, stress_pass
-from sim.contact.domain import SLOT_BLOCK as BLOCK
+from sim.contact.cell_kernel import entry, stress_pass
+from sim.contact.domain import BLOCK, NO_SLOT
 from sim.contact.layout import (
     CHOICES,
     COUNTS,
@@ -72,7 +72,7 @@ def _point_displacement(
     moved = ti.Vector([0.0, 0.0, 0.0])
     for node in ti.static(range(27)):
         weight = weights[27 * point + node]
-        base = 3 * (rows[9 * cell + node // 3] + node % 3)
+        base = 3 * (rows[entry(cell, node // 3, 9)] + node % 3)
         for c in ti.static(range(3)):
             moved[c] += weight * displacement[base + c]
     return moved
@@ -186,7 +186,7 @@ def surface_pass(
         case = cell_cases[cell]
         if choices[CHOICES * case + MODE] != IDLE:
             row = step * cases + case
-            base = slot_base(cell)
+            base = entry(cell, 0, 81)
             for point in range(starts[owner], starts[owner + 1]):
                 moved = _point_displacement(displacement, rows, weights, cell, point)
                 force = ti.Vector([0.0, 0.0, 0.0])
@@ -213,7 +213,6 @@ def node_pass(
     velocity: ti.template(),
     forces: ti.template(),
     slots: ti.template(),
-    node_starts: ti.template(),
     node_slots: ti.template(),
     node_cases: ti.template(),
     masses: ti.template(),
@@ -227,25 +226,26 @@ def node_pass(
         mode = choices[CHOICES * case + MODE]
         if mode != IDLE:
             total = ti.Vector([0.0, 0.0, 0.0])
-            for entry in range(node_starts[node], node_starts[node + 1]):
-                slot = node_slots[entry]
-                for c in ti.static(range(3)):
-                    total[c] += slots[slot + c * BLOCK]
+            for place in ti.static(range(27)):
+                slot = node_slots[entry(node, place, 27)]
+                if slot != NO_SLOT:
+                    for c in ti.static(range(3)):
+                        total[c] += slots[slot + c * BLOCK]
             mass = masses[node] * numbers[NUMBERS * case + MASS_SCALE]
             damping = numbers[NUMBERS * case + DAMPING]
             largest_step = numbers[NUMBERS * case + LARGEST_STEP]
             work, inertia = 0.0, 0.0
             for c in ti.static(range(3)):
-                entry = 3 * node + c
-                speed = velocity[entry]
-                work += speed * (forces[entry] - total[c])
+                at = 3 * node + c
+                speed = velocity[at]
+                work += speed * (forces[at] - total[c])
                 inertia += mass * speed * speed
-                forces[entry] = total[c]
+                forces[at] = total[c]
                 if fixed[node] == 0 and mode == MOVING:
                     speed = ((2.0 - damping) * speed + 2.0 * total[c] / mass) / (2.0 + damping)
                     speed = ti.min(ti.max(speed, -largest_step), largest_step)
-                    velocity[entry] = speed
-                    displacement[entry] += speed
+                    velocity[at] = speed
+                    displacement[at] += speed
             powers[2 * node] = work
             powers[2 * node + 1] = inertia
 
@@ -263,7 +263,6 @@ def _make_substep(linear):
         volumes: Floats,
         moduli: Floats,
         cell_cases: Integers,
-        node_starts: Integers,
         node_slots: Integers,
         node_cases: Integers,
         masses: Floats,
@@ -297,7 +296,7 @@ def _make_substep(linear):
             coefficients, cases, step,
         )  # fmt: skip
         node_pass(
-            displacement, velocity, forces, slots, node_starts, node_slots, node_cases, masses,
+            displacement, velocity, forces, slots, node_slots, node_cases, masses,
             fixed, powers, numbers, choices,
         )  # fmt: skip
 
@@ -318,7 +317,6 @@ SUBSTEP_ARRAYS = (
     "volumes",
     "moduli",
     "cell_cases",
-    "node_starts",
     "node_slots",
     "node_cases",
     "masses",
@@ -346,7 +344,6 @@ INTEGER_ARRAYS = frozenset(
     (
         "rows",
         "cell_cases",
-        "node_starts",
         "node_slots",
         "node_cases",
         "fixed",
