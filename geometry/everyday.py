@@ -33,8 +33,8 @@ SCREWDRIVER_MM = (31.0, 215.0)
 GRIP_MM = 105.0
 SHAFT_MM = 6.0
 """Diameter of the shaft; its tip narrows to a third."""
-BANANA_MM = (36.0, 190.0)
-"""Thickness in the middle and distance of the ends."""
+BANANA_MM = (36.0, 182.9)
+"""Thickness in the middle, and distance of the ends of the middle line: 190 mm in all."""
 BANANA_SAG_MM = 45.0
 """Height of the bow of the banana's middle line."""
 

@@ -76,6 +76,8 @@ def run(options: argparse.Namespace, project: Project) -> int:
     printer = Progress(as_json=options.json)
     start = _start(design, options, project, printer)
     design, case = start.design, press_case(options, default_target_mm(start.design, start.solid))
+    if case.indenter.mesh is not None and case.indenter.mesh.notice:
+        complain(case.indenter.mesh.notice)
     calls = plan(design, case)
     runner, outcomes = InlineRunner(project.store), list(start.outcomes)
     known = {outcome.key for outcome in outcomes}

@@ -16,9 +16,7 @@ from workbench.core.indenter import Indenter
 
 SHARPEST_MESH_CELLS = 2.4
 """Least radius taken for a mesh, whose edges are not known, in cells."""
-MOST_COARSE_SAMPLES = 400_000
-"""Samples of a whole body around a window."""
-COARSE_SLACK = 1.0
+COARSE_SLACK = 0.5
 """Coarse distances are lowered by this many of their samples, so that they are lower bounds."""
 
 
@@ -39,18 +37,20 @@ class Collider:
     """Radius of the sharpest part: the ball or the edge; `SHARPEST_MESH_CELLS` for a mesh."""
     whole: Collider | None = None
     """The whole body, sampled coarsely, where `samples` hold only the part in a window."""
+    cut: np.ndarray | None = None
+    """Lower and upper sides of the window beyond which the body goes on, shape (2, 3), bool."""
 
     def distance(self, position_mm: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Signed distances [mm], (N,), and gradients, (N, 3), at body positions, (N, 3).
 
-        Outside a window that cut the body they are a coarse lower bound; the kernels see no
-        contact there.
+        Beyond a side where a window cut the body they are a coarse lower bound; the kernels see
+        no contact there.
         """
         distance, gradient = evaluate(position_mm, self.shape, self.size, self.samples)
-        if self.whole is not None:
+        if self.whole is not None and self.cut is not None:
             steps = (position_mm - self.size[:3]) * self.size[3]
             last = np.array(self.samples.shape) - 2.5
-            out = ((steps < 1.5) | (steps > last)).any(axis=1)
+            out = ((steps < 1.5) & self.cut[0] | (steps > last) & self.cut[1]).any(axis=1)
             coarse, slopes = self.whole.distance(position_mm[out])
             distance[out] = coarse - COARSE_SLACK / self.whole.size[3]
             gradient[out] = slopes
@@ -89,11 +89,10 @@ def make_collider(
 def _sampled(indenter: Indenter, grid_mm: float, window_mm: Window | None) -> Collider:
     field = kept_samples(indenter, grid_mm=grid_mm, window_mm=window_mm)
     fine = _collider(indenter, grid_mm, field)
-    if not field.partial:
+    if not field.cut.any():
         return fine
-    most = MOST_COARSE_SAMPLES
-    whole = _collider(indenter, grid_mm, kept_samples(indenter, grid_mm=grid_mm, most=most))
-    return dataclasses.replace(fine, whole=whole)
+    whole = _collider(indenter, grid_mm, kept_samples(indenter, grid_mm=grid_mm))
+    return dataclasses.replace(fine, whole=whole, cut=field.cut)
 
 
 def _collider(indenter: Indenter, grid_mm: float, field: SampledDistance) -> Collider:

@@ -8,7 +8,7 @@ just positive ("no contact") where a window cut the body.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -20,9 +20,6 @@ MOST_SAMPLES = 3_000_000
 PADDING_SAMPLES = 6
 
 
-UNCUT = (False, False, False)
-
-
 @dataclass(frozen=True, kw_only=True, slots=True)
 class SampleGrid:
     """Where samples lie."""
@@ -32,13 +29,13 @@ class SampleGrid:
     spacing_mm: float
     """Distance of samples; larger than asked where memory bounds it."""
     shape: tuple[int, int, int]
-    cut: tuple[tuple[bool, bool, bool], tuple[bool, bool, bool]] = (UNCUT, UNCUT)
-    """Whether the body goes on beyond the lower and the upper side along each axis."""
+    cut: np.ndarray = field(default_factory=lambda: np.zeros((2, 3), dtype=bool))
+    """Whether the body goes on beyond the lower and the upper side along each axis, (2, 3)."""
 
     @property
     def partial(self) -> bool:
         """Whether a window cut the body."""
-        return any(self.cut[0]) or any(self.cut[1])
+        return bool(self.cut.any())
 
     def places(self) -> np.ndarray:
         """All samples [mm], shape (A B C, 3)."""
@@ -54,9 +51,9 @@ class SampleGrid:
         for axis in range(3):
             steps = np.arange(self.shape[axis], dtype=np.float64)
             along = np.full(self.shape[axis], np.inf)
-            if self.cut[0][axis]:
+            if self.cut[0, axis]:
                 along = np.minimum(along, steps)
-            if self.cut[1][axis]:
+            if self.cut[1, axis]:
                 along = np.minimum(along, steps[::-1])
             nearest = np.minimum(nearest, np.expand_dims(along, [a for a in range(3) if a != axis]))
         return nearest * self.spacing_mm
@@ -72,8 +69,8 @@ class SampledDistance:
     """Position of sample (0, 0, 0) [mm], shape (3,)."""
     spacing_mm: float
     """Distance of samples; larger than asked where memory bounds it."""
-    partial: bool = False
-    """Whether the body goes on outside the grid: there the field says no contact, not how far."""
+    cut: np.ndarray = field(default_factory=lambda: np.zeros((2, 3), dtype=bool))
+    """Lower and upper sides beyond which the body goes on, (2, 3): the field says nothing there."""
 
 
 def make_grid(
@@ -104,12 +101,8 @@ def make_grid(
         origin_mm=low - PADDING_SAMPLES * spacing_mm,
         spacing_mm=float(spacing_mm),
         shape=(int(shape[0]), int(shape[1]), int(shape[2])),
-        cut=(_three(cut[0]), _three(cut[1])),
+        cut=cut,
     )
-
-
-def _three(flags: np.ndarray) -> tuple[bool, bool, bool]:
-    return bool(flags[0]), bool(flags[1]), bool(flags[2])
 
 
 def spline(values: np.ndarray) -> np.ndarray:

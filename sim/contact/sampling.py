@@ -66,7 +66,7 @@ def sample_indenter(
         coefficients=spline(values),
         origin_mm=grid.origin_mm,
         spacing_mm=grid.spacing_mm,
-        partial=grid.partial,
+        cut=grid.cut,
     )
 
 

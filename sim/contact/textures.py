@@ -24,6 +24,8 @@ LEAST_FEATURE_SAMPLES = 4.0
 """Width of the narrowest ridge in distance samples: fewer, and crests are lost."""
 LETTER_PIXELS = 40
 """Pixels of a capital's height; heights between pixels are linear."""
+HERSHEY_CAPITAL = 20.2
+"""Height of a capital of OpenCV's simplex font in pixels at scale 1, as drawn."""
 FILTER_SAMPLES = 1.5
 """Standard deviation of the filter that takes too fine detail out of an image, in samples."""
 
@@ -108,11 +110,11 @@ def _lettering(texture: Texture) -> np.ndarray:
     import cv2
 
     font = cv2.FONT_HERSHEY_SIMPLEX
-    scale = cv2.getFontScaleFromHeight(font, LETTER_PIXELS)
-    (width, height), below = cv2.getTextSize(texture.text, font, scale, 1)
+    scale = LETTER_PIXELS / HERSHEY_CAPITAL
+    (width, _), _ = cv2.getTextSize(texture.text, font, scale, 1)
     margin = LETTER_PIXELS // 2
-    paper = np.full((height + below + 2 * margin, width + 2 * margin), 255, np.uint8)
-    cv2.putText(paper, texture.text, (margin, margin + height), font, scale, 0, 1)
+    paper = np.full((LETTER_PIXELS + 2 * margin, width + 2 * margin), 255, np.uint8)
+    cv2.putText(paper, texture.text, (margin, margin + LETTER_PIXELS), font, scale, 0, 1)
     away_mm = cv2.distanceTransform(paper, cv2.DIST_L2, cv2.DIST_MASK_PRECISE).astype(np.float64)
     away_mm *= texture.pitch_mm / LETTER_PIXELS
     return _crest(away_mm, texture.flank_mm)

@@ -14,13 +14,14 @@ import numpy as np
 
 from sim.contact import reference, specimens
 from sim.contact.approach import plan_approach
+from sim.contact.batch import Case
 from sim.contact.checks.finger import at_45_degrees, press_finger
 from sim.contact.collider import make_collider
 from sim.contact.domain import Domain, stencil_nodes
+from sim.contact.problem import prepare
 from sim.contact.relaxation import Relaxation
-from sim.contact.solver import prepare
 from sim.contact.stencil import gradient_table
-from sim.material import first_piola, neo_hookean
+from sim.material import elastic_solid, first_piola
 from workbench.core.design import Elastomer
 from workbench.core.indenter import Indenter
 from workbench.core.press import ContactSettings, Press
@@ -66,26 +67,25 @@ def turned_forces() -> NodalForces:
 
 
 def _forces(gradient: np.ndarray) -> NodalForces:
-    domain, relaxation, far = _free_block()
+    domain, relaxation = _free_block()
     centre = np.array([0.0, 0.0, 0.5 * HEIGHT_MM]) - domain.target_mm
     displacement = (domain.node_mm - centre) @ gradient.T
-    relaxation.restart(displacement)
-    relaxation.evaluate(far)
-    solid = neo_hookean(MATERIAL)
+    relaxation.restart(0, displacement)
+    relaxation.evaluate(np.ones(1, bool))
     slopes = gradient_table() / domain.grid_mm
     at_points = np.einsum("anr,pnc->aprc", displacement[stencil_nodes(domain.rows)], slopes)
-    stress = first_piola(at_points, solid)
+    stress = first_piola(at_points, elastic_solid(MATERIAL))
     cells = np.einsum("ap,aprc,pnc->anr", domain.volumes_mm3, stress, slopes)
     return NodalForces(
         kernel_N=relaxation.node_forces().astype(np.float64),
-        twin_N=reference.stress_forces(domain, displacement, solid),
+        twin_N=reference.stress_forces(domain, displacement),
         cell_N=float(np.linalg.norm(cells, axis=2).max()),
         interior=_interior(domain),
     )
 
 
-def _free_block() -> tuple[Domain, Relaxation, tuple[np.ndarray, np.ndarray]]:
-    """A block over air, its relaxation, and a pose of the ball far from it."""
+def _free_block() -> tuple[Domain, Relaxation]:
+    """A block over air and its relaxation, with the ball far away."""
     mesh, points = specimens.flat_block(width_mm=WIDTH_MM, height_mm=HEIGHT_MM, grid_mm=GRID_MM)
     labels = np.full(len(mesh.inner.faces), Label.INNER | Label.BACKED, dtype=np.uint8)
     inner = dataclasses.replace(mesh.inner, labels=labels)
@@ -96,8 +96,11 @@ def _free_block() -> tuple[Domain, Relaxation, tuple[np.ndarray, np.ndarray]]:
     domain = prepare(
         mesh, points, MATERIAL, approach, collider, ContactSettings(), radius_mm=3.0 * WIDTH_MM
     )
-    relaxation = Relaxation(domain, collider, neo_hookean(MATERIAL), friction=0.0)
-    return domain, relaxation, (approach.target_mm + 100.0 * approach.normal, np.eye(3))
+    relaxation = Relaxation([Case(domain=domain, collider=collider, friction=0.0)])
+    away_mm = approach.target_mm + 100.0 * approach.normal
+    pose = np.concatenate([away_mm, np.eye(3).ravel(), [1.0]])
+    relaxation.set_poses(0, pose[None])
+    return domain, relaxation
 
 
 def _interior(domain: Domain) -> np.ndarray:
