@@ -2,8 +2,8 @@
 
 Every case keeps its own copy of its region; nodes, cells and surface points of the cases follow
 each other. Cells and nodes of a case are padded to a multiple of `BLOCK`, so that its rows of the
-interleaved tables stay together. Sums are taken in chunks that never span two cases: what one case does cannot change a
-bit of another.
+interleaved tables stay together. Sums are taken in chunks that never span two cases: what one case
+does cannot change a bit of another.
 """
 
 from __future__ import annotations
@@ -61,25 +61,29 @@ class Batch:
         self.displacement = floats(np.zeros(3 * total))
         self.velocity = floats(np.zeros(3 * total))
         self.forces = floats(np.zeros(3 * total))
-        self.slots = floats(np.zeros(81 * cell_at[-1]))
+        # The block after the last cell stays zero: nodes without a cell on some side read it.
+        self.slots = floats(np.zeros(81 * (cell_at[-1] + BLOCK)))
+        nothing = 81 * cell_at[-1]
         self.rows = integers(_joined([interleaved(d.rows + n, n) for d, n, _, _ in everything]))
         self.volumes = floats(_joined([interleaved(d.volumes_mm3, 0.0) for d in domains]))
         self.moduli = floats(_joined([interleaved(d.moduli_MPa, 0.0) for d in domains]))
         self.cell_cases = integers(np.repeat(np.arange(len(cases)), cells))
         self.node_slots = integers(
-            _joined([interleaved(_shifted(d.node_slots, c), NO_SLOT) for d, _, c, _ in everything])
+            _joined(
+                [
+                    interleaved(_shifted(d.node_slots, c, nothing), nothing)
+                    for d, _, c, _ in everything
+                ]
+            )
         )
         self.node_cases = integers(np.repeat(np.arange(len(cases)), nodes))
         # A padding node is fixed, and its mass only keeps it from dividing by nothing.
         self.masses = floats(_joined([_extended(d.masses, 1.0) for d in domains]))
         self.fixed = integers(_joined([_extended(d.fixed, True) for d in domains]))
         self.powers = floats(np.zeros(2 * total))
-        self.owners = integers(_joined([d.owners + c for d, _, c, _ in everything]))
-        owned = [d.owner_starts[:-1] + p for d, _, _, p in everything]
-        # Without any surface point the one owner that stands for none owns nothing.
-        ends = [point_at[-1]] * (2 if not len(_joined(owned)) else 1)
-        self.starts = integers(np.append(_joined(owned), ends))
-        self.weights = floats(_joined([d.point_weights for d in domains]))
+        counts = _joined([_points_per_cell(d) for d in domains])
+        self.starts = integers(np.concatenate([[0], np.cumsum(counts)]))
+        self.locals_ = floats(_joined([d.point_local for d in domains]))
         places = [d.points.position_mm - d.target_mm for d in domains]
         self.positions = floats(_joined(places))
         self.stiffness = floats(_joined([d.points.stiffness_N_mm for d in domains]))
@@ -141,7 +145,7 @@ def needed_bytes(cells: int, points: int) -> int:
     nodes as cells in a thin wall, of 3 x 3 floats and 7 numbers, and 27 slot entries per cell.
     """
     per_cell = 4 * (81 + 9 + 8 + 3 + 27 + 2 * (9 + 7))
-    per_point = 4 * (27 + 3 + 1 + 3 + 1 + 1 + 6 + 3 + 1 + 1 + 3)
+    per_point = 4 * (3 + 3 + 1 + 3 + 1 + 1 + 6 + 3 + 1 + 1 + 3)
     return cells * per_cell + points * per_point
 
 
@@ -164,9 +168,16 @@ def interleaved(table: np.ndarray, filling: Any) -> np.ndarray:
     return blocks.transpose(0, 2, 1).ravel()
 
 
-def _shifted(node_slots: np.ndarray, first_cell: int) -> np.ndarray:
-    """Slots of a case whose first cell is not the first of the batch."""
-    return np.where(node_slots == NO_SLOT, NO_SLOT, node_slots + 81 * first_cell)
+def _shifted(node_slots: np.ndarray, first_cell: int, nothing: int) -> np.ndarray:
+    """Slots of a case whose first cell is not the first of the batch; `nothing` for none."""
+    return np.where(node_slots == NO_SLOT, nothing, node_slots + 81 * first_cell)
+
+
+def _points_per_cell(domain: Domain) -> np.ndarray:
+    """Surface points of each cell, padding included, shape (C,)."""
+    counts = np.zeros(_padded(len(domain.rows)), np.int64)
+    counts[domain.owners] = np.diff(domain.owner_starts)
+    return counts
 
 
 def _starts(counts: list[int]) -> list[int]:

@@ -1,6 +1,6 @@
-"""Pass 1 of a substep: elastic forces of each cell into the cell's own slots.
+"""Pass 1 of a substep: elastic and surface forces of each cell into the cell's own slots.
 
-Taichi function; its plain twin is `reference.stress_forces`.
+Taichi function; its plain twins are `reference.stress_forces` and `reference.surface_forces`.
 """
 
 # Taichi reads annotations and operators in its own way.
@@ -11,6 +11,7 @@ from taichi.lang.impl import expr_init
 
 from sim.contact.domain import BLOCK
 from sim.contact.layout import CHOICES, IDLE, INVERSE_EDGE, MODE, NUMBERS
+from sim.contact.point_functions import line_weights, point_force
 from sim.contact.stencil import gather_gradient, scatter_gradient
 from sim.material import SMALLEST_VOLUME_RATIO, first_piola_rows
 
@@ -44,18 +45,34 @@ def entry(row, column, width):
 
 
 @ti.func
-def stress_pass(
+def cell_pass(
     displacement: ti.template(),
     rows: ti.template(),
     volumes: ti.template(),
     moduli: ti.template(),
     cell_cases: ti.template(),
     slots: ti.template(),
+    starts: ti.template(),
+    locals_: ti.template(),
+    positions: ti.template(),
+    stiffness: ti.template(),
+    axes: ti.template(),
+    sideways: ti.template(),
+    held: ti.template(),
+    goals: ti.template(),
+    anchors: ti.template(),
+    states: ti.template(),
+    point_forces: ti.template(),
+    poses: ti.template(),
     numbers: ti.template(),
     choices: ti.template(),
+    coefficients: ti.template(),
+    cells,
+    cases,
+    step,
     linear: ti.template(),
 ):
-    for cell in range(cell_cases.shape[0]):
+    for cell in range(cells):
         case = cell_cases[cell]
         if choices[CHOICES * case + MODE] != IDLE:
             first = [rows[entry(cell, r, 9)] for r in range(9)]
@@ -66,6 +83,26 @@ def stress_pass(
             inverse_edge = numbers[NUMBERS * case + INVERSE_EDGE]
             shear, bulk = moduli[entry(cell, 0, 2)], moduli[entry(cell, 1, 2)]
             forces = ti.static(_cell_forces(nodal, volume, inverse_edge, (shear, bulk), linear))
+            for point in range(starts[cell], starts[cell + 1]):
+                x = line_weights(locals_[3 * point])
+                y = line_weights(locals_[3 * point + 1])
+                z = line_weights(locals_[3 * point + 2])
+                moved = ti.Vector([0.0, 0.0, 0.0])
+                for n in ti.static(range(27)):
+                    weight = x[n // 9] * y[n // 3 % 3] * z[n % 3]
+                    for c in ti.static(range(3)):
+                        moved[c] += weight * nodal[c][n]
+                force = point_force(
+                    point, moved, positions, stiffness, axes, sideways, held, goals, anchors,
+                    states, poses, numbers, choices, coefficients, case, step * cases + case,
+                )  # fmt: skip
+                for c in ti.static(range(3)):
+                    point_forces[3 * point + c] = force[c]
+                if force.norm_sqr() > 0.0:
+                    for n in ti.static(range(27)):
+                        weight = x[n // 9] * y[n // 3 % 3] * z[n % 3]
+                        for c in ti.static(range(3)):
+                            forces[c][n] += weight * force[c]
             base = entry(cell, 0, 81)
             for n in ti.static(range(27)):
                 for c in ti.static(range(3)):

@@ -94,8 +94,8 @@ class Domain:
     """Nodes shared with material that was left out, shape (N,), bool."""
     points: SurfacePoints
     """Surface points in the order of their cells."""
-    point_weights: np.ndarray
-    """Node weights of the surface points, shape (P, 27)."""
+    point_local: np.ndarray
+    """Places of the surface points in their cells, in cell edges from the centre, shape (P, 3)."""
     owners: np.ndarray
     """Cells that own surface points, shape (S,), int32."""
     owner_starts: np.ndarray
@@ -202,7 +202,7 @@ def build_domain(
         masses=masses,
         fixed=cut,
         points=points,
-        point_weights=weights,
+        point_local=local,
         owners=owners.astype(np.int32),
         owner_starts=np.append(starts, len(order)).astype(np.int32),
         outer=readouts[0],

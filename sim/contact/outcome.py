@@ -14,6 +14,7 @@ from sim.contact.frame import FrameOutcome, deepest_overlap_mm
 from sim.contact.problem import Problem
 from sim.contact.quadrature import SurfacePoints
 from sim.contact.relaxation import Balance, Relaxation
+from sim.contact.stencil import point_weights
 from workbench.core.frames import quaternion
 from workbench.core.sensing import Contact
 
@@ -101,7 +102,7 @@ def point_displacement(domain: Domain, nodal: np.ndarray) -> np.ndarray:
     """Displacement of every surface point [mm], shape (P, 3)."""
     owner = np.repeat(domain.owners, np.diff(domain.owner_starts))
     nodes = (domain.rows[owner][:, :, None] + np.arange(3)).reshape(-1, 27)
-    return np.einsum("pn,pnc->pc", domain.point_weights, nodal[nodes])
+    return np.einsum("pn,pnc->pc", point_weights(domain.point_local), nodal[nodes])
 
 
 def _unit(vectors: np.ndarray) -> np.ndarray:

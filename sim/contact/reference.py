@@ -12,7 +12,7 @@ import numpy as np
 
 from sim.contact.collider import Collider
 from sim.contact.domain import Domain, stencil_nodes
-from sim.contact.stencil import gradient_table
+from sim.contact.stencil import gradient_table, point_weights
 from sim.material import stress_of
 
 FREE, TOUCHED, HELD = 0, 1, 2
@@ -63,7 +63,9 @@ def _point_nodes(domain: Domain) -> np.ndarray:
 
 
 def _point_displacement(domain: Domain, displacement: np.ndarray) -> np.ndarray:
-    return np.einsum("pn,pnc->pc", domain.point_weights, displacement[_point_nodes(domain)])
+    return np.einsum(
+        "pn,pnc->pc", point_weights(domain.point_local), displacement[_point_nodes(domain)]
+    )
 
 
 def surface_forces(
@@ -142,7 +144,9 @@ def commit_history(
 def spread_to_nodes(domain: Domain, forces: np.ndarray) -> np.ndarray:
     """Nodal forces of forces at the surface points, shape (N, 3)."""
     nodal = np.zeros((len(domain.masses), 3))
-    np.add.at(nodal, _point_nodes(domain), domain.point_weights[:, :, None] * forces[:, None])
+    np.add.at(
+        nodal, _point_nodes(domain), point_weights(domain.point_local)[:, :, None] * forces[:, None]
+    )
     return nodal
 
 

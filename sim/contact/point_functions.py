@@ -1,0 +1,158 @@
+"""Taichi functions of a surface point: where it is, and the force that holds or pushes it.
+
+Their plain twins are in `reference`.
+"""
+
+# Taichi reads annotations and operators in its own way.
+# pyright: reportInvalidTypeForm=false, reportGeneralTypeIssues=false, reportIndexIssue=false
+
+import taichi as ti
+
+from sim.contact.layout import (
+    CHOICES,
+    COUNTS,
+    FIRST_COEFFICIENT,
+    FREE,
+    FRICTION,
+    NUMBERS,
+    POSE,
+    SHAPE,
+    SIZE,
+    TOUCHED,
+)
+from sim.contact.signed_distance import signed_distance
+
+
+@ti.func
+def line_weights(local):
+    """Weights of the nodes -1, 0, +1 of one axis (`stencil.line_weights`)."""
+    return ti.Vector([0.5 * (0.5 - local) ** 2, 0.75 - local * local, 0.5 * (0.5 + local) ** 2])
+
+
+@ti.func
+def body_rotation(poses: ti.template(), row):
+    """Rotation body to sensor of a row of the pose table."""
+    base = POSE * row + 3
+    return ti.Matrix([[poses[base + 3 * r + c] for c in range(3)] for r in range(3)])
+
+
+@ti.func
+def object_distance(
+    place, numbers: ti.template(), choices: ti.template(), coefficients: ti.template(), case
+):
+    """Signed distance of a case's object and its gradient, in the body frame."""
+    size = ti.Vector([numbers[NUMBERS * case + SIZE + c] for c in range(8)])
+    counts = ti.Vector([choices[CHOICES * case + COUNTS + c] for c in range(3)])
+    shape = choices[CHOICES * case + SHAPE]
+    first = choices[CHOICES * case + FIRST_COEFFICIENT]
+    return signed_distance(place, shape, size, coefficients, counts, first)
+
+
+@ti.func
+def tangent_slip(place, gradient, anchor, limit):
+    """Slip from the anchor in the tangent plane, returned to the friction cone."""
+    normal = gradient / ti.max(gradient.norm(), 1e-9)
+    slip = place - anchor
+    slip -= slip.dot(normal) * normal
+    length = slip.norm()
+    if length > limit:
+        slip *= limit / length
+    return slip
+
+
+@ti.func
+def place_in_body(
+    point, moved, positions: ti.template(), poses: ti.template(), rotation: ti.template(), row
+):
+    place = moved
+    for c in ti.static(range(3)):
+        place[c] += positions[3 * point + c] - poses[POSE * row + c]
+    return rotation.transpose() @ place
+
+
+@ti.func
+def _holding_force(
+    point,
+    moved,
+    stiffness: ti.template(),
+    axes: ti.template(),
+    sideways: ti.template(),
+    goals: ti.template(),
+    share,
+):
+    """Spring of a held point toward where it belongs, stiffer along its axis than across."""
+    axis = ti.Vector([axes[3 * point + c] for c in range(3)])
+    away = moved
+    for c in ti.static(range(3)):
+        start, end = goals[6 * point + c], goals[6 * point + 3 + c]
+        away[c] -= start + share * (end - start)
+    along = axis.dot(away) * axis
+    return -stiffness[point] * (along + sideways[point] * (away - along))
+
+
+@ti.func
+def _contact_force(
+    point,
+    moved,
+    positions: ti.template(),
+    stiffness: ti.template(),
+    anchors: ti.template(),
+    states: ti.template(),
+    poses: ti.template(),
+    numbers: ti.template(),
+    choices: ti.template(),
+    coefficients: ti.template(),
+    case,
+    row,
+):
+    """Penalty and friction of the object on the membrane, in the sensor frame [N]."""
+    force = ti.Vector([0.0, 0.0, 0.0])
+    rotation = body_rotation(poses, row)
+    place = place_in_body(point, moved, positions, poses, rotation, row)
+    distance, gradient = object_distance(place, numbers, choices, coefficients, case)
+    if distance < 0.0:
+        anchor = place
+        if states[point] == FREE:
+            states[point] = TOUCHED
+            for c in ti.static(range(3)):
+                anchors[3 * point + c] = place[c]
+        for c in ti.static(range(3)):
+            anchor[c] = anchors[3 * point + c]
+        limit = -numbers[NUMBERS * case + FRICTION] * distance * gradient.norm()
+        slip = tangent_slip(place, gradient, anchor, limit)
+        force = -stiffness[point] * (rotation @ (distance * gradient + slip))
+    elif states[point] == TOUCHED:
+        states[point] = FREE
+    return force
+
+
+@ti.func
+def point_force(
+    point,
+    moved,
+    positions: ti.template(),
+    stiffness: ti.template(),
+    axes: ti.template(),
+    sideways: ti.template(),
+    held: ti.template(),
+    goals: ti.template(),
+    anchors: ti.template(),
+    states: ti.template(),
+    poses: ti.template(),
+    numbers: ti.template(),
+    choices: ti.template(),
+    coefficients: ti.template(),
+    case,
+    row,
+):
+    """Force on the membrane at a surface point that has moved by `moved`, sensor frame [N]."""
+    force = ti.Vector([0.0, 0.0, 0.0])
+    if held[point] == 1:
+        share = poses[POSE * row + POSE - 1]
+        force = _holding_force(point, moved, stiffness, axes, sideways, goals, share)
+    else:
+        force = _contact_force(
+            point, moved, positions, stiffness, anchors, states, poses, numbers, choices,
+            coefficients, case, row,
+        )  # fmt: skip
+    return force
