@@ -4,7 +4,7 @@ Their plain twins are in `reference`.
 """
 
 # Taichi reads annotations and operators in its own way.
-# pyright: reportInvalidTypeForm=false, reportGeneralTypeIssues=false, reportIndexIssue=false
+# pyright: reportInvalidTypeForm=false, reportGeneralTypeIssues=false, reportIndexIssue=false, reportOptionalCall=false
 
 import taichi as ti
 
