@@ -28,16 +28,17 @@ STILL_MM = 1e-9
 class Run:
     """State of one press; `number` is its case in the relaxation."""
 
-    def __init__(self, problem: Problem, relaxation: Relaxation, number: int) -> None:
+    def __init__(
+        self, problem: Problem, relaxation: Relaxation, number: int, *, frame: int = 0
+    ) -> None:
         self.problem = problem
         self.relaxation = relaxation
         self.number = number
-        self.frame = 0
+        self.frame = frame
         self.attempt = 0
         self.outcomes: list[FrameOutcome] = []
         self.error: SolveError | None = None
-        nodes = len(problem.domain.masses)
-        self._settled = [np.zeros((nodes, 3), np.float32)]
+        self._settled = [relaxation.displacement(number)]
         self._ramp = np.zeros((0, POSE))
         self._fed = 0
         self._begun_s = time.perf_counter()

@@ -82,19 +82,51 @@ def solve(problems: Sequence[Problem], *, monitor: Monitor = silent) -> list[Con
     return solver.results()
 
 
+def relaxation_of(problems: Sequence[Problem]) -> Relaxation:
+    """Device arrays of presses, at rest."""
+    return Relaxation(
+        [Case(domain=p.domain, collider=p.collider, friction=p.material.friction) for p in problems]
+    )
+
+
+def resume(
+    problem: Problem, relaxation: Relaxation, *, frame: int = 0, monitor: Monitor = silent
+) -> Contact:
+    """Solve the frames of one press from `frame` on, from where its arrays stand.
+
+    Args:
+        problem: The press; `relaxation` has the arrays of its region.
+        relaxation: Displacement and contact history at the end of the frame before.
+        frame: First frame that is solved.
+        monitor: As for `press_membrane`.
+
+    Raises:
+        SolveError: If a frame does not settle or is not sound.
+    """
+    solver = Solver([problem], monitor, relaxation=relaxation, frame=frame)
+    solver.run()
+    (result,) = solver.results()
+    if isinstance(result, SolveError):
+        raise result
+    return result
+
+
 class Solver:
     """Presses under way; arrays have an entry for each."""
 
-    def __init__(self, problems: Sequence[Problem], monitor: Monitor) -> None:
+    def __init__(
+        self,
+        problems: Sequence[Problem],
+        monitor: Monitor,
+        *,
+        relaxation: Relaxation | None = None,
+        frame: int = 0,
+    ) -> None:
         self.monitor = monitor
-        self.relaxation = Relaxation(
-            [
-                Case(domain=p.domain, collider=p.collider, friction=p.material.friction)
-                for p in problems
-            ]
-        )
+        self.relaxation = relaxation or relaxation_of(problems)
         self.runs = [
-            Run(problem, self.relaxation, number) for number, problem in enumerate(problems)
+            Run(problem, self.relaxation, number, frame=frame)
+            for number, problem in enumerate(problems)
         ]
         count = len(problems)
         self.tolerance = np.array([p.settings.tolerance for p in problems])

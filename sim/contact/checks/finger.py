@@ -12,10 +12,11 @@ import math
 import numpy as np
 
 from sim.contact import specimens
+from sim.contact.particles import press_particles
 from sim.contact.solver import press_membrane
 from workbench.core.design import Elastomer
 from workbench.core.indenter import Indenter
-from workbench.core.press import ContactSettings, Press
+from workbench.core.press import ContactSettings, Extent, Press
 from workbench.core.sensing import Contact
 
 BALL_MM = 6.0
@@ -55,19 +56,23 @@ def at_45_degrees(
 
 
 def press_45(
-    *, grid_mm: float = 0.5, active_radius_mm: float = 12.0, frames: int = FRAMES
+    *,
+    grid_mm: float = 0.5,
+    active_radius_mm: float = 12.0,
+    frames: int = FRAMES,
+    extent: Extent = Extent.ACTIVE,
 ) -> Contact:
     """The ball pressed 1 mm into the tip at 45 degrees, friction 0.3; kept for the next caller.
 
     Friction depends on the path: in one step the force is 2 % less than in ten, which finite
     elements take as well.
     """
-    return _press_45(grid_mm, active_radius_mm, frames)
+    return _press_45(grid_mm, active_radius_mm, frames, extent)
 
 
 @functools.cache
-def _press_45(grid_mm: float, active_radius_mm: float, frames: int) -> Contact:
-    settings = ContactSettings(grid_mm=grid_mm, active_radius_mm=active_radius_mm)
+def _press_45(grid_mm: float, active_radius_mm: float, frames: int, extent: Extent) -> Contact:
+    settings = ContactSettings(grid_mm=grid_mm, active_radius_mm=active_radius_mm, extent=extent)
     return press_finger(at_45_degrees(frames=frames), settings=settings, grid_mm=grid_mm)
 
 
@@ -81,6 +86,21 @@ def finger_45(
     """Normal force [N] of that press at a depth that one of its frames reaches."""
     contact = press_45(grid_mm=grid_mm, active_radius_mm=active_radius_mm, frames=frames)
     return float(contact.normal_N[round(depth_mm * frames) - 1])
+
+
+@functools.cache
+def published_45(*, active_radius_mm: float = 12.0) -> float:
+    """Normal force [N] of the same press by the published method."""
+    mesh, points = specimens.finger()
+    contact = press_particles(
+        mesh,
+        points,
+        Elastomer(),
+        Indenter(size_mm=BALL_MM),
+        at_45_degrees(frames=FRAMES),
+        ContactSettings(active_radius_mm=active_radius_mm),
+    )
+    return float(contact.normal_N[-1])
 
 
 @functools.cache
