@@ -11,10 +11,10 @@ import numpy as np
 
 from workbench.core.indenter import Indenter, IndenterKind
 
-FINEST_MM, COARSEST_SHARE = 0.05, 1.0 / 60.0
+FINEST_MM, COARSEST_SHARE = 0.05, 1.0 / 45.0
 """Limits of the grid that is contoured: an edge, and one over the size."""
-STEPS_PER_RADIUS = 4.0
-MOST_SHOWN = 2_000_000
+STEPS_PER_RADIUS = 3.0
+MOST_SHOWN = 1_000_000
 """Samples of the distance that is contoured."""
 EDGES_PER_FLANK = 2.0
 MOST_TRIANGLES = 200_000

@@ -58,7 +58,11 @@ class Collider:
 
 
 def make_collider(
-    indenter: Indenter, *, grid_mm: float, window_mm: Window | None = None
+    indenter: Indenter,
+    *,
+    grid_mm: float,
+    window_mm: Window | None = None,
+    whole: SampledDistance | None = None,
 ) -> Collider:
     """Prepare an indenter; all but spheres, cylinders, cubes and cones are sampled.
 
@@ -68,13 +72,15 @@ def make_collider(
         window_mm: Lower and upper corner, in the body frame, of what can come near the skin. A
             large object is then sampled finely there only. Outside, `distance` is a coarse lower
             bound, while the kernels see no contact: choose it to hold all that may touch.
+        whole: What `sampling.sample_indenter` returned for the whole object on this grid, from a
+            store; sampled here if None. Shapes that need no samples leave it unused.
 
     Raises:
         DesignError: If the shape cannot be made.
     """
     shape = SHAPE_OF_KIND[indenter.kind]
     if shape is Shape.GRID or indenter.texture.raised:
-        return _sampled(indenter, grid_mm, window_mm)
+        return _sampled(indenter, grid_mm, window_mm, whole)
     ball = shape is Shape.SPHERE
     return Collider(
         shape=shape,
@@ -86,13 +92,17 @@ def make_collider(
     )
 
 
-def _sampled(indenter: Indenter, grid_mm: float, window_mm: Window | None) -> Collider:
-    field = kept_samples(indenter, grid_mm=grid_mm, window_mm=window_mm)
-    fine = _collider(indenter, grid_mm, field)
-    if not field.cut.any():
-        return fine
-    whole = _collider(indenter, grid_mm, kept_samples(indenter, grid_mm=grid_mm))
-    return dataclasses.replace(fine, whole=whole, cut=field.cut)
+def _sampled(
+    indenter: Indenter, grid_mm: float, window_mm: Window | None, whole: SampledDistance | None
+) -> Collider:
+    if window_mm is not None:
+        field = kept_samples(indenter, grid_mm=grid_mm, window_mm=window_mm)
+        fine = _collider(indenter, grid_mm, field)
+        if not field.cut.any():
+            return fine
+        around = _sampled(indenter, grid_mm, None, whole)
+        return dataclasses.replace(fine, whole=around, cut=field.cut)
+    return _collider(indenter, grid_mm, whole or kept_samples(indenter, grid_mm=grid_mm))
 
 
 def _collider(indenter: Indenter, grid_mm: float, field: SampledDistance) -> Collider:

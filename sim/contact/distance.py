@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from geometry.surface import closest_point, face_areas
 from sim.contact.redistance import Exact, redistanced
 from sim.contact.samples import SampleGrid, read_spline, spline
 from workbench.core.errors import DesignError
@@ -21,6 +22,10 @@ from workbench.core.indenter import IndenterMesh
 BAND_SAMPLES = 5.0
 OUTER_SAMPLES = 2.5
 """Samples outside a rounded mesh up to which its distance is exact."""
+SPLIT_SAMPLES = 6.0
+"""Longest edge of the triangles that feet are sought on, in samples."""
+MOST_SPLIT = 100_000
+"""Squares of that edge that the surface may have; longer edges beyond."""
 STAIRCASE = 3.0**0.5
 """Samples by which the band's rim on the lattice falls short of the true rim, at most."""
 COLUMN_SHIFT = np.array([1.37e-4, 2.33e-4, 3.15e-4])
@@ -73,18 +78,42 @@ def _shrunk_function(
     mesh: IndenterMesh, grid: SampleGrid, sampled: np.ndarray, radius_mm: float
 ) -> Exact:
     """The signed distance to the mesh plus the radius, in samples; its sign from the samples."""
-    from geometry.surface import closest_point
-
     coefficients = spline(sampled)
+    points, faces = _small_triangles(mesh, grid, radius_mm)
 
     def exact(steps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         side = np.where(read_spline(coefficients, steps) < 0.0, -1.0, 1.0)
         places = grid.origin_mm + grid.spacing_mm * steps
-        feet, away, _ = closest_point(mesh.points_mm, mesh.faces, places)
+        feet, away, _ = closest_point(points, faces, places)
         slopes = (side / np.maximum(away, 1e-9))[:, None] * (places - feet)
         return (side * away + radius_mm) / grid.spacing_mm, slopes
 
     return exact
+
+
+def _small_triangles(
+    mesh: IndenterMesh, grid: SampleGrid, radius_mm: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """The surface about the grid, its triangles split: a search by balls is slow with long ones."""
+    import trimesh
+
+    margin_mm = radius_mm + BAND_SAMPLES * grid.spacing_mm
+    low = grid.origin_mm - margin_mm
+    high = grid.origin_mm + grid.spacing_mm * (np.array(grid.shape) - 1.0) + margin_mm
+
+    def about(points: np.ndarray, faces: np.ndarray) -> np.ndarray:
+        corners = points[faces]
+        apart = (corners.max(axis=1) < low) | (corners.min(axis=1) > high)
+        return faces[~apart.any(axis=1)]
+
+    faces = about(mesh.points_mm, mesh.faces)
+    edge_mm = SPLIT_SAMPLES * grid.spacing_mm
+    area_mm2 = float(face_areas(mesh.points_mm, faces).sum())
+    edge_mm = max(edge_mm, (area_mm2 / MOST_SPLIT) ** 0.5)
+    points, faces, *_ = trimesh.remesh.subdivide_to_size(
+        mesh.points_mm, faces, max_edge=edge_mm, max_iter=20
+    )
+    return points, about(points, faces)
 
 
 def _distance(corners: np.ndarray, grid: SampleGrid, band_samples: float) -> np.ndarray:

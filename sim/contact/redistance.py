@@ -67,9 +67,11 @@ def redistanced(
     if exact is not None:
         # A distance with creases is too small only where a crease is nearest.
         given = scaled.ravel()[near]
-        creased = np.flatnonzero(distance - given > CREASED)
+        creased = np.flatnonzero((given > 0.0) & (distance - given > CREASED))
         distance[creased] = _at_creases(steps[near[creased]], foot[creased], exact)
-        distance = np.where(distance - given > CREASED, distance, np.abs(given))
+        # Inside, and outside away from creases, what was given is the distance already.
+        farther = (given > 0.0) & (distance - given > CREASED)
+        distance = np.where(farther, distance, np.abs(given))
     bound[near] = np.minimum(distance, np.maximum(band, bound[near]))
     return np.copysign(bound, scaled.ravel()).reshape(values.shape) * spacing_mm
 

@@ -246,6 +246,9 @@ def test_samples_are_computed_once(monkeypatch: pytest.MonkeyPatch) -> None:
     np.testing.assert_array_equal(
         sample_indenter(ring, grid_mm=0.5).coefficients, first.coefficients
     )
+    # What a store kept is taken as it is.
+    stored = make_collider(ring, grid_mm=0.5, whole=first)
+    assert stored.samples is first.coefficients
     monkeypatch.setattr(sampling, "MOST_BYTES", first.coefficients.nbytes)
     kept_samples(Indenter(kind=IndenterKind.TORUS), grid_mm=0.5)
     assert kept_samples(ring, grid_mm=0.5) is not first
