@@ -30,6 +30,7 @@ from sim.contact.layout import (
     IDLE,
     LARGEST_STEP,
     MASS_SCALE,
+    MEETS_RIGID,
     MODE,
     MOVING,
     NUMBERS,
@@ -176,19 +177,6 @@ SUBSTEP_ARRAYS = (
     "coefficients",
 )
 """Names of the arrays of a substep, in its order."""
-INTEGER_ARRAYS = frozenset(
-    (
-        "rows",
-        "cell_cases",
-        "node_slots",
-        "node_cases",
-        "fixed",
-        "starts",
-        "held",
-        "states",
-        "choices",
-    )
-)
 
 
 @ti.func
@@ -235,7 +223,7 @@ def commit_anchors(
         if case == committing:
             rotation = body_rotation(poses, case)
             for point in range(starts[cell], starts[cell + 1]):
-                if held[point] == 0:
+                if held[point] == MEETS_RIGID:
                     place = _point_displacement(displacement, rows, locals_, cell, point)
                     place = place_in_body(point, place, positions, poses, rotation, case)
                     distance, gradient = object_distance(

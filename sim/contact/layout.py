@@ -2,6 +2,8 @@
 
 FREE, TOUCHED, HELD = 0, 1, 2
 """States of a contact point: apart; anchored within this frame; anchored by a settled frame."""
+MEETS_RIGID, HELD_STILL, MEETS_SOFT = 0, 1, 2
+"""Kinds of surface points (`held`): what they meet, or that they are held or driven."""
 IDLE, MOVING, STILL = 0, 1, 2
 """Modes of a case: left alone; relaxing; forces only."""
 FRICTION, MASS_SCALE, DAMPING, LARGEST_STEP, INVERSE_EDGE, SIZE = 0, 1, 2, 3, 4, 5
@@ -12,3 +14,6 @@ CHOICES = 6
 """Integers of a case: the above, with the three counts of distance samples at the end."""
 POSE = 13
 """Floats of a pose: origin from the target, rotation by rows, share of the drives' way."""
+PARTNER = 13
+"""Floats of a soft object: origin of its body from the target at the start, rotation body to sensor
+by rows, 1 / cell edge."""

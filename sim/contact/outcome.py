@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields
+from typing import Any
 
 import numpy as np
 import taichi as ti
@@ -35,6 +36,7 @@ def frame_outcome(
     *,
     load_N: float,
     seconds: float,
+    met: tuple[np.ndarray, np.ndarray] | None = None,
 ) -> FrameOutcome:
     """Read a settled frame, evaluated at its pose and not yet committed.
 
@@ -46,6 +48,8 @@ def frame_outcome(
         frame: Which frame.
         load_N: Force that the residual is relative to, the same as for the stop test.
         seconds: Time the frame took [s].
+        met: Distances [mm], (P,), and outward directions, (P, 3), of the object at the points
+            that may meet it, where it is not where its pose has it: it is soft.
     """
     domain = problem.domain
     origin, rotation = problem.approach.pose(frame + 1.0)
@@ -56,15 +60,18 @@ def frame_outcome(
     place = domain.points.position_mm + point_displacement(domain, nodal)
     touching = ~domain.points.bonded
     points, forces, at = domain.points.take(touching), point_forces[touching], place[touching]
-    distance, gradient = problem.collider.distance((at - origin) @ rotation)
-    normal = _unit(gradient) @ rotation.T
+    overlap_mm = 0.0
+    if met is None:
+        distance, gradient = problem.collider.distance((at - origin) @ rotation)
+        met = distance, gradient @ rotation.T
+        vertex_mm = problem.mesh.outer.points_mm + displacement
+        overlap_mm = deepest_overlap_mm(vertex_mm, problem.collider, origin, rotation)
+    distance, normal = met[0], _unit(met[1])
     pressing = np.einsum("pc,pc->p", forces, normal)
     aside = np.linalg.norm(forces - pressing[:, None] * normal, axis=1)
     ratio, sliding = _friction(pressing, aside, friction=problem.material.friction)
     count = domain.outer.count
     area_mm2 = np.maximum(points.to_vertices(points.area_mm2, count), LEAST)
-    vertex_mm = problem.mesh.outer.points_mm + displacement
-    overlap_mm = deepest_overlap_mm(vertex_mm, problem.collider, origin, rotation)
     drives = _drives(problem, point_forces, place)
     held = domain.points.bonded & (domain.points.drive < 0)
     volume = volume_state(domain, nodal)
@@ -152,7 +159,7 @@ def _drives(
 
 def collect(outcomes: list[FrameOutcome], problem: Problem, *, substeps: int) -> Contact:
     """All frames as one result."""
-    stacked = {
+    stacked: dict[str, Any] = {
         field.name: np.stack([np.asarray(getattr(outcome, field.name)) for outcome in outcomes])
         for field in fields(FrameOutcome)
     }

@@ -78,8 +78,11 @@ def press_particles(
     for frame in range(approach.frame_count):
         monitor(frame / approach.frame_count, f"frame {frame + 1} of {approach.frame_count}")
         found.append(_frame(state, approach, readout, collider, frame))
+    stacked: dict[str, Any] = {
+        name: np.stack([np.asarray(one[name]) for one in found]) for name in found[0]
+    }
     return Contact(
-        **{name: np.stack([np.asarray(one[name]) for one in found]) for name in found[0]},
+        **stacked,
         target_mm=approach.target_mm,
         normal=approach.normal,
         tangent_u=approach.tangent_u,

@@ -14,6 +14,8 @@ from sim.contact.layout import (
     FIRST_COEFFICIENT,
     FREE,
     FRICTION,
+    HELD_STILL,
+    MEETS_RIGID,
     NUMBERS,
     POSE,
     SHAPE,
@@ -147,10 +149,10 @@ def point_force(
 ):
     """Force on the membrane at a surface point that has moved by `moved`, sensor frame [N]."""
     force = ti.Vector([0.0, 0.0, 0.0])
-    if held[point] == 1:
+    if held[point] == HELD_STILL:
         share = poses[POSE * row + POSE - 1]
         force = _holding_force(point, moved, stiffness, axes, sideways, goals, share)
-    else:
+    elif held[point] == MEETS_RIGID:
         force = _contact_force(
             point, moved, positions, stiffness, anchors, states, poses, numbers, choices,
             coefficients, case, row,

@@ -100,7 +100,13 @@ class Relaxation:
             self._choices[row, layout.COUNTS :] = case.collider.samples.shape
         self._stale_poses = True
         self._sent = (np.zeros(0), np.zeros(0))
-        self._substep = _Launcher(batch, linear=_one_law(cases))
+        self._substep = self._launcher()
+
+    def _launcher(self) -> Launcher:
+        """What runs the substeps."""
+        linear = _one_law(self.cases)
+        arrays = {name: getattr(self.batch, name) for name in kernels.SUBSTEP_ARRAYS}
+        return Launcher(kernels.SUBSTEP[linear], arrays, cases=len(self.cases))
 
     def set_poses(self, case: int, rows: np.ndarray) -> None:
         """Poses of a case in the next substeps, shape (n <= STEPS, POSE); the last one stays.
@@ -158,6 +164,14 @@ class Relaxation:
             batch.positions, batch.held, batch.anchors, batch.states, batch.slips,
             batch.poses, batch.numbers, batch.choices, batch.coefficients, case,
         )  # fmt: skip
+
+    def burden(self, chosen: np.ndarray) -> None:
+        """Double the fictitious masses of the chosen cases, (B,) bool."""
+        self.mass_scale[chosen] *= 2.0
+
+    def snapshot(self, case: int) -> np.ndarray:
+        """What `restart` takes to come back to the present displacement, shape (N, 3)."""
+        return self.displacement(case)
 
     def restart(self, case: int, displacement_mm: np.ndarray) -> None:
         """Come to rest at a nodal displacement, (N, 3); anchors of this frame are lost."""
@@ -226,30 +240,26 @@ class Relaxation:
             self._stale_poses = False
 
 
-class _Launcher:
+class Launcher:
     """Substeps of a batch as a compute graph: its arguments are bound once, not at each launch."""
 
-    def __init__(self, batch: Batch, *, linear: bool) -> None:
-        kernel = kernels.SUBSTEP[linear]
-        names = kernels.SUBSTEP_ARRAYS
-        kinds = {name: ti.i32 if name in kernels.INTEGER_ARRAYS else ti.f32 for name in names}
-        arrays = [
-            ti.graph.Arg(ti.graph.ArgKind.NDARRAY, name, kinds[name], ndim=1) for name in names
+    def __init__(self, kernel: Any, arrays: dict[str, Any], *, cases: int) -> None:
+        declared = [
+            ti.graph.Arg(ti.graph.ArgKind.NDARRAY, name, array.dtype, ndim=1)
+            for name, array in arrays.items()
         ]
         scalars = [
             ti.graph.Arg(ti.graph.ArgKind.SCALAR, f"step_{step}", ti.i32) for step in range(STEPS)
         ]
-        cases = ti.graph.Arg(ti.graph.ArgKind.SCALAR, "cases", ti.i32)
+        count_of_cases = ti.graph.Arg(ti.graph.ArgKind.SCALAR, "cases", ti.i32)
         self._graphs = {}
         for count in (1, STEPS):
             builder = ti.graph.GraphBuilder()
             for step in range(count):
-                builder.dispatch(kernel, *arrays, cases, scalars[step])
+                builder.dispatch(kernel, *declared, count_of_cases, scalars[step])
             self._graphs[count] = builder.compile()
-        arguments = {name: getattr(batch, name) for name in names}
-        arguments["cases"] = len(batch.cases)
         self._arguments = {
-            count: {**arguments, **{f"step_{step}": step for step in range(count)}}
+            count: {**arrays, "cases": cases, **{f"step_{step}": step for step in range(count)}}
             for count in (1, STEPS)
         }
 

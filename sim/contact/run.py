@@ -38,7 +38,7 @@ class Run:
         self.attempt = 0
         self.outcomes: list[FrameOutcome] = []
         self.error: SolveError | None = None
-        self._settled = [relaxation.displacement(number)]
+        self._settled = [relaxation.snapshot(number)]
         self._ramp = np.zeros((0, POSE))
         self._fed = 0
         self._begun_s = time.perf_counter()
@@ -64,7 +64,7 @@ class Run:
         predicted = self.attempt == 0 and self._predict()
         if self.attempt:
             self.relaxation.restart(self.number, self._settled[-1])
-        self._drive()
+        self.drive()
         count = 0 if predicted else self._ramp_length()
         steps = (np.arange(count) + 1.0) / max(count, 1)
         self._ramp = self._rows(steps) if count else np.zeros((0, POSE))
@@ -85,7 +85,7 @@ class Run:
     def finish(self, outcome: FrameOutcome) -> None:
         """Close the settled frame."""
         self.outcomes.append(outcome)
-        self._settled = [*self._settled, self.relaxation.displacement(self.number)][-MOST_KEPT:]
+        self._settled = [*self._settled, self.relaxation.snapshot(self.number)][-MOST_KEPT:]
         self.relaxation.commit(self.number)
         self.frame += 1
         self.attempt = 0
@@ -140,7 +140,7 @@ class Run:
         self.relaxation.restart(self.number, guess)
         return True
 
-    def _drive(self) -> None:
+    def drive(self) -> None:
         """Tell held points where they go in this frame."""
         press, points = self.problem.press, self.problem.domain.points
         if press.actuations:

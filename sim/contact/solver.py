@@ -16,6 +16,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from sim.contact.batch import Case
+from sim.contact.frame import FrameOutcome
 from sim.contact.outcome import collect, frame_outcome
 from sim.contact.problem import Problem, make_problem
 from sim.contact.relaxation import STEPS, Balance, Balances, Relaxation
@@ -25,7 +26,7 @@ from workbench.core.design import Elastomer
 from workbench.core.errors import SolveError
 from workbench.core.indenter import Indenter
 from workbench.core.monitor import Monitor, silent
-from workbench.core.press import ContactSettings, Press
+from workbench.core.press import ContactSettings, Method, Press
 from workbench.core.results import MaterialPoints, MembraneMesh
 from workbench.core.sensing import Contact
 
@@ -56,7 +57,7 @@ def press_membrane(
         mesh: Skins: contact on `outer`, bond or gel on `inner`.
         points: Material points; their `grid_mm` is the grid of the solution.
         material: The elastomer, with its friction against the object.
-        indenter: The rigid object.
+        indenter: The object.
         press: Its path, and the regions that are driven meanwhile.
         settings: Region, penalty, tolerance.
         monitor: Told the frame and residual; raises `Cancelled` to stop.
@@ -67,9 +68,18 @@ def press_membrane(
         SolveError: If a frame does not settle or is not sound; carries frame, residual, last
             good frame, and the result of the frames that settled.
     """
+    if settings.method is Method.PARTICLES:
+        from sim.contact.particles import press_particles
+
+        return press_particles(mesh, points, material, indenter, press, settings, monitor=monitor)
     monitor(0.0, "placing the object")
     problem = make_problem(mesh, points, material, indenter, press, settings)
-    (result,) = solve([problem], monitor=monitor)
+    if indenter.soft is not None:
+        from sim.contact.soft_solver import press_soft
+
+        result = press_soft(problem, indenter, monitor)
+    else:
+        (result,) = solve([problem], monitor=monitor)
     if isinstance(result, SolveError):
         raise result
     return result
@@ -125,8 +135,7 @@ class Solver:
         self.monitor = monitor
         self.relaxation = relaxation or relaxation_of(problems)
         self.runs = [
-            Run(problem, self.relaxation, number, frame=frame)
-            for number, problem in enumerate(problems)
+            self.make_run(problem, number, frame) for number, problem in enumerate(problems)
         ]
         count = len(problems)
         self.tolerance = np.array([p.settings.tolerance for p in problems])
@@ -143,6 +152,10 @@ class Solver:
         self.residual = np.full(count, np.inf)
         for case in range(count):
             self._begin(case)
+
+    def make_run(self, problem: Problem, number: int, frame: int) -> Run:
+        """The way of one press through its frames."""
+        return Run(problem, self.relaxation, number, frame=frame)
 
     def run(self) -> None:
         """Relax until every press has ended."""
@@ -197,7 +210,7 @@ class Solver:
         self.lowest_at[lower] = self.spent[lower]
         stalled = looked & (self.spent - self.lowest_at > PATIENCE) & (self.retries < MOST_RETRIES)
         # A residual that will not fall is an oscillation at the limit of stability.
-        self.relaxation.mass_scale[stalled] *= 2.0
+        self.relaxation.burden(stalled)
         self.retries[stalled] += 1
         self.lowest_at[stalled] = self.spent[stalled]
         for case in np.flatnonzero(looked & (self.spent >= self.most)).tolist():
@@ -220,12 +233,10 @@ class Solver:
         """Read a settled frame and go on to the next, or end the press."""
         run = self.runs[case]
         problem, frame = run.problem, run.frame
-        if not np.isfinite(self.relaxation.displacement(case)).all():
+        if not np.isfinite(self.relaxation.snapshot(case)).all():
             self._unstable(case)
             return
-        outcome = frame_outcome(
-            self.relaxation, case, problem, balance, frame, load_N=load_N, seconds=run.seconds
-        )
+        outcome = self.read_frame(case, balance, load_N)
         try:
             check_frame(outcome, problem.approach, frame, grid_mm=problem.domain.grid_mm)
         except SolveError as error:
@@ -236,6 +247,19 @@ class Solver:
             self._begin(case)
         else:
             self.end(case, None)
+
+    def read_frame(self, case: int, balance: Balance, load_N: float) -> FrameOutcome:
+        """What the settled frame of a press says."""
+        run = self.runs[case]
+        return frame_outcome(
+            self.relaxation,
+            case,
+            run.problem,
+            balance,
+            run.frame,
+            load_N=load_N,
+            seconds=run.seconds,
+        )
 
     def _load_N(self, balances: Balances, looked: np.ndarray) -> np.ndarray:
         """Force against which residual and change are measured, shape (B,)."""
@@ -258,7 +282,7 @@ class Solver:
             self.end(case, run.unstable())
             return
         run.attempt += 1
-        self.relaxation.mass_scale[case] *= 2.0
+        self.relaxation.burden(np.arange(len(self.runs)) == case)
         self._begin(case)
 
     def end(self, case: int, error: SolveError | None) -> None:

@@ -8,7 +8,7 @@ Sums run in chunks of rows that never span two cases, and in a fixed order.
 
 import taichi as ti
 
-from sim.contact.layout import FREE, TOUCHED
+from sim.contact.layout import FREE, HELD_STILL, TOUCHED
 
 Floats = ti.types.ndarray(dtype=ti.f32, ndim=1)
 Integers = ti.types.ndarray(dtype=ti.i32, ndim=1)
@@ -39,7 +39,7 @@ def surface_sums(point_forces: Floats, held: Integers, bounds: Integers, partial
         total = ti.Vector([0.0] * 6, dt=ti.f64)
         for point in range(bounds[2 * chunk], bounds[2 * chunk + 1]):
             for c in ti.static(range(3)):
-                if held[point] == 0:
+                if held[point] != HELD_STILL:
                     total[c] += point_forces[3 * point + c]
                 else:
                     total[3 + c] += point_forces[3 * point + c]

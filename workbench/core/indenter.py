@@ -14,6 +14,7 @@ import numpy as np
 
 from workbench.core.check import expect, within
 from workbench.core.errors import DesignError
+from workbench.core.soft_body import SoftBody
 from workbench.core.texture import SMOOTH, Texture
 
 
@@ -129,7 +130,7 @@ def widest_edge_mm(kind: IndenterKind, size_mm: float) -> float:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Indenter:
-    """A rigid object."""
+    """An object, rigid unless it has an elastomer."""
 
     kind: IndenterKind = IndenterKind.SPHERE
     size_mm: float = DEFAULT_SIZE_MM
@@ -141,6 +142,8 @@ class Indenter:
     """Rounds the convex edges of a mesh [mm]; parts thinner than twice this vanish. 0: as it is."""
     texture: Texture = SMOOTH
     """Pattern on the side that meets the skin."""
+    soft: SoftBody | None = None
+    """Its elastomer; None: rigid."""
 
     def __post_init__(self) -> None:
         hint = "the default is 6 mm"

@@ -88,6 +88,13 @@ class Contact:
     """Least J = det F of a material point, shape (K,), float64."""
     frame_seconds: np.ndarray = field(default_factory=lambda: np.zeros(0))
     """Time each frame took [s], shape (K,), float64; differs from run to run."""
+    object_mm: np.ndarray = field(default_factory=lambda: _none(0, 0, 0, 0, 3))
+    """How a soft object is deformed, in its body frame at `indenter_pose`: displacement [mm] at the
+    nodes of a lattice over its undeformed body, shape (K, A, B, C, 3); empty where it is rigid."""
+    object_origin_mm: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    """Place of the lattice's first node in the body frame [mm], shape (3,)."""
+    object_spacing_mm: float = 1.0
+    """Distance of the lattice's nodes [mm]."""
     sensor_pose: np.ndarray = field(default_factory=lambda: np.zeros((0, 7)))
     """Pose of the sensor in the room where the sensor is what moves, as `indenter_pose`, else
     (0, 7); all other fields stay in the sensor frame."""

@@ -1,0 +1,124 @@
+"""Soft objects: kernel against twin, action against reaction, and the rigid limit."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from sim.contact import reference
+from sim.contact.problem import make_problem
+from sim.contact.soft_kernels import MEMBRANE, OBJECT
+from sim.contact.soft_object import SoftObject, make_soft_object
+from sim.contact.soft_reference import meet, normal_forces
+from sim.contact.soft_solver import SoftRelaxation
+from sim.contact.solver import press_membrane
+from sim.contact.specimens import flat_block
+from workbench.core.design import Elastomer
+from workbench.core.errors import DesignError
+from workbench.core.indenter import Indenter
+from workbench.core.press import ContactSettings, Press
+from workbench.core.sensing import Contact
+from workbench.core.soft_body import SoftBody
+
+pytestmark = pytest.mark.usefixtures("taichi_device")
+
+MESH, POINTS = flat_block(width_mm=8.0, height_mm=3.0, grid_mm=0.5, skin_mm=0.5)
+SMOOTH = Elastomer(friction=0.0)
+PRESS = Press(target_mm=(0.1, 0.2, 3.0), depth_mm=0.5, frames=1)
+
+
+def press(soft: SoftBody | None, material: Elastomer = SMOOTH, path: Press = PRESS) -> Contact:
+    ball = Indenter(size_mm=6.0, soft=soft)
+    settings = ContactSettings(active_radius_mm=7.5)
+    return press_membrane(MESH, POINTS, material, ball, path, settings)
+
+
+def prepared() -> tuple[SoftRelaxation, SoftObject]:
+    ball = Indenter(size_mm=6.0, soft=SoftBody())
+    problem = make_problem(MESH, POINTS, SMOOTH, ball, PRESS, ContactSettings())
+    soft = make_soft_object(problem, ball)
+    return SoftRelaxation(problem, soft), soft
+
+
+def test_forces_on_both_bodies_equal_the_twin() -> None:
+    """A ball whose nodes have moved at random: the same forces on points and nodes to 1e-5."""
+    relaxation, soft = prepared()
+    problem, random = relaxation.problem, np.random.default_rng(3)
+    membrane_mm = random.uniform(-0.02, 0.02, (len(problem.domain.masses), 3))
+    object_mm = random.uniform(-0.02, 0.02, (len(soft.domain.masses), 3))
+    relaxation.restart(0, np.concatenate([membrane_mm, object_mm]))
+    origin, rotation = problem.approach.pose(1.0)
+    relaxation.set_poses(0, np.concatenate([origin, rotation.ravel(), [1.0]])[None])
+    # The held part is not driven, so the object still is where it began: press it in.
+    object_mm += (origin - soft.origin_mm) @ soft.rotation
+    relaxation.restart(0, np.concatenate([membrane_mm, object_mm]))
+    relaxation.evaluate(np.ones(1, bool))
+    points = problem.domain.points
+    at = reference.point_places(problem.domain, membrane_mm)
+    meeting = meet(soft, problem.collider, object_mm, at, (origin, rotation))
+    touching = ~points.bonded
+    forces, nodal = normal_forces(soft, meeting, np.where(touching, points.stiffness_N_mm, 0.0))
+    assert np.count_nonzero(forces.any(axis=1)) > 10
+    found = relaxation.point_forces(MEMBRANE)[touching]
+    # Places are good to 1e-6 mm in single precision, of overlaps of about 0.1 mm.
+    bound = 1e-4 * np.abs(forces).max()
+    assert np.abs(found - forces[touching]).max() < bound
+    elastic = reference.stress_forces(soft.domain, object_mm)
+    history = reference.ContactHistory.fresh(soft.domain.points.count)
+    held = reference.surface_forces(
+        soft.domain, object_mm, history, problem.collider, (origin, rotation), friction=0.0
+    )
+    exact = elastic + nodal + reference.spread_to_nodes(soft.domain, held)
+    assert np.abs(relaxation.node_forces(OBJECT) - exact).max() < 1e-4 * np.abs(exact).max()
+
+
+def test_action_equals_reaction() -> None:
+    """What the membrane's points lose the object's nodes gain, to the quantum: 1e-6 of the force."""
+    relaxation, soft = prepared()
+    origin, rotation = relaxation.problem.approach.pose(1.0)
+    way = np.tile((origin - soft.origin_mm) @ soft.rotation, (len(soft.domain.masses), 1))
+    rest = np.zeros((len(relaxation.problem.domain.masses), 3))
+    relaxation.restart(0, np.concatenate([rest, way]))
+    relaxation.set_poses(0, np.concatenate([origin, rotation.ravel(), [1.0]])[None])
+    goal = np.tile(way[0], (soft.domain.points.count, 1))
+    relaxation.drive(OBJECT, goal, goal)
+    balance = relaxation.evaluate(np.ones(1, bool))
+    # A rigid shift strains nothing and the held part is where it belongs: contact is all there is.
+    on_object = soft.rotation @ relaxation.node_forces(OBJECT).sum(axis=0, dtype=np.float64)
+    assert balance.reaction_N[0, 2] > 0.05
+    np.testing.assert_allclose(on_object, balance.reaction_N[0], atol=1e-5)
+
+
+def test_stiff_object_presses_as_a_rigid_one() -> None:
+    """Sixty times as stiff as the skin: less force by what it gives way, between 0 and 5 %."""
+    rigid, stiff = press(None), press(SoftBody(young_MPa=60 * SMOOTH.young_MPa))
+    ratio = stiff.normal_N[-1] / rigid.normal_N[-1]
+    assert 0.95 < ratio < 1.0
+
+
+def test_object_as_soft_as_the_skin_halves_the_force() -> None:
+    """Hertz: the contact modulus of two equal bodies is half; the thin bonded layer takes more."""
+    rigid, soft = press(None), press(SoftBody())
+    ratio = soft.normal_N[-1] / rigid.normal_N[-1]
+    assert 0.35 < ratio < 0.55
+    # The skin and the ball share the depth; the ball is deformed where it is pressed.
+    assert 0.15 < -soft.displacement_mm[-1, :, 2].min() < 0.35
+    assert 0.1 < np.abs(soft.object_mm).max() < 0.4
+    assert soft.residual.max() < 1e-3
+
+
+def test_friction_drags_a_soft_object() -> None:
+    """Sheared by 1 mm at mu 0.2: every point slides at the cone, and the ball leans back."""
+    path = dataclasses.replace(PRESS, shear_mm=(1.0, 0.0), frames=2)
+    contact = press(SoftBody(), dataclasses.replace(SMOOTH, friction=0.2), path)
+    assert contact.friction_ratio[-1] == pytest.approx(0.2, rel=0.01)
+    assert contact.slip_mm[-1].max() > 0.3
+    along = contact.reaction_N[-1] @ contact.tangent_u
+    assert along < -0.1 * contact.normal_N[-1]
+
+
+def test_object_a_thousand_times_as_stiff_is_refused() -> None:
+    """Two such bodies do not relax together: the remedy is a rigid object."""
+    with pytest.raises(DesignError, match="1000 times as stiff") as raised:
+        press(SoftBody(young_MPa=145.0))
+    assert "rigid" in raised.value.hint
