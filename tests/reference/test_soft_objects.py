@@ -112,7 +112,7 @@ def test_friction_drags_a_soft_object() -> None:
     path = dataclasses.replace(PRESS, shear_mm=(1.0, 0.0), frames=2)
     contact = press(SoftBody(), dataclasses.replace(SMOOTH, friction=0.2), path)
     assert contact.friction_ratio[-1] == pytest.approx(0.2, rel=0.01)
-    assert contact.slip_mm[-1].max() > 0.3
+    assert contact.slip_mm[-1].max() > 0.2
     along = contact.reaction_N[-1] @ contact.tangent_u
     assert along < -0.1 * contact.normal_N[-1]
 
