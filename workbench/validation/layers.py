@@ -19,6 +19,7 @@ BALLS = {
     0.49: (0.2, 0.4, 0.6),
 }
 """chi = sqrt(R d) / h by Poisson's ratio."""
+NARROW_CHI = 0.2
 FORCE_LIMITS = {0.3: 0.05, 0.45: 0.05, 0.49: 0.08}
 RADIUS_CHIS = (0.2, 0.4, 0.6)
 RADIUS_LIMIT = 0.05
@@ -44,10 +45,17 @@ def _forces() -> list[Row]:
     from sim.contact.checks import layer
 
     return [
-        _force_row(layer.Ball(chi=chi, poisson=poisson))
+        _force_row(layer.Ball(chi=chi, poisson=poisson, flatness=_flatness(chi)))
         for poisson, chis in BALLS.items()
         for chi in chis
     ]
+
+
+def _flatness(chi: float) -> float:
+    """A narrow contact needs a smaller ball: overlaps below 1e-4 mm drown in single precision."""
+    from sim.contact.checks import layer
+
+    return layer.FLATNESS if chi >= NARROW_CHI else 0.5 * layer.FLATNESS
 
 
 def _force_row(ball: Ball, note: str = "") -> Row:
