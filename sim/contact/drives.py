@@ -48,6 +48,11 @@ def _facing(skin: Skin, actuation: Actuation) -> np.ndarray:
     return normal @ np.asarray(actuation.facing) > 0.0
 
 
+def drives_inner(mesh: MembraneMesh, press: Press) -> bool:
+    """Whether a drive moves any of the inner skin."""
+    return bool((driven_faces(mesh, press)[1] != UNDRIVEN).any())
+
+
 def farthest_drive_mm(mesh: MembraneMesh, press: Press) -> float:
     """Longest way of a driven vertex from where it was, looked at where drives turn round [mm]."""
     farthest_mm = 0.0

@@ -16,7 +16,7 @@ from sim.contact.backing import (
 )
 from sim.contact.collider import Collider, make_collider
 from sim.contact.domain import Domain, build_domain
-from sim.contact.drives import driven_faces, farthest_drive_mm
+from sim.contact.drives import driven_faces, drives_inner, farthest_drive_mm
 from sim.contact.materials import stiffest_MPa, young_MPa_at
 from sim.contact.memory import check_memory
 from sim.contact.quadrature import SurfacePoints, corner_points, facets_of, join, merge
@@ -106,6 +106,7 @@ def prepare(
         material,
         target_mm=approach.target_mm,
         active_radius_mm=radius_mm,
+        inner_moves=mesh.backing_mm > 0.0 or drives_inner(mesh, approach.press),
     )
 
 
