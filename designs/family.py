@@ -20,6 +20,7 @@ from typing import Any, Protocol, runtime_checkable
 
 import designs
 from designs.bodies import Bodies, Fields
+from designs.sequence import Sequence
 from workbench.core.design import Layers
 from workbench.core.errors import DesignError
 
@@ -60,6 +61,15 @@ class Family(Protocol):
         ...
 
 
+@runtime_checkable
+class Actuated(Protocol):
+    """What a family with driven parts offers beyond `Family`."""
+
+    def sequences(self, shape: Any, layers: Layers) -> Mapping[str, Sequence]:
+        """What the parts do with an object, by name."""
+        ...
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Slider:
     """One parameter as a user interface shows it."""
@@ -94,6 +104,12 @@ def family(name: str) -> Family:
             at="family",
         )
     return known[name]
+
+
+def sequences(name: str, shape: Any, layers: Layers) -> dict[str, Sequence]:
+    """The sequences of a family by name; none where nothing is driven."""
+    chosen = family(name)
+    return dict(chosen.sequences(shape, layers)) if isinstance(chosen, Actuated) else {}
 
 
 def sliders(name: str) -> list[Slider]:

@@ -53,11 +53,13 @@ from designs.prisms import (
     prism,
     rounded_prism,
 )
+from designs.sequence import Lobe, Sequence
 from designs.shells import hollow
 from designs.sliders import slider
 from workbench.core.booleans import cut, expect_volume, fillet
 from workbench.core.design import Layers
 from workbench.core.errors import DesignError
+from workbench.core.indenter import IndenterKind
 from workbench.core.marks import Field, Marks, Region
 from workbench.core.results import Label
 
@@ -74,6 +76,15 @@ ROOF_POINTS = 41
 PIECES = 2
 """Pieces of the outline under the roof: with one the kernel's volume is off by 2e-3, with two by
 4e-4."""
+CLOSE_DEG = 20.0
+"""How far the lobes close [degree]: 2 mm at the top of a lobe of 6 mm. Measured on a grid of 1 mm:
+least J 0.76 at 20 degrees and 0.46 at 30."""
+HELD_SHARE = 1.1
+"""Diameter of the held ball over the distance of the lobes' tops from the middle."""
+HELD_DEPTH_SHARE = 0.2
+"""How deep it is pressed into the saddle, over the wall."""
+GRID_SHARE = 0.32
+"""Grid of the contact solver over the wall."""
 SIMTAC = "SimTac, trunk sensor"
 
 
@@ -171,6 +182,32 @@ class Trunk:
     def target(self, shape: TrunkShape, layers: Layers) -> tuple[float, float, float]:
         """The middle of the saddle."""
         return 0.0, 0.0, shape.valley_mm
+
+    def sequences(self, shape: TrunkShape, layers: Layers) -> dict[str, Sequence]:
+        """The grip of SimTac's Fig. 10: a ball is sensed in the saddle, then held by both lobes.
+
+        Each lobe turns about a line along X under its top, at the height of the saddle.
+        """
+        lobes = tuple(
+            Lobe(
+                region=f"actuator_{number}",
+                root_mm=(0.0, sign * shape.peak_mm, shape.valley_mm),
+                # Right-handed about +X the top at +Y goes toward -Y.
+                axis=(sign, 0.0, 0.0),
+                outward=(0.0, sign, 0.0),
+            )
+            for number, sign in enumerate((1.0, -1.0))
+        )
+        grip = Sequence(
+            title="Press a ball on the saddle and close both lobes on it",
+            lobes=lobes,
+            close_deg=CLOSE_DEG,
+            kind=IndenterKind.SPHERE,
+            size_mm=round(HELD_SHARE * shape.peak_mm, 1),
+            depth_mm=round(HELD_DEPTH_SHARE * layers.elastomer_mm, 2),
+            grid_mm=round(GRID_SHARE * layers.elastomer_mm, 2),
+        )
+        return {"grip": grip}
 
     def build(self, shape: TrunkShape, layers: Layers) -> Bodies:
         """Build the five bodies.

@@ -61,6 +61,8 @@ def contact_files(
 
     Vertices are those of the outer skin in the order of the result, then, where it moves, those of
     the inner one. They stand where they were: the file's `displacement_mm` moves them.
+    Stress, energy and all of contact are those of the outer skin, 0 on the inner one;
+    `cauchy_MPa` has xx, yy, zz, xy, yz, zx, the order in which VTK reads a symmetric tensor.
 
     Args:
         depth_mm: Depth of each frame from first touch [mm], shape (K,).
@@ -83,11 +85,41 @@ def _frame_arrays(mesh: MembraneMesh, contact: Contact, frame: int) -> dict[str,
     if contact.inner_mm.shape[1]:
         moved = np.concatenate([moved, contact.inner_mm[frame]])
         sliding = np.pad(sliding, (0, len(mesh.inner.points_mm)))
-    return {"displacement_mm": np.array(moved), "sliding": sliding}
+    behind = len(moved) - contact.sliding.shape[1]
+    # What touches and strains is known on the outer skin; nothing touches the inner one.
+    padded = {
+        name: np.pad(values, ((0, behind), *[(0, 0)] * (values.ndim - 1)))
+        for name, values in _skin_arrays(contact, frame).items()
+    }
+    return {"displacement_mm": np.array(moved), "sliding": sliding, **padded}
+
+
+def _skin_arrays(contact: Contact, frame: int) -> dict[str, np.ndarray]:
+    """What a frame says at the outer vertices; the particle method knows only some of it."""
+    names = ("contact_force_N", "pressure_MPa", "cauchy_MPa", "energy_MPa", "slip_mm")
+    known = [name for name in names if len(getattr(contact, name))]
+    found = {name: getattr(contact, name)[frame] for name in known}
+    if "cauchy_MPa" in found:
+        found["von_mises_MPa"] = von_mises_MPa(found["cauchy_MPa"])
+    return found
+
+
+def von_mises_MPa(stress_MPa: np.ndarray) -> np.ndarray:
+    """Von Mises stress [MPa], shape (V,), of stresses xx, yy, zz, xy, yz, zx, shape (V, 6).
+
+    sqrt(((xx - yy)^2 + (yy - zz)^2 + (zz - xx)^2) / 2 + 3 (xy^2 + yz^2 + zx^2)).
+    """
+    direct, shear = stress_MPa[:, :3].astype(np.float64), stress_MPa[:, 3:].astype(np.float64)
+    apart = np.square(direct - np.roll(direct, -1, axis=1)).sum(axis=1) / 2.0
+    return np.sqrt(apart + 3.0 * np.square(shear).sum(axis=1)).astype(np.float32)
 
 
 def _frame_numbers(contact: Contact, frame: int, depth_mm: float) -> dict[str, np.ndarray]:
+    driven = {}
+    if contact.actuator_N.size:
+        driven["actuator_N"] = np.array(contact.actuator_N[frame])
     return {
+        **driven,
         "depth_mm": np.array([depth_mm], dtype=np.float64),
         "reaction_N": np.array(contact.reaction_N[frame])[None],
         "normal_N": np.array(contact.normal_N[frame])[None],

@@ -19,6 +19,7 @@ KEYS = (
     "residual penetration_mm particles grid_mm substeps images moulds file watertight volume_mm3 "
     "metrics surface_points_mm surface_faces displacement_mm indenter_pose background.png "
     "frame_000.png contact.npz report.html summary.json "
+    "forces.csv slip.csv poses.csv failed settled von_mises_MPa cauchy_MPa contact_force_N "
     "name case value unit reference null ceiling error error_kind limit sense ok"
 ).split()
 PROSE = re.sub(r"^```.*?^```$", "", README, flags=re.MULTILINE | re.DOTALL)

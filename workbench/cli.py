@@ -20,10 +20,11 @@ from pathlib import Path
 from typing import Any
 
 from workbench import __version__, commands
-from workbench.core.design import LightModel
+from workbench.core.design import Law, LightModel
 from workbench.core.errors import Cancelled, StoreError, WorkbenchError
 from workbench.core.imported import LengthUnit
 from workbench.core.motion import Mover
+from workbench.core.press import Extent, Method
 from workbench.project import Project
 from workbench.terminal import complain, say
 
@@ -171,17 +172,18 @@ def _serve_options(sub: argparse.ArgumentParser) -> None:
 def _run_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("design", metavar="NAME|FILE")
     _unit_option(sub)
-    sub.add_argument("--indenter", default="sphere", help=INDENTERS)
+    sub.add_argument("--indenter", help=f"{INDENTERS} (default sphere)")
     sub.add_argument("--size-mm", type=float, help="diameter, else the largest width (default 6)")
     sub.add_argument(
         "--edge-radius-mm", type=float, help="rounding of edges (default 0.45; of a file 0)"
     )
     sub.add_argument("--texture", metavar="PATTERN", help=TEXTURES)
     sub.add_argument("--target", help="x,y,z near the skin [mm]; default: where the family says")
-    sub.add_argument("--depth-mm", type=float, default=1.0)
-    sub.add_argument("--shear-mm", default="0,0", metavar="U,V")
+    sub.add_argument("--depth-mm", type=float, help="default 1, or that of the sequence")
+    sub.add_argument("--shear-mm", metavar="U,V")
     sub.add_argument("--twist-deg", type=float, default=0.0)
-    sub.add_argument("--frames", type=int, default=10)
+    sub.add_argument("--frames", type=int, help="default 10; of a sequence 5 to each phase")
+    sub.add_argument("--sequence", metavar="NAME", help="what driven parts do: grip of the trunk")
     sub.add_argument(
         "--stroke",
         action="append",
@@ -196,6 +198,13 @@ def _run_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--mover", choices=[m.value for m in Mover], default=Mover.OBJECT.value)
     sub.add_argument("--object-pose", metavar="X,Y,Z,QW,QX,QY,QZ", help="of --mover sensor")
     sub.add_argument("--grid-mm", type=float, help="grid cell of the contact solver (default 0.5)")
+    sub.add_argument("--extent", choices=[e.value for e in Extent], help="default active")
+    sub.add_argument("--region-error", type=float, help="of the force (default 0.003)")
+    sub.add_argument("--method", choices=[m.value for m in Method], help="default lattice")
+    sub.add_argument("--max-substeps", type=int, help="to a frame (default 6000)")
+    sub.add_argument("--tolerance", type=float, help="residual that has settled (default 0.001)")
+    sub.add_argument("--penalty", type=float, help="contact stiffness, E / grid (default 100)")
+    sub.add_argument("--material-law", choices=[law.value for law in Law], help="of the design")
     sub.add_argument("--light-model", choices=[m.value for m in LightModel])
     sub.add_argument("--out", required=True, type=Path, metavar="DIR")
     sub.add_argument("--json", action="store_true", help="progress as one JSON object per line")

@@ -11,10 +11,11 @@ import json
 import time
 from typing import Any
 
-from workbench.core.design import LightModel, SensorDesign
+from workbench.core.design import Law, LightModel, SensorDesign
 from workbench.core.errors import DesignError, DeviceError
 from workbench.core.results import Solid
 from workbench.core.units import human_seconds
+from workbench.press_options import press_case
 from workbench.project import Project
 from workbench.stages import Outcome
 from workbench.terminal import Progress, complain, say
@@ -59,14 +60,17 @@ def run(options: argparse.Namespace, project: Project) -> int:
     from workbench.aim import default_target_mm
     from workbench.folder import prepare
     from workbench.outputs import write_all
+    from workbench.partial import keeping_partial
     from workbench.pipeline import InlineRunner, evaluate, plan
     from workbench.project import load_design
 
     design = load_design(options.design, unit=options.unit, project=project)
     if options.light_model:
         design = design.replace("optics.light_model", LightModel(options.light_model))
+    if options.material_law:
+        design = design.replace("material.law", Law(options.material_law))
     # What is wrong with the design or the options is said before anything is written or built.
-    first = press_case(options, default_target_mm(design))
+    first = press_case(options, design, default_target_mm(design))
     plan(design, first)
     for notice in (design.material.notice, first.press.notice):
         if notice:
@@ -75,16 +79,18 @@ def run(options: argparse.Namespace, project: Project) -> int:
     project.store.sweep()
     printer = Progress(as_json=options.json)
     start = _start(design, options, project, printer)
-    design, case = start.design, press_case(options, default_target_mm(start.design, start.solid))
+    design = start.design
+    case = press_case(options, design, default_target_mm(design, start.solid))
     if case.indenter.mesh is not None and case.indenter.mesh.notice:
         complain(case.indenter.mesh.notice)
     calls = plan(design, case)
     runner, outcomes = InlineRunner(project.store), list(start.outcomes)
     known = {outcome.key for outcome in outcomes}
-    for outcome in evaluate(design, case, runner, monitor=printer):
-        if outcome.key not in known:
-            printer.done(outcome)
-            outcomes.append(outcome)
+    with keeping_partial(options.out, design, case, project.store, outcomes):
+        for outcome in evaluate(design, case, runner, monitor=printer):
+            if outcome.key not in known:
+                printer.done(outcome)
+                outcomes.append(outcome)
     try:
         *_, picture = evaluate(design, case, runner, wanted=("picture",), monitor=printer)
         printer.done(picture)
@@ -103,68 +109,6 @@ def run(options: argparse.Namespace, project: Project) -> int:
         )
         say(f"open {options.out / 'report.html'}")
     return 0
-
-
-def press_case(options: argparse.Namespace, target_mm: tuple[float, float, float]) -> Any:
-    """The press that the options of `run` describe; `target_mm` where they name none.
-
-    Raises:
-        DesignError: If a value is refused or the indenter is unknown.
-    """
-    from workbench.core.motion import Mover
-    from workbench.core.press import ContactSettings, Press
-    from workbench.indenter_choice import choose_indenter, choose_texture
-    from workbench.pipeline import PressCase
-    from workbench.strokes import read_stroke
-    from workbench.trajectories import read_trajectory
-
-    trajectory, standing = None, None
-    if options.trajectory is not None:
-        trajectory = read_trajectory(options.trajectory, every_s=options.every_s)
-    elif options.every_s:
-        raise DesignError(
-            f"--every-s {options.every_s:g} s is given without a trajectory",
-            hint="add --trajectory FILE.csv, or leave --every-s out",
-            at="--every-s",
-        )
-    if options.object_pose is not None:
-        standing = _numbers(options.object_pose, 7, at="--object-pose")
-    settings = {} if options.grid_mm is None else {"grid_mm": options.grid_mm}
-    return PressCase(
-        indenter=choose_indenter(
-            options.indenter,
-            size_mm=options.size_mm,
-            edge_radius_mm=options.edge_radius_mm,
-            texture=choose_texture(options.texture) if options.texture else None,
-        ),
-        press=Press(
-            target_mm=_numbers(options.target, 3, at="--target") if options.target else target_mm,
-            depth_mm=options.depth_mm,
-            shear_mm=_numbers(options.shear_mm, 2, at="--shear-mm"),
-            twist_deg=options.twist_deg,
-            frames=options.frames,
-            strokes=tuple(read_stroke(text, frames=options.frames) for text in options.stroke),
-            trajectory=trajectory,
-            mover=Mover(options.mover),
-            object_pose=standing,
-        ),
-        settings=ContactSettings(**settings),
-    )
-
-
-def _numbers(text: str, count: int, *, at: str) -> Any:
-    parts = text.split(",")
-    try:
-        values = tuple(float(part) for part in parts)
-    except ValueError:
-        values = ()
-    if len(values) != count:
-        raise DesignError(
-            f"{at} is {text!r}, expected {count} numbers in mm separated by commas",
-            hint=f"for example {at} {','.join(['0'] * count)}",
-            at=at,
-        )
-    return values
 
 
 def export(options: argparse.Namespace, project: Project) -> int:

@@ -1,7 +1,7 @@
 """Runs the pipeline behind the browser: one thread per topic, newest request wins.
 
 A topic is what the designer waits for: `shape` (the live membrane), `press`, `image`, `mesh`,
-`tetrahedra`, `parts`, `import`.
+`tetrahedra`, `parts`, `import`, and `live` (a press that follows a drag).
 Widget callbacks call `submit` and return; the browser's pump reads `events`. Nothing here touches
 a widget, and nothing heavy runs in these threads: they wait for the lanes.
 """
@@ -20,12 +20,15 @@ from typing import Protocol
 from workbench.core.design import SensorDesign
 from workbench.core.errors import Cancelled, WorkbenchError
 from workbench.core.monitor import Monitor, seconds_left
-from workbench.pipeline import PressCase, evaluate, needed, plan
+from workbench.live import NEEDED, LiveCall, Preview, live_call
+from workbench.pipeline import PressCase, evaluate, needed, plan, stage_monitor
 from workbench.stages import Call, Outcome
 from workbench.store import Store
 
 LIVE = "shape"
 """The topic that follows the sliders: Cancel is not meant for it."""
+DRAG = "live"
+"""The topic of live presses: each request stops the one before, and none is told of."""
 
 
 class Runner(Protocol):
@@ -33,6 +36,10 @@ class Runner(Protocol):
 
     def run(self, call: Call, monitor: Monitor) -> Outcome:
         """Compute the call unless it is stored."""
+        ...
+
+    def preview(self, call: LiveCall, monitor: Monitor) -> Preview:
+        """Compute a live call; nothing is stored."""
         ...
 
     def close(self) -> None:
@@ -47,6 +54,8 @@ class Request:
     design: SensorDesign
     case: PressCase
     wanted: tuple[str, ...]
+    live: bool = False
+    """Whether a live press follows the stages."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -70,6 +79,15 @@ class StageDone:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
+class LiveDone:
+    """A live press that settled."""
+
+    topic: str
+    preview: Preview
+    request: Request
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
 class Finished:
     """A request that ended; `error` is None when all of it was computed."""
 
@@ -83,7 +101,7 @@ class Finished:
     """Stage that raised the error; empty without one, or when no stage had begun."""
 
 
-Event = Progress | StageDone | Finished
+Event = Progress | StageDone | LiveDone | Finished
 
 
 class Conductor:
@@ -104,10 +122,17 @@ class Conductor:
         One that runs is stopped, except in the live topic: it is done before a person could wait
         for it, and a slider that moves on would otherwise never see a body.
         """
+        self._submit(topic, Request(design=design, case=case, wanted=tuple(wanted)))
+
+    def press_live(self, design: SensorDesign, case: PressCase) -> None:
+        """Ask for a live press; the one that runs is stopped, and none ever waits in line."""
+        self._submit(DRAG, Request(design=design, case=case, wanted=NEEDED, live=True))
+
+    def _submit(self, topic: str, request: Request) -> None:
         with self._guard:
             if topic not in self._topics:
                 self._topics[topic] = _Topic(topic, self)
-            self._topics[topic].submit(Request(design=design, case=case, wanted=tuple(wanted)))
+            self._topics[topic].submit(request)
 
     def wait(self, seconds: float) -> list[Event]:
         """All events that have come, after at most that time without any [s]."""
@@ -213,6 +238,7 @@ class _Topic:
         error: WorkbenchError | None = None
         events = self.conductor.events
         waiting: list[str] = []
+        reporter = _Reporter(self.name, events, stop)
         try:
             waiting = needed(plan(request.design, request.case), request.wanted)
             for outcome in evaluate(
@@ -220,10 +246,14 @@ class _Topic:
                 request.case,
                 self.conductor.runner,
                 wanted=request.wanted,
-                monitor=_Reporter(self.name, events, stop),
+                monitor=reporter,
             ):
                 waiting.pop(0)
                 events.put(StageDone(topic=self.name, outcome=outcome, request=request))
+            if request.live:
+                call = live_call(request.design, request.case)
+                preview = self.conductor.runner.preview(call, stage_monitor(reporter, call.stage))
+                events.put(LiveDone(topic=self.name, preview=preview, request=request))
         except WorkbenchError as raised:
             error = raised
         except Exception as bug:

@@ -3,7 +3,8 @@
 Some libraries hold the interpreter for minutes and cannot be interrupted, so heavy work runs in a
 *lane*: one spawned process that executes one call at a time. A soft cancel makes the stage's next
 `monitor` call raise `Cancelled`; after `GRACE_S` the process is killed and a new one takes its
-place. Results travel through the store, never through the pipe.
+place. Results travel through the store, never through the pipe; only previews (`workbench.live`),
+which are not kept, are sent back as they are.
 """
 
 from __future__ import annotations
@@ -27,11 +28,14 @@ from workbench.core.errors import Cancelled, LaneError, WorkbenchError
 from workbench.core.indenter import Indenter
 from workbench.core.monitor import Monitor, silent
 from workbench.core.press import ContactSettings, Press
+from workbench.live import LiveCall, Preview, Previewer
 from workbench.stages import STAGES, Call, Outcome, run
 from workbench.store import Store
 
 GRACE_S = 2.0
 """Time a stage has to notice a cancel before its process is killed [s]."""
+PREVIEW_GRACE_S = 20.0
+"""The same of a live press: it is stopped at every move, and its first one loads kernels [s]."""
 REPORT_S = 0.05
 """Shortest time between two progress messages [s]."""
 WARM_UP = {
@@ -78,14 +82,21 @@ class Lane:
             LaneError: If the process ended by itself, or could not be made ready.
             WorkbenchError: Whatever the stage raised.
         """
+        return self._in_turn(call, monitor, GRACE_S)
+
+    def preview(self, call: LiveCall, monitor: Monitor) -> Preview:
+        """Execute a live call in the worker, in turn with the others; raises as `run`."""
+        return self._in_turn(call, monitor, PREVIEW_GRACE_S)
+
+    def _in_turn(self, call: Call | LiveCall, monitor: Monitor, grace_s: float) -> Any:
         while not self._turn.acquire(timeout=0.1):
             monitor(0.0, f"waiting for the {self.name} worker")
         try:
-            return self._run(call, monitor)
+            return self._run(call, monitor, grace_s)
         finally:
             self._turn.release()
 
-    def _run(self, call: Call, monitor: Monitor) -> Outcome:
+    def _run(self, call: Call | LiveCall, monitor: Monitor, grace_s: float) -> Any:
         if self._closed:
             raise Cancelled("the workbench is closing")
         if not self._process.is_alive():
@@ -116,7 +127,7 @@ class Lane:
                     # The caller is lost, and its job must not hold up the next one.
                     self._kill()
                     raise
-            elif time.monotonic() - asked > GRACE_S:
+            elif time.monotonic() - asked > grace_s:
                 self._kill()
                 raise Cancelled(f"{call.stage} was stopped", hint="run it again when ready")
 
@@ -172,6 +183,10 @@ class LaneRunner:
             return Outcome(stage=call.stage, key=call.key, cached=True, seconds=0.0)
         return self.lanes[STAGES[call.stage].lane].run(call, monitor)
 
+    def preview(self, call: LiveCall, monitor: Monitor) -> Preview:
+        """Compute a live call in the simulation lane; nothing is stored."""
+        return self.lanes["sim"].preview(call, monitor)
+
     def close(self) -> None:
         """End all worker processes."""
         for lane in self.lanes.values():
@@ -185,7 +200,7 @@ def _serve(name: str, modules: Sequence[str], root: Path, pipe: Connection, canc
     os.environ.setdefault("ENABLE_TAICHI_HEADER_PRINT", "0")
     _follow_parent()
     unready = _warm_up(name, modules)
-    store = Store(root)
+    store, previewer = Store(root), Previewer()
     if name == "sim" and unready is None and not pipe.poll(IDLE_S):
         _rehearse()
     while True:
@@ -196,7 +211,8 @@ def _serve(name: str, modules: Sequence[str], root: Path, pipe: Connection, canc
         # What was missing may have been installed since.
         unready = unready and _warm_up(name, modules)
         monitor = _reporter(pipe, cancelled, number)
-        pipe.send((number, *(("error", unready) if unready else _answer(store, call, monitor))))
+        answer = ("error", unready) if unready else _answer(store, previewer, call, monitor)
+        pipe.send((number, *answer))
 
 
 def _warm_up(name: str, modules: Sequence[str]) -> LaneError | None:
@@ -226,8 +242,12 @@ def _rehearse() -> None:
         press(*block, Elastomer(), Indenter(), path, ContactSettings(), monitor=silent)
 
 
-def _answer(store: Store, call: Call, monitor: Monitor) -> tuple[str, Any]:
+def _answer(
+    store: Store, previewer: Previewer, call: Call | LiveCall, monitor: Monitor
+) -> tuple[str, Any]:
     try:
+        if isinstance(call, LiveCall):
+            return "done", previewer.answer(store, call, monitor)
         return "done", run(store, call, monitor)
     except WorkbenchError as error:
         return "error", error

@@ -21,9 +21,10 @@ from workbench.core.fabrication import (
     Recipe,
 )
 from workbench.core.press import Press
-from workbench.core.results import Bundle, MembraneMesh
+from workbench.core.results import Bundle, MembraneMesh, Solid
 from workbench.core.sensing import Contact, Shot
 from workbench.folder import remove_stale
+from workbench.forces import check_finite, csv_bytes, force_columns, slip_columns
 from workbench.pipeline import results
 from workbench.project import write_atomically
 from workbench.stages import Call, Outcome
@@ -67,8 +68,40 @@ def write_contact(out: Path, mesh: MembraneMesh, contact: Contact) -> None:
         residual=contact.residual,
         penetration_mm=contact.penetration_mm,
         sliding=contact.sliding,
+        contact_force_N=contact.contact_force_N,
+        pressure_MPa=contact.pressure_MPa,
+        cauchy_MPa=contact.cauchy_MPa,
+        energy_MPa=contact.energy_MPa,
+        slip_mm=contact.slip_mm,
+        support_moment_Nmm=contact.support_moment_Nmm,
+        actuator_N=contact.actuator_N,
+        actuator_moment_Nmm=contact.actuator_moment_Nmm,
+        sensor_pose=contact.sensor_pose,
     )
     write_atomically(out / "contact.npz", buffer.getvalue())
+
+
+def write_press(out: Path, path: Press, solid: Solid, mesh: MembraneMesh, contact: Contact) -> None:
+    """Write everything of a press but images and numbers of the summary.
+
+    `contact.npz`, `poses.csv`, `forces.csv`, `slip.csv` (of a path that goes sideways) and the VTK
+    files; of an earlier run's such files none is left.
+
+    Raises:
+        SolveError: If the result holds a value that is not finite.
+        StoreError: If the folder cannot be written.
+    """
+    check_finite(contact)
+    depths_mm = frame_depths_mm(path, contact)
+    write_contact(out, mesh, contact)
+    write_atomically(out / "poses.csv", pose_csv(*press_poses(path, contact)).encode())
+    write_atomically(out / "forces.csv", csv_bytes(force_columns(path, contact, depths_mm)))
+    slip = slip_columns(contact)
+    if slip is None:
+        remove_stale(out, ("slip.csv",), keep=())
+    else:
+        write_atomically(out / "slip.csv", csv_bytes(slip))
+    write_vtk(out, solid, mesh, contact=contact, depth_mm=depths_mm)
 
 
 def write_package(out: Path, bundle: Bundle) -> None:
@@ -112,12 +145,19 @@ def fabrication_tables(moulds: MouldSet, housing: HousingSet, recipe: Recipe) ->
 
 
 def _plain(value: FabricationCheck | Recipe) -> dict[str, Any]:
-    table = dataclasses.asdict(value)
-    # JSON has no infinity: a part without any wall to measure has none to report.
-    return {
-        name: None if isinstance(item, float) and not math.isfinite(item) else item
-        for name, item in table.items()
-    }
+    return plain_numbers(dataclasses.asdict(value))
+
+
+def plain_numbers(value: Any) -> Any:
+    """Tables and lists with None for what is not finite: JSON has no infinity and no NaN.
+
+    A part without any wall to measure has none to report.
+    """
+    if isinstance(value, dict):
+        return {name: plain_numbers(item) for name, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [plain_numbers(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def contact_summary(contact: Contact, path: Press, seconds: float) -> dict[str, Any]:
@@ -131,6 +171,7 @@ def contact_summary(contact: Contact, path: Press, seconds: float) -> dict[str, 
             "normal_N": float(contact.normal_N[k]),
             "residual": float(contact.residual[k]),
             "penetration_mm": float(contact.penetration_mm[k]),
+            "actuator_N": contact.actuator_N[k].tolist() if len(contact.actuator_N) else [],
         }
         for k, depth in enumerate(frame_depths_mm(path, contact))
     ]
@@ -179,14 +220,21 @@ def force_balance(contact: Contact) -> float:
 def summary_table(
     design: SensorDesign,
     path: Press,
-    store: Store,
-    calls: dict[str, Call],
+    contact: Contact,
+    shot: Shot,
+    seconds: float,
     outcomes: Sequence[Outcome],
 ) -> dict[str, Any]:
-    """Everything of `summary.json` except the files."""
-    contact: Contact = store.load("press", calls["press"].key)
-    shot: Shot = store.load("shoot", calls["shoot"].key)
-    seconds = store.entry("press", calls["press"].key).seconds
+    """Everything of `summary.json` except the files.
+
+    Args:
+        design: The sensor.
+        path: The press.
+        contact: Its result.
+        shot: Its images.
+        seconds: Time the contact took [s].
+        outcomes: Stages that are done.
+    """
     return {
         "schema": SUMMARY_SCHEMA,
         "design": design.name,
@@ -222,12 +270,10 @@ def write_all(
     from workbench.report import drawings, report_html
 
     load = results(store, calls, calls)
-    summary = summary_table(design, path, store, calls, outcomes)
+    seconds = store.entry("press", calls["press"].key).seconds
+    summary = summary_table(design, path, load["press"], load["shoot"], seconds, outcomes)
     summary["images"] = write_images(out, load["shoot"])
-    write_contact(out, load["mesh"], load["press"])
-    write_atomically(out / "poses.csv", pose_csv(*press_poses(path, load["press"])).encode())
-    depths_mm = frame_depths_mm(path, load["press"])
-    write_vtk(out, load["build"], load["mesh"], contact=load["press"], depth_mm=depths_mm)
+    write_press(out, path, load["build"], load["mesh"], load["press"])
     write_package(out, load["package"])
     summary["notices"] = {
         name: value.notice for name, value in load.items() if getattr(value, "notice", "")
@@ -238,5 +284,6 @@ def write_all(
     drawn = drawings(load["build"], load["mesh"], load["press"], load.get("picture"))
     html = report_html(design, path, summary, load["shoot"], load["press"], drawn)
     write_atomically(out / "report.html", html.encode())
-    write_atomically(out / "summary.json", json.dumps(summary, indent=1).encode())
+    text = json.dumps(plain_numbers(summary), indent=1, allow_nan=False)
+    write_atomically(out / "summary.json", text.encode())
     return summary

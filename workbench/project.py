@@ -36,6 +36,7 @@ from workbench.bodies import (
 from workbench.core.design import SCHEMA, SensorDesign
 from workbench.core.errors import DesignError, StoreError
 from workbench.core.mapping import from_table, suggest, to_table
+from workbench.moduli import with_moduli
 from workbench.store import Store
 
 VARIABLE = "WORKBENCH_PROJECT"
@@ -196,6 +197,8 @@ def design_from_toml(
     table = parse_toml(text, source=source)
     own = {name: value for name, value in table.items() if name not in GUEST_TABLES}
     body = own.pop("body", None)
+    if "material" in own:
+        own["material"] = with_moduli(own["material"])
     design = from_table(SensorDesign, own)
     if body is not None:
         design = dataclasses.replace(design, body=read_body_table(body, roots=roots))

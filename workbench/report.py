@@ -16,6 +16,7 @@ from workbench.core.mapping import to_table
 from workbench.core.press import Press
 from workbench.core.results import MembraneMesh, Picture, Skin, Solid
 from workbench.core.sensing import Contact, Shot
+from workbench.forces import slip_columns
 from workbench.outputs import frame_depths_mm, png_bytes
 from workbench.project import design_table
 
@@ -68,6 +69,7 @@ def report_html(
         f"<h1>{title}</h1><p>{pressed}</p>",
         "<h2>Tactile image</h2>" + _images(shot),
         "<h2>Force against depth</h2>" + _force_curve(path, contact),
+        _drives(path, contact),
         "<h2>Displacement</h2>" + _drawn(drawings.pressed, "Outer skin in the last frame"),
         "<h2>Score card</h2>" + _table(sorted(summary["metrics"].items())),
         "<h2>Mould and sensor</h2>" + _drawn(drawings.parts, EXPLODED),
@@ -78,6 +80,7 @@ def report_html(
         "<h2>Design</h2>" + _drawn(drawings.membrane, "Membrane", width=310),
         _table([*_flat(design_table(design)), *_constants(design)]),
         "<h2>Press</h2>" + _table(_flat(_press_table(path))),
+        "<h2>Files beside this page</h2>" + _table(_files(contact)),
         "<h2>Stages</h2>"
         + _table(
             (s["stage"], f"{'cached' if s['cached'] else format(s['seconds'], '.2f') + ' s'}")
@@ -89,6 +92,40 @@ def report_html(
         f"<!doctype html><html lang='en'><meta charset='utf-8'><title>{title}</title>"
         f"<style>{STYLE}</style><body>{body}</body></html>"
     )
+
+
+def _drives(path: Press, contact: Contact) -> str:
+    """What the drives and the object feel in each frame; nothing where nothing is driven."""
+    if not path.actuations:
+        return ""
+    names = [actuation.region for actuation in path.actuations]
+    head = [
+        "frame",
+        *(f"{name} x, y, z [N]" for name in names),
+        "object x, y, z [N]",
+        "pressed [N]",
+    ]
+    lines = []
+    for k, reaction in enumerate(contact.reaction_N):
+        vectors = (*contact.actuator_N[k], reaction)
+        cells = [", ".join(f"{x:.3f}" for x in np.round(v, 3) + 0.0) for v in vectors]
+        row = (str(k + 1), *cells, f"{contact.pressing_N[k]:.3f}")
+        lines.append("<tr>" + "".join(f"<td class='n'>{cell}</td>" for cell in row) + "</tr>")
+    heading = "".join(f"<th>{html.escape(text)}</th>" for text in head)
+    return f"<h2>Driven parts</h2><table><tr>{heading}</tr>{''.join(lines)}</table>"
+
+
+def _files(contact: Contact) -> list[tuple[str, str]]:
+    """The files that hold the press, and what is in them."""
+    rows = [
+        ("forces.csv", "forces, moments, penetration and residual of every frame"),
+        ("slip.csv", "tangential over normal force against the way sideways"),
+        ("poses.csv", "poses of what moved"),
+        ("contact.npz", "fields of every frame as arrays"),
+        ("contact.pvd", "the same fields for ParaView, one contact_*.vtp for each frame"),
+        ("summary.json", "numbers and checks for programs"),
+    ]
+    return [row for row in rows if row[0] != "slip.csv" or slip_columns(contact) is not None]
 
 
 def _constants(design: SensorDesign) -> list[tuple[str, float]]:
@@ -189,6 +226,7 @@ def _force_curve(path: Press, contact: Contact) -> str:
 def _press_table(path: Press) -> dict[str, Any]:
     """A press without the rows of its trajectory, which stand in poses.csv."""
     table = to_table(path)
+    table["actuations"] = ", ".join(actuation.region for actuation in path.actuations) or "none"
     if path.strokes:
         table["strokes"] = ", ".join(stroke.text for stroke in path.strokes)
     if path.trajectory is not None:

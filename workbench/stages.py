@@ -22,6 +22,7 @@ from workbench.core.design import (
     Optics,
 )
 from workbench.core.digest import digest
+from workbench.core.errors import SolveError, StoreError
 from workbench.core.fabrication import HousingSet, MouldSet, Recipe, SheetHead
 from workbench.core.imported import ImportedBody, Pick, ReadBody
 from workbench.core.indenter import Indenter
@@ -39,6 +40,9 @@ from workbench.core.results import (
 )
 from workbench.core.sensing import Contact, LightField, Shot
 from workbench.store import Store, timed
+
+PARTIAL = "press_partial"
+"""Where the store keeps the settled frames of a press that failed, by the key of that press."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -93,16 +97,37 @@ def run(store: Store, call: Call, monitor: Monitor = silent) -> Outcome:
     """Compute a call unless its result is stored, and store it.
 
     Raises:
-        WorkbenchError: Whatever the stage raises; nothing is stored then.
+        WorkbenchError: Whatever the stage raises. The frames that a press settled before it
+            failed are then stored as `PARTIAL` under the same key, nothing else is.
     """
     stage = STAGES[call.stage]
     key = call.key
     if store.has(stage.name, key):
         return Outcome(stage=stage.name, key=key, cached=True, seconds=0.0)
     inputs = [store.load(i.stage, i.key) if isinstance(i, Ref) else i for i in call.inputs]
-    value, seconds = timed(stage.function, *inputs, monitor=monitor)
+    try:
+        value, seconds = timed(stage.function, *inputs, monitor=monitor)
+    except SolveError as error:
+        _keep_partial(store, stage, key, error)
+        raise
     store.save(stage.name, key, value, seconds=seconds, version=stage.version)
     return Outcome(stage=stage.name, key=key, cached=False, seconds=seconds)
+
+
+def _keep_partial(store: Store, stage: Stage, key: str, error: SolveError) -> None:
+    """Store what settled, and leave its key in the error instead, which then is small to send."""
+    if error.partial is None:
+        return
+    spent_s = float(error.partial.frame_seconds.sum())
+    try:
+        store.save(PARTIAL, key, error.partial, seconds=spent_s, version=stage.version)
+    except StoreError as unsaved:
+        # Why the press failed is what the designer must read first.
+        error.hint = f"{error.hint}; what settled is lost: {unsaved.message}"
+    else:
+        error.kept = key
+    finally:
+        error.partial = None
 
 
 def intake(body: ImportedBody, *, monitor: Monitor) -> ReadBody:
@@ -295,7 +320,7 @@ STAGES = {
         Stage(name="tets", version=1, lane="cad", function=tets),
         Stage(name="lattice", version=2, lane="cad", function=lattice),
         Stage(name="bake", version=1, lane="sim", function=bake),
-        Stage(name="press", version=5, lane="sim", function=press),
+        Stage(name="press", version=6, lane="sim", function=press),
         Stage(name="shoot", version=2, lane="sim", function=shoot),
         Stage(name="mould", version=2, lane="cad", function=mould),
         Stage(name="housing", version=2, lane="cad", function=housing),

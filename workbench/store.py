@@ -2,7 +2,8 @@
 
 A result is written into a `.part-<pid>-...` folder, synced, and renamed: whoever sees the folder
 sees all of it, and of two writers the first one wins. Arrays are memory-mapped when loaded, so the
-browser process never reads what it does not show.
+browser process never reads what it does not show; those that are mostly zeros are packed
+(`workbench.sparse`), and unpacked when loaded.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ import numpy as np
 
 from workbench.core.codec import pack, unpack
 from workbench.core.errors import StoreError
+from workbench.sparse import PARTS, mostly_zeros, pack_zeros, unpack_zeros
 
 META = "meta.json"
 DEFAULT_LIMIT_BYTES = 20 * 2**30
@@ -62,7 +64,7 @@ class Store:
         return Entry(stage=stage, key=key, seconds=meta["seconds"], bytes=meta["bytes"])
 
     def load(self, stage: str, key: str) -> Any:
-        """The stored dataclass, arrays memory-mapped read-only.
+        """The stored dataclass, arrays read-only and memory-mapped unless packed.
 
         Raises:
             StoreError: If it is missing or damaged.
@@ -70,9 +72,7 @@ class Store:
         meta = self._meta(stage, key)
         folder = self.path(stage, key)
         try:
-            arrays = {
-                name: np.load(folder / f"{name}.npy", mmap_mode="r") for name in meta["arrays"]
-            }
+            arrays = {name: _read(folder, name, meta) for name in meta["arrays"]}
             value = unpack(arrays, meta["tree"])
         except (OSError, ValueError, KeyError, TypeError) as error:
             raise StoreError(
@@ -91,18 +91,24 @@ class Store:
             StoreError: If the disk is full or read-only; nothing half-written is left.
         """
         arrays, tree = pack(value)
-        size = sum(a.nbytes for a in arrays.values())
+        packed = {name: pack_zeros(a) for name, a in arrays.items() if mostly_zeros(a)}
+        files = {
+            **{f"{name}.npy": a for name, a in arrays.items() if name not in packed},
+            **{f"{name}.{end}.npy": a for name, both in packed.items() for end, a in both.items()},
+        }
+        size = sum(a.nbytes for a in files.values())
         meta = {
             "stage": stage,
             "version": version,
             "seconds": seconds,
             "bytes": size,
             "arrays": sorted(arrays),
+            "packed": {name: list(arrays[name].shape) for name in sorted(packed)},
             "tree": tree,
         }
         with self._writing(stage) as part:
-            for name, array in arrays.items():
-                _write(part / f"{name}.npy", lambda file, a=array: np.save(file, a))
+            for name, array in files.items():
+                _write(part / name, lambda file, a=array: np.save(file, a))
             _write(part / META, lambda file: file.write(json.dumps(meta).encode()))
             _publish(part, self.path(stage, key))
 
@@ -162,6 +168,15 @@ def timed(function: Any, *args: Any, **keywords: Any) -> tuple[Any, float]:
     start = time.perf_counter()
     value = function(*args, **keywords)
     return value, time.perf_counter() - start
+
+
+def _read(folder: Path, name: str, meta: dict[str, Any]) -> np.ndarray:
+    """One array of a result; results from before arrays were packed have none that are."""
+    shape = meta.get("packed", {}).get(name)
+    if shape is None:
+        return np.load(folder / f"{name}.npy", mmap_mode="r")
+    parts = {end: np.load(folder / f"{name}.{end}.npy") for end in PARTS}
+    return unpack_zeros(parts, tuple(shape))
 
 
 def _write(path: Path, write: Any) -> None:

@@ -26,12 +26,15 @@ import numpy as np
 from workbench.core.design import Elastomer
 
 ORDER = 64
-"""Gauss points of the contact; the results below have converged to 1e-6."""
+"""Gauss points of the contact: 1e-6 for contacts up to some 5 thicknesses wide."""
 WAVES = 600
 """Gauss points over wave numbers."""
 LAST_WAVE = 24.0
 """Wave number, times the thickness, beyond which 1 - L is below 1e-17."""
+WIDEST = 2.5
+"""Contact radius over sqrt(R d) that no layer reaches: columns give 1.41, water 2."""
 LINE_TERMS = 24
+"""Chebyshev polynomials of a line's pressure."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -84,7 +87,8 @@ def press_ball(
 ) -> LayerContact:
     """A ball on the layer; the contact radius follows from a pressure that ends smoothly."""
     profile = ball_depth(radius_mm)
-    return _press_profile(material, profile, 0.8 * radius_mm, 0.0, height_mm, depth_mm)
+    most_mm = min(0.8 * radius_mm, WIDEST * math.sqrt(radius_mm * depth_mm))
+    return _press_profile(material, profile, most_mm, 0.0, height_mm, depth_mm)
 
 
 def press_flat_end(
@@ -108,16 +112,32 @@ def _press_profile(
     height_mm: float,
     depth_mm: float,
 ) -> LayerContact:
-    """Bisect for the radius at which the depth, from f(a) = 0, is the one asked for."""
-    low, high = least_mm, most_mm
-    for _ in range(50):
-        radius_mm = 0.5 * (low + high)
-        x, weights, level, shaped = _densities(material, profile, radius_mm, height_mm)
-        reached_mm = float(shaped[-1] / level[-1])
-        low, high = (radius_mm, high) if reached_mm < depth_mm else (low, radius_mm)
-    if abs(reached_mm - depth_mm) > 1e-6 * depth_mm:
-        raise ValueError(f"a contact {most_mm} mm wide is only {reached_mm} mm deep")
+    """Look for the radius at which the depth, from f(a) = 0, is the one asked for."""
+
+    def parts(radius_mm: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        return _densities(material, profile, radius_mm, height_mm)
+
+    def excess_mm(radius_mm: float) -> float:
+        _, _, level, shaped = parts(radius_mm)
+        return float(shaped[-1] / level[-1]) - depth_mm
+
+    least_mm = max(least_mm, 1e-6 * most_mm)
+    x, weights, level, shaped = parts(_root(excess_mm, least_mm, most_mm))
     return _contact(x, weights, depth_mm * level - shaped)
+
+
+def _root(excess_mm: Callable[[float], float], least_mm: float, most_mm: float) -> float:
+    """Radius at which the excess of depth vanishes.
+
+    Raises:
+        ValueError: If the widest contact is not deep enough.
+    """
+    from scipy.optimize import brentq
+
+    missing_mm = -excess_mm(most_mm)
+    if missing_mm > 0.0:
+        raise ValueError(f"a contact {most_mm} mm wide lacks {missing_mm} mm of the depth")
+    return float(brentq(excess_mm, least_mm, most_mm, xtol=1e-10 * most_mm))  # pyright: ignore[reportArgumentType]
 
 
 def _contact(x: np.ndarray, weights: np.ndarray, density: np.ndarray) -> LayerContact:
@@ -169,11 +189,13 @@ def press_line(
     N(y) = int_0^inf L(x) cos(x y) / x dx is -ln|y| and a smooth rest, and the logarithm turns T_n
     into (pi / n) T_n. A pressure that ends smoothly has sum b_n = 0, which gives the depth.
     """
-    low, high = 0.0, 0.9 * radius_mm
-    for _ in range(50):
-        half_mm = 0.5 * (low + high)
-        terms, reached_mm = _line_of_width(material, radius_mm, height_mm, half_mm)
-        low, high = (half_mm, high) if reached_mm < depth_mm else (low, half_mm)
+
+    def excess_mm(half_mm: float) -> float:
+        return _line_of_width(material, radius_mm, height_mm, half_mm)[1] - depth_mm
+
+    most_mm = min(0.8 * radius_mm, WIDEST * math.sqrt(radius_mm * depth_mm))
+    half_mm = _root(excess_mm, 1e-6 * most_mm, most_mm)
+    terms, _ = _line_of_width(material, radius_mm, height_mm, half_mm)
     # int s^2 T_n / sqrt(1 - s^2) ds is pi / 2 for n = 0, pi / 4 for n = 2 and else nothing.
     square_mm2 = half_mm**2 * (0.5 + 0.25 * terms[1] / terms[0])
     return LayerContact(

@@ -103,7 +103,7 @@ class Domain:
     outer: Readout
     """Of the outer skin."""
     inner: Readout | None
-    """Of the inner skin where it is free to move, else None."""
+    """Of the inner skin where it is free or driven, else None."""
     particles: int
     """Material points with volume before the floor."""
 
@@ -146,6 +146,7 @@ def build_domain(
     *,
     target_mm: np.ndarray,
     active_radius_mm: float,
+    inner_moves: bool,
 ) -> Domain:
     """Number the active region.
 
@@ -156,12 +157,13 @@ def build_domain(
         material: Elastic constants of all parts.
         target_mm: Centre of the region [mm], shape (3,).
         active_radius_mm: Radius of the region.
+        inner_moves: Whether the inner skin is free or driven, and receives displacements too.
 
     Raises:
         DesignError: If no material lies in the region.
     """
     grid_mm = material_points.grid_mm
-    skins = [mesh.outer, mesh.inner] if mesh.backing_mm > 0.0 else [mesh.outer]
+    skins = [mesh.outer, mesh.inner] if inner_moves else [mesh.outer]
     skin_cells = [np.round(skin.points_mm / grid_mm).astype(np.int64) for skin in skins]
     point_cells = np.round(surface_points.position_mm / grid_mm).astype(np.int64)
     cells, fractions, left_out = _choose_cells(

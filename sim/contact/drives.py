@@ -48,6 +48,24 @@ def _facing(skin: Skin, actuation: Actuation) -> np.ndarray:
     return normal @ np.asarray(actuation.facing) > 0.0
 
 
+def drives_inner(mesh: MembraneMesh, press: Press) -> bool:
+    """Whether a drive moves any of the inner skin."""
+    return bool((driven_faces(mesh, press)[1] != UNDRIVEN).any())
+
+
+def farthest_drive_mm(mesh: MembraneMesh, press: Press) -> float:
+    """Longest way of a driven vertex from where it was, looked at where drives turn round [mm]."""
+    farthest_mm = 0.0
+    driven = driven_faces(mesh, press)
+    for skin, drives in zip((mesh.outer, mesh.inner), driven, strict=True):
+        for number, actuation in enumerate(press.actuations):
+            places_mm = skin.points_mm[np.unique(skin.faces[drives == number])]
+            for frame, _ in actuation.keys:
+                ways_mm = np.linalg.norm(actuation.displacement_mm(places_mm, frame), axis=1)
+                farthest_mm = max(farthest_mm, float(ways_mm.max(initial=0.0)))
+    return farthest_mm
+
+
 def driven_displacement_mm(points: SurfacePoints, press: Press, progress: float) -> np.ndarray:
     """Displacement that drives prescribe after `progress` frames [mm], (P, 3); 0 elsewhere."""
     found = np.zeros((points.count, 3))

@@ -168,6 +168,8 @@ def collect(outcomes: list[FrameOutcome], problem: Problem, *, substeps: int) ->
         **stacked,
         target_mm=approach.target_mm,
         normal=approach.normal,
+        # A press that failed has fewer frames than its path.
+        sensor_pose=approach.sensor_poses()[: len(outcomes)],
         tangent_u=approach.tangent_u,
         grid_mm=problem.domain.grid_mm,
         active_radius_mm=problem.radius_mm,

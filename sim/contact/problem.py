@@ -16,7 +16,7 @@ from sim.contact.backing import (
 )
 from sim.contact.collider import Collider, make_collider
 from sim.contact.domain import Domain, build_domain
-from sim.contact.drives import driven_faces
+from sim.contact.drives import driven_faces, drives_inner, farthest_drive_mm
 from sim.contact.materials import stiffest_MPa, young_MPa_at
 from sim.contact.memory import check_memory
 from sim.contact.quadrature import SurfacePoints, corner_points, facets_of, join, merge
@@ -106,6 +106,7 @@ def prepare(
         material,
         target_mm=approach.target_mm,
         active_radius_mm=radius_mm,
+        inner_moves=mesh.backing_mm > 0.0 or drives_inner(mesh, approach.press),
     )
 
 
@@ -127,7 +128,8 @@ def contact_points(
     unit = settings.penalty / grid_mm
     points = corner_points(facets, stiffness_N_mm3=unit, bonded=False)
     gap_mm = path_distance_mm(points.position_mm, approach, collider)
-    points = points.take(gap_mm < reach_mm(approach, grid_mm))
+    reached_mm = reach_mm(approach, grid_mm) + farthest_drive_mm(mesh, approach.press)
+    points = points.take(gap_mm < reached_mm)
     return points.scaled(young_MPa_at(material, mesh.outer, points.position_mm))
 
 

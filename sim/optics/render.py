@@ -90,20 +90,41 @@ def shoot(
     if displacement_mm is None:
         displacement_mm = np.zeros((0, vertices, 3), dtype=np.float32)
     expect(displacement_mm, f"K {vertices} 3", name="displacement")
-    scene = _open_scene(mesh, light, optics, monitor)
-    frames = _blank(scene, len(displacement_mm))
-    for number, displacement in enumerate(displacement_mm, start=1):
-        note = f"image {number} of {len(displacement_mm)}"
-        monitor(0.3 + 0.7 * (number - 1) / len(displacement_mm), note)
-        if not np.isfinite(displacement).all():
-            raise OpticsError(
-                f"the displacement of frame {number} is not finite",
-                hint="the contact solver diverged: press less deep",
-                at="press.depth_mm",
-            )
-        _expose(scene, look(scene.view, displacement), frames, number)
-    monitor(1.0, "images ready")
-    return frames
+    return Studio(mesh, light, optics, monitor=monitor).shoot(displacement_mm, monitor=monitor)
+
+
+class Studio:
+    """Camera, light and background of one sensor, ready for images of its deformed skin."""
+
+    def __init__(
+        self,
+        mesh: MembraneMesh,
+        light: LightField,
+        optics: Optics,
+        *,
+        monitor: Monitor = silent,
+    ) -> None:
+        self._scene = _open_scene(mesh, light, optics, monitor)
+
+    def shoot(self, displacement_mm: np.ndarray, *, monitor: Monitor = silent) -> TactileFrames:
+        """The background and one image per frame of displacement [mm], shape (K, V, 3).
+
+        Raises:
+            OpticsError: If a displacement is not finite.
+        """
+        frames = _blank(self._scene, len(displacement_mm))
+        for number, displacement in enumerate(displacement_mm, start=1):
+            note = f"image {number} of {len(displacement_mm)}"
+            monitor(0.3 + 0.7 * (number - 1) / len(displacement_mm), note)
+            if not np.isfinite(displacement).all():
+                raise OpticsError(
+                    f"the displacement of frame {number} is not finite",
+                    hint="the contact solver diverged: press less deep",
+                    at="press.depth_mm",
+                )
+            _expose(self._scene, look(self._scene.view, displacement), frames, number)
+        monitor(1.0, "images ready")
+        return frames
 
 
 def _open_scene(mesh: MembraneMesh, light: LightField, optics: Optics, monitor: Monitor) -> _Scene:

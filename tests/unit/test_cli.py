@@ -12,6 +12,7 @@ import sys
 import tomllib
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,8 +20,11 @@ import pytest
 from workbench import bench, doctor, outputs, validate
 from workbench.benchmarks.pipeline import rerun_row
 from workbench.cli import main, parser
-from workbench.commands import press_case
+from workbench.core.design import Law
 from workbench.core.errors import SolveError
+from workbench.core.press import ContactSettings, Extent, Method, Press
+from workbench.press_options import press_case
+from workbench.project import load_design
 from workbench.rows import Row, as_json, as_text, bounded, compared, failed
 
 
@@ -38,6 +42,10 @@ BAD = {
     "size of zero": (["geltip", "--size-mm", "0"], "indenter.size_mm", "0 mm"),
     "no frames": (["geltip", "--frames", "0"], "press.frames", "0"),
     "fine grid": (["geltip", "--grid-mm", "0.001"], "contact.grid_mm", "0.001 mm"),
+    "loose region": (["geltip", "--region-error", "2"], "contact.region_error", "2"),
+    "no sequence": (["geltip", "--sequence", "grip"], "--sequence", "'grip'"),
+    "misspelt sequence": (["trunk", "--sequence", "gripp"], "--sequence", "'gripp'"),
+    "two paths": (["trunk", "--sequence", "grip", "--twist-deg", "9"], "--twist-deg", "grip"),
 }
 
 
@@ -68,9 +76,31 @@ def test_negative_coordinates_are_values() -> None:
     from workbench.cli import _join_negative
 
     words = ["run", "geltip", "--target", "-3,0,35", "--shear-mm", "-.5,0", "--out", "x"]
-    case = press_case(parser().parse_args(_join_negative(words)), (0.0, 0.0, 0.0))
+    options = parser().parse_args(_join_negative(words))
+    case = press_case(options, load_design("geltip"), (0.0, 0.0, 0.0))
     assert case.press.target_mm == (-3.0, 0.0, 35.0)
     assert case.press.shear_mm == (-0.5, 0.0)
+
+
+def test_solver_options_are_fields_of_the_settings() -> None:
+    """Each option sets the field of its name; what is left out keeps its default."""
+    words = "run geltip --extent full --method particles --region-error 0.01 --max-substeps 50"
+    words += " --tolerance 0.002 --penalty 60 --grid-mm 0.7 --material-law linear --out x"
+    options = parser().parse_args(words.split())
+    case = press_case(options, load_design("geltip"), (0.0, 0.0, 0.0))
+    assert case.settings == ContactSettings(
+        extent=Extent.FULL,
+        method=Method.PARTICLES,
+        region_error=0.01,
+        max_substeps=50,
+        tolerance=0.002,
+        penalty=60.0,
+        grid_mm=0.7,
+    )
+    assert Law(options.material_law) is Law.LINEAR
+    plain = parser().parse_args("run geltip --out x".split())
+    bare = press_case(plain, load_design("geltip"), (0.0, 10.0, 35.0))
+    assert (bare.settings, bare.press) == (ContactSettings(), Press())
 
 
 def test_busy_port_exits_2(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -350,17 +380,12 @@ def test_doctor_reports_a_missing_device(
 
 def test_summary_names_the_device_that_computed(monkeypatch: pytest.MonkeyPatch) -> None:
     """A contact stored by a GPU is not called a CPU result on another day."""
-    contact = SimpleNamespace(device="cuda")
-    shot = SimpleNamespace(metrics=SimpleNamespace(values={}))
-    store = SimpleNamespace(
-        load=lambda stage, key: {"press": contact, "shoot": shot}[stage],
-        entry=lambda stage, key: SimpleNamespace(seconds=1.0),
-    )
+    contact: Any = SimpleNamespace(device="cuda")
+    shot: Any = SimpleNamespace(metrics=SimpleNamespace(values={}))
     monkeypatch.setenv("WORKBENCH_DEVICE", "cpu")
     monkeypatch.setattr(outputs, "contact_summary", lambda *args: {})
-    calls = {name: SimpleNamespace(key="k") for name in ("press", "shoot")}
-    design = SimpleNamespace(name="n", family="f")
-    summary = outputs.summary_table(design, None, store, calls, [])  # type: ignore[arg-type]
+    design: Any = SimpleNamespace(name="n", family="f")
+    summary = outputs.summary_table(design, Press(), contact, shot, 1.0, [])
     assert summary["device"] == "cuda"
 
 

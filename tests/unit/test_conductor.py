@@ -6,13 +6,18 @@ import queue
 import threading
 import time
 from pathlib import Path
+from typing import cast
 
+import numpy as np
 import pytest
 
-from workbench.conductor import LIVE, Conductor, Finished
+from workbench.conductor import DRAG, LIVE, Conductor, Finished, LiveDone
 from workbench.core.design import SensorDesign
 from workbench.core.errors import Cancelled, MeshingError
 from workbench.core.monitor import Monitor
+from workbench.core.press import Press
+from workbench.core.sensing import Contact
+from workbench.live import LiveCall, Preview
 from workbench.pipeline import PressCase
 from workbench.stages import Call, Outcome
 from workbench.store import Store
@@ -33,6 +38,9 @@ class Slow:
         while not self.release.wait(0.005):
             monitor(0.1)
         return Outcome(stage=call.stage, key=call.key, cached=False, seconds=0.0)
+
+    def preview(self, call: LiveCall, monitor: Monitor) -> Preview:
+        raise AssertionError("no live press was asked for")
 
     def close(self) -> None:
         self.release.set()
@@ -143,3 +151,50 @@ def test_cancel_at_once_never_leaves_a_topic_busy(conductor: Conductor) -> None:
         assert isinstance(finished(conductor).error, Cancelled)
         assert not conductor.busy
     assert conductor.events.empty()
+
+
+class Previewing(Slow):
+    """A runner whose stages are done at once and whose live presses last until released."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.depths_mm: queue.Queue[float] = queue.Queue()
+
+    def run(self, call: Call, monitor: Monitor) -> Outcome:
+        return Outcome(stage=call.stage, key=call.key, cached=True, seconds=0.0)
+
+    def preview(self, call: LiveCall, monitor: Monitor) -> Preview:
+        self.depths_mm.put(call.press.depth_mm)
+        while not self.release.wait(0.005):
+            monitor(0.1)
+        return Preview(
+            contact=cast("Contact", None),
+            images=np.zeros((2, 1, 1, 3), np.uint8),
+            way=f"{call.press.depth_mm}",
+            seconds=0.0,
+        )
+
+
+def test_of_many_drags_the_first_is_stopped_and_only_the_last_is_pressed(tmp_path: Path) -> None:
+    """Twenty moves while a live press runs: that one is stopped, 18 never begin, one is shown."""
+    runner = Previewing()
+    conductor = Conductor(Store(tmp_path), runner)
+
+    def drag(depth_mm: float) -> None:
+        case = PressCase(press=Press(depth_mm=depth_mm))
+        conductor.press_live(design("finger"), case)
+
+    drag(1.0)
+    assert runner.depths_mm.get(timeout=WAIT_S) == 1.0
+    # Under the lock of the conductor, so that the thread sees them as one burst.
+    topic = conductor._topics[DRAG]  # pyright: ignore[reportPrivateUsage]
+    with topic._wake:  # pyright: ignore[reportPrivateUsage]
+        for step in range(20):
+            drag(1.0 + 0.01 * (step + 1))
+    assert finished(conductor).superseded
+    assert runner.depths_mm.get(timeout=WAIT_S) == pytest.approx(1.2)
+    runner.release.set()
+    shown = next(event for event in iter(conductor.events.get, None) if isinstance(event, LiveDone))
+    assert shown.request.case.press.depth_mm == pytest.approx(1.2)
+    assert finished(conductor).error is None
+    assert runner.depths_mm.empty()

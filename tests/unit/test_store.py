@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import json
 import os
 from pathlib import Path
 
@@ -53,6 +54,58 @@ def test_round_trip_of_designs_and_file_bundles(tmp_path: Path) -> None:
     assert store.load("b", "k").files["x.stl"].tobytes() == b"\0\1\2"
 
 
+@pytest.mark.parametrize("dtype", [np.float32, np.float64, np.int32, np.uint8, bool])
+def test_mostly_zeros_come_back_bit_for_bit_from_less_disk(
+    tmp_path: Path, dtype: type[np.generic]
+) -> None:
+    """Every entry and the type, from an eighth of the size at most."""
+    rng = np.random.default_rng(3)
+    array = np.zeros((20, 30_000, 2), dtype)
+    array[:, rng.integers(0, 30_000, 300)] = 1
+    store = Store(tmp_path)
+    store.save("s", "k", Picture(png=array), seconds=0.0, version=1)
+    loaded = store.load("s", "k").png
+    assert loaded.dtype == array.dtype
+    np.testing.assert_array_equal(loaded, array)
+    assert not loaded.flags.writeable
+    on_disk = sum(path.stat().st_size for path in store.path("s", "k").glob("*.npy"))
+    # One bit an entry is an eighth of a byte; the entries themselves are a hundredth.
+    assert on_disk < (0.2 if array.itemsize == 1 else 0.1) * array.nbytes
+    assert store.entry("s", "k").bytes == pytest.approx(on_disk, rel=0.01)
+
+
+def test_minus_zero_and_nan_survive_packing(tmp_path: Path) -> None:
+    """The bits of -0.0 and NaN are those that were stored."""
+    array = np.zeros(600_000, np.float32)
+    array[7], array[9] = -0.0, np.nan
+    store = Store(tmp_path)
+    store.save("s", "k", Picture(png=array), seconds=0.0, version=1)
+    np.testing.assert_array_equal(store.load("s", "k").png.view(np.uint32), array.view(np.uint32))
+
+
+def test_dense_arrays_and_results_from_before_are_mapped(tmp_path: Path) -> None:
+    """A full array is a plain file; a meta.json without `packed` is read as ever."""
+    store = Store(tmp_path)
+    array = np.ones((2, 400_000), np.float32)
+    store.save("s", "k", Picture(png=array), seconds=0.0, version=1)
+    path = store.path("s", "k") / META
+    meta = json.loads(path.read_text())
+    assert meta.pop("packed") == {}
+    path.write_text(json.dumps(meta))
+    loaded = store.load("s", "k").png
+    assert isinstance(loaded, np.memmap)
+    np.testing.assert_array_equal(loaded, array)
+
+
+def test_damaged_packing_is_a_store_error(tmp_path: Path) -> None:
+    """Values that do not fit their places are found out."""
+    store = Store(tmp_path)
+    store.save("s", "k", Picture(png=np.zeros(600_000, np.float32)), seconds=0.0, version=1)
+    np.save(store.path("s", "k") / "value.png.values.npy", np.ones(3, np.float32))
+    with pytest.raises(StoreError, match="damaged"):
+        store.load("s", "k")
+
+
 def test_first_writer_wins(tmp_path: Path) -> None:
     """A second save of the same key changes nothing and raises nothing."""
     store = Store(tmp_path)
@@ -96,7 +149,7 @@ def test_really_full_disk(tmp_path: Path) -> None:
         store = Store(disk)
         store.save("s", "small", picture(), seconds=0.0, version=1)
         with pytest.raises(StoreError, match="full"):
-            store.save("s", "big", Picture(png=np.zeros(2**22, np.uint8)), seconds=0, version=1)
+            store.save("s", "big", Picture(png=np.ones(2**22, np.uint8)), seconds=0, version=1)
         assert store.load("s", "small").png.size == 8
         assert not store.has("s", "big")
     finally:

@@ -12,7 +12,7 @@ import pyvista
 
 from geometry.primitives import rounded_box, sphere
 from geometry.surface import mesh_volume, vertex_normals
-from geometry.vtk import contact_files, membrane_file, volume_file
+from geometry.vtk import contact_files, membrane_file, volume_file, von_mises_MPa
 from workbench.core.results import Label, LabelledSurface, MembraneMesh, Skin, Solid, VolumeMesh
 from workbench.core.sensing import Contact
 from workbench.vtkfiles import write_vtk
@@ -98,6 +98,12 @@ def contact(mesh: MembraneMesh, *, inner: bool) -> Contact:
         substeps=1,
         device="cpu",
         inner_mm=rng.normal(size=(FRAMES, behind, 3)).astype(np.float32),
+        contact_force_N=rng.normal(size=(FRAMES, count, 3)).astype(np.float32),
+        pressure_MPa=rng.normal(size=(FRAMES, count)).astype(np.float32),
+        cauchy_MPa=rng.normal(size=(FRAMES, count, 6)).astype(np.float32),
+        energy_MPa=rng.random((FRAMES, count), dtype=np.float32),
+        slip_mm=rng.random((FRAMES, count), dtype=np.float32),
+        actuator_N=rng.normal(size=(FRAMES, 2, 3)),
     )
 
 
@@ -177,6 +183,14 @@ def test_frames_of_a_press_come_back_exactly(
         np.testing.assert_array_equal(
             surface.point_data["sliding"], np.pad(press.sliding[k], (0, len(behind)))
         )
+        for field in ("contact_force_N", "pressure_MPa", "cauchy_MPa", "energy_MPa", "slip_mm"):
+            found, given = surface.point_data[field], getattr(press, field)[k]
+            assert found.dtype == np.float32
+            np.testing.assert_array_equal(found[: len(moved)], given)
+            assert not found[len(moved) :].any()
+        mises = von_mises_MPa(press.cauchy_MPa[k])
+        np.testing.assert_array_equal(surface.point_data["von_mises_MPa"][: len(moved)], mises)
+        np.testing.assert_array_equal(surface.field_data["actuator_N"], press.actuator_N[k])
         expect_regions(surface.cell_data, *(np.concatenate(a) for a in regions_of(skins)))
         for field in ("reaction_N", "moment_Nmm", "indenter_pose"):
             assert surface.field_data[field].dtype == np.float64

@@ -21,6 +21,12 @@ _MODULES = (
     "workbench.core.imported",
     "workbench.core.design",
     "workbench.core.press",
+    "workbench.core.inclusion",
+    "workbench.core.indenter",
+    "workbench.core.texture",
+    "workbench.core.actuation",
+    "workbench.core.motion",
+    "workbench.core.trajectory",
 )
 
 Arrays = dict[str, np.ndarray]

@@ -26,6 +26,8 @@ FLATNESS = 10.0
 """Radius of the ball over sqrt(R d): the contact is a tenth of the ball."""
 CELLS_PER_RADIUS = 4.0
 """Grid cells in sqrt(R d), which is below the contact radius on a layer."""
+SKIN_CELLS = 0.5
+"""Edge of the skin's triangles in cells: as fine as contact points, so that each has a vertex."""
 
 END_MM = 6.0
 """Diameter of the flat end [mm]."""
@@ -110,7 +112,7 @@ def press_ball(ball: Ball) -> LayerPress:
         width_mm=2.0 * (radius_mm + 2.0 * ball.grid_mm),
         height_mm=HEIGHT_MM,
         grid_mm=ball.grid_mm,
-        skin_mm=min(1.0, 2.0 * ball.grid_mm),
+        skin_mm=SKIN_CELLS * ball.grid_mm,
     )
     contact = press_membrane(
         mesh,
@@ -123,6 +125,7 @@ def press_ball(ball: Ball) -> LayerPress:
     return LayerPress(contact=contact, skin_mm=mesh.outer.points_mm)
 
 
+@functools.cache
 def exact_ball(ball: Ball) -> LayerContact:
     """The same in exact linear elasticity."""
     return closed_forms.press_ball(
@@ -149,6 +152,7 @@ def press_flat_end(*, poisson: float = 0.45) -> LayerPress:
     return LayerPress(contact=contact, skin_mm=mesh.outer.points_mm)
 
 
+@functools.cache
 def exact_flat_end(*, poisson: float = 0.45) -> LayerContact:
     """The same in exact linear elasticity."""
     return closed_forms.press_flat_end(
@@ -190,6 +194,7 @@ def press_line() -> LayerPress:
     return LayerPress(contact=contact, skin_mm=mesh.outer.points_mm)
 
 
+@functools.cache
 def exact_line() -> LayerContact:
     """The same in exact linear elasticity, force per mm."""
     return closed_forms.press_line(

@@ -1,0 +1,69 @@
+"""A press that fails on its way leaves what settled: files, numbers, and one message."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.presets.conftest import Command
+from workbench.stages import PARTIAL
+from workbench.store import Store
+
+pytestmark = pytest.mark.slow
+
+SOFT = (
+    "--indenter sphere --size-mm 4 --target 0,0,16 --depth-mm 1.2 --frames 2 --grid-mm 0.8 "
+    "--penalty 1"
+).split()
+"""A hundredth of the usual contact stiffness: at 0.6 mm the ball overlaps the skin by 0.27 mm, at
+1.2 mm by 0.56 mm, of which 0.4 mm are allowed."""
+
+
+def test_a_press_that_fails_on_its_way_leaves_what_settled(
+    workbench: Command, project: Path, coarse: Path, tmp_path: Path
+) -> None:
+    """Exit 3 in frame 2 of 2; frame 1 is there as image, rows, arrays and VTK; again it is found.
+
+    A press that does settle then writes both frames into the same folder.
+    """
+    out = tmp_path / "out"
+    for _ in range(2):
+        run = workbench("run", coarse, *SOFT, "--out", out)
+        assert run.code == 3
+        errors = [line for line in run.stderr.splitlines() if line.startswith("error: ")]
+        (message,) = errors
+        assert message.startswith("error: frame 2 of 2: skin and object overlap by 0.5")
+        assert message.endswith(f"the limit is 0.400 mm; frame 1 settled and is in {out}")
+        assert " hint: lower contact.grid_mm" in run.stderr
+        assert run.lines[-1]["at"] == "contact.grid_mm"
+    assert "press" not in run.keys()
+    assert {"build", "mesh", "lattice", "bake"} <= set(run.keys())
+
+    summary = json.loads((out / "summary.json").read_text())
+    failed = summary["failed"]
+    assert (failed["stage"], failed["frame"], failed["frames"]) == ("press", 2, 2)
+    assert failed["settled"] == 1
+    assert failed["hint"]
+    assert summary["images"] == ["background.png", "frame_000.png"]
+    assert len(summary["contact"]["frames"]) == 1
+    names = {path.name for path in out.iterdir()}
+    assert {"contact_000.vtp", "contact.pvd", "membrane.vtp", "poses.csv"} <= names
+    assert not names & {"contact_001.vtp", "frame_001.png", "report.html", "moulds"}
+    rows = list(csv.DictReader((out / "forces.csv").open()))
+    assert [row["frame"] for row in rows] == ["1"]
+    assert float(rows[0]["normal_N"]) == pytest.approx(summary["contact"]["normal_N"], rel=1e-8)
+    with np.load(out / "contact.npz") as arrays:
+        assert len(arrays["reaction_N"]) == 1
+    assert len((out / "poses.csv").read_text().splitlines()) == 3
+
+    kept = list((Store(project / "store").root / PARTIAL).iterdir())
+    assert len(kept) == 1
+    done = workbench("run", coarse, *SOFT[:-2], "--out", out)
+    assert done.code == 0
+    assert "failed" not in json.loads((out / "summary.json").read_text())
+    assert (out / "contact_001.vtp").exists()
+    assert kept[0].exists()

@@ -1,0 +1,81 @@
+"""Sequences are presses: drives close, stay in step with the object, and open again."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from designs.family import resolve_shape, sequences
+from workbench.core.errors import DesignError
+from workbench.core.indenter import Indenter
+from workbench.core.mapping import from_table, to_table
+from workbench.core.motion import StrokeKind
+from workbench.core.press import Press
+from workbench.project import load_design
+from workbench.sequences import sequence, titles
+
+
+def test_the_trunk_has_a_grip_and_the_finger_has_none() -> None:
+    """Names by family; a refusal says what there is."""
+    assert list(titles(load_design("trunk"))) == ["grip"]
+    assert titles(load_design("finger")) == {}
+    with pytest.raises(DesignError, match="finger has no sequence 'grip'"):
+        sequence(load_design("finger"), "grip")
+    with pytest.raises(DesignError, match="no sequence 'grap'") as caught:
+        sequence(load_design("trunk"), "grap")
+    assert "grip" in caught.value.hint
+
+
+def test_the_grip_closes_after_the_press_and_opens_before_the_lift() -> None:
+    """With 4 frames a phase: shares 0 at 4, 1 at 8, 0 at 12; 14 frames, released at the end."""
+    press = sequence(load_design("trunk"), "grip", frames=4).press
+    assert press.frame_count == 14
+    assert [stroke.kind for stroke in press.strokes] == [StrokeKind.HOLD, StrokeKind.RELEASE]
+    for drive in press.actuations:
+        assert [drive.share(frame) for frame in (0, 4, 6, 8, 12, 14)] == [0, 0, 0.5, 1, 0, 0]
+
+
+@pytest.mark.parametrize("lobe_mm", [2.0, 6.0, 12.0])
+def test_the_lobes_close_toward_each_other_as_mirror_images(lobe_mm: float) -> None:
+    """The top of the lobe at +Y goes toward -Y by lobe x sin(turn), the other one as far to +Y."""
+    design = load_design("trunk").replace("shape.lobe_mm", lobe_mm)
+    press = sequence(design, "grip").press
+    shape = resolve_shape(design.family, design.shape)
+    for sign, drive in zip((1.0, -1.0), press.actuations, strict=True):
+        top = np.array([[3.0, sign * shape.peak_mm, shape.valley_mm + lobe_mm]])
+        (moved,) = drive.displacement_mm(top, 10.0)
+        angle = np.radians(drive.turn_deg)
+        expected = [0.0, -sign * lobe_mm * np.sin(angle), -lobe_mm * (1.0 - np.cos(angle))]
+        np.testing.assert_allclose(moved, expected, atol=1e-12)
+        assert drive.facing == (0.0, sign, 0.0)
+
+
+def test_object_depth_and_solver_may_be_ones_own() -> None:
+    """What is named is taken, the rest stays the family's."""
+    design, ball = load_design("trunk"), Indenter(size_mm=8.0)
+    case = sequence(design, "grip", indenter=ball, depth_mm=0.3, settings={"max_substeps": 99})
+    usual = sequence(design, "grip")
+    assert (case.indenter, case.press.depth_mm) == (ball, 0.3)
+    assert case.settings == dataclasses.replace(usual.settings, max_substeps=99)
+
+
+def test_a_sequence_survives_a_file() -> None:
+    """Table and back, as a project keeps it: the same press."""
+    press = sequence(load_design("trunk"), "grip").press
+    assert from_table(Press, to_table(press)) == press
+
+
+def test_every_family_with_sequences_declares_them_for_its_extremes() -> None:
+    """At both ends of every slider the trunk's grip has a positive size, depth and turn."""
+    from designs.family import sliders
+
+    design = load_design("trunk")
+    for slider in sliders("trunk"):
+        for value in (slider.minimum, slider.maximum):
+            shape = resolve_shape("trunk", {slider.name: value})
+            (grip,) = sequences("trunk", shape, design.layers).values()
+            assert grip.size_mm > 0.0
+            assert 0.0 < grip.depth_mm < design.layers.elastomer_mm
+            assert 0.0 < grip.close_deg <= 90.0

@@ -1,0 +1,155 @@
+"""What is shown while the designer drags: one settled frame and its image, computed in a lane.
+
+A `LiveCall` is to a preview what a `Call` is to a stored result: it names its inputs and is small
+to send. Its answer is not stored; it travels through the pipe of the lane. The lane keeps the last
+press (`sim.contact.live`) and the scene of the last image, for requests like the one before.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import time
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from workbench.core.design import Elastomer, Optics, SensorDesign
+from workbench.core.digest import digest
+from workbench.core.indenter import Indenter
+from workbench.core.monitor import Monitor
+from workbench.core.press import ContactSettings, Press
+from workbench.core.results import MembraneMesh
+from workbench.core.sensing import Contact
+from workbench.pipeline import PressCase, plan
+from workbench.stages import Ref
+from workbench.store import Store
+
+if TYPE_CHECKING:
+    from sim.contact.live import LiveContact
+    from sim.optics.render import Studio
+
+NEEDED = ("mesh", "lattice", "bake")
+"""Stages that must be stored before a live call."""
+WIDEST_PX = 320
+"""Width of a preview's image: that of the page's dock."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class LiveCall:
+    """One live press."""
+
+    mesh: Ref
+    points: Ref
+    light: Ref
+    material: Elastomer
+    optics: Optics
+    indenter: Indenter
+    press: Press
+    settings: ContactSettings
+
+    @property
+    def stage(self) -> str:
+        """What messages call it."""
+        return "live press"
+
+    @property
+    def key(self) -> str:
+        """Equal for calls that differ in nothing but where and how far the object is pressed."""
+        return digest((self.mesh, self.points, self.material, self.indenter, self.settings))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Preview:
+    """The settled frame of a live press."""
+
+    contact: Contact
+    """One frame."""
+    images: np.ndarray
+    """Background and image, shape (2, H, W, 3), uint8, at most `WIDEST_PX` wide."""
+    way: str
+    """How it was reached: `gone on`, `same region` or `anew`."""
+    seconds: float
+    """Time from the call to the answer [s]."""
+
+
+def live_call(design: SensorDesign, case: PressCase) -> LiveCall:
+    """The live press of a state.
+
+    Raises:
+        DesignError: As `plan`.
+    """
+    calls = plan(design, case)
+    mesh, points, light = (calls[name].ref for name in NEEDED)
+    return LiveCall(
+        mesh=mesh,
+        points=points,
+        light=light,
+        material=design.material,
+        optics=design.optics,
+        indenter=case.indenter,
+        press=case.press,
+        settings=case.settings,
+    )
+
+
+class Previewer:
+    """Answers live calls in one process, and keeps what the next one may need."""
+
+    def __init__(self) -> None:
+        self._live: LiveContact | None = None
+        self._studio: tuple[str, Studio] | None = None
+
+    def answer(self, store: Store, call: LiveCall, monitor: Monitor) -> Preview:
+        """Press and look.
+
+        Raises:
+            WorkbenchError: Whatever placing, solving or rendering raises.
+        """
+        from workbench.devices import open_device
+
+        begun = time.perf_counter()
+        open_device()
+        from sim.contact.live import LiveContact
+
+        if self._live is None:
+            self._live = LiveContact()
+        mesh = store.load(call.mesh.stage, call.mesh.key)
+        contact = self._live.press(
+            mesh,
+            store.load(call.points.stage, call.points.key),
+            call.material,
+            call.indenter,
+            call.press,
+            call.settings,
+            key=call.key,
+            monitor=monitor,
+        )
+        studio = self._open_studio(store, call, mesh)
+        return Preview(
+            contact=contact,
+            images=studio.shoot(mesh.seen_displacement_mm(contact)).rgb,
+            way=self._live.way.value,
+            seconds=time.perf_counter() - begun,
+        )
+
+    def _open_studio(self, store: Store, call: LiveCall, mesh: MembraneMesh) -> Studio:
+        from sim.optics.render import Studio
+
+        optics = small(call.optics)
+        key = digest((call.mesh, call.light, optics))
+        if self._studio is None or self._studio[0] != key:
+            light = store.load(call.light.stage, call.light.key)
+            self._studio = (key, Studio(mesh, light, optics))
+        return self._studio[1]
+
+
+def small(optics: Optics) -> Optics:
+    """The same optics with no more pixels across than the page shows."""
+    camera = optics.camera
+    share = min(1.0, WIDEST_PX / camera.width_px)
+    width_px, height_px = (
+        max(1, round(share * count)) for count in (camera.width_px, camera.height_px)
+    )
+    reduced = dataclasses.replace(camera, width_px=width_px, height_px=height_px)
+    return dataclasses.replace(optics, camera=reduced)

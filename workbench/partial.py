@@ -1,0 +1,83 @@
+"""What a press that failed leaves in the folder of its run: the frames that settled.
+
+Images, `contact.npz`, `forces.csv`, poses and VTK files hold those frames only; `summary.json` says
+which frame failed and why. There is no report and no mould: the run has failed.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+from workbench.core.design import SensorDesign
+from workbench.core.errors import SolveError
+from workbench.core.monitor import silent
+from workbench.folder import remove_stale
+from workbench.outputs import plain_numbers, summary_table, write_images, write_press
+from workbench.pipeline import PressCase, plan, results
+from workbench.project import write_atomically
+from workbench.stages import PARTIAL, Call, Outcome, Ref, run
+from workbench.store import Store
+
+
+@contextlib.contextmanager
+def keeping_partial(
+    out: Path, design: SensorDesign, case: PressCase, store: Store, outcomes: Sequence[Outcome]
+) -> Iterator[None]:
+    """Write what settled before a press failed, say so in the error, and let it go on.
+
+    Args:
+        out: Folder of the run.
+        design: The sensor.
+        case: The press.
+        store: Where the failed stage kept its frames.
+        outcomes: Stages that are done.
+
+    Raises:
+        SolveError: That of the press, its message saying what was written.
+    """
+    try:
+        yield
+    except SolveError as error:
+        if error.kept:
+            count = _write(out, design, case, store, outcomes, error)
+            frames = "frame 1" if count == 1 else f"frames 1 to {count}"
+            error.message += f"; {frames} settled and {'is' if count == 1 else 'are'} in {out}"
+        raise
+
+
+def _write(
+    out: Path,
+    design: SensorDesign,
+    case: PressCase,
+    store: Store,
+    outcomes: Sequence[Outcome],
+    error: SolveError,
+) -> int:
+    """Write the settled frames; returns their count."""
+    calls = plan(design, case)
+    kept = Ref(stage=PARTIAL, key=error.kept)
+    shoot = calls["shoot"]
+    seen = Call("shoot", tuple(kept if i == calls["press"].ref else i for i in shoot.inputs))
+    done = [*outcomes, run(store, seen, silent)]
+    contact, shot = store.load(PARTIAL, error.kept), store.load("shoot", seen.key)
+    load = results(store, calls, ("build", "mesh"))
+    write_press(out, case.press, load["build"], load["mesh"], contact)
+    remove_stale(out, ("report.html",), keep=())
+    seconds = store.entry(PARTIAL, error.kept).seconds
+    summary: dict[str, Any] = summary_table(design, case.press, contact, shot, seconds, done)
+    summary["images"] = write_images(out, shot)
+    summary["failed"] = {
+        "stage": "press",
+        "frame": error.frame + 1,
+        "frames": case.press.frame_count,
+        "settled": len(contact.reaction_N),
+        "residual": error.residual,
+        **error.as_dict(),
+    }
+    text = json.dumps(plain_numbers(summary), indent=1, allow_nan=False)
+    write_atomically(out / "summary.json", text.encode())
+    return len(contact.reaction_N)

@@ -1,0 +1,131 @@
+"""The press that the options of `workbench run` describe.
+
+A sequence of the family brings its own target, path and drives; object, depth, frames and solver
+are its own unless the options name them.
+"""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any
+
+from workbench.core.design import SensorDesign
+from workbench.core.errors import DesignError
+from workbench.core.indenter import Indenter, IndenterKind
+from workbench.core.motion import Mover
+from workbench.core.press import ContactSettings, Extent, Method, Press
+from workbench.core.trajectory import Trajectory
+
+SETTINGS = ("grid_mm", "region_error", "max_substeps", "tolerance", "penalty")
+"""Options that are fields of `ContactSettings` as they stand."""
+NOT_WITH_SEQUENCE = ("target", "shear_mm", "twist_deg", "stroke", "trajectory", "object_pose")
+
+
+def press_case(
+    options: argparse.Namespace, design: SensorDesign, target_mm: tuple[float, float, float]
+) -> Any:
+    """What is pressed, where, and how it is computed; `target_mm` where the options name none.
+
+    Raises:
+        DesignError: If a value is refused, or object or sequence are unknown.
+    """
+    from workbench.pipeline import PressCase
+
+    if options.sequence is not None:
+        return _sequence(options, design)
+    return PressCase(
+        indenter=_indenter(options),
+        press=_press(options, target_mm),
+        settings=ContactSettings(**_settings(options)),
+    )
+
+
+def _sequence(options: argparse.Namespace, design: SensorDesign) -> Any:
+    from workbench.sequences import sequence
+
+    for name in NOT_WITH_SEQUENCE:
+        if getattr(options, name):
+            option = f"--{name.replace('_', '-')}"
+            raise DesignError(
+                f"{option} is given with --sequence {options.sequence}, which has its own path",
+                hint=f"leave {option} or --sequence out",
+                at=option,
+            )
+    named = (options.indenter, options.size_mm, options.edge_radius_mm, options.texture)
+    return sequence(
+        design,
+        options.sequence,
+        indenter=None if all(value is None for value in named) else _indenter(options),
+        depth_mm=options.depth_mm,
+        frames=options.frames,
+        settings=_settings(options),
+    )
+
+
+def _indenter(options: argparse.Namespace) -> Indenter:
+    from workbench.indenter_choice import choose_indenter, choose_texture
+
+    return choose_indenter(
+        IndenterKind.SPHERE.value if options.indenter is None else options.indenter,
+        size_mm=options.size_mm,
+        edge_radius_mm=options.edge_radius_mm,
+        texture=choose_texture(options.texture) if options.texture else None,
+    )
+
+
+def _press(options: argparse.Namespace, target_mm: tuple[float, float, float]) -> Press:
+    from workbench.strokes import read_stroke
+
+    standard = Press()
+    frames = standard.frames if options.frames is None else options.frames
+    shear, standing = options.shear_mm, options.object_pose
+    return Press(
+        target_mm=_numbers(options.target, 3, at="--target") if options.target else target_mm,
+        depth_mm=standard.depth_mm if options.depth_mm is None else options.depth_mm,
+        shear_mm=standard.shear_mm if shear is None else _numbers(shear, 2, at="--shear-mm"),
+        twist_deg=options.twist_deg,
+        frames=frames,
+        strokes=tuple(read_stroke(text, frames=frames) for text in options.stroke),
+        trajectory=_trajectory(options),
+        mover=Mover(options.mover),
+        object_pose=None if standing is None else _numbers(standing, 7, at="--object-pose"),
+    )
+
+
+def _trajectory(options: argparse.Namespace) -> Trajectory | None:
+    from workbench.trajectories import read_trajectory
+
+    if options.trajectory is not None:
+        return read_trajectory(options.trajectory, every_s=options.every_s)
+    if options.every_s:
+        raise DesignError(
+            f"--every-s {options.every_s:g} s is given without a trajectory",
+            hint="add --trajectory FILE.csv, or leave --every-s out",
+            at="--every-s",
+        )
+    return None
+
+
+def _settings(options: argparse.Namespace) -> dict[str, Any]:
+    """Fields of `ContactSettings` that the options name."""
+    given = {name: getattr(options, name) for name in SETTINGS}
+    if options.extent is not None:
+        given["extent"] = Extent(options.extent)
+    if options.method is not None:
+        given["method"] = Method(options.method)
+    return {name: value for name, value in given.items() if value is not None}
+
+
+def _numbers(text: str, count: int, *, at: str) -> Any:
+    parts = text.split(",")
+    try:
+        values = tuple(float(part) for part in parts)
+    except ValueError:
+        values = ()
+    if len(values) != count:
+        raise DesignError(
+            f"{at} is {text!r}, expected {count} numbers in mm separated by commas",
+            hint=f"for example {at} {','.join(['0'] * count)}",
+            at=at,
+        )
+    return values
