@@ -129,9 +129,9 @@ class Run:
         )
 
     def _predict(self) -> bool:
-        """Extrapolate the last frames' displacement along a straight path; False if it turns."""
+        """Extrapolate the last frames' displacement straight inward; False where the path turns."""
         known = min(len(self._settled), self.problem.approach.continues(self.frame))
-        if known < 2 or self.problem.press.actuations:
+        if known < 2 or self.problem.press.actuations or self._sideways():
             return False
         *older, before, last = self._settled
         guess = 2.0 * last - before
@@ -139,6 +139,20 @@ class Run:
             guess = 3.0 * last - 3.0 * before + older[-1]
         self.relaxation.restart(self.number, guess)
         return True
+
+    def _sideways(self) -> bool:
+        """Whether the object moves across the normal or turns in this frame.
+
+        Points that it reaches on the way must touch it where they meet it: anchored only at the end
+        of the frame they would have no friction.
+        """
+        approach = self.problem.approach
+        (start, turned), (end, turned_on) = (
+            approach.pose(self.frame + share) for share in (0.0, 1.0)
+        )
+        way = end - start
+        aside = way - (way @ approach.normal) * approach.normal
+        return bool(np.linalg.norm(aside) > STILL_MM or np.abs(turned_on - turned).max() > STILL_MM)
 
     def drive(self) -> None:
         """Tell held points where they go in this frame."""

@@ -9,7 +9,8 @@ penalty energy k phi(X)^2 / 2 gives
     force on the membrane -k phi F^-T grad phi, on node n of the object the opposite times w_n(X),
 
 so action and reaction are equal. Friction is that of the rigid object with anchors in the
-undeformed object. Nodes of the object gather integers (2^-36 N): their sum does not depend on its order.
+undeformed object. Nodes of the object gather integers (2^-36 N): their sum does not depend on its
+order.
 The plain twin is `soft_reference`.
 """
 

@@ -73,7 +73,7 @@ def test_forces_on_both_bodies_equal_the_twin() -> None:
 
 
 def test_action_equals_reaction() -> None:
-    """What the membrane's points lose the object's nodes gain, to the quantum: 1e-6 of the force."""
+    """What the membrane's points lose the object's nodes gain, to single precision."""
     relaxation, soft = prepared()
     origin, rotation = relaxation.problem.approach.pose(1.0)
     way = np.tile((origin - soft.origin_mm) @ soft.rotation, (len(soft.domain.masses), 1))

@@ -184,7 +184,7 @@ class ContactSettings:
     """Error of the force that the automatic radius may cost, relative [1]."""
     extent: Extent = Extent.ACTIVE
     method: Method = Method.LATTICE
-    penalty: float = 100.0
+    penalty: float = 200.0
     """Contact stiffness per area in units of E / grid_mm [1]."""
     tolerance: float = 1e-3
     """Out-of-balance force over the reaction at which a frame counts as settled [1]."""
