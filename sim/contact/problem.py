@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim.contact.approach import Approach, plan_approach
+from sim.contact.approach import Approach
 from sim.contact.backing import (
     SIDEWAYS,
     backed_faces,
@@ -14,11 +14,12 @@ from sim.contact.backing import (
     foundation_N_mm3,
     support_points_mm,
 )
-from sim.contact.collider import Collider, make_collider
+from sim.contact.collider import Collider
 from sim.contact.domain import Domain, build_domain
 from sim.contact.drives import driven_faces, drives_inner, farthest_drive_mm
 from sim.contact.materials import stiffest_MPa, young_MPa_at
 from sim.contact.memory import check_memory
+from sim.contact.placing import place_object
 from sim.contact.quadrature import SurfacePoints, corner_points, facets_of, join, merge
 from sim.contact.refinement import LONGEST_EDGE, path_distance_mm, reach_mm, refine
 from sim.contact.region import region_radius_mm
@@ -67,8 +68,7 @@ def make_problem(
             support, the region is too small, a driven region does not exist, or memory is short.
         SolveError: If the first touch cannot be found.
     """
-    collider = make_collider(indenter, grid_mm=points.grid_mm)
-    approach = plan_approach(mesh.outer, collider, press)
+    collider, approach = place_object(mesh.outer, indenter, press, grid_mm=points.grid_mm)
     check_depth(support_points_mm(mesh), approach, collider)
     radius_mm = region_radius_mm(mesh, material, approach, collider, settings)
     return Problem(

@@ -21,6 +21,10 @@ FINEST_EDGE_MM = 0.02
 MOST_ADVANCES = 500
 FARTHEST_TOUCH_MM = 3.0
 """Largest distance of the first touch from the target, beyond the reach of the indenter."""
+MOST_ASKED = 2048
+"""Points whose distance is asked for at once."""
+STEEPEST = 1.1
+"""Slope that a sampled distance may have; an exact one has 1."""
 MOST_TRIANGLES = 4096
 """Triangles kept at each subdivision; more only tie, as on a flat skin."""
 
@@ -59,9 +63,18 @@ def first_touch(skin: Skin, collider: Collider, target: np.ndarray, rotation: np
 
 def _advance(points: np.ndarray, collider: Collider, start: float) -> float:
     height, below = start, float(points[:, 2].min()) - collider.reach_mm
+    # Points that were far are not asked again before the body can have come near them.
+    at_least = np.full(len(points), -np.inf)
     for _ in range(MOST_ADVANCES):
-        gap = float(collider.distance(points - [0.0, 0.0, height])[0].min())
+        gap, asked = np.inf, np.zeros(len(points), bool)
+        while len(near := np.flatnonzero(~asked & (at_least < gap))):
+            # A few that may be nearest first: their gap leaves out most of the others.
+            near = near[np.argsort(at_least[near], kind="stable")[:MOST_ASKED]]
+            at_least[near] = collider.distance(points[near] - [0.0, 0.0, height])[0]
+            asked[near] = True
+            gap = min(gap, float(at_least[near].min()))
         height -= gap
+        at_least -= STEEPEST * max(gap, 0.0)
         if gap < TOUCH_MM:
             return height
         if height < below:

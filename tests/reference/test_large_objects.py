@@ -1,0 +1,48 @@
+"""Large objects: sampled finely only where they meet the skin."""
+
+import numpy as np
+import pytest
+import trimesh
+
+from sim.contact.placing import place_object
+from sim.contact.solver import press_membrane
+from sim.contact.specimens import flat_block
+from workbench.core.design import Elastomer
+from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
+from workbench.core.press import ContactSettings, Press
+
+pytestmark = pytest.mark.usefixtures("taichi_device")
+PRESS = Press(target_mm=(0.0, 0.0, 2.0), depth_mm=0.3, frames=1)
+
+
+def ball(size_mm: float) -> Indenter:
+    mesh = trimesh.creation.icosphere(subdivisions=6, radius=0.5 * size_mm)
+    points, faces = np.asarray(mesh.vertices, float), np.asarray(mesh.faces, np.int32)
+    return Indenter(
+        kind=IndenterKind.MESH, size_mm=size_mm, mesh=IndenterMesh(points_mm=points, faces=faces)
+    )
+
+
+def test_large_mesh_is_sampled_at_two_fifths_of_a_cell_where_it_touches() -> None:
+    """A ball of 120 mm as a whole would get 0.9 mm; its window gets 0.2 mm and holds the contact."""
+    mesh, _ = flat_block(width_mm=12.0, height_mm=2.0, grid_mm=0.5)
+    collider, approach = place_object(mesh.outer, ball(120.0), PRESS, grid_mm=0.5)
+    assert 1.0 / collider.size[3] == pytest.approx(0.2)
+    assert np.prod(collider.samples.shape) < 1_500_000
+    origin, rotation = approach.pose(1.0)
+    distance, _ = collider.distance((mesh.outer.points_mm - origin) @ rotation)
+    exact = np.linalg.norm(mesh.outer.points_mm - origin, axis=1) - 60.0
+    # The faceted ball lies up to 0.02 mm inside the round one.
+    assert np.abs(distance - exact)[exact < 0.1].max() < 0.03
+
+
+@pytest.mark.slow
+def test_large_mesh_presses_as_the_exact_ball() -> None:
+    """A ball of 40 mm as a mesh and in closed form: forces agree to 3 %."""
+    mesh, points = flat_block(width_mm=12.0, height_mm=2.0, grid_mm=0.5)
+    settings = ContactSettings(active_radius_mm=9.0)
+    forces = [
+        press_membrane(mesh, points, Elastomer(), each, PRESS, settings).normal_N[-1]
+        for each in (ball(40.0), Indenter(size_mm=40.0))
+    ]
+    assert forces[0] == pytest.approx(forces[1], rel=0.03)
