@@ -13,19 +13,21 @@ import numpy as np
 
 from ui.header import Header
 from ui.jobs import Jobs
+from ui.live import LivePress
 from ui.panels.fields import Fields, read_field, whole_shape
 from ui.reports import Reports
 from ui.scene import Scene
 from ui.session import Session
 from workbench.aim import default_target_mm, with_fitting_ring
 from workbench.bodies import IMPORTED
-from workbench.conductor import LIVE, Conductor, Finished, Request
+from workbench.conductor import DRAG, LIVE, Conductor, Finished, Request
 from workbench.core.design import SensorDesign
-from workbench.core.errors import WorkbenchError
+from workbench.core.errors import SolveError, WorkbenchError
+from workbench.core.indenter import Indenter
 from workbench.core.results import Solid
 from workbench.forms import resolve_shape
 from workbench.pipeline import plan
-from workbench.stages import Outcome
+from workbench.stages import PARTIAL, Outcome
 
 AUTOSAVE_S = 1.0
 """Quiet time after an edit before the design is written [s]."""
@@ -56,9 +58,10 @@ class Desk:
     def __init__(self, server: Any, session: Session, conductor: Conductor, *, fast: bool) -> None:
         self.server = server
         self.session = session
+        self.conductor = conductor
         self.fields = Fields(server, self.read, self.edit)
         self.reports = Reports(server, session, self.fields)
-        self.reports.on_log = lambda lines: self._tell("log", lines)
+        self.reports.on_log = lambda lines: self.tell("log", lines)
         self.guarded = self.reports.guarded
         self.log = self.reports.log
         self.scene = Scene(server, fast=fast, on_click=self.guarded(self._clicked))
@@ -77,8 +80,13 @@ class Desk:
         self.jobs.on_done = self._stage_done
         self.jobs.asked_now = self._asked_now
         self.jobs.on_events = self.refresh_header
-        self.jobs.on_idle = self._autosave
+        self.jobs.on_idle = self._idle
+        self.jobs.on_failed = self._failed
+        self.live = LivePress(self)
+        self.jobs.on_live = self.live.show
         self._edited: float | None = None
+        self._indenter: Indenter | None = None
+        """The object on show."""
         self._framed: tuple[str, str] | None = None
         self._sensor: tuple[str, str] | None = None
         self._covering: set[str] = set()
@@ -107,7 +115,7 @@ class Desk:
             if not path.startswith(("design.mould", "design.housing", "design.casting")):
                 self.put_parts_away()
             self.changed()
-            if path.startswith("design.optics"):
+            if path.startswith("design.optics") and not self.live.on:
                 # The pressed skin is opaque; the one at rest shows LEDs and camera.
                 self.scene.show_frame(0)
 
@@ -124,14 +132,25 @@ class Desk:
         self.show_stored()
         if self.current("build"):
             self._keep_aim()
+        self._follow_indenter()
         if not self.current("press"):
-            # What was pressed was another press: the skin is at rest again.
+            # What was pressed was another press: the skin is at rest again, or follows live.
             self._shown.pop("press", None)
-            self.scene.clear_frames()
+            if not self.live.on:
+                self.scene.clear_frames()
             self.scene.place_indenter(session.case.press)
+        if self.live.on:
+            self.live.follow()
         for panel in self.panels:
             panel.refresh()
         self.refresh_header()
+
+    def _follow_indenter(self) -> None:
+        """Show the object that is pressed, once there is a body for it to stand on."""
+        indenter = self.session.case.indenter
+        if self._indenter is not indenter and self.scene.body.solid is not None:
+            self._indenter = indenter
+            self.scene.show_indenter(indenter, self.session.case.press)
 
     def cover(self, what: str, shown: bool) -> None:
         """Tell all panels whether parts, or the edges of a mesh, are looked at, not the press."""
@@ -141,7 +160,7 @@ class Desk:
         else:
             self._covering.discard(what)
         if bool(self._covering) != before:
-            self._tell("covered", not before)
+            self.tell("covered", not before)
 
     def _follow_sensor(self) -> None:
         """Take away what was pressed and rendered of another family or another file."""
@@ -149,7 +168,7 @@ class Desk:
         if self._sensor not in (None, sensor):
             self._shown.clear()
             self.scene.rig.forget_image()
-            self._tell("sensor", None)
+            self.tell("sensor", None)
         self._sensor = sensor
 
     def _origin(self) -> tuple[str, str]:
@@ -190,7 +209,7 @@ class Desk:
         self.reports.begin()
         if topic != "parts":
             self.put_parts_away()
-        self._tell("run", topic)
+        self.tell("run", topic)
         self.jobs.submit(topic, self.session.design, self.session.case, wanted)
 
     def trial(
@@ -212,7 +231,7 @@ class Desk:
         if stage in ("build", "mesh"):
             self._notices[stage] = result.notice
             self.header.show_notice(self._notices)
-        self._tell(stage, result)
+        self.tell(stage, result)
 
     def _show_body(self, solid: Solid) -> None:
         self.scene.show_solid(solid)
@@ -223,7 +242,8 @@ class Desk:
             self.scene.frame_body()
             self._fit_ring(solid)
         self._keep_aim()
-        self.scene.show_indenter(self.session.case.indenter, self.session.case.press)
+        self._indenter = None
+        self._follow_indenter()
 
     def _fit_ring(self, solid: Solid) -> None:
         """Bring the LEDs of a body that has just come from a file inside it, and say so."""
@@ -235,7 +255,8 @@ class Desk:
             self.scene.rig.show_lights(fitted.optics.ring)
             self.log(changed)
 
-    def _tell(self, stage: str, result: Any) -> None:
+    def tell(self, stage: str, result: Any) -> None:
+        """Hand a result, or another piece of news, to all panels."""
         for panel in self.panels:
             panel.show(stage, result)
 
@@ -266,6 +287,26 @@ class Desk:
         calls = self.session.calls()
         if outcome.stage in SHOWN and calls[outcome.stage].key == outcome.key:
             self._show(outcome.stage, outcome.key)
+
+    def forget_shown(self, *stages: str) -> None:
+        """Show the stored results of these stages again when the state is next followed."""
+        for stage in stages:
+            self._shown.pop(stage, None)
+
+    def _failed(self, error: WorkbenchError, topic: str) -> None:
+        """Show the frames that settled before a press failed."""
+        if topic == DRAG:
+            self.live.failed()
+        kept = error.kept if isinstance(error, SolveError) else ""
+        if kept and topic != DRAG and kept == self.session.calls()["press"].key:
+            if self.session.store.has(PARTIAL, kept):
+                contact = self.session.store.load(PARTIAL, kept)
+                self.tell("partial", (contact, error))
+
+    def _idle(self) -> None:
+        """Follow the handle, and keep the state once edits have settled."""
+        self.live.gizmo.turn()
+        self._autosave()
 
     def _autosave(self) -> None:
         """Keep the state once edits have settled."""

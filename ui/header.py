@@ -8,7 +8,7 @@ from typing import Any
 
 import viser
 
-from workbench.conductor import LIVE, Progress
+from workbench.conductor import DRAG, LIVE, Progress
 from workbench.core.design import SensorDesign
 from workbench.core.units import human_seconds
 
@@ -32,6 +32,8 @@ NAMES = {
     "package": "Files",
 }
 AMBER = "#f5a623"
+WAIT_S = 3.0
+"""A live press that takes longer than this is worth a bar and a Cancel."""
 
 
 class Header:
@@ -73,8 +75,8 @@ class Header:
             self.strip.content = text
 
     def show_progress(self, running: Mapping[str, Progress]) -> None:
-        """The newest job; the live view is too quick to be worth a bar."""
-        shown = [progress for topic, progress in running.items() if topic != LIVE]
+        """The newest job; what follows the hand is too quick to be worth a bar."""
+        shown = [progress for topic, progress in running.items() if _worth_a_bar(topic, progress)]
         if self.job.visible != bool(shown):
             self.job.visible = bool(shown)
         if shown:
@@ -90,3 +92,9 @@ class Header:
         text = "<br>".join(html.escape(notice) for notice in notices.values() if notice)
         self.notice.visible = bool(text)
         self.notice.content = f"<span style='color:{AMBER}'>**Note:** {text}</span>"
+
+
+def _worth_a_bar(topic: str, progress: Progress) -> bool:
+    if topic == DRAG:
+        return progress.eta_s is not None and progress.eta_s > WAIT_S
+    return topic != LIVE

@@ -10,10 +10,22 @@ from collections.abc import Callable, Sequence
 
 from ui.header import NAMES, Header
 from ui.reports import Reports
-from workbench.conductor import LIVE, Conductor, Event, Finished, Progress, Request, StageDone
+from workbench.conductor import (
+    DRAG,
+    LIVE,
+    QUIET,
+    Conductor,
+    Event,
+    Finished,
+    LiveDone,
+    Progress,
+    Request,
+    StageDone,
+)
 from workbench.core.design import SensorDesign
-from workbench.core.errors import Cancelled
+from workbench.core.errors import Cancelled, WorkbenchError
 from workbench.core.units import human_seconds
+from workbench.live import Preview
 from workbench.pipeline import PressCase
 from workbench.stages import Outcome
 
@@ -36,6 +48,10 @@ class Jobs:
         """Set by the desk: called each time the pump turns."""
         self.asked_now: Callable[[Request, str], bool] = lambda request, failed: True
         """Set by the desk: whether a stage that failed still belongs to the state."""
+        self.on_live: Callable[[Preview, Request], None] = lambda preview, request: None
+        """Set by the desk: shows a live press."""
+        self.on_failed: Callable[[WorkbenchError, str], None] = lambda error, topic: None
+        """Set by the desk: shows what an error leaves to look at."""
         self._then: dict[str, Callable[[Finished], None]] = {}
 
     def submit(
@@ -49,7 +65,7 @@ class Jobs:
         """Ask for stages; `then` takes the place of reporting how it ended."""
         if then is not None:
             self._then[topic] = then
-        if topic != LIVE:
+        if topic not in QUIET:
             self.reports.log(f"{topic}: started")
         self.conductor.submit(topic, design, case, wanted)
 
@@ -81,6 +97,8 @@ class Jobs:
                 name = NAMES.get(outcome.stage, outcome.stage)
                 self.reports.log(f"{name} done in {human_seconds(outcome.seconds)}")
             self.on_done(outcome)
+        elif isinstance(event, LiveDone):
+            self.on_live(event.preview, event.request)
         else:
             self._finish(event)
 
@@ -88,24 +106,30 @@ class Jobs:
         self.running.pop(event.topic, None)
         error, then = event.error, self._then.pop(event.topic, None)
         log = self.reports.log
+        quiet = event.topic in QUIET
         if event.superseded:
-            log(f"{event.topic}: replaced by a newer request")
+            if not quiet:
+                log(f"{event.topic}: replaced by a newer request")
             if then is not None:
                 # It waits for the newer request's end.
                 self._then[event.topic] = then
         elif isinstance(error, Cancelled):
-            log(f"{event.topic}: cancelled")
-            if event.topic != LIVE:
+            if not quiet:
+                log(f"{event.topic}: cancelled")
                 text = f"{event.topic} was stopped; earlier results are kept"
                 self.reports.notify("Cancelled", text)
             if then is not None:
                 then(event)
         elif then is not None:
             then(event)
+        elif error is not None and event.topic == DRAG:
+            self.reports.report(error)
+            self.on_failed(error, event.topic)
         elif error is not None and not self.asked_now(event.request, event.failed):
             # Its message would stand above a design that it does not tell of.
             log(f"{event.topic}, of an earlier design: {error.message}")
         elif error is not None:
             self.reports.report(error, topic="" if event.topic == LIVE else event.topic)
-        elif event.topic != LIVE:
+            self.on_failed(error, event.topic)
+        elif not quiet:
             log(f"{event.topic}: finished in {human_seconds(event.seconds)}")

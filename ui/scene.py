@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from ui.imaging import coloured_glb, heat_colours
 from ui.nodes import replace
 from ui.parts import PartsView
+from ui.pressed import PressedView
 from ui.rig import RigView
-from ui.sensor import SKIN_COLOUR, SensorView
+from ui.sensor import SensorView
 from ui.views import Views
 from workbench.core.indenter import Indenter
 from workbench.core.press import Press
@@ -20,6 +20,8 @@ from workbench.core.sensing import Contact
 from workbench.previews import cell_edges, indenter_shape, standing_pose
 
 INDENTER_COLOUR = (232, 124, 44)
+SEEN_THROUGH = 0.35
+"""Opacity of an object that is seen through."""
 CELL_COLOUR = (255, 45, 85)
 EDGE_COLOUR = (20, 60, 120)
 GRID_FADE_MM = 220.0
@@ -39,11 +41,12 @@ class Scene:
         self.rig = RigView(server)
         self.parts = PartsView(server)
         self.views = Views(server)
-        self._frames: list[Any] = []
-        self._contact: Contact | None = None
+        self.pressed = PressedView(self.api, on_click)
         self._hidden = False
         self._shown = 0
         self._lowest_mm = 0.0
+        self.standing = np.array([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
+        """Where the object stands: x, y, z [mm], qw, qx, qy, qz."""
         self._cell: Any = None
         self._edges: Any = None
         self.indenter: Any = None
@@ -129,32 +132,35 @@ class Scene:
         if self.indenter is not None and len(body.points):
             self._pose(standing_pose(body.points, body.normals, path.target_mm, self._lowest_mm))
 
+    def see_through(self, wanted: bool) -> None:
+        """Let the object be seen through, so that what happens below it shows."""
+        if self.indenter is not None:
+            self.indenter.opacity = SEEN_THROUGH if wanted else None
+
     def _pose(self, pose: np.ndarray) -> None:
+        self.standing = np.asarray(pose)
         with self.server.atomic():
             self.indenter.position = tuple(pose[:3])
             self.indenter.wxyz = tuple(pose[3:])
 
-    def load_frames(self, skin: Skin, contact: Contact) -> float:
-        """Prepare the coloured skin of every frame; returns the largest displacement [mm]."""
+    def load_frames(self, skin: Skin, contact: Contact) -> None:
+        """Prepare the coloured skin of every frame."""
         self.clear_frames()
-        size = np.linalg.norm(contact.displacement_mm, axis=2)
-        top = max(float(size.max()), 1e-9)
-        faces = np.asarray(skin.faces)
-        for k, moved in enumerate(contact.displacement_mm):
-            points = (np.asarray(skin.points_mm) + moved).astype(np.float32)
-            glb = coloured_glb(points, faces, heat_colours(size[k] / top, SKIN_COLOUR))
-            node = self.api.add_glb(f"/frames/{k}", glb, visible=False)
-            node.on_click(self.on_click)
-            self._frames.append(node)
-        self._contact = contact
-        return top
+        self.pressed.load(skin, contact)
+
+    def show_live(self, skin: Skin, contact: Contact) -> None:
+        """Show the one frame of a live press."""
+        self._shown = 1
+        if self._hidden:
+            return
+        with self.server.atomic():
+            self.pressed.load_live(skin, contact)
+            self.body.show_skin(False)
+            self._pose(contact.indenter_pose[0])
 
     def clear_frames(self) -> None:
         """Forget the frames of a press."""
-        for node in self._frames:
-            node.remove()
-        self._frames.clear()
-        self._contact = None
+        self.pressed.clear()
         self._shown = 0
         self._follow_edges()
         if not self._hidden:
@@ -162,20 +168,19 @@ class Scene:
 
     def show_frame(self, number: int) -> None:
         """Show frame `number` of the press, 0 for the untouched skin."""
-        if self._contact is None:
+        contact = self.pressed.contact
+        if contact is None:
             return
-        number = min(number, len(self._frames))
+        number = min(number, self.pressed.count)
         self._shown = number
         self._follow_edges()
         if self._hidden:
             return
         with self.server.atomic():
-            for k, node in enumerate(self._frames, start=1):
-                if (k == number) != node.visible:
-                    node.visible = k == number
+            self.pressed.show(number)
             self.body.show_skin(number == 0)
             if self.indenter is not None:
-                self._pose(self._contact.indenter_pose[max(number, 1) - 1])
+                self._pose(contact.indenter_pose[max(number, 1) - 1])
 
     def show_cell(self, corners_mm: np.ndarray) -> None:
         """Draw the edges of one cell of a mesh: triangle, tetrahedron or hexahedron."""
@@ -210,7 +215,6 @@ class Scene:
             self.grid.visible = visible
             if self.indenter is not None:
                 self.indenter.visible = visible
-            for node in self._frames:
-                node.visible = False
+            self.pressed.show(0)
         if visible:
             self.show_frame(self._shown)

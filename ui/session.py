@@ -85,6 +85,16 @@ class Session:
             case = dataclasses.replace(self.case, **{group: part})
             self._commit(dataclasses.replace(self.state, case=case), dotted)
 
+    def change_press(self, **values: Any) -> None:
+        """Set several fields of the press as one step of undo.
+
+        Raises:
+            DesignError: If a value is refused; the state is as before.
+        """
+        press = dataclasses.replace(self.case.press, **values)
+        case = dataclasses.replace(self.case, press=press)
+        self._commit(dataclasses.replace(self.state, case=case), "case.press")
+
     def amend(self, dotted: str, value: Any) -> None:
         """Change a press field as part of the last edit: undo takes both back together."""
         state, past, future = self.state, self._past, list(self._future)

@@ -28,7 +28,9 @@ from workbench.store import Store
 LIVE = "shape"
 """The topic that follows the sliders: Cancel is not meant for it."""
 DRAG = "live"
-"""The topic of live presses: each request stops the one before, and none is told of."""
+"""The topic of live presses: each request stops the one before."""
+QUIET = (LIVE, DRAG)
+"""Topics that follow the designer's hand: nothing is logged of them."""
 
 
 class Runner(Protocol):
@@ -127,6 +129,12 @@ class Conductor:
     def press_live(self, design: SensorDesign, case: PressCase) -> None:
         """Ask for a live press; the one that runs is stopped, and none ever waits in line."""
         self._submit(DRAG, Request(design=design, case=case, wanted=NEEDED, live=True))
+
+    def stop_live(self) -> None:
+        """Stop the live press that runs, if any."""
+        with self._guard:
+            if DRAG in self._topics:
+                self._topics[DRAG].cancel()
 
     def _submit(self, topic: str, request: Request) -> None:
         with self._guard:

@@ -18,10 +18,12 @@ from workbench.core.design import Elastomer, Optics, SensorDesign
 from workbench.core.digest import digest
 from workbench.core.indenter import Indenter
 from workbench.core.monitor import Monitor
+from workbench.core.motion import Mover
 from workbench.core.press import ContactSettings, Press
-from workbench.core.results import MembraneMesh
+from workbench.core.results import MembraneMesh, Solid
 from workbench.core.sensing import Contact
 from workbench.pipeline import PressCase, plan
+from workbench.previews import outer_faces
 from workbench.stages import Ref
 from workbench.store import Store
 
@@ -73,6 +75,19 @@ class Preview:
     """Time from the call to the answer [s]."""
 
 
+def live_press(press: Press) -> Press:
+    """What a live press shows of a press: approach, shear and twist, in as few frames as go."""
+    return dataclasses.replace(
+        press,
+        frames=1,
+        strokes=(),
+        actuations=(),
+        trajectory=None,
+        object_pose=None,
+        mover=Mover.OBJECT,
+    )
+
+
 def live_call(design: SensorDesign, case: PressCase) -> LiveCall:
     """The live press of a state.
 
@@ -88,9 +103,18 @@ def live_call(design: SensorDesign, case: PressCase) -> LiveCall:
         material=design.material,
         optics=design.optics,
         indenter=case.indenter,
-        press=case.press,
+        press=live_press(case.press),
         settings=case.settings,
     )
+
+
+def aimed_mm(solid: Solid, place_mm: np.ndarray) -> np.ndarray:
+    """The point of the sensing skin of a body that is nearest to a place, shape (3,) [mm]."""
+    from geometry.surface import closest_point
+
+    points, faces = outer_faces(solid.membrane)
+    found, *_ = closest_point(points, faces, np.asarray(place_mm, dtype=np.float64)[None])
+    return found[0]
 
 
 class Previewer:

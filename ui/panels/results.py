@@ -9,19 +9,23 @@ from typing import Any
 
 import numpy as np
 import viser
-from viser import uplot
 
 from ui.desk import Desk
 from ui.imaging import difference, legend, placeholder
+from ui.panels.forces import ForcesTab
 from ui.sensor import SKIN_COLOUR
-from workbench.core.sensing import Contact, Shot
-from workbench.outputs import force_balance
+from workbench.core.errors import SolveError
+from workbench.core.press import Press
+from workbench.core.sensing import Contact
+from workbench.live import Preview, live_press
+from workbench.phases import phase
+from workbench.quantities import Quantity
 
 FRAME_S = 0.15
 """Time between frames while playing [s]."""
 LOG_ROWS = 60
 NO_IMAGE = "No press of this sensor yet: *Run press* makes an image."
-NO_PRESS = "No press of this sensor yet."
+LIVE_NOTE = "**live**: one frame, not stored; *Run press* computes the path"
 
 
 class ResultsPanel:
@@ -29,8 +33,15 @@ class ResultsPanel:
 
     def __init__(self, desk: Desk) -> None:
         self.desk = desk
-        self.shot: Shot | None = None
+        self.images: np.ndarray | None = None
+        """Background and frames on show, shape (1 + K, H, W, 3), uint8."""
         self.contact: Contact | None = None
+        self.press: Press = desk.session.case.press
+        """The press that `contact` is of."""
+        self.note = ""
+        """What is said of frames that are not a whole press: a live one, or what settled."""
+        self.play_next = False
+        """Whether the next images are played as soon as they are there."""
         self.playing = threading.Event()
         self.stepping = False
         """Whether there are frames to step through."""
@@ -44,17 +55,7 @@ class ResultsPanel:
             self.difference_text = gui.add_markdown("")
             self.difference = gui.add_image(placeholder(), label="difference", format="jpeg")
         with self.dock.add_tab("Forces", viser.Icon.CHART_LINE):
-            self.force_text = gui.add_markdown(NO_PRESS)
-            self.plot = gui.add_uplot(
-                (np.zeros(2), np.zeros(2)),
-                (
-                    uplot.Series(label="depth mm"),
-                    uplot.Series(label="normal N", stroke="#3b82f6", width=2),
-                ),
-                scales={"x": uplot.Scale(time=False)},
-                title="Normal force [N] against depth [mm]",
-                aspect=1.4,
-            )
+            self.forces = ForcesTab(gui)
         with self.dock.add_tab("Log", viser.Icon.LIST):
             self.log = gui.add_html("")
         self.dock.dock_right()
@@ -68,12 +69,36 @@ class ResultsPanel:
             self.frame = gui.add_slider("Frame", 0, 1, 1, 0, hint="0 is the untouched skin")
             self.play = gui.add_button("Play / pause", icon=viser.Icon.PLAYER_PLAY)
             self.legend = gui.add_html("")
+            names = tuple(quantity.value for quantity in Quantity)
+            hint = "The scale is that of all frames together"
+            self.quantity = gui.add_dropdown("Colours", names, initial_value=names[0], hint=hint)
+            hint = "Contact forces on the skin, a few added up in each arrow"
+            self.arrows = gui.add_checkbox("Force arrows", False, hint=hint)
         panel.float(x=405, y=-15, width=380)
         self.frame.on_update(self.desk.guarded(lambda event: self._show_frame()))
         self.play.on_click(self.desk.guarded(self._toggle))
+        self.quantity.on_update(self.desk.guarded(lambda event: self._paint()))
+        self.arrows.on_update(self.desk.guarded(lambda event: self._draw_arrows()))
         command = gui.add_command("Play or pause", hotkey="P")
         command.on_trigger(self.desk.guarded(self._toggle))
         threading.Thread(target=self._play_forever, daemon=True).start()
+
+    def _paint(self) -> None:
+        self.desk.scene.pressed.paint(Quantity(self.quantity.value))
+        self.desk.scene.show_frame(int(self.frame.value))
+        self._show_legend()
+
+    def _show_legend(self) -> None:
+        shown = self.desk.scene.pressed.shown
+        if shown is not None:
+            title = f"{shown.quantity.value.capitalize()} of the skin, all frames"
+            self.legend.content = legend(title, shown.top, shown.unit, SKIN_COLOUR)
+
+    def _draw_arrows(self) -> None:
+        wanted = bool(self.arrows.value)
+        self.desk.scene.pressed.draw_arrows(wanted)
+        # The arrows end below the object.
+        self.desk.scene.see_through(wanted)
 
     def _toggle(self, event: Any) -> None:
         if self.playing.is_set():
@@ -94,32 +119,40 @@ class ResultsPanel:
         self._show_forces(number)
 
     def _show_image(self, number: int) -> None:
-        if self.shot is None:
+        if self.images is None:
             return
-        rgb = self.shot.frames.rgb
-        number = min(number, len(rgb) - 1)
-        change, gain = difference(np.asarray(rgb[number]), np.asarray(rgb[0]))
+        number = min(number, len(self.images) - 1)
+        rgb, rest = np.asarray(self.images[number]), np.asarray(self.images[0])
+        change, gain = difference(rgb, rest)
         self._caption(number)
         with self.desk.server.atomic():
-            self.image.image = np.asarray(rgb[number])
+            self.image.image = rgb
             self.difference_text.content = f"Difference to the background, × {gain}"
             self.difference.image = change
 
     def _caption(self, number: int) -> None:
-        if self.shot is None:
+        if self.images is None:
             return
-        last = len(self.shot.frames.rgb) - 1
-        phase = "" if number <= self.desk.session.case.press.frames else ", shear and twist"
-        what = f"frame {min(number, last)} of {last}{phase}" if number else "background"
+        last = len(self.images) - 1
+        what = "background"
+        if number:
+            what = f"frame {min(number, last)} of {last}, {self._phase(min(number, last))}"
         stale = "" if self.desk.current("shoot") else " · **stale**: render again"
-        if self.caption.content != f"{what}{stale}":
-            self.caption.content = f"{what}{stale}"
+        text = f"live, {self._phase(number)}" if self.note == LIVE_NOTE else f"{what}{stale}"
+        if self.caption.content != text:
+            self.caption.content = text
+
+    def _phase(self, number: int) -> str:
+        """What happens in a frame; a live one is the last of its short path."""
+        live = self.note == LIVE_NOTE and number > 0
+        return phase(self.press, self.press.approach_frames if live else number)
 
     def refresh(self) -> None:
         """Mark an image and a force that no longer belong to the state."""
+        live = self.desk.live.on
         self._caption(int(self.frame.value))
         self._show_forces(int(self.frame.value))
-        if not self.desk.current("press"):
+        if not live and not self.desk.current("press"):
             # There are no frames on the skin to step through.
             self.stepping = False
             self._offer_timeline()
@@ -127,15 +160,17 @@ class ResultsPanel:
     def show(self, stage: str, result: Any) -> None:
         """Follow results and the log."""
         if stage == "press":
-            self._show_contact(result)
+            self._show_contact(self.desk.session.case.press, result, note="")
+        elif stage == "live":
+            self._show_live(result)
+        elif stage == "partial":
+            self._show_partial(*result)
         elif stage == "shoot":
-            self.shot = result
-            self._follow_frames(len(result.frames.rgb) - 1)
-            self._show_image(int(self.frame.value))
-            self.desk.scene.show_frame(int(self.frame.value))
-            camera = self.desk.session.design.optics.camera
-            image = np.asarray(result.frames.rgb[int(self.frame.value)])
-            self.desk.scene.rig.show_camera(camera, image[::4, ::4])
+            self._show_shot(np.asarray(result.frames.rgb))
+        elif stage == "play":
+            self.play_next = True
+        elif stage == "run":
+            self.playing.clear()
         elif stage == "sensor":
             self._blank()
         elif stage == "covered":
@@ -146,6 +181,42 @@ class ResultsPanel:
         elif stage == "log":
             rows = "<br>".join(html.escape(line) for line in reversed(result[-LOG_ROWS:]))
             self.log.content = f"<div style='font:12px monospace;margin:8px'>{rows}</div>"
+
+    def _show_shot(self, images: np.ndarray) -> None:
+        self.images = images
+        self._follow_frames(len(images) - 1)
+        self._show_image(int(self.frame.value))
+        self.desk.scene.show_frame(int(self.frame.value))
+        self._show_through_camera(images[int(self.frame.value)])
+        if self.play_next:
+            self.play_next = False
+            self.playing.set()
+
+    def _show_through_camera(self, image: np.ndarray) -> None:
+        camera = self.desk.session.design.optics.camera
+        step = max(1, image.shape[1] // 160)
+        self.desk.scene.rig.show_camera(camera, image[::step, ::step])
+
+    def _show_live(self, preview: Preview) -> None:
+        """Show a live frame and its image; the scene has its skin already."""
+        self.playing.clear()
+        self.contact, self.press = preview.contact, live_press(self.desk.session.case.press)
+        self.note, self.images = LIVE_NOTE, preview.images
+        self._show_legend()
+        self._follow_frames(1)
+        self._show_image(1)
+        self.forces.load(self.press, preview.contact)
+        self._show_forces(1)
+
+    def _show_partial(self, contact: Contact, error: SolveError) -> None:
+        """Show the frames that settled before a press failed."""
+        self.images = None
+        self.caption.content = NO_IMAGE
+        settled = len(contact.reaction_N)
+        shown = f"frames 1..{settled} are shown" if settled > 1 else "frame 1 is shown"
+        note = f"**frame {error.frame + 1} failed; {shown}**"
+        self._show_contact(self.desk.session.case.press, contact, note=note)
+        self.desk.log(note.strip("*"))
 
     def _follow_frames(self, count: int) -> None:
         if int(self.frame.max) != count:
@@ -162,45 +233,34 @@ class ResultsPanel:
 
     def _blank(self) -> None:
         """What was seen and felt belongs to another sensor."""
-        self.shot = self.contact = None
+        self.images = self.contact = None
+        self.note = ""
         self.playing.clear()
         with self.desk.server.atomic():
-            self.caption.content, self.force_text.content = NO_IMAGE, NO_PRESS
+            self.caption.content = NO_IMAGE
             self.difference_text.content = ""
             self.image.image = self.difference.image = placeholder()
-            self.plot.data = (np.zeros(2), np.zeros(2))
+            self.forces.clear()
 
-    def _show_contact(self, contact: Contact) -> None:
-        path = self.desk.session.case.press
+    def _show_contact(self, press: Press, contact: Contact, *, note: str) -> None:
         mesh = self.desk.session.result("mesh")
-        top_mm = self.desk.scene.load_frames(mesh.outer, contact)
-        self.legend.content = legend("Displacement of the skin", top_mm, "mm", SKIN_COLOUR)
-        count = path.frames
-        depth_mm = np.r_[0.0, path.depth_mm * np.arange(1, count + 1) / count]
-        self.plot.data = (depth_mm, np.r_[0.0, contact.normal_N[:count]])
-        self.contact = contact
+        self.desk.scene.load_frames(mesh.outer, contact)
+        self._show_legend()
+        self.contact, self.press, self.note = contact, press, note
+        self.forces.load(press, contact)
         self._follow_frames(len(contact.reaction_N))
         self._show_forces(int(self.frame.value))
         self.desk.scene.show_frame(int(self.frame.value))
 
     def _show_forces(self, number: int) -> None:
         """The force of the frame on show; of the last one at frame 0."""
-        contact = self.contact
-        if contact is None:
+        if self.contact is None:
             return
-        count = len(contact.reaction_N)
+        count = len(self.contact.reaction_N)
         k = (number or count) - 1
         if k >= count:
             return
-        x, y, z = contact.reaction_N[k]
-        text = (
-            f"**{contact.normal_N[k]:.3f} N** along the normal, frame {k + 1} of {count}\n\n"
-            f"on the object: x {x:.3f} · y {y:.3f} · z {z:.3f} N\n\n"
-            f"peak {contact.normal_N.max():.3f} N · residual {contact.residual.max():.1e} · force "
-            f"balance {100 * force_balance(contact):.2f} % · friction ratio "
-            f"≤ {contact.friction_ratio.max():.3f}"
-        )
-        if not self.desk.current("press"):
-            text = f"**stale**: run the press again\n\n{text}"
-        if self.force_text.content != text:
-            self.force_text.content = text
+        note = self.note
+        if not note and not self.desk.current("press"):
+            note = "**stale**: run the press again"
+        self.forces.show(self.contact, k, what=self._phase(k + 1), note=note)

@@ -1,21 +1,18 @@
-"""Simulate: the object, where and how far it is pressed; runs the contact and the images."""
+"""Simulate: the contact studio. Object, press, motion and solver; runs the contact, or follows."""
 
 from __future__ import annotations
 
-import tempfile
-from pathlib import Path
 from typing import Any
 
 import viser
 
 from ui.desk import Desk
-from workbench.core.errors import DesignError
-from workbench.core.indenter import IndenterKind
-from workbench.indenter_choice import choose_indenter
-
-MAX_STL_BYTES = 40 * 2**20
-"""Larger files do not pass the browser's connection; the command line takes them."""
-SHAPES = tuple(k.value for k in IndenterKind if k is not IndenterKind.MESH)
+from ui.panels.objects import ObjectFolder
+from ui.panels.strokes import MotionFolder
+from workbench.core.press import Extent, Method
+from workbench.phases import number
+from workbench.sequences import sequence, titles
+from workbench.state import State
 
 
 class SimulatePanel:
@@ -23,79 +20,91 @@ class SimulatePanel:
 
     def __init__(self, desk: Desk) -> None:
         self.desk = desk
-        gui, fields = desk.server.gui, desk.fields
-        with gui.add_folder("Object"):
-            now = desk.session.case.indenter.kind.value
-            options = (*SHAPES, "mesh") if now == "mesh" else SHAPES
-            self.kind = gui.add_dropdown("Object shape", options, initial_value=now)
-            self.kind.on_update(desk.guarded(self._choose))
-            hint = "Diameter, else the largest width"
-            self.size = gui.add_slider(
-                "Size mm", 1.0, 30.0, 0.5, desk.session.case.indenter.size_mm, hint=hint
-            )
-            self.size.on_update(desk.guarded(self._choose))
-            self.stl = gui.add_upload_button("Load STL", mime_type=".stl")
-            self.stl.on_upload(desk.guarded(self._load_stl))
+        gui = desk.server.gui
+        self.objects = ObjectFolder(desk)
         with gui.add_folder("Press"):
-            hint = "Near the skin; or click on the skin to aim"
-            fields.point("Target mm", "case.press.target_mm", step=0.5, hint=hint)
-            hint = "From first touch, along the inward normal"
-            fields.slider("Depth mm", "case.press.depth_mm", span=(0.0, 3.0, 0.05), hint=hint)
-            hint = "Of the approach; shear and twist take as many again"
-            fields.slider("Frames", "case.press.frames", span=(1, 40, 1), whole=True, hint=hint)
-            fields.slider("Twist deg", "case.press.twist_deg", span=(-45.0, 45.0, 1.0))
-            hint = "U is +Z along the skin, V is across"
-            self.shear = gui.add_vector2(
-                "Shear U V mm", desk.session.case.press.shear_mm, step=0.1, hint=hint
-            )
-            self.shear.on_update(desk.guarded(self._shear))
+            self._press_widgets()
+        self.motion = MotionFolder(desk)
         with gui.add_folder("Solver", expand_by_default=False):
-            fields.slider("Grid mm", "case.settings.grid_mm", span=(0.25, 1.5, 0.05))
-            hint = "Radius of the simulated region; 0: chosen from contact and wall"
-            fields.number("Region mm", "case.settings.active_radius_mm", step=1.0, hint=hint)
+            self._solver_widgets()
         button = gui.add_button("Run press", icon=viser.Icon.PLAYER_PLAY, hint="Contact, image (R)")
         button.on_click(desk.guarded(self._run))
+        hint = "Presses the object, closes the driven parts on it, opens them, lifts it off"
+        self.grip = gui.add_button("Grip sequence", icon=viser.Icon.HAND_GRAB, hint=hint)
+        self.grip.on_click(desk.guarded(self._run_sequence))
         desk.reports.beside("press")
         command = gui.add_command("Run press", hotkey="R")
         command.on_trigger(desk.guarded(self._run))
         self.numbers = gui.add_markdown("")
         self.found = ""
+        self.refresh()
+
+    def _press_widgets(self) -> None:
+        desk, fields, gui = self.desk, self.desk.fields, self.desk.server.gui
+        hint = "Solve one frame at every change: drag the handle, or move a slider"
+        self.live = gui.add_checkbox("Live", False, hint=hint)
+        self.live.on_update(desk.guarded(self._switch_live))
+        hint = "Near the skin; or click on the skin to aim"
+        fields.point("Target mm", "case.press.target_mm", step=0.5, hint=hint)
+        hint = "From first touch, along the inward normal"
+        fields.slider("Depth mm", "case.press.depth_mm", span=(0.0, 3.0, 0.05), hint=hint)
+        hint = "Of the approach; shear and twist take as many again"
+        fields.slider("Frames", "case.press.frames", span=(1, 40, 1), whole=True, hint=hint)
+        fields.slider("Twist deg", "case.press.twist_deg", span=(-45.0, 45.0, 1.0))
+        hint = "U is +Z along the skin, V is across"
+        self.shear = gui.add_vector2(
+            "Shear U V mm", desk.session.case.press.shear_mm, step=0.1, hint=hint
+        )
+        self.shear.on_update(desk.guarded(self._shear))
+        hint = "Coulomb coefficient of the elastomer against the object"
+        fields.slider("Friction", "design.material.friction", span=(0.0, 1.5, 0.05), hint=hint)
+        # Last, so that nothing moves under the mouse when it comes.
+        self.live_text = gui.add_markdown("", visible=False)
+        desk.live.told = self._tell_live
+
+    def _solver_widgets(self) -> None:
+        fields = self.desk.fields
+        fields.slider("Grid mm", "case.settings.grid_mm", span=(0.25, 1.5, 0.05))
+        hint = "Only the region around the contact, or the whole membrane"
+        fields.choice("Extent", "case.settings.extent", list(Extent), hint=hint)
+        hint = "Radius of the simulated region; 0: chosen from contact and wall"
+        fields.number("Region mm", "case.settings.active_radius_mm", step=1.0, hint=hint)
+        hint = "Share of the force that the chosen region may cost"
+        fields.number("Region error", "case.settings.region_error", step=0.001, hint=hint)
+        hint = "lattice: the workbench's own; particles: the published way, for comparison"
+        fields.choice("Method", "case.settings.method", list(Method), hint=hint)
 
     def _run(self, event: Any) -> None:
+        self._end_live()
         self.desk.run("press", ("press", "shoot"))
 
-    def _choose(self, event: Any) -> None:
-        if event.client is None:
-            return
-        indenter = self.desk.session.case.indenter
-        if self.kind.value != "mesh":
-            indenter = choose_indenter(self.kind.value, size_mm=float(self.size.value))
-            self.desk.session.replace_indenter(indenter)
-            self._follow()
+    def _run_sequence(self, event: Any) -> None:
+        """Take the first sequence of the family, run it, and play it."""
+        desk = self.desk
+        self._end_live()
+        design = desk.session.design
+        name = next(iter(titles(design)))
+        case = sequence(design, name)
+        desk.session.replace_state(State(design=design, case=case))
+        desk.replaced()
+        desk.tell("play", None)
+        desk.run("press", ("press", "shoot"))
 
-    def _load_stl(self, event: Any) -> None:
-        file = self.stl.value
-        if len(file.content) > MAX_STL_BYTES:
-            raise DesignError(
-                f"{file.name} has {len(file.content) / 2**20:.0f} MB, the browser takes "
-                f"{MAX_STL_BYTES / 2**20:.0f} MB",
-                hint="reduce the mesh, or use workbench run --indenter FILE.stl",
-                at="indenter",
-            )
-        with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder) / "upload.stl"
-            path.write_bytes(file.content)
-            indenter = choose_indenter(str(path))
-        self.desk.session.replace_indenter(indenter)
-        self.kind.options = (*SHAPES, "mesh")
-        self._follow()
+    def _switch_live(self, event: Any) -> None:
+        if event.client is not None:
+            self.desk.live.switch(bool(self.live.value))
 
-    def _follow(self) -> None:
-        case = self.desk.session.case
-        self.desk.reports.settle()
-        self.refresh()
-        self.desk.scene.show_indenter(case.indenter, case.press)
-        self.desk.changed()
+    def _end_live(self) -> None:
+        """The whole path is wanted, not a preview of its end."""
+        if self.desk.live.on:
+            self.live.value = False
+            self.desk.live.switch(False)
+
+    def _tell_live(self, text: str) -> None:
+        if self.live_text.content != text:
+            self.live_text.content = text
+        if self.live_text.visible != bool(text):
+            self.live_text.visible = bool(text)
 
     def _shear(self, event: Any) -> None:
         if event.client is not None:
@@ -105,15 +114,13 @@ class SimulatePanel:
     def refresh(self) -> None:
         """Show the state as it stands."""
         case = self.desk.session.case
-        if self.kind.value != case.indenter.kind.value:
-            if case.indenter.kind is IndenterKind.MESH:
-                self.kind.options = (*SHAPES, "mesh")
-            self.kind.value = case.indenter.kind.value
-        size_mm = min(max(case.indenter.size_mm, 1.0), 30.0)
-        if self.size.value != size_mm:
-            self.size.value = size_mm
+        self.objects.refresh()
+        self.motion.refresh()
         if tuple(self.shear.value) != case.press.shear_mm:
             self.shear.value = case.press.shear_mm
+        named = titles(self.desk.session.design)
+        if self.grip.visible != bool(named):
+            self.grip.visible = bool(named)
         stale = self.found and not self.desk.current("press")
         text = f"**stale** · {self.found}" if stale else self.found
         if self.numbers.content != text:
@@ -125,8 +132,9 @@ class SimulatePanel:
             self.found = self.numbers.content = ""
         if stage == "press":
             self.found = (
-                f"**{result.normal_N[-1]:.3f} N** along the normal · residual "
-                f"{result.residual.max():.1e} · penetration "
-                f"{1e3 * result.penetration_mm.max():.0f} µm · {result.substeps} substeps"
+                f"**{number(result.normal_N[-1], '.3f')} N** along the normal · residual "
+                f"{number(result.residual.max(), '.1e')} · penetration "
+                f"{number(1e3 * result.penetration_mm.max(), '.0f')} µm · {result.substeps} "
+                "substeps"
             )
             self.numbers.content = self.found

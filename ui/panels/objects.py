@@ -1,0 +1,180 @@
+"""The object of the contact studio: gallery, size, edges, texture, files."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+from typing import Any
+
+import viser
+
+from ui.desk import Desk
+from workbench.core.errors import DesignError
+from workbench.core.indenter import Indenter, IndenterKind
+from workbench.core.texture import Pattern
+from workbench.indenter_edit import (
+    another,
+    edge_mm,
+    gallery,
+    pictured,
+    resized,
+    rounded,
+    textured,
+    uploaded,
+)
+
+MAX_FILE_BYTES = 40 * 2**20
+"""Larger files do not pass the browser's connection; the command line takes them."""
+LOADED = "loaded mesh"
+PLAIN = tuple(p.value for p in Pattern if p is not Pattern.IMAGE)
+SPAN_MM, MESH_SPAN_MM = 30.0, 300.0
+"""Ends of the size slider."""
+
+
+class ObjectFolder:
+    """Widgets of the folder; `follow` is called after a change."""
+
+    def __init__(self, desk: Desk) -> None:
+        self.desk = desk
+        self.names = gallery()
+        self.labels = {name: label for label, name in self.names.items()}
+        self.chosen = ""
+        """Label of the last choice, to name an everyday object, which is a mesh by now."""
+        self.chosen_mesh: Any = None
+        gui, guarded = desk.server.gui, desk.guarded
+        now = desk.session.case.indenter
+        with gui.add_folder("Object"):
+            hint = "The paper's objects, seen or unseen in training; others; everyday objects"
+            self.kind = gui.add_dropdown(
+                "Object shape", (*self.names, LOADED), initial_value=self._label(now), hint=hint
+            )
+            self.kind.on_update(guarded(self._choose))
+            hint = "Diameter, else the largest width"
+            size_mm = min(now.size_mm, MESH_SPAN_MM)
+            self.size = gui.add_slider("Size mm", 0.5, MESH_SPAN_MM, 0.5, size_mm, hint=hint)
+            self.size.on_update(guarded(self._by_slider(resized, self._size)))
+            hint = "Rounding of edges; sharper than a grid cell cannot be resolved"
+            self.edge = gui.add_slider("Edge radius mm", 0.0, 3.0, 0.05, edge_mm(now), hint=hint)
+            self.edge.on_update(guarded(self._by_slider(rounded, self._edge)))
+            self.file = gui.add_upload_button("Load object", mime_type=".stl,.obj,.step,.stp",
+                                              icon=viser.Icon.UPLOAD)  # fmt: skip
+            self.file.on_upload(guarded(self._load_file))
+            with gui.add_folder("Texture", expand_by_default=now.texture.raised):
+                self._texture_widgets(now)
+
+    def _texture_widgets(self, now: Indenter) -> None:
+        gui, guarded, texture = self.desk.server.gui, self.desk.guarded, now.texture
+        self.pattern = gui.add_dropdown(
+            "Pattern", (*PLAIN, Pattern.IMAGE.value), initial_value=texture.pattern.value
+        )
+        self.height = gui.add_slider("Texture height mm", 0.0, 2.0, 0.05, texture.height_mm)
+        hint = "Period; of letters the height of a capital, of a picture its width"
+        pitch_mm = min(texture.pitch_mm, 20.0)
+        self.pitch = gui.add_slider("Texture pitch mm", 0.2, 20.0, 0.1, pitch_mm, hint=hint)
+        self.text = gui.add_text("Letters", texture.text or "A")
+        self.picture = gui.add_upload_button("Load picture", mime_type="image/*",
+                                             icon=viser.Icon.PHOTO_UP)  # fmt: skip
+        for widget in (self.pattern, self.height, self.pitch, self.text):
+            widget.on_update(guarded(self._weave))
+        self.picture.on_upload(guarded(self._load_picture))
+
+    def _label(self, indenter: Indenter) -> str:
+        if indenter.mesh is None:
+            return self.labels[indenter.kind.value]
+        return self.chosen if indenter.mesh is self.chosen_mesh else LOADED
+
+    def _choose(self, event: Any) -> None:
+        if event.client is None or self.kind.value == LOADED:
+            self.refresh()
+            return
+        indenter = another(self.names[self.kind.value], self.desk.session.case.indenter)
+        self.chosen, self.chosen_mesh = self.kind.value, indenter.mesh
+        self._take(indenter)
+
+    def _size(self) -> float:
+        return float(self.size.value)
+
+    def _edge(self) -> float:
+        return float(self.edge.value)
+
+    def _by_slider(
+        self, change: Callable[[Indenter, float], Indenter], value: Callable[[], float]
+    ) -> Callable[[Any], None]:
+        def moved(event: Any) -> None:
+            if event.client is None:
+                return
+            now = self.desk.session.case.indenter
+            named = now.mesh is not None and now.mesh is self.chosen_mesh
+            indenter = change(now, value())
+            if named:
+                self.chosen_mesh = indenter.mesh
+            self._take(indenter)
+
+        return moved
+
+    def _weave(self, event: Any) -> None:
+        """Take the texture that the widgets describe."""
+        if event.client is None:
+            return
+        now, pattern = self.desk.session.case.indenter, Pattern(self.pattern.value)
+        if pattern is Pattern.IMAGE and now.texture.image is None:
+            raise DesignError(
+                "there is no picture yet", hint="press Load picture", at="indenter.texture.image"
+            )
+        self._take(
+            textured(
+                now,
+                dataclasses.replace(
+                    now.texture,
+                    pattern=pattern,
+                    height_mm=float(self.height.value),
+                    pitch_mm=float(self.pitch.value),
+                    text=self.text.value if pattern is Pattern.LETTERS else "",
+                    image=now.texture.image if pattern is Pattern.IMAGE else None,
+                ),
+            )
+        )
+
+    def _load_picture(self, event: Any) -> None:
+        file = self.picture.value
+        self._take(pictured(self.desk.session.case.indenter, file.name, file.content))
+
+    def _load_file(self, event: Any) -> None:
+        file = self.file.value
+        if len(file.content) > MAX_FILE_BYTES:
+            raise DesignError(
+                f"{file.name} has {len(file.content) / 2**20:.0f} MB, the browser takes "
+                f"{MAX_FILE_BYTES / 2**20:.0f} MB",
+                hint="reduce the mesh, or use workbench run --indenter FILE",
+                at="indenter",
+            )
+        self._take(uploaded(file.name, file.content))
+
+    def _take(self, indenter: Indenter) -> None:
+        desk = self.desk
+        desk.session.replace_indenter(indenter)
+        desk.reports.settle()
+        self.refresh()
+        desk.changed()
+
+    def refresh(self) -> None:
+        """Show the object as it stands."""
+        now = self.desk.session.case.indenter
+        self._set(self.kind, self._label(now))
+        self._set(self.size, min(max(now.size_mm, 0.5), MESH_SPAN_MM))
+        self._set(self.edge, min(edge_mm(now), 3.0))
+        self._set(self.pattern, now.texture.pattern.value)
+        self._set(self.height, min(now.texture.height_mm, 2.0))
+        self._set(self.pitch, min(max(now.texture.pitch_mm, 0.2), 20.0))
+        meshed = now.kind is IndenterKind.MESH
+        top_mm = MESH_SPAN_MM if meshed or now.size_mm > SPAN_MM else SPAN_MM
+        if self.size.max != top_mm:
+            self.size.max = top_mm
+        lettered = now.texture.pattern is Pattern.LETTERS
+        if self.text.visible != lettered:
+            self.text.visible = lettered
+
+    @staticmethod
+    def _set(widget: Any, value: Any) -> None:
+        if widget.value != value:
+            widget.value = value

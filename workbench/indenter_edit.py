@@ -1,0 +1,135 @@
+"""Changes of an object one at a time, as widgets make them, and the gallery they choose from."""
+
+from __future__ import annotations
+
+import dataclasses
+import tempfile
+from pathlib import Path
+
+from workbench.core.errors import DesignError
+from workbench.core.indenter import (
+    DEFAULT_EDGE_RADIUS_MM,
+    EDGELESS,
+    SEEN,
+    UNSEEN,
+    Indenter,
+    IndenterKind,
+    widest_edge_mm,
+)
+from workbench.core.texture import Pattern, Texture
+from workbench.indenter_choice import choose_indenter, load_heights
+
+SAFE = 1.0 / 1.01
+"""Share of the largest edge radius that a shrunk object takes."""
+
+
+def gallery() -> dict[str, str]:
+    """Names of all objects by their label, in the order of the paper's figure, then the others."""
+    from geometry.everyday import EVERYDAY
+
+    others = [
+        kind
+        for kind in IndenterKind
+        if kind not in (*SEEN, *UNSEEN) and kind is not IndenterKind.MESH
+    ]
+    groups = (("seen", SEEN), ("unseen", UNSEEN), ("other", others))
+    found = {f"{group}: {_words(kind)}": kind.value for group, kinds in groups for kind in kinds}
+    return {**found, **{f"everyday: {_words(name)}": name for name in EVERYDAY}}
+
+
+def _words(name: str) -> str:
+    return name.replace("_", " ")
+
+
+def another(name: str, now: Indenter) -> Indenter:
+    """An object of the gallery; of the present one it keeps texture and, among primitives, size.
+
+    Raises:
+        DesignError: If the texture does not fit it.
+    """
+    primitive = name in {kind.value for kind in IndenterKind}
+    size_mm = now.size_mm if primitive and now.mesh is None else None
+    return choose_indenter(name, size_mm=size_mm, texture=now.texture)
+
+
+def resized(indenter: Indenter, size_mm: float) -> Indenter:
+    """The same object of another size; its edge radius shrinks with it where it must.
+
+    Raises:
+        DesignError: If the size is refused.
+    """
+    from geometry.indenters import scaled
+
+    if indenter.mesh is not None:
+        rounding_mm = min(indenter.mesh_rounding_mm, SAFE * size_mm / 4)
+        mesh = scaled(indenter.mesh, size_mm)
+        return dataclasses.replace(
+            indenter, size_mm=size_mm, mesh=mesh, mesh_rounding_mm=rounding_mm
+        )
+    edge_mm = indenter.edge_radius_mm
+    if indenter.kind not in EDGELESS:
+        edge_mm = min(edge_mm, widest_edge_mm(indenter.kind, size_mm))
+    return dataclasses.replace(indenter, size_mm=size_mm, edge_radius_mm=edge_mm)
+
+
+def edge_mm(indenter: Indenter) -> float:
+    """Its rounding [mm]: of a mesh that of its convex edges, 0 for what has no edges."""
+    if indenter.mesh is not None:
+        return indenter.mesh_rounding_mm
+    return 0.0 if indenter.kind in EDGELESS else indenter.edge_radius_mm
+
+
+def rounded(indenter: Indenter, radius_mm: float) -> Indenter:
+    """The same object with other edges.
+
+    Raises:
+        DesignError: If it has no edges, or the radius does not fit it.
+    """
+    if indenter.mesh is not None:
+        return dataclasses.replace(indenter, mesh_rounding_mm=radius_mm)
+    if indenter.kind in EDGELESS:
+        raise DesignError(
+            f"a {_words(indenter.kind)} has no edges to round",
+            hint=f"the radius is for objects with edges; {DEFAULT_EDGE_RADIUS_MM:g} mm is usual",
+            at="indenter.edge_radius_mm",
+        )
+    return dataclasses.replace(indenter, edge_radius_mm=radius_mm)
+
+
+def textured(indenter: Indenter, texture: Texture) -> Indenter:
+    """The same object with another texture.
+
+    Raises:
+        DesignError: If the texture is too high for it.
+    """
+    return dataclasses.replace(indenter, texture=texture)
+
+
+def pictured(indenter: Indenter, name: str, content: bytes) -> Indenter:
+    """The same object with an uploaded picture as its texture.
+
+    Raises:
+        DesignError: If the picture cannot be read.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / f"upload{Path(name).suffix}"
+        path.write_bytes(content)
+        image = load_heights(path)
+    texture = indenter.texture
+    width_mm = max(texture.pitch_mm, indenter.size_mm)
+    shown = Texture(
+        pattern=Pattern.IMAGE, image=image, height_mm=texture.height_mm, pitch_mm=width_mm
+    )
+    return textured(indenter, shown)
+
+
+def uploaded(name: str, content: bytes) -> Indenter:
+    """An uploaded STL, OBJ or STEP file as an object, in its own size in mm.
+
+    Raises:
+        DesignError: If it is no usable closed mesh.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / f"upload{Path(name).suffix.lower()}"
+        path.write_bytes(content)
+        return choose_indenter(str(path))
