@@ -83,12 +83,7 @@ class Batch:
         self.powers = floats(np.zeros(2 * total))
         counts = _joined([_points_per_cell(d) for d in domains])
         self.starts = integers(np.concatenate([[0], np.cumsum(counts)]))
-        self.locals_ = floats(_joined([d.point_local for d in domains]))
-        places = [d.points.position_mm - d.target_mm for d in domains]
-        self.positions = floats(_joined(places))
-        self.stiffness = floats(_joined([d.points.stiffness_N_mm for d in domains]))
-        self.axes = floats(_joined([d.points.axis for d in domains]))
-        self.sideways = floats(_joined([d.points.sideways for d in domains]))
+        self.points = floats(_joined([_point_table(d) for d in domains]))
         self.held = integers(_joined([d.points.bonded for d in domains]))
         self.goals = floats(np.zeros(6 * point_at[-1]))
         self.anchors = floats(np.zeros(3 * point_at[-1]))
@@ -171,6 +166,19 @@ def interleaved(table: np.ndarray, filling: Any) -> np.ndarray:
 def _shifted(node_slots: np.ndarray, first_cell: int, nothing: int) -> np.ndarray:
     """Slots of a case whose first cell is not the first of the batch; `nothing` for none."""
     return np.where(node_slots == NO_SLOT, nothing, node_slots + 81 * first_cell)
+
+
+def _point_table(domain: Domain) -> np.ndarray:
+    """Constants of the surface points as in `layout.POINT`, shape (P, 11)."""
+    points = domain.points
+    columns = (
+        points.position_mm - domain.target_mm,
+        points.axis,
+        points.stiffness_N_mm[:, None],
+        points.sideways[:, None],
+        domain.point_local,
+    )
+    return np.concatenate(columns, axis=1)
 
 
 def _points_per_cell(domain: Domain) -> np.ndarray:

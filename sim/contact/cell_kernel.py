@@ -10,7 +10,7 @@ import taichi as ti
 from taichi.lang.impl import expr_init
 
 from sim.contact.domain import BLOCK
-from sim.contact.layout import CHOICES, IDLE, INVERSE_EDGE, MODE, NUMBERS
+from sim.contact.layout import CHOICES, IDLE, INVERSE_EDGE, LOCAL, MODE, NUMBERS, POINT
 from sim.contact.point_functions import line_weights, point_force
 from sim.contact.stencil import gather_gradient, scatter_gradient
 from sim.material import SMALLEST_VOLUME_RATIO, first_piola_rows
@@ -53,11 +53,7 @@ def cell_pass(
     cell_cases: ti.template(),
     slots: ti.template(),
     starts: ti.template(),
-    locals_: ti.template(),
-    positions: ti.template(),
-    stiffness: ti.template(),
-    axes: ti.template(),
-    sideways: ti.template(),
+    points: ti.template(),
     held: ti.template(),
     goals: ti.template(),
     anchors: ti.template(),
@@ -84,16 +80,16 @@ def cell_pass(
             shear, bulk = moduli[entry(cell, 0, 2)], moduli[entry(cell, 1, 2)]
             forces = ti.static(_cell_forces(nodal, volume, inverse_edge, (shear, bulk), linear))
             for point in range(starts[cell], starts[cell + 1]):
-                x = line_weights(locals_[3 * point])
-                y = line_weights(locals_[3 * point + 1])
-                z = line_weights(locals_[3 * point + 2])
+                x = line_weights(points[POINT * point + LOCAL])
+                y = line_weights(points[POINT * point + LOCAL + 1])
+                z = line_weights(points[POINT * point + LOCAL + 2])
                 moved = ti.Vector([0.0, 0.0, 0.0])
                 for n in ti.static(range(27)):
                     weight = x[n // 9] * y[n // 3 % 3] * z[n % 3]
                     for c in ti.static(range(3)):
                         moved[c] += weight * nodal[c][n]
                 force = point_force(
-                    point, moved, positions, stiffness, axes, sideways, held, goals, anchors,
+                    point, moved, points, held, goals, anchors,
                     states, poses, numbers, choices, coefficients, case, step * cases + case,
                 )  # fmt: skip
                 for c in ti.static(range(3)):

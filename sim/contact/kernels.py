@@ -29,11 +29,13 @@ from sim.contact.layout import (
     HELD,
     IDLE,
     LARGEST_STEP,
+    LOCAL,
     MASS_SCALE,
     MEETS_RIGID,
     MODE,
     MOVING,
     NUMBERS,
+    POINT,
 )
 from sim.contact.point_functions import (
     body_rotation,
@@ -109,11 +111,7 @@ def _make_substep(linear):
         fixed: Integers,
         powers: Floats,
         starts: Integers,
-        locals_: Floats,
-        positions: Floats,
-        stiffness: Floats,
-        axes: Floats,
-        sideways: Floats,
+        points: Floats,
         held: Integers,
         goals: Floats,
         anchors: Floats,
@@ -129,9 +127,9 @@ def _make_substep(linear):
         # All bounds first: Taichi then finds them in one task instead of one before each loop.
         cells, nodes = cell_cases.shape[0], node_cases.shape[0]
         cell_pass(
-            displacement, rows, volumes, moduli, cell_cases, slots, starts, locals_, positions,
-            stiffness, axes, sideways, held, goals, anchors, states, point_forces, poses, numbers,
-            choices, coefficients, cells, cases, step, linear,
+            displacement, rows, volumes, moduli, cell_cases, slots, starts, points, held, goals,
+            anchors, states, point_forces, poses, numbers, choices, coefficients, cells, cases,
+            step, linear,
         )  # fmt: skip
         node_pass(
             displacement, velocity, forces, slots, node_slots, node_cases, masses, fixed, powers,
@@ -161,11 +159,7 @@ SUBSTEP_ARRAYS = (
     "fixed",
     "powers",
     "starts",
-    "locals_",
-    "positions",
-    "stiffness",
-    "axes",
-    "sideways",
+    "points",
     "held",
     "goals",
     "anchors",
@@ -181,11 +175,11 @@ SUBSTEP_ARRAYS = (
 
 @ti.func
 def _point_displacement(
-    displacement: ti.template(), rows: ti.template(), locals_: ti.template(), cell, point
+    displacement: ti.template(), rows: ti.template(), points: ti.template(), cell, point
 ):
-    x = line_weights(locals_[3 * point])
-    y = line_weights(locals_[3 * point + 1])
-    z = line_weights(locals_[3 * point + 2])
+    x = line_weights(points[POINT * point + LOCAL])
+    y = line_weights(points[POINT * point + LOCAL + 1])
+    z = line_weights(points[POINT * point + LOCAL + 2])
     moved = ti.Vector([0.0, 0.0, 0.0])
     for n in ti.static(range(27)):
         weight = x[n // 9] * y[n // 3 % 3] * z[n % 3]
@@ -201,8 +195,7 @@ def commit_anchors(
     rows: Integers,
     cell_cases: Integers,
     starts: Integers,
-    locals_: Floats,
-    positions: Floats,
+    points: Floats,
     held: Integers,
     anchors: Floats,
     states: Integers,
@@ -224,8 +217,8 @@ def commit_anchors(
             rotation = body_rotation(poses, case)
             for point in range(starts[cell], starts[cell + 1]):
                 if held[point] == MEETS_RIGID:
-                    place = _point_displacement(displacement, rows, locals_, cell, point)
-                    place = place_in_body(point, place, positions, poses, rotation, case)
+                    place = _point_displacement(displacement, rows, points, cell, point)
+                    place = place_in_body(point, place, points, poses, rotation, case)
                     distance, gradient = object_distance(
                         place, numbers, choices, coefficients, case
                     )

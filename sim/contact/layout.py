@@ -4,6 +4,10 @@ FREE, TOUCHED, HELD = 0, 1, 2
 """States of a contact point: apart; anchored within this frame; anchored by a settled frame."""
 MEETS_RIGID, HELD_STILL, MEETS_SOFT = 0, 1, 2
 """Kinds of surface points (`held`): what they meet, or that they are held or driven."""
+AXIS, STIFFNESS, SIDEWAYS, LOCAL = 3, 6, 7, 8
+POINT = 11
+"""Floats of a surface point: place from the target, then the above: unit normal, spring, its part
+sideways, and the place in its cell in cell edges from the centre."""
 IDLE, MOVING, STILL = 0, 1, 2
 """Modes of a case: left alone; relaxing; forces only."""
 FRICTION, MASS_SCALE, DAMPING, LARGEST_STEP, INVERSE_EDGE, SIZE = 0, 1, 2, 3, 4, 5

@@ -10,9 +10,9 @@ import numpy as np
 
 from sim.contact.approach import Approach, plan_approach
 from sim.contact.collider import Collider, make_collider
-from sim.contact.sampling import SAMPLES_PER_CELL
 from sim.contact.refinement import path_samples
 from sim.contact.samples import Window
+from sim.contact.sampling import SAMPLES_PER_CELL
 from sim.contact.shapes import Shape
 from workbench.core.indenter import Indenter
 from workbench.core.press import Press

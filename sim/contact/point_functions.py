@@ -9,6 +9,7 @@ Their plain twins are in `reference`.
 import taichi as ti
 
 from sim.contact.layout import (
+    AXIS,
     CHOICES,
     COUNTS,
     FIRST_COEFFICIENT,
@@ -17,9 +18,12 @@ from sim.contact.layout import (
     HELD_STILL,
     MEETS_RIGID,
     NUMBERS,
+    POINT,
     POSE,
     SHAPE,
+    SIDEWAYS,
     SIZE,
+    STIFFNESS,
     TOUCHED,
 )
 from sim.contact.signed_distance import signed_distance
@@ -64,40 +68,33 @@ def tangent_slip(place, gradient, anchor, limit):
 
 @ti.func
 def place_in_body(
-    point, moved, positions: ti.template(), poses: ti.template(), rotation: ti.template(), row
+    point, moved, points: ti.template(), poses: ti.template(), rotation: ti.template(), row
 ):
     place = moved
     for c in ti.static(range(3)):
-        place[c] += positions[3 * point + c] - poses[POSE * row + c]
+        place[c] += points[POINT * point + c] - poses[POSE * row + c]
     return rotation.transpose() @ place
 
 
 @ti.func
-def _holding_force(
-    point,
-    moved,
-    stiffness: ti.template(),
-    axes: ti.template(),
-    sideways: ti.template(),
-    goals: ti.template(),
-    share,
-):
+def _holding_force(point, moved, points: ti.template(), goals: ti.template(), share):
     """Spring of a held point toward where it belongs, stiffer along its axis than across."""
-    axis = ti.Vector([axes[3 * point + c] for c in range(3)])
+    axis = ti.Vector([points[POINT * point + AXIS + c] for c in range(3)])
     away = moved
     for c in ti.static(range(3)):
         start, end = goals[6 * point + c], goals[6 * point + 3 + c]
         away[c] -= start + share * (end - start)
     along = axis.dot(away) * axis
-    return -stiffness[point] * (along + sideways[point] * (away - along))
+    return -points[POINT * point + STIFFNESS] * (
+        along + points[POINT * point + SIDEWAYS] * (away - along)
+    )
 
 
 @ti.func
 def _contact_force(
     point,
     moved,
-    positions: ti.template(),
-    stiffness: ti.template(),
+    points: ti.template(),
     anchors: ti.template(),
     states: ti.template(),
     poses: ti.template(),
@@ -110,7 +107,7 @@ def _contact_force(
     """Penalty and friction of the object on the membrane, in the sensor frame [N]."""
     force = ti.Vector([0.0, 0.0, 0.0])
     rotation = body_rotation(poses, row)
-    place = place_in_body(point, moved, positions, poses, rotation, row)
+    place = place_in_body(point, moved, points, poses, rotation, row)
     distance, gradient = object_distance(place, numbers, choices, coefficients, case)
     if distance < 0.0:
         anchor = place
@@ -122,7 +119,7 @@ def _contact_force(
             anchor[c] = anchors[3 * point + c]
         limit = -numbers[NUMBERS * case + FRICTION] * distance * gradient.norm()
         slip = tangent_slip(place, gradient, anchor, limit)
-        force = -stiffness[point] * (rotation @ (distance * gradient + slip))
+        force = -points[POINT * point + STIFFNESS] * (rotation @ (distance * gradient + slip))
     elif states[point] == TOUCHED:
         states[point] = FREE
     return force
@@ -132,10 +129,7 @@ def _contact_force(
 def point_force(
     point,
     moved,
-    positions: ti.template(),
-    stiffness: ti.template(),
-    axes: ti.template(),
-    sideways: ti.template(),
+    points: ti.template(),
     held: ti.template(),
     goals: ti.template(),
     anchors: ti.template(),
@@ -151,10 +145,10 @@ def point_force(
     force = ti.Vector([0.0, 0.0, 0.0])
     if held[point] == HELD_STILL:
         share = poses[POSE * row + POSE - 1]
-        force = _holding_force(point, moved, stiffness, axes, sideways, goals, share)
+        force = _holding_force(point, moved, points, goals, share)
     elif held[point] == MEETS_RIGID:
         force = _contact_force(
-            point, moved, positions, stiffness, anchors, states, poses, numbers, choices,
+            point, moved, points, anchors, states, poses, numbers, choices,
             coefficients, case, row,
         )  # fmt: skip
     return force

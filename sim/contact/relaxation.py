@@ -160,8 +160,8 @@ class Relaxation:
         batch = self.batch
         self._upload()
         kernels.commit_anchors(
-            batch.displacement, batch.rows, batch.cell_cases, batch.starts, batch.locals_,
-            batch.positions, batch.held, batch.anchors, batch.states, batch.slips,
+            batch.displacement, batch.rows, batch.cell_cases, batch.starts, batch.points,
+            batch.held, batch.anchors, batch.states, batch.slips,
             batch.poses, batch.numbers, batch.choices, batch.coefficients, case,
         )  # fmt: skip
 

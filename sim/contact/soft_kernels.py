@@ -27,9 +27,12 @@ from sim.contact.layout import (
     FRICTION,
     HELD,
     IDLE,
+    LOCAL,
     MEETS_SOFT,
     MODE,
+    POINT,
     POSE,
+    STIFFNESS,
     TOUCHED,
 )
 from sim.contact.point_functions import body_rotation, line_weights, object_distance
@@ -145,16 +148,16 @@ def _friction_slip(place, anchor, deformation, gradient, limit):
 
 @ti.func
 def _point_place(
-    displacement: ti.template(), rows: ti.template(), locals_: ti.template(),
-    positions: ti.template(), cell, point,
+    displacement: ti.template(), rows: ti.template(),
+    points: ti.template(), cell, point,
 ):  # fmt: skip
     """Deformed place of a surface point of the membrane [mm from the target]."""
     x, y, z = (
-        line_weights(locals_[3 * point]),
-        line_weights(locals_[3 * point + 1]),
-        line_weights(locals_[3 * point + 2]),
+        line_weights(points[POINT * point + LOCAL]),
+        line_weights(points[POINT * point + LOCAL + 1]),
+        line_weights(points[POINT * point + LOCAL + 2]),
     )
-    place = ti.Vector([positions[3 * point + c] for c in range(3)])
+    place = ti.Vector([points[POINT * point + c] for c in range(3)])
     for n in ti.static(range(27)):
         weight = x[n // 9] * y[n // 3 % 3] * z[n % 3]
         base = 3 * (rows[entry(cell, n // 3, 9)] + n % 3)
@@ -166,8 +169,8 @@ def _point_place(
 @ti.func
 def soft_pass(
     displacement: ti.template(), rows: ti.template(), cell_cases: ti.template(),
-    slots: ti.template(), starts: ti.template(), locals_: ti.template(), positions: ti.template(),
-    stiffness: ti.template(), held: ti.template(), anchors: ti.template(), states: ti.template(),
+    slots: ti.template(), starts: ti.template(),  points: ti.template(),
+     held: ti.template(), anchors: ti.template(), states: ti.template(),
     point_forces: ti.template(), poses: ti.template(), numbers: ti.template(),
     choices: ti.template(), coefficients: ti.template(), partner: ti.template(),
     cell_map: ti.template(), extents: ti.template(), object_forces: ti.template(), cells, row,
@@ -177,7 +180,7 @@ def soft_pass(
         if cell_cases[cell] == MEMBRANE and choices[MODE] != IDLE:
             for point in range(starts[cell], starts[cell + 1]):
                 if held[point] == MEETS_SOFT:
-                    at = _point_place(displacement, rows, locals_, positions, cell, point)
+                    at = _point_place(displacement, rows, points, cell, point)
                     place, hit, deformation, distance, gradient = _meet(
                         at, row, displacement, rows, poses, numbers, choices, coefficients,
                         partner, cell_map, extents,
@@ -191,13 +194,15 @@ def soft_pass(
                         steep = deformation.inverse().transpose() @ gradient
                         limit = -numbers[FRICTION] * distance * steep.norm()
                         slip = _friction_slip(place, anchor, deformation, gradient, limit)
-                        push = -stiffness[point] * (distance * steep + deformation @ slip)
+                        push = -points[POINT * point + STIFFNESS] * (
+                            distance * steep + deformation @ slip
+                        )
                         _give_object(push, place, hit, rows, object_forces, partner[12])
                         turned = ti.Matrix(
                             [[partner[3 + 3 * r + c] for c in range(3)] for r in range(3)]
                         )
                         force = turned @ push
-                        _give_membrane(force, cell, point, slots, locals_)
+                        _give_membrane(force, cell, point, slots, points)
                         for c in ti.static(range(3)):
                             point_forces[3 * point + c] = force[c]
                     elif states[point] == TOUCHED:
@@ -221,12 +226,12 @@ def _give_object(
 
 
 @ti.func
-def _give_membrane(force, cell, point, slots: ti.template(), locals_: ti.template()):
+def _give_membrane(force, cell, point, slots: ti.template(), points: ti.template()):
     """Add a force to the slots of the point's cell, which no other thread writes."""
     x, y, z = (
-        line_weights(locals_[3 * point]),
-        line_weights(locals_[3 * point + 1]),
-        line_weights(locals_[3 * point + 2]),
+        line_weights(points[POINT * point + LOCAL]),
+        line_weights(points[POINT * point + LOCAL + 1]),
+        line_weights(points[POINT * point + LOCAL + 2]),
     )
     base = entry(cell, 0, 81)
     for n in ti.static(range(27)):
@@ -262,7 +267,7 @@ def _make_substep(linear):
         displacement: Floats, velocity: Floats, forces: Floats, slots: Floats, rows: Integers,
         volumes: Floats, moduli: Floats, cell_cases: Integers, node_slots: Integers,
         node_cases: Integers, masses: Floats, fixed: Integers, powers: Floats, starts: Integers,
-        locals_: Floats, positions: Floats, stiffness: Floats, axes: Floats, sideways: Floats,
+         points: Floats,
         held: Integers, goals: Floats, anchors: Floats, states: Integers, point_forces: Floats,
         poses: Floats, numbers: Floats, choices: Integers, coefficients: Floats, partner: Floats,
         cell_map: Integers, extents: Integers, object_forces: Sums, cases: ti.i32, step: ti.i32,
@@ -270,12 +275,12 @@ def _make_substep(linear):
         cells, nodes = cell_cases.shape[0], node_cases.shape[0]
         nothing = slots.shape[0] - 81 * BLOCK
         cell_pass(
-            displacement, rows, volumes, moduli, cell_cases, slots, starts, locals_, positions,
-            stiffness, axes, sideways, held, goals, anchors, states, point_forces, poses, numbers,
+            displacement, rows, volumes, moduli, cell_cases, slots, starts, points,
+            held, goals, anchors, states, point_forces, poses, numbers,
             choices, coefficients, cells, cases, step, linear,
         )  # fmt: skip
         soft_pass(
-            displacement, rows, cell_cases, slots, starts, locals_, positions, stiffness, held,
+            displacement, rows, cell_cases, slots, starts, points, held,
             anchors, states, point_forces, poses, numbers, choices, coefficients, partner,
             cell_map, extents, object_forces, cells, step * cases + MEMBRANE,
         )  # fmt: skip
@@ -296,8 +301,8 @@ SOFT_ARRAYS = ("partner", "cell_map", "extents", "object_forces")
 
 @ti.kernel
 def commit_soft_anchors(
-    displacement: Floats, rows: Integers, cell_cases: Integers, starts: Integers, locals_: Floats,
-    positions: Floats, held: Integers, anchors: Floats, states: Integers, slips: Floats,
+    displacement: Floats, rows: Integers, cell_cases: Integers, starts: Integers,
+    points: Floats, held: Integers, anchors: Floats, states: Integers, slips: Floats,
     poses: Floats, numbers: Floats, choices: Integers, coefficients: Floats, partner: Floats,
     cell_map: Integers, extents: Integers,
 ):  # fmt: skip
@@ -306,7 +311,7 @@ def commit_soft_anchors(
         if cell_cases[cell] == MEMBRANE:
             for point in range(starts[cell], starts[cell + 1]):
                 if held[point] == MEETS_SOFT:
-                    at = _point_place(displacement, rows, locals_, positions, cell, point)
+                    at = _point_place(displacement, rows, points, cell, point)
                     place, hit, deformation, distance, gradient = _meet(
                         at, MEMBRANE, displacement, rows, poses, numbers, choices, coefficients,
                         partner, cell_map, extents,

@@ -79,6 +79,7 @@ def make_soft_object(problem: Problem, indenter: Indenter) -> SoftObject:
         material,
         target_mm=np.zeros(3),
         active_radius_mm=EVERYTHING_MM,
+        inner_moves=False,
     )
     first, cell_map = _cell_map(points)
     origin, rotation = problem.approach.pose(0.0)

@@ -117,8 +117,8 @@ class SoftRelaxation(Relaxation):
         batch, arrays = self.batch, self._arrays
         self._upload()
         soft_kernels.commit_soft_anchors(
-            batch.displacement, batch.rows, batch.cell_cases, batch.starts, batch.locals_,
-            batch.positions, batch.held, batch.anchors, batch.states, batch.slips, batch.poses,
+            batch.displacement, batch.rows, batch.cell_cases, batch.starts, batch.points,
+            batch.held, batch.anchors, batch.states, batch.slips, batch.poses,
             batch.numbers, batch.choices, batch.coefficients, arrays["partner"],
             arrays["cell_map"], arrays["extents"],
         )  # fmt: skip
