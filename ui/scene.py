@@ -43,6 +43,8 @@ class Scene:
         self.views = Views(server)
         self.pressed = PressedView(self.api, on_click)
         self._hidden = False
+        self._bare = False
+        """Whether the object is hidden by itself."""
         self._shown = 0
         self._lowest_mm = 0.0
         self.standing = np.array([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
@@ -132,6 +134,12 @@ class Scene:
         if self.indenter is not None and len(body.points):
             self._pose(standing_pose(body.points, body.normals, path.target_mm, self._lowest_mm))
 
+    def hide_indenter(self, wanted: bool) -> None:
+        """Hide the object, or show it again."""
+        self._bare = wanted
+        if self.indenter is not None:
+            self.indenter.visible = not (wanted or self._hidden)
+
     def see_through(self, wanted: bool) -> None:
         """Let the object be seen through, so that what happens below it shows."""
         if self.indenter is not None:
@@ -214,7 +222,7 @@ class Scene:
             # The core of an exploded mould hangs below the floor, whose lines would cross it.
             self.grid.visible = visible
             if self.indenter is not None:
-                self.indenter.visible = visible
+                self.indenter.visible = visible and not self._bare
             self.pressed.show(0)
         if visible:
             self.show_frame(self._shown)

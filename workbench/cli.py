@@ -203,7 +203,7 @@ def _run_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--method", choices=[m.value for m in Method], help="default lattice")
     sub.add_argument("--max-substeps", type=int, help="to a frame (default 6000)")
     sub.add_argument("--tolerance", type=float, help="residual that has settled (default 0.001)")
-    sub.add_argument("--penalty", type=float, help="contact stiffness, E / grid (default 100)")
+    sub.add_argument("--penalty", type=float, help="contact stiffness, E / grid (default 200)")
     sub.add_argument("--material-law", choices=[law.value for law in Law], help="of the design")
     sub.add_argument("--light-model", choices=[m.value for m in LightModel])
     sub.add_argument("--out", required=True, type=Path, metavar="DIR")

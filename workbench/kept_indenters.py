@@ -32,7 +32,7 @@ def indenter_table(indenter: Indenter, project: Project) -> dict[str, Any]:
     """
     plain = {f.name: getattr(indenter, f.name) for f in dataclasses.fields(indenter)}
     mesh, texture = plain.pop("mesh"), plain.pop("texture")
-    table: dict[str, Any] = to_table(plain)
+    table: dict[str, Any] = to_table({n: v for n, v in plain.items() if v is not None})
     if mesh is not None:
         table["mesh_key"] = _keep(project, mesh, points_mm=mesh.points_mm, faces=mesh.faces)
     if texture.raised:

@@ -49,7 +49,11 @@ def _driven(press: Press, frame: int) -> str:
 
 def number(value: float, form: str = ".3g") -> str:
     """A number for the screen; a dash where it is not finite."""
-    return format(value, form) if math.isfinite(value) else MISSING
+    if not math.isfinite(value):
+        return MISSING
+    text = format(value, form)
+    # A tiny negative number is no minus zero.
+    return format(0.0, form) if float(text) == 0.0 else text
 
 
 def of_frame(values: np.ndarray, frame: int) -> float:

@@ -77,7 +77,8 @@ class StageMonitor(Protocol):
 def plan(design: SensorDesign, case: PressCase) -> dict[str, Call]:
     """Every call of the chain by stage name, in the order of `EVERYTHING`.
 
-    A design with a body of its own has the call `intake` before them.
+    A design with a body of its own has the call `intake` before them, a press of an object whose
+    signed distance takes long to sample the call `object`.
 
     Raises:
         DesignError: If the family or the silicone is unknown, or the family refuses the shape.
@@ -102,10 +103,13 @@ def plan(design: SensorDesign, case: PressCase) -> dict[str, Call]:
     bake = Call("bake", (mesh.ref, design.optics.ring, design.optics.light_model))
     material, optics, eye = design.material, design.optics, design.optics.camera
     soft = at_defaults(material, "density_g_cm3")
-    press = Call(
-        "press",
-        (mesh.ref, lattice.ref, soft, case.indenter, case.press, case.settings),
+    objects = tuple(
+        Call("object", (indenter, case.settings.grid_mm))
+        for indenter in (case.indenter,)
+        if indenter.mesh is not None or indenter.texture.raised
     )
+    pressed = (mesh.ref, lattice.ref, soft, case.indenter, case.press, case.settings)
+    press = Call("press", (*pressed, *(call.ref for call in objects)))
     shoot = Call("shoot", (mesh.ref, bake.ref, design.optics, press.ref))
     mould = Call("mould", (build.ref, design.mould))
     coloured = at_defaults(optics.ring, "power", "emission_exponent")
@@ -123,6 +127,7 @@ def plan(design: SensorDesign, case: PressCase) -> dict[str, Call]:
         mesh,
         lattice,
         bake,
+        *objects,
         press,
         shoot,
         mould,

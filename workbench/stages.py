@@ -38,6 +38,7 @@ from workbench.core.results import (
     Solid,
     VolumeMesh,
 )
+from workbench.core.sampled import SampledDistance
 from workbench.core.sensing import Contact, LightField, Shot
 from workbench.store import Store, timed
 
@@ -192,6 +193,17 @@ def bake(mesh: MembraneMesh, ring: LedRing, model: LightModel, *, monitor: Monit
     return bake_light(mesh, ring, model=model, monitor=monitor)
 
 
+def object_distance(indenter: Indenter, grid_mm: float, *, monitor: Monitor) -> SampledDistance:
+    """Signed distance of an object made of triangles or with a texture: up to a minute."""
+    from workbench.devices import open_device
+
+    monitor(0.0, "sampling the object")
+    open_device()
+    from sim.contact.sampling import sample_indenter
+
+    return sample_indenter(indenter, grid_mm=grid_mm)
+
+
 def press(
     mesh: MembraneMesh,
     points: MaterialPoints,
@@ -199,16 +211,20 @@ def press(
     indenter: Indenter,
     path: Press,
     settings: ContactSettings,
+    sampled: SampledDistance | None = None,
     *,
     monitor: Monitor,
 ) -> Contact:
-    """Quasi-static contact along a press path."""
+    """Quasi-static contact along a press path; `sampled` is the object's distance, if known."""
     from workbench.devices import open_device
 
     monitor(0.0, "opening the device")
     open_device()
+    from sim.contact.sampling import give_samples
     from sim.contact.solver import press_membrane
 
+    if sampled is not None:
+        give_samples(indenter, sampled, grid_mm=points.grid_mm)
     return press_membrane(mesh, points, material, indenter, path, settings, monitor=monitor)
 
 
@@ -320,6 +336,7 @@ STAGES = {
         Stage(name="tets", version=1, lane="cad", function=tets),
         Stage(name="lattice", version=2, lane="cad", function=lattice),
         Stage(name="bake", version=1, lane="sim", function=bake),
+        Stage(name="object", version=1, lane="sim", function=object_distance),
         Stage(name="press", version=6, lane="sim", function=press),
         Stage(name="shoot", version=2, lane="sim", function=shoot),
         Stage(name="mould", version=2, lane="cad", function=mould),

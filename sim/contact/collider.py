@@ -8,11 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim.contact import textures
-from sim.contact.samples import SampledDistance, Window
+from sim.contact.samples import Window
 from sim.contact.sampling import box_mm, kept_samples
 from sim.contact.shapes import SHAPE_OF_KIND, Shape, analytic_size, evaluate
 from sim.contact.solids import lowest_mm, sharpest_mm
 from workbench.core.indenter import Indenter
+from workbench.core.sampled import SampledDistance
 
 SHARPEST_MESH_CELLS = 2.4
 """Least radius taken for a mesh, whose edges are not known, in cells."""

@@ -26,13 +26,13 @@ from sim.contact.backing import support_points_mm
 from sim.contact.path import State, legs_of
 from sim.contact.problem import Problem, make_problem
 from sim.contact.relaxation import Relaxation
-from sim.contact.solver import relaxation_of, resume
+from sim.contact.solver import press_membrane, relaxation_of, resume
 from sim.contact.verdict import check_depth
 from workbench.core.design import Elastomer
 from workbench.core.indenter import Indenter
 from workbench.core.monitor import Monitor, silent
 from workbench.core.motion import press_stroke
-from workbench.core.press import ContactSettings, Press
+from workbench.core.press import ContactSettings, Method, Press
 from workbench.core.results import MaterialPoints, MembraneMesh
 from workbench.core.sensing import Contact
 
@@ -111,6 +111,13 @@ class LiveContact:
             SolveError: If it does not settle.
         """
         path = one_frame(press)
+        if indenter.soft is not None or settings.method is not Method.LATTICE:
+            # What deforms the object, or resets its particles, has no state to go on from.
+            self.way, self._kept = Way.ANEW, None
+            alone = press_membrane(
+                mesh, points, material, indenter, path, settings, monitor=monitor
+            )
+            return _last_frame(alone)
         kept = self._kept
         if kept is not None and self._serves(kept, key, path):
             if self._deeper(kept, path):

@@ -59,20 +59,6 @@ class SampleGrid:
         return nearest * self.spacing_mm
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class SampledDistance:
-    """A distance field on a grid."""
-
-    coefficients: np.ndarray
-    """Quadratic B-spline coefficients [mm], shape (A, B, C), float64."""
-    origin_mm: np.ndarray
-    """Position of sample (0, 0, 0) [mm], shape (3,)."""
-    spacing_mm: float
-    """Distance of samples; larger than asked where memory bounds it."""
-    cut: np.ndarray = field(default_factory=lambda: np.zeros((2, 3), dtype=bool))
-    """Lower and upper sides beyond which the body goes on, (2, 3): the field says nothing there."""
-
-
 def make_grid(
     low_mm: np.ndarray,
     high_mm: np.ndarray,

@@ -15,7 +15,6 @@ from sim.contact import textures
 from sim.contact.redistance import redistanced
 from sim.contact.samples import (
     MOST_SAMPLES,
-    SampledDistance,
     SampleGrid,
     Window,
     make_grid,
@@ -26,6 +25,7 @@ from sim.contact.solids import half_extent_mm, solid
 from workbench.core.digest import digest
 from workbench.core.errors import DesignError
 from workbench.core.indenter import Indenter
+from workbench.core.sampled import SampledDistance
 
 SAMPLES_PER_CELL = 2.5
 """Distance samples per grid cell: h = 0.4 cell loses 0.12 % of the force."""
@@ -90,18 +90,31 @@ def kept_samples(
     most: int = MOST_SAMPLES,
 ) -> SampledDistance:
     """`sample_indenter`, or what it returned for an object of the same content."""
-    corners = () if window_mm is None else tuple(np.asarray(c, dtype=float) for c in window_mm)
-    key = digest((indenter, float(grid_mm), corners, most))
+    key = _key(indenter, grid_mm, window_mm, most)
     with _lock:
         if key in _kept:
             _kept.move_to_end(key)
             return _kept[key]
     found = sample_indenter(indenter, grid_mm=grid_mm, window_mm=window_mm, most=most)
+    _keep(key, found)
+    return found
+
+
+def give_samples(indenter: Indenter, field: SampledDistance, *, grid_mm: float) -> None:
+    """Hand over what `sample_indenter` returned without a window, perhaps in another process."""
+    _keep(_key(indenter, grid_mm, None, MOST_SAMPLES), field)
+
+
+def _key(indenter: Indenter, grid_mm: float, window_mm: Window | None, most: int) -> str:
+    corners = () if window_mm is None else tuple(np.asarray(c, dtype=float) for c in window_mm)
+    return digest((indenter, float(grid_mm), corners, most))
+
+
+def _keep(key: str, field: SampledDistance) -> None:
     with _lock:
-        _kept[key] = found
+        _kept[key] = field
         while len(_kept) > 1 and sum(f.coefficients.nbytes for f in _kept.values()) > MOST_BYTES:
             _kept.popitem(last=False)
-    return found
 
 
 _kept: OrderedDict[str, SampledDistance] = OrderedDict()

@@ -19,8 +19,8 @@ SOFT = (
     "--indenter sphere --size-mm 4 --target 0,0,16 --depth-mm 1.2 --frames 2 --grid-mm 0.8 "
     "--penalty 1"
 ).split()
-"""A hundredth of the usual contact stiffness: at 0.6 mm the ball overlaps the skin by 0.27 mm, at
-1.2 mm by 0.56 mm, of which 0.4 mm are allowed."""
+"""Contact a hundred times softer than usual or more: at 0.6 mm the ball overlaps the skin by
+0.27 mm, at 1.2 mm by 0.56 mm, of which 0.4 mm are allowed."""
 
 
 def test_a_press_that_fails_on_its_way_leaves_what_settled(

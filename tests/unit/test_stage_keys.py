@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 
+from geometry.primitives import rounded_box
 from workbench.core.design import LightModel
-from workbench.pipeline import PressCase, plan
+from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
+from workbench.core.press import ContactSettings, Press
+from workbench.core.texture import Pattern, Texture
+from workbench.pipeline import PressCase, needed, plan
 from workbench.project import load_design
 
 FILES = {"recipe", "package"}
@@ -44,3 +50,35 @@ def rerun(field: str, value: object) -> set[str]:
 def test_a_change_reruns_what_reads_it(field: str, value: object, stages: set[str]) -> None:
     """The stages named beside the field, by their keys."""
     assert rerun(field, value) == stages
+
+
+def box(**fields: Any) -> Indenter:
+    """An object of triangles."""
+    points, faces = rounded_box(2.0, 0.5)
+    given = IndenterMesh(points_mm=points, faces=faces)
+    return Indenter(kind=IndenterKind.MESH, mesh=given, **fields)
+
+
+def test_an_object_of_triangles_is_sampled_once_for_all_its_presses() -> None:
+    """Depth, target and material leave its key; rounding and grid change it, and the press."""
+    design = load_design("finger")
+    case = PressCase(indenter=box())
+    call = plan(design, case)["object"]
+    deeper = PressCase(indenter=box(), press=Press(depth_mm=1.5))
+    assert plan(design, deeper)["object"].key == call.key
+    assert plan(design.replace("material.young_MPa", 0.2), case)["object"].key == call.key
+    rounded = plan(design, PressCase(indenter=box(mesh_rounding_mm=0.5)))
+    finer = plan(design, PressCase(indenter=box(), settings=ContactSettings(grid_mm=0.4)))
+    keys = {calls["object"].key for calls in (plan(design, case), rounded, finer)}
+    assert len(keys) == 3
+    assert call.ref in plan(design, case)["press"].inputs
+    names = needed(plan(design, case), ("shoot",))
+    assert names == ["build", "mesh", "lattice", "bake", "object", "press", "shoot"]
+
+
+def test_only_what_takes_long_to_sample_has_a_stage_of_its_own() -> None:
+    """A ball has none, a ball with a pattern has one."""
+    design = load_design("finger")
+    assert "object" not in plan(design, PressCase())
+    dots = Texture(pattern=Pattern.DOTS)
+    assert "object" in plan(design, PressCase(indenter=Indenter(texture=dots)))

@@ -74,11 +74,14 @@ class ResultsPanel:
             self.quantity = gui.add_dropdown("Colours", names, initial_value=names[0], hint=hint)
             hint = "Contact forces on the skin, a few added up in each arrow"
             self.arrows = gui.add_checkbox("Force arrows", False, hint=hint)
+            hint = "Look at the skin below the object"
+            self.bare = gui.add_checkbox("Hide object", False, hint=hint)
         panel.float(x=405, y=-15, width=380)
         self.frame.on_update(self.desk.guarded(lambda event: self._show_frame()))
         self.play.on_click(self.desk.guarded(self._toggle))
         self.quantity.on_update(self.desk.guarded(lambda event: self._paint()))
         self.arrows.on_update(self.desk.guarded(lambda event: self._draw_arrows()))
+        self.bare.on_update(self.desk.guarded(lambda event: self._hide_object()))
         command = gui.add_command("Play or pause", hotkey="P")
         command.on_trigger(self.desk.guarded(self._toggle))
         threading.Thread(target=self._play_forever, daemon=True).start()
@@ -99,6 +102,9 @@ class ResultsPanel:
         self.desk.scene.pressed.draw_arrows(wanted)
         # The arrows end below the object.
         self.desk.scene.see_through(wanted)
+
+    def _hide_object(self) -> None:
+        self.desk.scene.hide_indenter(bool(self.bare.value))
 
     def _toggle(self, event: Any) -> None:
         if self.playing.is_set():

@@ -27,6 +27,7 @@ _MODULES = (
     "workbench.core.actuation",
     "workbench.core.motion",
     "workbench.core.trajectory",
+    "workbench.core.sampled",
 )
 
 Arrays = dict[str, np.ndarray]
