@@ -78,7 +78,7 @@ PIECES = 2
 4e-4."""
 CLOSE_DEG = 20.0
 """How far the lobes close [degree]: 2 mm at the top of a lobe of 6 mm. Measured, least J: at 20
-degrees 0.76 on a grid of 1 mm and 0.61 on one of 0.8; on 1 mm 0.46 at 30 and 0.13 at 45."""
+degrees 0.76, 0.61 and 0.37 on grids of 1, 0.8 and 0.6 mm; on 1 mm 0.46 at 30 and 0.13 at 45."""
 HELD_SHARE = 1.1
 """Diameter of the held ball over the distance of the lobes' tops from the middle."""
 HELD_DEPTH_SHARE = 0.2

@@ -59,7 +59,12 @@ class Shown:
     values: np.ndarray
     """Finite values, shape (K, V), float32."""
     top: float
-    """Largest of all frames, at least a tiny positive number."""
+    """Largest of all frames; 1 where all are zero."""
+
+    @property
+    def empty(self) -> bool:
+        """Whether all values are zero."""
+        return not self.values.any()
 
     @property
     def unit(self) -> str:
@@ -80,8 +85,8 @@ def shown(skin: Skin, contact: Contact, quantity: Quantity) -> Shown:
         values = np.zeros((frames, vertices))
     values = np.nan_to_num(np.asarray(values, np.float32), nan=0.0, posinf=0.0, neginf=0.0)
     values = np.maximum(values, 0.0)
-    top = 1.0 if quantity is Quantity.SLIDING else float(values.max(initial=0.0))
-    return Shown(quantity=quantity, values=values, top=max(top, LEAST_TOP))
+    flag = quantity is Quantity.SLIDING or not values.any()
+    return Shown(quantity=quantity, values=values, top=1.0 if flag else float(values.max()))
 
 
 def _values(skin: Skin, contact: Contact, quantity: Quantity) -> np.ndarray:
@@ -105,7 +110,7 @@ def _values(skin: Skin, contact: Contact, quantity: Quantity) -> np.ndarray:
 def shear_MPa(skin: Skin, contact: Contact) -> np.ndarray:
     """Tangential contact force per undeformed area of the vertices [MPa], shape (K, V)."""
     forces, pressure = np.asarray(contact.contact_force_N), np.asarray(contact.pressure_MPa)
-    if len(forces) != len(pressure):
+    if not len(forces) == len(pressure) == len(contact.displacement_mm):
         return np.zeros((0, 0))
     area_mm2 = vertex_areas_mm2(skin)
     squared = (forces**2).sum(axis=2) - (pressure * area_mm2) ** 2

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from workbench.rows import Row
-from workbench.validation import contact, fem, forces, geometry, optics
+from workbench.validation import contact, fem, forces, geometry, optics, robustness
 
 ROOMS: dict[str, Callable[[], list[Row]]] = {
     "geometry": geometry.rows,
@@ -16,4 +16,6 @@ ROOMS: dict[str, Callable[[], list[Row]]] = {
     "optics": optics.rows,
     "fem": fem.rows,
     "forces": forces.rows,
+    "robustness": robustness.rows,
+    "robustness_sample": robustness.sample_rows,
 }

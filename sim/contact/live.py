@@ -111,6 +111,7 @@ class LiveContact:
             SolveError: If it does not settle.
         """
         path = one_frame(press)
+        monitor(0.0, "placing the object")
         if indenter.soft is not None or settings.method is not Method.LATTICE:
             # What deforms the object, or resets its particles, has no state to go on from.
             self.way, self._kept = Way.ANEW, None
@@ -130,6 +131,8 @@ class LiveContact:
         else:
             self.way = Way.ANEW
             problem = make_problem(mesh, points, material, indenter, path, settings)
+            # Placing takes a third of a second, in which a newer request may have come.
+            monitor(0.0, "the region is ready")
             kept = _Kept(key=key, problem=problem, relaxation=relaxation_of([problem]))
             self._kept = kept
         return self._solve(kept, problem, frame=0, depth_mm=path.depth_mm, monitor=monitor)

@@ -94,7 +94,8 @@ class ResultsPanel:
     def _show_legend(self) -> None:
         shown = self.desk.scene.pressed.shown
         if shown is not None:
-            title = f"{shown.quantity.value.capitalize()} of the skin, all frames"
+            where = "zero everywhere" if shown.empty else "scale of all frames"
+            title = f"{shown.quantity.value.capitalize()} of the skin, {where}"
             self.legend.content = legend(title, shown.top, shown.unit, SKIN_COLOUR)
 
     def _draw_arrows(self) -> None:

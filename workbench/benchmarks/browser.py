@@ -18,6 +18,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from workbench.rows import Row, bounded, failed
 
 FLAGS = (
@@ -36,13 +38,26 @@ ROWS = {
     "healthz": ("finger cached", 10.0),
     "gui_usable": ("finger cached, software rendering", 20.0),
     "slider_to_membrane": ("key press to the new skin in graphics memory, software rendering", 0.5),
+    "drag_to_settled": ("release of the handle to the settled skin, software rendering", 2.0),
 }
 """Case and limit [s] of each row, in the order they are measured."""
 EDITS = 5
+DRAGS = 3
+DRAG_PX = 40
+SETTLED_UPLOAD = """
+() => {
+  const large = window.uploads.filter(([when, size]) => size > 200000);
+  return large.length ? large[large.length - 1][0] - window.key : 1e9;
+}
+"""
+"""Time of the last upload of a whole pressed skin after the release [ms]; one has 312 kB."""
+LEFT_DOCK_PX, RIGHT_DOCK_PX = 390, 355
+BLUE_MARGIN = 50
+"""How much more blue than red and green the upright arm of the handle is."""
 WATCH_UPLOADS = """
 window.uploads = [];
-window.addEventListener("keydown", () => { window.uploads = []; window.key = performance.now(); },
-                        true);
+const forget = () => { window.uploads = []; window.key = performance.now(); };
+for (const name of ["keydown", "pointerup"]) window.addEventListener(name, forget, true);
 for (const name of ["bufferData", "bufferSubData"]) {
   const real = WebGL2RenderingContext.prototype[name];
   WebGL2RenderingContext.prototype[name] = function (...given) {
@@ -52,7 +67,7 @@ for (const name of ["bufferData", "bufferSubData"]) {
   };
 }
 """
-"""Notes when the page hands vertices to the graphics driver, and when a key was pressed."""
+"""Notes when the page hands vertices to the graphics driver, when a key went down or a button up."""
 FIRST_UPLOAD = """
 () => {
   const large = window.uploads.filter(([when, size]) => size > 20000);
@@ -97,6 +112,8 @@ def _measure(program: str, figures_s: dict[str, float]) -> str:
                 page.goto(f"{url}/?fixedDpr=0.4")
                 page.locator('[role="tab"]').filter(has_text="Optics").wait_for(timeout=60_000)
                 figures_s["gui_usable"] = healthy_s + time.perf_counter() - start
+                figures_s["drag_to_settled"] = drag_s(page)
+                page.locator('[role="tab"]').filter(has_text="Shape").click()
                 figures_s["slider_to_membrane"] = _slider_s(page)
                 opened.close()
         except (Error, subprocess.SubprocessError) as error:
@@ -140,3 +157,47 @@ def _slider_s(page: Any) -> float:
         page.wait_for_timeout(3_000)
         times.append(page.evaluate(FIRST_UPLOAD) / 1000)
     return statistics.median(times)
+
+
+def drag_s(page: Any) -> float:
+    """Median time from letting the handle go to the settled skin in the graphics memory [s]."""
+    page.locator('[role="tab"]').filter(has_text="Simulate").click()
+    label = page.locator("label[for]").filter(has_text="Live").first
+    before = pixels(page)
+    page.locator(f'[id="{label.get_attribute("for")}"]').click(force=True)
+    page.get_by_text("settled in").wait_for()
+    # The lane loads kernels and the page its first skin.
+    page.wait_for_timeout(6_000)
+    times = []
+    for drag in range(DRAGS):
+        x, y = arm(before, pixels(page))
+        page.mouse.move(x, y)
+        page.mouse.down()
+        page.mouse.move(x, y + DRAG_PX * (-1) ** drag, steps=8)
+        page.mouse.up()
+        page.wait_for_timeout(6_000)
+        times.append(page.evaluate(SETTLED_UPLOAD) / 1000)
+    page.locator(f'[id="{label.get_attribute("for")}"]').click(force=True)
+    return statistics.median(times)
+
+
+def pixels(page: Any) -> np.ndarray:
+    """The page as shown, shape (H, W, 3) of blue, green, red."""
+    import cv2
+
+    data = np.frombuffer(page.screenshot(), dtype=np.uint8)
+    return np.asarray(cv2.imdecode(data, cv2.IMREAD_COLOR), dtype=np.int16)
+
+
+def arm(before: np.ndarray, after: np.ndarray) -> tuple[int, int]:
+    """Pixel of the tip of the handle's upright arm: the highest blue that was not there before."""
+    blue, green, red = np.moveaxis(after, -1, 0)
+    found = (np.abs(after - before).sum(axis=2) > 60) & (blue > red + BLUE_MARGIN)
+    found &= blue > green + BLUE_MARGIN // 2
+    # The docks are blue too.
+    found[:, :LEFT_DOCK_PX] = found[:, -RIGHT_DOCK_PX:] = False
+    rows, columns = np.nonzero(found)
+    if not len(rows):
+        raise ValueError("the handle is not on screen")
+    top = int(rows.min())
+    return int(np.median(columns[rows < top + 10])), top + 7
