@@ -42,9 +42,8 @@ def _moved(press: Press, frame: int) -> str:
 def _driven(press: Press, frame: int) -> str:
     """How far the driven regions are, where any moves."""
     shares = [actuation.share(float(frame)) for actuation in press.actuations]
-    if not shares:
-        return ""
-    return f"driven {100.0 * max(shares, key=abs):.0f} %"
+    most = max(shares, key=abs, default=0.0)
+    return f"driven {100.0 * most:.0f} %" if most else ""
 
 
 def number(value: float, form: str = ".3g") -> str:

@@ -38,7 +38,7 @@ def test_a_grip_is_run_and_shown_frame_by_frame(workbench: Command, tmp_path: Pa
     assert workbench("run", design, *words, "--out", out).code == 0
     summary = json.loads((out / "summary.json").read_text())
     assert summary["images"] == ["background.png", *(f"frame_{k:03d}.png" for k in range(FRAMES))]
-    seen = [cv2.imread(str(out / name)).astype(int) for name in summary["images"]]
+    seen = [np.asarray(cv2.imread(str(out / name)), dtype=int) for name in summary["images"]]
     background, pressed, closed, _, _, lifted = seen
     changes = [np.abs(image - background).mean() for image in (pressed, closed, lifted)]
     assert changes[1] > changes[0] > 10.0 * changes[2]

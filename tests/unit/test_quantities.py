@@ -27,7 +27,7 @@ from workbench.quantities import (
 SQUARE = Skin(
     points_mm=np.array([[0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 0]], np.float32),
     faces=np.array([[0, 1, 2], [0, 2, 3]], np.int32),
-    normals=np.tile(np.float32([0, 0, 1]), (4, 1)),
+    normals=np.tile(np.array([0, 0, 1], np.float32), (4, 1)),
 )
 """A square of 4 mm2: its corners own 4/3, 2/3, 4/3 and 2/3 mm2."""
 

@@ -67,10 +67,10 @@ class ObjectFolder:
         self.pattern = gui.add_dropdown(
             "Pattern", (*PLAIN, Pattern.IMAGE.value), initial_value=texture.pattern.value
         )
-        self.height = gui.add_slider("Texture height mm", 0.0, 2.0, 0.05, texture.height_mm)
+        self.height = gui.add_slider("Height mm", 0.0, 2.0, 0.05, texture.height_mm)
         hint = "Period; of letters the height of a capital, of a picture its width"
         pitch_mm = min(texture.pitch_mm, 20.0)
-        self.pitch = gui.add_slider("Texture pitch mm", 0.2, 20.0, 0.1, pitch_mm, hint=hint)
+        self.pitch = gui.add_slider("Pitch mm", 0.2, 20.0, 0.1, pitch_mm, hint=hint)
         self.text = gui.add_text("Letters", texture.text or "A")
         self.picture = gui.add_upload_button("Load picture", mime_type="image/*",
                                              icon=viser.Icon.PHOTO_UP)  # fmt: skip

@@ -219,11 +219,9 @@ class ResultsPanel:
         """Show the frames that settled before a press failed."""
         self.images = None
         self.caption.content = NO_IMAGE
-        settled = len(contact.reaction_N)
-        shown = f"frames 1..{settled} are shown" if settled > 1 else "frame 1 is shown"
-        note = f"**frame {error.frame + 1} failed; {shown}**"
-        self._show_contact(self.desk.session.case.press, contact, note=note)
-        self.desk.log(note.strip("*"))
+        note = settled_note(error.frame, len(contact.reaction_N))
+        self._show_contact(self.desk.session.case.press, contact, note=f"**{note}**")
+        self.desk.log(note)
 
     def _follow_frames(self, count: int) -> None:
         if int(self.frame.max) != count:
@@ -271,3 +269,9 @@ class ResultsPanel:
         if not note and not self.desk.current("press"):
             note = "**stale**: run the press again"
         self.forces.show(self.contact, k, what=self._phase(k + 1), note=note)
+
+
+def settled_note(failed: int, settled: int) -> str:
+    """What is said of the frames that settled before frame `failed`, counted from 0, did not."""
+    shown = f"frames 1..{settled} are shown" if settled > 1 else "frame 1 is shown"
+    return f"frame {failed + 1} failed; {shown}"

@@ -44,6 +44,8 @@ class SimulatePanel:
         hint = "Solve one frame at every change: drag the handle, or move a slider"
         self.live = gui.add_checkbox("Live", False, hint=hint)
         self.live.on_update(desk.guarded(self._switch_live))
+        command = gui.add_command("Live press", hotkey="L")
+        command.on_trigger(desk.guarded(self._toggle_live))
         hint = "Near the skin; or click on the skin to aim"
         fields.point("Target mm", "case.press.target_mm", step=0.5, hint=hint)
         hint = "From first touch, along the inward normal"
@@ -93,6 +95,10 @@ class SimulatePanel:
     def _switch_live(self, event: Any) -> None:
         if event.client is not None:
             self.desk.live.switch(bool(self.live.value))
+
+    def _toggle_live(self, event: Any) -> None:
+        self.live.value = not self.live.value
+        self.desk.live.switch(bool(self.live.value))
 
     def _end_live(self) -> None:
         """The whole path is wanted, not a preview of its end."""

@@ -103,7 +103,7 @@ class MotionFolder:
         desk = self.desk
         contact = desk.session.result("press") if desk.current("press") else None
         text = template_csv(desk.session.case.press, contact, desk.scene.standing)
-        event.client.send_file_download("trajectory.csv", text.encode())
+        event.client.send_file_download("trajectory.csv", text.encode(), save_immediately=True)
 
     def _clear(self, event: Any) -> None:
         self._change(trajectory=None, strokes=(), actuations=(), object_pose=None)

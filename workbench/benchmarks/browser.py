@@ -67,7 +67,7 @@ for (const name of ["bufferData", "bufferSubData"]) {
   };
 }
 """
-"""Notes when the page hands vertices to the graphics driver, when a key went down or a button up."""
+"""Notes vertices handed to the graphics driver, and when a key went down or a button up."""
 FIRST_UPLOAD = """
 () => {
   const large = window.uploads.filter(([when, size]) => size > 20000);
