@@ -16,7 +16,7 @@ import numpy as np
 from sim.contact import closed_forms, specimens
 from sim.contact.closed_forms import LayerContact
 from sim.contact.solver import press_membrane
-from workbench.core.design import Elastomer
+from workbench.core.design import Elastomer, Law
 from workbench.core.indenter import Indenter, IndenterKind
 from workbench.core.press import ContactSettings, Press
 from workbench.core.sensing import Contact
@@ -77,6 +77,8 @@ class Ball:
     poisson: float = 0.45
     cells: float = CELLS_PER_RADIUS
     flatness: float = FLATNESS
+    law: Law = Law.NEO_HOOKEAN
+    tolerance: float = 1e-3
 
     @property
     def radius_mm(self) -> float:
@@ -95,13 +97,18 @@ class Ball:
 
     @property
     def margin_mm(self) -> float:
-        """Layer around the contact: 3 thicknesses under a wide contact, 1.7 under a narrow one."""
-        return HEIGHT_MM * min(3.0, max(1.7, 6.0 * self.chi))
+        """Layer around the contact: 3 thicknesses under a wide contact, 1.6 under a narrow one.
+
+        The cut costs 0.15 % at chi 0.6, against 5 thicknesses. At chi 0.2, where the force is 24 %
+        above the half-space's, 1.5 thicknesses cost 0.9 % and 1.7 cost 0.3 %, against 2.2; at chi
+        0.1, where it is 12 %, half of that.
+        """
+        return HEIGHT_MM * min(3.0, max(1.4 + 1.5 * self.chi, 6.0 * self.chi))
 
     @property
     def material(self) -> Elastomer:
         """Without friction, as in the closed form."""
-        return Elastomer(poisson=self.poisson, friction=0.0)
+        return Elastomer(poisson=self.poisson, friction=0.0, law=self.law)
 
 
 @functools.cache
@@ -120,7 +127,7 @@ def press_ball(ball: Ball) -> LayerPress:
         ball.material,
         Indenter(size_mm=2.0 * ball.radius_mm),
         Press(target_mm=(0.0, 0.0, HEIGHT_MM), depth_mm=ball.depth_mm, frames=1),
-        ContactSettings(grid_mm=ball.grid_mm, active_radius_mm=radius_mm),
+        ContactSettings(grid_mm=ball.grid_mm, active_radius_mm=radius_mm, tolerance=ball.tolerance),
     )
     return LayerPress(contact=contact, skin_mm=mesh.outer.points_mm)
 
