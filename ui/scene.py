@@ -18,6 +18,7 @@ from workbench.core.press import Press
 from workbench.core.results import Skin, Solid
 from workbench.core.sensing import Contact
 from workbench.previews import cell_edges, indenter_shape, standing_pose
+from workbench.soft_shape import deformed_mm, is_soft
 
 INDENTER_COLOUR = (232, 124, 44)
 SEEN_THROUGH = 0.35
@@ -52,6 +53,10 @@ class Scene:
         self._cell: Any = None
         self._edges: Any = None
         self.indenter: Any = None
+        self._object = np.zeros((0, 3)), np.zeros((0, 3), np.uint32)
+        """Undeformed vertices [mm] and triangles of the object."""
+        self._bent = False
+        """Whether the object is drawn deformed."""
         self.grid: Any = None
         self._prepare(fast)
 
@@ -117,6 +122,8 @@ class Scene:
     def show_indenter(self, indenter: Indenter, path: Press) -> None:
         """Show the indenter standing on the skin at the target."""
         points, faces = indenter_shape(indenter)
+        self._object = points, faces.astype(np.uint32)
+        self._bent = False
         self._lowest_mm = -float(points[:, 2].min())
         vertices, triangles = points.astype(np.float32), faces.astype(np.uint32)
         if self.indenter is None:
@@ -145,6 +152,15 @@ class Scene:
         if self.indenter is not None:
             self.indenter.opacity = SEEN_THROUGH if wanted else None
 
+    def _pose_object(self, contact: Contact, frame: int) -> None:
+        """Put the object where a frame of a press has it, in the shape that it has there."""
+        self._pose(contact.indenter_pose[frame])
+        if is_soft(contact) or self._bent:
+            points, triangles = self._object
+            self._bent = is_soft(contact)
+            shape = deformed_mm(contact, frame, points) if self._bent else points
+            replace(self.indenter, shape.astype(np.float32), triangles)
+
     def _pose(self, pose: np.ndarray) -> None:
         self.standing = np.asarray(pose)
         with self.server.atomic():
@@ -164,7 +180,7 @@ class Scene:
         with self.server.atomic():
             self.pressed.load_live(skin, contact)
             self.body.show_skin(False)
-            self._pose(contact.indenter_pose[0])
+            self._pose_object(contact, 0)
 
     def clear_frames(self) -> None:
         """Forget the frames of a press."""
@@ -188,7 +204,7 @@ class Scene:
             self.pressed.show(number)
             self.body.show_skin(number == 0)
             if self.indenter is not None:
-                self._pose(contact.indenter_pose[max(number, 1) - 1])
+                self._pose_object(contact, max(number, 1) - 1)
 
     def show_cell(self, corners_mm: np.ndarray) -> None:
         """Draw the edges of one cell of a mesh: triangle, tetrahedron or hexahedron."""

@@ -178,6 +178,7 @@ def _run_options(sub: argparse.ArgumentParser) -> None:
         "--edge-radius-mm", type=float, help="rounding of edges (default 0.45; of a file 0)"
     )
     sub.add_argument("--texture", metavar="PATTERN", help=TEXTURES)
+    sub.add_argument("--soft-mpa", type=float, help="Young's modulus of a soft object [MPa]")
     sub.add_argument("--target", help="x,y,z near the skin [mm]; default: where the family says")
     sub.add_argument("--depth-mm", type=float, help="default 1, or that of the sequence")
     sub.add_argument("--shear-mm", metavar="U,V")

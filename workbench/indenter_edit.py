@@ -42,14 +42,15 @@ def _words(name: str) -> str:
 
 
 def another(name: str, now: Indenter) -> Indenter:
-    """An object of the gallery; of the present one it keeps texture and, among primitives, size.
+    """An object of the gallery, with texture, softness and, among primitives, size of the present one.
 
     Raises:
         DesignError: If the texture does not fit it.
     """
     primitive = name in {kind.value for kind in IndenterKind}
     size_mm = now.size_mm if primitive and now.mesh is None else None
-    return choose_indenter(name, size_mm=size_mm, texture=now.texture)
+    chosen = choose_indenter(name, size_mm=size_mm, texture=now.texture)
+    return dataclasses.replace(chosen, soft=now.soft)
 
 
 def resized(indenter: Indenter, size_mm: float) -> Indenter:

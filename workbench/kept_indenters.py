@@ -18,6 +18,7 @@ from workbench.core.digest import digest
 from workbench.core.errors import DesignError
 from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
 from workbench.core.mapping import from_table, to_table
+from workbench.core.soft_body import SoftBody
 from workbench.core.texture import HeightImage, Pattern, Texture
 from workbench.project import Project, write_atomically
 
@@ -68,6 +69,9 @@ def read_indenter(table: Any, project: Project) -> Indenter:
         if "texture" in plain:
             texture = from_table(Texture, plain["texture"], at=f"{AT}.texture")
             found = dataclasses.replace(found, texture=texture)
+        if "soft" in plain:
+            soft = from_table(SoftBody, plain["soft"], at=f"{AT}.soft")
+            found = dataclasses.replace(found, soft=soft)
     if image_key is None:
         return found
     sizes = {n: v for n, v in dict(table.get("texture", {})).items() if n.endswith("_mm")}

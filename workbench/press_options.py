@@ -7,6 +7,7 @@ are its own unless the options name them.
 from __future__ import annotations
 
 import argparse
+import dataclasses
 from typing import Any
 
 from workbench.core.design import SensorDesign
@@ -14,6 +15,7 @@ from workbench.core.errors import DesignError
 from workbench.core.indenter import Indenter, IndenterKind
 from workbench.core.motion import Mover
 from workbench.core.press import ContactSettings, Extent, Method, Press
+from workbench.core.soft_body import SoftBody
 from workbench.core.trajectory import Trajectory
 
 SETTINGS = ("grid_mm", "region_error", "max_substeps", "tolerance", "penalty")
@@ -52,6 +54,7 @@ def _sequence(options: argparse.Namespace, design: SensorDesign) -> Any:
                 at=option,
             )
     named = (options.indenter, options.size_mm, options.edge_radius_mm, options.texture)
+    named = (*named, options.soft_mpa)
     return sequence(
         design,
         options.sequence,
@@ -65,12 +68,15 @@ def _sequence(options: argparse.Namespace, design: SensorDesign) -> Any:
 def _indenter(options: argparse.Namespace) -> Indenter:
     from workbench.indenter_choice import choose_indenter, choose_texture
 
-    return choose_indenter(
+    found = choose_indenter(
         IndenterKind.SPHERE.value if options.indenter is None else options.indenter,
         size_mm=options.size_mm,
         edge_radius_mm=options.edge_radius_mm,
         texture=choose_texture(options.texture) if options.texture else None,
     )
+    if options.soft_mpa is None:
+        return found
+    return dataclasses.replace(found, soft=SoftBody(young_MPa=options.soft_mpa))
 
 
 def _press(options: argparse.Namespace, target_mm: tuple[float, float, float]) -> Press:

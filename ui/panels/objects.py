@@ -11,6 +11,7 @@ import viser
 from ui.desk import Desk
 from workbench.core.errors import DesignError
 from workbench.core.indenter import Indenter, IndenterKind
+from workbench.core.soft_body import SoftBody
 from workbench.core.texture import Pattern
 from workbench.indenter_edit import (
     another,
@@ -59,6 +60,13 @@ class ObjectFolder:
             self.file = gui.add_upload_button("Load object", mime_type=".stl,.obj,.step,.stp",
                                               icon=viser.Icon.UPLOAD)  # fmt: skip
             self.file.on_upload(guarded(self._load_file))
+            hint = "Its own elastomer and grid; takes several times as long"
+            self.soft = gui.add_checkbox("Soft object", now.soft is not None, hint=hint)
+            soft = now.soft or SoftBody()
+            hint = "Young's modulus of the object; the top quarter of it is held"
+            self.young = gui.add_number("Object MPa", soft.young_MPa, step=0.01, hint=hint)
+            for widget in (self.soft, self.young):
+                widget.on_update(guarded(self._soften))
             with gui.add_folder("Texture", expand_by_default=now.texture.raised):
                 self._texture_widgets(now)
 
@@ -135,6 +143,14 @@ class ObjectFolder:
             )
         )
 
+    def _soften(self, event: Any) -> None:
+        """Take the elastomer that the widgets describe, or none."""
+        if event.client is None:
+            return
+        now = self.desk.session.case.indenter
+        soft = SoftBody(young_MPa=float(self.young.value)) if self.soft.value else None
+        self._take(dataclasses.replace(now, soft=soft))
+
     def _load_picture(self, event: Any) -> None:
         file = self.picture.value
         self._take(pictured(self.desk.session.case.indenter, file.name, file.content))
@@ -166,6 +182,11 @@ class ObjectFolder:
         self._set(self.pattern, now.texture.pattern.value)
         self._set(self.height, min(now.texture.height_mm, 2.0))
         self._set(self.pitch, min(max(now.texture.pitch_mm, 0.2), 20.0))
+        self._set(self.soft, now.soft is not None)
+        if now.soft is not None:
+            self._set(self.young, now.soft.young_MPa)
+        if self.young.visible != (now.soft is not None):
+            self.young.visible = now.soft is not None
         meshed = now.kind is IndenterKind.MESH
         top_mm = MESH_SPAN_MM if meshed or now.size_mm > SPAN_MM else SPAN_MM
         if self.size.max != top_mm:
