@@ -42,7 +42,7 @@ def _words(name: str) -> str:
 
 
 def another(name: str, now: Indenter) -> Indenter:
-    """An object of the gallery; it takes texture, softness and, of a primitive, size from the present.
+    """An object of the gallery with the texture, softness and, of a primitive, size of this one.
 
     Raises:
         DesignError: If the texture does not fit it.
