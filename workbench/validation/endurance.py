@@ -25,11 +25,10 @@ PRESSES = 500
 WARM_UP = 100
 """Presses before memory is first read: twice through all objects and grids."""
 GROWTH_LIMIT_MB = 5.0
-"""Growth over 100 presses: a fifth of the arrays of the default press, so none is kept."""
+"""Growth over 100 presses: the arrays of three of them would be more."""
 WIDTH_MM = 10.0
 HEIGHT_MM = 2.0
-GRIDS_MM = (0.7, 0.8, 0.9, 1.0)
-"""Coarse: what could be kept does not depend on how fine a press is."""
+GRIDS_MM = (0.5, 0.6, 0.7, 0.8)
 
 
 def resident_MB() -> float:
