@@ -220,12 +220,11 @@ def press(
 
     monitor(0.0, "opening the device")
     open_device()
-    from sim.contact.sampling import give_samples
     from sim.contact.solver import press_membrane
 
-    if sampled is not None:
-        give_samples(indenter, sampled, grid_mm=points.grid_mm)
-    return press_membrane(mesh, points, material, indenter, path, settings, monitor=monitor)
+    return press_membrane(
+        mesh, points, material, indenter, path, settings, sampled=sampled, monitor=monitor
+    )
 
 
 def shoot(

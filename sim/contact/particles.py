@@ -65,7 +65,7 @@ def press_particles(
             inclusions or the linear law, which the published method does not have.
         SolveError: If a point becomes infinite or leaves the grid.
     """
-    _refuse_what_was_not_published(mesh, material, press)
+    _refuse_what_was_not_published(mesh, material, indenter, press)
     monitor(0.0, "filling the object")
     collider = make_collider(indenter, grid_mm=points.grid_mm)
     approach = plan_approach(mesh.outer, collider, press)
@@ -77,7 +77,23 @@ def press_particles(
     found = []
     for frame in range(approach.frame_count):
         monitor(frame / approach.frame_count, f"frame {frame + 1} of {approach.frame_count}")
-        found.append(_frame(state, approach, readout, collider, frame))
+        try:
+            found.append(_frame(state, approach, readout, collider, frame))
+        except SolveError as error:
+            if found:
+                error.partial = _collected(found, approach, state, points.grid_mm, radius_mm)
+            raise
+    return _collected(found, approach, state, points.grid_mm, radius_mm)
+
+
+def _collected(
+    found: list[dict[str, Any]],
+    approach: Approach,
+    state: State,
+    grid_mm: float,
+    radius_mm: float,
+) -> Contact:
+    """All frames so far as one result."""
     stacked: dict[str, Any] = {
         name: np.stack([np.asarray(one[name]) for one in found]) for name in found[0]
     }
@@ -86,16 +102,20 @@ def press_particles(
         target_mm=approach.target_mm,
         normal=approach.normal,
         tangent_u=approach.tangent_u,
-        grid_mm=points.grid_mm,
+        grid_mm=grid_mm,
         active_radius_mm=radius_mm,
-        particles=len(cloud.place_mm) + len(cloud.body_mm),
+        particles=len(state.cloud.place_mm) + len(state.cloud.body_mm),
         substeps=state.substeps,
         device="cuda" if current_cfg().arch == ti.cuda else "cpu",
+        sensor_pose=approach.sensor_poses()[: len(found)],
     )
 
 
-def _refuse_what_was_not_published(mesh: MembraneMesh, material: Elastomer, press: Press) -> None:
+def _refuse_what_was_not_published(
+    mesh: MembraneMesh, material: Elastomer, indenter: Indenter, press: Press
+) -> None:
     lacking = {
+        "a soft object": indenter.soft is not None,
         "a gap behind the skin": mesh.backing_mm > 0.0,
         "driven regions": bool(press.actuations),
         "inclusions": bool(material.inclusions),

@@ -17,6 +17,7 @@ from sim.contact.shapes import Shape
 from workbench.core.indenter import Indenter
 from workbench.core.press import Press
 from workbench.core.results import Skin
+from workbench.core.sampled import SampledDistance
 
 COARSER = 1.05
 """Samples farther apart than asked for by this factor call for a window."""
@@ -27,15 +28,27 @@ PADDING_CELLS = 3.0
 
 
 def place_object(
-    outer: Skin, indenter: Indenter, press: Press, *, grid_mm: float
+    outer: Skin,
+    indenter: Indenter,
+    press: Press,
+    *,
+    grid_mm: float,
+    sampled: SampledDistance | None = None,
 ) -> tuple[Collider, Approach]:
     """The object's signed distance and its path.
+
+    Args:
+        outer: The skin.
+        indenter: The object.
+        press: What is asked for.
+        grid_mm: Edge of a cell of the contact grid.
+        sampled: The whole object's distance on this grid where a store has it.
 
     Raises:
         DesignError: If the object cannot be made, or its path does not reach the skin soundly.
         SolveError: If the first touch cannot be found.
     """
-    collider = make_collider(indenter, grid_mm=grid_mm)
+    collider = make_collider(indenter, grid_mm=grid_mm, whole=sampled)
     approach = plan_approach(outer, collider, press)
     if collider.shape is not Shape.GRID:
         return collider, approach
@@ -43,7 +56,7 @@ def place_object(
     if spacing_mm <= COARSER * grid_mm / SAMPLES_PER_CELL:
         return collider, approach
     window_mm = near_window_mm(outer, collider, approach, grid_mm=grid_mm)
-    collider = make_collider(indenter, grid_mm=grid_mm, window_mm=window_mm)
+    collider = make_collider(indenter, grid_mm=grid_mm, window_mm=window_mm, whole=sampled)
     return collider, plan_approach(outer, collider, press)
 
 

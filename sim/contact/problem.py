@@ -28,6 +28,7 @@ from workbench.core.design import Elastomer
 from workbench.core.indenter import Indenter
 from workbench.core.press import ContactSettings, Press
 from workbench.core.results import MaterialPoints, MembraneMesh
+from workbench.core.sampled import SampledDistance
 
 BOND_PENALTY = 100.0
 """Stiffness of the bond to the support per area, in units of E / grid."""
@@ -60,15 +61,27 @@ def make_problem(
     indenter: Indenter,
     press: Press,
     settings: ContactSettings,
+    sampled: SampledDistance | None = None,
 ) -> Problem:
     """Place the object and number the region.
+
+    Args:
+        mesh: Skins and gap.
+        points: Material points.
+        material: The elastomer.
+        indenter: The object.
+        press: Its path.
+        settings: Region and penalty.
+        sampled: The object's distance on this grid where a store has it; else it is sampled here.
 
     Raises:
         DesignError: If the target is off the skin, the object cannot be made or would reach the
             support, the region is too small, a driven region does not exist, or memory is short.
         SolveError: If the first touch cannot be found.
     """
-    collider, approach = place_object(mesh.outer, indenter, press, grid_mm=points.grid_mm)
+    collider, approach = place_object(
+        mesh.outer, indenter, press, grid_mm=points.grid_mm, sampled=sampled
+    )
     check_depth(support_points_mm(mesh), approach, collider)
     radius_mm = region_radius_mm(mesh, material, approach, collider, settings)
     return Problem(

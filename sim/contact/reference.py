@@ -12,10 +12,9 @@ import numpy as np
 
 from sim.contact.collider import Collider
 from sim.contact.domain import Domain, stencil_nodes
+from sim.contact.layout import FREE, HELD, TOUCHED
 from sim.contact.stencil import gradient_table, point_weights
 from sim.material import stress_of
-
-FREE, TOUCHED, HELD = 0, 1, 2
 
 Pose = tuple[np.ndarray, np.ndarray]
 

@@ -26,8 +26,6 @@ DAMPING_RANGE = (0.004, 1.5)
 STEPS = 5
 """Substeps between two looks at the residual."""
 
-Pose = tuple[np.ndarray, np.ndarray]
-
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Balance:
@@ -168,6 +166,10 @@ class Relaxation:
     def burden(self, chosen: np.ndarray) -> None:
         """Double the fictitious masses of the chosen cases, (B,) bool."""
         self.mass_scale[chosen] *= 2.0
+
+    def relieve(self, case: int) -> None:
+        """Halve the burden of a case, never below its own masses: a stall may not come again."""
+        self.mass_scale[case] = max(1.0, 0.5 * self.mass_scale[case])
 
     def snapshot(self, case: int) -> np.ndarray:
         """What `restart` takes to come back to the present displacement, shape (N, 3)."""

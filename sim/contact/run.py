@@ -19,6 +19,10 @@ RAMP_SUBSTEPS_PER_MM = 100.0
 SHORTEST_RAMP = 10
 ARM_CELLS = 10.0
 """Distance from its origin at which a turn of the object counts as travel, in cells."""
+FORCE_CHANGE = 2e-4
+"""Largest relative change of the reaction between two looks of a settled frame."""
+NET_FORCE = 5e-3
+"""Largest sum of the forces on free nodes over the load: what the support would miss."""
 MOST_KEPT = 3
 """Settled displacements kept to extrapolate from."""
 STILL_MM = 1e-9
@@ -106,13 +110,21 @@ class Run:
             sum(np.linalg.norm(forces[drive == n].sum(axis=0)) for n in range(len(actuations)))
         )
 
-    def unsettled(self, residual: float) -> SolveError:
-        """The error of a frame that ran out of substeps."""
+    def unsettled(self, residual: float, net: float, change: float) -> SolveError:
+        """The error of a frame that ran out of substeps: the first measure over its limit."""
         settings = self.problem.settings
+        measures = (
+            ("a residual", residual, settings.tolerance),
+            ("a net force on the free nodes, over the load,", net, NET_FORCE),
+            ("a change of the reaction between two looks, over the load,", change, FORCE_CHANGE),
+        )
+        over = (measure for measure in measures if not measure[1] < measure[2])
+        what, value, limit = next(over, measures[0])
+        remedy = " or contact.tolerance" if what == "a residual" else ""
         return SolveError(
-            f"{self.label} has a residual of {residual:.1e} after {settings.max_substeps} "
-            f"substeps; the limit is {settings.tolerance:.1e}",
-            hint="raise contact.max_substeps or contact.tolerance, or press less deep",
+            f"{self.label} has {what} of {value:.1e} after {settings.max_substeps} substeps; the "
+            f"limit is {limit:.1e}",
+            hint=f"raise contact.max_substeps{remedy}, or press less deep",
             at="contact.max_substeps",
             frame=self.frame,
             residual=residual,

@@ -100,11 +100,6 @@ def kept_samples(
     return found
 
 
-def give_samples(indenter: Indenter, field: SampledDistance, *, grid_mm: float) -> None:
-    """Hand over what `sample_indenter` returned without a window, perhaps in another process."""
-    _keep(_key(indenter, grid_mm, None, MOST_SAMPLES), field)
-
-
 def _key(indenter: Indenter, grid_mm: float, window_mm: Window | None, most: int) -> str:
     corners = () if window_mm is None else tuple(np.asarray(c, dtype=float) for c in window_mm)
     return digest((indenter, float(grid_mm), corners, most))

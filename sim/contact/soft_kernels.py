@@ -11,7 +11,7 @@ penalty energy k phi(X)^2 / 2 gives
 so action and reaction are equal. Friction is that of the rigid object with anchors in the
 undeformed object. Nodes of the object gather integers (2^-36 N): their sum does not depend on its
 order.
-The plain twin is `soft_reference`.
+The plain twins are in `soft_meeting` and `soft_reference`.
 """
 
 # Taichi reads annotations and operators in its own way.
@@ -55,7 +55,7 @@ def _line_slopes(local):
 
 
 @ti.func
-def _cell_at(place, partner: ti.template(), cell_map: ti.template(), extents: ti.template()):
+def _cell_at(place, cell_map: ti.template(), extents: ti.template()):
     """Cell of the object around a place [cells], or NOWHERE."""
     found = NOWHERE
     index = ti.Vector([0, 0, 0])
@@ -87,7 +87,7 @@ def _deformed(place, cell, displacement: ti.template(), rows: ti.template(), inv
 
 
 @ti.func
-def _start_place(point_mm, rotation, poses: ti.template(), row, partner: ti.template()):
+def _start_place(point_mm, rotation, poses: ti.template(), row):
     """Where the rigid object would have a point [mm from the target], in its body frame."""
     place = point_mm
     for c in ti.static(range(3)):
@@ -117,19 +117,19 @@ def _meet(
     turned = ti.Matrix([[partner[3 + 3 * r + c] for c in range(3)] for r in range(3)])
     origin = ti.Vector([partner[c] for c in range(3)])
     wanted = turned.transpose() @ (point_mm - origin)
-    place = _start_place(point_mm, body_rotation(poses, row), poses, row, partner)
+    place = _start_place(point_mm, body_rotation(poses, row), poses, row)
     distance, gradient = object_distance(place, numbers, choices, coefficients, MEMBRANE)
     if distance > 0.0:
         # A point that only the deformed object has reached is sought from the skin inward.
         place -= distance * gradient
-    cell = _cell_at(place * inverse_edge, partner, cell_map, extents)
+    cell = _cell_at(place * inverse_edge, cell_map, extents)
     deformation = ti.Matrix.identity(ti.f32, 3)
     for _ in range(NEWTON):
         if cell != NOWHERE:
             moved, slope = _deformed(place * inverse_edge, cell, displacement, rows, inverse_edge)
             deformation = ti.Matrix.identity(ti.f32, 3) + slope
             place -= deformation.inverse() @ (place + moved - wanted)
-            cell = _cell_at(place * inverse_edge, partner, cell_map, extents)
+            cell = _cell_at(place * inverse_edge, cell_map, extents)
     distance, gradient = object_distance(place, numbers, choices, coefficients, MEMBRANE)
     return place, cell, deformation, distance, gradient
 
@@ -295,8 +295,6 @@ def _make_substep(linear):
 
 SOFT_SUBSTEP = {linear: _make_substep(linear) for linear in (False, True)}
 """By whether the law is linear: a substep of a membrane and a soft object."""
-SOFT_ARRAYS = ("partner", "cell_map", "extents", "object_forces")
-"""Arrays that follow those of the rigid substep."""
 
 
 @ti.kernel

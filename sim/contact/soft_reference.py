@@ -1,115 +1,76 @@
-"""Where points meet a soft object, in plain NumPy and double precision.
-
-Twin of the Taichi functions of `soft_kernels`, and what reads a settled frame.
-"""
+"""Plain NumPy twins of the soft kernels, in double precision, point by point."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from sim.contact.collider import Collider
 from sim.contact.domain import stencil_nodes
+from sim.contact.layout import FREE, HELD, TOUCHED
+from sim.contact.reference import ContactHistory
+from sim.contact.soft_meeting import Meeting
 from sim.contact.soft_object import SoftObject
-from sim.contact.stencil import point_slopes, point_weights
-
-NEWTON = 4
-NOWHERE = -1
+from sim.contact.stencil import point_weights
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Meeting:
-    """P points and the object."""
-
-    place_mm: np.ndarray
-    """Places in the undeformed object [mm], shape (P, 3)."""
-    cell: np.ndarray
-    """Cells of the object, or NOWHERE, shape (P,)."""
-    deformation: np.ndarray
-    """Deformation gradient of the object there, shape (P, 3, 3)."""
-    distance_mm: np.ndarray
-    """Signed distance of the undeformed object there [mm], shape (P,)."""
-    gradient: np.ndarray
-    """Its gradient, shape (P, 3)."""
-
-    @property
-    def met(self) -> np.ndarray:
-        """Points inside the object, shape (P,), bool."""
-        return (self.cell != NOWHERE) & (self.distance_mm < 0.0)
-
-    @property
-    def steep(self) -> np.ndarray:
-        """F^-T grad phi: the gradient in the deformed object, shape (P, 3)."""
-        return np.einsum("pji,pj->pi", np.linalg.inv(self.deformation), self.gradient)
+def returned_slip(
+    place: np.ndarray,
+    anchor: np.ndarray,
+    deformation: np.ndarray,
+    gradient: np.ndarray,
+    limit_mm: float,
+) -> np.ndarray:
+    """Tangential slip in the undeformed object [mm], shortened onto the friction cone, (3,)."""
+    normal = gradient / np.linalg.norm(gradient)
+    slip = place - anchor
+    slip = slip - (slip @ normal) * normal
+    length_mm = np.linalg.norm(deformation @ slip)
+    return slip * (limit_mm / length_mm) if length_mm > limit_mm else slip
 
 
-def cells_at(soft: SoftObject, place_mm: np.ndarray) -> np.ndarray:
-    """Cells of the object around places, (P, 3), NOWHERE outside, shape (P,)."""
-    index = np.floor(place_mm / soft.domain.grid_mm + 0.5).astype(int) - soft.first_cell
-    inside = ((index >= 0) & (index < soft.cell_map.shape)).all(axis=1)
-    found = np.full(len(place_mm), NOWHERE)
-    found[inside] = soft.cell_map[tuple(index[inside].T)]
-    return found
-
-
-def deformed(
-    soft: SoftObject, nodal_mm: np.ndarray, place_mm: np.ndarray, cell: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Displacement [mm], (P, 3), and its gradient, (P, 3, 3), at places in cells of the object."""
-    cells = place_mm / soft.domain.grid_mm
-    local = cells - np.floor(cells + 0.5)
-    nodal = nodal_mm[stencil_nodes(soft.domain.rows[cell])]
-    slopes = point_slopes(local) / soft.domain.grid_mm
-    moved = np.einsum("pn,pnc->pc", point_weights(local), nodal)
-    return moved, np.einsum("pnr,pnc->prc", nodal, slopes)
-
-
-def meet(
+def contact_forces(
     soft: SoftObject,
-    collider: Collider,
-    nodal_mm: np.ndarray,
-    points_mm: np.ndarray,
-    pose: tuple[np.ndarray, np.ndarray],
-) -> Meeting:
-    """Where points, (P, 3), sensor frame, meet the object deformed by nodal_mm, (N, 3)."""
-    origin, rotation = pose
-    wanted = (points_mm - soft.origin_mm) @ soft.rotation
-    place = (points_mm - origin) @ rotation
-    distance, gradient = collider.distance(place)
-    place = place - np.where(distance > 0.0, distance, 0.0)[:, None] * gradient
-    cell = cells_at(soft, place)
-    deformation = np.tile(np.eye(3), (len(place), 1, 1))
-    for _ in range(NEWTON):
-        known = np.flatnonzero(cell != NOWHERE)
-        moved, slope = deformed(soft, nodal_mm, place[known], cell[known])
-        deformation[known] = np.eye(3) + slope
-        excess = place[known] + moved - wanted[known]
-        place[known] -= np.linalg.solve(deformation[known], excess[:, :, None])[:, :, 0]
-        cell[known] = cells_at(soft, place[known])
-    distance, gradient = collider.distance(place)
-    return Meeting(
-        place_mm=place,
-        cell=cell,
-        deformation=deformation,
-        distance_mm=distance,
-        gradient=gradient,
-    )
-
-
-def normal_forces(
-    soft: SoftObject, meeting: Meeting, stiffness_N_mm: np.ndarray
+    meeting: Meeting,
+    stiffness_N_mm: np.ndarray,
+    history: ContactHistory,
+    *,
+    friction: float,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Frictionless forces [N] on the points, (P, 3), and on the object's nodes, (N, 3).
+    """Forces [N] on the points, (P, 3), sensor frame, and on the object's nodes, (N, 3).
 
-    The former in the sensor frame, the latter in the object's body frame at the start.
+    The latter in the object's body frame at the start; first anchors are set in `history`.
     """
-    push = -(stiffness_N_mm * meeting.distance_mm)[:, None] * meeting.steep
-    push = np.where(meeting.met[:, None], push, 0.0)
+    push = np.zeros((len(stiffness_N_mm), 3))
     nodal = np.zeros((len(soft.domain.masses), 3))
-    met = np.flatnonzero(meeting.met)
-    cells = meeting.place_mm[met] / soft.domain.grid_mm
-    weights = point_weights(cells - np.floor(cells + 0.5))
-    nodes = stencil_nodes(soft.domain.rows[meeting.cell[met]])
-    np.add.at(nodal, nodes, -weights[:, :, None] * push[met, None])
+    for p in range(len(push)):
+        if not meeting.met[p]:
+            if history.states[p] == TOUCHED:
+                history.states[p] = FREE
+            continue
+        place, distance_mm = meeting.place_mm[p], meeting.distance_mm[p]
+        if history.states[p] == FREE:
+            history.states[p], history.anchors[p] = TOUCHED, place
+        deformation, steep = meeting.deformation[p], meeting.steep[p]
+        limit_mm = -friction * distance_mm * np.linalg.norm(steep)
+        slip = returned_slip(place, history.anchors[p], deformation, meeting.gradient[p], limit_mm)
+        push[p] = -stiffness_N_mm[p] * (distance_mm * steep + deformation @ slip)
+        cells = place[None] / soft.domain.grid_mm
+        weights = point_weights(cells - np.floor(cells + 0.5))[0]
+        nodes = stencil_nodes(soft.domain.rows[meeting.cell[p]][None])[0]
+        nodal[nodes] -= weights[:, None] * push[p]
     return push @ soft.rotation.T, nodal
+
+
+def commit_history(meeting: Meeting, history: ContactHistory, *, friction: float) -> None:
+    """Close a frame: anchors follow the points that slid, and their way is added up."""
+    for p in range(len(history.states)):
+        if not meeting.met[p] or history.states[p] == FREE:
+            history.states[p] = FREE
+            continue
+        place, gradient = meeting.place_mm[p], meeting.gradient[p]
+        limit_mm = -friction * meeting.distance_mm[p] * np.linalg.norm(meeting.steep[p])
+        slip = returned_slip(place, history.anchors[p], meeting.deformation[p], gradient, limit_mm)
+        normal = gradient / np.linalg.norm(gradient)
+        way = place - slip - history.anchors[p]
+        way = meeting.deformation[p] @ (way - (way @ normal) * normal)
+        history.slips[p] += np.linalg.norm(way)
+        history.states[p], history.anchors[p] = HELD, place - slip

@@ -20,8 +20,8 @@ from sim.contact.outcome import frame_outcome, point_displacement
 from sim.contact.problem import Problem
 from sim.contact.relaxation import Balance, Balances, Launcher, Relaxation
 from sim.contact.run import Run
+from sim.contact.soft_meeting import cells_at, deformed, meet
 from sim.contact.soft_object import SoftObject, make_soft_object
-from sim.contact.soft_reference import cells_at, deformed, meet
 from sim.contact.solver import Solver
 from workbench.core.errors import SolveError
 from workbench.core.indenter import Indenter
@@ -101,6 +101,11 @@ class SoftRelaxation(Relaxation):
     def burden(self, chosen: np.ndarray) -> None:
         """Double the fictitious masses of both bodies."""
         super().burden(np.resize(chosen, 2))
+
+    def relieve(self, case: int) -> None:
+        """Halve the burden of both bodies."""
+        for each in (MEMBRANE, OBJECT):
+            super().relieve(each)
 
     def snapshot(self, case: int) -> np.ndarray:
         """Nodal displacements of the membrane, then of the object, shape (N + M, 3)."""

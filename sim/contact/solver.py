@@ -20,7 +20,7 @@ from sim.contact.frame import FrameOutcome
 from sim.contact.outcome import collect, frame_outcome
 from sim.contact.problem import Problem, make_problem
 from sim.contact.relaxation import STEPS, Balance, Balances, Relaxation
-from sim.contact.run import Run
+from sim.contact.run import FORCE_CHANGE, NET_FORCE, Run
 from sim.contact.verdict import check_frame
 from workbench.core.design import Elastomer
 from workbench.core.errors import SolveError
@@ -28,12 +28,9 @@ from workbench.core.indenter import Indenter
 from workbench.core.monitor import Monitor, silent
 from workbench.core.press import ContactSettings, Method, Press
 from workbench.core.results import MaterialPoints, MembraneMesh
+from workbench.core.sampled import SampledDistance
 from workbench.core.sensing import Contact
 
-FORCE_CHANGE = 2e-4
-"""Largest relative change of the reaction between two looks of a settled frame."""
-NET_FORCE = 5e-3
-"""Largest sum of the forces on free nodes over the load: what the support would miss."""
 LEAST_OF_PEAK = 0.01
 """Share of the peak load that stands in for a vanishing one."""
 PATIENCE = 300
@@ -49,6 +46,7 @@ def press_membrane(
     press: Press,
     settings: ContactSettings,
     *,
+    sampled: SampledDistance | None = None,
     monitor: Monitor = silent,
 ) -> Contact:
     """Press an object along its path; Taichi must have been initialised in this thread.
@@ -60,6 +58,7 @@ def press_membrane(
         indenter: The object.
         press: Its path, and the regions that are driven meanwhile.
         settings: Region, penalty, tolerance.
+        sampled: The object's distance on this grid where a store has it; else it is sampled here.
         monitor: Told the frame and residual; raises `Cancelled` to stop.
 
     Raises:
@@ -73,7 +72,7 @@ def press_membrane(
 
         return press_particles(mesh, points, material, indenter, press, settings, monitor=monitor)
     monitor(0.0, "placing the object")
-    problem = make_problem(mesh, points, material, indenter, press, settings)
+    problem = make_problem(mesh, points, material, indenter, press, settings, sampled)
     if indenter.soft is not None:
         from sim.contact.soft_solver import press_soft
 
@@ -214,7 +213,9 @@ class Solver:
         self.retries[stalled] += 1
         self.lowest_at[stalled] = self.spent[stalled]
         for case in np.flatnonzero(looked & (self.spent >= self.most)).tolist():
-            self.end(case, self.runs[case].unsettled(float(self.residual[case])))
+            net = float(np.linalg.norm(balances.net_N[case]) / load_N[case])
+            error = self.runs[case].unsettled(float(self.residual[case]), net, float(change[case]))
+            self.end(case, error)
 
     def _close(self, still: np.ndarray) -> np.ndarray:
         """End the frame of presses whose forces balance where the nodes are now; which did."""
@@ -243,6 +244,8 @@ class Solver:
             self.end(case, error)
             return
         run.finish(outcome)
+        self.retries[case] = 0
+        self.relaxation.relieve(case)
         if run.frame < problem.approach.frame_count:
             self._begin(case)
         else:

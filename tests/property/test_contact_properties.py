@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 
 from sim.contact.checks.finger import at_45_degrees, penetration_and_balance, press_finger
+from sim.contact.problem import make_problem
 from sim.contact.relaxation import Balances, Relaxation
-from sim.contact.solver import press_membrane
+from sim.contact.run import Run
+from sim.contact.solver import press_membrane, relaxation_of
 from sim.contact.specimens import flat_block
 from workbench.core.design import Elastomer
 from workbench.core.errors import Cancelled, SolveError
@@ -216,6 +218,31 @@ def test_running_out_of_substeps_is_reported() -> None:
     assert raised.value.frame == 0
     assert raised.value.last_good == -1
     assert raised.value.residual > settings.tolerance
+
+
+def test_the_measure_that_did_not_settle_is_named() -> None:
+    """A residual of 9e-4 is below its limit of 1e-3: the net force over 5e-3 is what failed."""
+    mesh, points = flat_block(width_mm=6.0, height_mm=2.0, grid_mm=0.5)
+    problem = make_problem(mesh, points, Elastomer(), Indenter(size_mm=4.0), PRESS, SETTINGS)
+    run = Run(problem, relaxation_of([problem]), 0)
+    limit = SETTINGS.tolerance
+    assert "a residual of 9.0e-02" in run.unsettled(9e-2, 9e-2, 9e-2).message
+    net = run.unsettled(0.9 * limit, 6e-3, 1e-5)
+    assert "net force" in net.message
+    assert "6.0e-03" in net.message
+    assert "tolerance" not in net.hint
+    assert "change of the reaction" in run.unsettled(0.9 * limit, 1e-3, 3e-4).message
+
+
+def test_masses_doubled_in_a_stall_come_back_frame_by_frame() -> None:
+    """Doubled twice, halved three times: 1, 2, 4, 2, 1, 1."""
+    mesh, points = flat_block(width_mm=6.0, height_mm=2.0, grid_mm=0.5)
+    problem = make_problem(mesh, points, Elastomer(), Indenter(size_mm=4.0), PRESS, SETTINGS)
+    relaxation, seen = relaxation_of([problem]), []
+    for step in (relaxation.burden, relaxation.burden, *[relaxation.relieve] * 3):
+        step(np.ones(1, bool) if step == relaxation.burden else 0)
+        seen.append(float(relaxation.mass_scale[0]))
+    assert seen == [2.0, 4.0, 2.0, 1.0, 1.0]
 
 
 def test_monitor_can_stop_the_press() -> None:

@@ -21,6 +21,7 @@ from workbench.core.design import Elastomer
 from workbench.core.errors import DesignError
 from workbench.core.indenter import Indenter
 from workbench.core.press import ContactSettings, Press
+from workbench.core.soft_body import SoftBody
 
 pytestmark = pytest.mark.usefixtures("taichi_device")
 
@@ -115,3 +116,6 @@ def test_what_was_not_published_is_refused() -> None:
     with pytest.raises(DesignError, match="cannot take a gap behind") as raised:
         press_particles(over_gel, points, Elastomer(), BALL, PRESS, ContactSettings())
     assert raised.value.at == "contact.method"
+    soft = dataclasses.replace(BALL, soft=SoftBody())
+    with pytest.raises(DesignError, match="cannot take a soft object"):
+        press_particles(mesh, points, Elastomer(), soft, PRESS, ContactSettings())

@@ -8,8 +8,9 @@ import pytest
 from sim.contact import reference
 from sim.contact.problem import make_problem
 from sim.contact.soft_kernels import MEMBRANE, OBJECT
+from sim.contact.soft_meeting import meet
 from sim.contact.soft_object import SoftObject, make_soft_object
-from sim.contact.soft_reference import meet, normal_forces
+from sim.contact.soft_reference import commit_history, contact_forces
 from sim.contact.soft_solver import SoftRelaxation
 from sim.contact.solver import press_membrane
 from sim.contact.specimens import flat_block
@@ -33,43 +34,62 @@ def press(soft: SoftBody | None, material: Elastomer = SMOOTH, path: Press = PRE
     return press_membrane(MESH, POINTS, material, ball, path, settings)
 
 
-def prepared() -> tuple[SoftRelaxation, SoftObject]:
+def prepared(material: Elastomer = SMOOTH) -> tuple[SoftRelaxation, SoftObject]:
     ball = Indenter(size_mm=6.0, soft=SoftBody())
-    problem = make_problem(MESH, POINTS, SMOOTH, ball, PRESS, ContactSettings())
+    problem = make_problem(MESH, POINTS, material, ball, PRESS, ContactSettings())
     soft = make_soft_object(problem, ball)
     return SoftRelaxation(problem, soft), soft
 
 
-def test_forces_on_both_bodies_equal_the_twin() -> None:
-    """A ball whose nodes have moved at random: the same forces on points and nodes to 1e-5."""
-    relaxation, soft = prepared()
+def test_forces_friction_and_commit_equal_the_twin() -> None:
+    """A ball whose nodes have moved at random, then slid: forces, anchors and ways to 1e-4."""
+    relaxation, soft = prepared(Elastomer(friction=0.3))
     problem, random = relaxation.problem, np.random.default_rng(3)
     membrane_mm = random.uniform(-0.02, 0.02, (len(problem.domain.masses), 3))
-    object_mm = random.uniform(-0.02, 0.02, (len(soft.domain.masses), 3))
-    relaxation.restart(0, np.concatenate([membrane_mm, object_mm]))
-    origin, rotation = problem.approach.pose(1.0)
-    relaxation.set_poses(0, np.concatenate([origin, rotation.ravel(), [1.0]])[None])
-    # The held part is not driven, so the object still is where it began: press it in.
-    object_mm += (origin - soft.origin_mm) @ soft.rotation
-    relaxation.restart(0, np.concatenate([membrane_mm, object_mm]))
-    relaxation.evaluate(np.ones(1, bool))
+    wobble_mm = random.uniform(-0.02, 0.02, (len(soft.domain.masses), 3))
     points = problem.domain.points
+    stiffness = np.where(points.bonded, 0.0, points.stiffness_N_mm)
+    history = reference.ContactHistory.fresh(points.count)
+    origin, rotation = problem.approach.pose(1.0)
     at = reference.point_places(problem.domain, membrane_mm)
-    meeting = meet(soft, problem.collider, object_mm, at, (origin, rotation))
+    # The held part is not driven, so the object still is where it began: carry it there.
+    for aside_mm in (0.0, 0.05):
+        origin = origin + np.array([aside_mm, 0.0, 0.0])
+        object_mm = wobble_mm + (origin - soft.origin_mm) @ soft.rotation
+        relaxation.batch.write(
+            relaxation.batch.displacement,
+            3 * relaxation.batch.spans[MEMBRANE].first_node,
+            membrane_mm,
+        )
+        relaxation.batch.write(
+            relaxation.batch.displacement, 3 * relaxation.batch.spans[OBJECT].first_node, object_mm
+        )
+        relaxation.set_poses(0, np.concatenate([origin, rotation.ravel(), [1.0]])[None])
+        relaxation.evaluate(np.ones(1, bool))
+        meeting = meet(soft, problem.collider, object_mm, at, (origin, rotation))
+        meeting.cell[points.bonded] = -1
+        forces, nodal = contact_forces(soft, meeting, stiffness, history, friction=0.3)
+    assert np.count_nonzero(history.states) > 10
     touching = ~points.bonded
-    forces, nodal = normal_forces(soft, meeting, np.where(touching, points.stiffness_N_mm, 0.0))
-    assert np.count_nonzero(forces.any(axis=1)) > 10
     found = relaxation.point_forces(MEMBRANE)[touching]
     # Places are good to 1e-6 mm in single precision, of overlaps of about 0.1 mm.
     bound = 1e-4 * np.abs(forces).max()
     assert np.abs(found - forces[touching]).max() < bound
     elastic = reference.stress_forces(soft.domain, object_mm)
-    history = reference.ContactHistory.fresh(soft.domain.points.count)
+    fresh = reference.ContactHistory.fresh(soft.domain.points.count)
     held = reference.surface_forces(
-        soft.domain, object_mm, history, problem.collider, (origin, rotation), friction=0.0
+        soft.domain, object_mm, fresh, problem.collider, (origin, rotation), friction=0.0
     )
     exact = elastic + nodal + reference.spread_to_nodes(soft.domain, held)
     assert np.abs(relaxation.node_forces(OBJECT) - exact).max() < 1e-4 * np.abs(exact).max()
+    relaxation.commit(0)
+    commit_history(meeting, history, friction=0.3)
+    anchors, states = relaxation.contact_history(MEMBRANE)
+    np.testing.assert_array_equal(states[touching], history.states[touching])
+    slid = touching & (history.states == reference.HELD)
+    np.testing.assert_allclose(anchors[slid], history.anchors[slid], atol=1e-5)
+    assert history.slips.max() > 0.01
+    np.testing.assert_allclose(relaxation.slips_mm(MEMBRANE)[slid], history.slips[slid], atol=1e-5)
 
 
 def test_action_equals_reaction() -> None:
