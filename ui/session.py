@@ -9,13 +9,14 @@ from __future__ import annotations
 import dataclasses
 import time
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 from workbench.core.design import SensorDesign
 from workbench.core.errors import WorkbenchError
 from workbench.core.indenter import Indenter
 from workbench.pipeline import EVERYTHING, PressCase, plan
-from workbench.project import AUTOSAVE, Project, check_design, load_design
+from workbench.project import AUTOSAVE, Project, check_design, design_from_toml, load_design
 from workbench.stages import Call
 from workbench.state import State, case_table, fresh_state, read_state
 
@@ -61,12 +62,21 @@ class Session:
             return
         path = self.project.design_path(AUTOSAVE)
         if path.exists():
-            try:
-                self.state = read_state(
-                    path.read_text(encoding="utf-8"), self.project, source=str(path)
-                )
-            except (WorkbenchError, OSError, UnicodeDecodeError) as error:
-                self.notice = f"the last session could not be read: {error}"
+            self._resume(path)
+
+    def _resume(self, path: Path) -> None:
+        """Take the autosaved design and its press; without the press where only that is broken."""
+        try:
+            text = path.read_text(encoding="utf-8")
+            roots = (self.project.folder,)
+            self.state = fresh_state(design_from_toml(text, source=str(path), roots=roots))
+        except (WorkbenchError, OSError, UnicodeDecodeError) as error:
+            self.notice = f"the last session could not be read: {error}"
+            return
+        try:
+            self.state = read_state(text, self.project, source=str(path))
+        except WorkbenchError as error:
+            self.notice = f"the press of the last session is the default one again: {error}"
 
     def change(self, dotted: str, value: Any) -> None:
         """Set one field, for example `design.optics.ring.count` or `case.press.depth_mm`.

@@ -86,7 +86,8 @@ def run(options: argparse.Namespace, project: Project) -> int:
     calls = plan(design, case)
     runner, outcomes = InlineRunner(project.store), list(start.outcomes)
     known = {outcome.key for outcome in outcomes}
-    with keeping_partial(options.out, design, case, project.store, outcomes):
+    settled = (options.out, design, case, project.store, outcomes)
+    with keeping_partial(*settled, monitor=printer):
         for outcome in evaluate(design, case, runner, monitor=printer):
             if outcome.key not in known:
                 printer.done(outcome)

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import dataclasses
 import io
+import zipfile
+import zlib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -55,29 +57,31 @@ def read_indenter(table: Any, project: Project) -> Indenter:
         return from_table(Indenter, table, at=AT)
     plain = {str(name): value for name, value in table.items()}
     mesh_key, image_key = plain.pop("mesh_key", None), plain.pop("image_key", None)
-    if image_key is not None:
-        plain.pop("texture", None)
+    texture = plain.pop("texture", {}) if image_key is not None else {}
     if mesh_key is None:
         found = from_table(Indenter, plain, at=AT)
     else:
-        arrays = _kept(project, mesh_key, ("points_mm", "faces"))
-        mesh = IndenterMesh(points_mm=arrays["points_mm"], faces=arrays["faces"])
-        numbers = {
-            n: plain[n] for n in ("size_mm", "edge_radius_mm", "mesh_rounding_mm") if n in plain
-        }
-        found = Indenter(kind=IndenterKind.MESH, mesh=mesh, **numbers)
-        if "texture" in plain:
-            texture = from_table(Texture, plain["texture"], at=f"{AT}.texture")
-            found = dataclasses.replace(found, texture=texture)
-        if "soft" in plain:
-            soft = from_table(SoftBody, plain["soft"], at=f"{AT}.soft")
-            found = dataclasses.replace(found, soft=soft)
+        found = _of_mesh(_kept(project, mesh_key, IndenterMesh), plain)
     if image_key is None:
         return found
-    sizes = {n: v for n, v in dict(table.get("texture", {})).items() if n.endswith("_mm")}
-    image = HeightImage(heights=_kept(project, image_key, ("heights",))["heights"])
-    texture = Texture(pattern=Pattern.IMAGE, image=image, **sizes)
-    return dataclasses.replace(found, texture=texture)
+    if not isinstance(texture, Mapping):
+        return from_table(Texture, texture, at=f"{AT}.texture")
+    image = _kept(project, image_key, HeightImage)
+    sizes = {name: texture[name] for name in ("height_mm", "pitch_mm") if name in texture}
+    pictured = Texture(pattern=Pattern.IMAGE, image=image, **sizes)
+    return dataclasses.replace(found, texture=pictured)
+
+
+def _of_mesh(mesh: IndenterMesh, plain: Mapping[str, Any]) -> Indenter:
+    """An indenter of triangles with the fields of a table that such a one has."""
+    sizes = ("size_mm", "edge_radius_mm", "mesh_rounding_mm")
+    numbers = {name: plain[name] for name in sizes if name in plain}
+    parts = {
+        name: from_table(kind, plain[name], at=f"{AT}.{name}")
+        for name, kind in (("texture", Texture), ("soft", SoftBody))
+        if name in plain
+    }
+    return Indenter(kind=IndenterKind.MESH, mesh=mesh, **numbers, **parts)
 
 
 def _keep(project: Project, value: Any, **arrays: np.ndarray) -> str:
@@ -90,12 +94,13 @@ def _keep(project: Project, value: Any, **arrays: np.ndarray) -> str:
     return key
 
 
-def _kept(project: Project, key: Any, names: tuple[str, ...]) -> dict[str, np.ndarray]:
+def _kept(project: Project, key: Any, kind: type[Any]) -> Any:
+    """A mesh or a picture of the project; a file that was cut short is as good as none."""
     path = _path(project, str(key))
     try:
         with np.load(path) as arrays:
-            return {name: arrays[name] for name in names}
-    except (OSError, KeyError, ValueError) as error:
+            return kind(**arrays)
+    except (OSError, EOFError, TypeError, ValueError, zipfile.BadZipFile, zlib.error) as error:
         raise DesignError(
             f"the mesh or picture of this press's indenter is not in the project: {error}",
             hint="load the file again",
@@ -105,5 +110,5 @@ def _kept(project: Project, key: Any, names: tuple[str, ...]) -> dict[str, np.nd
 
 def _path(project: Project, key: str) -> Path:
     if not key.isalnum():
-        raise DesignError(f"{key!r} is not the key of a mesh", hint="load it again", at="mesh")
+        raise DesignError(f"{key!r} is not the key of a mesh", hint="load it again", at=AT)
     return project.folder / "indenters" / f"{key}.npz"

@@ -1,7 +1,8 @@
 """What a press that failed leaves in the folder of its run: the frames that settled.
 
 Images, `contact.npz`, `forces.csv`, poses and VTK files hold those frames only; `summary.json` says
-which frame failed and why. There is no report and no mould: the run has failed.
+which frame failed and why. There is no report and no mould: the run has failed. What keeps them
+from being written stands in the hint; why the press failed is what the designer must read first.
 """
 
 from __future__ import annotations
@@ -13,11 +14,11 @@ from pathlib import Path
 from typing import Any
 
 from workbench.core.design import SensorDesign
-from workbench.core.errors import SolveError
-from workbench.core.monitor import silent
+from workbench.core.errors import SolveError, WorkbenchError
+from workbench.core.monitor import Monitor
 from workbench.folder import remove_stale
 from workbench.outputs import plain_numbers, summary_table, write_images, write_press
-from workbench.pipeline import PressCase, plan, results
+from workbench.pipeline import PressCase, StageMonitor, plan, results, stage_monitor
 from workbench.project import write_atomically
 from workbench.stages import PARTIAL, Call, Outcome, Ref, run
 from workbench.store import Store
@@ -25,7 +26,13 @@ from workbench.store import Store
 
 @contextlib.contextmanager
 def keeping_partial(
-    out: Path, design: SensorDesign, case: PressCase, store: Store, outcomes: Sequence[Outcome]
+    out: Path,
+    design: SensorDesign,
+    case: PressCase,
+    store: Store,
+    outcomes: Sequence[Outcome],
+    *,
+    monitor: StageMonitor | None = None,
 ) -> Iterator[None]:
     """Write what settled before a press failed, say so in the error, and let it go on.
 
@@ -35,17 +42,23 @@ def keeping_partial(
         case: The press.
         store: Where the failed stage kept its frames.
         outcomes: Stages that are done.
+        monitor: Told how far the images of the settled frames are.
 
     Raises:
-        SolveError: That of the press, its message saying what was written.
+        SolveError: That of the press, its message saying what was written, or its hint why not.
     """
     try:
         yield
     except SolveError as error:
         if error.kept:
-            count = _write(out, design, case, store, outcomes, error)
-            frames = "frame 1" if count == 1 else f"frames 1 to {count}"
-            error.message += f"; {frames} settled and {'is' if count == 1 else 'are'} in {out}"
+            shooting = stage_monitor(monitor, "shoot")
+            try:
+                count = _write(out, design, case, store, outcomes, error, shooting)
+            except WorkbenchError as unwritten:
+                error.hint += f"; what settled was not written: {unwritten.message}"
+            else:
+                frames = "frame 1" if count == 1 else f"frames 1 to {count}"
+                error.message += f"; {frames} settled and {'is' if count == 1 else 'are'} in {out}"
         raise
 
 
@@ -56,13 +69,14 @@ def _write(
     store: Store,
     outcomes: Sequence[Outcome],
     error: SolveError,
+    monitor: Monitor,
 ) -> int:
     """Write the settled frames; returns their count."""
     calls = plan(design, case)
     kept = Ref(stage=PARTIAL, key=error.kept)
     shoot = calls["shoot"]
     seen = Call("shoot", tuple(kept if i == calls["press"].ref else i for i in shoot.inputs))
-    done = [*outcomes, run(store, seen, silent)]
+    done = [*outcomes, run(store, seen, monitor)]
     contact, shot = store.load(PARTIAL, error.kept), store.load("shoot", seen.key)
     load = results(store, calls, ("build", "mesh"))
     write_press(out, case.press, load["build"], load["mesh"], contact)

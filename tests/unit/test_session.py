@@ -7,9 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from geometry.primitives import rounded_box
 from ui.session import Session
 from workbench.core.errors import DesignError
-from workbench.core.indenter import Indenter, IndenterKind
+from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
 from workbench.project import Project, design_to_toml
 
 
@@ -122,3 +123,37 @@ def test_broken_autosave_gives_a_notice_and_the_example(tmp_path: Path, session:
     again.open(None)
     assert again.design.name == "geltip"
     assert "schema 99" in again.notice
+
+
+@pytest.mark.parametrize("share", [0.0, 0.5, 0.99])
+def test_a_damaged_object_costs_the_press_only(
+    tmp_path: Path, session: Session, share: float
+) -> None:
+    """With half of its mesh file the design is as it was, the press the default one, and told."""
+    points, faces = rounded_box(2.0, 0.5)
+    mesh = IndenterMesh(points_mm=points, faces=faces)
+    session.change("design.shape.cylinder_mm", 20.0)
+    session.replace_indenter(Indenter(kind=IndenterKind.MESH, mesh=mesh))
+    session.autosave()
+    (kept,) = (tmp_path / "indenters").iterdir()
+    content = kept.read_bytes()
+    kept.write_bytes(content[: int(share * len(content))])
+    again = Session(Project(tmp_path))
+    again.open(None)
+    assert again.design == session.design
+    assert again.case.indenter == Indenter()
+    assert "the press of the last session is the default one" in again.notice
+    assert again.calls()
+
+
+def test_a_damaged_press_costs_the_press_only(tmp_path: Path, session: Session) -> None:
+    """A depth of -1 mm in the autosave: the design stays, the notice names the value."""
+    session.change("design.shape.cylinder_mm", 20.0)
+    session.change("case.press.depth_mm", 0.75)
+    session.autosave()
+    path = session.project.design_path("autosave")
+    path.write_text(path.read_text().replace("depth_mm = 0.75", "depth_mm = -1.0"))
+    again = Session(Project(tmp_path))
+    again.open(None)
+    assert again.design == session.design
+    assert "-1 mm" in again.notice
