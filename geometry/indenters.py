@@ -16,7 +16,7 @@ from geometry.primitives import rounded_box, rounded_revolution, sphere
 from geometry.stl import stl_corners, welded
 from geometry.surface import mesh_volume, open_edges
 from workbench.core.errors import DesignError
-from workbench.core.imported import ImportedBody, body_file
+from workbench.core.imported import ImportedBody, ReadBody, body_file
 from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
 
 LARGEST_FILE_MB = 64
@@ -63,7 +63,16 @@ def _load_step(file: Path) -> IndenterMesh:
     except DesignError as error:
         error.at = AT
         raise
-    return _oriented(body.outer.points_mm, body.outer.faces, file.name)
+    return mesh_of_body(body, file.name)
+
+
+def mesh_of_body(body: ReadBody, name: str) -> IndenterMesh:
+    """A body that was read, as an object; `name` is for people.
+
+    Raises:
+        DesignError: If it encloses no volume.
+    """
+    return _oriented(body.outer.points_mm, body.outer.faces, name)
 
 
 def largest_width(mesh: IndenterMesh) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from pathlib import Path
 
@@ -21,6 +22,7 @@ from workbench.core.indenter import (
 )
 from workbench.core.mapping import suggest
 from workbench.core.texture import SMOOTH, HeightImage, Pattern, Texture
+from workbench.picture_size import picture_size
 
 ALIASES = {
     "cylinder": "cylinder_end",
@@ -36,6 +38,9 @@ PICTURES = (".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff")
 LETTER_MM, PICTURE_MM = 3.0, 6.0
 """Height of a capital and width of a picture where none is given."""
 MOST_PIXELS = 4_000_000
+MOST_PICTURE_BYTES = 40_000_000
+"""As many as pixels of two bytes in four channels, with room for a header."""
+SMALLER_PICTURE = "reduce the picture; contact resolves a few pixels per mm"
 
 
 def choose_indenter(
@@ -62,9 +67,9 @@ def choose_indenter(
     if kind in PRIMITIVES:
         return _primitive(IndenterKind(kind), size_mm, edge_radius_mm, texture)
     if name in EVERYDAY:
-        return _of_mesh(everyday(name), size_mm, edge_radius_mm, texture)
+        return of_mesh(everyday(name), size_mm, edge_radius_mm, texture)
     if name.lower().endswith(ENDINGS) or Path(name).exists():
-        return _of_mesh(load_mesh(Path(name)), size_mm, edge_radius_mm, texture)
+        return of_mesh(load_mesh(Path(name)), size_mm, edge_radius_mm, texture)
     raise DesignError(
         f"there is no indenter {name!r}",
         hint=f"{suggest(kind, [*PRIMITIVES, *EVERYDAY])}; or give the path of an STL, OBJ or "
@@ -125,19 +130,34 @@ def load_heights(path: Path) -> HeightImage:
     """
     import cv2
 
-    data = np.fromfile(path, dtype=np.uint8) if path.is_file() else np.zeros(0, np.uint8)
-    picture = cv2.imdecode(data, cv2.IMREAD_GRAYSCALE) if len(data) else None
     at = "indenter.texture.image"
-    if picture is None:
+    size = path.stat().st_size if path.is_file() else 0
+    if size > MOST_PICTURE_BYTES:
         raise DesignError(
-            f"{str(path)!r} is not a picture that can be read",
-            hint="give a greyscale PNG, JPEG, BMP or TIFF",
+            f"{path.name} has {size / 1e6:.0f} MB, more than {MOST_PICTURE_BYTES / 1e6:.0f} MB",
+            hint=SMALLER_PICTURE,
             at=at,
         )
-    if picture.size > MOST_PIXELS:
+    data = b""
+    with contextlib.suppress(OSError):
+        data = path.read_bytes()
+    width_px, height_px = picture_size(data) or (0, 0)
+    if width_px * height_px > MOST_PIXELS:
         raise DesignError(
-            f"{path.name} has {picture.size:,} pixels, more than {MOST_PIXELS:,}",
-            hint="reduce the picture; contact resolves a few pixels per mm",
+            f"{path.name} has {width_px} x {height_px} pixels, {width_px * height_px:,} in all; "
+            f"the limit is {MOST_PIXELS:,}",
+            hint=SMALLER_PICTURE,
+            at=at,
+        )
+    try:
+        raw = np.frombuffer(data, dtype=np.uint8)
+        picture = cv2.imdecode(raw, cv2.IMREAD_GRAYSCALE) if width_px else None
+    except cv2.error:
+        picture = None
+    if picture is None:
+        raise DesignError(
+            f"{path.name} is not a picture that can be read",
+            hint="give the path of a greyscale PNG, JPEG, BMP or TIFF",
             at=at,
         )
     return HeightImage(heights=np.asarray(picture, dtype=np.float64) / 255.0)
@@ -157,9 +177,17 @@ def _primitive(
     return Indenter(kind=kind, size_mm=size, edge_radius_mm=edge, texture=texture)
 
 
-def _of_mesh(
-    mesh: IndenterMesh, size_mm: float | None, rounding_mm: float | None, texture: Texture
+def of_mesh(
+    mesh: IndenterMesh,
+    size_mm: float | None = None,
+    rounding_mm: float | None = None,
+    texture: Texture = SMOOTH,
 ) -> Indenter:
+    """An object of triangles, in its own size unless one is given.
+
+    Raises:
+        DesignError: If the size is refused, or the texture does not fit it.
+    """
     from geometry.indenters import largest_width, scaled
 
     size = largest_width(mesh) if size_mm is None else size_mm

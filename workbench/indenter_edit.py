@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import dataclasses
-import tempfile
-from pathlib import Path
 
+from workbench.bodies import IMPORTED
+from workbench.core.design import SensorDesign
 from workbench.core.errors import DesignError
+from workbench.core.imported import ImportedBody, body_file
 from workbench.core.indenter import (
     DEFAULT_EDGE_RADIUS_MM,
     EDGELESS,
@@ -17,7 +18,19 @@ from workbench.core.indenter import (
     widest_edge_mm,
 )
 from workbench.core.texture import Pattern, Texture
-from workbench.indenter_choice import choose_indenter, load_heights
+from workbench.indenter_choice import (
+    MOST_PICTURE_BYTES,
+    SMALLER_PICTURE,
+    choose_indenter,
+    load_heights,
+    of_mesh,
+)
+from workbench.pipeline import PressCase, plan
+from workbench.store import Store
+from workbench.uploads import MOST_BYTES, check_upload, own_name, uploaded_file
+
+AT = "indenter"
+SMALLER_MESH = "reduce the mesh, or use workbench run --indenter FILE"
 
 SAFE = 1.0 / 1.01
 """Share of the largest edge radius that a shrunk object takes."""
@@ -110,11 +123,10 @@ def pictured(indenter: Indenter, name: str, content: bytes) -> Indenter:
     """The same object with an uploaded picture as its texture.
 
     Raises:
-        DesignError: If the picture cannot be read.
+        DesignError: If the picture is too large or cannot be read.
     """
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / f"upload{Path(name).suffix}"
-        path.write_bytes(content)
+    limit, at = MOST_PICTURE_BYTES, "indenter.texture.image"
+    with uploaded_file(name, content, limit_bytes=limit, hint=SMALLER_PICTURE, at=at) as path:
         image = load_heights(path)
     texture = indenter.texture
     width_mm = max(texture.pitch_mm, indenter.size_mm)
@@ -125,12 +137,40 @@ def pictured(indenter: Indenter, name: str, content: bytes) -> Indenter:
 
 
 def uploaded(name: str, content: bytes) -> Indenter:
-    """An uploaded STL, OBJ or STEP file as an object, in its own size in mm.
+    """An uploaded STL or OBJ file as an object, in its own size in mm.
 
     Raises:
-        DesignError: If it is no usable closed mesh.
+        DesignError: If it is too large or no usable closed mesh.
     """
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / f"upload{Path(name).suffix.lower()}"
-        path.write_bytes(content)
+    limit = MOST_BYTES
+    with uploaded_file(name, content, limit_bytes=limit, hint=SMALLER_MESH, at=AT) as path:
         return choose_indenter(str(path))
+
+
+def needs_cad(name: str) -> bool:
+    """Whether a file can only be read by the CAD kernel, which belongs in a worker."""
+    return name.lower().endswith((".step", ".stp"))
+
+
+def cad_trial(name: str, content: bytes) -> SensorDesign:
+    """A design whose stage `intake` reads an uploaded STEP file; see `cad_object`.
+
+    Raises:
+        DesignError: If the file is too large.
+    """
+    check_upload(name, content, limit_bytes=MOST_BYTES, hint=SMALLER_MESH, at=AT)
+    file = body_file(own_name(name), content)
+    return SensorDesign(name="object", family=IMPORTED, body=ImportedBody(outer=file))
+
+
+def cad_object(trial: SensorDesign, store: Store) -> Indenter:
+    """The object that the worker read for a `cad_trial`, in its own size in mm.
+
+    Raises:
+        DesignError: If it encloses nothing, or its size is refused.
+    """
+    from geometry.indenters import mesh_of_body
+
+    call = plan(trial, PressCase())["intake"]
+    name = trial.body.outer.name if trial.body is not None else ""
+    return of_mesh(mesh_of_body(store.load(call.stage, call.key), name))

@@ -25,6 +25,7 @@ from workbench.core.poses import composed, inverses, sensor_poses
 from workbench.core.press import Press
 from workbench.core.sensing import Contact
 from workbench.core.trajectory import COLUMNS, MOST_ROWS, Trajectory
+from workbench.uploads import uploaded_file
 
 LARGEST_BYTES = 16_000_000
 AT = "press.trajectory"
@@ -71,6 +72,17 @@ def read_trajectory(path: Path, *, every_s: float = 0.0) -> Trajectory:
         )
     except DesignError as error:
         raise DesignError(f"{path.name}, {error.message}", hint=error.hint, at=error.at) from error
+
+
+def uploaded_trajectory(name: str, content: bytes) -> Trajectory:
+    """A trajectory from a file of the browser.
+
+    Raises:
+        DesignError: If it is too large, or as `read_trajectory`.
+    """
+    hint = f"a trajectory has at most {MOST_ROWS:,} rows"
+    with uploaded_file(name, content, limit_bytes=LARGEST_BYTES, hint=hint, at=AT) as path:
+        return read_trajectory(path)
 
 
 def _rows(path: Path) -> list[tuple[int, list[str]]]:

@@ -19,9 +19,8 @@ from workbench.conductor import Finished
 from workbench.core.design import SensorDesign
 from workbench.core.errors import Cancelled, DesignError
 from workbench.core.imported import BodyFile, ImportedBody, LengthUnit, Pick, body_file
+from workbench.uploads import MOST_BYTES, check_upload, own_name
 
-MAX_BYTES = 40 * 2**20
-"""Larger files do not pass the browser's connection; the command line takes them."""
 AIM = "nothing: a click aims"
 REGIONS = ("base", *(f"actuator_{i}" for i in range(4)))
 BODY = "design.body"
@@ -96,17 +95,12 @@ class IntakeFolder:
         Raises:
             DesignError: If it is too large, or neither STL nor STEP.
         """
-        name, content = Path(button.value.name).name, button.value.content
+        name, content = button.value.name, button.value.content
         self.desk.reports.settle()
-        if len(content) > MAX_BYTES:
-            raise DesignError(
-                f"{name} has {len(content) / 2**20:.0f} MB, the browser takes "
-                f"{MAX_BYTES / 2**20:.0f} MB",
-                hint="reduce the mesh, or use workbench serve FILE",
-                at=at,
-            )
+        hint = "reduce the mesh, or use workbench serve FILE"
+        check_upload(name, content, limit_bytes=MOST_BYTES, hint=hint, at=at)
         try:
-            return body_file(name, content)
+            return body_file(own_name(name), content)
         except DesignError as error:
             error.at = at
             raise

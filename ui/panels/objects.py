@@ -9,14 +9,19 @@ from typing import Any
 import viser
 
 from ui.desk import Desk
-from workbench.core.errors import DesignError
+from workbench.conductor import Finished
+from workbench.core.errors import Cancelled, DesignError
 from workbench.core.indenter import Indenter, IndenterKind
 from workbench.core.soft_body import SoftBody
 from workbench.core.texture import Pattern
 from workbench.indenter_edit import (
+    AT,
     another,
+    cad_object,
+    cad_trial,
     edge_mm,
     gallery,
+    needs_cad,
     pictured,
     resized,
     rounded,
@@ -24,8 +29,6 @@ from workbench.indenter_edit import (
     uploaded,
 )
 
-MAX_FILE_BYTES = 40 * 2**20
-"""Larger files do not pass the browser's connection; the command line takes them."""
 LOADED = "loaded mesh"
 PLAIN = tuple(p.value for p in Pattern if p is not Pattern.IMAGE)
 SPAN_MM, MESH_SPAN_MM = 30.0, 300.0
@@ -156,15 +159,24 @@ class ObjectFolder:
         self._take(pictured(self.desk.session.case.indenter, file.name, file.content))
 
     def _load_file(self, event: Any) -> None:
-        file = self.file.value
-        if len(file.content) > MAX_FILE_BYTES:
-            raise DesignError(
-                f"{file.name} has {len(file.content) / 2**20:.0f} MB, the browser takes "
-                f"{MAX_FILE_BYTES / 2**20:.0f} MB",
-                hint="reduce the mesh, or use workbench run --indenter FILE",
-                at="indenter",
-            )
-        self._take(uploaded(file.name, file.content))
+        file, desk = self.file.value, self.desk
+        if not needs_cad(file.name):
+            self._take(uploaded(file.name, file.content))
+            return
+        trial = cad_trial(file.name, file.content)
+        desk.reports.settle()
+        desk.trial("object", trial, "intake", self._read)
+
+    def _read(self, event: Finished) -> None:
+        """Take the object that the worker has read."""
+        if isinstance(event.error, Cancelled):
+            return
+        if event.error is not None:
+            if event.error.at.startswith("body"):
+                # To the reader it was a body.
+                event.error.at = AT
+            raise event.error
+        self._take(cad_object(event.request.design, self.desk.session.store))
 
     def _take(self, indenter: Indenter) -> None:
         desk = self.desk

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
-from pathlib import Path
 from typing import Any
 
 import viser
@@ -12,7 +10,7 @@ from ui.desk import Desk
 from workbench.core.motion import Mover, Stroke, StrokeKind
 from workbench.path_template import template_csv
 from workbench.strokes import EXAMPLES, read_stroke
-from workbench.trajectories import read_trajectory
+from workbench.trajectories import uploaded_trajectory
 
 UP, REMOVE = "Up", "Remove"
 AMOUNTS = {
@@ -90,11 +88,7 @@ class MotionFolder:
 
     def _load(self, event: Any) -> None:
         file = self.file.value
-        with tempfile.TemporaryDirectory() as folder:
-            # By its own name, which the messages tell.
-            path = Path(folder) / Path(file.name).name
-            path.write_bytes(file.content)
-            trajectory = read_trajectory(path)
+        trajectory = uploaded_trajectory(file.name, file.content)
         self._change(trajectory=trajectory, strokes=())
         if trajectory.notice:
             self.desk.log(trajectory.notice)
