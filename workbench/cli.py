@@ -182,7 +182,7 @@ def _run_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--target", help="x,y,z near the skin [mm]; default: where the family says")
     sub.add_argument("--depth-mm", type=float, help="default 1, or that of the sequence")
     sub.add_argument("--shear-mm", metavar="U,V")
-    sub.add_argument("--twist-deg", type=float, default=0.0)
+    sub.add_argument("--twist-deg", type=float, help="about the normal at full depth (default 0)")
     sub.add_argument("--frames", type=int, help="default 10; of a sequence 5 to each phase")
     sub.add_argument("--sequence", metavar="NAME", help="what driven parts do: grip of the trunk")
     sub.add_argument(
@@ -193,10 +193,8 @@ def _run_options(sub: argparse.ArgumentParser) -> None:
         help="a move after the approach; may be given several times (see the README)",
     )
     sub.add_argument("--trajectory", type=Path, metavar="FILE.csv", help="timed poses instead")
-    sub.add_argument(
-        "--every-s", type=float, default=0.0, help="time between frames (default: rows)"
-    )
-    sub.add_argument("--mover", choices=[m.value for m in Mover], default=Mover.OBJECT.value)
+    sub.add_argument("--every-s", type=float, help="time between frames (default: rows)")
+    sub.add_argument("--mover", choices=[m.value for m in Mover], help="default object")
     sub.add_argument("--object-pose", metavar="X,Y,Z,QW,QX,QY,QZ", help="of --mover sensor")
     sub.add_argument("--grid-mm", type=float, help="grid cell of the contact solver (default 0.5)")
     sub.add_argument("--extent", choices=[e.value for e in Extent], help="default active")

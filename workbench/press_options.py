@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
+from collections.abc import Iterable
 from typing import Any
 
 from workbench.core.design import SensorDesign
@@ -20,7 +21,16 @@ from workbench.core.trajectory import Trajectory
 
 SETTINGS = ("grid_mm", "region_error", "max_substeps", "tolerance", "penalty")
 """Options that are fields of `ContactSettings` as they stand."""
-NOT_WITH_SEQUENCE = ("target", "shear_mm", "twist_deg", "stroke", "trajectory", "object_pose")
+PATH = ("target", "shear_mm", "twist_deg", "stroke", "trajectory", "every_s")
+NOT_WITH_SEQUENCE = (*PATH, "mover", "object_pose")
+NOT_WITH_TRAJECTORY = ("depth_mm", "shear_mm", "twist_deg", "frames", "stroke")
+"""Options that would change nothing, which nobody expects of what they typed."""
+EXAMPLES = {
+    "--target": ("0,10,35", "x, y, z in mm"),
+    "--shear-mm": ("0.5,0", "along U and V in mm"),
+    "--object-pose": ("0,0,20,1,0,0,0", "x, y, z in mm, then the unit quaternion qw, qx, qy, qz"),
+}
+"""What may be typed, and what it means."""
 
 
 def press_case(
@@ -45,14 +55,7 @@ def press_case(
 def _sequence(options: argparse.Namespace, design: SensorDesign) -> Any:
     from workbench.sequences import sequence
 
-    for name in NOT_WITH_SEQUENCE:
-        if getattr(options, name):
-            option = f"--{name.replace('_', '-')}"
-            raise DesignError(
-                f"{option} is given with --sequence {options.sequence}, which has its own path",
-                hint=f"leave {option} or --sequence out",
-                at=option,
-            )
+    _refuse(options, NOT_WITH_SEQUENCE, "sequence")
     named = (options.indenter, options.size_mm, options.edge_radius_mm, options.texture)
     named = (*named, options.soft_mpa)
     return sequence(
@@ -63,6 +66,18 @@ def _sequence(options: argparse.Namespace, design: SensorDesign) -> Any:
         frames=options.frames,
         settings=_settings(options),
     )
+
+
+def _refuse(options: argparse.Namespace, names: Iterable[str], path: str) -> None:
+    """Refuse options that the option `path` has no use for."""
+    for name in names:
+        if getattr(options, name) not in (None, []):
+            option = f"--{name.replace('_', '-')}"
+            raise DesignError(
+                f"{option} is given with --{path} {getattr(options, path)}, which has its own path",
+                hint=f"leave {option} or --{path} out",
+                at=option,
+            )
 
 
 def _indenter(options: argparse.Namespace) -> Indenter:
@@ -85,16 +100,22 @@ def _press(options: argparse.Namespace, target_mm: tuple[float, float, float]) -
     standard = Press()
     frames = standard.frames if options.frames is None else options.frames
     shear, standing = options.shear_mm, options.object_pose
+    mover = standard.mover if options.mover is None else Mover(options.mover)
+    if options.trajectory is not None:
+        _refuse(options, NOT_WITH_TRAJECTORY, "trajectory")
+        if mover is Mover.OBJECT or standing is not None:
+            # Otherwise the object stands where it touches the target.
+            _refuse(options, ("target",), "trajectory")
     return Press(
-        target_mm=_numbers(options.target, 3, at="--target") if options.target else target_mm,
+        target_mm=_numbers(options.target, at="--target") if options.target else target_mm,
         depth_mm=standard.depth_mm if options.depth_mm is None else options.depth_mm,
-        shear_mm=standard.shear_mm if shear is None else _numbers(shear, 2, at="--shear-mm"),
-        twist_deg=options.twist_deg,
+        shear_mm=standard.shear_mm if shear is None else _numbers(shear, at="--shear-mm"),
+        twist_deg=standard.twist_deg if options.twist_deg is None else options.twist_deg,
         frames=frames,
         strokes=tuple(read_stroke(text, frames=frames) for text in options.stroke),
         trajectory=_trajectory(options),
-        mover=Mover(options.mover),
-        object_pose=None if standing is None else _numbers(standing, 7, at="--object-pose"),
+        mover=mover,
+        object_pose=None if standing is None else _numbers(standing, at="--object-pose"),
     )
 
 
@@ -102,8 +123,8 @@ def _trajectory(options: argparse.Namespace) -> Trajectory | None:
     from workbench.trajectories import read_trajectory
 
     if options.trajectory is not None:
-        return read_trajectory(options.trajectory, every_s=options.every_s)
-    if options.every_s:
+        return read_trajectory(options.trajectory, every_s=options.every_s or 0.0)
+    if options.every_s is not None:
         raise DesignError(
             f"--every-s {options.every_s:g} s is given without a trajectory",
             hint="add --trajectory FILE.csv, or leave --every-s out",
@@ -122,16 +143,17 @@ def _settings(options: argparse.Namespace) -> dict[str, Any]:
     return {name: value for name, value in given.items() if value is not None}
 
 
-def _numbers(text: str, count: int, *, at: str) -> Any:
-    parts = text.split(",")
+def _numbers(text: str, *, at: str) -> Any:
+    example, what = EXAMPLES[at]
+    count = len(example.split(","))
     try:
-        values = tuple(float(part) for part in parts)
+        values = tuple(float(part) for part in text.split(","))
     except ValueError:
         values = ()
     if len(values) != count:
         raise DesignError(
-            f"{at} is {text!r}, expected {count} numbers in mm separated by commas",
-            hint=f"for example {at} {','.join(['0'] * count)}",
+            f"{at} is {text!r}, expected {count} numbers separated by commas: {what}",
+            hint=f"for example {at} {example}",
             at=at,
         )
     return values

@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import json
 import os
+import re
 import signal
 import socket
 import subprocess
@@ -23,6 +24,7 @@ from workbench.cli import main, parser
 from workbench.core.design import Law
 from workbench.core.errors import SolveError
 from workbench.core.press import ContactSettings, Extent, Method, Press
+from workbench.core.trajectory import unit_pose
 from workbench.press_options import press_case
 from workbench.project import load_design
 from workbench.rows import Row, as_json, as_text, bounded, compared, failed
@@ -46,6 +48,18 @@ BAD = {
     "no sequence": (["geltip", "--sequence", "grip"], "--sequence", "'grip'"),
     "misspelt sequence": (["trunk", "--sequence", "gripp"], "--sequence", "'gripp'"),
     "two paths": (["trunk", "--sequence", "grip", "--twist-deg", "9"], "--twist-deg", "grip"),
+    "pose of six": (["geltip", "--object-pose", "0,0,0,1,0,0"], "--object-pose", "7 numbers"),
+}
+GRIP, TIMED = ("trunk", "--sequence", "grip"), ("geltip", "--trajectory", "path.csv")
+BAD |= {
+    f"{path[1]} {option}": ([*path, option, value], option, f"{option} is given with {path[1]}")
+    for path, options in (
+        (GRIP, {"--mover": "sensor", "--every-s": "1", "--twist-deg": "0", "--stroke": "hold"}),
+        (TIMED, {"--depth-mm": "1", "--shear-mm": "0,0", "--twist-deg": "5", "--frames": "3"}),
+        (TIMED, {"--target": "0,0,0"}),
+        ((*TIMED, "--mover", "sensor", "--object-pose", "0,0,9,1,0,0,0"), {"--target": "0,0,0"}),
+    )
+    for option, value in options.items()
 }
 
 
@@ -80,6 +94,36 @@ def test_negative_coordinates_are_values() -> None:
     case = press_case(options, load_design("geltip"), (0.0, 0.0, 0.0))
     assert case.press.target_mm == (-3.0, 0.0, 35.0)
     assert case.press.shear_mm == (-0.5, 0.0)
+
+
+def test_a_moving_sensor_needs_a_target(tmp_path: Path) -> None:
+    """Of a trajectory of the sensor the target says where the object stands: it is taken."""
+    path = tmp_path / "path.csv"
+    path.write_text("t_s,x_mm,y_mm,z_mm,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n1,0,0,1,1,0,0,0\n")
+    words = ["run", "geltip", "--trajectory", str(path), "--mover", "sensor"]
+    options = parser().parse_args([*words, "--target", "0,0,45", "--out", "x"])
+    press = press_case(options, load_design("geltip"), (0.0, 0.0, 0.0)).press
+    assert (press.target_mm, press.mover) == ((0.0, 0.0, 45.0), "sensor")
+    assert press.trajectory.every_s == 0.0
+
+
+def test_the_example_of_a_message_is_valid(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What the hint of --object-pose, --target and --shear-mm suggests is taken as typed."""
+    words = ["geltip", "--out", str(tmp_path / "out")]
+    for option in ("--object-pose", "--target", "--shear-mm"):
+        assert run(tmp_path, "run", *words, f"{option}=a") == 2
+        message = capsys.readouterr().err
+        (example,) = re.findall(rf"for example {option} (\S+)", message)
+        assert "in mm" in message
+        plain = parser().parse_args(["run", *words, option, example])
+        at = (0.0, 0.0, 0.0)
+        if option == "--object-pose":
+            pose = unit_pose([float(part) for part in example.split(",")], what="pose")
+            assert len(pose) == 7
+        else:
+            assert press_case(plain, load_design("geltip"), at).press.target_mm is not None
 
 
 def test_solver_options_are_fields_of_the_settings() -> None:
