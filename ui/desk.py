@@ -304,8 +304,9 @@ class Desk:
                 self.tell("partial", (contact, error))
 
     def _idle(self) -> None:
-        """Follow the handle, and keep the state once edits have settled."""
+        """Follow the handle, drop old frames, and keep the state once edits have settled."""
         self.live.gizmo.turn()
+        self.scene.pressed.turn()
         self._autosave()
 
     def _autosave(self) -> None:

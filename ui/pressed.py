@@ -2,12 +2,13 @@
 
 Frames are prepared when a press arrives, so that stepping only shows and hides them; of a long
 press they are made as they are asked for. A live frame takes the place of the one before only once
-the page has had time to read it, or the skin would flicker.
+the page has had time to read it, or the skin would flicker: the desk's pump calls `turn`, which
+removes what was replaced.
 """
 
 from __future__ import annotations
 
-import threading
+import time
 from collections.abc import Callable
 from typing import Any
 
@@ -31,8 +32,14 @@ LINGER_S = 0.6
 class PressedView:
     """Nodes of one press."""
 
-    def __init__(self, api: Any, on_click: Callable[[Any], None]) -> None:
+    def __init__(
+        self,
+        api: Any,
+        on_click: Callable[[Any], None],
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
         self.api = api
+        self._clock = clock
         self.on_click = on_click
         self.contact: Contact | None = None
         self.quantity = Quantity.DISPLACEMENT
@@ -44,7 +51,8 @@ class PressedView:
         self._top_N = 0.0
         self._number = 0
         self._series = 0
-        self._lingering: list[Any] = []
+        self._lingering: list[tuple[float, Any]] = []
+        """Replaced live frames and when each goes [s]."""
 
     @property
     def count(self) -> int:
@@ -68,17 +76,17 @@ class PressedView:
         self._skin, self.contact = skin, contact
         self._measure()
         self._series += 1
-        self._lingering += before
+        leave_s = self._clock() + LINGER_S
+        self._lingering += [(leave_s, node) for node in before]
         self.show(1)
-        timer = threading.Timer(LINGER_S, self._drop, args=(before,))
-        timer.daemon = True
-        timer.start()
 
-    def _drop(self, nodes: list[Any]) -> None:
-        for node in nodes:
-            if node in self._lingering:
-                self._lingering.remove(node)
-                node.remove()
+    def turn(self) -> None:
+        """Remove the replaced live frames whose time is over."""
+        now_s = self._clock()
+        over = [node for leave_s, node in self._lingering if leave_s <= now_s]
+        self._lingering = [entry for entry in self._lingering if entry[0] > now_s]
+        for node in over:
+            node.remove()
 
     def paint(self, quantity: Quantity) -> None:
         """Colour the skin by another quantity."""
@@ -140,7 +148,9 @@ class PressedView:
         return node
 
     def _forget_nodes(self) -> None:
-        self._drop(list(self._lingering))
+        for _, node in self._lingering:
+            node.remove()
+        self._lingering.clear()
         for node in self._nodes.values():
             node.remove()
         self._nodes.clear()
