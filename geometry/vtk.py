@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 
 from geometry.skins import region_skin
+from geometry.stress import von_mises_MPa
 from geometry.transfer import node_regions
 from workbench.core.results import Label, LabelledSurface, MembraneMesh, Skin, VolumeMesh
 from workbench.core.sensing import Contact
@@ -102,16 +103,6 @@ def _skin_arrays(contact: Contact, frame: int) -> dict[str, np.ndarray]:
     if "cauchy_MPa" in found:
         found["von_mises_MPa"] = von_mises_MPa(found["cauchy_MPa"])
     return found
-
-
-def von_mises_MPa(stress_MPa: np.ndarray) -> np.ndarray:
-    """Von Mises stress [MPa], shape (V,), of stresses xx, yy, zz, xy, yz, zx, shape (V, 6).
-
-    sqrt(((xx - yy)^2 + (yy - zz)^2 + (zz - xx)^2) / 2 + 3 (xy^2 + yz^2 + zx^2)).
-    """
-    direct, shear = stress_MPa[:, :3].astype(np.float64), stress_MPa[:, 3:].astype(np.float64)
-    apart = np.square(direct - np.roll(direct, -1, axis=1)).sum(axis=1) / 2.0
-    return np.sqrt(apart + 3.0 * np.square(shear).sum(axis=1)).astype(np.float32)
 
 
 def _frame_numbers(contact: Contact, frame: int, depth_mm: float) -> dict[str, np.ndarray]:

@@ -22,8 +22,8 @@ from workbench.core.sensing import Contact
 XYZ = "xyz"
 SIDEWAYS_MM = 1e-6
 """Way in the tangent plane below which a path does not go sideways."""
-LEAST_N = 1e-12
-"""Guards the quotient of vanishing forces."""
+LEAST_N = 1e-9
+"""Normal force below which nothing presses, and there is no ratio."""
 Columns = dict[str, np.ndarray]
 
 
@@ -91,16 +91,29 @@ def slip_columns(contact: Contact) -> Columns | None:
     if way_mm.max(initial=0.0) < SIDEWAYS_MM or not len(contact.slip_mm):
         return None
     slid = contact.slip_mm > 0.0
+    ratio, share = slip_curve(contact)
     mean_mm = contact.slip_mm.sum(axis=1) / np.maximum(slid.sum(axis=1), 1)
     return {
         "frame": np.arange(1, len(way_mm) + 1),
         "way_mm": way_mm,
         "tangential_N": contact.tangential_N,
         "pressing_N": contact.pressing_N,
-        "ratio": contact.tangential_N / np.maximum(contact.pressing_N, LEAST_N),
-        "sliding_share": sliding_share(contact),
+        "ratio": ratio,
+        "sliding_share": share,
         "mean_slip_mm": mean_mm.astype(np.float64),
     }
+
+
+def slip_curve(contact: Contact) -> tuple[np.ndarray, np.ndarray]:
+    """Tangential over normal force, and share of the touching vertices that slide, each (K,).
+
+    Sums over contact points; 0 where nothing presses, or where the result lacks the forces.
+    """
+    ratio = np.zeros(len(contact.reaction_N))
+    if len(contact.pressing_N) == len(contact.tangential_N) == len(ratio):
+        pressed = contact.pressing_N > LEAST_N
+        ratio[pressed] = contact.tangential_N[pressed] / contact.pressing_N[pressed]
+    return np.nan_to_num(ratio), sliding_share(contact)
 
 
 def sideways_mm(contact: Contact) -> np.ndarray:

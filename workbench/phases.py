@@ -10,7 +10,6 @@ import math
 import numpy as np
 
 from workbench.core.press import Press
-from workbench.core.sensing import Contact
 
 MISSING = "–"
 
@@ -58,24 +57,6 @@ def number(value: float, form: str = ".3g") -> str:
 def of_frame(values: np.ndarray, frame: int) -> float:
     """Entry of a per-frame array, NaN where the result has none."""
     return float(values[frame]) if frame < len(values) else math.nan
-
-
-def slip_curve(contact: Contact) -> tuple[np.ndarray, np.ndarray]:
-    """Tangential over normal force, and share of the touching vertices that slide, each (K,).
-
-    Sums over contact points; 0 where nothing touches, or where the result lacks the field.
-    """
-    count = len(contact.reaction_N)
-    ratio, share = np.zeros(count), np.zeros(count)
-    if len(contact.pressing_N) == len(contact.tangential_N) == count:
-        pressed = contact.pressing_N > 1e-9
-        ratio[pressed] = contact.tangential_N[pressed] / contact.pressing_N[pressed]
-    if len(contact.pressure_MPa) == count:
-        touching = np.asarray(contact.pressure_MPa) > 0.0
-        touched = touching.sum(axis=1)
-        sliding = (np.asarray(contact.sliding) & touching).sum(axis=1)
-        share[touched > 0] = sliding[touched > 0] / touched[touched > 0]
-    return np.nan_to_num(ratio), share
 
 
 def finite(values: np.ndarray) -> np.ndarray:

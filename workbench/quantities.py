@@ -1,10 +1,10 @@
 """What can be shown of a press on the skin: one number per vertex and frame, with its unit.
 
-    traction = sqrt(|f|^2 - (p A)^2) / A        von Mises = sqrt(3/2 s : s)
+    traction = sqrt(|f|^2 - (p A)^2) / A
 
-with f the contact force of a vertex, p its pressure, A a third of the triangles around it, s the
-deviatoric Cauchy stress. The colour scale of a quantity is that of all frames together. Results of
-earlier versions may lack a field: what cannot be shown has no values.
+with f the contact force of a vertex, p its pressure, A a third of the triangles around it; von
+Mises stress as in `geometry.stress`. The colour scale of a quantity is that of all frames together.
+Results of earlier versions may lack a field: what cannot be shown has no values.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from geometry.stress import von_mises_MPa
 from workbench.core.results import Skin
 from workbench.core.sensing import Contact
 
@@ -123,13 +124,6 @@ def vertex_areas_mm2(skin: Skin) -> np.ndarray:
     third = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 6.0
     area = np.bincount(skin.faces.ravel(), np.repeat(third, 3), len(skin.points_mm))
     return np.maximum(area, LEAST_TOP)
-
-
-def von_mises_MPa(cauchy_MPa: np.ndarray) -> np.ndarray:
-    """Von Mises stress [MPa], shape (K, V), of xx, yy, zz, xy, yz, zx, shape (K, V, 6)."""
-    xx, yy, zz, xy, yz, zx = np.moveaxis(cauchy_MPa, -1, 0)
-    direct = 0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2)
-    return np.sqrt(direct + 3.0 * (xy**2 + yz**2 + zx**2))
 
 
 def largest_arrow_N(skin: Skin, contact: Contact) -> float:

@@ -9,12 +9,12 @@ import io
 import numpy as np
 import pytest
 
-from geometry.vtk import von_mises_MPa
+from geometry.stress import von_mises_MPa
 from workbench.core.actuation import Actuation
 from workbench.core.errors import SolveError
 from workbench.core.press import Press
 from workbench.core.sensing import Contact
-from workbench.forces import check_finite, csv_bytes, force_columns, slip_columns
+from workbench.forces import check_finite, csv_bytes, force_columns, slip_columns, slip_curve
 from workbench.outputs import plain_numbers
 
 FRAMES, VERTICES = 3, 4
@@ -99,6 +99,9 @@ def test_slip_curve_is_written_where_the_path_goes_sideways(contact: Contact) ->
     found = table(csv_bytes(columns))
     assert found["way_mm"] == [0.0, 3.0, 3.0]
     assert found["ratio"] == pytest.approx([0.1, 0.3, 0.0])
+    # The page draws what the file holds.
+    for name, values in zip(("ratio", "sliding_share"), slip_curve(contact), strict=True):
+        np.testing.assert_array_equal(columns[name], values)
     assert found["mean_slip_mm"] == [0.0, 0.5, 0.0]
     straight = contact.indenter_pose.copy()
     straight[:, :2] = 0.0

@@ -7,13 +7,15 @@ import dataclasses
 import numpy as np
 import pytest
 
+from ui.panels.forces import tangential_force_N
 from workbench.core.motion import release, slide
 from workbench.core.press import Press
 from workbench.core.results import Skin
 from workbench.core.sensing import Contact
 from workbench.core.trajectory import Trajectory
+from workbench.forces import slip_curve
 from workbench.path_template import template_csv
-from workbench.phases import number, phase, slip_curve
+from workbench.phases import number, phase
 from workbench.quantities import (
     LONGEST_ARROW_MM,
     Quantity,
@@ -21,7 +23,6 @@ from workbench.quantities import (
     largest_arrow_N,
     shown,
     vertex_areas_mm2,
-    von_mises_MPa,
 )
 
 SQUARE = Skin(
@@ -76,12 +77,6 @@ def test_shear_traction_is_the_tangential_force_over_the_area() -> None:
     assert shown(SQUARE, contact(), Quantity.PRESSURE).top == pytest.approx(450.0)
 
 
-def test_von_mises_of_tension_and_of_shear() -> None:
-    """Tension s gives s; shear t gives sqrt(3) t; equal pressure gives nothing."""
-    stress = np.array([[[2, 0, 0, 0, 0, 0], [0, 0, 0, 0, 1, 0], [3, 3, 3, 0, 0, 0]]], float)
-    np.testing.assert_allclose(von_mises_MPa(stress), [[2.0, np.sqrt(3.0), 0.0]])
-
-
 @pytest.mark.parametrize("quantity", list(Quantity))
 def test_old_and_broken_results_show_finite_values(quantity: Quantity) -> None:
     """A result without fields, and one with NaN, give finite values of the right shape."""
@@ -109,8 +104,19 @@ def test_slip_curve_of_a_sliding_point() -> None:
     ratio, share = slip_curve(contact())
     np.testing.assert_allclose(ratio, [4.0 / 3.0])
     np.testing.assert_allclose(share, [1.0])
-    ratio, share = slip_curve(contact(pressing_N=np.zeros(1), pressure_MPa=np.zeros((1, 4))))
+    nothing = {"contact_force_N": np.zeros((1, 4, 3)), "sliding": np.zeros((1, 4), bool)}
+    ratio, share = slip_curve(contact(pressing_N=np.zeros(1), **nothing))
     np.testing.assert_allclose([*ratio, *share], 0.0)
+    # A result of an earlier version has no sums.
+    ratio, share = slip_curve(contact(pressing_N=np.zeros(0), tangential_N=np.zeros(0)))
+    np.testing.assert_allclose([*ratio, *share], [0.0, 1.0])
+
+
+def test_tangential_force_is_that_of_the_sum() -> None:
+    """Of (-0.4, 0, 0.3) N against the normal z: 0.4 N; all along the normal: none."""
+    along = np.array([[0.0, 0.0, 2.0]])
+    np.testing.assert_allclose(tangential_force_N(contact()), [0.4])
+    np.testing.assert_allclose(tangential_force_N(contact(reaction_N=along)), [0.0], atol=1e-15)
 
 
 def test_frames_are_named_by_what_happens() -> None:

@@ -11,8 +11,9 @@ import pytest
 import pyvista
 
 from geometry.primitives import rounded_box, sphere
+from geometry.stress import von_mises_MPa
 from geometry.surface import mesh_volume, vertex_normals
-from geometry.vtk import contact_files, membrane_file, volume_file, von_mises_MPa
+from geometry.vtk import contact_files, membrane_file, volume_file
 from workbench.core.results import Label, LabelledSurface, MembraneMesh, Skin, Solid, VolumeMesh
 from workbench.core.sensing import Contact
 from workbench.vtkfiles import write_vtk

@@ -9,8 +9,9 @@ from viser import uplot
 
 from workbench.core.press import Press
 from workbench.core.sensing import Contact
+from workbench.forces import slip_curve
 from workbench.outputs import force_balance, frame_depths_mm
-from workbench.phases import finite, number, of_frame, phase, slip_curve
+from workbench.phases import finite, number, of_frame, phase
 
 NO_PRESS = "No press of this sensor yet."
 MOST_ROWS = 400
@@ -28,8 +29,8 @@ class ForcesTab:
             empty,
             (
                 uplot.Series(label="depth mm"),
-                uplot.Series(label="normal N", stroke=BLUE, width=2),
-                uplot.Series(label="tangential N", stroke=ORANGE, width=2),
+                uplot.Series(label="normal force N", stroke=BLUE, width=2),
+                uplot.Series(label="tangential force N", stroke=ORANGE, width=2),
             ),
             scales={"x": uplot.Scale(time=False)},
             title="Force [N] against depth [mm], way in",
@@ -39,7 +40,7 @@ class ForcesTab:
             empty,
             (
                 uplot.Series(label="frame"),
-                uplot.Series(label="tangential / normal", stroke=ORANGE, width=2),
+                uplot.Series(label="friction / pressing", stroke=ORANGE, width=2),
                 uplot.Series(label="share sliding", stroke=GREEN, width=2),
             ),
             scales={"x": uplot.Scale(time=False)},
@@ -63,7 +64,7 @@ class ForcesTab:
         count = int(falls[0]) + 1 if len(falls) else len(depth_mm)
         self.depth.data = tuple(
             np.r_[0.0, finite(values)[:count]]
-            for values in (depth_mm, contact.normal_N, tangential_N(contact))
+            for values in (depth_mm, contact.normal_N, tangential_force_N(contact))
         )
         ratio, share = slip_curve(contact)
         self.slip.data = (
@@ -76,13 +77,14 @@ class ForcesTab:
     def show(self, contact: Contact, k: int, *, what: str, note: str) -> None:
         """Show the numbers of frame `k`, counted from 0, in which `what` happens, below a note."""
         x, y, z = (number(value, ".3f") for value in contact.reaction_N[k])
-        aside, pressing = of_frame(contact.tangential_N, k), of_frame(contact.pressing_N, k)
+        across = float(tangential_force_N(contact)[k])
+        friction, pressing = of_frame(contact.tangential_N, k), of_frame(contact.pressing_N, k)
         text = (
             f"**{number(contact.normal_N[k], '.3f')} N** along the normal, frame {k + 1} of "
             f"{len(contact.reaction_N)}: {what}\n\n"
             f"on the object: x {x} · y {y} · z {z} N\n\n"
-            f"over all points: tangential {number(aside, '.3f')} N, normal "
-            f"{number(pressing, '.3f')} N\n\n"
+            f"tangential force {number(across, '.3f')} N · friction of all points "
+            f"{number(friction, '.3f')} N, pressing {number(pressing, '.3f')} N\n\n"
             f"peak {number(contact.normal_N.max(), '.3f')} N · residual "
             f"{number(contact.residual.max(), '.1e')} · force balance "
             f"{number(100 * force_balance(contact), '.2f')} % · friction ratio ≤ "
@@ -93,8 +95,12 @@ class ForcesTab:
             self.text.content = text
 
 
-def tangential_N(contact: Contact) -> np.ndarray:
-    """Size of the reaction across the target normal [N], shape (K,)."""
+def tangential_force_N(contact: Contact) -> np.ndarray:
+    """Size of the reaction across the target normal [N], shape (K,).
+
+    That of a vector sum: frictions that oppose each other cancel here, while
+    `Contact.tangential_N` adds up their sizes.
+    """
     along = contact.normal_N[:, None] * contact.normal
     return np.linalg.norm(contact.reaction_N - along, axis=1)
 
