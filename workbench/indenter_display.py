@@ -31,7 +31,7 @@ def display_mesh(indenter: Indenter) -> tuple[np.ndarray, np.ndarray]:
         DesignError: If the shape cannot be made.
     """
     from geometry.indenters import primitive_mesh
-    from sim.contact.shapes import SAMPLED
+    from sim.contact.objects.shapes import SAMPLED
 
     if indenter.kind is IndenterKind.MESH:
         points, faces = primitive_mesh(indenter)
@@ -43,10 +43,10 @@ def display_mesh(indenter: Indenter) -> tuple[np.ndarray, np.ndarray]:
 
 def _contoured(indenter: Indenter) -> tuple[np.ndarray, np.ndarray]:
     from geometry.isosurface import isosurface
-    from sim.contact import textures
-    from sim.contact.samples import make_grid
-    from sim.contact.sampling import box_mm
-    from sim.contact.solids import sharpest_mm, solid
+    from sim.contact.objects import textures
+    from sim.contact.objects.samples import make_grid
+    from sim.contact.objects.sampling import box_mm
+    from sim.contact.objects.solids import sharpest_mm, solid
 
     sharpest = min(sharpest_mm(indenter), textures.sharpest_mm(indenter.texture))
     step_mm = max(sharpest / STEPS_PER_RADIUS, FINEST_MM)
@@ -67,7 +67,7 @@ def _displaced(
     """A loaded mesh with the vertices of its lower side moved by the texture."""
     import trimesh
 
-    from sim.contact import textures
+    from sim.contact.objects import textures
 
     flank_mm = min(indenter.texture.flank_mm, indenter.size_mm / 20.0)
     while len(faces) < MOST_TRIANGLES // 4:

@@ -199,7 +199,7 @@ def object_distance(indenter: Indenter, grid_mm: float, *, monitor: Monitor) -> 
 
     monitor(0.0, "sampling the object")
     open_device()
-    from sim.contact.sampling import sample_indenter
+    from sim.contact.objects.sampling import sample_indenter
 
     return sample_indenter(indenter, grid_mm=grid_mm)
 

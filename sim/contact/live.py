@@ -22,12 +22,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim.contact.backing import support_points_mm
-from sim.contact.path import State, legs_of
+from sim.contact.engine.relaxation import Relaxation
+from sim.contact.motion.path import State, legs_of
 from sim.contact.problem import Problem, make_problem
-from sim.contact.relaxation import Relaxation
+from sim.contact.readout.verdict import check_depth
+from sim.contact.region.backing import support_points_mm
 from sim.contact.solver import press_membrane, relaxation_of, resume
-from sim.contact.verdict import check_depth
 from workbench.core.design import Elastomer
 from workbench.core.indenter import Indenter
 from workbench.core.monitor import Monitor, silent

@@ -6,24 +6,24 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim.contact.approach import Approach
-from sim.contact.backing import (
+from sim.contact.motion.approach import Approach
+from sim.contact.objects.collider import Collider
+from sim.contact.readout.verdict import check_depth
+from sim.contact.region.backing import (
     SIDEWAYS,
     backed_faces,
     bonded_faces,
     foundation_N_mm3,
     support_points_mm,
 )
-from sim.contact.collider import Collider
-from sim.contact.domain import Domain, build_domain
-from sim.contact.drives import driven_faces, drives_inner, farthest_drive_mm
-from sim.contact.materials import stiffest_MPa, young_MPa_at
-from sim.contact.memory import check_memory
-from sim.contact.placing import place_object
-from sim.contact.quadrature import SurfacePoints, corner_points, facets_of, join, merge
-from sim.contact.refinement import LONGEST_EDGE, path_distance_mm, reach_mm, refine
-from sim.contact.region import region_radius_mm
-from sim.contact.verdict import check_depth
+from sim.contact.region.domain import Domain, build_domain
+from sim.contact.region.drives import driven_faces, drives_inner, farthest_drive_mm
+from sim.contact.region.materials import stiffest_MPa, young_MPa_at
+from sim.contact.region.memory import check_memory
+from sim.contact.region.placing import place_object
+from sim.contact.region.quadrature import SurfacePoints, corner_points, facets_of, join, merge
+from sim.contact.region.radius import region_radius_mm
+from sim.contact.region.refinement import LONGEST_EDGE, path_distance_mm, reach_mm, refine
 from workbench.core.design import Elastomer
 from workbench.core.indenter import Indenter
 from workbench.core.press import ContactSettings, Press

@@ -9,8 +9,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from sim.contact.engine.relaxation import Balance
 from sim.contact.problem import Problem
-from sim.contact.relaxation import Balance
 from sim.contact.solver import Solver
 from workbench.core.monitor import Monitor, silent
 

@@ -7,11 +7,11 @@ import time
 
 import numpy as np
 
-from sim.contact.drives import driven_displacement_mm
-from sim.contact.frame import FrameOutcome
-from sim.contact.layout import POSE
+from sim.contact.engine.layout import POSE
+from sim.contact.engine.relaxation import STEPS, Relaxation
 from sim.contact.problem import Problem
-from sim.contact.relaxation import STEPS, Relaxation
+from sim.contact.readout.frame import FrameOutcome
+from sim.contact.region.drives import driven_displacement_mm
 from workbench.core.errors import SolveError
 
 RAMP_SUBSTEPS_PER_MM = 100.0

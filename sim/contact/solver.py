@@ -15,13 +15,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from sim.contact.batch import Case
-from sim.contact.frame import FrameOutcome
-from sim.contact.outcome import collect, frame_outcome
+from sim.contact.engine.batch import Case
+from sim.contact.engine.relaxation import STEPS, Balance, Balances, Relaxation
 from sim.contact.problem import Problem, make_problem
-from sim.contact.relaxation import STEPS, Balance, Balances, Relaxation
+from sim.contact.readout.frame import FrameOutcome
+from sim.contact.readout.outcome import collect, frame_outcome
+from sim.contact.readout.verdict import check_frame
 from sim.contact.run import FORCE_CHANGE, NET_FORCE, Run
-from sim.contact.verdict import check_frame
 from workbench.core.design import Elastomer
 from workbench.core.errors import SolveError
 from workbench.core.indenter import Indenter
@@ -68,13 +68,13 @@ def press_membrane(
             good frame, and the result of the frames that settled.
     """
     if settings.method is Method.PARTICLES:
-        from sim.contact.particles import press_particles
+        from sim.contact.particles.press import press_particles
 
         return press_particles(mesh, points, material, indenter, press, settings, monitor=monitor)
     monitor(0.0, "placing the object")
     problem = make_problem(mesh, points, material, indenter, press, settings, sampled)
     if indenter.soft is not None:
-        from sim.contact.soft_solver import press_soft
+        from sim.contact.soft.solver import press_soft
 
         result = press_soft(problem, indenter, monitor)
     else:

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from sim.contact import closed_forms
+from sim.contact.studies import closed_forms
 from workbench.core.design import Elastomer
 
 THICK_MM = 1000.0

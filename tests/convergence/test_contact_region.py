@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from sim.contact import specimens
-from sim.contact.approach import plan_approach
-from sim.contact.checks.finger import at_45_degrees
-from sim.contact.collider import make_collider
-from sim.contact.region import MARGIN_WALLS, region_radius_mm
+from sim.contact.motion.approach import plan_approach
+from sim.contact.objects.collider import make_collider
+from sim.contact.region.radius import MARGIN_WALLS, region_radius_mm
 from sim.contact.solver import press_membrane
+from sim.contact.studies.finger import at_45_degrees
 from workbench.core.design import Elastomer
 from workbench.core.errors import DesignError
 from workbench.core.indenter import Indenter, IndenterKind

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sim.contact.checks import backed, finger, layer, sliding
+from sim.contact.studies import backed, finger, layer, sliding
 from workbench.core.press import Press
 
 pytestmark = pytest.mark.usefixtures("taichi_device")

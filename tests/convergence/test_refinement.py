@@ -2,7 +2,7 @@
 
 import pytest
 
-from sim.contact.checks.refinement import extrapolate
+from sim.contact.studies.refinement import extrapolate
 
 SIZES_MM = (0.9, 0.45, 0.3)
 

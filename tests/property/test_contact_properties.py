@@ -6,12 +6,12 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from sim.contact.checks.finger import at_45_degrees, penetration_and_balance, press_finger
+from sim.contact.engine.relaxation import Balances, Relaxation
 from sim.contact.problem import make_problem
-from sim.contact.relaxation import Balances, Relaxation
 from sim.contact.run import Run
 from sim.contact.solver import press_membrane, relaxation_of
 from sim.contact.specimens import flat_block
+from sim.contact.studies.finger import at_45_degrees, penetration_and_balance, press_finger
 from workbench.core.design import Elastomer
 from workbench.core.errors import Cancelled, SolveError
 from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh

@@ -5,8 +5,8 @@ import dataclasses
 import numpy as np
 import pytest
 
-from sim.contact.fields import VOIGT, skin_stress, volume_state
 from sim.contact.problem import make_problem
+from sim.contact.readout.fields import VOIGT, skin_stress, volume_state
 from sim.contact.solver import press_membrane
 from sim.contact.specimens import flat_block
 from sim.material import energy_density_MPa, moduli_MPa, stress_of

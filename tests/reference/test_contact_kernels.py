@@ -5,14 +5,14 @@ import dataclasses
 import numpy as np
 import pytest
 
-from sim.contact import reference
-from sim.contact.approach import plan_approach
-from sim.contact.batch import Case
-from sim.contact.collider import make_collider
-from sim.contact.domain import stencil_nodes
+from sim.contact.engine import reference
+from sim.contact.engine.batch import Case
+from sim.contact.engine.relaxation import STEP_CAP, STEPS, Relaxation
+from sim.contact.motion.approach import plan_approach
+from sim.contact.objects.collider import make_collider
+from sim.contact.objects.shapes import SAMPLED
 from sim.contact.problem import prepare
-from sim.contact.relaxation import STEP_CAP, STEPS, Relaxation
-from sim.contact.shapes import SAMPLED
+from sim.contact.region.domain import stencil_nodes
 from sim.contact.specimens import flat_block
 from sim.material import elastic_solid
 from workbench.core.design import Elastomer, Law
@@ -287,8 +287,8 @@ def test_affine_field_has_no_interior_force(taichi_device: str) -> None:
 
 def test_mesh_distance_equals_the_twin(taichi_device: str) -> None:
     """The sampled distance of a box: band exact to 1e-5 mm, sign exact, at every sample."""
-    from sim.contact.distance import BAND_SAMPLES, _distance, _inside
-    from sim.contact.samples import SampleGrid
+    from sim.contact.objects.distance import BAND_SAMPLES, _distance, _inside
+    from sim.contact.objects.samples import SampleGrid
 
     mesh, spacing = box_mesh(1.0), 0.25
     shape = np.array([21, 21, 21])

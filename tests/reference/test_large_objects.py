@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from sim.contact.placing import place_object
+from sim.contact.region.placing import place_object
 from sim.contact.solver import press_membrane
 from sim.contact.specimens import flat_block
 from workbench.core.design import Elastomer

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from geometry.primitives import rounded_box
-from sim.contact import sampling
+from sim.contact.objects import sampling
 from sim.contact.specimens import flat_block
 from workbench.core.design import Elastomer
 from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh

@@ -211,7 +211,7 @@ def test_the_narrow_side_is_named_with_its_own_limit() -> None:
 def test_support_points_of_a_digitac_lie_on_its_window() -> None:
     """The roots of pins as well: -0.08 to +0.001 mm, where pins' sides once made it 0.3 mm."""
     from geometry.hexmesh import mesh_membrane
-    from sim.contact.backing import backed_faces, bonded_faces, support_points_mm
+    from sim.contact.region.backing import backed_faces, bonded_faces, support_points_mm
     from workbench.core.design import Meshing
 
     shape, layers = DigitacShape(), Layers(elastomer_mm=1.2)

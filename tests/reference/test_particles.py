@@ -8,13 +8,13 @@ import itertools
 import numpy as np
 import pytest
 
-from sim.contact import particle_kernels as kernels
-from sim.contact import particle_reference as twin
-from sim.contact.approach import plan_approach
-from sim.contact.collider import make_collider
-from sim.contact.particle_cloud import Cloud, make_cloud
-from sim.contact.particle_state import OBJECT_DENSITY, State
-from sim.contact.particles import press_particles
+from sim.contact.motion.approach import plan_approach
+from sim.contact.objects.collider import make_collider
+from sim.contact.particles import kernels
+from sim.contact.particles import reference as twin
+from sim.contact.particles.cloud import Cloud, make_cloud
+from sim.contact.particles.press import press_particles
+from sim.contact.particles.state import OBJECT_DENSITY, State
 from sim.contact.specimens import flat_block
 from sim.material import elastic_solid
 from workbench.core.design import Elastomer

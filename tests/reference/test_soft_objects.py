@@ -5,13 +5,13 @@ import dataclasses
 import numpy as np
 import pytest
 
-from sim.contact import reference
+from sim.contact.engine import reference
 from sim.contact.problem import make_problem
-from sim.contact.soft_kernels import MEMBRANE, OBJECT
-from sim.contact.soft_meeting import meet
-from sim.contact.soft_object import SoftObject, make_soft_object
-from sim.contact.soft_reference import commit_history, contact_forces
-from sim.contact.soft_solver import SoftRelaxation
+from sim.contact.soft.body import SoftObject, make_soft_object
+from sim.contact.soft.kernels import MEMBRANE, OBJECT
+from sim.contact.soft.meeting import meet
+from sim.contact.soft.reference import commit_history, contact_forces
+from sim.contact.soft.solver import SoftRelaxation
 from sim.contact.solver import press_membrane
 from sim.contact.specimens import flat_block
 from workbench.core.design import Elastomer

@@ -5,8 +5,8 @@ import itertools
 import numpy as np
 import pytest
 
-from sim.contact.approach import plan_approach
-from sim.contact.collider import make_collider
+from sim.contact.motion.approach import plan_approach
+from sim.contact.objects.collider import make_collider
 from sim.contact.specimens import finger
 from workbench.algorithms import finger_algorithm, finger_points_mm, pad_algorithm
 from workbench.core.errors import DesignError

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from sim.contact.approach import plan_approach
-from sim.contact.checks.finger import at_45_degrees
-from sim.contact.collider import make_collider
+from sim.contact.motion.approach import plan_approach
+from sim.contact.motion.touch import first_touch
+from sim.contact.objects.collider import make_collider
 from sim.contact.specimens import finger, flat_block
-from sim.contact.touch import first_touch
+from sim.contact.studies.finger import at_45_degrees
 from workbench.core.errors import DesignError
 from workbench.core.frames import quaternion
 from workbench.core.indenter import Indenter, IndenterKind

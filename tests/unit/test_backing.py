@@ -8,7 +8,8 @@ import math
 import numpy as np
 import pytest
 
-from sim.contact import backing, specimens
+from sim.contact import specimens
+from sim.contact.region import backing
 from workbench.core.design import Elastomer
 from workbench.core.results import Label, MembraneMesh
 

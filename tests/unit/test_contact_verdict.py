@@ -5,18 +5,18 @@ import dataclasses
 import numpy as np
 import pytest
 
-from sim.contact.approach import Approach, plan_approach
-from sim.contact.batch import Case
-from sim.contact.collider import Collider, make_collider
-from sim.contact.fields import volume_state
-from sim.contact.frame import FrameOutcome
-from sim.contact.outcome import _friction, frame_outcome
+from sim.contact.engine.batch import Case
+from sim.contact.engine.relaxation import Relaxation
+from sim.contact.motion.approach import Approach, plan_approach
+from sim.contact.objects.collider import Collider, make_collider
 from sim.contact.problem import Problem, prepare
-from sim.contact.quadrature import facets_of
-from sim.contact.refinement import refine
-from sim.contact.relaxation import Relaxation
+from sim.contact.readout.fields import volume_state
+from sim.contact.readout.frame import FrameOutcome
+from sim.contact.readout.outcome import _friction, frame_outcome
+from sim.contact.readout.verdict import check_depth, check_frame
+from sim.contact.region.quadrature import facets_of
+from sim.contact.region.refinement import refine
 from sim.contact.specimens import flat_block
-from sim.contact.verdict import check_depth, check_frame
 from workbench.core.design import Elastomer
 from workbench.core.errors import DesignError, SolveError
 from workbench.core.indenter import Indenter, IndenterKind

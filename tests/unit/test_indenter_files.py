@@ -13,10 +13,10 @@ from geometry.export import stl_bytes
 from geometry.indenters import load_mesh
 from geometry.primitives import rounded_box, sphere
 from geometry.surface import is_watertight, mesh_volume
-from sim.contact import sampling
-from sim.contact.approach import plan_approach
-from sim.contact.collider import make_collider
-from sim.contact.sampling import kept_samples, sample_indenter
+from sim.contact.motion.approach import plan_approach
+from sim.contact.objects import sampling
+from sim.contact.objects.collider import make_collider
+from sim.contact.objects.sampling import kept_samples, sample_indenter
 from sim.contact.specimens import flat_block
 from workbench.core.errors import DesignError
 from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from geometry.surface import is_watertight, mesh_volume
-from sim.contact.approach import plan_approach
-from sim.contact.collider import make_collider
-from sim.contact.profiles import area_mm2, inset, polygon
-from sim.contact.shapes import SAMPLED
-from sim.contact.solids import lowest_mm, sharp_volume_mm3, solid
+from sim.contact.motion.approach import plan_approach
+from sim.contact.objects.collider import make_collider
+from sim.contact.objects.profiles import area_mm2, inset, polygon
+from sim.contact.objects.shapes import SAMPLED
+from sim.contact.objects.solids import lowest_mm, sharp_volume_mm3, solid
 from sim.contact.specimens import flat_block
 from workbench.core.errors import DesignError
 from workbench.core.indenter import SEEN, UNSEEN, Indenter, IndenterKind, widest_edge_mm

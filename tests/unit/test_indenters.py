@@ -12,7 +12,7 @@ from geometry.export import stl_bytes
 from geometry.indenters import largest_width, load_stl, scaled
 from geometry.primitives import rounded_box, sphere
 from geometry.surface import is_watertight, mesh_volume
-from sim.contact.shapes import SAMPLED
+from sim.contact.objects.shapes import SAMPLED
 from workbench.core.errors import DesignError
 from workbench.core.indenter import Indenter, IndenterKind
 from workbench.indenter_display import display_mesh
@@ -111,7 +111,7 @@ def test_bad_files_say_what_is_wrong(tmp_path: Path, case: str) -> None:
 @pytest.mark.parametrize("kind", PRIMITIVES)
 def test_display_meshes_are_closed_and_on_the_shape(kind: IndenterKind, edge_mm: float) -> None:
     """Vertices lie on the very surface that contact uses, to rounding."""
-    from sim.contact.shapes import SHAPE_OF_KIND, analytic_size, evaluate
+    from sim.contact.objects.shapes import SHAPE_OF_KIND, analytic_size, evaluate
 
     indenter = Indenter(kind=kind, edge_radius_mm=edge_mm)
     points, faces = display_mesh(indenter)

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from sim.contact.approach import Approach, plan_approach
-from sim.contact.collider import Collider, make_collider
+from sim.contact.motion.approach import Approach, plan_approach
+from sim.contact.objects.collider import Collider, make_collider
+from sim.contact.readout.verdict import check_depth
 from sim.contact.specimens import finger, flat_block
-from sim.contact.verdict import check_depth
 from workbench.core.actuation import Actuation
 from workbench.core.digest import digest
 from workbench.core.errors import DesignError

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from sim.contact.collider import make_collider
-from sim.contact.shapes import SAMPLED
+from sim.contact.objects.collider import make_collider
+from sim.contact.objects.shapes import SAMPLED
 from workbench.core.errors import DesignError
 from workbench.core.indenter import Indenter, IndenterKind
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from sim.contact.stencil import (
+from sim.contact.region.stencil import (
     gather_gradient,
     gradient_table,
     point_offsets,

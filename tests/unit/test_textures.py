@@ -10,9 +10,9 @@ import pytest
 
 from geometry.primitives import rounded_box
 from geometry.surface import is_watertight, mesh_volume
-from sim.contact import textures
-from sim.contact.collider import make_collider
-from sim.contact.solids import solid
+from sim.contact.objects import textures
+from sim.contact.objects.collider import make_collider
+from sim.contact.objects.solids import solid
 from workbench.core.errors import DesignError
 from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
 from workbench.core.texture import STEEPEST, HeightImage, Pattern, Texture

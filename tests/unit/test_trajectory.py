@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sim.contact.approach import plan_approach
-from sim.contact.collider import make_collider
+from sim.contact.motion.approach import plan_approach
+from sim.contact.objects.collider import make_collider
+from sim.contact.readout.verdict import check_depth
 from sim.contact.specimens import finger, flat_block
-from sim.contact.verdict import check_depth
 from workbench.core.digest import digest
 from workbench.core.errors import DesignError
 from workbench.core.frames import quaternion

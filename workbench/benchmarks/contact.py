@@ -86,9 +86,9 @@ def _finger(grid_mm: float):
 
 
 def _whole_finger(grid_mm: float):
-    from sim.contact.batch import Case
+    from sim.contact.engine.batch import Case
+    from sim.contact.engine.relaxation import Relaxation
     from sim.contact.problem import make_problem
-    from sim.contact.relaxation import Relaxation
 
     settings = ContactSettings(grid_mm=grid_mm, extent=Extent.FULL)
     problem = make_problem(*_finger(grid_mm), Elastomer(), Indenter(), Press(frames=1), settings)
@@ -102,7 +102,7 @@ def _whole_finger(grid_mm: float):
 def _substep_s(relaxation) -> float:
     import taichi as ti
 
-    from sim.contact.relaxation import STEPS
+    from sim.contact.engine.relaxation import STEPS
 
     one = np.ones(1, bool)
     times = []

@@ -2,7 +2,7 @@
 
 The paper presses 14 indenters, ten of which its networks saw in training. Source of the names and
 of their split: SimTac, Fig. 6c (indenters 1-10 seen, 11-14 unseen), in the order of that figure as
-far as it is known; the paper gives no dimensions, so those in `sim.contact.solids` are ours.
+far as it is known; the paper gives no dimensions: those in `sim.contact.objects.solids` are ours.
 """
 
 from __future__ import annotations

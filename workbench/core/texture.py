@@ -3,7 +3,7 @@
 Every pattern is made of ridges or bumps with a raised-cosine flank, H cos^2(pi u / 2 R) at a
 distance u < R from the crest, so its steepest slope is pi H / 2 R. R is a share of the pitch.
 What a height field cannot be: undercut. What the sampled distance cannot hold: flanks beyond
-`STEEPEST`, and features narrower than `sim.contact.textures.LEAST_FEATURE_SAMPLES`.
+`STEEPEST`, and features narrower than `sim.contact.objects.textures.LEAST_FEATURE_SAMPLES`.
 """
 
 from __future__ import annotations

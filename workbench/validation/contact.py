@@ -28,7 +28,7 @@ def rows() -> list[Row]:
 
 
 def _backed_block() -> list[Row]:
-    from sim.contact.checks import backed
+    from sim.contact.studies import backed
 
     def force_N(backing_MPa: float) -> float:
         open_device()
@@ -51,7 +51,7 @@ def _backed_block() -> list[Row]:
 
 
 def _sheared_block() -> Row:
-    from sim.contact.checks import backed
+    from sim.contact.studies import backed
 
     backing_MPa, shear_mm = backed.SHEARED_BACKING_MPa, backed.BACKED_SHEAR_MM
 

@@ -45,7 +45,7 @@ def _device_MB() -> float:
     """Memory of the device that is not free [MB]; 0 on the CPU. Others may use the device too."""
     if open_device() == "cpu":
         return 0.0
-    from sim.contact.memory import free_bytes
+    from sim.contact.region.memory import free_bytes
 
     return -free_bytes() / 1e6
 

@@ -42,8 +42,8 @@ def rows() -> list[Row]:
 
 
 def _grids() -> list[Row]:
-    from sim.contact.checks import finger
-    from sim.contact.checks.refinement import extrapolate
+    from sim.contact.studies import finger
+    from sim.contact.studies.refinement import extrapolate
 
     fem = extrapolate(FEM_MM, FEM_N)
     forces = ", ".join(f"{force_N:g}" for force_N in FEM_N)
@@ -110,7 +110,7 @@ def _grids() -> list[Row]:
 
 
 def _regions() -> list[Row]:
-    from sim.contact.checks import finger
+    from sim.contact.studies import finger
 
     def full_N() -> float:
         return float(finger.press_45(extent=Extent.FULL, frames=1).normal_N[-1])
@@ -132,7 +132,7 @@ def _regions() -> list[Row]:
 
 
 def _sheared() -> Row:
-    from sim.contact.checks import finger
+    from sim.contact.studies import finger
 
     return compared(
         "sheared_sphere",
@@ -148,7 +148,7 @@ def _sheared() -> Row:
 
 def _state() -> list[Row]:
     """Overlap, balance and residual of the default finger, built by the CAD kernel."""
-    from sim.contact.checks import finger
+    from sim.contact.studies import finger
 
     penalty = ContactSettings().penalty
     steps = "ten steps of 0.1 mm"
@@ -189,7 +189,7 @@ def _state() -> list[Row]:
 
 
 def _wide_balance() -> float:
-    from sim.contact.checks import finger
+    from sim.contact.studies import finger
 
     contact = finger.press_45(active_radius_mm=WIDE_MM, frames=1)
     reaction_N, support_N = contact.reaction_N[-1], contact.support_N[-1]

@@ -22,7 +22,7 @@ def rows() -> list[Row]:
 
 
 def _solid() -> list[Row]:
-    from sim.contact.checks import invariance
+    from sim.contact.studies import invariance
 
     def patch(name: str) -> float:
         found = invariance.patch_forces()
@@ -64,7 +64,7 @@ def _solid() -> list[Row]:
 
 
 def _mirror() -> Row:
-    from sim.contact.checks import invariance
+    from sim.contact.studies import invariance
 
     return bounded(
         "mirror_symmetry",

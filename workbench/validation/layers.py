@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from sim.contact import closed_forms
+from sim.contact.studies import closed_forms
 from workbench.core.design import Elastomer, Law
 from workbench.rows import Row, bounded, compared
 from workbench.validation.presses import on_device
 
 if TYPE_CHECKING:
-    from sim.contact.checks.layer import Ball
+    from sim.contact.studies.layer import Ball
 
 BALLS = {
     0.45: (0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6),
@@ -46,7 +46,7 @@ def rows() -> list[Row]:
 
 
 def _forces() -> list[Row]:
-    from sim.contact.checks import layer
+    from sim.contact.studies import layer
 
     return [
         _force_row(layer.Ball(chi=chi, poisson=poisson, flatness=_flatness(chi), cells=_cells(chi)))
@@ -57,19 +57,19 @@ def _forces() -> list[Row]:
 
 def _flatness(chi: float) -> float:
     """A narrow contact needs a smaller ball: overlaps below 1e-4 mm drown in single precision."""
-    from sim.contact.checks import layer
+    from sim.contact.studies import layer
 
     return layer.FLATNESS if chi >= NARROW_CHI else 0.5 * layer.FLATNESS
 
 
 def _cells(chi: float) -> float:
-    from sim.contact.checks import layer
+    from sim.contact.studies import layer
 
     return layer.CELLS_PER_RADIUS if chi > 0.1 else NARROWEST_CELLS
 
 
 def _force_row(ball: Ball, note: str = "") -> Row:
-    from sim.contact.checks import layer
+    from sim.contact.studies import layer
 
     sizes = {"radius_mm": ball.radius_mm, "depth_mm": ball.depth_mm}
     series_N = closed_forms.dimitriadis_ball_N(ball.material, height_mm=layer.HEIGHT_MM, **sizes)
@@ -113,8 +113,8 @@ def _series() -> list[Row]:
 
 def _grids() -> list[Row]:
     """Three grids, and what they tend to under two laws, which differ by the finite strain."""
-    from sim.contact.checks import layer
-    from sim.contact.checks.refinement import extrapolate
+    from sim.contact.studies import layer
+    from sim.contact.studies.refinement import extrapolate
 
     balls = _table(Law.NEO_HOOKEAN)
     found = [_force_row(ball, "convergence table, ") for ball in balls]
@@ -141,7 +141,7 @@ def _grids() -> list[Row]:
 
 
 def _table(law: Law) -> list[Ball]:
-    from sim.contact.checks import layer
+    from sim.contact.studies import layer
 
     return [
         layer.Ball(chi=GRID_CHI, cells=cells, law=law, tolerance=GRID_TOLERANCE)
@@ -150,7 +150,7 @@ def _table(law: Law) -> list[Ball]:
 
 
 def _radii() -> list[Row]:
-    from sim.contact.checks import layer
+    from sim.contact.studies import layer
 
     found = []
     for chi in RADIUS_CHIS:
@@ -173,7 +173,7 @@ def _radii() -> list[Row]:
 
 
 def _flat_punch() -> Row:
-    from sim.contact.checks import layer
+    from sim.contact.studies import layer
 
     return compared(
         "flat_punch",
@@ -190,7 +190,7 @@ def _flat_punch() -> Row:
 
 
 def _cylinder_line() -> Row:
-    from sim.contact.checks import layer
+    from sim.contact.studies import layer
 
     return compared(
         "cylinder_line",

@@ -28,8 +28,8 @@ def forces() -> dict[str, np.ndarray]:
     """Reaction [N] by press, (K, 3), and the displacement [mm] of one, on this process's device."""
     open_device()
     from sim.contact import specimens
-    from sim.contact.checks import finger
     from sim.contact.solver import press_membrane
+    from sim.contact.studies import finger
     from workbench.core.design import Elastomer
 
     sheared = finger.press_finger(

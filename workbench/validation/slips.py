@@ -20,7 +20,7 @@ def rows() -> list[Row]:
 
 
 def _cone() -> list[Row]:
-    from sim.contact.checks import finger, sliding
+    from sim.contact.studies import finger, sliding
 
     def farthest() -> float:
         ratios = sliding.cone_ratios(sliding.slid(FRAMES_MM[0]))
@@ -65,7 +65,7 @@ def _cone() -> list[Row]:
 
 
 def _frames() -> list[Row]:
-    from sim.contact.checks import sliding
+    from sim.contact.studies import sliding
 
     coarse_mm, fine_mm = FRAMES_MM
     case = f"{sliding.SLIDE_MM:g} mm of sliding in frames of {coarse_mm:g} and {fine_mm:g} mm"
@@ -83,7 +83,7 @@ def _frames() -> list[Row]:
 
 
 def _release() -> list[Row]:
-    from sim.contact.checks import sliding
+    from sim.contact.studies import sliding
 
     return [
         bounded(

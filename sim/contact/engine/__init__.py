@@ -1,0 +1,1 @@
+"""Dynamic relaxation on the device: tables, kernels, their plain twins."""

@@ -1,0 +1,230 @@
+"""Several presses (cases) as one set of device arrays.
+
+Every case keeps its own copy of its region; nodes, cells and surface points of the cases follow
+each other. Cells and nodes of a case are padded to a multiple of `BLOCK`, so that its rows of the
+interleaved tables stay together. Sums are taken in chunks that never span two cases: what one case
+does cannot change a bit of another.
+"""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import taichi as ti
+
+from sim.contact.engine import layout, sum_kernels
+from sim.contact.objects.collider import Collider
+from sim.contact.region.domain import BLOCK, NO_SLOT, Domain
+
+CHUNK = 128
+"""Rows summed by one thread of a reduction; fixed, so that the order of sums is too."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Case:
+    """One press: its region, its object, and the friction between them."""
+
+    domain: Domain
+    collider: Collider
+    friction: float
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Span:
+    """Where a case lies in the arrays of a batch."""
+
+    first_node: int
+    nodes: int
+    first_point: int
+    points: int
+
+
+class Batch:
+    """Device arrays of all cases; names and layouts are those of `kernels`."""
+
+    def __init__(self, cases: list[Case], steps: int) -> None:
+        domains = [case.domain for case in cases]
+        nodes = [_padded(len(domain.masses)) for domain in domains]
+        cells = [_padded(len(domain.rows)) for domain in domains]
+        points = [domain.points.count for domain in domains]
+        node_at, cell_at, point_at = _starts(nodes), _starts(cells), _starts(points)
+        self.cases = cases
+        self.spans = [
+            Span(first_node=n, nodes=len(d.masses), first_point=p, points=d.points.count)
+            for d, n, p in zip(domains, node_at, point_at, strict=False)
+        ]
+        everything = list(zip(domains, node_at, cell_at, point_at, strict=False))
+        total = node_at[-1]
+        self.displacement = floats(np.zeros(3 * total))
+        self.velocity = floats(np.zeros(3 * total))
+        self.forces = floats(np.zeros(3 * total))
+        # The block after the last cell stays zero: nodes without a cell on some side read it.
+        self.slots = floats(np.zeros(81 * (cell_at[-1] + BLOCK)))
+        nothing = 81 * cell_at[-1]
+        self.rows = integers(_joined([interleaved(d.rows + n, n) for d, n, _, _ in everything]))
+        self.volumes = floats(_joined([interleaved(d.volumes_mm3, 0.0) for d in domains]))
+        self.moduli = floats(_joined([interleaved(d.moduli_MPa, 0.0) for d in domains]))
+        self.cell_cases = integers(np.repeat(np.arange(len(cases)), cells))
+        self.node_slots = integers(
+            _joined(
+                [
+                    interleaved(_shifted(d.node_slots, c, nothing), nothing)
+                    for d, _, c, _ in everything
+                ]
+            )
+        )
+        self.node_cases = integers(np.repeat(np.arange(len(cases)), nodes))
+        # A padding node is fixed, and its mass only keeps it from dividing by nothing.
+        self.masses = floats(_joined([_extended(d.masses, 1.0) for d in domains]))
+        self.fixed = integers(_joined([_extended(d.fixed, True) for d in domains]))
+        self.powers = floats(np.zeros(2 * total))
+        counts = _joined([_points_per_cell(d) for d in domains])
+        self.starts = integers(np.concatenate([[0], np.cumsum(counts)]))
+        self.points = floats(_joined([_point_table(d) for d in domains]))
+        self.held = integers(_joined([d.points.bonded for d in domains]))
+        self.goals = floats(np.zeros(6 * point_at[-1]))
+        self.anchors = floats(np.zeros(3 * point_at[-1]))
+        self.states = integers(np.zeros(point_at[-1]))
+        self.slips = floats(np.zeros(point_at[-1]))
+        self.point_forces = floats(np.zeros(3 * point_at[-1]))
+        self.poses = floats(np.zeros(steps * len(cases) * layout.POSE))
+        self.numbers = floats(np.zeros(len(cases) * layout.NUMBERS))
+        self.choices = integers(np.zeros(len(cases) * layout.CHOICES))
+        samples, self.first_coefficients = _shared_samples(cases)
+        self.coefficients = floats(samples)
+        self.node_sums = _Sums(node_at)
+        self.point_sums = _Sums(point_at)
+        self._staging = floats(np.zeros(max(3 * max(nodes), 6 * max(points), 1)))
+
+    def read(self, array: Any, first: int, count: int) -> np.ndarray:
+        """Some entries of a device array of floats, shape (count,)."""
+        sum_kernels.copy_out(array, self._staging, first, count)
+        return self._staging.to_numpy()[:count]
+
+    def write(self, array: Any, first: int, values: np.ndarray) -> None:
+        """Replace some entries of a device array of floats."""
+        staged = np.zeros(self._staging.shape[0], np.float32)
+        staged[: values.size] = values.ravel()
+        self._staging.from_numpy(staged)
+        sum_kernels.copy_in(self._staging, array, first, values.size)
+
+
+class _Sums:
+    """Chunks of rows, case by case, and their sums."""
+
+    def __init__(self, starts: list[int]) -> None:
+        bounds: list[tuple[int, int]] = []
+        first_chunks = [0]
+        for first, last in itertools.pairwise(starts):
+            edges = [*range(first, last, CHUNK), last]
+            bounds += list(itertools.pairwise(edges))
+            first_chunks.append(len(bounds))
+        self.bounds = integers(np.array(bounds or [(0, 0)]))
+        self.partial = ti.ndarray(ti.f64, 6 * max(1, len(bounds)))
+        self.first_chunks = integers(np.array(first_chunks))
+        self.totals = ti.ndarray(ti.f64, 6 * (len(starts) - 1))
+
+    def collect(self) -> np.ndarray:
+        """Six sums of each case, shape (cases, 6), from the chunks' partial sums."""
+        sum_kernels.case_sums(self.partial, self.first_chunks, self.totals)
+        return self.totals.to_numpy().reshape(-1, 6)
+
+
+def needed_bytes(cells: int, points: int) -> int:
+    """Device memory that a case of so many cells and surface points takes, at most.
+
+    A cell has 81 slots, 9 rows, 8 volumes, 2 moduli and its case; there are up to twice as many
+    nodes as cells in a thin wall, of 3 x 3 floats and 7 numbers, and 27 slot entries per cell.
+    """
+    per_cell = 4 * (81 + 9 + 8 + 3 + 27 + 2 * (9 + 7))
+    per_point = 4 * (3 + 3 + 1 + 3 + 1 + 1 + 6 + 3 + 1 + 1 + 3)
+    return cells * per_cell + points * per_point
+
+
+def _padded(count: int) -> int:
+    return -(-count // BLOCK) * BLOCK
+
+
+def _extended(values: np.ndarray, filling: Any) -> np.ndarray:
+    """Rows up to a multiple of the block; the added ones hold the filling."""
+    pad = [(0, _padded(len(values)) - len(values))] + [(0, 0)] * (values.ndim - 1)
+    return np.pad(values, pad, constant_values=filling)
+
+
+def interleaved(table: np.ndarray, filling: Any) -> np.ndarray:
+    """A table (R, W) as the kernels read it: W runs of a column for each block of rows, flat.
+
+    Entry (r, w) is at `cell_kernel.entry(r, w, W)`.
+    """
+    blocks = _extended(table, filling).reshape(-1, BLOCK, table.shape[1])
+    return blocks.transpose(0, 2, 1).ravel()
+
+
+def _shifted(node_slots: np.ndarray, first_cell: int, nothing: int) -> np.ndarray:
+    """Slots of a case whose first cell is not the first of the batch; `nothing` for none."""
+    return np.where(node_slots == NO_SLOT, nothing, node_slots + 81 * first_cell)
+
+
+def _point_table(domain: Domain) -> np.ndarray:
+    """Constants of the surface points as in `layout.POINT`, shape (P, 11)."""
+    points = domain.points
+    columns = (
+        points.position_mm - domain.target_mm,
+        points.axis,
+        points.stiffness_N_mm[:, None],
+        points.sideways[:, None],
+        domain.point_local,
+    )
+    return np.concatenate(columns, axis=1)
+
+
+def _points_per_cell(domain: Domain) -> np.ndarray:
+    """Surface points of each cell, padding included, shape (C,)."""
+    counts = np.zeros(_padded(len(domain.rows)), np.int64)
+    counts[domain.owners] = np.diff(domain.owner_starts)
+    return counts
+
+
+def _starts(counts: list[int]) -> list[int]:
+    return [0, *itertools.accumulate(counts)]
+
+
+def _joined(parts: list[np.ndarray]) -> np.ndarray:
+    return np.concatenate([np.asarray(part).ravel() for part in parts])
+
+
+def _shared_samples(cases: list[Case]) -> tuple[np.ndarray, list[int]]:
+    """Samples of all objects, those that cases share once, and where each case's begin."""
+    known: dict[int, int] = {}
+    parts: list[np.ndarray] = []
+    first: list[int] = []
+    length = 0
+    for case in cases:
+        samples = case.collider.samples
+        if id(samples) not in known:
+            known[id(samples)] = length
+            parts.append(samples)
+            length += samples.size
+        first.append(known[id(samples)])
+    return _joined(parts), first
+
+
+def floats(values: np.ndarray) -> Any:
+    """A device array of single precision with these values."""
+    return _device(values, ti.f32, np.float32)
+
+
+def integers(values: np.ndarray) -> Any:
+    """A device array of 32-bit integers with these values."""
+    return _device(values, ti.i32, np.int32)
+
+
+def _device(values: np.ndarray, kind: Any, host: type) -> Any:
+    # Taichi has no empty arrays: an empty one is a single number that no kernel reads.
+    flat = np.ascontiguousarray(values, dtype=host).ravel()
+    array = ti.ndarray(kind, max(1, flat.size))
+    array.from_numpy(flat if flat.size else np.zeros(1, host))
+    return array

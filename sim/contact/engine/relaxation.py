@@ -1,0 +1,278 @@
+"""Adaptive dynamic relaxation: damped motion with fictitious masses until forces balance.
+
+    v <- ((2 - d) v + 2 f / m) / (2 + d),  u <- u + v,  d = 2 sqrt(l),  l = v.(f_old - f) / v.m v
+
+with a time step of 1; l, the Rayleigh quotient of the last step, estimates the lowest frequency
+that is still moving. Source: Underwood, Dynamic relaxation, 1983; Papadrakakis, 1981.
+Each case of a batch has its own damping and masses. Nothing bulky leaves the device while it
+relaxes: only the sums of `Balances` do.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import taichi as ti
+
+from sim.contact.engine import kernels, layout, sum_kernels
+from sim.contact.engine.batch import Batch, Case
+
+STEP_CAP = 0.1
+"""Largest displacement of a node in one substep and axis, in cells."""
+FIRST_DAMPING = 0.5
+DAMPING_RANGE = (0.004, 1.5)
+STEPS = 5
+"""Substeps between two looks at the residual."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Balance:
+    """Forces [N] of one case; the fields are those of `Balances`."""
+
+    reaction_N: np.ndarray
+    held_N: np.ndarray
+    unbalanced_N: float
+    net_N: np.ndarray
+    inertia_Nmm: float
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Balances:
+    """Forces [N] of B cases at one moment."""
+
+    reaction_N: np.ndarray
+    """Force on the object, shape (B, 3)."""
+    held_N: np.ndarray
+    """Force of the held points on the membrane, shape (B, 3)."""
+    unbalanced_N: np.ndarray
+    """Euclidean norm of the forces on free nodes, shape (B,)."""
+    net_N: np.ndarray
+    """Sum of the forces on free nodes, shape (B, 3)."""
+    inertia_Nmm: np.ndarray
+    """Twice the kinetic energy of the relaxation, m v^2 at a time step of 1, shape (B,)."""
+
+    def of(self, case: int) -> Balance:
+        """The forces of one case."""
+        return Balance(
+            reaction_N=self.reaction_N[case],
+            held_N=self.held_N[case],
+            unbalanced_N=float(self.unbalanced_N[case]),
+            net_N=self.net_N[case],
+            inertia_Nmm=float(self.inertia_Nmm[case]),
+        )
+
+    @property
+    def finite(self) -> np.ndarray:
+        """Whether no force has overflowed, shape (B,), bool."""
+        found = np.isfinite(self.unbalanced_N)
+        for forces in (self.reaction_N, self.held_N, self.net_N):
+            found &= np.isfinite(forces).all(axis=1)
+        return found
+
+
+class Relaxation:
+    """Displacement, velocity and contact history of a batch of presses on the device."""
+
+    def __init__(self, cases: list[Case]) -> None:
+        self.cases = cases
+        self.batch = batch = Batch(cases, STEPS)
+        count = len(cases)
+        self.damping = np.full(count, FIRST_DAMPING)
+        self.mass_scale = np.ones(count)
+        self._moved = np.zeros(count, bool)
+        self._poses = np.zeros((STEPS, count, layout.POSE), np.float32)
+        self._poses[:, :, 3::4] = 1.0
+        self._numbers = np.zeros((count, layout.NUMBERS), np.float32)
+        self._choices = np.zeros((count, layout.CHOICES), np.int32)
+        self._modes = np.zeros(count, np.int32)
+        for row, case in enumerate(cases):
+            grid_mm = case.domain.grid_mm
+            self._numbers[row, layout.FRICTION] = case.friction
+            self._numbers[row, layout.LARGEST_STEP] = STEP_CAP * grid_mm
+            self._numbers[row, layout.INVERSE_EDGE] = 1.0 / grid_mm
+            self._numbers[row, layout.SIZE :] = case.collider.size
+            self._choices[row, layout.SHAPE] = int(case.collider.shape)
+            self._choices[row, layout.FIRST_COEFFICIENT] = batch.first_coefficients[row]
+            self._choices[row, layout.COUNTS :] = case.collider.samples.shape
+        self._stale_poses = True
+        self._sent = (np.zeros(0), np.zeros(0))
+        self._substep = self._launcher()
+
+    def _launcher(self) -> Launcher:
+        """What runs the substeps."""
+        linear = _one_law(self.cases)
+        arrays = {name: getattr(self.batch, name) for name in kernels.SUBSTEP_ARRAYS}
+        return Launcher(kernels.SUBSTEP[linear], arrays, cases=len(self.cases))
+
+    def set_poses(self, case: int, rows: np.ndarray) -> None:
+        """Poses of a case in the next substeps, shape (n <= STEPS, POSE); the last one stays.
+
+        A row is origin [mm, sensor frame], rotation body to sensor by rows, share of the drives.
+        """
+        table = self._poses[:, case]
+        table[: len(rows)] = rows
+        table[: len(rows), :3] = rows[:, :3] - self.cases[case].domain.target_mm
+        table[len(rows) :] = table[len(rows) - 1]
+        self._stale_poses = True
+
+    def advance(self, moving: np.ndarray) -> None:
+        """`STEPS` substeps of the cases that are marked, (B,) bool; the others stay as they are."""
+        self._prepare(np.where(moving, layout.MOVING, layout.IDLE))
+        self._substep.run(STEPS)
+        self._moved = self._moved | moving
+
+    def evaluate(self, chosen: np.ndarray) -> Balances:
+        """Forces of the chosen cases, (B,) bool, at their displacements and first poses."""
+        self._prepare(np.where(chosen, layout.STILL, layout.IDLE))
+        self._substep.run(1)
+        self._moved = self._moved & ~chosen
+        return self.balances(np.zeros(len(self.cases), bool))
+
+    def balances(self, adapting: np.ndarray) -> Balances:
+        """Forces of the last substep; adapts the damping of the marked cases, (B,), that moved."""
+        batch = self.batch
+        sums = batch.node_sums
+        sum_kernels.node_sums(batch.forces, batch.powers, batch.fixed, sums.bounds, sums.partial)
+        nodes = sums.collect()
+        sums = batch.point_sums
+        sum_kernels.surface_sums(batch.point_forces, batch.held, sums.bounds, sums.partial)
+        surface = sums.collect()
+        work, inertia = nodes[:, 0], nodes[:, 1]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            lowest = np.maximum(work / inertia, 0.0)
+        adapted = np.clip(2.0 * np.sqrt(lowest), *DAMPING_RANGE)
+        known = adapting & self._moved & (inertia > 0.0) & np.isfinite(adapted)
+        self.damping = np.where(known, adapted, self.damping)
+        return Balances(
+            reaction_N=-surface[:, :3],
+            held_N=surface[:, 3:],
+            unbalanced_N=np.sqrt(nodes[:, 2]),
+            net_N=nodes[:, 3:],
+            inertia_Nmm=inertia,
+        )
+
+    def commit(self, case: int) -> None:
+        """Make the anchors of a settled frame, at its first pose, the history of the next."""
+        batch = self.batch
+        self._upload()
+        kernels.commit_anchors(
+            batch.displacement, batch.rows, batch.cell_cases, batch.starts, batch.points,
+            batch.held, batch.anchors, batch.states, batch.slips,
+            batch.poses, batch.numbers, batch.choices, batch.coefficients, case,
+        )  # fmt: skip
+
+    def burden(self, chosen: np.ndarray) -> None:
+        """Double the fictitious masses of the chosen cases, (B,) bool."""
+        self.mass_scale[chosen] *= 2.0
+
+    def relieve(self, case: int) -> None:
+        """Halve the burden of a case, never below its own masses: a stall may not come again."""
+        self.mass_scale[case] = max(1.0, 0.5 * self.mass_scale[case])
+
+    def snapshot(self, case: int) -> np.ndarray:
+        """What `restart` takes to come back to the present displacement, shape (N, 3)."""
+        return self.displacement(case)
+
+    def restart(self, case: int, displacement_mm: np.ndarray) -> None:
+        """Come to rest at a nodal displacement, (N, 3); anchors of this frame are lost."""
+        span = self.batch.spans[case]
+        self.batch.write(self.batch.displacement, 3 * span.first_node, displacement_mm)
+        sum_kernels.rest(
+            self.batch.velocity, self.batch.states, span.first_node, span.nodes, span.first_point,
+            span.points,
+        )  # fmt: skip
+        self._moved[case] = False
+        self.damping[case] = FIRST_DAMPING
+
+    def drive(self, case: int, start_mm: np.ndarray, end_mm: np.ndarray) -> None:
+        """Where held points belong at share 0 and 1 of the coming frame, each (P, 3)."""
+        goals = np.concatenate([start_mm, end_mm], axis=1)
+        self.batch.write(self.batch.goals, 6 * self.batch.spans[case].first_point, goals)
+
+    def displacement(self, case: int = 0) -> np.ndarray:
+        """Nodal displacement of a case [mm], shape (N, 3), float32."""
+        return self._of_nodes(self.batch.displacement, case)
+
+    def node_forces(self, case: int = 0) -> np.ndarray:
+        """Force on every node of a case [N], shape (N, 3), float32."""
+        return self._of_nodes(self.batch.forces, case)
+
+    def point_forces(self, case: int = 0) -> np.ndarray:
+        """Force on the membrane at every surface point of a case [N], shape (P, 3), float32."""
+        return self._of_points(self.batch.point_forces, case, 3)
+
+    def slips_mm(self, case: int = 0) -> np.ndarray:
+        """Way that each surface point has slid in settled frames [mm], shape (P,)."""
+        return self._of_points(self.batch.slips, case, 1)[:, 0]
+
+    def contact_history(self, case: int = 0) -> tuple[np.ndarray, np.ndarray]:
+        """Anchors in the body frame [mm], (P, 3), and states, (P,), of all surface points."""
+        span = self.batch.spans[case]
+        states = self.batch.states.to_numpy()[span.first_point : span.first_point + span.points]
+        return self._of_points(self.batch.anchors, case, 3), states
+
+    def _of_nodes(self, array: Any, case: int) -> np.ndarray:
+        span = self.batch.spans[case]
+        return self.batch.read(array, 3 * span.first_node, 3 * span.nodes).reshape(-1, 3)
+
+    def _of_points(self, array: Any, case: int, width: int) -> np.ndarray:
+        span = self.batch.spans[case]
+        first, count = width * span.first_point, width * span.points
+        return self.batch.read(array, first, count).reshape(-1, width)
+
+    def _prepare(self, modes: np.ndarray) -> None:
+        self._numbers[:, layout.MASS_SCALE] = self.mass_scale
+        self._numbers[:, layout.DAMPING] = self.damping
+        self._modes = modes
+        self._upload()
+
+    def _upload(self) -> None:
+        self._choices[:, layout.MODE] = self._modes
+        numbers, choices = self._sent
+        # A copy to the device costs as much as a substep of a small case: send what changed.
+        if not np.array_equal(choices, self._choices):
+            self.batch.choices.from_numpy(self._choices.ravel())
+        if not np.array_equal(numbers, self._numbers):
+            self.batch.numbers.from_numpy(self._numbers.ravel())
+        self._sent = (self._numbers.copy(), self._choices.copy())
+        if self._stale_poses:
+            self.batch.poses.from_numpy(self._poses.ravel())
+            self._stale_poses = False
+
+
+class Launcher:
+    """Substeps of a batch as a compute graph: its arguments are bound once, not at each launch."""
+
+    def __init__(self, kernel: Any, arrays: dict[str, Any], *, cases: int) -> None:
+        declared = [
+            ti.graph.Arg(ti.graph.ArgKind.NDARRAY, name, array.dtype, ndim=1)
+            for name, array in arrays.items()
+        ]
+        scalars = [
+            ti.graph.Arg(ti.graph.ArgKind.SCALAR, f"step_{step}", ti.i32) for step in range(STEPS)
+        ]
+        count_of_cases = ti.graph.Arg(ti.graph.ArgKind.SCALAR, "cases", ti.i32)
+        self._graphs = {}
+        for count in (1, STEPS):
+            builder = ti.graph.GraphBuilder()
+            for step in range(count):
+                builder.dispatch(kernel, *declared, count_of_cases, scalars[step])
+            self._graphs[count] = builder.compile()
+        self._arguments = {
+            count: {**arrays, "cases": cases, **{f"step_{step}": step for step in range(count)}}
+            for count in (1, STEPS)
+        }
+
+    def run(self, count: int) -> None:
+        """Run 1 or `STEPS` substeps, at the poses of the table's first rows."""
+        self._graphs[count].run(self._arguments[count])
+
+
+def _one_law(cases: list[Case]) -> bool:
+    """Whether the law of all cases is the linear one."""
+    laws = {case.domain.linear for case in cases}
+    if len(laws) > 1:
+        raise ValueError("a batch holds linear and neo-Hookean cases; solve them apart")
+    return laws.pop()

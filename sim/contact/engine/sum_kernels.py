@@ -1,0 +1,90 @@
+"""Taichi kernels beside the substep: sums over cases, and copies of a case's part of an array.
+
+Sums run in chunks of rows that never span two cases, and in a fixed order.
+"""
+
+# Taichi reads annotations and operators in its own way.
+# pyright: reportInvalidTypeForm=false, reportGeneralTypeIssues=false, reportIndexIssue=false
+
+import taichi as ti
+
+from sim.contact.engine.layout import FREE, HELD_STILL, TOUCHED
+
+Floats = ti.types.ndarray(dtype=ti.f32, ndim=1)
+Integers = ti.types.ndarray(dtype=ti.i32, ndim=1)
+Doubles = ti.types.ndarray(dtype=ti.f64, ndim=1)
+
+
+@ti.kernel
+def node_sums(forces: Floats, powers: Floats, fixed: Integers, bounds: Integers, partial: Doubles):
+    """Per chunk of nodes: work, inertia, squared free force, and the free force by component."""
+    for chunk in range(bounds.shape[0] // 2):
+        total = ti.Vector([0.0] * 6, dt=ti.f64)
+        for node in range(bounds[2 * chunk], bounds[2 * chunk + 1]):
+            total[0] += powers[2 * node]
+            total[1] += powers[2 * node + 1]
+            if fixed[node] == 0:
+                for c in ti.static(range(3)):
+                    force = ti.cast(forces[3 * node + c], ti.f64)
+                    total[2] += force * force
+                    total[3 + c] += force
+        for c in ti.static(range(6)):
+            partial[6 * chunk + c] = total[c]
+
+
+@ti.kernel
+def surface_sums(point_forces: Floats, held: Integers, bounds: Integers, partial: Doubles):
+    """Per chunk of surface points: contact force, then holding force, by component."""
+    for chunk in range(bounds.shape[0] // 2):
+        total = ti.Vector([0.0] * 6, dt=ti.f64)
+        for point in range(bounds[2 * chunk], bounds[2 * chunk + 1]):
+            for c in ti.static(range(3)):
+                if held[point] != HELD_STILL:
+                    total[c] += point_forces[3 * point + c]
+                else:
+                    total[3 + c] += point_forces[3 * point + c]
+        for c in ti.static(range(6)):
+            partial[6 * chunk + c] = total[c]
+
+
+@ti.kernel
+def case_sums(partial: Doubles, first_chunks: Integers, totals: Doubles):
+    """Sums of a case's chunks, in their order."""
+    for case in range(first_chunks.shape[0] - 1):
+        total = ti.Vector([0.0] * 6, dt=ti.f64)
+        for chunk in range(first_chunks[case], first_chunks[case + 1]):
+            for c in ti.static(range(6)):
+                total[c] += partial[6 * chunk + c]
+        for c in ti.static(range(6)):
+            totals[6 * case + c] = total[c]
+
+
+@ti.kernel
+def copy_out(source: Floats, target: Floats, first: ti.i32, count: ti.i32):
+    """Copy entries `first` and following of a long array to the start of a short one."""
+    for i in range(count):
+        target[i] = source[first + i]
+
+
+@ti.kernel
+def copy_in(source: Floats, target: Floats, first: ti.i32, count: ti.i32):
+    """Copy the start of a short array to entries `first` and following of a long one."""
+    for i in range(count):
+        target[first + i] = source[i]
+
+
+@ti.kernel
+def rest(
+    velocity: Floats,
+    states: Integers,
+    first_node: ti.i32,
+    nodes: ti.i32,
+    first_point: ti.i32,
+    points: ti.i32,
+):
+    """Stop a case's nodes and forget the anchors of the frame under way."""
+    for i in range(3 * nodes):
+        velocity[3 * first_node + i] = 0.0
+    for i in range(points):
+        if states[first_point + i] == TOUCHED:
+            states[first_point + i] = FREE

@@ -1,0 +1,1 @@
+"""Objects: shapes and their signed distances, sampled or in closed form."""

@@ -1,0 +1,214 @@
+"""Rigid indenter shapes: numbers, dimensions and signed distances in plain NumPy.
+
+Body frame as in `workbench.core.press`: origin at the shape's centre, +Z away from the skin.
+A cylinder is as long as it is wide. The cone has a right apex angle: its base diameter is
+`size_mm` and its sharp height half of that, apex toward -Z. Edges, rim and apex are rounded by
+`edge_radius_mm`: a smaller sharp shape, offset outwards.
+
+`evaluate` is the twin of `signed_distance.signed_distance`.
+"""
+
+from __future__ import annotations
+
+import enum
+
+import numpy as np
+
+from sim.contact.region.stencil import line_slopes, line_weights
+from workbench.core.errors import DesignError
+from workbench.core.indenter import Indenter, IndenterKind
+
+ROOT_HALF = 0.5**0.5
+TINY_MM = 1e-9
+
+
+class Shape(enum.IntEnum):
+    """Number of a shape in the kernels."""
+
+    SPHERE = 0
+    CYLINDER_Z = 1
+    CYLINDER_Y = 2
+    CUBE = 3
+    CONE = 4
+    GRID = 5
+
+
+SAMPLED = (
+    IndenterKind.CROSS,
+    IndenterKind.TRIANGLE,
+    IndenterKind.PACMAN,
+    IndenterKind.HEXAGON,
+    IndenterKind.ELLIPSOID,
+    IndenterKind.DOUBLE_CYLINDER,
+    IndenterKind.DIAMOND,
+    IndenterKind.FLOWER,
+    IndenterKind.RING,
+    IndenterKind.RHOMBUS,
+    IndenterKind.TORUS,
+    IndenterKind.MESH,
+)
+"""Kinds that the kernels know by samples only, as any kind with a texture."""
+
+SHAPE_OF_KIND = {
+    IndenterKind.SPHERE: Shape.SPHERE,
+    IndenterKind.CYLINDER_END: Shape.CYLINDER_Z,
+    IndenterKind.CYLINDER_SIDE: Shape.CYLINDER_Y,
+    IndenterKind.CUBE: Shape.CUBE,
+    IndenterKind.CONE: Shape.CONE,
+} | dict.fromkeys(SAMPLED, Shape.GRID)
+
+
+def analytic_size(indenter: Indenter) -> np.ndarray:
+    """The `size` numbers of an analytic shape [mm], shape (8,), float64.
+
+    Sphere: radius. Cylinder and cube: half width, half length, edge radius. Cone: rim radius,
+    top, edge radius, apex, all but the edge radius of the sharp inner shape.
+
+    Raises:
+        DesignError: If a cone is too small for its edge radius.
+    """
+    half, edge = 0.5 * indenter.size_mm, indenter.edge_radius_mm
+    size = np.zeros(8)
+    if indenter.kind is IndenterKind.SPHERE:
+        size[0] = half
+    elif indenter.kind is IndenterKind.CONE:
+        apex = -0.5 * half + edge / ROOT_HALF
+        top = 0.5 * half - edge
+        if top - apex <= 0.0:
+            largest = half / (1.0 + 1.0 / ROOT_HALF)
+            raise DesignError(
+                f"edge radius {edge:g} mm leaves nothing of a cone {indenter.size_mm:g} mm wide; "
+                f"the limit is {largest:.2f} mm",
+                hint="lower indenter.edge_radius_mm or raise indenter.size_mm",
+                at="indenter.edge_radius_mm",
+            )
+        size[:4] = top - apex, top, edge, apex
+    else:
+        size[:3] = half - edge, half - edge, edge
+    return size
+
+
+def half_height_mm(indenter: Indenter) -> float:
+    """Distance from the body origin to the plane that bounds the shape toward -Z."""
+    if indenter.mesh is not None:
+        return -float(indenter.mesh.points_mm[:, 2].min())
+    if indenter.kind is IndenterKind.CONE:
+        apex, edge = analytic_size(indenter)[3], indenter.edge_radius_mm
+        return -float(apex) + edge
+    return 0.5 * indenter.size_mm
+
+
+def evaluate(
+    position: np.ndarray,
+    shape: Shape,
+    size: np.ndarray,
+    samples: np.ndarray | None = None,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Signed distances [mm] and gradients at positions in the body frame.
+
+    Args:
+        position: Positions [mm], shape (N, 3).
+        shape: Which shape.
+        size: Its numbers: `analytic_size`, or origin and 1 / spacing of a grid.
+        samples: B-spline coefficients of a grid, shape (A, B, C).
+
+    Returns:
+        Distances, shape (N,), and gradients, shape (N, 3).
+    """
+    if shape is Shape.SPHERE:
+        radius = np.linalg.norm(position, axis=1)
+        return radius - size[0], position / np.maximum(radius, TINY_MM)[:, None]
+    if shape is Shape.CUBE:
+        return _box(position, size)
+    if shape is Shape.GRID:
+        assert samples is not None
+        return _sampled(position, size, samples)
+    return _revolved(position, shape, size)
+
+
+def _revolved(
+    position: np.ndarray, shape: Shape, size: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    axes = [2, 0, 1] if shape is Shape.CYLINDER_Y else [0, 1, 2]
+    first, second, axial = position[:, axes].T
+    rho = np.hypot(first, second)
+    profile = _cone_profile if shape is Shape.CONE else _box_profile
+    distance, by_rho, by_z = profile(rho, axial, size)
+    scale = by_rho / np.maximum(rho, TINY_MM)
+    gradient = np.empty_like(position)
+    gradient[:, axes] = np.stack([first * scale, second * scale, by_z], axis=1)
+    return distance - size[2], gradient
+
+
+def _box_profile(
+    rho: np.ndarray, z: np.ndarray, size: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    over_rho, over_z = rho - size[0], np.abs(z) - size[1]
+    up = np.where(z < 0, -1.0, 1.0)
+    corner = (over_rho > 0) & (over_z > 0)
+    length = np.maximum(np.hypot(over_rho, over_z), TINY_MM)
+    radial = over_rho > over_z
+    distance = np.where(corner, length, np.maximum(over_rho, over_z))
+    by_rho = np.where(corner, over_rho / length, np.where(radial, 1.0, 0.0))
+    by_z = up * np.where(corner, over_z / length, np.where(radial, 0.0, 1.0))
+    return distance, by_rho, by_z
+
+
+def _cone_profile(
+    rho: np.ndarray, z: np.ndarray, size: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    rim, top, apex = size[0], size[1], size[3]
+    slant, over = ROOT_HALF * (rho - (z - apex)), z - top
+    along = np.clip(0.5 * (rho + z - apex), 0.0, rim)
+    side = np.stack([rho - along, z - apex - along])
+    cap = np.stack([np.maximum(rho - rim, 0.0), over])
+    nearest = np.where(np.linalg.norm(side, axis=0) < np.linalg.norm(cap, axis=0), side, cap)
+    length = np.linalg.norm(nearest, axis=0)
+    inside = (slant <= 0) & (over <= 0)
+    face = inside | (length <= TINY_MM)
+    capped = inside & (over > slant)
+    distance = np.where(face, np.where(capped, over, slant), length)
+    by_rho = np.where(
+        face, np.where(capped, 0.0, ROOT_HALF), nearest[0] / np.maximum(length, TINY_MM)
+    )
+    by_z = np.where(
+        face, np.where(capped, 1.0, -ROOT_HALF), nearest[1] / np.maximum(length, TINY_MM)
+    )
+    return distance, by_rho, by_z
+
+
+def _box(position: np.ndarray, size: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    over = np.abs(position) - size[0]
+    outside = np.maximum(over, 0.0)
+    length = np.linalg.norm(outside, axis=1)
+    side = np.where(position < 0, -1.0, 1.0)
+    within = length <= TINY_MM
+    face = np.eye(3)[np.argmax(over, axis=1)]
+    distance = np.where(within, over.max(axis=1), length)
+    corner = outside / np.maximum(length, TINY_MM)[:, None]
+    return distance - size[2], side * np.where(within[:, None], face, corner)
+
+
+def _sampled(
+    position: np.ndarray, size: np.ndarray, samples: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    raw = (position - size[:3]) * size[3]
+    inside = np.clip(raw, 1.5, np.array(samples.shape) - 2.5)
+    nearest = np.floor(inside + 0.5)
+    weights, slopes = line_weights(inside - nearest), line_slopes(inside - nearest)
+    index = nearest.astype(int)[:, :, None] + np.arange(-1, 2)
+    block = samples[
+        index[:, 0, :, None, None], index[:, 1, None, :, None], index[:, 2, None, None, :]
+    ]
+    distance = _contract(block, weights)
+    gradient = np.empty_like(position)
+    for axis in range(3):
+        mixed = weights.copy()
+        mixed[:, axis] = slopes[:, axis]
+        gradient[:, axis] = _contract(block, mixed) * size[3]
+    far = np.linalg.norm(raw - inside, axis=1) / size[3]
+    return np.where(far > 1e-4, np.maximum(far, distance - far), distance), gradient
+
+
+def _contract(block: np.ndarray, lines: np.ndarray) -> np.ndarray:
+    return np.einsum("nijk,ni,nj,nk->n", block, lines[:, 0], lines[:, 1], lines[:, 2])

@@ -1,0 +1,1 @@
+"""The published particle method, for comparison."""

@@ -1,0 +1,1 @@
+"""From a settled state to numbers, and what is refused."""

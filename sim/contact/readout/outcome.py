@@ -1,0 +1,179 @@
+"""From the state of a settled frame to the numbers of `Contact`."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from typing import Any
+
+import numpy as np
+import taichi as ti
+from taichi.lang.impl import current_cfg
+
+from sim.contact.engine.relaxation import Balance, Relaxation
+from sim.contact.problem import Problem
+from sim.contact.readout.fields import skin_stress, volume_state
+from sim.contact.readout.frame import FrameOutcome, deepest_overlap_mm
+from sim.contact.region.domain import Domain
+from sim.contact.region.quadrature import SurfacePoints
+from sim.contact.region.stencil import point_weights
+from workbench.core.frames import quaternion
+from workbench.core.sensing import Contact
+
+SLIDING_SHARE = 0.999
+"""Share of the friction cone at which a point counts as sliding."""
+LEAST = 1e-12
+"""Guards quotients of vanishing forces and slopes."""
+LEAST_PRESSURE_SHARE = 1e-3
+"""Points that carry less than this share of the largest normal force have no friction ratio."""
+
+
+def frame_outcome(
+    relaxation: Relaxation,
+    case: int,
+    problem: Problem,
+    balance: Balance,
+    frame: int,
+    *,
+    load_N: float,
+    seconds: float,
+    met: tuple[np.ndarray, np.ndarray] | None = None,
+) -> FrameOutcome:
+    """Read a settled frame, evaluated at its pose and not yet committed.
+
+    Args:
+        relaxation: The state.
+        case: Which case of it.
+        problem: The press.
+        balance: Forces of the state.
+        frame: Which frame.
+        load_N: Force that the residual is relative to, the same as for the stop test.
+        seconds: Time the frame took [s].
+        met: Distances [mm], (P,), and outward directions, (P, 3), of the object at the points
+            that may meet it, where it is not where its pose has it: it is soft.
+    """
+    domain = problem.domain
+    origin, rotation = problem.approach.pose(frame + 1.0)
+    nodal = relaxation.displacement(case).astype(np.float64)
+    displacement = domain.outer.displacement_mm(nodal)
+    inner = domain.inner
+    point_forces = relaxation.point_forces(case).astype(np.float64)
+    place = domain.points.position_mm + point_displacement(domain, nodal)
+    touching = ~domain.points.bonded
+    points, forces, at = domain.points.take(touching), point_forces[touching], place[touching]
+    overlap_mm = 0.0
+    if met is None:
+        distance, gradient = problem.collider.distance((at - origin) @ rotation)
+        met = distance, gradient @ rotation.T
+        vertex_mm = problem.mesh.outer.points_mm + displacement
+        overlap_mm = deepest_overlap_mm(vertex_mm, problem.collider, origin, rotation)
+    distance, normal = met[0], _unit(met[1])
+    pressing = np.einsum("pc,pc->p", forces, normal)
+    aside = np.linalg.norm(forces - pressing[:, None] * normal, axis=1)
+    ratio, sliding = _friction(pressing, aside, friction=problem.material.friction)
+    count = domain.outer.count
+    area_mm2 = np.maximum(points.to_vertices(points.area_mm2, count), LEAST)
+    drives = _drives(problem, point_forces, place)
+    held = domain.points.bonded & (domain.points.drive < 0)
+    volume = volume_state(domain, nodal)
+    cauchy, energy = skin_stress(domain, nodal)
+    return FrameOutcome(
+        displacement_mm=displacement,
+        inner_mm=np.zeros((0, 3), np.float32) if inner is None else inner.displacement_mm(nodal),
+        reaction_N=balance.reaction_N,
+        moment_Nmm=-np.cross(at - origin, forces).sum(axis=0),
+        indenter_pose=np.concatenate([origin, quaternion(rotation)]),
+        residual=balance.unbalanced_N / load_N,
+        penetration_mm=max(overlap_mm, -float(distance.min(initial=0.0))),
+        support_N=point_forces[held].sum(axis=0),
+        support_moment_Nmm=np.cross(place[held], point_forces[held]).sum(axis=0),
+        cut_N=-relaxation.node_forces(case)[domain.fixed].sum(axis=0, dtype=np.float64),
+        actuator_N=drives[0],
+        actuator_moment_Nmm=drives[1],
+        friction_ratio=ratio,
+        sliding=_flags(points, sliding, count),
+        slip_mm=_slip(points, relaxation.slips_mm(case)[touching], count),
+        contact_force_N=points.to_vertices(forces, count).astype(np.float32),
+        pressure_MPa=(points.to_vertices(pressing, count) / area_mm2).astype(np.float32),
+        tangential_N=float(aside.sum()),
+        pressing_N=float(pressing.sum()),
+        cauchy_MPa=cauchy,
+        energy_MPa=energy,
+        strain_energy_Nmm=volume.strain_energy_Nmm,
+        kinetic_ratio=0.5 * balance.inertia_Nmm / max(volume.strain_energy_Nmm, LEAST),
+        least_volume_ratio=volume.least_volume_ratio,
+        frame_seconds=seconds,
+    )
+
+
+def point_displacement(domain: Domain, nodal: np.ndarray) -> np.ndarray:
+    """Displacement of every surface point [mm], shape (P, 3)."""
+    owner = np.repeat(domain.owners, np.diff(domain.owner_starts))
+    nodes = (domain.rows[owner][:, :, None] + np.arange(3)).reshape(-1, 27)
+    return np.einsum("pn,pnc->pc", point_weights(domain.point_local), nodal[nodes])
+
+
+def _unit(vectors: np.ndarray) -> np.ndarray:
+    return vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), LEAST)
+
+
+def _friction(
+    pressing: np.ndarray, aside: np.ndarray, *, friction: float
+) -> tuple[float, np.ndarray]:
+    """Largest tangential over normal force, and which points slide, (P,).
+
+    Taken from the forces and the object's surface, not from the solver's own return to the cone.
+    """
+    size = np.hypot(pressing, aside)
+    pressed = size > LEAST_PRESSURE_SHARE * size.max(initial=0.0)
+    ratio = aside / np.maximum(pressing, LEAST)
+    return float(ratio[pressed].max(initial=0.0)), pressed & (ratio >= SLIDING_SHARE * friction)
+
+
+def _flags(points: SurfacePoints, chosen: np.ndarray, count: int) -> np.ndarray:
+    """Vertices nearest to the chosen points, shape (count,), bool."""
+    flags = np.zeros(count, bool)
+    nearest = points.shares.argmax(axis=1)
+    flags[points.vertices[np.arange(points.count), nearest][chosen]] = True
+    return flags
+
+
+def _slip(points: SurfacePoints, slips_mm: np.ndarray, count: int) -> np.ndarray:
+    """Mean way of the points around each vertex that have slid at all [mm], (count,), float32."""
+    slid = (slips_mm > 0.0).astype(float)
+    share = points.to_vertices(slid, count)
+    return (points.to_vertices(slips_mm, count) / np.maximum(share, LEAST)).astype(np.float32)
+
+
+def _drives(
+    problem: Problem, forces: np.ndarray, place: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Force [N] and moment about its axis point [N mm] of each drive on the membrane, (A, 3)."""
+    found = []
+    for number, actuation in enumerate(problem.press.actuations):
+        members = problem.domain.points.drive == number
+        arm = place[members] - np.asarray(actuation.about_mm)
+        found.append((forces[members].sum(axis=0), np.cross(arm, forces[members]).sum(axis=0)))
+    pairs = np.array(found).reshape(-1, 2, 3)
+    return pairs[:, 0], pairs[:, 1]
+
+
+def collect(outcomes: list[FrameOutcome], problem: Problem, *, substeps: int) -> Contact:
+    """All frames as one result."""
+    stacked: dict[str, Any] = {
+        field.name: np.stack([np.asarray(getattr(outcome, field.name)) for outcome in outcomes])
+        for field in fields(FrameOutcome)
+    }
+    approach = problem.approach
+    return Contact(
+        **stacked,
+        target_mm=approach.target_mm,
+        normal=approach.normal,
+        # A press that failed has fewer frames than its path.
+        sensor_pose=approach.sensor_poses()[: len(outcomes)],
+        tangent_u=approach.tangent_u,
+        grid_mm=problem.domain.grid_mm,
+        active_radius_mm=problem.radius_mm,
+        particles=problem.domain.particles,
+        substeps=substeps,
+        device="cuda" if current_cfg().arch == ti.cuda else "cpu",
+    )

@@ -1,0 +1,76 @@
+"""Plain NumPy twins of the soft kernels, in double precision, point by point."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sim.contact.engine.layout import FREE, HELD, TOUCHED
+from sim.contact.engine.reference import ContactHistory
+from sim.contact.region.domain import stencil_nodes
+from sim.contact.region.stencil import point_weights
+from sim.contact.soft.body import SoftObject
+from sim.contact.soft.meeting import Meeting
+
+
+def returned_slip(
+    place: np.ndarray,
+    anchor: np.ndarray,
+    deformation: np.ndarray,
+    gradient: np.ndarray,
+    limit_mm: float,
+) -> np.ndarray:
+    """Tangential slip in the undeformed object [mm], shortened onto the friction cone, (3,)."""
+    normal = gradient / np.linalg.norm(gradient)
+    slip = place - anchor
+    slip = slip - (slip @ normal) * normal
+    length_mm = np.linalg.norm(deformation @ slip)
+    return slip * (limit_mm / length_mm) if length_mm > limit_mm else slip
+
+
+def contact_forces(
+    soft: SoftObject,
+    meeting: Meeting,
+    stiffness_N_mm: np.ndarray,
+    history: ContactHistory,
+    *,
+    friction: float,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Forces [N] on the points, (P, 3), sensor frame, and on the object's nodes, (N, 3).
+
+    The latter in the object's body frame at the start; first anchors are set in `history`.
+    """
+    push = np.zeros((len(stiffness_N_mm), 3))
+    nodal = np.zeros((len(soft.domain.masses), 3))
+    for p in range(len(push)):
+        if not meeting.met[p]:
+            if history.states[p] == TOUCHED:
+                history.states[p] = FREE
+            continue
+        place, distance_mm = meeting.place_mm[p], meeting.distance_mm[p]
+        if history.states[p] == FREE:
+            history.states[p], history.anchors[p] = TOUCHED, place
+        deformation, steep = meeting.deformation[p], meeting.steep[p]
+        limit_mm = -friction * distance_mm * np.linalg.norm(steep)
+        slip = returned_slip(place, history.anchors[p], deformation, meeting.gradient[p], limit_mm)
+        push[p] = -stiffness_N_mm[p] * (distance_mm * steep + deformation @ slip)
+        cells = place[None] / soft.domain.grid_mm
+        weights = point_weights(cells - np.floor(cells + 0.5))[0]
+        nodes = stencil_nodes(soft.domain.rows[meeting.cell[p]][None])[0]
+        nodal[nodes] -= weights[:, None] * push[p]
+    return push @ soft.rotation.T, nodal
+
+
+def commit_history(meeting: Meeting, history: ContactHistory, *, friction: float) -> None:
+    """Close a frame: anchors follow the points that slid, and their way is added up."""
+    for p in range(len(history.states)):
+        if not meeting.met[p] or history.states[p] == FREE:
+            history.states[p] = FREE
+            continue
+        place, gradient = meeting.place_mm[p], meeting.gradient[p]
+        limit_mm = -friction * meeting.distance_mm[p] * np.linalg.norm(meeting.steep[p])
+        slip = returned_slip(place, history.anchors[p], meeting.deformation[p], gradient, limit_mm)
+        normal = gradient / np.linalg.norm(gradient)
+        way = place - slip - history.anchors[p]
+        way = meeting.deformation[p] @ (way - (way @ normal) * normal)
+        history.slips[p] += np.linalg.norm(way)
+        history.states[p], history.anchors[p] = HELD, place - slip

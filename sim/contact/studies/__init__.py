@@ -1,0 +1,1 @@
+"""Studies that validation and tests run; the product does not."""
