@@ -213,6 +213,7 @@ def force_balance(contact: Contact) -> float:
     indenter; in exact equilibrium of the last frame both together equal the reaction.
     """
     reaction, held = contact.reaction_N[-1], contact.support_N[-1] + contact.cut_N[-1]
+    held = held + contact.actuator_N[-1].sum(axis=0) if contact.actuator_N.size else held
     size = float(np.linalg.norm(reaction))
     return float(np.linalg.norm(reaction - held)) / size if size else 0.0
 

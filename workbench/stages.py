@@ -336,7 +336,7 @@ STAGES = {
         Stage(name="lattice", version=2, lane="cad", function=lattice),
         Stage(name="bake", version=1, lane="sim", function=bake),
         Stage(name="object", version=1, lane="sim", function=object_distance),
-        Stage(name="press", version=6, lane="sim", function=press),
+        Stage(name="press", version=7, lane="sim", function=press),
         Stage(name="shoot", version=2, lane="sim", function=shoot),
         Stage(name="mould", version=2, lane="cad", function=mould),
         Stage(name="housing", version=2, lane="cad", function=housing),

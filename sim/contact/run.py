@@ -100,15 +100,13 @@ class Run:
         return time.perf_counter() - self._begun_s
 
     def driving_N(self) -> float:
-        """Sum of the magnitudes of the drives' forces [N]."""
+        """Sum of the magnitudes of the driven points' forces [N]; a twist has no resultant."""
         actuations = self.problem.press.actuations
         if not actuations:
             return 0.0
         drive = self.problem.domain.points.drive
         forces = self.relaxation.point_forces(self.number)
-        return float(
-            sum(np.linalg.norm(forces[drive == n].sum(axis=0)) for n in range(len(actuations)))
-        )
+        return float(np.linalg.norm(forces[drive >= 0], axis=1).sum())
 
     def unsettled(self, residual: float, net: float, change: float) -> SolveError:
         """The error of a frame that ran out of substeps: the first measure over its limit."""
@@ -141,9 +139,14 @@ class Run:
         )
 
     def _predict(self) -> bool:
-        """Extrapolate the last frames' displacement straight inward; False where the path turns."""
+        """Extrapolate the displacement of the last frames; False where that would mislead.
+
+        A skin that rubs must be moved, not set: points that the object reaches on the way are
+        anchored where they meet it. Extrapolated, four frames at mu 0.5 read 3 % too little force
+        and 50 % too much friction. Without friction only the path must go straight on.
+        """
         known = min(len(self._settled), self.problem.approach.continues(self.frame))
-        if known < 2 or self.problem.press.actuations or self._sideways():
+        if known < 2 or self.problem.press.actuations or self.problem.material.friction > 0.0:
             return False
         *older, before, last = self._settled
         guess = 2.0 * last - before
@@ -151,20 +154,6 @@ class Run:
             guess = 3.0 * last - 3.0 * before + older[-1]
         self.relaxation.restart(self.number, guess)
         return True
-
-    def _sideways(self) -> bool:
-        """Whether the object moves across the normal or turns in this frame.
-
-        Points that it reaches on the way must touch it where they meet it: anchored only at the end
-        of the frame they would have no friction.
-        """
-        approach = self.problem.approach
-        (start, turned), (end, turned_on) = (
-            approach.pose(self.frame + share) for share in (0.0, 1.0)
-        )
-        way = end - start
-        aside = way - (way @ approach.normal) * approach.normal
-        return bool(np.linalg.norm(aside) > STILL_MM or np.abs(turned_on - turned).max() > STILL_MM)
 
     def drive(self) -> None:
         """Tell held points where they go in this frame."""

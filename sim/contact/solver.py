@@ -31,6 +31,10 @@ from workbench.core.results import MaterialPoints, MembraneMesh
 from workbench.core.sampled import SampledDistance
 from workbench.core.sensing import Contact
 
+LEAST_LOAD_N = 1e-12
+"""Stands in for a load that vanishes altogether."""
+LEAST_OF_LOAD = 0.05
+"""Share of the load that stands in for a smaller reaction."""
 LEAST_OF_PEAK = 0.01
 """Share of the peak load that stands in for a vanishing one."""
 PATIENCE = 300
@@ -147,6 +151,8 @@ class Solver:
         self.lowest_at = np.zeros(count, int)
         self.before_N = np.full((count, 3), np.inf)
         self.peak_N = np.zeros(count)
+        """Largest load of a settled frame."""
+        self.least_N = np.full(count, LEAST_LOAD_N)
         self.retries = np.zeros(count, int)
         self.residual = np.full(count, np.inf)
         for case in range(count):
@@ -199,7 +205,8 @@ class Solver:
         load_N = self._load_N(balances, looked)
         with np.errstate(invalid="ignore", over="ignore"):
             self.residual = np.where(looked, balances.unbalanced_N / load_N, self.residual)
-            change = np.linalg.norm(balances.reaction_N - self.before_N, axis=1) / load_N
+            change_N = np.linalg.norm(balances.reaction_N - self.before_N, axis=1)
+            change = change_N / self._share_of_reaction_N(balances, load_N)
         self.before_N[looked] = balances.reaction_N[looked]
         still = looked & (change < FORCE_CHANGE) & self._balanced(balances, load_N)
         if still.any():
@@ -244,6 +251,7 @@ class Solver:
             self.end(case, error)
             return
         run.finish(outcome)
+        self.peak_N[case] = max(self.peak_N[case], load_N)
         self.retries[case] = 0
         self.relaxation.relieve(case)
         if run.frame < problem.approach.frame_count:
@@ -269,8 +277,16 @@ class Solver:
         load_N = np.linalg.norm(balances.reaction_N, axis=1)
         for case in np.flatnonzero(looked).tolist():
             load_N[case] += self.runs[case].driving_N()
-        self.peak_N = np.where(looked, np.maximum(self.peak_N, load_N), self.peak_N)
-        return np.maximum(np.maximum(load_N, LEAST_OF_PEAK * self.peak_N), 1e-12)
+        return np.maximum(np.maximum(load_N, LEAST_OF_PEAK * self.peak_N), self.least_N)
+
+    def _share_of_reaction_N(self, balances: Balances, load_N: np.ndarray) -> np.ndarray:
+        """Force against which a change of the reaction is measured, shape (B,).
+
+        Drives may push far harder than the object: its own reaction must have come to rest too.
+        """
+        reaction_N = np.linalg.norm(balances.reaction_N, axis=1)
+        least_N = np.maximum(LEAST_OF_LOAD * load_N, LEAST_OF_PEAK * self.peak_N)
+        return np.maximum(reaction_N, least_N)
 
     def _balanced(self, balances: Balances, load_N: np.ndarray) -> np.ndarray:
         """Whether residual and net force are within their tolerances, shape (B,), bool."""

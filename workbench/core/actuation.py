@@ -67,6 +67,12 @@ class Actuation:
                 hint="for example keys ((0, 0), (10, 1)): all of the motion within ten frames",
                 at=at,
             )
+        if any(frame != round(frame) for frame in frames):
+            raise DesignError(
+                f"the frames {tuple(frames)} of an actuation are not whole",
+                hint="a frame goes straight from its start to its end: put keys at whole frames",
+                at=at,
+            )
         for _, share in self.keys:
             within(share, -1.0, 1.0, what="share of an actuation", unit="", at=at)
 

@@ -36,7 +36,7 @@ class Contact:
     cut_N: np.ndarray
     """Force of elastomer left out of the region on the part that took part [N], shape (K, 3).
 
-    reaction = support + cut, to within the residual.
+    reaction = support + cut + sum of actuators, to within the residual.
     """
     friction_ratio: np.ndarray
     """Largest pointwise tangential over normal contact force, shape (K,), float64."""

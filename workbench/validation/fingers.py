@@ -33,6 +33,10 @@ WIDE_MM = 20.0
 REGIONS = {9.0: 5e-3, 12.0: 1e-3}
 """Largest error of the force by radius of the region [mm]."""
 PENETRATION_CELLS = 0.01
+MOMENT_LIMIT = 0.01
+SETTLED_LIMIT = 5e-3
+"""What the default tolerance may cost in force."""
+TIGHT = 1e-4
 BALANCE_LIMIT = 5e-3
 
 
@@ -179,13 +183,38 @@ def _state() -> list[Row]:
             limit=BALANCE_LIMIT,
         ),
         bounded(
-            "residual",
-            f"{NAME}; one step, and {steps}",
-            of_all(lambda contact: float(contact.residual.max())),
+            "moment_balance",
+            f"{NAME}; {WIDE_MM:g} mm region: moments of reaction and support about the origin, "
+            "over the reaction's",
+            on_device(_wide_moments),
             unit="1",
-            limit=1e-3,
+            limit=MOMENT_LIMIT,
+        ),
+        compared(
+            "residual",
+            f"{NAME}, one step: the force at the default tolerance beside one settled to {TIGHT:g}",
+            on_device(lambda: _one_step_N(ContactSettings().tolerance)),
+            on_device(lambda: _one_step_N(TIGHT)),
+            unit="N",
+            limit=SETTLED_LIMIT,
         ),
     ]
+
+
+def _one_step_N(tolerance: float) -> float:
+    from sim.contact.studies import finger
+
+    return float(finger.press_45(frames=1, tolerance=tolerance).normal_N[-1])
+
+
+def _wide_moments() -> float:
+    from sim.contact.studies import finger
+
+    contact = finger.press_45(active_radius_mm=WIDE_MM, frames=1)
+    place_mm, reaction_N = contact.indenter_pose[-1, :3], contact.reaction_N[-1]
+    moment_Nmm = contact.moment_Nmm[-1] + np.cross(place_mm, reaction_N)
+    missing_Nmm = moment_Nmm - contact.support_moment_Nmm[-1]
+    return float(np.linalg.norm(missing_Nmm) / np.linalg.norm(moment_Nmm))
 
 
 def _wide_balance() -> float:

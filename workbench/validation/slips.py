@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from workbench.core.press import ContactSettings
 from workbench.rows import Row, bounded, compared
 from workbench.validation.presses import on_device
 
@@ -79,7 +80,25 @@ def _frames() -> list[Row]:
             limit=FRAME_LIMIT,
         )
         for name, axis in (("tangential", 0), ("normal", 2))
+    ] + [
+        compared(
+            "frame_size",
+            "finger, 1 mm straight in, mu 0.3, in 5 and 20 frames: normal force at the end",
+            on_device(lambda: _straight_N(5)),
+            on_device(lambda: _straight_N(20)),
+            unit="N",
+            limit=FRAME_LIMIT,
+        )
     ]
+
+
+def _straight_N(frames: int) -> float:
+    from sim.contact.studies import finger
+
+    # The first of twenty frames is too shallow for a finer tolerance in single precision.
+    tolerance = ContactSettings().tolerance
+    contact = finger.press_45(active_radius_mm=9.0, frames=frames, tolerance=tolerance)
+    return float(contact.normal_N[-1])
 
 
 def _release() -> list[Row]:

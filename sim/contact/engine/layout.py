@@ -2,6 +2,8 @@
 
 FREE, TOUCHED, HELD = 0, 1, 2
 """States of a contact point: apart; anchored within this frame; anchored by a settled frame."""
+LIFTED = 0.5
+"""Gap at which a point forgets where it held, in cells: it will touch anew."""
 MEETS_RIGID, HELD_STILL, MEETS_SOFT = 0, 1, 2
 """Kinds of surface points (`held`): what they meet, or that they are held or driven."""
 AXIS, STIFFNESS, SIDEWAYS, LOCAL = 3, 6, 7, 8

@@ -16,6 +16,8 @@ from sim.contact.engine.layout import (
     FREE,
     FRICTION,
     HELD_STILL,
+    INVERSE_EDGE,
+    LIFTED,
     MEETS_RIGID,
     NUMBERS,
     POINT,
@@ -120,7 +122,7 @@ def _contact_force(
         limit = -numbers[NUMBERS * case + FRICTION] * distance * gradient.norm()
         slip = tangent_slip(place, gradient, anchor, limit)
         force = -points[POINT * point + STIFFNESS] * (rotation @ (distance * gradient + slip))
-    elif states[point] == TOUCHED:
+    elif states[point] == TOUCHED or distance * numbers[NUMBERS * case + INVERSE_EDGE] > LIFTED:
         states[point] = FREE
     return force
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim.contact.engine.layout import FREE, HELD, TOUCHED
+from sim.contact.engine.layout import FREE, HELD, LIFTED, TOUCHED
 from sim.contact.objects.collider import Collider
 from sim.contact.region.domain import Domain, stencil_nodes
 from sim.contact.region.stencil import gradient_table, point_weights
@@ -93,7 +93,7 @@ def surface_forces(
     for p in np.flatnonzero(~domain.points.bonded):
         forces[p] = 0.0
         if distance[p] >= 0.0:
-            if history.states[p] == TOUCHED:
+            if history.states[p] == TOUCHED or distance[p] > LIFTED * domain.grid_mm:
                 history.states[p] = FREE
             continue
         if history.states[p] == FREE:

@@ -18,8 +18,8 @@ VOIGT = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))
 """Components of a stress in the order of `Contact.cauchy_MPa`."""
 LEAST_FILLED = 0.1
 """Filled fraction below which a point is fringe, whose J says nothing."""
-LEAST_MOVE = 1e-3
-"""Cells with no node moved by more are taken to be at rest, in cells."""
+LEAST_MOVE = 1e-4
+"""Cells with no node moved by this share of the largest displacement are taken to be at rest."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -34,7 +34,8 @@ class VolumeState:
 def volume_state(domain: Domain, nodal_mm: np.ndarray) -> VolumeState:
     """Volume ratio and strain energy of a nodal displacement, shape (N, 3)."""
     nodes = stencil_nodes(domain.rows)
-    moved = (np.abs(nodal_mm).max(axis=1) > LEAST_MOVE * domain.grid_mm)[nodes].any(axis=1)
+    size_mm = np.abs(nodal_mm).max(axis=1)
+    moved = (size_mm > LEAST_MOVE * size_mm.max(initial=0.0))[nodes].any(axis=1)
     volumes, moduli = domain.volumes_mm3[moved], domain.moduli_MPa[moved]
     slopes = (gradient_table() / domain.grid_mm).transpose(1, 0, 2).reshape(27, 24)
     nodal = nodal_mm[nodes[moved]].transpose(0, 2, 1).reshape(-1, 27)

@@ -15,6 +15,7 @@ import numpy as np
 from sim.contact.motion.approach import Approach
 from sim.contact.objects.collider import Collider
 from sim.contact.region.backing import decay_mm
+from sim.contact.region.materials import stiffest_MPa
 from sim.contact.region.refinement import path_samples
 from workbench.core.design import Elastomer
 from workbench.core.errors import DesignError
@@ -27,6 +28,9 @@ MARGIN_ERROR = 3e-3
 DECAY_WALLS = 1.09
 """Rate at which the error falls with the margin in walls: on the default press from 0.3 % at 3.1
 walls to 0.04 % at 4.95."""
+STIFFEST_RATIO = 30.0
+"""Modulus of an inclusion over that of the elastomer beyond which all of the membrane takes part:
+a stiff coat carries the load farther than the wall says."""
 LEAST_MARGIN_MM = 4.0
 LEAST_MARGIN_WALLS = 1.5
 """Margin that a radius chosen by hand must leave around the patch, in walls."""
@@ -59,7 +63,8 @@ def region_radius_mm(
     decays_mm = decay_mm(mesh, material, wall_mm)
     from_target = np.linalg.norm(mesh.outer.points_mm - approach.target_mm, axis=1)
     whole_mm = float(from_target.max()) + wall_mm
-    if settings.extent is Extent.FULL or approach.press.actuations:
+    stiff = stiffest_MPa(material) > STIFFEST_RATIO * material.young_MPa
+    if settings.extent is Extent.FULL or approach.press.actuations or stiff:
         return whole_mm
     if chosen_mm == 0.0:
         margin_mm = margin_walls(settings.region_error) * wall_mm

@@ -8,6 +8,8 @@ touches a spot smaller than any triangle. Neighbours of different fineness are a
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from sim.contact.motion.approach import Approach
@@ -25,14 +27,22 @@ MARGIN = 0.5
 MOST_ADDED = 12_000
 """Triangles that halving may add at each of its two tasks."""
 FEWEST_TOUCHING = 4
-MOST_POSES = 60
-"""Poses of the path at which distances are looked at; one for each frame of shorter paths."""
+REACH_MARGIN_MM = 10.0
+"""Places farther than this beyond the reach of the object only get a bound."""
+LOOK_EVERY_MM = 1.0
+"""Way of the object between two poses at which distances are looked at, besides all frames."""
+MOST_LOOKS = 8
+"""Poses of one frame at which distances are looked at."""
 
 
 def path_samples(approach: Approach) -> np.ndarray:
-    """Progress [frames] at which a path is looked at, from first touch to its end."""
-    count = approach.frame_count
-    return np.linspace(0.0, count, min(count, MOST_POSES) + 1)
+    """Progress [frames] at which a path is looked at: first touch, every frame, and between."""
+    found = [np.zeros(1)]
+    for frame in range(approach.frame_count):
+        looks = math.ceil(approach.travel_mm(frame, 0.0) / LOOK_EVERY_MM)
+        looks = min(max(looks, 1), MOST_LOOKS)
+        found.append(frame + (np.arange(looks) + 1.0) / looks)
+    return np.concatenate(found)
 
 
 def path_distance_mm(places_mm: np.ndarray, approach: Approach, collider: Collider) -> np.ndarray:
@@ -86,8 +96,13 @@ def _balls(corners_mm: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def _distance_mm(
     places_mm: np.ndarray, approach: Approach, collider: Collider, progress: float
 ) -> np.ndarray:
+    """Signed distance of places, (N, 3), at a pose; for those beyond its reach a lower bound."""
     origin, rotation = approach.pose(progress)
-    return collider.distance((places_mm - origin) @ rotation)[0]
+    body = places_mm - origin
+    distance = np.linalg.norm(body, axis=1) - collider.reach_mm
+    near = np.flatnonzero(distance < REACH_MARGIN_MM)
+    distance[near] = collider.distance(body[near] @ rotation)[0]
+    return distance
 
 
 def reach_mm(approach: Approach, grid_mm: float) -> float:

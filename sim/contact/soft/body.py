@@ -19,6 +19,7 @@ from sim.contact.objects.collider import Collider
 from sim.contact.objects.sampling import box_mm
 from sim.contact.problem import BOND_PENALTY, Problem
 from sim.contact.region.domain import EIGENVALUE, Domain, build_domain, stencil_nodes
+from sim.contact.region.materials import stiffest_MPa
 from sim.contact.region.quadrature import SurfacePoints
 from sim.contact.region.stencil import point_weights
 from sim.contact.specimens import fill
@@ -31,8 +32,9 @@ EVERYTHING_MM = 1e6
 """Radius of a region that leaves nothing out."""
 STIFFEST_RATIO = 100.0
 """Modulus of the object over that of the membrane."""
-CONTACT_MARGIN = 2.0
-"""A patch may press on fewer nodes than its area has: their masses are this many times the mean."""
+CONTACT_MARGIN = 4.0
+"""Twice for a spring that ends on two moving bodies, and twice because a patch may press on fewer
+nodes than its area has."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -41,6 +43,10 @@ class SoftObject:
 
     domain: Domain
     """Its cells and nodes in the body frame; its surface points are the held ones."""
+    membrane: Domain
+    """The membrane's, with the mass that springs between two bodies ask for."""
+    young_MPa: float
+    """Young's modulus of the object."""
     origin_mm: np.ndarray
     """Origin of the body at the start [mm], sensor frame, shape (3,)."""
     rotation: np.ndarray
@@ -85,6 +91,8 @@ def make_soft_object(problem: Problem, indenter: Indenter) -> SoftObject:
     origin, rotation = problem.approach.pose(0.0)
     return SoftObject(
         domain=_heavier_skin(domain, points, problem),
+        membrane=_heavier_contact(problem.domain),
+        young_MPa=soft.young_MPa,
         origin_mm=origin,
         rotation=rotation,
         cell_map=cell_map,
@@ -145,13 +153,34 @@ def _cell_map(points: MaterialPoints) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _heavier_skin(domain: Domain, points: MaterialPoints, problem: Problem) -> Domain:
-    """The domain with the mass that keeps contact springs on its skin stable."""
+    """The object's domain with the mass that keeps contact springs on its skin stable.
+
+    A cell belongs to the skin if it is cut or lacks a neighbour.
+    """
     order = np.lexsort(points.cells.T[::-1])
-    skin = np.flatnonzero((points.fractions[order] < 1.0).any(axis=1))
+    cells = points.cells[order].astype(np.int64)
+    known = {tuple(cell) for cell in cells.tolist()}
+    steps = [tuple(step) for step in np.concatenate([np.eye(3, dtype=int), -np.eye(3, dtype=int)])]
+    alone = [
+        any((x + dx, y + dy, z + dz) not in known for dx, dy, dz in steps)
+        for x, y, z in cells.tolist()
+    ]
+    skin = np.flatnonzero((points.fractions[order] < 1.0).any(axis=1) | np.array(alone))
     grid_mm = problem.domain.grid_mm
-    per_area = problem.settings.penalty * problem.material.young_MPa / grid_mm
+    per_area = problem.settings.penalty * stiffest_MPa(problem.material) / grid_mm
     spring = CONTACT_MARGIN * per_area * grid_mm**2 / EIGENVALUE
     nodes = stencil_nodes(domain.rows[skin])
     shares = np.broadcast_to(point_weights(np.zeros((1, 3))), nodes.shape)
     added = np.bincount(nodes.ravel(), (spring * shares).ravel(), len(domain.masses))
     return dataclasses.replace(domain, masses=domain.masses + added)
+
+
+def _heavier_contact(membrane: Domain) -> Domain:
+    """The membrane's domain with its contact springs counted twice: their other end moves too."""
+    owner = np.repeat(membrane.owners, np.diff(membrane.owner_starts))
+    touching = ~membrane.points.bonded
+    nodes = stencil_nodes(membrane.rows[owner[touching]])
+    spring = membrane.points.stiffness_N_mm[touching, None] / EIGENVALUE
+    weights = point_weights(membrane.point_local[touching])
+    added = np.bincount(nodes.ravel(), (spring * weights).ravel(), len(membrane.masses))
+    return dataclasses.replace(membrane, masses=membrane.masses + added)

@@ -1,0 +1,73 @@
+"""Paths that mislead a solver that looks at them too rarely, or sets what it should move."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from sim.contact.motion.approach import plan_approach
+from sim.contact.objects.collider import make_collider
+from sim.contact.region.refinement import path_distance_mm, path_samples
+from sim.contact.solver import press_membrane
+from sim.contact.specimens import flat_block
+from workbench.core.actuation import Actuation
+from workbench.core.design import Elastomer
+from workbench.core.errors import DesignError
+from workbench.core.indenter import Indenter
+from workbench.core.motion import slide
+from workbench.core.press import ContactSettings, Press
+from workbench.core.soft_body import SoftBody
+from workbench.core.trajectory import Trajectory
+
+pytestmark = pytest.mark.usefixtures("taichi_device")
+
+MESH, POINTS = flat_block(width_mm=12.0, height_mm=2.0, grid_mm=0.5, skin_mm=0.5)
+PRESS = Press(target_mm=(0.0, 0.0, 2.0), depth_mm=0.4, frames=2)
+SETTINGS = ContactSettings(active_radius_mm=8.0)
+
+
+def test_a_path_that_comes_and_goes_is_seen_at_its_far_end() -> None:
+    """Fifty times 3 mm out and back: places under the far end are as near as those at home."""
+    strokes = tuple(slide(sign * 3.0, 0.0, frames=1) for _ in range(50) for sign in (1.0, -1.0))
+    press = dataclasses.replace(PRESS, strokes=strokes)
+    collider = make_collider(Indenter(), grid_mm=0.5)
+    approach = plan_approach(MESH.outer, collider, press)
+    samples = path_samples(approach)
+    assert set(range(approach.frame_count + 1)) <= set(samples.tolist())
+    origins, _ = approach.poses(np.array([2.0, 3.0]))
+    under = [[*origin[:2], 2.0] for origin in origins]
+    home_mm, far_mm = path_distance_mm(np.array(under), approach, collider)
+    assert home_mm == pytest.approx(-0.4, abs=1e-3)
+    assert far_mm == pytest.approx(-0.4, abs=1e-3)
+
+
+def test_frames_of_a_straight_press_with_friction_end_alike() -> None:
+    """At mu 0.5 in 2 and in 8 frames: force within 1 %, friction, which is a path, within 20 %."""
+    rough = Elastomer(friction=0.5)
+    coarse, fine = (
+        press_membrane(
+            MESH, POINTS, rough, Indenter(), dataclasses.replace(PRESS, frames=n), SETTINGS
+        )
+        for n in (2, 8)
+    )
+    assert coarse.normal_N[-1] == pytest.approx(fine.normal_N[-1], rel=0.01)
+    # Measured 16 %; extrapolated instead of moved, frames read 50 % too much.
+    assert coarse.tangential_N[-1] == pytest.approx(fine.tangential_N[-1], rel=0.2)
+
+
+def test_a_soft_object_settles_before_it_touches() -> None:
+    """A trajectory whose first frame ends in the air: no force there, then some."""
+    height = 2.0 + 3.0
+    rows = [[0.0, 0.0, height + z, 1.0, 0.0, 0.0, 0.0] for z in (1.5, 0.6, -0.3)]
+    path = Trajectory.from_arrays(np.arange(3.0), np.array(rows))
+    ball = Indenter(size_mm=6.0, soft=SoftBody())
+    press = dataclasses.replace(PRESS, trajectory=path)
+    contact = press_membrane(MESH, POINTS, Elastomer(), ball, press, SETTINGS)
+    assert np.linalg.norm(contact.reaction_N[0]) == 0.0
+    assert contact.normal_N[-1] > 0.01
+
+
+def test_keys_of_a_drive_lie_on_whole_frames() -> None:
+    """A key at 0.5 would be passed by: a frame goes straight from its start to its end."""
+    with pytest.raises(DesignError, match="not whole"):
+        Actuation(keys=((0.0, 0.0), (0.5, 1.0), (1.0, 0.0)))
