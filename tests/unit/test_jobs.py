@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from ui.jobs import Jobs
-from workbench.conductor import LIVE, Finished, Request
+from workbench.conductor import SHAPE, Finished, Request
 from workbench.core.design import SensorDesign
 from workbench.core.errors import DesignError
 from workbench.pipeline import PressCase
@@ -52,7 +52,7 @@ def jobs(told: Told) -> Jobs:
     return Jobs(conductor, reports, header)
 
 
-@pytest.mark.parametrize(("topic", "place"), [("press", "press"), ("parts", "parts"), (LIVE, "")])
+@pytest.mark.parametrize(("topic", "place"), [("press", "press"), ("parts", "parts"), (SHAPE, "")])
 def test_a_failed_request_is_told_by_its_topic(
     jobs: Jobs, told: Told, topic: str, place: str
 ) -> None:
