@@ -27,9 +27,11 @@ NAMES = {
     "quality": "Mesh quality",
     "tets": "Tetrahedra",
     "lattice": "Material points",
+    "object": "Object",
     "housing": "Housing",
     "recipe": "Recipe",
     "package": "Files",
+    "picture": "Drawing",
 }
 AMBER = "#f5a623"
 WAIT_S = 3.0
