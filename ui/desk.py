@@ -20,7 +20,7 @@ from ui.scene import Scene
 from ui.session import Session
 from workbench.aim import default_target_mm, with_fitting_ring
 from workbench.bodies import IMPORTED
-from workbench.conductor import DRAG, LIVE, Conductor, Finished, Request
+from workbench.conductor import LIVE, SHAPE, Conductor, Finished, Request
 from workbench.core.design import SensorDesign
 from workbench.core.errors import SolveError, WorkbenchError
 from workbench.core.indenter import Indenter
@@ -126,7 +126,7 @@ class Desk:
         self._follow_sensor()
         if not session.store.has("build", session.calls()["build"].key):
             # First of all: the worker builds while the widgets follow.
-            self.jobs.submit(LIVE, session.design, session.case, ("build",))
+            self.jobs.submit(SHAPE, session.design, session.case, ("build",))
         self.scene.rig.show_lights(session.design.optics.ring)
         self.scene.rig.show_camera(session.design.optics.camera)
         self.show_stored()
@@ -295,10 +295,10 @@ class Desk:
 
     def _failed(self, error: WorkbenchError, topic: str) -> None:
         """Show the frames that settled before a press failed."""
-        if topic == DRAG:
+        if topic == LIVE:
             self.live.failed()
         kept = error.kept if isinstance(error, SolveError) else ""
-        if kept and topic != DRAG and kept == self.session.calls()["press"].key:
+        if kept and topic != LIVE and kept == self.session.calls()["press"].key:
             if self.session.store.has(PARTIAL, kept):
                 contact = self.session.store.load(PARTIAL, kept)
                 self.tell("partial", (contact, error))

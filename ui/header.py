@@ -8,7 +8,7 @@ from typing import Any
 
 import viser
 
-from workbench.conductor import DRAG, LIVE, Progress
+from workbench.conductor import LIVE, SHAPE, Progress
 from workbench.core.design import SensorDesign
 from workbench.core.units import human_seconds
 
@@ -27,9 +27,11 @@ NAMES = {
     "quality": "Mesh quality",
     "tets": "Tetrahedra",
     "lattice": "Material points",
+    "object": "Object",
     "housing": "Housing",
     "recipe": "Recipe",
     "package": "Files",
+    "picture": "Drawing",
 }
 AMBER = "#f5a623"
 WAIT_S = 3.0
@@ -95,6 +97,6 @@ class Header:
 
 
 def _worth_a_bar(topic: str, progress: Progress) -> bool:
-    if topic == DRAG:
+    if topic == LIVE:
         return progress.eta_s is not None and progress.eta_s > WAIT_S
-    return topic != LIVE
+    return topic != SHAPE

@@ -11,9 +11,9 @@ from collections.abc import Callable, Sequence
 from ui.header import NAMES, Header
 from ui.reports import Reports
 from workbench.conductor import (
-    DRAG,
     LIVE,
     QUIET,
+    SHAPE,
     Conductor,
     Event,
     Finished,
@@ -25,7 +25,7 @@ from workbench.conductor import (
 from workbench.core.design import SensorDesign
 from workbench.core.errors import Cancelled, WorkbenchError
 from workbench.core.units import human_seconds
-from workbench.live import Preview
+from workbench.live_press import Preview
 from workbench.pipeline import PressCase
 from workbench.stages import Outcome
 
@@ -122,14 +122,14 @@ class Jobs:
                 then(event)
         elif then is not None:
             then(event)
-        elif error is not None and event.topic == DRAG:
+        elif error is not None and event.topic == LIVE:
             self.reports.report(error)
             self.on_failed(error, event.topic)
         elif error is not None and not self.asked_now(event.request, event.failed):
             # Its message would stand above a design that it does not tell of.
             log(f"{event.topic}, of an earlier design: {error.message}")
         elif error is not None:
-            self.reports.report(error, topic="" if event.topic == LIVE else event.topic)
+            self.reports.report(error, topic="" if event.topic == SHAPE else event.topic)
             self.on_failed(error, event.topic)
         elif not quiet:
             log(f"{event.topic}: finished in {human_seconds(event.seconds)}")

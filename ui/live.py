@@ -13,7 +13,7 @@ import numpy as np
 
 from ui.gizmo import Gizmo
 from workbench.conductor import Request
-from workbench.live import LiveCall, Preview, aimed_mm, live_call
+from workbench.live_press import LiveCall, Preview, aimed_mm, live_call
 
 if TYPE_CHECKING:
     from ui.desk import Desk

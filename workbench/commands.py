@@ -58,7 +58,7 @@ def _start(
 def run(options: argparse.Namespace, project: Project) -> int:
     """Press a design and write images, forces and moulds."""
     from workbench.aim import default_target_mm
-    from workbench.folder import prepare
+    from workbench.folder import RUN_FILES, prepare
     from workbench.outputs import write_all
     from workbench.partial import keeping_partial
     from workbench.pipeline import InlineRunner, evaluate, plan
@@ -75,7 +75,7 @@ def run(options: argparse.Namespace, project: Project) -> int:
     for notice in (design.material.notice, first.press.notice):
         if notice:
             complain(f"notice: {notice}")
-    prepare(options.out)
+    prepare(options.out, clear=RUN_FILES)
     project.store.sweep()
     printer = Progress(as_json=options.json)
     start = _start(design, options, project, printer)

@@ -1,7 +1,8 @@
 """Runs the pipeline behind the browser: one thread per topic, newest request wins.
 
-A topic is what the designer waits for: `shape` (the live membrane), `press`, `image`, `mesh`,
-`tetrahedra`, `parts`, `import`, `object`, and `live` (a press that follows a drag).
+A topic is what the designer waits for: `shape` (the body that follows the sliders), `press`,
+`image`, `mesh`, `tetrahedra`, `parts`, `import`, `object`, and `live` (a press that follows a
+drag).
 Widget callbacks call `submit` and return; the browser's pump reads `events`. Nothing here touches
 a widget, and nothing heavy runs in these threads: they wait for the lanes.
 """
@@ -20,16 +21,16 @@ from typing import Protocol
 from workbench.core.design import SensorDesign
 from workbench.core.errors import Cancelled, WorkbenchError
 from workbench.core.monitor import Monitor, seconds_left
-from workbench.live import NEEDED, LiveCall, Preview, live_call
+from workbench.live_press import NEEDED, LiveCall, Preview, live_call
 from workbench.pipeline import PressCase, evaluate, needed, plan, stage_monitor
 from workbench.stages import Call, Outcome
 from workbench.store import Store
 
-LIVE = "shape"
+SHAPE = "shape"
 """The topic that follows the sliders: Cancel is not meant for it."""
-DRAG = "live"
+LIVE = "live"
 """The topic of live presses: each request stops the one before."""
-QUIET = (LIVE, DRAG)
+QUIET = (SHAPE, LIVE)
 """Topics that follow the designer's hand: nothing is logged of them."""
 
 
@@ -121,20 +122,20 @@ class Conductor:
     ) -> None:
         """Ask for stages; a request of the same topic that has not begun is replaced.
 
-        One that runs is stopped, except in the live topic: it is done before a person could wait
-        for it, and a slider that moves on would otherwise never see a body.
+        One that runs is stopped, except in the topic of the shape: it is done before a person
+        could wait for it, and a slider that moves on would otherwise never see a body.
         """
         self._submit(topic, Request(design=design, case=case, wanted=tuple(wanted)))
 
     def press_live(self, design: SensorDesign, case: PressCase) -> None:
         """Ask for a live press; the one that runs is stopped, and none ever waits in line."""
-        self._submit(DRAG, Request(design=design, case=case, wanted=NEEDED, live=True))
+        self._submit(LIVE, Request(design=design, case=case, wanted=NEEDED, live=True))
 
     def stop_live(self) -> None:
         """Stop the live press that runs, if any."""
         with self._guard:
-            if DRAG in self._topics:
-                self._topics[DRAG].cancel()
+            if LIVE in self._topics:
+                self._topics[LIVE].cancel()
 
     def _submit(self, topic: str, request: Request) -> None:
         with self._guard:
@@ -151,11 +152,11 @@ class Conductor:
                 found.append(self.events.get_nowait())
         return found
 
-    def cancel(self, *, live: bool = False) -> None:
-        """Stop what runs and forget what waits; the live topic only when asked to."""
+    def cancel(self, *, shape: bool = False) -> None:
+        """Stop what runs and forget what waits; the shape's topic only when asked to."""
         with self._guard:
             for topic in self._topics.values():
-                if live or topic.name != LIVE:
+                if shape or topic.name != SHAPE:
                     topic.cancel()
 
     @property
@@ -166,7 +167,7 @@ class Conductor:
 
     def close(self) -> None:
         """Stop everything and end the worker processes."""
-        self.cancel(live=True)
+        self.cancel(shape=True)
         self.runner.close()
 
 
@@ -198,7 +199,7 @@ class _Topic:
     def submit(self, request: Request) -> None:
         with self._wake:
             self._next = request
-            if self.name != LIVE and self._stop is not None and not self._stop.asked:
+            if self.name != SHAPE and self._stop is not None and not self._stop.asked:
                 self._stop.superseded = True
                 self._stop.asked = True
             self._wake.notify()

@@ -9,11 +9,27 @@ from pathlib import Path
 from workbench.core.errors import DesignError, StoreError
 from workbench.project import write_atomically
 
+RUN_FILES = (
+    *("summary.json", "report.html", "background.png", "frame_*.png"),
+    *("contact.npz", "poses.csv", "forces.csv", "slip.csv"),
+    *("mesh.vtu", "membrane.vtp", "contact_*.vtp", "contact.pvd"),
+    *(
+        f"{folder}/*.{ending}"
+        for folder in ("moulds", "parts")
+        for ending in ("stl", "step", "3mf")
+    ),
+    *("all_parts.3mf", "build_sheet.html", "bom.csv"),
+)
+"""All that a run writes, as patterns of `Path.glob`."""
 
-def prepare(out: Path) -> None:
+
+def prepare(out: Path, *, clear: Iterable[str] = ("summary.json",)) -> None:
     """Make the folder and check that it can be written, before anything is computed.
 
-    The summary of an earlier run goes: a run that fails must not leave another one's.
+    Files of an earlier run go: a run that fails must not leave another one's.
+
+    Args:
+        clear: What goes, as patterns of `Path.glob`.
 
     Raises:
         DesignError: If a file has that name.
@@ -25,7 +41,7 @@ def prepare(out: Path) -> None:
         )
     probe = out / ".probe"
     write_atomically(probe, b"")
-    for stale in (probe, out / "summary.json"):
+    for stale in (probe, *(path for pattern in clear for path in out.glob(pattern))):
         try:
             stale.unlink(missing_ok=True)
         except OSError as error:

@@ -3,8 +3,8 @@
 Some libraries hold the interpreter for minutes and cannot be interrupted, so heavy work runs in a
 *lane*: one spawned process that executes one call at a time. A soft cancel makes the stage's next
 `monitor` call raise `Cancelled`; after `GRACE_S` the process is killed and a new one takes its
-place. Results travel through the store, never through the pipe; only previews (`workbench.live`),
-which are not kept, are sent back as they are.
+place. Results travel through the store, never through the pipe; only previews
+(`workbench.live_press`), which are not kept, are sent back as they are.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from workbench.core.errors import Cancelled, LaneError, WorkbenchError
 from workbench.core.indenter import Indenter
 from workbench.core.monitor import Monitor, silent
 from workbench.core.press import ContactSettings, Press
-from workbench.live import LiveCall, Preview, Previewer
+from workbench.live_press import LiveCall, Preview, Previewer
 from workbench.stages import STAGES, Call, Outcome, run
 from workbench.store import Store
 

@@ -16,7 +16,6 @@ from typing import Any
 from workbench.core.design import SensorDesign
 from workbench.core.errors import SolveError, WorkbenchError
 from workbench.core.monitor import Monitor
-from workbench.folder import remove_stale
 from workbench.outputs import plain_numbers, summary_table, write_images, write_press
 from workbench.pipeline import PressCase, StageMonitor, plan, results, stage_monitor
 from workbench.project import write_atomically
@@ -80,7 +79,6 @@ def _write(
     contact, shot = store.load(PARTIAL, error.kept), store.load("shoot", seen.key)
     load = results(store, calls, ("build", "mesh"))
     write_press(out, case.press, load["build"], load["mesh"], contact)
-    remove_stale(out, ("report.html",), keep=())
     seconds = store.entry(PARTIAL, error.kept).seconds
     summary: dict[str, Any] = summary_table(design, case.press, contact, shot, seconds, done)
     summary["images"] = write_images(out, shot)

@@ -13,13 +13,13 @@ from typing import Any, Protocol, TypeVar
 
 from workbench.bodies import IMPORTED, check_body
 from workbench.core.design import Elastomer, LedRing, SensorDesign
-from workbench.core.indenter import Indenter
+from workbench.core.indenter import EDGELESS, Indenter
 from workbench.core.monitor import Monitor, silent
 from workbench.core.press import ContactSettings, Press
 from workbench.stages import Call, Outcome, run
 from workbench.store import Store
 
-Design = TypeVar("Design", Elastomer, LedRing)
+Design = TypeVar("Design", Elastomer, LedRing, Indenter)
 
 NEEDED = (
     "build",
@@ -102,13 +102,13 @@ def plan(design: SensorDesign, case: PressCase) -> dict[str, Call]:
     lattice = Call("lattice", (build.ref, case.settings.grid_mm))
     bake = Call("bake", (mesh.ref, design.optics.ring, design.optics.light_model))
     material, optics, eye = design.material, design.optics, design.optics.camera
-    soft = at_defaults(material, "density_g_cm3")
+    elastic = at_defaults(material, "density_g_cm3")
     objects = tuple(
-        Call("object", (indenter, case.settings.grid_mm))
+        Call("object", (_shape(indenter), case.settings.grid_mm))
         for indenter in (case.indenter,)
         if indenter.mesh is not None or indenter.texture.raised
     )
-    pressed = (mesh.ref, lattice.ref, soft, case.indenter, case.press, case.settings)
+    pressed = (mesh.ref, lattice.ref, elastic, case.indenter, case.press, case.settings)
     press = Call("press", (*pressed, *(call.ref for call in objects)))
     shoot = Call("shoot", (mesh.ref, bake.ref, design.optics, press.ref))
     mould = Call("mould", (build.ref, design.mould))
@@ -139,6 +139,12 @@ def plan(design: SensorDesign, case: PressCase) -> dict[str, Call]:
         picture,
     )
     return {call.stage: call for call in calls}
+
+
+def _shape(indenter: Indenter) -> Indenter:
+    """An object without what its signed distance does not read."""
+    unread = ("soft", "edge_radius_mm") if indenter.kind in EDGELESS else ("soft",)
+    return at_defaults(indenter, *unread)
 
 
 def at_defaults(value: Design, *names: str) -> Design:

@@ -1,4 +1,4 @@
-"""The stages: name, version, lane, narrow inputs, function. Nothing else calls geometry or sim.
+"""The stages: name, version, lane, narrow inputs, function; all that is stored comes from them.
 
 A stage is a pure function of dataclasses and a `Monitor`. What it reads is what its key holds:
 pass the part of the design a stage needs, never the whole, and a camera move cannot re-run

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from tests.presets.conftest import Command
+from workbench.folder import RUN_FILES, prepare
 from workbench.stages import PARTIAL
 from workbench.store import Store
 
@@ -67,3 +68,6 @@ def test_a_press_that_fails_on_its_way_leaves_what_settled(
     assert "failed" not in json.loads((out / "summary.json").read_text())
     assert (out / "contact_001.vtp").exists()
     assert kept[0].exists()
+    # What the next run clears is all that this one wrote.
+    prepare(out, clear=RUN_FILES)
+    assert [path for path in out.rglob("*") if path.is_file()] == []

@@ -17,7 +17,9 @@ from tests.ui.widgets import (
     control,
     open_page,
     set_number,
+    slider_value,
     tab,
+    upload,
     wait_until,
 )
 from workbench.benchmarks.browser import arm, pixels
@@ -94,3 +96,22 @@ def test_strokes_are_run_in_order_and_named(tmp_path: Path, page: Any, start_ser
     assert "nan" not in page.locator("body").inner_text().lower()
     button(page, "Remove").click()
     page.get_by_text("Contact ✓").wait_for()
+
+
+def test_a_step_object_is_read_by_the_worker(
+    tmp_path: Path, page: Any, start_server: Start
+) -> None:
+    """A file that is no STEP is refused by its name; a box of 7 mm becomes the object."""
+    from build123d import Box, export_step
+
+    bad, good = tmp_path / "my bad.step", tmp_path / "my box.step"
+    bad.write_text("no STEP")
+    export_step(Box(7.0, 5.0, 4.0), str(good))
+    server = start_server(coarse_project(tmp_path))
+    studio(page, server)
+    upload(page, "Load object", bad)
+    wait_until(lambda: page.get_by_text("my bad.step").count(), 60, "the refusal is shown")
+    assert slider_value(page, "Size mm") == 6.0
+    upload(page, "Load object", good)
+    wait_until(lambda: slider_value(page, "Size mm") == 7.0, 60, "the box is the object")
+    assert not page.locator("text=/tmp/").count()

@@ -281,20 +281,23 @@ def test_output_folder_is_probed_before_anything_is_computed(
     assert file.read_text() == "mine"
 
 
-def test_failed_run_leaves_no_summary_of_an_earlier_one(
+def test_failed_run_leaves_nothing_of_an_earlier_one(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """After exit 3 the folder has no summary.json, and nothing of the probe."""
+    """After exit 3 the folder holds what is not ours; no image, number, part, nor the probe."""
 
     def unsettled(*args: object, **keywords: object) -> None:
         raise SolveError("did not settle")
 
     monkeypatch.setattr("workbench.pipeline.evaluate", unsettled)
     out = tmp_path / "out"
-    out.mkdir()
-    (out / "summary.json").write_text("{}")
+    (out / "moulds").mkdir(parents=True)
+    old = ("summary.json", "report.html", "frame_003.png", "contact_003.vtp", "contact.npz")
+    for name in (*old, "forces.csv", "slip.csv", "moulds/half_a.stl", "moulds/mine.txt", "my.png"):
+        (out / name).write_text("old")
     assert run(tmp_path, "run", "geltip", "--out", str(out)) == 3
-    assert list(out.iterdir()) == []
+    left = [str(path.relative_to(out)) for path in out.rglob("*") if path.is_file()]
+    assert sorted(left) == ["moulds/mine.txt", "my.png"]
 
 
 def test_parts_of_another_mould_are_removed(tmp_path: Path) -> None:

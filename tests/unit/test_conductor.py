@@ -11,13 +11,13 @@ from typing import cast
 import numpy as np
 import pytest
 
-from workbench.conductor import DRAG, LIVE, Conductor, Finished, LiveDone
+from workbench.conductor import LIVE, SHAPE, Conductor, Finished, LiveDone
 from workbench.core.design import SensorDesign
 from workbench.core.errors import Cancelled, MeshingError
 from workbench.core.monitor import Monitor
 from workbench.core.press import Press
 from workbench.core.sensing import Contact
-from workbench.live import LiveCall, Preview
+from workbench.live_press import LiveCall, Preview
 from workbench.pipeline import PressCase
 from workbench.stages import Call, Outcome
 from workbench.store import Store
@@ -106,10 +106,10 @@ def test_the_stage_that_failed_is_named(tmp_path: Path) -> None:
 
 def test_live_body_is_not_stopped_by_the_next(conductor: Conductor, slow: Slow) -> None:
     """Of three slider positions the first and the last are computed, both without an error."""
-    submit(conductor, LIVE, "first")
+    submit(conductor, SHAPE, "first")
     slow.begun.get(timeout=WAIT_S)
-    submit(conductor, LIVE, "second")
-    submit(conductor, LIVE, "third")
+    submit(conductor, SHAPE, "second")
+    submit(conductor, SHAPE, "third")
     slow.release.set()
     ends = [finished(conductor), finished(conductor)]
     assert [(e.request.design.name, e.error) for e in ends] == [("first", None), ("third", None)]
@@ -117,7 +117,7 @@ def test_live_body_is_not_stopped_by_the_next(conductor: Conductor, slow: Slow) 
 
 def test_cancel_leaves_the_live_body_alone(conductor: Conductor, slow: Slow) -> None:
     """Cancel ends the press and not the body; closing ends both."""
-    submit(conductor, LIVE, "body")
+    submit(conductor, SHAPE, "body")
     submit(conductor, "press", "press")
     for _ in range(2):
         slow.begun.get(timeout=WAIT_S)
@@ -126,17 +126,17 @@ def test_cancel_leaves_the_live_body_alone(conductor: Conductor, slow: Slow) -> 
     assert (end.topic, end.superseded) == ("press", False)
     assert isinstance(end.error, Cancelled)
     assert conductor.busy
-    conductor.cancel(live=True)
-    assert finished(conductor).topic == LIVE
+    conductor.cancel(shape=True)
+    assert finished(conductor).topic == SHAPE
     assert not conductor.busy
 
 
 def test_cancelled_waiting_request_is_told(conductor: Conductor, slow: Slow) -> None:
     """A request cancelled before it began ends once, as cancelled, and nothing stays busy."""
-    submit(conductor, LIVE, "running")
+    submit(conductor, SHAPE, "running")
     slow.begun.get(timeout=WAIT_S)
-    submit(conductor, LIVE, "waiting")
-    conductor.cancel(live=True)
+    submit(conductor, SHAPE, "waiting")
+    conductor.cancel(shape=True)
     names = {(e.request.design.name, type(e.error)) for e in (finished(conductor) for _ in "ab")}
     assert names == {("running", Cancelled), ("waiting", Cancelled)}
     assert not conductor.busy
@@ -187,7 +187,7 @@ def test_of_many_drags_the_first_is_stopped_and_only_the_last_is_pressed(tmp_pat
     drag(1.0)
     assert runner.depths_mm.get(timeout=WAIT_S) == 1.0
     # Under the lock of the conductor, so that the thread sees them as one burst.
-    topic = conductor._topics[DRAG]  # pyright: ignore[reportPrivateUsage]
+    topic = conductor._topics[LIVE]  # pyright: ignore[reportPrivateUsage]
     with topic._wake:  # pyright: ignore[reportPrivateUsage]
         for step in range(20):
             drag(1.0 + 0.01 * (step + 1))

@@ -9,11 +9,13 @@ from typing import Any
 
 import pytest
 
+from ui.header import NAMES
 from ui.jobs import Jobs
-from workbench.conductor import LIVE, Finished, Request
+from workbench.conductor import SHAPE, Finished, Request
 from workbench.core.design import SensorDesign
 from workbench.core.errors import DesignError
 from workbench.pipeline import PressCase
+from workbench.stages import STAGES
 
 
 class Told:
@@ -52,7 +54,7 @@ def jobs(told: Told) -> Jobs:
     return Jobs(conductor, reports, header)
 
 
-@pytest.mark.parametrize(("topic", "place"), [("press", "press"), ("parts", "parts"), (LIVE, "")])
+@pytest.mark.parametrize(("topic", "place"), [("press", "press"), ("parts", "parts"), (SHAPE, "")])
 def test_a_failed_request_is_told_by_its_topic(
     jobs: Jobs, told: Told, topic: str, place: str
 ) -> None:
@@ -74,3 +76,8 @@ def test_an_error_of_another_design_is_only_logged(jobs: Jobs, told: Told) -> No
     assert told.errors == []
     assert asked == ["build"]
     assert told.lines == ["press, of an earlier design: no face is sensing"]
+
+
+def test_every_stage_has_a_name_for_people() -> None:
+    """The log and the bar never show the name of a function."""
+    assert set(NAMES) == set(STAGES)

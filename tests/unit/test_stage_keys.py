@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from typing import Any
 
 import pytest
@@ -9,13 +10,16 @@ import pytest
 from geometry.primitives import rounded_box
 from workbench.core.design import LightModel
 from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
+from workbench.core.motion import Mover
 from workbench.core.press import ContactSettings, Press
+from workbench.core.soft_body import SoftBody
 from workbench.core.texture import Pattern, Texture
 from workbench.pipeline import PressCase, needed, plan
 from workbench.project import load_design
 
 FILES = {"recipe", "package"}
 SEEN = {"bake", "shoot"}
+DEFORMED = {"press", "shoot"}
 RINGED = {"housing", "picture", *FILES}
 
 
@@ -59,6 +63,10 @@ def box(**fields: Any) -> Indenter:
     return Indenter(kind=IndenterKind.MESH, mesh=given, **fields)
 
 
+DOTTED = Indenter(texture=Texture(pattern=Pattern.DOTS))
+CUBE = dataclasses.replace(DOTTED, kind=IndenterKind.CUBE)
+
+
 def test_an_object_of_triangles_is_sampled_once_for_all_its_presses() -> None:
     """Depth, target and material leave its key; rounding and grid change it, and the press."""
     design = load_design("finger")
@@ -74,6 +82,36 @@ def test_an_object_of_triangles_is_sampled_once_for_all_its_presses() -> None:
     assert call.ref in plan(design, case)["press"].inputs
     names = needed(plan(design, case), ("shoot",))
     assert names == ["build", "mesh", "lattice", "bake", "object", "press", "shoot"]
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "stages"),
+    [
+        (box(), box(soft=SoftBody()), DEFORMED),
+        (box(soft=SoftBody()), box(soft=SoftBody(young_MPa=0.3)), DEFORMED),
+        (box(), box(edge_radius_mm=0.2), DEFORMED),
+        (DOTTED, dataclasses.replace(DOTTED, soft=SoftBody()), DEFORMED),
+        (DOTTED, dataclasses.replace(DOTTED, edge_radius_mm=0.2), DEFORMED),
+        (DOTTED, dataclasses.replace(DOTTED, size_mm=7.0), {"object", *DEFORMED}),
+        (CUBE, dataclasses.replace(CUBE, edge_radius_mm=0.2), {"object", *DEFORMED}),
+    ],
+)
+def test_an_object_is_sampled_anew_for_its_shape_only(
+    before: Indenter, after: Indenter, stages: set[str]
+) -> None:
+    """Softness, and an edge radius where there are no such edges, leave the sampled distance."""
+    design = load_design("finger")
+    first = plan(design, PressCase(indenter=before))
+    second = plan(design, PressCase(indenter=after))
+    assert {name for name, call in first.items() if second[name].key != call.key} == stages
+
+
+def test_who_moves_is_part_of_a_press() -> None:
+    """The result holds the poses of a moving sensor, with a trajectory and without."""
+    design = load_design("finger")
+    sensor = PressCase(press=Press(mover=Mover.SENSOR))
+    before, after = plan(design, PressCase()), plan(design, sensor)
+    assert {name for name, call in before.items() if after[name].key != call.key} == DEFORMED
 
 
 def test_only_what_takes_long_to_sample_has_a_stage_of_its_own() -> None:

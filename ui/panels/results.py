@@ -17,7 +17,7 @@ from ui.sensor import SKIN_COLOUR
 from workbench.core.errors import SolveError
 from workbench.core.press import Press
 from workbench.core.sensing import Contact
-from workbench.live import Preview, live_press
+from workbench.live_press import Preview, live_press
 from workbench.phases import phase
 from workbench.quantities import Quantity
 

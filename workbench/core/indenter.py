@@ -1,4 +1,4 @@
-"""The rigid object that is pressed into the skin.
+"""The object that is pressed into the skin: its shape, and its elastomer where it is not rigid.
 
 The paper presses 14 indenters, ten of which its networks saw in training. Source of the names and
 of their split: SimTac, Fig. 6c (indenters 1-10 seen, 11-14 unseen), in the order of that figure as
@@ -19,7 +19,7 @@ from workbench.core.texture import SMOOTH, Texture
 
 
 class IndenterKind(enum.StrEnum):
-    """Rigid shapes; body +Z points away from the skin, the body origin is the shape's centre.
+    """Shapes; body +Z points away from the skin, the body origin is the shape's centre.
 
     `size_mm` is the largest width. Those called prisms stand on their end and are as high as wide.
     """
