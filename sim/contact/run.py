@@ -16,6 +16,8 @@ from workbench.core.errors import SolveError
 
 RAMP_SUBSTEPS_PER_MM = 100.0
 """Substeps for the object to move 1 mm without a prediction."""
+LEAVING = 0.5
+"""Share of those substeps for an object that leaves: it cannot push the skin too far."""
 SHORTEST_RAMP = 10
 ARM_CELLS = 10.0
 """Distance from its origin at which a turn of the object counts as travel, in cells."""
@@ -177,8 +179,16 @@ class Run:
             travel_mm = max(travel_mm, float(driven_mm))
         if travel_mm < STILL_MM:
             return 0
-        count = max(SHORTEST_RAMP, math.ceil(RAMP_SUBSTEPS_PER_MM * travel_mm)) * 2**self.attempt
+        per_mm = RAMP_SUBSTEPS_PER_MM * (LEAVING if self._leaves() else 1.0)
+        count = max(SHORTEST_RAMP, math.ceil(per_mm * travel_mm)) * 2**self.attempt
         return -(-count // STEPS) * STEPS
+
+    def _leaves(self) -> bool:
+        """Whether the object moves straight outward in this frame."""
+        approach = self.problem.approach
+        (start, _), (end, _) = (approach.pose(self.frame + share) for share in (0.0, 1.0))
+        way = end - start
+        return bool(way @ approach.normal > np.linalg.norm(way) - STILL_MM)
 
     def _rows(self, steps: np.ndarray) -> np.ndarray:
         """Rows of the pose table at shares of the frame, (n,), shape (n, POSE)."""

@@ -3,7 +3,7 @@
 Each frame moves the object along its path in a short ramp and then relaxes until the forces
 balance. Where the path goes straight on, the displacement is first extrapolated along it. A frame
 has settled when the out-of-balance force is below `tolerance` of the load, its sum below half a
-percent, and the reaction has stopped changing; at nearly zero load 1 % of the peak stands in for
+percent, and the reaction has stopped changing; at nearly zero load 2 % of the peak stands in for
 the load. The load is the reaction, plus the forces of driven regions.
 Many presses are relaxed in one launch; each settles, moves on and fails by itself.
 Left out: self-contact, inertia, viscosity; speed enters nowhere.
@@ -35,7 +35,7 @@ LEAST_LOAD_N = 1e-12
 """Stands in for a load that vanishes altogether."""
 LEAST_OF_LOAD = 0.05
 """Share of the load that stands in for a smaller reaction."""
-LEAST_OF_PEAK = 0.01
+LEAST_OF_PEAK = 0.02
 """Share of the peak load that stands in for a vanishing one."""
 PATIENCE = 300
 """Substeps without a lower residual before the fictitious masses are doubled."""

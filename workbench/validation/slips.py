@@ -83,8 +83,8 @@ def _frames() -> list[Row]:
     ] + [
         compared(
             "frame_size",
-            "finger, 1 mm straight in, mu 0.3, in 5 and 20 frames: normal force at the end",
-            on_device(lambda: _straight_N(5)),
+            "finger, 1 mm straight in, mu 0.3, in frames of 0.1 and 0.05 mm: normal force at the end",
+            on_device(lambda: _straight_N(10)),
             on_device(lambda: _straight_N(20)),
             unit="N",
             limit=FRAME_LIMIT,
