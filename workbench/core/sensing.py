@@ -28,7 +28,7 @@ class Contact:
     indenter_pose: np.ndarray
     """x, y, z [mm], qw, qx, qy, qz of the indenter's body frame, shape (K, 7), float64."""
     residual: np.ndarray
-    """Out-of-balance force over the load: reaction and drives, at least 2 % of the peak load. (K,)."""
+    """Out-of-balance force over the load: reaction and drives, at least 2 % of their peak; (K,)."""
     penetration_mm: np.ndarray
     """Deepest overlap of skin and indenter [mm], shape (K,), float64."""
     support_N: np.ndarray

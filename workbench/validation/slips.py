@@ -83,7 +83,7 @@ def _frames() -> list[Row]:
     ] + [
         compared(
             "frame_size",
-            "finger, 1 mm straight in, mu 0.3, in frames of 0.1 and 0.05 mm: normal force at the end",
+            "finger, 1 mm straight in, mu 0.3, frames of 0.1 and 0.05 mm: normal force at the end",
             on_device(lambda: _straight_N(10)),
             on_device(lambda: _straight_N(20)),
             unit="N",
