@@ -59,7 +59,7 @@ def test_stl_presses_like_the_primitive(
     write_tool(kind, tool)
     run = workbench("run", coarse, "--indenter", tool, *PRESS, "--out", tmp_path / "out")
     assert run.code == 0
-    assert run.computed() == ["press", "shoot"]
+    assert run.computed() == ["object", "press", "shoot"]
     # The icosphere's facets lie within 0.005 mm of the sphere: 1 % of the depth, 1.5 % in force.
     assert normal_N(tmp_path / "out") == pytest.approx(stored[kind], rel=0.05)
 

@@ -22,16 +22,12 @@ from sim.contact.run import Run
 from sim.contact.soft import kernels as soft_kernels
 from sim.contact.soft.body import SoftObject, make_soft_object
 from sim.contact.soft.meeting import cells_at, deformed, meet
-from sim.contact.solver import Solver
+from sim.contact.solver import Solver, least_load_N
 from workbench.core.errors import SolveError
 from workbench.core.indenter import Indenter
 from workbench.core.monitor import Monitor
 from workbench.core.sensing import Contact
 
-LEAST_STRAIN = 0.2
-"""A load of this strain on one cell stands in for a smaller one: an object carried through the air
-by millimetres has forces of rounding, in single precision, that would never fall below a share of
-nothing."""
 MEMBRANE, OBJECT = soft_kernels.MEMBRANE, soft_kernels.OBJECT
 
 
@@ -164,8 +160,7 @@ class SoftSolver(Solver):
         self.soft = soft
         self.shapes: list[np.ndarray] = []
         super().__init__([problem], monitor, relaxation=SoftRelaxation(problem, soft))
-        grid_mm = soft.domain.grid_mm
-        self.least_N[:] = LEAST_STRAIN * soft.young_MPa * grid_mm**2
+        self.least_N[:] = least_load_N(soft.young_MPa, soft.domain.grid_mm)
 
     def make_run(self, problem: Problem, number: int, frame: int) -> Run:
         """The way of the press through its frames."""
