@@ -20,6 +20,3 @@ CHOICES = 6
 """Integers of a case: the above, with the three counts of distance samples at the end."""
 POSE = 13
 """Floats of a pose: origin from the target, rotation by rows, share of the drives' way."""
-PARTNER = 13
-"""Floats of a soft object: origin of its body from the target at the start, rotation body to sensor
-by rows, 1 / cell edge."""

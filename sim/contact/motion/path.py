@@ -55,11 +55,6 @@ class Leg:
     """Unit axis of the turn in (U, V, n), shape (3,)."""
     turn_deg: float
 
-    @property
-    def rests(self) -> bool:
-        """Whether nothing moves."""
-        return not (self.deeper_mm or self.aside_mm.any() or self.turn_deg)
-
     def at(self, progress: float) -> State:
         """State at a progress, held before the start and after the end."""
         share = min(max((progress - self.first) / self.frames, 0.0), 1.0)

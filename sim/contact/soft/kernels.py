@@ -11,7 +11,8 @@ penalty energy k phi(X)^2 / 2 gives
 so action and reaction are equal. Friction is that of the rigid object with anchors in the
 undeformed object. Nodes of the object gather integers (2^-36 N): their sum does not depend on its
 order.
-The plain twins are in `soft_meeting` and `soft_reference`.
+`partner` holds the origin of the object's body from the target at the start, its rotation body to
+sensor by rows, and 1 / cell edge: 13 floats. The plain twins are in `meeting` and `reference`.
 """
 
 # Taichi reads annotations and operators in its own way.
@@ -169,8 +170,8 @@ def _point_place(
 @ti.func
 def soft_pass(
     displacement: ti.template(), rows: ti.template(), cell_cases: ti.template(),
-    slots: ti.template(), starts: ti.template(),  points: ti.template(),
-     held: ti.template(), anchors: ti.template(), states: ti.template(),
+    slots: ti.template(), starts: ti.template(), points: ti.template(),
+    held: ti.template(), anchors: ti.template(), states: ti.template(),
     point_forces: ti.template(), poses: ti.template(), numbers: ti.template(),
     choices: ti.template(), coefficients: ti.template(), partner: ti.template(),
     cell_map: ti.template(), extents: ti.template(), object_forces: ti.template(), cells, row,
@@ -267,22 +268,22 @@ def _make_substep(linear):
         displacement: Floats, velocity: Floats, forces: Floats, slots: Floats, rows: Integers,
         volumes: Floats, moduli: Floats, cell_cases: Integers, node_slots: Integers,
         node_cases: Integers, masses: Floats, fixed: Integers, powers: Floats, starts: Integers,
-         points: Floats,
-        held: Integers, goals: Floats, anchors: Floats, states: Integers, point_forces: Floats,
+        points: Floats, held: Integers, goals: Floats, anchors: Floats, states: Integers,
+        point_forces: Floats,
         poses: Floats, numbers: Floats, choices: Integers, coefficients: Floats, partner: Floats,
         cell_map: Integers, extents: Integers, object_forces: Sums, cases: ti.i32, step: ti.i32,
     ):  # fmt: skip
         cells, nodes = cell_cases.shape[0], node_cases.shape[0]
         nothing = slots.shape[0] - 81 * BLOCK
         cell_pass(
-            displacement, rows, volumes, moduli, cell_cases, slots, starts, points,
-            held, goals, anchors, states, point_forces, poses, numbers,
-            choices, coefficients, cells, cases, step, linear,
+            displacement, rows, volumes, moduli, cell_cases, slots, starts, points, held, goals,
+            anchors, states, point_forces, poses, numbers, choices, coefficients, cells, cases,
+            step, linear,
         )  # fmt: skip
         soft_pass(
-            displacement, rows, cell_cases, slots, starts, points, held,
-            anchors, states, point_forces, poses, numbers, choices, coefficients, partner,
-            cell_map, extents, object_forces, cells, step * cases + MEMBRANE,
+            displacement, rows, cell_cases, slots, starts, points, held, anchors, states,
+            point_forces, poses, numbers, choices, coefficients, partner, cell_map, extents,
+            object_forces, cells, step * cases + MEMBRANE,
         )  # fmt: skip
         deposit_pass(slots, node_slots, node_cases, object_forces, nothing, nodes)
         node_pass(
