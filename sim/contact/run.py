@@ -47,6 +47,8 @@ class Run:
         self._settled = [relaxation.snapshot(number)]
         self._ramp = np.zeros((0, POSE))
         self._fed = 0
+        self._driven_mm = 0.0
+        """Farthest way of a driven point in the present frame [mm]."""
         self._begun_s = time.perf_counter()
 
     @property
@@ -165,18 +167,13 @@ class Run:
                 driven_displacement_mm(points, press, self.frame + share) for share in (0.0, 1.0)
             )
             self.relaxation.drive(self.number, start_mm, end_mm)
+            way_mm = np.linalg.norm(end_mm - start_mm, axis=1)
+            self._driven_mm = float(way_mm.max(initial=0.0))
 
     def _ramp_length(self) -> int:
         """Substeps of the ramp, a multiple of `STEPS`; 0 where nothing moves."""
-        press, points = self.problem.press, self.problem.domain.points
         arm_mm = ARM_CELLS * self.problem.domain.grid_mm
-        travel_mm = self.problem.approach.travel_mm(self.frame, arm_mm)
-        if press.actuations:
-            start_mm, end_mm = (
-                driven_displacement_mm(points, press, self.frame + share) for share in (0.0, 1.0)
-            )
-            driven_mm = np.linalg.norm(end_mm - start_mm, axis=1).max(initial=0.0)
-            travel_mm = max(travel_mm, float(driven_mm))
+        travel_mm = max(self.problem.approach.travel_mm(self.frame, arm_mm), self._driven_mm)
         if travel_mm < STILL_MM:
             return 0
         per_mm = RAMP_SUBSTEPS_PER_MM * (LEAVING if self._leaves() else 1.0)

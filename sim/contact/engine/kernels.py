@@ -174,9 +174,10 @@ SUBSTEP_ARRAYS = (
 
 
 @ti.func
-def _point_displacement(
+def point_displacement(
     displacement: ti.template(), rows: ti.template(), points: ti.template(), cell, point
 ):
+    """Displacement [mm] of a surface point from the nodes of its cell."""
     x = line_weights(points[POINT * point + LOCAL])
     y = line_weights(points[POINT * point + LOCAL + 1])
     z = line_weights(points[POINT * point + LOCAL + 2])
@@ -217,7 +218,7 @@ def commit_anchors(
             rotation = body_rotation(poses, case)
             for point in range(starts[cell], starts[cell + 1]):
                 if held[point] == MEETS_RIGID:
-                    place = _point_displacement(displacement, rows, points, cell, point)
+                    place = point_displacement(displacement, rows, points, cell, point)
                     place = place_in_body(point, place, points, poses, rotation, case)
                     distance, gradient = object_distance(
                         place, numbers, choices, coefficients, case

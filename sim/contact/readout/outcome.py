@@ -13,7 +13,7 @@ from sim.contact.engine.relaxation import Balance, Relaxation
 from sim.contact.problem import Problem
 from sim.contact.readout.fields import skin_stress, volume_state
 from sim.contact.readout.frame import FrameOutcome, deepest_overlap_mm
-from sim.contact.region.domain import Domain
+from sim.contact.region.domain import Domain, stencil_nodes
 from sim.contact.region.quadrature import SurfacePoints
 from sim.contact.region.stencil import point_weights
 from workbench.core.frames import quaternion
@@ -108,7 +108,7 @@ def frame_outcome(
 def point_displacement(domain: Domain, nodal: np.ndarray) -> np.ndarray:
     """Displacement of every surface point [mm], shape (P, 3)."""
     owner = np.repeat(domain.owners, np.diff(domain.owner_starts))
-    nodes = (domain.rows[owner][:, :, None] + np.arange(3)).reshape(-1, 27)
+    nodes = stencil_nodes(domain.rows[owner])
     return np.einsum("pn,pnc->pc", point_weights(domain.point_local), nodal[nodes])
 
 

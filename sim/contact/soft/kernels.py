@@ -21,7 +21,7 @@ sensor by rows, and 1 / cell edge: 13 floats. The plain twins are in `meeting` a
 import taichi as ti
 
 from sim.contact.engine.cell_kernel import cell_pass, entry
-from sim.contact.engine.kernels import Floats, Integers, node_pass
+from sim.contact.engine.kernels import Floats, Integers, node_pass, point_displacement
 from sim.contact.engine.layout import (
     FREE,
     FRICTION,
@@ -153,17 +153,9 @@ def _point_place(
     points: ti.template(), cell, point,
 ):  # fmt: skip
     """Deformed place of a surface point of the membrane [mm from the target]."""
-    x, y, z = (
-        line_weights(points[POINT * point + LOCAL]),
-        line_weights(points[POINT * point + LOCAL + 1]),
-        line_weights(points[POINT * point + LOCAL + 2]),
-    )
-    place = ti.Vector([points[POINT * point + c] for c in range(3)])
-    for n in ti.static(range(27)):
-        weight = x[n // 9] * y[n // 3 % 3] * z[n % 3]
-        base = 3 * (rows[entry(cell, n // 3, 9)] + n % 3)
-        for c in ti.static(range(3)):
-            place[c] += weight * displacement[base + c]
+    place = point_displacement(displacement, rows, points, cell, point)
+    for c in ti.static(range(3)):
+        place[c] += points[POINT * point + c]
     return place
 
 
