@@ -8,7 +8,8 @@ from geometry import csg
 from geometry.csg_mesh import arrays, evaluate
 from geometry.housing_checks import LEAST_WALL_MM
 from geometry.led_room import half_mm, holder_mm
-from workbench.core.design import Camera, LedRing
+from workbench.core.camera import Camera
+from workbench.core.lighting import LedRing
 from workbench.core.making import Housing
 
 FRONT_SHARE = 0.3

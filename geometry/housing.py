@@ -31,8 +31,9 @@ from geometry.housing_checks import LEAST_WALL_MM, housing_checks
 from geometry.led_holder import shaped_holder
 from geometry.led_room import hole_mm, led_rooms, ring_outline
 from geometry.supplies import camera_module
-from workbench.core.design import Camera, LedMount, LedRing
+from workbench.core.camera import Camera
 from workbench.core.fabrication import FabricationPart, HousingSet, PartGroup
+from workbench.core.lighting import LedMount, LedRing
 from workbench.core.making import Housing
 from workbench.core.monitor import Monitor, silent
 from workbench.core.results import LabelledSurface, Solid

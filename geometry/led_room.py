@@ -7,8 +7,8 @@ import numpy as np
 from geometry import csg
 from geometry.housing_checks import LEAST_WALL_MM
 from geometry.led_holder import SPARE_MM
-from workbench.core.design import LedRing
 from workbench.core.leds import led_places
+from workbench.core.lighting import LedRing
 from workbench.core.making import Housing
 
 LED_DEPTH_MM = 0.8

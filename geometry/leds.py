@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from workbench.core.design import LedRing
 from workbench.core.fabrication import LedItem
 from workbench.core.leds import colour_sectors, led_places
+from workbench.core.lighting import LedRing
 
 
 def led_items(ring: LedRing) -> tuple[LedItem, ...]:

@@ -17,7 +17,6 @@ from geometry.mould_checks import core_removal
 from geometry.silicones import NEAR, Silicone, elongation, nearest, silicone
 from geometry.supplies import ADHESIVE, bolts, rim_mm2, supplies
 from geometry.surface import face_areas
-from workbench.core.design import LedRing
 from workbench.core.fabrication import (
     FabricationCheck,
     FabricationPart,
@@ -26,6 +25,7 @@ from workbench.core.fabrication import (
     PrintItem,
     Recipe,
 )
+from workbench.core.lighting import LedRing
 from workbench.core.making import Casting
 from workbench.core.results import Label, Solid
 

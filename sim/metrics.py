@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from workbench.core.design import LightModel
+from workbench.core.light import LightField
+from workbench.core.lighting import LightModel
 from workbench.core.results import MembraneMesh, Skin
-from workbench.core.sensing import Contact, LightField, Metrics, TactileFrames
+from workbench.core.sensing import Contact, Metrics, TactileFrames
 
 PEAK = 255.0
 """Largest grey level."""

@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from workbench.core.design import Camera, LedRing, LensModel
+from workbench.core.camera import Camera, LensModel
+from workbench.core.lighting import LedRing
 
 FRUSTUM_MM = 4.0
 WIDEST_DEG = 150.0

@@ -8,7 +8,8 @@ import math
 import numpy as np
 
 from workbench.bodies import IMPORTED
-from workbench.core.design import LedMount, SensorDesign
+from workbench.core.design import SensorDesign
+from workbench.core.lighting import LedMount
 from workbench.core.results import Label, Solid
 
 RING_STEP_MM = 0.5

@@ -20,9 +20,10 @@ from pathlib import Path
 from typing import Any
 
 from workbench import __version__, commands
-from workbench.core.design import Law, LightModel
+from workbench.core.design import Law
 from workbench.core.errors import Cancelled, StoreError, WorkbenchError
 from workbench.core.imported import LengthUnit
+from workbench.core.lighting import LightModel
 from workbench.core.motion import Mover
 from workbench.core.press import Extent, Method
 from workbench.project import Project

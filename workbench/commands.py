@@ -11,8 +11,9 @@ import json
 import time
 from typing import Any
 
-from workbench.core.design import Law, LightModel, SensorDesign
+from workbench.core.design import Law, SensorDesign
 from workbench.core.errors import DesignError, DeviceError
+from workbench.core.lighting import LightModel
 from workbench.core.results import Solid
 from workbench.core.units import human_seconds
 from workbench.press_options import press_case

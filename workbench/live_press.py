@@ -14,11 +14,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from workbench.core.design import Elastomer, Optics, SensorDesign
+from workbench.core.design import Elastomer, SensorDesign
 from workbench.core.digest import digest
 from workbench.core.indenter import Indenter
 from workbench.core.monitor import Monitor
 from workbench.core.motion import Mover
+from workbench.core.optics import Optics
 from workbench.core.press import ContactSettings, Press
 from workbench.core.results import MembraneMesh, Solid
 from workbench.core.sensing import Contact

@@ -12,8 +12,9 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol, TypeVar
 
 from workbench.bodies import IMPORTED, check_body
-from workbench.core.design import Elastomer, LedRing, SensorDesign
+from workbench.core.design import Elastomer, SensorDesign
 from workbench.core.indenter import EDGELESS, Indenter
+from workbench.core.lighting import LedRing
 from workbench.core.monitor import Monitor, silent
 from workbench.core.press import ContactSettings, Press
 from workbench.stages import Call, Outcome, run

@@ -11,23 +11,18 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from workbench.core.design import (
-    Camera,
-    Elastomer,
-    Layers,
-    LedRing,
-    LightModel,
-    Meshing,
-    MouldOptions,
-    Optics,
-)
+from workbench.core.camera import Camera
+from workbench.core.design import Elastomer, Layers, Meshing, MouldOptions
 from workbench.core.digest import digest
 from workbench.core.errors import SolveError, StoreError
 from workbench.core.fabrication import HousingSet, MouldSet, Recipe, SheetHead
 from workbench.core.imported import ImportedBody, Pick, ReadBody
 from workbench.core.indenter import Indenter
+from workbench.core.light import LightField
+from workbench.core.lighting import LedRing, LightModel
 from workbench.core.making import Casting, Housing
 from workbench.core.monitor import Monitor, part, silent
+from workbench.core.optics import Optics
 from workbench.core.press import ContactSettings, Press
 from workbench.core.results import (
     Bundle,
@@ -39,7 +34,7 @@ from workbench.core.results import (
     VolumeMesh,
 )
 from workbench.core.sampled import SampledDistance
-from workbench.core.sensing import Contact, LightField, Shot
+from workbench.core.sensing import Contact, Shot
 from workbench.store import Store, timed
 
 PARTIAL = "press_partial"

@@ -23,11 +23,11 @@ from __future__ import annotations
 import numpy as np
 
 from sim.optics.lights import check_lights, place_leds
-from workbench.core.design import LedRing, LightModel
 from workbench.core.errors import DesignError
+from workbench.core.light import LightField
+from workbench.core.lighting import LedRing, LightModel
 from workbench.core.monitor import Monitor, silent
 from workbench.core.results import MembraneMesh
-from workbench.core.sensing import LightField
 
 DEGENERATE_SINE = 1e-3
 """Sine of the angle of L and n below which their plane is not defined in single precision."""
@@ -74,6 +74,9 @@ def bake_light(
         led_mm=leds.position_mm,
         led_axis=leds.axis,
         led_rgb=leds.rgb,
+        led_exponent=leds.exponent,
+        led_cone=leds.cone,
+        led_size_mm=leds.size_mm,
     )
 
 

@@ -21,8 +21,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim.optics.refraction import refract
+from workbench.core.camera import Camera, LensModel
 from workbench.core.check import expect
-from workbench.core.design import Camera, LensModel
 from workbench.core.results import Skin
 from workbench.core.units import radians
 

@@ -19,8 +19,10 @@ from sim.optics.lights import place_leds
 from sim.optics.refraction import refract
 from sim.optics.render import shoot
 from sim.optics.specimen import dent, finger
-from workbench.core.design import Camera, LedRing, LensModel, LightModel, Optics
+from workbench.core.camera import Camera, LensModel
 from workbench.core.errors import OpticsError
+from workbench.core.lighting import LedRing, LightModel
+from workbench.core.optics import Optics
 from workbench.core.results import MembraneMesh
 from workbench.core.sensing import TactileFrames
 

@@ -18,8 +18,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sim.optics.camera import Rays, depth_z
+from workbench.core.camera import Camera
 from workbench.core.check import expect
-from workbench.core.design import Camera
 from workbench.core.results import Skin
 
 if TYPE_CHECKING:

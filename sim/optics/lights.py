@@ -10,10 +10,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from workbench.core.design import Camera, LedMount, LedRing
+from workbench.core.camera import Camera
 from workbench.core.errors import DesignError
 from workbench.core.leds import colour_sectors, led_places
+from workbench.core.lighting import LedMount, LedRing
 from workbench.core.results import MembraneMesh, Skin
+from workbench.core.units import radians
 
 FEWEST_PIXELS = 0.01
 """Least share of pixels that must see the skin [1]; below it an image carries nothing."""
@@ -31,13 +33,31 @@ class Leds:
     """Unit emission axes, shape (L, 3), float64."""
     rgb: np.ndarray
     """Linear RGB power, shape (L, 3), float64."""
+    exponent: np.ndarray
+    """Radiant intensity falls as cos^exponent, shape (L,), float64."""
+    cone: np.ndarray
+    """Cosine of half the emission cone, shape (L,), float64."""
+    size_mm: np.ndarray
+    """Diameter of the emitting disc [mm], shape (L,), float64."""
+    in_shell: np.ndarray
+    """Whether the light sits in the transparent support rather than in the cavity, (L,), bool."""
 
 
 def place_leds(ring: LedRing) -> Leds:
     """The LEDs of a ring; colours fill equal sectors in the order of azimuth."""
     position_mm, axis = led_places(ring)
     colours = np.array([linear_rgb(colour) for colour in ring.colours])
-    return Leds(position_mm=position_mm, axis=axis, rgb=ring.power * colours[colour_sectors(ring)])
+    factors = np.array(ring.powers) if ring.powers else np.ones(ring.count)
+    rgb = ring.power * factors[:, None] * colours[colour_sectors(ring)]
+    return Leds(
+        position_mm=position_mm,
+        axis=axis,
+        rgb=rgb,
+        exponent=np.full(ring.count, ring.emission_exponent),
+        cone=np.full(ring.count, np.cos(radians(ring.cone_deg) / 2.0)),
+        size_mm=np.full(ring.count, ring.size_mm),
+        in_shell=np.full(ring.count, ring.mount is LedMount.SHELL),
+    )
 
 
 def linear_rgb(colour: str) -> tuple[float, float, float]:

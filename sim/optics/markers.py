@@ -13,7 +13,8 @@ import numpy as np
 
 from sim.optics.camera import Rays, focal_px
 from sim.optics.gbuffer import GBuffer, interpolate
-from workbench.core.design import Camera, LensModel, Markers
+from workbench.core.camera import Camera, LensModel
+from workbench.core.optics import Markers
 from workbench.core.results import Skin
 
 INK_REFLECTANCE = 0.08

@@ -31,11 +31,13 @@ from sim.optics.markers import (
 )
 from sim.optics.shading import directions_to_camera, relight, shade, straight, take
 from workbench.core.check import expect
-from workbench.core.design import LightModel, Optics
 from workbench.core.errors import OpticsError
+from workbench.core.light import LightField
+from workbench.core.lighting import LightModel
 from workbench.core.monitor import Monitor, silent
+from workbench.core.optics import Optics
 from workbench.core.results import MembraneMesh
-from workbench.core.sensing import LightField, TactileFrames
+from workbench.core.sensing import TactileFrames
 
 LEAST_ALBEDO = 0.01
 """Darkest skin that white tips are compared with [1]: carbon-black silicone returns 2 to 5 %."""

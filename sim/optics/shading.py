@@ -23,8 +23,9 @@ from geometry.rays import RayCaster
 from sim.optics.bake import SKIN_OFFSET_MM, emitted, toward
 from sim.optics.camera import Rays
 from sim.optics.gbuffer import MOVED_MM, GBuffer
-from workbench.core.design import Coating, LightModel
-from workbench.core.sensing import LightField
+from workbench.core.light import LightField
+from workbench.core.lighting import LightModel
+from workbench.core.optics import Coating
 
 EDGE_ON = 1e-6
 """Cosine below which light grazes the skin: single-precision rounding of a tangential field."""

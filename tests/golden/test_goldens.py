@@ -13,8 +13,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from workbench.core.camera import Camera
 from workbench.core.codec import pack
-from workbench.core.design import Camera, LedRing, Meshing, Optics, SensorDesign
+from workbench.core.design import Meshing, SensorDesign
+from workbench.core.lighting import LedRing
+from workbench.core.optics import Optics
 from workbench.core.press import ContactSettings, Press
 from workbench.pipeline import InlineRunner, PressCase, evaluate, plan, results
 from workbench.stages import STAGES

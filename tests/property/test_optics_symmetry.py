@@ -10,7 +10,9 @@ import pytest
 from sim.optics.bake import bake_light
 from sim.optics.render import shoot
 from sim.optics.specimen import dent, finger
-from workbench.core.design import Camera, LedRing, LightModel, Optics
+from workbench.core.camera import Camera
+from workbench.core.lighting import LedRing, LightModel
+from workbench.core.optics import Optics
 from workbench.core.sensing import TactileFrames
 
 SMALL = Camera(width_px=120, height_px=120, fov_x_deg=90.0)

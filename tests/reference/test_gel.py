@@ -11,8 +11,9 @@ from geometry.gel import gap_ml, gel_step
 from geometry.moulds import make_mould
 from geometry.recipe import make_recipe
 from geometry.solid import part_from_brep
-from workbench.core.design import Layers, LedRing, MouldOptions
+from workbench.core.design import Layers, MouldOptions
 from workbench.core.fabrication import HousingSet, MouldSet
+from workbench.core.lighting import LedRing
 from workbench.core.making import Casting
 from workbench.core.results import Solid
 

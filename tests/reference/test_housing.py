@@ -16,8 +16,10 @@ from geometry.housing import make_housing
 from geometry.led_holder import opened, shadow, shaped_holder
 from geometry.recipe import make_recipe
 from geometry.surface import mesh_volume
-from workbench.core.design import Camera, Layers, LedRing, MouldOptions
+from workbench.core.camera import Camera
+from workbench.core.design import Layers, MouldOptions
 from workbench.core.fabrication import FabricationCheck, HousingSet, MouldSet, Severity
+from workbench.core.lighting import LedRing
 from workbench.core.making import Casting, Housing
 from workbench.core.monitor import silent
 from workbench.core.results import Solid

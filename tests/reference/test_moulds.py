@@ -18,9 +18,11 @@ from geometry.moulds import make_mould
 from geometry.recipe import make_recipe
 from geometry.supplies import ADHESIVE, bolt_length_mm, bolts, rim_mm2
 from geometry.surface import is_watertight, mesh_volume, pieces
-from workbench.core.design import Camera, Elastomer, Layers, LedRing, MouldOptions
+from workbench.core.camera import Camera
+from workbench.core.design import Elastomer, Layers, MouldOptions
 from workbench.core.errors import DesignError, GeometryError, StoreError
 from workbench.core.fabrication import HousingSet, MouldSet, PartGroup, Recipe, SheetHead
+from workbench.core.lighting import LedRing
 from workbench.core.making import Casting, Housing
 from workbench.core.results import Solid
 

@@ -11,7 +11,8 @@ from sim.optics.camera import refracted_rays
 from sim.optics.checks import depth_error_mm
 from sim.optics.gbuffer import look, open_view
 from sim.optics.specimen import dent, finger
-from workbench.core.design import Camera, LedRing, LightModel
+from workbench.core.camera import Camera
+from workbench.core.lighting import LedRing, LightModel
 from workbench.core.results import Skin
 
 

@@ -9,7 +9,8 @@ import sys
 import numpy as np
 import pytest
 
-from workbench.core.design import Camera, Elastomer, SensorDesign
+from workbench.core.camera import Camera
+from workbench.core.design import Elastomer, SensorDesign
 from workbench.core.digest import digest
 
 

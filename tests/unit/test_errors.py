@@ -7,9 +7,11 @@ import pickle
 import pytest
 
 from workbench.core import errors
-from workbench.core.design import Camera, Elastomer, Layers, LedRing, Meshing, SensorDesign
+from workbench.core.camera import Camera
+from workbench.core.design import Elastomer, Layers, Meshing, SensorDesign
 from workbench.core.errors import DesignError, SolveError, WorkbenchError
 from workbench.core.indenter import Indenter, IndenterKind
+from workbench.core.lighting import LedRing
 from workbench.core.press import ContactSettings, Press
 
 CLASSES = [

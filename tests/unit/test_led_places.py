@@ -7,8 +7,8 @@ import pytest
 
 from geometry.leds import led_items
 from sim.optics.lights import linear_rgb, place_leds
-from workbench.core.design import LedRing
 from workbench.core.leds import led_places
+from workbench.core.lighting import LedRing
 
 RINGS = (
     LedRing(),

@@ -11,7 +11,8 @@ from sim.metrics import contact_box, contact_pixels, mae_grey, measure, psnr_dB,
 from sim.optics.bake import bake_light
 from sim.optics.render import shoot
 from sim.optics.specimen import dent, finger
-from workbench.core.design import Camera, Optics
+from workbench.core.camera import Camera
+from workbench.core.optics import Optics
 from workbench.core.sensing import Contact, Metrics, TactileFrames
 
 

@@ -18,7 +18,7 @@ from sim.optics.camera import (
 )
 from sim.optics.refraction import refract
 from sim.optics.specimen import finger
-from workbench.core.design import Camera, LensModel
+from workbench.core.camera import Camera, LensModel
 
 TURN_X_90 = (math.sqrt(0.5), math.sqrt(0.5), 0.0, 0.0)
 ROUNDING = 1e-12

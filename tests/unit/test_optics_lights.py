@@ -10,8 +10,9 @@ import pytest
 from sim.optics.bake import bake_light
 from sim.optics.lights import check_camera, check_lights, inside, linear_rgb, place_leds
 from sim.optics.specimen import finger
-from workbench.core.design import Camera, LedMount, LedRing, LightModel
+from workbench.core.camera import Camera
 from workbench.core.errors import DesignError
+from workbench.core.lighting import LedMount, LedRing, LightModel
 from workbench.core.results import MembraneMesh
 
 

@@ -16,16 +16,10 @@ from sim.optics.gbuffer import open_view
 from sim.optics.markers import ink, no_ink, place_markers, print_dots
 from sim.optics.render import shoot
 from sim.optics.specimen import dent, finger
-from workbench.core.design import (
-    Camera,
-    Coating,
-    LedMount,
-    LedRing,
-    LightModel,
-    Markers,
-    Optics,
-)
+from workbench.core.camera import Camera
 from workbench.core.errors import Cancelled, DesignError, OpticsError
+from workbench.core.lighting import LedMount, LedRing, LightModel
+from workbench.core.optics import Coating, Markers, Optics
 from workbench.core.results import MembraneMesh
 from workbench.core.sensing import TactileFrames
 

@@ -12,8 +12,9 @@ from sim.optics.checks import irradiance_error, tangency_error_deg
 from sim.optics.display import choose_exposure, encode, srgb_decode, srgb_encode
 from sim.optics.shading import glossy, phong, shade
 from sim.optics.specimen import finger
-from workbench.core.design import Coating, LedRing, LightModel
-from workbench.core.sensing import LightField
+from workbench.core.light import LightField
+from workbench.core.lighting import LedRing, LightModel
+from workbench.core.optics import Coating
 
 UP = np.array([[0.0, 0.0, 1.0]], dtype=np.float32)
 SINGLE = 1e-6
@@ -135,6 +136,9 @@ def test_lights_add_up_by_colour() -> None:
         led_mm=np.zeros((2, 3)),
         led_axis=np.zeros((2, 3)),
         led_rgb=np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]),
+        led_exponent=np.ones(2),
+        led_cone=np.zeros(2),
+        led_size_mm=np.ones(2),
     )
     coating = Coating(phong_diffuse=0.5, phong_specular=0.0)
     got = shade(LightModel.LINEAR, light, coating, UP, UP)

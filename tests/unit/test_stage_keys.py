@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from geometry.primitives import rounded_box
-from workbench.core.design import LightModel
 from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
+from workbench.core.lighting import LightModel
 from workbench.core.motion import Mover
 from workbench.core.press import ContactSettings, Press
 from workbench.core.soft_body import SoftBody

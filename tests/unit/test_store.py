@@ -10,8 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from workbench.core.design import LightModel, SensorDesign
+from workbench.core.design import SensorDesign
 from workbench.core.errors import StoreError
+from workbench.core.lighting import LightModel
 from workbench.core.results import Bundle, Picture
 from workbench.core.sensing import Metrics, Shot, TactileFrames
 from workbench.store import META, Store

@@ -7,7 +7,8 @@ from typing import Any
 import viser
 
 from ui.desk import Desk
-from workbench.core.design import LedMount, LensModel, LightModel
+from workbench.core.camera import LensModel
+from workbench.core.lighting import LedMount, LightModel
 
 
 class OpticsPanel:

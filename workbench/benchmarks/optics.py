@@ -7,9 +7,10 @@ import functools
 import numpy as np
 
 from workbench.benchmarks.timing import RUNS, median_s, timed_row
-from workbench.core.design import LightModel, Optics
+from workbench.core.light import LightField
+from workbench.core.lighting import LightModel
 from workbench.core.monitor import silent
-from workbench.core.sensing import LightField
+from workbench.core.optics import Optics
 from workbench.rows import Row, bounded
 from workbench.specimens import finger_mesh
 from workbench.stages import bake

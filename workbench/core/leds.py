@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from workbench.core.design import LedRing
+from workbench.core.lighting import LedRing
 from workbench.core.units import radians
 
 
 def led_places(ring: LedRing) -> tuple[np.ndarray, np.ndarray]:
     """Positions [mm] and unit emission axes of the LEDs, shape (L, 3) each, float64."""
-    azimuth = radians(ring.phase_deg) + np.arange(ring.count) * (2 * np.pi / ring.count)
+    azimuth = radians(ring.phase_deg) + np.arange(ring.count) * (2 * np.pi / max(ring.count, 1))
     outward = np.column_stack([np.cos(azimuth), np.sin(azimuth), np.zeros(ring.count)])
     up = np.array([0.0, 0.0, 1.0])
     tilt = radians(ring.tilt_deg)
@@ -24,4 +24,4 @@ def led_places(ring: LedRing) -> tuple[np.ndarray, np.ndarray]:
 
 def colour_sectors(ring: LedRing) -> np.ndarray:
     """Row of `ring.colours` of each LED, shape (L,): equal sectors in the order of azimuth."""
-    return np.arange(ring.count) * len(ring.colours) // ring.count
+    return np.arange(ring.count) * len(ring.colours) // max(ring.count, 1)

@@ -106,24 +106,6 @@ class Contact:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class LightField:
-    """Light arriving at each vertex of the skin that the camera looks at (`MembraneMesh.seen`)."""
-
-    model: str
-    """Name of the `LightModel`."""
-    direction: np.ndarray
-    """Unit vector from vertex to light along its path, shape (L, V, 3), float32."""
-    irradiance: np.ndarray
-    """Perpendicular irradiance of the undeformed vertex, shadowed, shape (L, V), float32."""
-    led_mm: np.ndarray
-    """LED positions [mm], shape (L, 3), float64."""
-    led_axis: np.ndarray
-    """Unit emission axes, shape (L, 3), float64."""
-    led_rgb: np.ndarray
-    """Linear RGB power, shape (L, 3), float64."""
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
 class TactileFrames:
     """Images of a press: frame 0 of `rgb` is the background, then one per contact frame."""
 
@@ -139,6 +121,8 @@ class TactileFrames:
     """Marker centres [px], shape (1 + K, M, 2), float32; NaN when hidden."""
     exposure: float
     """Gain from linear radiance to display value, chosen once per design."""
+    marker_mm: np.ndarray = field(default_factory=lambda: _none(0, 3))
+    """Reference places of the markers or tips of pins [mm], shape (M, 3), float32."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -154,3 +138,5 @@ class Shot:
 
     frames: TactileFrames
     metrics: Metrics
+    others: tuple[TactileFrames, ...] = ()
+    """Of the further cameras, in their order."""

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from workbench.core.design import LedRing, LensModel, LightModel
+from workbench.core.camera import LensModel
 from workbench.core.errors import WorkbenchError
+from workbench.core.lighting import LedRing, LightModel
 from workbench.core.results import MembraneMesh
 from workbench.rows import Row, bounded, failed
 
