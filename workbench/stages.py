@@ -39,6 +39,8 @@ from workbench.store import Store, timed
 
 PARTIAL = "press_partial"
 """Where the store keeps the settled frames of a press that failed, by the key of that press."""
+PARTS_SHARE = 0.95
+"""Share of the progress of a divided stage that its parts take."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -50,6 +52,9 @@ class Stage:
     lane: str
     """Worker process that runs it: `cad` or `sim`."""
     function: Callable[..., Any]
+    parts: Callable[[Store, tuple[Any, ...]], tuple[Call, ...]] | None = None
+    """Calls that long work is divided into, from its inputs. Each is stored once it is done, so
+    that work which was stopped goes on where it was; their results follow the inputs."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -100,14 +105,21 @@ def run(store: Store, call: Call, monitor: Monitor = silent) -> Outcome:
     key = call.key
     if store.has(stage.name, key):
         return Outcome(stage=stage.name, key=key, cached=True, seconds=0.0)
+    parts = stage.parts(store, call.inputs) if stage.parts else ()
+    spent_s = 0.0
+    for number, piece in enumerate(parts):
+        span = (PARTS_SHARE * number / len(parts), PARTS_SHARE * (number + 1) / len(parts))
+        spent_s += run(store, piece, part(monitor, *span)).seconds
     inputs = [store.load(i.stage, i.key) if isinstance(i, Ref) else i for i in call.inputs]
+    inputs += [store.load(piece.stage, piece.key) for piece in parts]
+    rest = part(monitor, PARTS_SHARE, 1.0) if parts else monitor
     try:
-        value, seconds = timed(stage.function, *inputs, monitor=monitor)
+        value, seconds = timed(stage.function, *inputs, monitor=rest)
     except SolveError as error:
         _keep_partial(store, stage, key, error)
         raise
-    store.save(stage.name, key, value, seconds=seconds, version=stage.version)
-    return Outcome(stage=stage.name, key=key, cached=False, seconds=seconds)
+    store.save(stage.name, key, value, seconds=spent_s + seconds, version=stage.version)
+    return Outcome(stage=stage.name, key=key, cached=False, seconds=spent_s + seconds)
 
 
 def _keep_partial(store: Store, stage: Stage, key: str, error: SolveError) -> None:

@@ -1,0 +1,1 @@
+"""Designer maps: where on its skin a sensor sees, and how well."""
