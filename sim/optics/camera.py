@@ -2,15 +2,12 @@
 
 Pixel (column, row) has its centre at (column + 0.5, row + 0.5); the optical axis meets the image
 centre (W/2, H/2). Pixels are square and `fov_x_deg` is the only field of view, so one focal length
-in pixels serves both axes:
-
-    pinhole      r = f tan(theta),  f = W / (2 tan(fov / 2))
-    equidistant  r = f theta,       f = W / fov
+in pixels serves both axes; `lens` has the curve of each lens model, its distortion and its inverse.
 
 The paper's Eq. 2 has a second focal length from the height with the same angle, which would make
 pixels oblong, and its Eq. 1 stores the range where Eq. 3 reads z. Here `depth_z` is the coordinate
 along the optical axis and `range` the length of the line of sight; neither stands for the other.
-Lens distortion beyond these two models and blur are left out.
+Blur, vignetting and noise come later, see `image_sensor`.
 """
 
 from __future__ import annotations
@@ -20,11 +17,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sim.optics.lens import lens_of
 from sim.optics.refraction import refract
-from workbench.core.camera import Camera, LensModel
+from workbench.core.camera import Camera
 from workbench.core.check import expect
 from workbench.core.results import Skin
-from workbench.core.units import radians
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -42,11 +39,12 @@ class Rays:
 
 
 def focal_px(camera: Camera) -> float:
-    """Focal length [px] of the lens model, from the width and the horizontal field of view."""
-    fov = radians(camera.fov_x_deg)
-    if camera.lens is LensModel.EQUIDISTANT:
-        return camera.width_px / fov
-    return camera.width_px / (2.0 * math.tan(fov / 2.0))
+    """Focal length [px] of the lens model, from the width and the horizontal field of view.
+
+    Raises:
+        DesignError: If the distortion is not one to one over the image.
+    """
+    return lens_of(camera).focal_px
 
 
 def rotation_camera_to_sensor(camera: Camera) -> np.ndarray:
@@ -69,38 +67,52 @@ def depth_z(camera: Camera, points_mm: np.ndarray) -> np.ndarray:
 def project(camera: Camera, points_mm: np.ndarray) -> np.ndarray:
     """Pixel coordinates [px], shape (N, 2), of points in the sensor frame, without refraction.
 
-    NaN where no pixel exists: behind a pinhole, or at the optical centre.
+    NaN where no pixel exists: behind a lens that is not a fisheye, or at the optical centre.
+
+    Raises:
+        DesignError: If the distortion is not one to one over the image.
     """
     expect(points_mm, "N 3", name="points")
+    lens = lens_of(camera)
     seen = (points_mm - np.asarray(camera.position_mm)) @ rotation_camera_to_sensor(camera)
     sideways = np.hypot(seen[:, 0], seen[:, 1])
     theta = np.arctan2(sideways, seen[:, 2])
-    if camera.lens is LensModel.EQUIDISTANT:
-        radius = focal_px(camera) * theta
+    if lens.angular:
         visible = np.linalg.norm(seen, axis=1) > 0.0
+        t = theta
     else:
         visible = seen[:, 2] > 0.0
-        radius = focal_px(camera) * np.tan(np.where(visible, theta, 0.0))
-    scale = np.divide(radius, sideways, out=np.zeros_like(radius), where=sideways > 0.0)
+        t = np.tan(np.where(visible, theta, 0.0))
+    scale = np.divide(t, sideways, out=np.zeros_like(t), where=sideways > 0.0)
+    offset = lens.focal_px * lens.bend(seen[:, :2] * scale[:, None])
     centre = np.array([camera.width_px / 2.0, camera.height_px / 2.0])
-    return np.where(visible[:, None], centre + seen[:, :2] * scale[:, None], np.nan)
+    return np.where(visible[:, None], centre + offset, np.nan)
 
 
 def pixel_directions(camera: Camera, uv_px: np.ndarray) -> np.ndarray:
-    """Unit directions in the sensor frame, shape (N, 3), through pixel coordinates (N, 2)."""
+    """Unit directions in the sensor frame, shape (N, 3), through pixel coordinates (N, 2).
+
+    Coordinates outside the image have directions too, see `lens`.
+
+    Raises:
+        DesignError: If the distortion is not one to one over the image.
+    """
     expect(uv_px, "N 2", name="pixel coordinates")
+    lens = lens_of(camera)
     offset = uv_px - np.array([camera.width_px / 2.0, camera.height_px / 2.0])
-    radius = np.hypot(offset[:, 0], offset[:, 1])
-    if camera.lens is LensModel.EQUIDISTANT:
-        # Beyond 180 degrees the image circle has ended; such pixels look straight back.
-        theta = np.minimum(radius / focal_px(camera), math.pi)
-    else:
-        theta = np.arctan(radius / focal_px(camera))
-    around = np.divide(
-        offset, radius[:, None], out=np.zeros_like(offset), where=radius[:, None] > 0
-    )
+    ideal = lens.straighten(offset / lens.focal_px)
+    t = np.hypot(ideal[:, 0], ideal[:, 1])
+    # Beyond 180 degrees a fisheye's image circle has ended; such pixels look straight back.
+    theta = np.minimum(t, math.pi) if lens.angular else np.arctan(t)
+    around = np.divide(ideal, t[:, None], out=np.zeros_like(ideal), where=t[:, None] > 0)
     seen = np.column_stack([around * np.sin(theta)[:, None], np.cos(theta)])
     return seen @ rotation_camera_to_sensor(camera).T
+
+
+def axis_cosines(camera: Camera) -> np.ndarray:
+    """Cosine of the angle between each pixel's line of sight and the optical axis, (H * W,)."""
+    ahead = rotation_camera_to_sensor(camera)[:, 2]
+    return pixel_directions(camera, pixel_centres(camera)) @ ahead
 
 
 def unproject(camera: Camera, uv_px: np.ndarray, *, range_mm: np.ndarray) -> np.ndarray:

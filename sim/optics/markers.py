@@ -13,7 +13,8 @@ import numpy as np
 
 from sim.optics.camera import Rays, focal_px
 from sim.optics.gbuffer import GBuffer, interpolate
-from workbench.core.camera import Camera, LensModel
+from sim.optics.lens import ANGULAR
+from workbench.core.camera import Camera
 from workbench.core.optics import Markers
 from workbench.core.results import Skin
 
@@ -128,7 +129,7 @@ def ink(
     cosine = -np.einsum("ij,ij->i", seen.normal, rays.direction[seen.pixel])
     # A pixel of a pinhole spans a length over depth_z, one of a fisheye an angle over the range.
     away = np.abs(seen.depth_z_mm)
-    if camera.lens is LensModel.EQUIDISTANT:
+    if camera.lens in ANGULAR:
         away = np.linalg.norm(place - np.asarray(camera.position_mm, np.float32), axis=1)
     footprint = away / focal_px(camera) / np.maximum(cosine, LEAST_COSINE)
     distance, nearest = KDTree(dots.centres_mm).query(place)
