@@ -148,6 +148,14 @@ def parser() -> argparse.ArgumentParser:
         sub = command(handler)
         sub.add_argument("room", metavar="ROOM")
         sub.add_argument("--json", action="store_true")
+        if handler is commands.validate:
+            text = "an independent program to compare with: mitsuba, for optics"
+            sub.add_argument("--reference", metavar="NAME", help=text)
+    compare = command(commands.compare)
+    compare.add_argument("images", type=Path, metavar="DIR")
+    compare.add_argument("reference", type=Path, metavar="DIR")
+    compare.add_argument("--out", type=Path, metavar="DIR", help="also comparison.html and .json")
+    compare.add_argument("--json", action="store_true")
     command(commands.doctor)
     return top
 
@@ -206,6 +214,8 @@ def _run_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--penalty", type=float, help="contact stiffness, E / grid (default 200)")
     sub.add_argument("--material-law", choices=[law.value for law in Law], help="of the design")
     sub.add_argument("--light-model", choices=[m.value for m in LightModel])
+    text = "write depth, normals and masks of every pixel: frames.npz, some 4 MB an image"
+    sub.add_argument("--image-fields", action="store_true", help=text)
     sub.add_argument("--out", required=True, type=Path, metavar="DIR")
     sub.add_argument("--json", action="store_true", help="progress as one JSON object per line")
 

@@ -100,7 +100,14 @@ def run(options: argparse.Namespace, project: Project) -> int:
     except DeviceError as error:
         complain(f"the report has no picture of the mould: {error.message}")
     summary = write_all(
-        options.out, design, case.press, project.store, calls, outcomes, changed=start.changed
+        options.out,
+        design,
+        case,
+        project.store,
+        calls,
+        outcomes,
+        changed=start.changed,
+        fields=options.image_fields,
     )
     if not options.json:
         force = summary["contact"]
@@ -142,10 +149,36 @@ def presets(options: argparse.Namespace, project: Project) -> int:
     return 0
 
 
+def compare(options: argparse.Namespace, project: Project) -> int:
+    """Score the images of one run, or set of runs, against another's."""
+    from workbench.image_sets import compare_sets, page, table
+    from workbench.project import write_atomically
+
+    scores = compare_sets(options.images, options.reference)
+    if options.out is not None:
+        title = f"{options.images} beside {options.reference}"
+        write_atomically(options.out / "comparison.html", page(scores, title).encode())
+        text = json.dumps(table(scores), indent=1)
+        write_atomically(options.out / "comparison.json", text.encode())
+    if options.json:
+        say(json.dumps(table(scores)))
+        return 0
+    say(f"{'group':28} {'images':>6} {'SSIM':>7} {'null':>7} {'PSNR':>7} {'null':>7} {'MAE':>7}")
+    for row in scores:
+        name = f"{row.group} {row.value}".strip()
+        say(
+            f"{name:28} {row.pairs:6} {row.ssim_1:7.4f} {row.null_ssim_1:7.4f} "
+            f"{row.psnr_dB:7.2f} {row.null_psnr_dB:7.2f} {row.mae_grey:7.3f}"
+        )
+    return 0
+
+
 def validate(options: argparse.Namespace, project: Project) -> int:
     """Compare with closed forms."""
     from workbench.validate import ROOMS
 
+    if options.reference:
+        options.room = f"{options.room}_{options.reference}"
     return _print_rows(options, ROOMS)
 
 

@@ -10,7 +10,8 @@ from workbench.core.errors import DesignError, StoreError
 from workbench.project import write_atomically
 
 RUN_FILES = (
-    *("summary.json", "report.html", "background.png", "frame_*.png"),
+    *("summary.json", "report.html", "background.png", "frame_*.png", "difference_*.png"),
+    *("motion_*.png", "markers.csv", "frames.npz", "maps.npz", "camera_*/*"),
     *("contact.npz", "poses.csv", "forces.csv", "slip.csv"),
     *("mesh.vtu", "membrane.vtp", "contact_*.vtp", "contact.pvd"),
     *(

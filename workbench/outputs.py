@@ -25,7 +25,8 @@ from workbench.core.results import Bundle, MembraneMesh, Solid
 from workbench.core.sensing import Contact, Shot
 from workbench.folder import remove_stale
 from workbench.forces import check_finite, csv_bytes, force_columns, slip_columns
-from workbench.pipeline import results
+from workbench.image_files import write_images
+from workbench.pipeline import PressCase, results
 from workbench.project import write_atomically
 from workbench.stages import Call, Outcome
 from workbench.store import Store
@@ -33,23 +34,6 @@ from workbench.trajectories import pose_csv, press_poses
 from workbench.vtkfiles import write_vtk
 
 SUMMARY_SCHEMA = 1
-
-
-def write_images(out: Path, shot: Shot) -> list[str]:
-    """Write `background.png` and `frame_000.png` ...; returns their names in order."""
-    names = ["background.png"]
-    names += [f"frame_{k:03d}.png" for k in range(len(shot.frames.rgb) - 1)]
-    remove_stale(out, ("frame_*.png",), keep=names)
-    for name, rgb in zip(names, shot.frames.rgb, strict=True):
-        write_atomically(out / name, png_bytes(rgb))
-    return names
-
-
-def png_bytes(rgb: np.ndarray) -> bytes:
-    """An image (H, W, 3) uint8 sRGB as a PNG file."""
-    import cv2
-
-    return cv2.imencode(".png", np.ascontiguousarray(rgb[..., ::-1]))[1].tobytes()
 
 
 def write_contact(out: Path, mesh: MembraneMesh, contact: Contact) -> None:
@@ -191,6 +175,24 @@ def contact_summary(contact: Contact, path: Press, seconds: float) -> dict[str, 
     }
 
 
+def press_summary(case: PressCase, contact: Contact) -> dict[str, Any]:
+    """What was pressed where, as comparisons of image sets group it.
+
+    The contact angle is that of the outward normal to the sensor's axis +Z, 0 at the tip; the
+    position is the height of the target above the base.
+    """
+    angle_deg = math.degrees(math.acos(max(-1.0, min(1.0, float(contact.normal[2])))))
+    return {
+        "indenter": case.indenter.kind.value,
+        "size_mm": case.indenter.size_mm,
+        "target_mm": contact.target_mm.tolist(),
+        "angle_deg": round(angle_deg),
+        "azimuth_deg": math.degrees(math.atan2(*contact.target_mm[1::-1])),
+        "position_mm": float(contact.target_mm[2]),
+        "depths_mm": frame_depths_mm(case.press, contact),
+    }
+
+
 def frame_depths_mm(path: Press, contact: Contact) -> list[float]:
     """Depth of each frame from first touch along the inward normal [mm], negative when lifted off.
 
@@ -220,7 +222,7 @@ def force_balance(contact: Contact) -> float:
 
 def summary_table(
     design: SensorDesign,
-    path: Press,
+    case: PressCase,
     contact: Contact,
     shot: Shot,
     seconds: float,
@@ -230,7 +232,7 @@ def summary_table(
 
     Args:
         design: The sensor.
-        path: The press.
+        case: The press.
         contact: Its result.
         shot: Its images.
         seconds: Time the contact took [s].
@@ -245,7 +247,9 @@ def summary_table(
             {"stage": o.stage, "key": o.key, "cached": o.cached, "seconds": o.seconds}
             for o in outcomes
         ],
-        "contact": contact_summary(contact, path, seconds),
+        "light_model": design.optics.light_model.value,
+        "press": press_summary(case, contact),
+        "contact": contact_summary(contact, case.press, seconds),
         "metrics": dict(shot.metrics.values),
     }
 
@@ -253,27 +257,30 @@ def summary_table(
 def write_all(
     out: Path,
     design: SensorDesign,
-    path: Press,
+    case: PressCase,
     store: Store,
     calls: dict[str, Call],
     outcomes: Sequence[Outcome],
     *,
     changed: str = "",
+    fields: bool = False,
 ) -> dict[str, Any]:
     """Write every file of a run; returns the summary.
 
     Args:
         changed: What the command itself changed of the design; stands among the notices.
+        fields: Write depth, normals and masks of every pixel too.
 
     Raises:
         StoreError: If the folder cannot be written.
     """
     from workbench.report import drawings, report_html
 
+    path = case.press
     load = results(store, calls, calls)
     seconds = store.entry("press", calls["press"].key).seconds
-    summary = summary_table(design, path, load["press"], load["shoot"], seconds, outcomes)
-    summary["images"] = write_images(out, load["shoot"])
+    summary = summary_table(design, case, load["press"], load["shoot"], seconds, outcomes)
+    summary["images"] = write_images(out, load["shoot"], fields=fields)
     write_press(out, path, load["build"], load["mesh"], load["press"])
     write_package(out, load["package"])
     summary["notices"] = {

@@ -16,7 +16,8 @@ from typing import Any
 from workbench.core.design import SensorDesign
 from workbench.core.errors import SolveError, WorkbenchError
 from workbench.core.monitor import Monitor
-from workbench.outputs import plain_numbers, summary_table, write_images, write_press
+from workbench.image_files import write_images
+from workbench.outputs import plain_numbers, summary_table, write_press
 from workbench.pipeline import PressCase, StageMonitor, plan, results, stage_monitor
 from workbench.project import write_atomically
 from workbench.stages import PARTIAL, Call, Outcome, Ref, run
@@ -80,7 +81,7 @@ def _write(
     load = results(store, calls, ("build", "mesh"))
     write_press(out, case.press, load["build"], load["mesh"], contact)
     seconds = store.entry(PARTIAL, error.kept).seconds
-    summary: dict[str, Any] = summary_table(design, case.press, contact, shot, seconds, done)
+    summary: dict[str, Any] = summary_table(design, case, contact, shot, seconds, done)
     summary["images"] = write_images(out, shot)
     summary["failed"] = {
         "stage": "press",
