@@ -15,9 +15,13 @@ FLOOR = 1e-3
 
 @ti.func
 def schlick(cosine: ti.f32, specular: ti.f32) -> ti.f32:
-    """Fresnel reflectance of the glossy lobe at a cosine between direction and half vector."""
+    """Fresnel reflectance of the glossy lobe at a cosine between direction and half vector.
+
+    A surface of reflectance 0 is matte at every angle: below 0.02 the lobe fades edge-on, too.
+    """
     away = 1.0 - tm.clamp(cosine, 0.0, 1.0)
-    return specular + (1.0 - specular) * away * away * away * away * away
+    edge_on = ti.min(50.0 * specular, 1.0)
+    return specular + (edge_on - specular) * away * away * away * away * away
 
 
 @ti.func

@@ -88,10 +88,10 @@ def glossy(
     lit = np.maximum(cos_light, FLOOR)
     smith_light = lit * np.sqrt(cos_view**2 * (1.0 - squared) + squared)
     smith_view = cos_view * np.sqrt(lit**2 * (1.0 - squared) + squared)
-    fresnel = (
-        coating.specular
-        + (1.0 - coating.specular) * (1.0 - np.clip(_dot(to_camera, half), 0.0, 1.0)) ** 5
-    )
+    # A surface of reflectance 0 is matte at every angle: below 0.02 the lobe fades edge-on, too.
+    edge_on = min(50.0 * coating.specular, 1.0)
+    away = 1.0 - np.clip(_dot(to_camera, half), 0.0, 1.0)
+    fresnel = coating.specular + (edge_on - coating.specular) * away**5
     highlight = lobe * fresnel * 0.5 / (smith_light + smith_view)
     base = coating.albedo * (1.0 - coating.specular) / np.pi
     return (base + highlight) * np.maximum(cos_light, 0.0)

@@ -1,0 +1,113 @@
+"""The table of radiance by tilt: kernels against their plain twins, and exact entries."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from sim.optics.table import (
+    bin_directions,
+    bin_shares,
+    collapse,
+    filled,
+    look_up,
+    mean_reflectance,
+    tilted_normals,
+)
+from workbench.core.light import AZIMUTHS, SINES, TILT_SPAN, TILTS
+from workbench.core.optics import Coating
+
+BINS = AZIMUTHS * (len(SINES) - 1)
+
+
+@pytest.fixture(scope="module")
+def looked_up(taichi_device: str) -> Any:
+    """The kernel's look-up at all vertices of a random table, and the same by the plain twin."""
+    import taichi as ti
+    import taichi.math as tm
+
+    from sim.optics import table_kernels
+
+    @ti.kernel
+    def run(
+        table: ti.types.ndarray(dtype=ti.f32, ndim=5),  # pyright: ignore
+        nodes: ti.types.ndarray(dtype=ti.i32, ndim=2),  # pyright: ignore
+        weights: ti.types.ndarray(dtype=ti.f32, ndim=2),  # pyright: ignore
+        frames: ti.types.ndarray(dtype=ti.f32, ndim=3),  # pyright: ignore
+        normals: ti.types.ndarray(dtype=tm.vec3, ndim=1),  # pyright: ignore
+        out: ti.types.ndarray(dtype=tm.vec3, ndim=1),  # pyright: ignore
+    ):
+        for v in range(normals.shape[0]):
+            out[v] = table_kernels.look_up(table, nodes, weights, frames, v, 1, normals[v])
+
+    rng = np.random.default_rng(3)
+    table = rng.random((2, 6, TILTS, TILTS, 3)).astype(np.float32)
+    nodes = rng.integers(0, 6, (40, 3)).astype(np.int32)
+    weights = rng.dirichlet((1, 1, 1), 40).astype(np.float32)
+    frames = np.linalg.qr(rng.normal(size=(6, 3, 3)))[0].astype(np.float32)
+    normals = rng.normal(size=(40, 3)).astype(np.float32)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    out = np.zeros((40, 3), dtype=np.float32)
+    run(table, nodes, weights, frames, normals, out)
+    return out, look_up(table[1], nodes, weights, frames, normals)
+
+
+def test_look_up_equals_its_plain_twin(looked_up: Any) -> None:
+    """Radiance of the kernel = radiance of the twin, for normals inside and beyond the table."""
+    kernel, plain = looked_up
+    # Values are up to 1 and pass three products in single precision.
+    np.testing.assert_allclose(kernel, plain, atol=3e-6)
+
+
+def test_a_tabulated_normal_finds_its_entry() -> None:
+    """The radiance of the entry's own normal is the entry."""
+    rng = np.random.default_rng(4)
+    values = rng.random((1, TILTS, TILTS, 3))
+    normals = tilted_normals()
+    inside = np.hypot(normals[..., 0], normals[..., 1]) < TILT_SPAN - 0.01
+    inside[-1], inside[:, -1] = False, False
+    chosen = normals[inside]
+    zeros = np.zeros((len(chosen), 3), dtype=int)
+    weights = np.tile([1.0, 0.0, 0.0], (len(chosen), 1))
+    found = look_up(values, zeros, weights, np.eye(3)[None], chosen)
+    np.testing.assert_allclose(found, values[0][inside], atol=1e-12)
+
+
+def test_collapse_equals_its_plain_twin(taichi_device: str) -> None:
+    """The kernel's table = the twin's table, for glossy skin under random light."""
+    from sim.optics.table_kernels import collapse as collapse_nodes
+
+    rng = np.random.default_rng(5)
+    count = len(bin_directions())
+    received = rng.random((2, 3, count)).astype(np.float32)
+    views = np.array([[0.0, 0.6, 0.8], [0.96, 0.0, 0.28]], dtype=np.float32)
+    values = np.zeros((2, TILTS, TILTS, 3), dtype=np.float32)
+    directions = bin_directions().astype(np.float32)
+    collapse_nodes(received, directions, views, 0.6, 0.04, 0.35, values)
+    # 384 products of single precision, summed.
+    np.testing.assert_allclose(values, collapse(received, views, Coating()), rtol=2e-4)
+
+
+def test_even_light_makes_a_matte_skin_as_bright_as_its_albedo() -> None:
+    """Under radiance 1 from the hemisphere a matte skin of albedo 0.5 has radiance 0.5."""
+    matte = Coating(albedo=0.5, specular=0.0)
+    fine = (np.arange(100_000) + 0.5) / 100_000
+    low, share = bin_shares(fine)
+    rows = np.bincount(low, 1.0 - share, len(SINES) - 1)
+    rows += np.bincount(np.minimum(low + 1, len(SINES) - 2), share, len(SINES) - 1)
+    even = np.tile(np.repeat(rows / 100_000, AZIMUTHS) * 2.0 * np.pi / AZIMUTHS, (1, 3, 1))
+    assert even[0, 0].sum() == pytest.approx(2.0 * np.pi)
+    flat = collapse(filled(even, even, matte), np.array([[0.0, 0.0, 1.0]]), matte)
+    # Light below the lowest cosine, 0.01, stands there: 0.5 * 0.01^2 of the whole too much.
+    middle = (TILTS - 1) // 2
+    np.testing.assert_allclose(flat[0, middle, middle], 0.5, rtol=2e-4)
+
+
+def test_below_the_horizon_lies_skin_that_receives_the_same() -> None:
+    """The horizon's total is 2 pi R E0 / pi with R = albedo where nothing is glossy."""
+    matte = Coating(albedo=0.5, specular=0.0)
+    assert mean_reflectance(matte) == pytest.approx(0.5)
+    light = np.zeros((1, 3, BINS))
+    light[0, 0, -1] = 2.0
+    below = filled(light, light, matte)[0, :, BINS:].sum(axis=1)
+    np.testing.assert_allclose(below, [2.0 * np.pi * 0.5 * 2.0 / np.pi, 0.0, 0.0], rtol=1e-6)
