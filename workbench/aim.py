@@ -56,7 +56,7 @@ def with_fitting_ring(design: SensorDesign, solid: Solid) -> tuple[SensorDesign,
     support, in half millimetres.
     """
     ring = design.optics.ring
-    if design.family != IMPORTED or ring.mount is not LedMount.CAVITY:
+    if design.family != IMPORTED or ring.mount is not LedMount.CAVITY or not ring.count:
         return design, ""
     room_mm = _ring_room_mm(design, solid)
     if ring.radius_mm <= room_mm:

@@ -17,7 +17,6 @@ import numpy as np
 from sim.optics.camera import refracted_rays
 from sim.optics.display import choose_exposure, encode
 from sim.optics.gbuffer import GBuffer, Moved, View, interpolate, look, open_view
-from sim.optics.lights import check_camera
 from sim.optics.markers import (
     INK_REFLECTANCE,
     TIP_REFLECTANCE,
@@ -29,6 +28,7 @@ from sim.optics.markers import (
     no_ink,
     print_dots,
 )
+from sim.optics.places import check_camera
 from sim.optics.shading import directions_to_camera, relight, shade, straight, take
 from workbench.core.check import expect
 from workbench.core.errors import OpticsError

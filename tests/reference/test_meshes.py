@@ -13,7 +13,7 @@ from geometry.lattice import material_points
 from geometry.quality import quality_report, skin_quality, tetrahedron_quality
 from geometry.surface import face_areas, is_watertight, mesh_volume
 from geometry.tets import boundary_faces, tetrahedra
-from sim.optics.lights import inside
+from sim.optics.within import inside
 from workbench.core.design import Meshing
 from workbench.core.results import Label, MembraneMesh, Skin, Solid, VolumeMesh, region_masks
 from workbench.validation.meshes import default_solid, family_names, worst_area_error

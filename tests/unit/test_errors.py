@@ -12,6 +12,7 @@ from workbench.core.design import Elastomer, Layers, Meshing, SensorDesign
 from workbench.core.errors import DesignError, SolveError, WorkbenchError
 from workbench.core.indenter import Indenter, IndenterKind
 from workbench.core.lighting import LedRing
+from workbench.core.optics import Optics
 from workbench.core.press import ContactSettings, Press
 
 CLASSES = [
@@ -55,7 +56,8 @@ BAD = [
     (lambda: Camera(position_mm=(0.0, 0.0, 900.0)), "optics.camera.position_mm", "900 mm"),
     (lambda: LedRing(phase_deg=NAN), "optics.ring.phase_deg", "not a finite number"),
     (lambda: LedRing(tilt_deg=NAN), "optics.ring.tilt_deg", "not a finite number"),
-    (lambda: LedRing(count=0), "optics.ring.count", "0 is outside 1 to 64"),
+    (lambda: LedRing(count=65), "optics.ring.count", "65 is outside 0 to 64"),
+    (lambda: Optics(ring=LedRing(count=0)), "optics.ring.count", "points of light 0 is outside 1"),
     (lambda: LedRing(colours=("red",)), "optics.ring.colours", "'red'"),
     (lambda: Meshing(hex_mm=float("nan")), "meshing.hex_mm", "not a finite number"),
     (lambda: Press(depth_mm=-1), "press.depth_mm", "-1 mm is outside 0 to 50 mm"),

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from geometry.leds import led_items
-from sim.optics.lights import linear_rgb, place_leds
+from sim.optics.lights import place_leds
+from sim.optics.spectrum import linear_rgb
 from workbench.core.leds import led_places
 from workbench.core.lighting import LedRing
 

@@ -8,8 +8,11 @@ import numpy as np
 import pytest
 
 from sim.optics.bake import bake_light
-from sim.optics.lights import check_camera, check_lights, inside, linear_rgb, place_leds
+from sim.optics.lights import place_leds
+from sim.optics.places import check_camera, check_lights
 from sim.optics.specimen import finger
+from sim.optics.spectrum import linear_rgb
+from sim.optics.within import inside
 from workbench.core.camera import Camera
 from workbench.core.errors import DesignError
 from workbench.core.lighting import LedMount, LedRing, LightModel

@@ -85,8 +85,15 @@ def test_normals_face_the_camera(mesh: MembraneMesh) -> None:
 
 
 def test_light_comes_from_a_camera_free_bake() -> None:
-    """bake_light takes skins, ring and model: no camera, coating, marker or press."""
-    assert list(inspect.signature(bake_light).parameters) == ["mesh", "ring", "model", "monitor"]
+    """bake_light takes skins, lights, model and what photons meet: no camera, marker or press."""
+    assert list(inspect.signature(bake_light).parameters) == [
+        "mesh",
+        "ring",
+        "lamps",
+        "model",
+        "transport",
+        "monitor",
+    ]
 
 
 def test_coating_and_camera_change_the_image_without_a_new_bake(mesh: MembraneMesh) -> None:

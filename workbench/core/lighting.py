@@ -204,9 +204,24 @@ class Lamp:
         self._check_plane(at)
 
     @property
+    def grid(self) -> tuple[int, int]:
+        """Points along and across the lamp: cells as square as whole numbers near `samples` allow.
+
+        With n = sqrt(samples length / width) along, rounded, and samples / n across, rounded.
+        """
+        if self.kind is LampKind.POINT:
+            return 1, 1
+        if self.kind is LampKind.LINE:
+            return self.samples, 1
+        along = max(1, round(math.sqrt(self.samples * self.length_mm / self.width_mm)))
+        along = min(along, self.samples)
+        return along, max(1, round(self.samples / along))
+
+    @property
     def points(self) -> int:
-        """Points that the lamp is divided into, about."""
-        return 1 if self.kind is LampKind.POINT else self.samples
+        """Points that the lamp is divided into; of an area as near to `samples` as `grid` gets."""
+        along, across = self.grid
+        return along * across
 
     def _check_plane(self, at: str) -> None:
         if self.kind is LampKind.POINT:

@@ -123,7 +123,7 @@ class Optics:
 
     @property
     def lights(self) -> int:
-        """Points of light: LEDs of the ring, and the points that lamps are divided into, about."""
+        """Points of light: LEDs of the ring, and the points that lamps are divided into."""
         return self.ring.count + sum(lamp.points for lamp in self.lamps)
 
     @property
