@@ -63,10 +63,21 @@ FINGER_DENTS = (
 """On a finger of 15 mm radius and 42 mm height."""
 TRUNK_DENTS = (
     Dent(
-        name="sphere", kind=DentKind.SPHERE, from_mm=(0, 0, 17), toward=(0.55, 0.8, 0), depth_mm=1.3
+        name="sphere",
+        kind=DentKind.SPHERE,
+        from_mm=(0, 0, 17),
+        toward=(0.55, 0.8, 0),
+        depth_mm=1.3,
     ),
-    Dent(name="edge", kind=DentKind.EDGE, from_mm=(0, 0, 10), toward=(0.12, 0.1, 1), depth_mm=1.1),
+    Dent(
+        name="edge",
+        kind=DentKind.EDGE,
+        from_mm=(0, 0, 20),
+        toward=(-0.8, 0.3, 0.3),
+        depth_mm=1.1,
+    ),
 )
+"""On the shipped trunk: the sphere on its broad side, the edge where the side meets the saddle."""
 PAW_DENTS = (
     Dent(
         name="sphere",
@@ -75,8 +86,15 @@ PAW_DENTS = (
         toward=(0.55, 0.8, 0.3),
         depth_mm=1.3,
     ),
-    Dent(name="edge", kind=DentKind.EDGE, from_mm=(0, 0, 10), toward=(0.12, 0.1, 1), depth_mm=1.1),
+    Dent(
+        name="edge",
+        kind=DentKind.EDGE,
+        from_mm=(0, 0, 10),
+        toward=(0.6, -0.3, 0.8),
+        depth_mm=1.1,
+    ),
 )
+"""On the shipped paw: the sphere on its side, the edge on its sole."""
 
 
 def dented(skin: Skin, dent: Dent) -> np.ndarray:

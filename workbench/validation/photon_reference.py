@@ -1,0 +1,154 @@
+"""Photon-traced images of the light scenes, recorded once, that light models are compared with.
+
+Billions of photons take a GPU minutes and two CPU cores hours, so what they showed is shipped as
+`photon_reference.npz`. Three steps write it anew, each where it can run:
+
+    python -m workbench.validation.photon_reference scenes FILE      needs the CAD kernel
+    python -m workbench.validation.photon_reference trace FILE OUT   wants a GPU
+    python -m workbench.validation.photon_reference images OUT       writes the shipped file
+
+Radiance at the vertices is traced in two halves with different photons, so that the score of one
+half against the other is known: the ceiling of what any model can reach. The images are drawn by
+the workbench's own rasteriser from those vertices; `validate optics --reference mitsuba` is the
+witness from outside.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from workbench.core.codec import pack, unpack
+from workbench.core.lighting import LightModel
+from workbench.core.results import MembraneMesh
+from workbench.validation.light_scenes import SCENES, LightScene, mesh_of, optics_of, skins_of
+
+FILE = Path(__file__).with_name("photon_reference.npz")
+PHOTONS = 4_000_000_000
+"""Of each half of each frame."""
+BATCH = 200_000_000
+
+
+def frames_of(scene: LightScene, mesh: MembraneMesh) -> dict[str, np.ndarray]:
+    """Displacements [mm] (V, 3) of a scene's frames by name, the undeformed one first."""
+    from sim.optics.dents import FINGER_DENTS, PAW_DENTS, TRUNK_DENTS, dented
+
+    dents = {"finger": FINGER_DENTS, "trunk": TRUNK_DENTS, "paw": PAW_DENTS}[scene.body]
+    found = {"flat": np.zeros_like(mesh.outer.points_mm, dtype=np.float32)}
+    found |= {dent.name: dented(mesh.outer, dent) for dent in dents}
+    if scene.body == "finger":
+        found["contact"] = pressed(mesh)
+    return found
+
+
+def pressed(mesh: MembraneMesh) -> np.ndarray:
+    """The finger's skin under the default ball at 1 mm, by the contact stage, (V, 3) [mm]."""
+    from workbench.core.design import Elastomer
+    from workbench.core.indenter import Indenter
+    from workbench.core.monitor import silent
+    from workbench.core.press import ContactSettings, Press
+    from workbench.specimens import finger_points
+    from workbench.stages import press
+
+    path = Press(target_mm=(0.0, 10.0, 35.0), depth_mm=1.0, frames=1)
+    settings = ContactSettings()
+    contact = press(mesh, finger_points(), Elastomer(), Indenter(), path, settings, monitor=silent)
+    return np.asarray(contact.displacement_mm[-1])
+
+
+def write_scenes(file: Path) -> None:
+    """Everything that tracing needs of every scene, without a CAD kernel."""
+    arrays: dict[str, np.ndarray] = {}
+    trees: dict[str, Any] = {}
+    for scene in SCENES:
+        mesh = skins_of(mesh_of(scene.body))
+        optics = optics_of(scene, LightModel.PHOTONS)
+        found, tree = pack((mesh, optics, frames_of(scene, mesh)))
+        trees[scene.name] = tree
+        arrays |= {f"{scene.name}|{name}": array for name, array in found.items()}
+    np.savez_compressed(file, trees=np.array([_json(trees)]), **arrays)
+
+
+def _json(value: Any) -> str:
+    import json
+
+    return json.dumps(value)
+
+
+def read_scenes(file: Path) -> dict[str, Any]:
+    """Mesh, optics and frames of each scene by its name."""
+    import json
+
+    with np.load(file) as data:
+        trees = json.loads(str(data["trees"][0]))
+        arrays = {name: data[name] for name in data.files if name != "trees"}
+    found = {}
+    for scene, tree in trees.items():
+        head = f"{scene}|"
+        own = {n.removeprefix(head): a for n, a in arrays.items() if n.startswith(head)}
+        found[scene] = unpack(own, tree)
+    return found
+
+
+def trace(file: Path, out: Path, photons: int, names: list[str]) -> None:
+    """Trace the halves of every frame of the named scenes, all without names."""
+    from sim.optics.lights import place_leds
+    from sim.optics.transport.radiance import trace_radiance
+    from workbench.devices import open_device
+
+    device = open_device()
+    out.mkdir(parents=True, exist_ok=True)
+    for name, (mesh, optics, frames) in read_scenes(file).items():
+        if names and not any(name.startswith(wanted) for wanted in names):
+            continue
+        leds = place_leds(optics.ring, optics.lamps)
+        for frame, displacement in frames.items():
+            start = time.perf_counter()
+            halves = []
+            for half in range(2):
+                found = trace_radiance(
+                    mesh,
+                    leds,
+                    optics.camera,
+                    optics.transport,
+                    photons=photons,
+                    first_photon=half * photons,
+                    displacement_mm=displacement,
+                )
+                halves.append(found.radiance / found.photons)
+            seconds = time.perf_counter() - start
+            target = out / f"{name.replace(' ', '_')}_{frame}.npz"
+            np.savez_compressed(
+                target,
+                halves=np.stack(halves).astype(np.float32),
+                photons=photons,
+                device=device,
+                seconds=seconds,
+                balance=_json(found.balance),
+            )
+            print(f"{target.name}: 2 x {photons:.3g} photons in {seconds:.1f} s", flush=True)
+
+
+def main(words: list[str]) -> None:
+    """Run one of the steps."""
+    step, *rest = words
+    if step == "scenes":
+        from workbench.devices import open_device
+
+        open_device()
+        write_scenes(Path(rest[0]))
+    elif step == "trace":
+        photons = int(float(rest[2])) if len(rest) > 2 else PHOTONS
+        trace(Path(rest[0]), Path(rest[1]), photons, rest[3:])
+    else:
+        from workbench.validation.light_images import write_images
+
+        write_images(Path(rest[0]), Path(rest[1]), FILE)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
