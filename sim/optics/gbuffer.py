@@ -116,7 +116,7 @@ def open_view(skin: Skin, camera: Camera, rays: Rays) -> View:
         caster=caster,
         distance_mm=distance.astype(np.float32),
         face=face.astype(np.int32),
-        area_vector_mm2=_sum_area_vectors(skin.points_mm, skin.faces, len(skin.points_mm)),
+        area_vector_mm2=sum_area_vectors(skin.points_mm, skin.faces, len(skin.points_mm)),
         background=_describe(found, skin.faces, skin.normals, camera, rays),
     )
 
@@ -254,7 +254,7 @@ def _patch_caster(points: np.ndarray, faces: np.ndarray, vertices: np.ndarray) -
     return RayCaster(points[vertices], renumbered[faces])
 
 
-def _sum_area_vectors(points: np.ndarray, faces: np.ndarray, count: int) -> np.ndarray:
+def sum_area_vectors(points: np.ndarray, faces: np.ndarray, count: int) -> np.ndarray:
     """Sum over each vertex's triangles of their area vector [mm2], shape (count, 3)."""
     first, second, third = (points[faces[:, corner]] for corner in range(3))
     area = 0.5 * np.cross(second - first, third - first)
@@ -274,8 +274,8 @@ def _deformed_normals(
     """
     faces = view.skin.faces[patch_faces]
     count = len(points)
-    change = _sum_area_vectors(points, faces, count)
-    change -= _sum_area_vectors(view.skin.points_mm, faces, count)
+    change = sum_area_vectors(points, faces, count)
+    change -= sum_area_vectors(view.skin.points_mm, faces, count)
     normals = view.skin.normals.copy()
     size = np.linalg.norm(view.area_vector_mm2[vertices], axis=1, keepdims=True)
     turned = size * normals[vertices] + change[vertices]

@@ -1,0 +1,36 @@
+"""NumPy arrays on the compute device; the device must be open."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import taichi as ti
+
+
+def on_device(array: np.ndarray, *, vector: int = 0) -> Any:
+    """A copy on the device; `vector` > 0 makes its last axis, of that length, one element."""
+    array = np.ascontiguousarray(array)
+    kinds = {"u": ti.u8, "i": ti.i64 if array.dtype.itemsize == 8 else ti.i32, "f": ti.f32}
+    kind = kinds[array.dtype.kind]
+    if array.dtype.kind == "f":
+        array = array.astype(np.float32)
+    shape = array.shape[:-1] if vector else array.shape
+    # Taichi has no arrays of length 0; nothing reads the element that stands in.
+    if 0 in shape:
+        shape = tuple(max(length, 1) for length in shape)
+        array = np.zeros((*shape, vector) if vector else shape, dtype=array.dtype)
+    made = ti.Vector.ndarray(vector, kind, shape=shape) if vector else ti.ndarray(kind, shape=shape)
+    made.from_numpy(array)
+    return made
+
+
+def empty(kind: Any, count: int, *, vector: int = 0) -> Any:
+    """A flat array of at least one element, zero."""
+    shape = (max(count, 1),)
+    return ti.Vector.ndarray(vector, kind, shape=shape) if vector else ti.ndarray(kind, shape=shape)
+
+
+def computes_on_gpu() -> bool:
+    """Whether the open device is a GPU."""
+    return ti.lang.impl.current_cfg().arch not in (ti.x64, ti.arm64)
