@@ -87,6 +87,7 @@ def bounded(
     limit: float,
     sense: str = "max",
     null: float | None = None,
+    ceiling: float | None = None,
 ) -> Row:
     """A value that must stay on one side of a limit."""
     try:
@@ -101,10 +102,31 @@ def bounded(
             value=value,
             unit=unit,
             null=null,
+            ceiling=ceiling,
             limit=limit,
             sense=sense,
             ok=math.isfinite(value) and good,
         )
+    )
+
+
+def stated(
+    name: str,
+    case: str,
+    value: Measurement,
+    *,
+    unit: str,
+    null: float | None = None,
+    ceiling: float | None = None,
+) -> Row:
+    """A value that nothing is asked of, for comparison; ok when there is one."""
+    try:
+        value = _measure(value)
+    except WorkbenchError as problem:
+        return failed(name, case, unit=unit, why=problem.message)
+    ok = math.isfinite(value)
+    return _told(
+        Row(name=name, case=case, value=value, unit=unit, null=null, ceiling=ceiling, ok=ok)
     )
 
 
