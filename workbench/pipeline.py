@@ -14,8 +14,9 @@ from typing import Any, Protocol, TypeVar
 from workbench.bodies import IMPORTED, check_body
 from workbench.core.design import Elastomer, SensorDesign
 from workbench.core.indenter import EDGELESS, Indenter
-from workbench.core.lighting import LedRing
+from workbench.core.lighting import TABULATED, Baking, LedRing
 from workbench.core.monitor import Monitor, silent
+from workbench.core.optics import Optics
 from workbench.core.press import ContactSettings, Press
 from workbench.stages import Call, Outcome, run
 from workbench.store import Store
@@ -101,7 +102,8 @@ def plan(design: SensorDesign, case: PressCase) -> dict[str, Call]:
     quality = Call("quality", (build.ref, mesh.ref))
     tets = Call("tets", (build.ref, design.meshing.tet_mm))
     lattice = Call("lattice", (build.ref, case.settings.grid_mm))
-    bake = Call("bake", (mesh.ref, design.optics.ring, design.optics.light_model))
+    light = _light_calls(design.optics, mesh)
+    bake = light[0]
     material, optics, eye = design.material, design.optics, design.optics.camera
     elastic = at_defaults(material, "density_g_cm3")
     objects = tuple(
@@ -127,7 +129,7 @@ def plan(design: SensorDesign, case: PressCase) -> dict[str, Call]:
         build,
         mesh,
         lattice,
-        bake,
+        *light,
         *objects,
         press,
         shoot,
@@ -140,6 +142,18 @@ def plan(design: SensorDesign, case: PressCase) -> dict[str, Call]:
         picture,
     )
     return {call.stage: call for call in calls}
+
+
+def _light_calls(optics: Optics, mesh: Call) -> tuple[Call, ...]:
+    """The call `bake`, and `table` for the models that look radiance up."""
+    model = optics.light_model
+    transport = optics.transport if model in TABULATED else None
+    bake = Call("bake", (mesh.ref, optics.ring, optics.lamps, model, transport))
+    if transport is None:
+        return (bake,)
+    # Photons, nodes and seed are in the baked light already.
+    collapse = dataclasses.replace(transport, baking=Baking())
+    return bake, Call("table", (mesh.ref, bake.ref, optics.all_cameras, collapse, model))
 
 
 def _shape(indenter: Indenter) -> Indenter:

@@ -18,11 +18,11 @@ from workbench.core.errors import SolveError, StoreError
 from workbench.core.fabrication import HousingSet, MouldSet, Recipe, SheetHead
 from workbench.core.imported import ImportedBody, Pick, ReadBody
 from workbench.core.indenter import Indenter
-from workbench.core.light import LightField
-from workbench.core.lighting import LedRing, LightModel
+from workbench.core.light import LightField, NormalTable
+from workbench.core.lighting import Lamp, LedRing, LightModel
 from workbench.core.making import Casting, Housing
 from workbench.core.monitor import Monitor, part, silent
-from workbench.core.optics import Optics
+from workbench.core.optics import Optics, Transport
 from workbench.core.press import ContactSettings, Press
 from workbench.core.results import (
     Bundle,
@@ -193,11 +193,44 @@ def lattice(solid: Solid, grid_mm: float, *, monitor: Monitor) -> MaterialPoints
     return material_points(solid.membrane, grid_mm, monitor=monitor)
 
 
-def bake(mesh: MembraneMesh, ring: LedRing, model: LightModel, *, monitor: Monitor) -> LightField:
+def bake(
+    mesh: MembraneMesh,
+    ring: LedRing,
+    lamps: tuple[Lamp, ...],
+    model: LightModel,
+    transport: Transport | None = None,
+    *,
+    monitor: Monitor,
+) -> LightField:
     """Light of each LED at each vertex of the skin."""
     from sim.optics.bake import bake_light
 
-    return bake_light(mesh, ring, model=model, monitor=monitor)
+    if transport is not None:
+        _open_device(monitor)
+    return bake_light(mesh, ring, lamps, model=model, transport=transport, monitor=monitor)
+
+
+def table(
+    mesh: MembraneMesh,
+    light: LightField,
+    cameras: tuple[Camera, ...],
+    transport: Transport,
+    model: LightModel,
+    *,
+    monitor: Monitor,
+) -> NormalTable:
+    """Traced light as radiance toward each camera, by the tilt of the skin's normal."""
+    _open_device(monitor)
+    from sim.optics.table import tabulate
+
+    return tabulate(light, mesh, cameras, transport, model=model, monitor=monitor)
+
+
+def _open_device(monitor: Monitor) -> None:
+    from workbench.devices import open_device
+
+    monitor(0.0, "opening the device")
+    open_device()
 
 
 def object_distance(indenter: Indenter, grid_mm: float, *, monitor: Monitor) -> SampledDistance:
@@ -223,10 +256,7 @@ def press(
     monitor: Monitor,
 ) -> Contact:
     """Quasi-static contact along a press path; `sampled` is the object's distance, if known."""
-    from workbench.devices import open_device
-
-    monitor(0.0, "opening the device")
-    open_device()
+    _open_device(monitor)
     from sim.contact.solver import press_membrane
 
     return press_membrane(
@@ -341,7 +371,8 @@ STAGES = {
         Stage(name="quality", version=1, lane="cad", function=quality),
         Stage(name="tets", version=1, lane="cad", function=tets),
         Stage(name="lattice", version=2, lane="cad", function=lattice),
-        Stage(name="bake", version=1, lane="sim", function=bake),
+        Stage(name="bake", version=2, lane="sim", function=bake),
+        Stage(name="table", version=1, lane="sim", function=table),
         Stage(name="object", version=1, lane="sim", function=object_distance),
         Stage(name="press", version=7, lane="sim", function=press),
         Stage(name="shoot", version=2, lane="sim", function=shoot),

@@ -38,7 +38,7 @@ def rows() -> list[Row]:
         timed_row(
             "bake",
             model.value,
-            lambda model=model: bake(finger_mesh(), optics.ring, model, monitor=silent),
+            lambda model=model: bake(finger_mesh(), optics.ring, (), model, monitor=silent),
             5.0,
         )
         for model in LightModel
@@ -46,7 +46,7 @@ def rows() -> list[Row]:
 
     @functools.cache
     def light() -> LightField:
-        return bake(finger_mesh(), optics.ring, optics.light_model, monitor=silent)
+        return bake(finger_mesh(), optics.ring, (), optics.light_model, monitor=silent)
 
     def seconds(frames: int, runs: int) -> float:
         outer = finger_mesh().outer
