@@ -63,6 +63,24 @@ class RayCaster:
             distance[found], weights[found] = self._refine(start, along, face[found])
         return distance, face, weights
 
+    def first_faces(
+        self, origins: np.ndarray, directions: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """First triangle along each ray as Embree finds it, in single precision, for many rays.
+
+        Embree does not hold Python's lock, so callers may cast parts of their rays in threads.
+
+        Args:
+            origins: Starts [mm], shape (R, 3), float32.
+            directions: Directions, any length, shape (R, 3), float32.
+
+        Returns:
+            Face, shape (R,), int32, -1 for a miss; weights of its second and third corner, shape
+            (R,) each, float32.
+        """
+        found = self._scene.run(_single(origins), _single(directions), output=1)
+        return found["primID"], found["u"], found["v"]
+
     def occluded(
         self, origins: np.ndarray, directions: np.ndarray, max_distance: np.ndarray | float
     ) -> np.ndarray:

@@ -1,0 +1,119 @@
+"""Photons to a light field: scattered light by direction, and one virtual LED per light.
+
+Each photon that meets the coating adds flux / cosine to the three nodes about its place. Divided by
+the nodes' areas that is perpendicular irradiance by direction. Of light that nothing but clear
+walls has turned, the sum of direction times flux gives a mean direction per node and light: there,
+as far away as the real one, stands a virtual LED, which carries refraction without tracing it
+again. Sums are smoothed over neighbouring nodes; a spot sees its LED in one direction anyhow.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sim.optics.lights import Leds
+from sim.optics.transport.constants import FIXED_POINT
+from sim.optics.transport.nodes import Nodes, coarse_nodes, neighbours
+from sim.optics.transport.paths import Driver, trace_paths
+from sim.optics.transport.scene import open_scene
+from sim.optics.transport.sources import Sources, open_sources
+from sim.optics.transport.tally import Tally, tally_at_nodes
+from workbench.core.light import Scattered
+from workbench.core.monitor import Monitor, part, silent
+from workbench.core.optics import Transport
+from workbench.core.results import MembraneMesh
+
+SMOOTHINGS = 3
+"""Times that the virtual LEDs are averaged with their neighbours; measured."""
+
+
+def gather_light(
+    mesh: MembraneMesh,
+    leds: Leds,
+    transport: Transport,
+    *,
+    driver: Driver | None = None,
+    monitor: Monitor = silent,
+) -> tuple[np.ndarray, np.ndarray, Scattered]:
+    """Trace the photons of a bake.
+
+    Args:
+        mesh: The skins.
+        leds: The lights.
+        transport: What photons meet, and how many there are.
+        driver: None takes the one for the open device.
+
+    Returns:
+        Unit vectors from the vertices toward their virtual LEDs, shape (L, V, 3), float32;
+        perpendicular irradiance there per unit of power [1/mm2], shape (L, V), float32; the light
+        by direction.
+    """
+    baking = transport.baking
+    monitor(0.0, "placing nodes on the skin")
+    nodes = coarse_nodes(mesh.seen, baking.nodes)
+    scene = open_scene(mesh, transport)
+    sources = open_sources(leds, scene)
+    tally = tally_at_nodes(nodes, sources.count)
+    trace_paths(
+        scene,
+        sources,
+        tally,
+        photons=baking.photons,
+        seed=baking.seed,
+        driver=driver,
+        monitor=part(monitor, 0.05, 0.95),
+    )
+    direction, irradiance = virtual_lights(nodes, sources, tally, mesh.seen.points_mm)
+    monitor(1.0, "light gathered")
+    return direction, irradiance, scattered_light(nodes, sources, tally)
+
+
+def scattered_light(nodes: Nodes, sources: Sources, tally: Tally) -> Scattered:
+    """The tally's light by direction as perpendicular irradiance."""
+    # One photon carries the power of its light over the photons of that light.
+    unit = sources.strongest * sources.count / tally.photons / FIXED_POINT
+    area = np.maximum(nodes.area_mm2, 1e-9)[:, None, None]
+    first, rest = ((sums * (unit / area)).astype(np.float32) for sums in tally.bins)
+    return Scattered(
+        frame=nodes.frame,
+        first=first,
+        rest=rest,
+        nodes=nodes.nodes,
+        weights=nodes.weights,
+        balance=tally.balance,
+        photons=tally.photons,
+    )
+
+
+def virtual_lights(
+    nodes: Nodes,
+    sources: Sources,
+    tally: Tally,
+    points_mm: np.ndarray,
+    *,
+    smoothings: int = SMOOTHINGS,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Direction (L, V, 3) and irradiance (L, V) per unit of power at the vertices.
+
+    Args:
+        points_mm: The vertices [mm], shape (V, 3); where no light arrives, its direction is the
+            straight one.
+    """
+    unit = sources.count / tally.photons / FIXED_POINT
+    sums = tally.lamps * (unit / np.maximum(nodes.area_mm2, 1e-9))[:, None, None]
+    spread = neighbours(nodes)
+    flat = sums.reshape(len(sums), -1)
+    for _ in range(smoothings):
+        flat = spread @ flat
+    sums = flat.reshape(sums.shape)
+    at_vertices = np.zeros((len(points_mm), *sums.shape[1:]))
+    for corner in range(3):
+        at_vertices += nodes.weights[:, corner, None, None] * sums[nodes.nodes[:, corner]]
+    straight = sources.position_mm[:, None] - points_mm[None]
+    straight /= np.linalg.norm(straight, axis=2, keepdims=True)
+    mean = np.moveaxis(at_vertices[..., :3], 1, 0)
+    size = np.linalg.norm(mean, axis=2, keepdims=True)
+    lit = size > 0.0
+    direction = np.where(lit, mean / np.where(lit, size, 1.0), straight)
+    irradiance = np.where(lit[..., 0], np.moveaxis(at_vertices[..., 3], 1, 0), 0.0)
+    return direction.astype(np.float32), irradiance.astype(np.float32)
