@@ -9,14 +9,13 @@ from pathlib import Path
 
 import numpy as np
 
-from workbench.bodies import kept_files
 from workbench.core.design import SensorDesign
 from workbench.core.errors import DeviceError
 from workbench.core.results import VolumeMesh
 from workbench.folder import prepare, remove_stale
 from workbench.outputs import write_package
 from workbench.pipeline import InlineRunner, PressCase, StageMonitor, evaluate, plan, results
-from workbench.project import design_to_toml, write_atomically
+from workbench.project import design_files, design_to_toml, write_atomically
 from workbench.store import Store
 from workbench.vtkfiles import write_vtk
 
@@ -65,8 +64,7 @@ def export_design(
         files["tets.npz"] = _volume_bytes(found["tets"])
     if "picture" in found:
         files["exploded.png"] = found["picture"].png.tobytes()
-    if design.body is not None:
-        files |= kept_files(design.body)
+    files |= design_files(design)
     remove_stale(out, OPTIONAL, keep=files)
     for name, content in files.items():
         write_atomically(out / name, content)

@@ -6,6 +6,7 @@
   designs/   autosave.toml
   variants/  kept designs with their press and numbers
   bodies/    files of imported bodies by hash
+  pictures/  backgrounds and patterns of markers by hash
   indenters/ meshes of STL indenters by key
   crash/     one file per bug that reached the edge
 ```
@@ -37,6 +38,7 @@ from workbench.core.design import SCHEMA, SensorDesign
 from workbench.core.errors import DesignError, StoreError
 from workbench.core.mapping import from_table, suggest, to_table
 from workbench.moduli import with_moduli
+from workbench.photos import add_names, kept_photos, take_photos, with_photos, without_photos
 from workbench.store import Store
 
 VARIABLE = "WORKBENCH_PROJECT"
@@ -71,19 +73,17 @@ class Project:
     def save_design(self, name: str, design: SensorDesign, **extra: Any) -> Path:
         """Write a design by atomic replacement; `extra` tables are kept beside it."""
         path = self.design_path(name)
-        self.keep_body(design)
+        self.keep_files(design)
         write_atomically(path, (design_to_toml(design, **extra)).encode())
         return path
 
-    def keep_body(self, design: SensorDesign) -> None:
-        """Keep the files of an imported body; each is written once.
+    def keep_files(self, design: SensorDesign) -> None:
+        """Keep the files that a design is made of; each is written once.
 
         Raises:
             StoreError: If the project folder cannot be written.
         """
-        if design.body is None:
-            return
-        for name, content in kept_files(design.body).items():
+        for name, content in design_files(design).items():
             if not (self.folder / name).exists():
                 write_atomically(self.folder / name, content)
 
@@ -189,7 +189,7 @@ def design_from_toml(
     Args:
         text: The file.
         source: Its name, for messages.
-        roots: Folders in which the files of an imported body are looked for.
+        roots: Folders in which the files of an imported body and of pictures are looked for.
 
     Raises:
         DesignError: For broken TOML, a newer schema, unknown fields or refused values.
@@ -199,7 +199,8 @@ def design_from_toml(
     body = own.pop("body", None)
     if "material" in own:
         own["material"] = with_moduli(own["material"])
-    design = from_table(SensorDesign, own)
+    own, pictures = take_photos(own)
+    design = with_photos(from_table(SensorDesign, own), pictures, roots=roots)
     if body is not None:
         design = dataclasses.replace(design, body=read_body_table(body, roots=roots))
     check_design(design)
@@ -254,6 +255,13 @@ def design_to_toml(design: SensorDesign, **extra: Any) -> str:
 
 
 def design_table(design: SensorDesign) -> dict[str, Any]:
-    """A design as nested tables, an imported body by the names of its files."""
-    table = to_table(without_body(design))
+    """A design as nested tables, an imported body and pictures by the names of their files."""
+    table = to_table(without_photos(without_body(design)))
+    add_names(table, design)
     return table if design.body is None else {**table, "body": body_table(design.body)}
+
+
+def design_files(design: SensorDesign) -> dict[str, bytes]:
+    """The files that a design's table names, by path relative to the project's folder."""
+    bodies = {} if design.body is None else kept_files(design.body)
+    return bodies | kept_photos(design)

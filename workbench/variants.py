@@ -41,7 +41,7 @@ def save_variant(project: Project, name: str, state: State, calls: dict[str, Cal
     table = {"name": name, "shoot_key": calls["shoot"].key, "metrics": metrics}
     press_case = case_table(state.case, project)
     named = dataclasses.replace(state.design, name=name)
-    project.keep_body(named)
+    project.keep_files(named)
     text = design_to_toml(named, press_case=press_case, variant=table)
     path = _folder(project) / project.design_path(name).name
     write_atomically(path, text.encode())

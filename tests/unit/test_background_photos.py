@@ -98,5 +98,5 @@ def test_numbers_with_a_fraction_are_refused() -> None:
 
 def test_another_format_is_refused_by_its_name() -> None:
     """A design takes picture files only."""
-    with pytest.raises(DesignError, match="notes.txt is not a picture"):
+    with pytest.raises(DesignError, match=r"notes\.txt is not a picture"):
         photo("notes.txt", b"", at="optics.background")

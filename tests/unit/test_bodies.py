@@ -64,7 +64,7 @@ def test_a_design_file_finds_its_body_in_the_project(stl: Path, tmp_path: Path) 
     """Downloaded to another folder, as long as the project keeps the body."""
     project = Project(tmp_path / "project")
     design = load_design(str(stl))
-    project.keep_body(design)
+    project.keep_files(design)
     path = tmp_path / "downloads" / "w.toml"
     path.parent.mkdir()
     path.write_text(design_to_toml(design))

@@ -11,6 +11,7 @@ from ui.desk import Desk
 from ui.imaging import difference, placeholder
 from workbench.core.errors import DesignError, WorkbenchError
 from workbench.core.mapping import to_table
+from workbench.project import design_table
 from workbench.variants import Variant, list_variants, load_variant, save_variant
 
 NONE = "-"
@@ -133,7 +134,7 @@ def comparison(a: Variant, b: Variant) -> str:
 
 def _parameters(variant: Variant) -> dict[str, str]:
     state = variant.state
-    return {**_flat(to_table(state.design)), **_flat(to_table(state.case.press), "press.")}
+    return {**_flat(design_table(state.design)), **_flat(to_table(state.case.press), "press.")}
 
 
 def _flat(table: dict[str, Any], prefix: str = "") -> dict[str, str]:

@@ -8,9 +8,8 @@ import viser
 
 from ui.desk import Desk
 from ui.panels.downloads import zipped
-from workbench.bodies import kept_files
 from workbench.core.errors import DesignError
-from workbench.project import MAX_TOML_BYTES, design_to_toml
+from workbench.project import MAX_TOML_BYTES, design_files, design_to_toml
 from workbench.state import case_table, read_state
 
 
@@ -42,13 +41,14 @@ class History:
     def _download(self, event: Any) -> None:
         session = self.desk.session
         design = session.design
-        session.project.keep_body(design)
+        session.project.keep_files(design)
         press_case = case_table(session.case, session.project)
         content = design_to_toml(design, press_case=press_case).encode()
         name = f"{design.name}.toml"
-        if design.body is not None:
-            # A body's files travel with the design that names them.
-            content = zipped({name: content, **kept_files(design.body)})
+        files = design_files(design)
+        if files:
+            # The files of a body and of pictures travel with the design that names them.
+            content = zipped({name: content, **files})
             name = f"{design.name}.zip"
         event.client.send_file_download(name, content, save_immediately=True)
 
