@@ -11,12 +11,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from geometry.rays import RayCaster
 from sim.optics.refraction import refract
 from workbench.core.camera import Camera
 from workbench.core.results import MembraneMesh, Skin
 
-ROUNDS = 12
-"""Times that the aim moves."""
+STEPS = (1.0,) * 6 + (0.5,) * 6 + (0.25,) * 6
+"""Share of the miss that the aim moves by, time after time: where the wall's curvature jumps, from
+a cylinder to its dome, whole steps swing to and fro."""
 MISS_MM = 0.05
 """A ray that passes a point nearer than this has found it [mm]."""
 
@@ -56,14 +58,12 @@ def _aim(
     points: np.ndarray, eye: np.ndarray, wall: Skin, index: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Direction of the best ray of each point, shape (N, 3), and how far it passes [mm], (N,)."""
-    from geometry.rays import RayCaster
-
     caster = RayCaster(wall.points_mm, wall.faces)
     aim = points.copy()
     best = np.full(len(points), np.inf)
     found = _unit(eye - points)
     rows = np.arange(len(points))
-    for _ in range(ROUNDS):
+    for step in STEPS:
         start, direction = _bent(caster, wall, eye, _unit(aim[rows] - eye), index)
         along = np.einsum("ij,ij->i", points[rows] - start, direction)
         gap = points[rows] - start - along[:, None] * direction
@@ -71,7 +71,7 @@ def _aim(
         better = miss < best[rows]
         chosen = rows[better]
         best[chosen], found[chosen] = miss[better], -direction[better]
-        aim[rows] += gap
+        aim[rows] += step * gap
         rows = rows[best[rows] > 0.1 * MISS_MM]
         if not rows.size:
             break
@@ -79,12 +79,9 @@ def _aim(
 
 
 def _bent(
-    caster: object, wall: Skin, eye: np.ndarray, direction: np.ndarray, index: float
+    caster: RayCaster, wall: Skin, eye: np.ndarray, direction: np.ndarray, index: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Where the camera's rays go on behind the wall: starts [mm] and unit directions."""
-    from geometry.rays import RayCaster
-
-    assert isinstance(caster, RayCaster)
     origin = np.broadcast_to(eye, direction.shape)
     distance, face, weights = caster.hits(origin, direction)
     met = np.flatnonzero(face >= 0)

@@ -1,0 +1,102 @@
+"""The driver for CUDA: one kernel follows photons from end to end through a tree of boxes.
+
+Tables and sums stay on the device from the first batch to the last. It runs on a processor too,
+where tests compare it with the other driver.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from sim.optics.transport.scene import Scene
+from sim.optics.transport.sources import Sources
+from sim.optics.transport.tally import Tally
+from sim.optics.transport.tree import build_tree
+
+BATCH = 4_000_000
+"""Photons of one launch: well under a second on a data-centre device."""
+SUMS = ("ledger", "bins", "lamps", "radiance")
+
+
+class Megakernel:
+    """Traces batches of photons through one scene."""
+
+    batch = BATCH
+
+    def __init__(self, scene: Scene, sources: Sources, tally: Tally) -> None:
+        import taichi.math as tm
+
+        self._tally, self._skin_faces = tally, scene.skin_faces
+        coating = scene.coating
+        lobes = coating.albedo, coating.specular, coating.roughness
+        self._optics = tm.vec4(*lobes, scene.refractive_index)
+        tree = build_tree(scene.points_mm, scene.faces)
+        lamps = sources.position_mm, sources.axis, sources.emission
+        boxes = tree.lower_mm, tree.upper_mm
+        surface = scene.points_mm, scene.normals
+        self._inputs = [
+            *(_vectors(array) for array in lamps),
+            _numbers(sources.in_shell),
+            *(_vectors(array) for array in boxes),
+            *(_numbers(array) for array in (tree.starts, tree.order)),
+            *(_vectors(array) for array in surface),
+            _vectors(scene.faces),
+        ]
+        self._sums = {name: _numbers(getattr(tally, name)) for name in SUMS}
+        self._tables = [
+            _vectors(sources.power),
+            *(_vectors(getattr(tally, name)) for name in ("face_nodes", "face_weights", "frames")),
+        ]
+        self._to_camera = _vectors(tally.to_camera)
+
+    def trace(self, first: int, count: int, seed: int) -> None:
+        """Follow photons `first` to `first + count` to their ends."""
+        import taichi as ti
+
+        from sim.optics.transport.megakernel_kernels import follow_all
+
+        sums = self._sums
+        follow_all(
+            self._tally.gather,
+            first,
+            count,
+            seed,
+            *self._inputs,
+            self._skin_faces,
+            self._optics,
+            sums["ledger"],
+            *self._tables,
+            sums["bins"],
+            sums["lamps"],
+            self._to_camera,
+            sums["radiance"],
+        )
+        ti.sync()
+
+    def close(self) -> None:
+        """Copy the sums back."""
+        for name, array in self._sums.items():
+            setattr(self._tally, name, array.to_numpy())
+
+
+def _numbers(array: np.ndarray) -> Any:
+    """A copy on the device, number by number."""
+    import taichi as ti
+    from taichi.lang.util import to_taichi_type
+
+    copy = ti.ndarray(to_taichi_type(array.dtype), array.shape)
+    copy.from_numpy(np.ascontiguousarray(array))
+    return copy
+
+
+def _vectors(array: np.ndarray) -> Any:
+    """A copy on the device whose last axis, of 3, is one vector."""
+    import taichi as ti
+    from taichi.lang.util import to_taichi_type
+
+    kind = ti.types.vector(3, to_taichi_type(array.dtype))
+    copy = ti.ndarray(kind, array.shape[:-1])
+    copy.from_numpy(np.ascontiguousarray(array))
+    return copy
