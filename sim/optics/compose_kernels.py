@@ -212,7 +212,7 @@ def expose(
             )
             last = curve.shape[0] - 1
             for c in ti.static(range(3)):
-                entry = tm.clamp(light[c] * gain * last, 0.0, float(last)) + 0.5
+                entry = tm.clamp(light[c] * gain, 0.0, float(last)) + 0.5
                 image[frame, number, c] = curve[int(entry)]
 
 

@@ -43,10 +43,11 @@ def choose_exposure(background: np.ndarray) -> float:
 def encode(linear: np.ndarray, exposure: float) -> np.ndarray:
     """8-bit sRGB of linear radiance of any shape."""
     scaled = np.clip(linear * np.float32(exposure * (LUT_STEPS - 1)), 0.0, LUT_STEPS - 1.0)
-    return _table()[(scaled + 0.5).astype(np.uint16)]
+    return srgb_table()[(scaled + 0.5).astype(np.uint16)]
 
 
 @functools.cache
-def _table() -> np.ndarray:
+def srgb_table() -> np.ndarray:
+    """8-bit sRGB of `LUT_STEPS` even steps of linear light from 0 to 1, uint8."""
     light = np.arange(LUT_STEPS) / (LUT_STEPS - 1)
     return np.round(255.0 * srgb_encode(light)).astype(np.uint8)

@@ -108,7 +108,7 @@ def open_view(skin: Skin, camera: Camera, rays: Rays) -> View:
     caster = RayCaster(skin.points_mm, skin.faces)
     distance, face, weights = caster.hits(rays.origin_mm, rays.direction)
     hit = np.flatnonzero(face >= 0)
-    found = _Hits(pixel=hit, distance_mm=distance[hit], face=face[hit], weights=weights[hit])
+    found = Hits(pixel=hit, distance_mm=distance[hit], face=face[hit], weights=weights[hit])
     return View(
         skin=skin,
         camera=camera,
@@ -117,7 +117,7 @@ def open_view(skin: Skin, camera: Camera, rays: Rays) -> View:
         distance_mm=distance.astype(np.float32),
         face=face.astype(np.int32),
         area_vector_mm2=sum_area_vectors(skin.points_mm, skin.faces, len(skin.points_mm)),
-        background=_describe(found, skin.faces, skin.normals, camera, rays),
+        background=describe(found, skin.faces, skin.normals, camera, rays),
     )
 
 
@@ -135,7 +135,7 @@ def look(view: View, displacement_mm: np.ndarray) -> Moved:
     pixels, found = _nearest(view, patch, patch_faces, face_moved)
     return Moved(
         pixels=pixels,
-        seen=_describe(found, skin.faces, normals, view.camera, view.rays),
+        seen=describe(found, skin.faces, normals, view.camera, view.rays),
         vertices=vertices,
         points_mm=points,
         normals=normals,
@@ -144,7 +144,7 @@ def look(view: View, displacement_mm: np.ndarray) -> Moved:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class _Hits:
+class Hits:
     """Rays that met the skin: pixel (P,), length [mm] (P,), triangle (P,), weights (P, 3)."""
 
     pixel: np.ndarray
@@ -153,9 +153,10 @@ class _Hits:
     weights: np.ndarray
 
 
-def _describe(
-    found: _Hits, faces: np.ndarray, normals: np.ndarray, camera: Camera, rays: Rays
+def describe(
+    found: Hits, faces: np.ndarray, normals: np.ndarray, camera: Camera, rays: Rays
 ) -> GBuffer:
+    """Normals and depths of what rays met, for a skin with these faces and outward normals."""
     direction = rays.direction[found.pixel]
     position = rays.origin_mm[found.pixel] + found.distance_mm[:, None] * direction
     seen = GBuffer(
@@ -182,12 +183,12 @@ def _face_camera(normal: np.ndarray, direction: np.ndarray) -> np.ndarray:
 
 def _nearest(
     view: View, patch: RayCaster | None, patch_faces: np.ndarray, face_moved: np.ndarray
-) -> tuple[np.ndarray, _Hits]:
+) -> tuple[np.ndarray, Hits]:
     """Pixels that saw or see a moved triangle, and what the rays of those pixels meet now."""
     if patch is None:
         nothing = np.zeros(0, dtype=np.int64)
         empty = np.zeros(0, dtype=np.float32)
-        return nothing, _Hits(
+        return nothing, Hits(
             pixel=nothing, distance_mm=empty, face=nothing, weights=np.zeros((0, 3))
         )
     distance, face, weights = patch.hits(view.rays.origin_mm, view.rays.direction)
@@ -201,7 +202,7 @@ def _nearest(
     changed[uncovered] = True
     on_patch = np.flatnonzero(meets_patch)
     past = ~meets_patch[behind.pixel]
-    found = _Hits(
+    found = Hits(
         pixel=np.concatenate([on_patch, behind.pixel[past]]),
         distance_mm=np.concatenate([distance[on_patch], behind.distance_mm[past]]),
         face=np.concatenate([patch_faces[face[on_patch]], behind.face[past]]),
@@ -210,7 +211,7 @@ def _nearest(
     return np.flatnonzero(changed), found
 
 
-def _behind(view: View, pixels: np.ndarray, face_moved: np.ndarray) -> _Hits:
+def _behind(view: View, pixels: np.ndarray, face_moved: np.ndarray) -> Hits:
     """First unmoved triangle along the rays of pixels whose undeformed triangle has moved."""
     found = []
     travelled = view.distance_mm[pixels].astype(np.float64)
@@ -222,7 +223,7 @@ def _behind(view: View, pixels: np.ndarray, face_moved: np.ndarray) -> _Hits:
         travelled = travelled + distance
         stays = (face >= 0) & ~face_moved[face]
         found.append(
-            _Hits(
+            Hits(
                 pixel=pixels[stays],
                 distance_mm=travelled[stays].astype(np.float32),
                 face=face[stays],
@@ -234,9 +235,9 @@ def _behind(view: View, pixels: np.ndarray, face_moved: np.ndarray) -> _Hits:
     fields = ("pixel", "distance_mm", "face", "weights")
     if not found:
         found.append(
-            _Hits(pixel=pixels, distance_mm=travelled, face=pixels, weights=np.zeros((0, 3)))
+            Hits(pixel=pixels, distance_mm=travelled, face=pixels, weights=np.zeros((0, 3)))
         )
-    return _Hits(**{name: np.concatenate([getattr(h, name) for h in found]) for name in fields})
+    return Hits(**{name: np.concatenate([getattr(h, name) for h in found]) for name in fields})
 
 
 def _used(faces: np.ndarray, count: int) -> np.ndarray:

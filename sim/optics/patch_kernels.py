@@ -166,3 +166,10 @@ def fill_keys(keys: Longs, high: ti.i32):
     """Give every pixel of every frame the same key."""
     for at in range(keys.shape[0]):
         keys[at] = ti.cast(high, ti.i64) << 32
+
+
+@ti.kernel
+def copy_rows(source: Vectors, target: Vectors):
+    """Copy to the front of a longer array."""
+    for at in range(source.shape[0]):
+        target[at] = source[at]

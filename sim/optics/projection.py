@@ -51,6 +51,8 @@ class RayMap:
     """Length of the line of sight from the camera to the foot [mm], (H + 2 pad, W + 2 pad)."""
     rays: Rays
     """The rays of the image's own pixels."""
+    travelled_mm: np.ndarray
+    """Length of the line of sight before the rays' origins [mm], shape (H * W,), float32."""
     hit_mm: np.ndarray
     """Where each ray meets the undeformed skin [mm], (H + 2 pad, W + 2 pad, 3), float32; NaN."""
     folded: np.ndarray
@@ -102,6 +104,7 @@ def open_map(mesh: MembraneMesh, camera: Camera, *, index: float) -> RayMap:
         direction=segments.direction.reshape(*shape, 3).astype(np.float32),
         lead_mm=(segments.travelled_mm + along).reshape(shape).astype(np.float32),
         rays=rays,
+        travelled_mm=image(segments.travelled_mm)[:, 0],
         hit_mm=hit.reshape(*shape, 3).astype(np.float32),
         folded=folded[inner].ravel(),
     )

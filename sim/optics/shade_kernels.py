@@ -34,8 +34,8 @@ from sim.optics.kernel_types import (
 from sim.optics.table_kernels import look_up
 from sim.optics.tree_kernels import nearest
 
-FIELD, DIRECT, HYBRID, TABLE = 0, 1, 2, 3
-"""Ways of lighting: the paper's fields, and the models of these names."""
+FIELD, DIRECT, HYBRID, TABLE, GIVEN = 0, 1, 2, 3, 4
+"""Ways of lighting: the paper's fields, the models of these names, and radiance from outside."""
 EDGE_ON = 1e-6
 """Cosine below which light grazes the skin: single-precision rounding of a tangential field."""
 SKIN_OFFSET_MM = 5e-3
@@ -59,7 +59,7 @@ def phong(light, view, normal, diffuse, specular, exponent):
 
 @ti.func
 def lobe(place, led, axis, shape):
-    """cos^m / r^2 of an LED at a place, 0 outside its cone; shape = (m, cosine of half the cone)."""
+    """cos^m / r^2 of an LED at a place, 0 outside its cone; `shape` is m and the cone's cosine."""
     line = led - place
     square = ti.max(line.norm_sqr(), CLOSEST_MM * CLOSEST_MM)
     cosine = -line.dot(axis) / ti.sqrt(square)
@@ -75,6 +75,7 @@ def shade_vertices(
     way_of_lighting: ti.i32,
     vertex_list: Integers,
     points: Vectors,
+    normals: Vectors,
     placed: Vectors,
     turned: Vectors,
     to_camera: Vectors,
@@ -160,6 +161,7 @@ def shade_vertices(
                             list_start,
                             face_list,
                             faces,
+                            normals,
                             placed,
                             low,
                             high,

@@ -63,6 +63,8 @@ class SkinView:
     """`Rays.direction`, shape (N, 3), float32."""
     transmittance: np.ndarray
     """Shape (N,), float32."""
+    travelled_mm: np.ndarray
+    """Length of the line of sight before the ray's origin [mm], shape (N,), float32."""
     folded: np.ndarray
     """Pixels whose rays must be cast in each frame, shape (N,), uint8."""
     layer_start: np.ndarray
@@ -128,6 +130,7 @@ def open_skin_view(mesh: MembraneMesh, camera: Camera, *, index: float) -> SkinV
         origin_mm=ray_map.rays.origin_mm,
         direction=ray_map.rays.direction,
         transmittance=ray_map.rays.transmittance,
+        travelled_mm=ray_map.travelled_mm,
         folded=ray_map.folded.astype(np.uint8),
         layer_start=layers.start,
         layer_face=layers.face,

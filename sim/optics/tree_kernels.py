@@ -14,7 +14,7 @@ import taichi.math as tm
 
 from sim.optics.kernel_types import IntegerRows, Integers, Vectors
 
-LEAF = 4
+LEAF = 2
 WIDTH = 4
 LEVELS = 10
 """Levels that the arrays have room for: 4^11 triangles."""
@@ -23,6 +23,30 @@ MARGIN_MM = 1e-4
 """Boxes are this much larger, so that rounding cannot cut a triangle off [mm]."""
 BARELY = 1e-5
 """Share of a triangle by which it reaches over its edge [1]: no ray slips between two."""
+
+
+@ti.func
+def axes_of(
+    frame,
+    list_start: ti.template(),
+    face_list: ti.template(),
+    faces: ti.template(),
+    normals: ti.template(),
+):
+    """Axes of a frame's boxes, as rows: the last is normal to the skin in the middle of the list.
+
+    Skin is thin: boxes along it are a fraction of the size of boxes at an angle to it.
+    """
+    last = tm.vec3(0.0, 0.0, 1.0)
+    if list_start[frame + 1] > list_start[frame]:
+        middle = face_list[(list_start[frame] + list_start[frame + 1]) // 2] % faces.shape[0]
+        last = normals[faces[middle, 0]]
+    side = tm.vec3(1.0, 0.0, 0.0)
+    if ti.abs(last.x) > 0.7:
+        side = tm.vec3(0.0, 1.0, 0.0)
+    first = last.cross(side).normalized()
+    second = last.cross(first)
+    return ti.Matrix.rows([first, second, last])
 
 
 @ti.kernel
@@ -36,6 +60,7 @@ def build_tree(
     list_start: Integers,
     face_list: Integers,
     faces: IntegerRows,
+    normals: Vectors,
     placed: Vectors,
     low: Vectors,
     high: Vectors,
@@ -44,10 +69,11 @@ def build_tree(
     for frame, leaf in ti.ndrange(frames, level_count[0]):
         least, most = tm.vec3(NOTHING_MM), tm.vec3(-NOTHING_MM)
         first = list_start[frame] + leaf * LEAF
+        turn = axes_of(frame, list_start, face_list, faces, normals)
         for entry in range(first, ti.min(first + LEAF, list_start[frame + 1])):
             face = face_list[entry] % faces.shape[0]
             for corner in ti.static(range(3)):
-                point = placed[frame * vertices + faces[face, corner]]
+                point = turn @ placed[frame * vertices + faces[face, corner]]
                 least, most = ti.min(least, point), ti.max(most, point)
         low[frame * boxes + leaf] = least - MARGIN_MM
         high[frame * boxes + leaf] = most + MARGIN_MM
@@ -68,7 +94,7 @@ def meet(start: tm.vec3, way: tm.vec3, a: tm.vec3, b: tm.vec3, c: tm.vec3):
     """Distance along a ray of unit direction to a triangle, -1 for a miss, and two weights.
 
     Corners are taken relative to the ray: with a' = a - start - (..) way perpendicular to it, the
-    weights are as way . (b' x c'); neighbours share the term of their edge, so no ray slips through.
+    weights are as way . (b' x c'); neighbours share the term of their edge: no ray slips through.
     """
     a_off, b_off, c_off = a - start, b - start, c - start
     a_far, b_far, c_far = a_off.dot(way), b_off.dot(way), c_off.dot(way)
@@ -126,20 +152,22 @@ def nearest(
     list_start: ti.template(),
     face_list: ti.template(),
     faces: ti.template(),
+    normals: ti.template(),
     placed: ti.template(),
     low: ti.template(),
     high: ti.template(),
 ):
     """Nearest moved triangle within `reach`, its distance: (-1, reach) if there is none."""
-    inverse = inverse_of(way)
     found, limit = -1, reach
     top = levels - 1
     level, node = top, 0
     going = list_start[frame + 1] > list_start[frame]
+    turn = axes_of(frame, list_start, face_list, faces, normals)
+    turned_start, inverse = turn @ start, inverse_of(turn @ way)
     while going:
         down = False
         at = frame * boxes + level_start[level] + node
-        if meets_box(start, inverse, low[at], high[at], limit):
+        if meets_box(turned_start, inverse, low[at], high[at], limit):
             if level > 0:
                 level -= 1
                 node *= WIDTH

@@ -10,10 +10,13 @@ import pytest
 from sim.optics.bake import bake_light
 from sim.optics.render import shoot
 from sim.optics.specimen import dent, finger
+from tests.synthetic_light import UNTRACED
 from workbench.core.camera import Camera
 from workbench.core.lighting import LedRing, LightModel
 from workbench.core.optics import Optics
 from workbench.core.sensing import TactileFrames
+
+pytestmark = pytest.mark.usefixtures("taichi_device")
 
 SMALL = Camera(width_px=120, height_px=120, fov_x_deg=90.0)
 DENT_MM = (15.0, 0.0, 22.0)
@@ -35,7 +38,7 @@ def turned(azimuth_deg: float) -> tuple[float, float, float, float]:
     return (math.cos(half), 0.0, 0.0, math.sin(half))
 
 
-@pytest.mark.parametrize("model", list(LightModel))
+@pytest.mark.parametrize("model", UNTRACED)
 def test_turning_the_camera_by_120_degrees_permutes_the_colours(model: LightModel) -> None:
     """The ring maps onto itself with red, green, blue cycled; so does the image, exposure kept."""
     # Edges of 1.01 mm put 93 vertices around the skin and 75 around the cavity: both multiples

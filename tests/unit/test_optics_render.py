@@ -16,12 +16,15 @@ from sim.optics.gbuffer import open_view
 from sim.optics.markers import ink, no_ink, place_markers, print_dots
 from sim.optics.render import shoot
 from sim.optics.specimen import dent, finger
+from tests.synthetic_light import SHADED, lit
 from workbench.core.camera import Camera
 from workbench.core.errors import Cancelled, DesignError, OpticsError
 from workbench.core.lighting import LedMount, LedRing, LightModel
 from workbench.core.optics import Coating, Markers, Optics
 from workbench.core.results import MembraneMesh
 from workbench.core.sensing import TactileFrames
+
+pytestmark = pytest.mark.usefixtures("taichi_device")
 
 SMALL = Camera(width_px=160, height_px=120)
 DENT_MM = (15.0, 0.0, 22.0)
@@ -33,13 +36,14 @@ def mesh() -> MembraneMesh:
 
 
 def render(mesh: MembraneMesh, optics: Optics, **shape: Any) -> TactileFrames:
-    light = bake_light(mesh, optics.ring, model=optics.light_model)
+    light, table = lit(mesh, optics.light_model, optics.ring)
     shape = {"at_mm": DENT_MM, "depth_mm": 1.2, "radius_mm": 4.0, **shape}
     moved = dent(mesh.outer, **shape)
-    return shoot(mesh, light, optics, displacement_mm=np.stack([0.5 * moved, moved]))
+    frames = np.stack([0.5 * moved, moved])
+    return shoot(mesh, light, optics, table=table, displacement_mm=frames)
 
 
-@pytest.mark.parametrize("model", list(LightModel))
+@pytest.mark.parametrize("model", SHADED)
 def test_unmoved_pixels_are_exactly_the_background(mesh: MembraneMesh, model: LightModel) -> None:
     """Grey difference 0 outside the moved mask, in image, depth and normal."""
     frames = render(mesh, Optics(camera=SMALL, light_model=model))
@@ -51,7 +55,7 @@ def test_unmoved_pixels_are_exactly_the_background(mesh: MembraneMesh, model: Li
         assert np.array_equal(images[1:][still], repeated[still], equal_nan=True)
 
 
-@pytest.mark.parametrize("model", list(LightModel))
+@pytest.mark.parametrize("model", SHADED)
 def test_a_dent_shows_in_every_colour(mesh: MembraneMesh, model: LightModel) -> None:
     """Red, green and blue each change by 10 grey levels or more somewhere in the dent."""
     frames = render(mesh, Optics(camera=SMALL, light_model=model))

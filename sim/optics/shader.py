@@ -1,0 +1,142 @@
+"""Shading of the vertices that moved, on the device."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import taichi as ti
+
+from sim.optics.device_arrays import computes_on_gpu, empty, on_device
+from sim.optics.gbuffer import MOVED_MM
+from sim.optics.raster import Raster
+from sim.optics.shade_kernels import GIVEN, shade_vertices
+from sim.optics.shading import FULL_SHADOW_MM
+from sim.optics.vertex_light import VertexLight
+from workbench.core.errors import OpticsError
+
+
+class Shader:
+    """The lights of one design over the vertices of a raster."""
+
+    def __init__(self, raster: Raster, lit: VertexLight) -> None:
+        self._raster = raster
+        self.lit = lit
+        self._lights = (
+            on_device(lit.light, vector=4),
+            on_device(lit.led_mm, vector=3),
+            on_device(lit.led_axis, vector=3),
+            on_device(lit.led_rgb, vector=3),
+            on_device(lit.led_shape, vector=2),
+            on_device(lit.table),
+            on_device(lit.nodes),
+            on_device(lit.weights),
+            on_device(lit.node_frames),
+            lit.diffuse,
+            lit.specular,
+            lit.gloss,
+            MOVED_MM,
+            FULL_SHADOW_MM,
+        )
+
+    @property
+    def given(self) -> bool:
+        """Whether radiance comes from outside, frame by frame."""
+        return self.lit.way_of_lighting == GIVEN
+
+    def shade(self, radiance: np.ndarray | None) -> None:
+        """Fill the raster's radiance for the frames it looks at.
+
+        Args:
+            radiance: Where it is given: of each frame and vertex, shape (k, V, 3), float32.
+        """
+        raster = self._raster
+        if self.given:
+            _take(raster.radiance, radiance)
+            return
+        self._run(
+            raster.vertex_entries,
+            raster.vertex_list,
+            raster.placed,
+            raster.turned,
+            raster.to_camera,
+            raster.radiance,
+            shadows=1,
+        )
+
+    def undeformed(self, normals: np.ndarray | None = None) -> np.ndarray:
+        """Radiance of the undeformed skin, shape (V, 3), float32.
+
+        Args:
+            normals: Outward unit normals to use instead of the skin's, shape (V, 3).
+
+        Raises:
+            OpticsError: If radiance is given from outside: nothing here can shade.
+        """
+        if self.given:
+            raise OpticsError(
+                "the light model photons shades no vertices by itself",
+                hint="hand its radiance in, or choose the light model hybrid",
+                at="optics.light_model",
+            )
+        raster = self._raster
+        turned = raster.normals
+        if normals is not None:
+            turned = on_device(normals.astype(np.float32), vector=3)
+        everything = on_device(np.arange(raster.vertices, dtype=np.int32))
+        found = empty(ti.f32, raster.vertices, vector=3)
+        self._run(
+            raster.vertices,
+            everything,
+            raster.points,
+            turned,
+            raster.still_to_camera,
+            found,
+            shadows=0,
+        )
+        return found.to_numpy()
+
+    def _run(
+        self,
+        count: int,
+        vertex_list: Any,
+        placed: Any,
+        turned: Any,
+        to_camera: Any,
+        radiance: Any,
+        *,
+        shadows: int,
+    ) -> None:
+        raster = self._raster
+        *tree, low, high = raster.tree
+        shade_vertices(
+            count,
+            self.lit.way_of_lighting,
+            vertex_list,
+            raster.points,
+            raster.normals,
+            placed,
+            turned,
+            to_camera,
+            *self._lights,
+            shadows,
+            *tree,
+            raster.faces,
+            low,
+            high,
+            radiance,
+        )
+
+
+def _take(target: Any, radiance: np.ndarray | None) -> None:
+    """Copy given radiance (k, V, 3) to the front of a flat device array."""
+    if radiance is None:
+        raise OpticsError(
+            "the light model photons needs the radiance of every frame",
+            hint="trace the frames' photons first",
+            at="optics.light_model",
+        )
+    from sim.optics.patch_kernels import copy_rows
+
+    rows = np.ascontiguousarray(radiance.reshape(-1, 3), dtype=np.float32)
+    copy_rows(on_device(rows, vector=3) if computes_on_gpu() else rows, target)
