@@ -7,7 +7,7 @@ vertices. Sums are whole numbers of `FIXED_POINT`, so no order of the threads ch
 
 # Taichi reads annotations and operators in its own way.
 # pyright: reportInvalidTypeForm=false, reportGeneralTypeIssues=false, reportIndexIssue=false
-# pyright: reportCallIssue=false, reportAttributeAccessIssue=false
+# pyright: reportCallIssue=false, reportAttributeAccessIssue=false, reportOptionalCall=false
 
 import taichi as ti
 import taichi.math as tm

@@ -55,8 +55,9 @@ class Megakernel:
         """Follow photons `first` to `first + count` to their ends."""
         import taichi as ti
 
-        from sim.optics.transport.megakernel_kernels import follow_all
+        from sim.optics.transport import megakernel_kernels
 
+        follow_all: Any = megakernel_kernels.follow_all
         sums = self._sums
         follow_all(
             self._tally.gather,

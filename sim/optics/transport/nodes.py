@@ -146,11 +146,10 @@ def _edges(skin: Skin) -> Any:
     length = np.linalg.norm(skin.points_mm[start] - skin.points_mm[stop], axis=1)
     count = len(skin.points_mm)
     both = np.concatenate([start, stop]), np.concatenate([stop, start])
-    links = coo_matrix((np.tile(np.maximum(length, 1e-9), 2), both), (count, count)).tocsr()
+    links: Any = coo_matrix((np.tile(np.maximum(length, 1e-9), 2), both), (count, count)).tocsr()
     # An edge of two faces was added twice over; its length is the mean of what was added.
-    times = coo_matrix((np.ones(2 * len(start)), both), (count, count)).tocsr()
-    links.data /= times.data
-    return links
+    times: Any = coo_matrix((np.ones(2 * len(start)), both), (count, count)).tocsr()
+    return links.multiply(times.power(-1.0)).tocsr()
 
 
 def _vertex_areas(skin: Skin) -> np.ndarray:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import enum
-from typing import Protocol
+from typing import Any, Protocol
 
 from sim.optics.transport.scene import Scene
 from sim.optics.transport.sources import Sources
@@ -69,7 +69,8 @@ def driver_of_device() -> Driver:
     """The driver for the device that Taichi was opened on."""
     import taichi as ti
 
-    return Driver.MEGAKERNEL if ti.cfg.arch == ti.cuda else Driver.WAVEFRONT
+    settings: Any = ti.cfg
+    return Driver.MEGAKERNEL if settings.arch == ti.cuda else Driver.WAVEFRONT
 
 
 def _open(driver: Driver, scene: Scene, sources: Sources, tally: Tally) -> _Tracer:

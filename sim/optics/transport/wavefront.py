@@ -9,6 +9,7 @@ from __future__ import annotations
 import itertools
 import os
 from concurrent.futures import ThreadPoolExecutor
+from typing import Any
 
 import numpy as np
 
@@ -53,7 +54,8 @@ class Wavefront:
             np.empty(count, dtype=np.int32),
         ]
         lamps = sources.position_mm, sources.axis, sources.emission, sources.in_shell
-        kernels.begin_all(first, seed, *lamps, *state)
+        begin_all: Any = kernels.begin_all
+        begin_all(first, seed, *lamps, *state)
         rows = np.arange(count, dtype=np.int32)
         for event in range(EVENTS):
             if not rows.size:
@@ -70,10 +72,11 @@ class Wavefront:
 
         from sim.optics.transport import wavefront_kernels as kernels
 
+        happen_to_all: Any = kernels.happen_to_all
         scene, tally = self._scene, self._tally
         hits = self._hits(state[0], state[1])
         alive = np.empty(len(rows), dtype=np.int32)
-        kernels.happen_to_all(
+        happen_to_all(
             tally.gather,
             first,
             event,
