@@ -119,7 +119,7 @@ def trace(file: Path, out: Path, photons: int, names: list[str]) -> None:
                     first_photon=half * photons,
                     displacement_mm=displacement,
                 )
-                halves.append(found.radiance / found.photons)
+                halves.append(found.radiance * (len(leds.rgb) / found.photons))
             seconds = time.perf_counter() - start
             target = out / f"{name.replace(' ', '_')}_{frame}.npz"
             np.savez_compressed(
