@@ -17,10 +17,10 @@ plane and in the skin, hence along n_T x P.
 
 `plane_target` has P = n_T x L, so of the two senses the one toward the light is the part of L
 tangential to the skin, (L - (L . n_T) n_T) / |...|. `plane_source` has P = n_S x (T - S), n_S being
-the normal of the skin nearest to the light; the sense is that of the side on which the light is,
-which on a convex skin is the way the curve comes from the light. On skins that are not convex the
-curve may set out the other way round; `checks.plane_closed_form` says how often. Where light and
-normal leave no plane, and where no way on the skin leads to the light, the straight line takes
+the normal of the skin nearest to the light, and likewise the sense on whose side the light is. The
+paper does not say which sense it takes; the shorter way along the curve to where it comes nearest
+to the light often sets out the other way, over the tip, see `checks.plane_closed_form`. Where light
+and normal leave no plane, and where no way on the skin leads to the light, the straight line takes
 their place.
 
 Left out of all but the traced ones: refraction of the light's own path, and light scattered by the

@@ -12,12 +12,13 @@ import dataclasses
 import numpy as np
 
 from sim.metrics import contact_box, contact_pixels, mae_grey, psnr_dB, ssim
-from sim.optics.bake import bake_light
+from sim.optics.bake import bake_light, normal_at
 from sim.optics.camera import focal_px, pixel_centres, project, refracted_rays, unproject
 from sim.optics.gbuffer import open_view
 from sim.optics.lights import place_leds
 from sim.optics.refraction import refract
 from sim.optics.render import shoot
+from sim.optics.section_curve import plane_section, tangent_toward
 from sim.optics.specimen import dent, finger
 from workbench.core.camera import Camera, LensModel
 from workbench.core.errors import OpticsError
@@ -32,6 +33,10 @@ DENT_DEPTH_MM = 1.2
 DENT_RADIUS_MM = 4.0
 ANGLES_DEG = np.linspace(0.0, 89.0, 90)
 SILICONE_INDEX = 1.41
+NEAREST_MM = 2.0
+"""Distance from the light below which no section curve is compared [mm]."""
+LEAST_PLANE = 0.1
+"""Sine of light and normal below which a plane is too ill defined to compare on a mesh [1]."""
 TURN = (0.9, 0.3, -0.3, 0.1)
 """Quaternion of the round trip's camera, before it is made a unit one."""
 DISTORTIONS: dict[LensModel, tuple[tuple[float, ...], ...]] = {
@@ -120,6 +125,65 @@ def tangency_error_deg(mesh: MembraneMesh, ring: LedRing) -> float:
     # Where the light falls along the normal there is no plane and the field is the straight line.
     fallback = (light.direction == straight.direction).all(axis=2)
     return float(np.degrees(np.arcsin(np.abs(sine[~fallback]).max())))
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class PlaneCheck:
+    """The closed form of a plane field against the curve in which the plane cuts the mesh."""
+
+    median_deg: float
+    """Median angle between closed form and cut curve as lines, without their sense [degree]."""
+    percentile_95_deg: float
+    other_sense_1: float
+    """Share of targets at which the shorter way along the curve to where it comes nearest to the
+    light sets out the other way [1]. A light on the far side is then reached over the tip, so this
+    is not small on a convex skin either."""
+    targets: int
+
+
+def plane_closed_form(
+    model: LightModel, mesh: MembraneMesh, ring: LedRing, *, targets: int = 300, seed: int = 7
+) -> PlaneCheck:
+    """`plane_target` or `plane_source` against the cut mesh, the published way, at random targets.
+
+    Targets nearer than 2 mm to the light have no curve to speak of and are left out, as are those
+    at which the plane is not defined, and those within a step of the skin's border.
+    """
+    skin, light = mesh.seen, bake_light(mesh, ring, model=model)
+    edges = skin.points_mm[skin.faces[:, 0]] - skin.points_mm[skin.faces[:, 1]]
+    step_mm = 1.5 * float(np.linalg.norm(edges, axis=1).mean())
+    random = np.random.default_rng(seed)
+    angles, turned = [], 0
+    for vertex in random.choice(len(skin.points_mm), targets, replace=False):
+        led = int(random.integers(len(light.led_mm)))
+        target, source = skin.points_mm[vertex], light.led_mm[led]
+        normal = (
+            skin.normals[vertex] if model is LightModel.PLANE_TARGET else normal_at(skin, source)
+        )
+        across = np.cross(normal, source - target)
+        away = float(np.linalg.norm(source - target))
+        if away < NEAREST_MM or np.linalg.norm(across) < LEAST_PLANE * away:
+            continue
+        curve = plane_section(skin, target, across / np.linalg.norm(across))
+        cut = None if curve is None else tangent_toward(curve, target, source, step_mm=step_mm)
+        if cut is None:
+            continue
+        cosine = float(cut @ light.direction[led, vertex])
+        angles.append(np.degrees(np.arccos(min(1.0, abs(cosine)))))
+        turned += cosine < 0.0
+    median, high = np.percentile(angles, (50.0, 95.0))
+    return PlaneCheck(
+        median_deg=float(median),
+        percentile_95_deg=float(high),
+        other_sense_1=turned / len(angles),
+        targets=len(angles),
+    )
+
+
+def plane_closed_form_error_deg(model: LightModel, mesh: MembraneMesh) -> tuple[float, float]:
+    """Median and 95th percentile [degree] of `plane_closed_form` with the default ring."""
+    found = plane_closed_form(model, mesh, LedRing())
+    return found.median_deg, found.percentile_95_deg
 
 
 def irradiance_error(mesh: MembraneMesh, ring: LedRing) -> float:

@@ -14,8 +14,9 @@ import numpy as np
 from sim.optics.camera import Rays, focal_px
 from sim.optics.gbuffer import GBuffer, interpolate
 from sim.optics.lens import ANGULAR
+from sim.optics.marker_patterns import pattern_places
 from workbench.core.camera import Camera
-from workbench.core.optics import Markers
+from workbench.core.optics import MarkerPattern, Markers
 from workbench.core.results import Skin
 
 INK_REFLECTANCE = 0.08
@@ -49,13 +50,18 @@ class Coverage:
 
 
 def place_markers(skin: Skin, markers: Markers) -> np.ndarray:
-    """Dot centres on the skin [mm], shape (M, 3): vertices at least a spacing apart.
+    """Dot centres on the skin [mm], shape (M, 3); none when they are not visible.
 
-    Farthest-point order from the highest vertex, until every vertex is nearer than the spacing to
-    a dot. Deterministic; no dots when they are not visible.
+    `even` takes vertices at least a spacing apart, farthest first from the highest, until every
+    vertex is nearer than the spacing to a dot; `marker_patterns` has the others.
+
+    Raises:
+        DesignError: If the pattern cannot be laid on this skin.
     """
     if not markers.visible:
         return np.zeros((0, 3))
+    if markers.pattern is not MarkerPattern.EVEN:
+        return pattern_places(skin, markers)
     points = skin.points_mm
     chosen = [int(np.argmax(points[:, 2]))]
     nearest = np.full(len(points), np.inf)
