@@ -22,6 +22,9 @@ from workbench.core.results import Skin
 LEAST_GRADIENT = 0.05
 """Length of the mean gradient below which the directions about a vertex cancel [1]: at the source,
 and where ways from both sides meet."""
+FLOW_TIME = 4.0
+"""Time that heat flows in squares of the mean edge [1]. Directions on a cylinder at edges of 0.4 mm
+err by 0.65 degree in the median; at 1, the usual value, by 2.1, at 16 by more near the border."""
 
 
 class SkinWays:
@@ -85,7 +88,7 @@ class SkinWays:
             from potpourri3d import MeshHeatMethodDistanceSolver
 
             points, faces = submesh(self._skin, vertices)
-            self._solvers[part] = MeshHeatMethodDistanceSolver(points, faces)
+            self._solvers[part] = MeshHeatMethodDistanceSolver(points, faces, t_coef=FLOW_TIME)
         return self._solvers[part]
 
 
