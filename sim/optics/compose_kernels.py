@@ -51,10 +51,10 @@ def describe(
     depth: Floats,
 ):
     """Normals facing the camera and depth along its axis; NaN and 0 where there is no skin."""
-    for frame, number in ti.ndrange(frames, pixels):
-        at = frame * pixels + number
+    for at in range(frames * pixels):
         face = seen_face[at]
         if face != SAME:
+            frame, number = at // pixels, at % pixels
             facing, away = tm.vec3(0.0), tm.nan
             if face >= 0:
                 way = direction[number]
@@ -97,10 +97,10 @@ def spread_ink(
     marker: Integers,
 ):
     """Covered share of the pixels that changed, and the nearest dot; `markers.ink` is the twin."""
-    for frame, number in ti.ndrange(frames, pixels):
-        at = frame * pixels + number
+    for at in range(frames * pixels):
         face = seen_face[at]
         if face != SAME:
+            frame, number = at // pixels, at % pixels
             share, nearest, gap = 0.0, 0, 1e9
             if face >= 0 and dot_start[face + 1] > dot_start[face]:
                 place = blend(points, 0, faces, face, seen_weights[at])
@@ -181,17 +181,13 @@ def expose(
     inked_background: ti.i32,
     gain: ti.f32,
     curve: Bytes,
-    background: ti.types.ndarray(dtype=ti.u8, ndim=2),
     image: ti.types.ndarray(dtype=ti.u8, ndim=3),
 ):
-    """8-bit images; `display.encode` is the twin of the curve."""
-    for frame, number in ti.ndrange(frames, pixels):
-        at = frame * pixels + number
+    """Write the pixels that changed into images of the background; `display.encode` is the twin."""
+    for at in range(frames * pixels):
         face = seen_face[at]
-        if face == SAME:
-            for c in ti.static(range(3)):
-                image[frame, number, c] = background[number, c]
-        else:
+        if face != SAME:
+            frame, number = at // pixels, at % pixels
             light = light_of(
                 frame,
                 number,
@@ -210,9 +206,8 @@ def expose(
                 ink_gain,
                 inked_background,
             )
-            last = curve.shape[0] - 1
             for c in ti.static(range(3)):
-                entry = tm.clamp(light[c] * gain, 0.0, float(last)) + 0.5
+                entry = tm.clamp(light[c] * gain, 0.0, float(curve.shape[0] - 1)) + 0.5
                 image[frame, number, c] = curve[int(entry)]
 
 
@@ -233,16 +228,14 @@ def gather_light(
     has_dots: ti.i32,
     ink_gain: ti.f32,
     inked_background: ti.i32,
-    background: Vectors,
     linear: VectorRows,
 ):
-    """Linear images, shape (frames, pixels)."""
-    for frame, number in ti.ndrange(frames, pixels):
-        at = frame * pixels + number
+    """The same with linear light, shape (frames, pixels)."""
+    for at in range(frames * pixels):
         face = seen_face[at]
-        light = background[number]
         if face != SAME:
-            light = light_of(
+            frame, number = at // pixels, at % pixels
+            linear[frame, number] = light_of(
                 frame,
                 number,
                 at,
@@ -260,4 +253,3 @@ def gather_light(
                 ink_gain,
                 inked_background,
             )
-        linear[frame, number] = light

@@ -32,9 +32,7 @@ class Imager:
     def __init__(self, raster: Raster, shader: Shader, backdrop: Backdrop) -> None:
         self.raster, self.shader, self.backdrop = raster, shader, backdrop
         self._undeformed = on_device(backdrop.undeformed, vector=3)
-        self._background = on_device(backdrop.background, vector=3)
         self._remainder = on_device(backdrop.remainder, vector=3)
-        self._background_rgb = on_device(backdrop.background_rgb)
         self._curve = on_device(srgb_table())
         self._dots = on_device(backdrop.dots_mm, vector=3)
         self._dot_start, self._dot_of = on_device(backdrop.dot_start), on_device(backdrop.dot_of)
@@ -128,13 +126,13 @@ class Imager:
     def expose(self, images: np.ndarray) -> None:
         """Write the grey levels of the frames looked at, shape (k, N, 3), uint8."""
         gain = self.backdrop.exposure * (LUT_STEPS - 1)
-        compose_kernels.expose(
-            *self._seen(len(images)), gain, self._curve, self._background_rgb, images
-        )
+        images[:] = self.backdrop.background_rgb
+        compose_kernels.expose(*self._seen(len(images)), gain, self._curve, images)
 
     def gather_light(self, linear: np.ndarray) -> None:
         """Write the linear light of the frames looked at, shape (k, N, 3), float32."""
-        compose_kernels.gather_light(*self._seen(len(linear)), self._background, linear)
+        linear[:] = self.backdrop.background
+        compose_kernels.gather_light(*self._seen(len(linear)), linear)
 
     def _seen(self, frames: int) -> tuple[Any, ...]:
         raster, back = self.raster, self.backdrop

@@ -47,7 +47,8 @@ class Raster:
         self._face_counts = empty(ti.i32, self.frames * self._face_chunks)
         self._vertex_counts = empty(ti.i32, self.frames * self._vertex_chunks)
         self.face_list, self.vertex_list = empty(ti.i32, 0), empty(ti.i32, 0)
-        self.low, self.high = (empty(ti.f32, 0, vector=3) for _ in range(2))
+        # Low and high corners of the tree's boxes, of places and of normals.
+        self.corners = [empty(ti.f32, 0, vector=3) for _ in range(4)]
         self.list_start = empty(ti.i32, self.frames + 1)
         self.level_start, self.level_count = (empty(ti.i32, tree_kernels.LEVELS) for _ in range(2))
         self.vertex_entries = self.levels = self.boxes = 0
@@ -64,7 +65,7 @@ class Raster:
         self.origin = on_device(view.origin_mm, vector=3)
         self.direction = on_device(view.direction, vector=3)
         self.transmittance = on_device(view.transmittance)
-        self.folded = on_device(view.folded)
+        self.folded, self._some_folded = on_device(view.folded), int(view.folded.any())
         self.layer_start, self.layer_face = on_device(view.layer_start), on_device(view.layer_face)
         self.layer_mm = on_device(view.layer_mm)
         self.seen_start, self.seen_pixel = on_device(view.seen_start), on_device(view.seen_pixel)
@@ -111,8 +112,7 @@ class Raster:
             self.faces,
             self.normals,
             self.placed,
-            self.low,
-            self.high,
+            *self.corners,
         )
         raster_kernels.draw(
             faces,
@@ -142,13 +142,13 @@ class Raster:
             self.placed,
             self.origin,
             self.direction,
+            self._some_folded,
             self.folded,
             self.layer_start,
             self.layer_face,
             self.layer_mm,
-            *self.tree[:-2],
-            self.low,
-            self.high,
+            *self.tree,
+            *self.corners,
             self.seen_face,
             self.seen_weights,
             self.seen_mm,
@@ -157,7 +157,7 @@ class Raster:
 
     @property
     def tree(self) -> tuple[Any, ...]:
-        """The tree's arguments in the order of the kernels that cast rays, boxes last."""
+        """The tree's levels and list in the order of the kernels that cast rays."""
         return (
             self.levels,
             self.boxes,
@@ -165,8 +165,6 @@ class Raster:
             self.level_count,
             self.list_start,
             self.face_list,
-            self.low,
-            self.high,
         )
 
     def _list(self, displacement: Any, frames: int) -> int:
@@ -192,8 +190,8 @@ class Raster:
         self.boxes = int(counts.sum())
         self.face_list = _roomy(self.face_list, ti.i32, int(face_at[-1]))
         self.vertex_list = _roomy(self.vertex_list, ti.i32, int(vertex_at[-1]))
-        self.low = _roomy(self.low, ti.f32, frames * self.boxes, vector=3)
-        self.high = _roomy(self.high, ti.f32, frames * self.boxes, vector=3)
+        room = frames * self.boxes
+        self.corners = [_roomy(array, ti.f32, room, vector=3) for array in self.corners]
         self.vertex_entries = int(vertex_at[-1])
         face_starts, vertex_starts = face_at[:-1].copy(), vertex_at[:-1].copy()
         if computes_on_gpu():

@@ -105,6 +105,7 @@ def resolve(
     placed: Vectors,
     origin: Vectors,
     direction: Vectors,
+    some_folded: ti.i32,
     folded: Bytes,
     layer_start: Integers,
     layer_face: Integers,
@@ -117,18 +118,23 @@ def resolve(
     face_list: Integers,
     low: Vectors,
     high: Vectors,
+    normal_low: Vectors,
+    normal_high: Vectors,
     seen_face: Integers,
     seen_weights: Pairs,
     seen_mm: Floats,
     on_patch: Bytes,
 ):
     """Decide what every pixel of every frame sees, and make the keys ready for the next frames."""
-    for frame, number in ti.ndrange(frames, pixels):
-        at = frame * pixels + number
+    for at in range(frames * pixels):
         key = keys[at]
         word = ti.cast(key >> 32, ti.i32)
         found = SAME
-        if word != UNTOUCHED or folded[number]:
+        number = at
+        if frames > 1:
+            number = at % pixels
+        if word != UNTOUCHED or (some_folded and folded[number]):
+            frame = at // pixels
             keys[at] = key_of(UNTOUCHED, 0)
             face, distance = -1, NOTHING_MM
             if word < UNCOVERED:
@@ -162,6 +168,8 @@ def resolve(
                     placed,
                     low,
                     high,
+                    normal_low,
+                    normal_high,
                 )
             patch = face >= 0 and distance < still_mm
             if patch or uncovered:

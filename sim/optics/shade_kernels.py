@@ -103,6 +103,8 @@ def shade_vertices(
     faces: IntegerRows,
     low: Vectors,
     high: Vectors,
+    normal_low: Vectors,
+    normal_high: Vectors,
     radiance: Vectors,
 ):
     """Radiance of each vertex on the list; `gloss` is Phong's exponent or GGX's roughness."""
@@ -165,6 +167,8 @@ def shade_vertices(
                             placed,
                             low,
                             high,
+                            normal_low,
+                            normal_high,
                         )
                         if blocker >= 0:
                             returned *= 1.0 - depth

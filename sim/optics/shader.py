@@ -108,7 +108,6 @@ class Shader:
         shadows: int,
     ) -> None:
         raster = self._raster
-        *tree, low, high = raster.tree
         shade_vertices(
             count,
             self.lit.way_of_lighting,
@@ -120,10 +119,9 @@ class Shader:
             to_camera,
             *self._lights,
             shadows,
-            *tree,
+            *raster.tree,
             raster.faces,
-            low,
-            high,
+            *raster.corners,
             radiance,
         )
 

@@ -26,6 +26,19 @@ BARELY = 1e-5
 
 
 @ti.func
+def outward(a, b, c):
+    """Unit normal of a triangle; 0 where it has none."""
+    normal = (b - a).cross(c - a)
+    return normal / ti.max(normal.norm(), 1e-20)
+
+
+@ti.func
+def may_leave(way, least, most):
+    """Whether a ray could pass outward through a triangle whose normal lies in a box."""
+    return ti.max(way * least, way * most).sum() > 0.0
+
+
+@ti.func
 def axes_of(
     frame,
     list_start: ti.template(),
@@ -64,10 +77,13 @@ def build_tree(
     placed: Vectors,
     low: Vectors,
     high: Vectors,
+    normal_low: Vectors,
+    normal_high: Vectors,
 ):
-    """Boxes of all levels of all frames; those beyond a frame's list stay empty."""
+    """Boxes of places and of normals, all levels of all frames; empty beyond a frame's list."""
     for frame, leaf in ti.ndrange(frames, level_count[0]):
         least, most = tm.vec3(NOTHING_MM), tm.vec3(-NOTHING_MM)
+        flattest, steepest = tm.vec3(NOTHING_MM), tm.vec3(-NOTHING_MM)
         first = list_start[frame] + leaf * LEAF
         turn = axes_of(frame, list_start, face_list, faces, normals)
         for entry in range(first, ti.min(first + LEAF, list_start[frame + 1])):
@@ -75,16 +91,27 @@ def build_tree(
             for corner in ti.static(range(3)):
                 point = turn @ placed[frame * vertices + faces[face, corner]]
                 least, most = ti.min(least, point), ti.max(most, point)
+            base = frame * vertices
+            a, b, c = faces[face, 0], faces[face, 1], faces[face, 2]
+            normal = outward(placed[base + a], placed[base + b], placed[base + c])
+            flattest, steepest = ti.min(flattest, normal), ti.max(steepest, normal)
+        normal_low[frame * boxes + leaf] = flattest
+        normal_high[frame * boxes + leaf] = steepest
         low[frame * boxes + leaf] = least - MARGIN_MM
         high[frame * boxes + leaf] = most + MARGIN_MM
     for level in ti.static(range(1, LEVELS)):
         for frame, box in ti.ndrange(frames, level_count[level]):
             least, most = tm.vec3(NOTHING_MM), tm.vec3(-NOTHING_MM)
+            flattest, steepest = tm.vec3(NOTHING_MM), tm.vec3(-NOTHING_MM)
             below = frame * boxes + level_start[level - 1]
             last = ti.min((box + 1) * WIDTH, level_count[level - 1])
             for child in range(box * WIDTH, last):
                 least = ti.min(least, low[below + child])
                 most = ti.max(most, high[below + child])
+                flattest = ti.min(flattest, normal_low[below + child])
+                steepest = ti.max(steepest, normal_high[below + child])
+            normal_low[frame * boxes + level_start[level] + box] = flattest
+            normal_high[frame * boxes + level_start[level] + box] = steepest
             low[frame * boxes + level_start[level] + box] = least
             high[frame * boxes + level_start[level] + box] = most
 
@@ -156,8 +183,14 @@ def nearest(
     placed: ti.template(),
     low: ti.template(),
     high: ti.template(),
+    normal_low: ti.template(),
+    normal_high: ti.template(),
 ):
-    """Nearest moved triangle within `reach`, its distance: (-1, reach) if there is none."""
+    """Nearest moved triangle within `reach`, its distance: (-1, reach) if there is none.
+
+    With `any_will_do`, any triangle that the ray leaves the body through. A ray from inside meets
+    such a one first, so the rest, which is most of a dent as its lights see it, is passed over.
+    """
     found, limit = -1, reach
     top = levels - 1
     level, node = top, 0
@@ -167,7 +200,10 @@ def nearest(
     while going:
         down = False
         at = frame * boxes + level_start[level] + node
-        if meets_box(turned_start, inverse, low[at], high[at], limit):
+        worth = True
+        if ti.static(any_will_do):
+            worth = may_leave(way, normal_low[at], normal_high[at])
+        if worth and meets_box(turned_start, inverse, low[at], high[at], limit):
             if level > 0:
                 level -= 1
                 node *= WIDTH
@@ -177,14 +213,14 @@ def nearest(
                 for entry in range(first, ti.min(first + LEAF, list_start[frame + 1])):
                     face = face_list[entry] % faces.shape[0]
                     base = frame * vertices
-                    distance, _v, _w = meet(
-                        start,
-                        way,
-                        placed[base + faces[face, 0]],
-                        placed[base + faces[face, 1]],
-                        placed[base + faces[face, 2]],
-                    )
-                    if distance >= 0.0 and distance < limit:
+                    a = placed[base + faces[face, 0]]
+                    b = placed[base + faces[face, 1]]
+                    c = placed[base + faces[face, 2]]
+                    distance, _v, _w = meet(start, way, a, b, c)
+                    counts = True
+                    if ti.static(any_will_do):
+                        counts = (b - a).cross(c - a).dot(way) > 0.0
+                    if counts and distance >= 0.0 and distance < limit:
                         found, limit = face, distance
                 if ti.static(any_will_do):
                     going = found < 0
