@@ -17,7 +17,11 @@ import numpy as np
 
 from sim.metrics import psnr_dB, ssim
 from sim.optics.display import choose_exposure, encode
-from workbench.core.errors import StoreError
+from sim.optics.render import Studio
+from workbench.core.errors import OpticsError, StoreError
+from workbench.core.lighting import LightModel
+from workbench.core.optics import Optics
+from workbench.core.results import MembraneMesh
 
 FILE = Path(__file__).with_name("photon_reference.npz")
 CLEAR_MM = 0.1
@@ -118,3 +122,76 @@ def flat_exposure(radiance: np.ndarray) -> float:
     """Exposure of an undeformed image (H, W, 3), from the pixels that see any light."""
     lit = radiance.reshape(-1, 3)
     return choose_exposure(lit[lit.max(axis=1) > 0.0])
+
+
+def write_images(scenes: Path, traced: Path, file: Path) -> None:
+    """Draw what `photon_reference trace` left and write the shipped file.
+
+    Args:
+        scenes: Written by its step `scenes`.
+        traced: Folder of its step `trace`; scenes that are not there are left out.
+        file: Target.
+    """
+    from workbench.devices import open_device
+    from workbench.validation.photon_reference import read_scenes
+
+    open_device()
+    arrays: dict[str, np.ndarray] = {}
+    for scene, (mesh, optics, frames) in read_scenes(scenes).items():
+        path = traced / f"{scene.replace(' ', '_')}_flat.npz"
+        if path.exists():
+            arrays |= _scene_arrays(scene, mesh, optics, frames, traced)
+            arrays["device"] = np.array(str(np.load(path)["device"]))
+    np.savez_compressed(file, **arrays)
+
+
+def _scene_arrays(
+    scene: str,
+    mesh: MembraneMesh,
+    optics: Optics,
+    frames: dict[str, np.ndarray],
+    traced: Path,
+) -> dict[str, np.ndarray]:
+    from workbench.core.monitor import silent
+    from workbench.stages import bake
+
+    light = bake(mesh, optics.ring, optics.lamps, LightModel.PHOTONS, monitor=silent)
+    data = {name: np.load(traced / f"{scene.replace(' ', '_')}_{name}.npz") for name in frames}
+    rest = data["flat"]["halves"].mean(axis=0)
+    studio = Studio(mesh, light, optics, radiance=rest)
+    flat = studio.linear(np.zeros((1, *rest.shape), dtype=np.float32), radiance=rest[None])[0]
+    exposure = flat_exposure(flat)
+    found: dict[str, np.ndarray] = {}
+    for name, displacement in frames.items():
+        halves = data[name]["halves"]
+        drawn = [
+            Studio(mesh, light, optics, radiance=half) if name == "flat" else studio
+            for half in halves
+        ]
+        shown = [
+            exposure * studio_of.linear(displacement[None], radiance=half[None])[0]
+            for studio_of, half in zip(drawn, halves, strict=True)
+        ]
+        image = (shown[0] + shown[1]) / 2.0
+        whole = (slice(0, image.shape[0]), slice(0, image.shape[1]))
+        box = whole if name == "flat" else dent_box(studio, displacement, image.shape[:2])
+        ceiling = score(shown[0], shown[1], box)
+        corners = (box[0].start, box[0].stop, box[1].start, box[1].stop)
+        numbers = (*corners, *image.shape[:2], ceiling.ssim_1, ceiling.psnr_dB)
+        photons = 2.0 * float(data[name]["photons"])
+        found[f"{scene}|{name}|numbers"] = np.array([*numbers, photons, exposure])
+        found[f"{scene}|{name}|light"] = image[box].astype(np.float16)
+    return found
+
+
+def dent_box(studio: Studio, displacement_mm: np.ndarray, size_px: tuple[int, int]) -> Box:
+    """The box around what moved clearly, as the camera sees it at rest.
+
+    Raises:
+        OpticsError: If the camera sees nothing of it.
+    """
+    clear = np.linalg.norm(displacement_mm, axis=1) > CLEAR_MM
+    seen = clear & studio.visible & np.isfinite(studio.vertex_pixels[:, 0])
+    if not seen.any():
+        raise OpticsError("the camera does not see the dent", hint="put it nearer to the tip")
+    return box_around(studio.vertex_pixels[seen, :2], size_px)
