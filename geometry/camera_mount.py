@@ -26,6 +26,8 @@ def cup_front_mm(camera: Camera, ring: LedRing, options: Housing) -> float:
     Below the LED ring's seat, where the camera looks up through the ring.
     """
     front = -FRONT_SHARE * options.camera_depth_mm
+    if not ring.count:
+        return front
     upright = (_rotation(camera) @ [0.0, 0.0, 1.0])[2] > UPRIGHT_COSINE
     low = ring.height_mm - holder_mm(ring, options) - 2.0 * options.clearance_mm
     below = low - camera.position_mm[2]
@@ -63,7 +65,7 @@ def cup_seat(
     seat = cup_outline(camera, options, front_mm + gap, gap)
     low_mm = ring.height_mm - holder_mm(ring, options)
     ledge_mm = low_mm - camera.position_mm[2] - front_mm - 2.0 * gap
-    if not 0.0 <= ledge_mm < LEAST_WALL_MM:
+    if not ring.count or not 0.0 <= ledge_mm < LEAST_WALL_MM:
         return (seat,)
     higher = cup_outline(camera, options, front_mm + gap + LEAST_WALL_MM, gap)
     outside_mm = ring.radius_mm + half_mm(options) + gap

@@ -4,7 +4,7 @@ What is bought (camera module, LEDs) takes its room first; each printed part is 
 grown outlines of those before it, so nothing overlaps. Parts:
 
 - `support`: the design's transparent shell, as it is;
-- `led_ring_holder`: a ring under the LEDs with a pocket for each, see `led_holder`;
+- `led_ring_holder`: a ring under the LEDs with a pocket for each, see `led_holder`; none without;
 - `camera_mount`: a cup on the camera's axis that the module slides into from the front;
 - `base`: the design's foot with seats for holder and mount, open to below for the mount; with a
   sleeve up to a holder that would float above it, see `holder_seat`;
@@ -125,29 +125,37 @@ def _nodes(
     shells = [membrane, support, shrunk]
     module = module_room(camera, options, gap)
     front_mm = cup_front_mm(camera, ring, options)
-    seat = ring_outline(ring, options, gap)
+    # Without LEDs nothing holds them and nothing makes room for that.
+    seats = [ring_outline(ring, options, gap)] if ring.count else []
     leds = led_rooms(ring, options, gap)
     cup = cup_outline(camera, options, front_mm, 0.0)
     foot = csg.together(_body(solid.base, solid.base_brep), [rod.guide for rod in rods])
-    room = [seat, *cup_seat(camera, ring, options, front_mm), cable_slot(camera, options), module]
+    below = [*cup_seat(camera, ring, options, front_mm), cable_slot(camera, options), module]
+    base = _cut(foot, [*shells, *seats, *below, *(rod.bore for rod in rods)])
+    made = {
+        "support": _cut(support, [membrane]),
+        "camera_mount": _cut(cup, [*shells, *seats, module, cable_slot(camera, options)]),
+        "base": base,
+        **{rod.name: _cut(rod.body, [membrane]) for rod in rods},
+    }
+    if not ring.count:
+        return made
     holder = _holder(ring, options, shells, module, leds)
-    base = _cut(foot, [*shells, *room, *(rod.bore for rod in rods)])
     sleeve = holder_seat(
         holder,
         base,
         [membrane, support],
-        room[1:],
+        below,
         hole_mm=hole_mm(ring, options),
         gap_mm=gap,
         wall_mm=max(options.wall_mm, LEAST_WALL_MM),
         least_mm=LEAST_WALL_MM,
     )
     return {
-        "support": _cut(support, [membrane]),
+        "support": made.pop("support"),
         "led_ring_holder": holder,
-        "camera_mount": _cut(cup, [*shells, seat, module, cable_slot(camera, options)]),
+        **made,
         "base": csg.together(base, sleeve),
-        **{rod.name: _cut(rod.body, [membrane]) for rod in rods},
     }
 
 

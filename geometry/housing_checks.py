@@ -59,11 +59,10 @@ def housing_checks(
     shells = [closed("shell", surface.points_mm, surface.faces) for surface in walls]
     camera = evaluate(module)
     lights = [evaluate(led) for led in leds]
-    checks = [
-        _led_clearance(lights, [*shells, camera], options),
-        _camera_clearance(camera, shells, solid, options),
-        _holder_seat(parts, options),
-    ]
+    checks = [_camera_clearance(camera, shells, solid, options)]
+    if lights:
+        clearance = _led_clearance(lights, [*shells, camera], options)
+        checks = [clearance, *checks, _holder_seat(parts, options)]
     for part in parts:
         if part.name == "led_ring_holder":
             wall = thinnest_wall(part.points_mm, part.faces)

@@ -167,14 +167,19 @@ def _steps(
     # The gap is closed only once the skin is bonded.
     if solid.backing_mm > 0.0 and backing_MPa > 0.0:
         steps.append(gel_step(solid, backing_MPa))
-    steps += [
-        "Solder the LEDs in the order of the list and press them into led_ring_holder; put camera "
-        "and camera_mount into the base from below, then the holder on top.",
-    ]
+    held = any(part.name == "led_ring_holder" for part in housing.parts)
+    if held:
+        steps.append(
+            "Solder the LEDs in the order of the list and press them into led_ring_holder; put "
+            "camera and camera_mount into the base from below, then the holder on top."
+        )
+    else:
+        steps.append("Put camera and camera_mount into the base from below.")
     if rim_mm2(solid.support):
         steps.append(
             f"Glue the support onto the base: a thin bead of {ADHESIVE} under its rim, "
-            f"lower it over the holder, {_placing(housing)}, wipe off what comes out and cure it."
+            f"lower it over the {'holder' if held else 'camera'}, {_placing(housing)}, wipe off "
+            "what comes out and cure it."
         )
     if any(part.name.startswith("slider") for part in housing.parts):
         steps.append("Push the sliders through their guides and tie them to the actuators.")

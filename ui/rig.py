@@ -8,12 +8,19 @@ from typing import Any
 import numpy as np
 
 from workbench.core.camera import Camera, LensModel
+from workbench.core.leds import colour_sectors, led_places
 from workbench.core.lighting import LedRing
+from workbench.led_colours import shown_colour
 
 FRUSTUM_MM = 4.0
 WIDEST_DEG = 150.0
 """A fisheye is drawn at most so wide."""
-LENS_COLOURS = {LensModel.PINHOLE: (255, 200, 0), LensModel.EQUIDISTANT: (255, 150, 0)}
+LENS_COLOURS = {
+    LensModel.PINHOLE: (255, 200, 0),
+    LensModel.OPENCV: (255, 200, 0),
+    LensModel.EQUIDISTANT: (255, 150, 0),
+    LensModel.OPENCV_FISHEYE: (255, 150, 0),
+}
 
 
 class RigView:
@@ -27,18 +34,13 @@ class RigView:
 
     def show_lights(self, ring: LedRing) -> None:
         """Show the LEDs of a ring in their colours."""
-        azimuth = np.radians(ring.phase_deg + 360.0 * np.arange(ring.count) / ring.count)
+        places, _ = led_places(ring)
+        sectors = colour_sectors(ring)
         with self.server.atomic():
             while len(self.leds) > ring.count:
                 self.leds.pop().remove()
-            for i, angle in enumerate(azimuth):
-                place = (
-                    ring.radius_mm * math.cos(angle),
-                    ring.radius_mm * math.sin(angle),
-                    ring.height_mm,
-                )
-                text = ring.colours[i * len(ring.colours) // ring.count]
-                colour = tuple(int(text[k : k + 2], 16) for k in (1, 3, 5))
+            for i, place in enumerate(places):
+                colour = shown_colour(ring.colours[sectors[i]])
                 if i == len(self.leds):
                     led = self.api.add_icosphere(f"/leds/{i}", radius=0.7, subdivisions=2)
                     self.leds.append(led)

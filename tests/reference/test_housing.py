@@ -242,3 +242,16 @@ def test_a_thin_ledge_goes_without_thinning_the_base_beside_it() -> None:
     assert check.value == pytest.approx(1.35, abs=1e-3)
     base = next(part for part in made.parts if part.name == "base")
     assert base.brep.size > 0
+
+
+def test_a_sensor_without_a_ring_has_no_holder(finger: Solid) -> None:
+    """A ring of no LEDs: support, camera mount and base, one body each, with room for nothing."""
+    made = make_housing(
+        finger, Housing(), ring=LedRing(count=0), camera=Camera(), bed_mm=(200.0, 200.0, 200.0)
+    )
+    parts = {part.name: part.volume_mm3 for part in made.parts}
+    assert list(parts) == ["support", "camera_mount", "base"]
+    assert min(parts.values()) > 0.0
+    checks = {check.name for check in made.checks}
+    assert "camera_clearance" in checks
+    assert not checks & {"led_clearance", "led_holder_seat"}
