@@ -58,12 +58,13 @@ def furnace_error(*, albedo: float = 0.5, photons: int = 1_000_000) -> float:
 
     Whatever a Lambertian sphere scatters falls evenly on all of it, so the light of all orders but
     the first gives E = P albedo / (A (1 - albedo)) everywhere: together with the first, the mean
-    is (P / A) / (1 - albedo). Measured on eight octants.
+    is (P / A) / (1 - albedo). Measured on eight octants. Nodes on a curved skin lose the cosine of
+    the angle between their own normal and its surroundings', 0.1 % here.
     """
     skin = sphere(10.0, 4)
     scene = build_scene(_raw(skin), None, coating=Coating(albedo=albedo, specular=0.0))
     leds = one_light(position_mm=(3.0, 2.0, -1.0), exponent=0.0, size_mm=0.5)
-    scattered, nodes_mm, area_mm2 = _gathered(scene, skin, leds, photons, count=500)
+    scattered, nodes_mm, area_mm2 = _gathered(scene, skin, leds, photons, count=len(skin.points_mm))
     cosines = np.repeat(bin_cosines(), AZIMUTHS)
     received = scattered.rest[:, 0] @ cosines * area_mm2
     octant = (nodes_mm > 0.0) @ np.array([1, 2, 4])
@@ -213,13 +214,14 @@ def direct_table_errors(*, photons: int = 1_000_000) -> tuple[float, float]:
 
     Root mean square difference of radiance over its root mean square, which is mostly noise of the
     photons at each node, and the relative difference of the means, which is not. Where the skin is
-    lit, for a matte coating: the table's bins widen a glossy lobe.
+    lit, for a matte coating (the table's bins widen a glossy lobe) and nodes as fine as the skin:
+    nodes 2 mm apart alone make 6 % beside an LED.
     """
     mesh, camera = finger(edge_mm=1.0), Camera()
     coating = Coating(specular=0.0)
     leds = place_leds(LedRing(count=3, size_mm=0.2, tilt_deg=20.0))
     transport = Transport(
-        coating=coating, refractive_index=1.0, baking=Baking(photons=photons, nodes=1000)
+        coating=coating, refractive_index=1.0, baking=Baking(photons=photons, nodes=5000)
     )
     direction, irradiance, scattered = gather_light(mesh, leds, transport)
     alone = dataclasses.replace(scattered, rest=np.zeros_like(scattered.rest))

@@ -86,6 +86,6 @@ def test_virtual_leds_stand_where_the_leds_are_at_index_1() -> None:
 def test_the_table_of_direct_light_shades_as_direct_light_does() -> None:
     """At index 1 and the undeformed normal: mean radiance the same, the rest is noise."""
     rms, mean = checks.direct_table_errors(photons=600_000)
-    # 200 photons at each node and light: 7 % and the weights by 1 / cosine half as much again.
-    assert rms < 0.15
-    assert mean < 0.01
+    # 50 photons and more at each node and light would be 14 %; the lattice halves that.
+    assert rms < 0.12
+    assert mean < 0.004
