@@ -92,6 +92,22 @@ def read_photo(name: Any, *, roots: Sequence[Path] = (Path(),), at: str) -> Phot
         ) from error
 
 
+def check_photos(design: SensorDesign) -> None:
+    """Refuse pictures that cannot be used, before anything is computed.
+
+    Raises:
+        DesignError: If one cannot be read, or the background has another size than the camera.
+    """
+    from sim.optics.background import photo_radiance
+    from sim.optics.photo_file import read_rgb
+
+    for field, picture in design_photos(design).items():
+        if field == "optics.background":
+            photo_radiance(picture, design.optics.camera, 1.0)
+        else:
+            read_rgb(picture, at=field)
+
+
 def take_photos(table: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
     """A design's table without its pictures, and what it says of them, by field."""
     rest, found = dict(table), {}

@@ -38,7 +38,14 @@ from workbench.core.design import SCHEMA, SensorDesign
 from workbench.core.errors import DesignError, StoreError
 from workbench.core.mapping import from_table, suggest, to_table
 from workbench.moduli import with_moduli
-from workbench.photos import add_names, kept_photos, take_photos, with_photos, without_photos
+from workbench.photos import (
+    add_names,
+    check_photos,
+    kept_photos,
+    take_photos,
+    with_photos,
+    without_photos,
+)
 from workbench.store import Store
 
 VARIABLE = "WORKBENCH_PROJECT"
@@ -234,15 +241,18 @@ def parse_toml(text: str, *, source: str) -> Mapping[str, Any]:
 
 
 def check_design(design: SensorDesign) -> None:
-    """Check what needs the family: its shape parameters and their fit with the layers.
+    """Check what needs files or the family: its shape parameters and their fit with the layers.
 
     Raises:
         DesignError: Naming the field.
     """
     from designs.family import family, resolve_shape
     from geometry.silicones import silicone
+    from sim.optics.places import check_lenses
 
     check_body(design)
+    check_photos(design)
+    check_lenses(design.optics)
     family(design.family).check(resolve_shape(design.family, design.shape), design.layers)
     silicone(design.casting.silicone)
 

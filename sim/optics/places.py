@@ -6,11 +6,13 @@ itself, a camera in the air. The messages name the place, its distance and the l
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import contextlib
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from sim.optics.camera import pixel_directions
+from sim.optics.lens import lens_of
 from sim.optics.lights import place_leds
 from sim.optics.within import JUST_ABOVE_BASE_MM, inside, wall_radius
 from workbench.core.camera import Camera
@@ -166,6 +168,27 @@ def check_cameras(mesh: MembraneMesh, optics: Optics) -> None:
         check_camera(mesh, camera, at=camera_field(number))
 
 
+def check_lenses(optics: Optics) -> None:
+    """Refuse lenses that fold the image; needs no mesh.
+
+    Raises:
+        DesignError: As `lens_of`, naming the camera.
+    """
+    for number, camera in enumerate(optics.all_cameras):
+        with _named(camera_field(number)):
+            lens_of(camera)
+
+
+@contextlib.contextmanager
+def _named(at: str) -> Iterator[None]:
+    """Messages about `optics.camera` are about this camera."""
+    try:
+        yield
+    except DesignError as error:
+        error.at = error.at.replace("optics.camera", at, 1)
+        raise
+
+
 def check_camera(mesh: MembraneMesh, camera: Camera, *, at: str = "optics.camera") -> None:
     """Refuse a camera outside the cavity, one with a folding lens, or one that sees no skin.
 
@@ -203,11 +226,8 @@ def _check_view(mesh: MembraneMesh, camera: Camera, at: str) -> None:
     columns = (np.arange(64) + 0.5) / 64 * camera.width_px
     rows = (np.arange(48) + 0.5) / 48 * camera.height_px
     grid = np.stack(np.meshgrid(columns, rows), axis=-1).reshape(-1, 2)
-    try:
+    with _named(at):
         direction = pixel_directions(camera, grid)
-    except DesignError as error:
-        error.at = error.at.replace("optics.camera", at, 1)
-        raise
     origin = np.broadcast_to(np.asarray(camera.position_mm, dtype=np.float64), direction.shape)
     _, face, _ = RayCaster(mesh.seen.points_mm, mesh.seen.faces).hits(origin, direction)
     share = float(np.mean(face >= 0))

@@ -131,6 +131,69 @@ BAD_DESIGN = {
         "LED 1 of 9 at radius 7 mm",
         "optics.ring.radius_mm",
     ),
+    "LED inside the elastomer": (
+        ("radius_mm = 3.0", "radius_mm = 7.0"),
+        "is in the elastomer wall; the cavity ends at",
+        "optics.ring.radius_mm",
+    ),
+    "lamp outside": (
+        ("[optics.ring]", "[[optics.lamps]]\nposition_mm = [20.0, 0.0, 4.0]\n[optics.ring]"),
+        "lamp 1 at radius 20 mm, height 4 mm is in the space outside",
+        "optics.lamps[1].position_mm",
+    ),
+    "no light at all": (
+        ("[optics.ring]", "[optics.ring]\ncount = 0"),
+        "points of light 0 is outside 1 to 512",
+        "optics.ring.count",
+    ),
+    "no power": (
+        ("[optics.ring]", "[optics.ring]\npower = 0.0"),
+        "all LEDs have power 0, so the image would be black",
+        "optics.ring.power",
+    ),
+    "unknown colour": (
+        ("[optics.ring]", "[optics.ring]\ncolours = ['green']"),
+        "LED colour 'green' is not of the form #rrggbb, 525nm, 525nm/35nm or 5600K",
+        "optics.ring.colours",
+    ),
+    "camera inside the wall": (
+        ("width_px", "position_mm = [7.0, 0.0, 3.0]\nwidth_px"),
+        "the camera at (7, 0, 3) mm is inside the wall; the cavity ends",
+        "optics.camera.position_mm",
+    ),
+    "camera outside the sensor": (
+        ("width_px", "position_mm = [30.0, 0.0, 3.0]\nwidth_px"),
+        "the camera at (30, 0, 3) mm is outside the sensor; the cavity ends",
+        "optics.camera.position_mm",
+    ),
+    "field of view 0": (
+        ("width_px", "fov_x_deg = 0.0\nwidth_px"),
+        "field of view 0 degree is outside 5 to 175 degree",
+        "optics.camera.fov_x_deg",
+    ),
+    "field of view 200": (
+        ("width_px", "fov_x_deg = 200.0\nlens = 'equidistant'\nwidth_px"),
+        "field of view 200 degree is outside 5 to 180 degree",
+        "optics.camera.fov_x_deg",
+    ),
+    "distortion that folds": (
+        ("width_px", "lens = 'opencv'\ndistortion = [-0.5, 0.0, 0.0, 0.0]\nwidth_px"),
+        "folds the image 37 px from its centre, within the 100 px to its corner",
+        "optics.camera.distortion",
+    ),
+    "photograph of another size": (
+        (
+            "[optics.ring]",
+            "[optics]\nbackground = 'builtin:geltip_idle_640x480.png'\n[optics.ring]",
+        ),
+        "geltip_idle_640x480.png has 640 x 480 pixels, the camera 160 x 120",
+        "optics.background",
+    ),
+    "photograph that is not there": (
+        ("[optics.ring]", "[optics]\nbackground = 'idle.png'\n[optics.ring]"),
+        "there is no picture file 'idle.png'",
+        "optics.background",
+    ),
     "camera looking away": (
         ("width_px", "wxyz = [0.0, 1.0, 0.0, 0.0]\nwidth_px"),
         "only 0.0% of the pixels see the skin, less than 1%",

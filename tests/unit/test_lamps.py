@@ -10,7 +10,7 @@ import pytest
 
 from sim.optics.bake import bake_light, emitted
 from sim.optics.lights import place_leds
-from sim.optics.places import check_camera, check_cameras, check_lights
+from sim.optics.places import check_camera, check_cameras, check_lenses, check_lights
 from sim.optics.specimen import finger
 from workbench.core.camera import Camera, LensModel
 from workbench.core.errors import DesignError
@@ -192,6 +192,9 @@ def test_further_cameras_are_named(mesh: MembraneMesh) -> None:
     """The second further camera is `optics.cameras[2]`, in every message."""
     good = Camera()
     folds = dataclasses.replace(good, lens=LensModel.OPENCV, distortion=(-0.5, 0.0, 0.0, 0.0))
+    with pytest.raises(DesignError) as early:
+        check_lenses(Optics(cameras=(good, folds)))
+    assert early.value.at == "optics.cameras[2].distortion"
     for bad, field in (
         (dataclasses.replace(good, position_mm=(14.0, 0.0, 5.0)), ".position_mm"),
         (dataclasses.replace(good, wxyz=(0.0, 1.0, 0.0, 0.0)), ""),

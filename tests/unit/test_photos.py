@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 import pytest
 
+from sim.optics.photo_file import read_rgb
 from workbench.core.digest import digest
 from workbench.core.errors import DesignError
 from workbench.photos import design_photos, shipped_photos
@@ -25,6 +26,7 @@ def folder(tmp_path: Path) -> Path:
     (tmp_path / "pictures").mkdir()
     cv2.imwrite(str(tmp_path / "pictures" / "dots.png"), 255 - image)
     text = HEAD + '[optics]\nbackground = "idle.png"\n[optics.markers]\npicture = "dots.png"\n'
+    text += "[optics.camera]\nwidth_px = 64\nheight_px = 48\n"
     (tmp_path / "w.toml").write_text(text)
     return tmp_path
 
@@ -75,7 +77,7 @@ def test_three_photographs_are_shipped_with_their_notice() -> None:
     photos = shipped_photos()
     assert len(photos) == 3
     for picture in photos.values():
-        assert cv2.imdecode(picture.data, cv2.IMREAD_UNCHANGED).shape == (480, 640, 3)
+        assert read_rgb(picture, at="optics.background").shape == (480, 640, 3)
     notice = resources.files("designs") / "backgrounds" / "NOTICE.md"
     assert "Copyright (c) 2025 XuyangZhang0223" in notice.read_text()
 
@@ -100,3 +102,12 @@ def test_a_missing_picture_is_refused_with_its_field(folder: Path, named: str, s
             design_from_toml(f"{HEAD}{table} = {named}\n", roots=(folder,))
         assert says in caught.value.message
         assert caught.value.at == at and caught.value.hint
+
+
+def test_a_photograph_of_another_size_is_refused_with_the_design(folder: Path) -> None:
+    """When the file is read, not after minutes of contact: both sizes, both ways out."""
+    text = (folder / "w.toml").read_text().replace("width_px = 64", "width_px = 80")
+    with pytest.raises(DesignError) as caught:
+        design_from_toml(text, roots=(folder,))
+    assert "idle.png has 64 x 48 pixels, the camera 80 x 48" in caught.value.message
+    assert caught.value.at == "optics.background" and "width_px = 64" in caught.value.hint
