@@ -11,7 +11,6 @@ from sim.optics.bake import bake_light
 from sim.optics.lights import place_leds
 from sim.optics.places import check_camera, check_lights
 from sim.optics.specimen import finger
-from sim.optics.spectrum import linear_rgb
 from sim.optics.within import inside
 from workbench.core.camera import Camera
 from workbench.core.errors import DesignError
@@ -39,11 +38,6 @@ def test_tilt_turns_the_axis_outward() -> None:
     ring = LedRing(count=1, phase_deg=0.0, tilt_deg=90.0)
     assert place_leds(ring).axis[0] == pytest.approx([1, 0, 0], abs=1e-12)
     assert place_leds(LedRing()).axis == pytest.approx(np.tile([0, 0, 1.0], (9, 1)))
-
-
-def test_colour_codes_are_linear() -> None:
-    """#80 is 128/255 of full power, not its sRGB decoding of 0.216."""
-    assert linear_rgb("#0080ff") == pytest.approx((0.0, 128 / 255, 1.0))
 
 
 def test_power_scales_the_colour() -> None:

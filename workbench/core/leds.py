@@ -50,8 +50,10 @@ def lamp_points(lamp: Lamp) -> tuple[np.ndarray, np.ndarray]:
 
 
 def lamp_cell_mm(lamp: Lamp) -> float:
-    """Diameter [mm] of the disc that each point stands for: as large as its cell, of a line as
-    long."""
+    """Diameter [mm] of the disc that each point stands for.
+
+    A point's own; of a line the length of a part, of an area that of a disc as large as a cell.
+    """
     columns, rows = lamp.grid
     if lamp.kind is LampKind.POINT:
         return lamp.size_mm
