@@ -21,7 +21,7 @@ from typing import Protocol
 from workbench.core.design import SensorDesign
 from workbench.core.errors import Cancelled, WorkbenchError
 from workbench.core.monitor import Monitor, seconds_left
-from workbench.live_press import NEEDED, LiveCall, Preview, live_call
+from workbench.live_press import NEEDED, LiveCall, Preview, live_call, live_design
 from workbench.pipeline import PressCase, evaluate, needed, plan, stage_monitor
 from workbench.stages import Call, Outcome
 from workbench.store import Store
@@ -129,7 +129,8 @@ class Conductor:
 
     def press_live(self, design: SensorDesign, case: PressCase) -> None:
         """Ask for a live press; the one that runs is stopped, and none ever waits in line."""
-        self._submit(LIVE, Request(design=design, case=case, wanted=NEEDED, live=True))
+        shown = live_design(design)
+        self._submit(LIVE, Request(design=shown, case=case, wanted=NEEDED, live=True))
 
     def stop_live(self) -> None:
         """Stop the live press that runs, if any."""

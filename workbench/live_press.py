@@ -17,6 +17,7 @@ import numpy as np
 from workbench.core.design import Elastomer, SensorDesign
 from workbench.core.digest import digest
 from workbench.core.indenter import Indenter
+from workbench.core.lighting import LightModel
 from workbench.core.monitor import Monitor
 from workbench.core.motion import Mover
 from workbench.core.optics import Optics
@@ -32,8 +33,8 @@ if TYPE_CHECKING:
     from sim.contact.live import LiveContact
     from sim.optics.render import Studio
 
-NEEDED = ("mesh", "lattice", "bake")
-"""Stages that must be stored before a live call."""
+NEEDED = ("mesh", "lattice", "bake", "table")
+"""Stages that must be stored before a live call; the last only of models that have it."""
 WIDEST_PX = 320
 """Width of a preview's image: that of the page's dock."""
 
@@ -45,6 +46,7 @@ class LiveCall:
     mesh: Ref
     points: Ref
     light: Ref
+    table: Ref | None
     material: Elastomer
     optics: Optics
     indenter: Indenter
@@ -89,18 +91,27 @@ def live_press(press: Press) -> Press:
     )
 
 
+def live_design(design: SensorDesign) -> SensorDesign:
+    """The design that a live press shows: nobody waits for photons while dragging."""
+    if design.optics.light_model is not LightModel.PHOTONS:
+        return design
+    return design.replace("optics.light_model", LightModel.HYBRID)
+
+
 def live_call(design: SensorDesign, case: PressCase) -> LiveCall:
     """The live press of a state.
 
     Raises:
         DesignError: As `plan`.
     """
+    design = live_design(design)
     calls = plan(design, case)
-    mesh, points, light = (calls[name].ref for name in NEEDED)
+    mesh, points, light = (calls[name].ref for name in NEEDED[:3])
     return LiveCall(
         mesh=mesh,
         points=points,
         light=light,
+        table=calls["table"].ref if "table" in calls else None,
         material=design.material,
         optics=design.optics,
         indenter=case.indenter,
@@ -162,10 +173,11 @@ class Previewer:
         from sim.optics.render import Studio
 
         optics = small(call.optics)
-        key = digest((call.mesh, call.light, optics))
+        key = digest((call.mesh, call.light, call.table, optics))
         if self._studio is None or self._studio[0] != key:
             light = store.load(call.light.stage, call.light.key)
-            self._studio = (key, Studio(mesh, light, optics))
+            table = call.table and store.load(call.table.stage, call.table.key)
+            self._studio = (key, Studio(mesh, light, optics, table=table))
         return self._studio[1]
 
 
@@ -177,4 +189,5 @@ def small(optics: Optics) -> Optics:
         max(1, round(share * count)) for count in (camera.width_px, camera.height_px)
     )
     reduced = dataclasses.replace(camera, width_px=width_px, height_px=height_px)
-    return dataclasses.replace(optics, camera=reduced)
+    # A photograph fits the camera's own pixels only.
+    return dataclasses.replace(optics, camera=reduced, cameras=(), background=None)

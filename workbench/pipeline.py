@@ -14,11 +14,11 @@ from typing import Any, Protocol, TypeVar
 from workbench.bodies import IMPORTED, check_body
 from workbench.core.design import Elastomer, SensorDesign
 from workbench.core.indenter import EDGELESS, Indenter
-from workbench.core.lighting import TABULATED, Baking, LedRing
+from workbench.core.lighting import TABULATED, Baking, LedRing, LightModel
 from workbench.core.monitor import Monitor, silent
-from workbench.core.optics import Optics
+from workbench.core.optics import Markers, Optics
 from workbench.core.press import ContactSettings, Press
-from workbench.stages import Call, Outcome, run
+from workbench.stages import STAGES, Call, Outcome, run
 from workbench.store import Store
 
 Design = TypeVar("Design", Elastomer, LedRing, Indenter)
@@ -30,6 +30,7 @@ NEEDED = (
     "bake",
     "press",
     "shoot",
+    "maps",
     "mould",
     "housing",
     "recipe",
@@ -113,9 +114,13 @@ def plan(design: SensorDesign, case: PressCase) -> dict[str, Call]:
     )
     pressed = (mesh.ref, lattice.ref, elastic, case.indenter, case.press, case.settings)
     press = Call("press", (*pressed, *(call.ref for call in objects)))
-    shoot = Call("shoot", (mesh.ref, bake.ref, design.optics, press.ref))
+    table = light[1].ref if len(light) > 1 else None
+    seen = _seen(optics)
+    shoot = Call("shoot", (mesh.ref, bake.ref, seen, press.ref, table))
+    maps = _maps_calls(design, mesh, light)
     mould = Call("mould", (build.ref, design.mould))
-    coloured = at_defaults(optics.ring, "power", "emission_exponent")
+    unbuilt = ("power", "powers", "emission_exponent", "cone_deg", "size_mm")
+    coloured = at_defaults(optics.ring, *unbuilt)
     dark = at_defaults(coloured, "colours")
     pose = (eye.position_mm, eye.wxyz)
     housing = Call("housing", (build.ref, design.housing, dark, *pose, design.mould.bed_mm))
@@ -133,6 +138,7 @@ def plan(design: SensorDesign, case: PressCase) -> dict[str, Call]:
         *objects,
         press,
         shoot,
+        *maps,
         mould,
         housing,
         recipe,
@@ -156,6 +162,25 @@ def _light_calls(optics: Optics, mesh: Call) -> tuple[Call, ...]:
     return bake, Call("table", (mesh.ref, bake.ref, optics.all_cameras, collapse, model))
 
 
+def _seen(optics: Optics) -> Optics:
+    """The optics without what the baked light holds already."""
+    if optics.light_model is LightModel.PHOTONS:
+        return optics
+    rest = {"ring": LedRing(), "lamps": (), "baking": Baking(), "light_model": LightModel.DIRECT}
+    return dataclasses.replace(optics, **rest)
+
+
+def _maps_calls(design: SensorDesign, mesh: Call, light: tuple[Call, ...]) -> tuple[Call, ...]:
+    """The call `maps`; of photons traced for every frame there is no baked light to map."""
+    if design.optics.light_model is LightModel.PHOTONS:
+        return ()
+    unread = {"markers": Markers(), "background": None}
+    optics = dataclasses.replace(_seen(design.optics), **unread)
+    bake, *tables = (call.ref for call in light)
+    inputs = (mesh.ref, bake, optics, design.material.young_MPa, *tables)
+    return (Call("maps", inputs),)
+
+
 def _shape(indenter: Indenter) -> Indenter:
     """An object without what its signed distance does not read."""
     unread = ("soft", "edge_radius_mm") if indenter.kind in EDGELESS else ("soft",)
@@ -172,7 +197,7 @@ def at_defaults(value: Design, *names: str) -> Design:
 
 
 def needed(calls: dict[str, Call], wanted: Iterable[str]) -> list[str]:
-    """The wanted stages and all they depend on, in order."""
+    """The wanted stages and all they depend on, in order; those a design has not are left out."""
     todo: set[str] = set()
 
     def visit(name: str) -> None:
@@ -183,7 +208,8 @@ def needed(calls: dict[str, Call], wanted: Iterable[str]) -> list[str]:
                 visit(stage)
 
     for name in wanted:
-        visit(name)
+        if name in calls or name not in STAGES:
+            visit(name)
     return [name for name in calls if name in todo]
 
 

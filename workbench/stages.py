@@ -7,9 +7,12 @@ contact. Bump `version` when the output of a stage changes.
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
+
+import numpy as np
 
 from workbench.core.camera import Camera
 from workbench.core.design import Elastomer, Layers, Meshing, MouldOptions
@@ -18,9 +21,10 @@ from workbench.core.errors import SolveError, StoreError
 from workbench.core.fabrication import HousingSet, MouldSet, Recipe, SheetHead
 from workbench.core.imported import ImportedBody, Pick, ReadBody
 from workbench.core.indenter import Indenter
-from workbench.core.light import LightField, NormalTable
-from workbench.core.lighting import Lamp, LedRing, LightModel
+from workbench.core.light import LightField, NormalTable, VertexRadiance
+from workbench.core.lighting import Baking, Lamp, LedRing, LightModel
 from workbench.core.making import Casting, Housing
+from workbench.core.maps import DesignerMaps
 from workbench.core.monitor import Monitor, part, silent
 from workbench.core.optics import Optics, Transport
 from workbench.core.press import ContactSettings, Press
@@ -39,6 +43,8 @@ from workbench.store import Store, timed
 
 PARTIAL = "press_partial"
 """Where the store keeps the settled frames of a press that failed, by the key of that press."""
+PHOTON_BATCH = 5_000_000
+"""Photons of a part: some ten seconds on two cores."""
 PARTS_SHARE = 0.95
 """Share of the progress of a divided stage that its parts take."""
 
@@ -264,26 +270,127 @@ def press(
     )
 
 
+def photons(
+    mesh: MembraneMesh,
+    ring: LedRing,
+    lamps: tuple[Lamp, ...],
+    camera: Camera,
+    transport: Transport,
+    contact: Contact | None,
+    frame: int,
+    first_photon: int,
+    count: int,
+    *,
+    monitor: Monitor,
+) -> VertexRadiance:
+    """One batch of photons of one frame; frame 0 is the undeformed skin."""
+    _open_device(monitor)
+    from sim.optics.lights import place_leds
+    from sim.optics.transport.radiance import trace_radiance
+
+    moved = None if contact is None else mesh.seen_displacement_mm(contact)[frame - 1]
+    return trace_radiance(
+        mesh,
+        place_leds(ring, lamps),
+        camera,
+        transport,
+        photons=count,
+        first_photon=first_photon,
+        displacement_mm=moved,
+        monitor=monitor,
+    )
+
+
+def photon_parts(store: Store, inputs: tuple[Any, ...]) -> tuple[Call, ...]:
+    """The batches of photons that `shoot` needs, camera by camera and frame by frame.
+
+    Of their number of photons only the batch's own is in a key: more photons go on from there.
+    """
+    mesh, _, optics, contact, *_ = inputs
+    if optics.light_model is not LightModel.PHOTONS:
+        return ()
+    frames = len(store.load(contact.stage, contact.key).reaction_N)
+    transport = dataclasses.replace(
+        optics.transport, baking=dataclasses.replace(Baking(), seed=optics.baking.seed)
+    )
+    total = optics.baking.photons
+    return tuple(
+        Call(
+            "photons",
+            (
+                *(mesh, optics.ring, optics.lamps, camera, transport),
+                *(contact if frame else None, frame, first, min(PHOTON_BATCH, total - first)),
+            ),
+        )
+        for camera in optics.all_cameras
+        for frame in range(frames + 1)
+        for first in range(0, total, PHOTON_BATCH)
+    )
+
+
 def shoot(
     mesh: MembraneMesh,
     light: LightField,
     optics: Optics,
     contact: Contact,
-    *,
+    table: NormalTable | None = None,
+    *batches: VertexRadiance,
     monitor: Monitor,
 ) -> Shot:
     """Tactile images of all frames, the background first, and their measures."""
+    _open_device(monitor)
     from sim.metrics import measure
-    from sim.optics.render import shoot as shoot_frames
+    from sim.optics.render import Studio
 
-    frames = shoot_frames(
-        mesh,
-        light,
-        optics,
-        displacement_mm=mesh.seen_displacement_mm(contact),
-        monitor=part(monitor, 0.0, 0.9),
+    moved = mesh.seen_displacement_mm(contact)
+    cameras = optics.all_cameras
+    radiance = _radiance(batches, len(light.led_mm), len(cameras), len(moved) + 1)
+    seen = []
+    for number, camera in enumerate(cameras):
+        span = part(monitor, 0.9 * number / len(cameras), 0.9 * (number + 1) / len(cameras))
+        rest = radiance[number][0] if radiance else None
+        later = radiance[number][1] if radiance else None
+        studio = Studio(
+            mesh, light, optics, table=table, camera=camera, radiance=rest, monitor=span
+        )
+        seen.append(studio.shoot(moved, radiance=later, monitor=span))
+    return Shot(
+        frames=seen[0],
+        metrics=measure(mesh, contact, seen[0], light),
+        others=tuple(seen[1:]),
     )
-    return Shot(frames=frames, metrics=measure(mesh, contact, frames, light))
+
+
+def _radiance(
+    batches: tuple[VertexRadiance, ...], lights: int, cameras: int, frames: int
+) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Radiance (V, 3) of each camera's undeformed skin and (K, V, 3) of its frames; [] of none."""
+    if not batches:
+        return []
+    share = len(batches) // (cameras * frames)
+    means = []
+    for start in range(0, len(batches), share):
+        group = batches[start : start + share]
+        photons = sum(batch.photons for batch in group)
+        means.append(lights / photons * np.sum([batch.radiance for batch in group], axis=0))
+    of_camera = np.stack(means).astype(np.float32).reshape(cameras, frames, *means[0].shape)
+    return [(one[0], one[1:]) for one in of_camera]
+
+
+def maps(
+    mesh: MembraneMesh,
+    light: LightField,
+    optics: Optics,
+    young_MPa: float,
+    table: NormalTable | None = None,
+    *,
+    monitor: Monitor,
+) -> DesignerMaps:
+    """Where on the skin this design sees, and how well."""
+    _open_device(monitor)
+    from sim.optics.maps.measure import designer_maps
+
+    return designer_maps(mesh, light, optics, table, young_MPa=young_MPa, monitor=monitor)
 
 
 def mould(solid: Solid, options: MouldOptions, *, monitor: Monitor) -> MouldSet:
@@ -375,7 +482,9 @@ STAGES = {
         Stage(name="table", version=1, lane="sim", function=table),
         Stage(name="object", version=1, lane="sim", function=object_distance),
         Stage(name="press", version=7, lane="sim", function=press),
-        Stage(name="shoot", version=2, lane="sim", function=shoot),
+        Stage(name="photons", version=1, lane="sim", function=photons),
+        Stage(name="shoot", version=3, lane="sim", function=shoot, parts=photon_parts),
+        Stage(name="maps", version=1, lane="sim", function=maps),
         Stage(name="mould", version=2, lane="cad", function=mould),
         Stage(name="housing", version=2, lane="cad", function=housing),
         Stage(name="recipe", version=2, lane="cad", function=recipe),

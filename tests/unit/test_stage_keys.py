@@ -18,7 +18,7 @@ from workbench.pipeline import PressCase, needed, plan
 from workbench.project import load_design
 
 FILES = {"recipe", "package"}
-SEEN = {"bake", "shoot"}
+SEEN = {"bake", "shoot", "maps"}
 DEFORMED = {"press", "shoot"}
 RINGED = {"housing", "picture", *FILES}
 
@@ -33,17 +33,17 @@ def rerun(field: str, value: object) -> set[str]:
 @pytest.mark.parametrize(
     ("field", "value", "stages"),
     [
-        ("optics.camera.fov_x_deg", 80.0, {"shoot"}),
-        ("optics.camera.position_mm", (0.0, 0.0, 1.0), {"shoot", *RINGED}),
+        ("optics.camera.fov_x_deg", 80.0, {"shoot", "maps"}),
+        ("optics.camera.position_mm", (0.0, 0.0, 1.0), {"shoot", "maps", *RINGED}),
         ("optics.light_model", LightModel.LINEAR, SEEN),
         ("optics.ring.colours", ("#ffffff",), {*SEEN, *FILES}),
         ("optics.ring.power", 0.5, SEEN),
         ("optics.ring.emission_exponent", 2.0, SEEN),
         ("optics.ring.radius_mm", 8.5, {*SEEN, *RINGED}),
-        ("optics.coating.albedo", 0.5, {"shoot"}),
+        ("optics.coating.albedo", 0.5, {"shoot", "maps"}),
         ("material.friction", 0.5, {"press", "shoot"}),
         ("material.density_g_cm3", 1.1, FILES),
-        ("material.young_MPa", 0.2, {"press", "shoot", *FILES}),
+        ("material.young_MPa", 0.2, {"press", "shoot", "maps", *FILES}),
         ("casting.silicone", "Solaris", FILES),
         ("casting.waste_percent", 30.0, FILES),
         ("mould.draft_deg", 1.0, {"mould", "picture", *FILES}),

@@ -142,7 +142,7 @@ def write_images(scenes: Path, traced: Path, file: Path) -> None:
         if path.exists():
             arrays |= _scene_arrays(scene, mesh, optics, frames, traced)
             arrays["device"] = np.array(str(np.load(path)["device"]))
-    np.savez_compressed(file, **arrays)
+    np.savez_compressed(file, allow_pickle=False, **arrays)
 
 
 def _scene_arrays(

@@ -70,7 +70,8 @@ def write_scenes(file: Path) -> None:
         found, tree = pack((mesh, optics, frames_of(scene, mesh)))
         trees[scene.name] = tree
         arrays |= {f"{scene.name}|{name}": array for name, array in found.items()}
-    np.savez_compressed(file, trees=np.array([_json(trees)]), **arrays)
+    arrays["trees"] = np.array([_json(trees)])
+    np.savez_compressed(file, allow_pickle=False, **arrays)
 
 
 def _json(value: Any) -> str:

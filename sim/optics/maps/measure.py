@@ -68,7 +68,7 @@ def designer_maps(
     looks = []
     for number, camera in enumerate(cameras):
         monitor(0.8 * number / len(cameras), f"maps of camera {number + 1} of {len(cameras)}")
-        looks.append(_look(mesh, light, optics, table, number, camera))
+        looks.append(_look(mesh, light, optics, table, camera))
     monitor(0.8, "maps")
     best = _best(looks)
     maps = [*_seen(best), *_lit(mesh, light), *_felt(mesh, best, young_MPa)]
@@ -85,16 +85,15 @@ def _look(
     light: LightField,
     optics: Optics,
     table: NormalTable | None,
-    number: int,
     camera: Camera,
 ) -> _Look:
-    studio = Studio(mesh, light, optics, table=table, camera=number)
+    studio = Studio(mesh, light, optics, table=table, camera=camera)
     skin, visible, sensor = mesh.seen, studio.visible, camera.sensor
     inward = -skin.normals
     uv = studio.vertex_pixels[:, :2]
 
     def shown(normals: np.ndarray) -> np.ndarray:
-        return studio.exposure * studio.shade_tilted(normals)
+        return studio.exposure * studio.shade_tilted(-normals)
 
     return _Look(
         visible=visible,
@@ -118,7 +117,7 @@ def _glare(
     column = np.clip(np.nan_to_num(uv[:, 0]).astype(int), 0, small.width_px - 1)
     row = np.clip(np.nan_to_num(uv[:, 1]).astype(int), 0, small.height_px - 1)
     found = shining.mean(axis=1)[row * small.width_px + column]
-    skin = studio.shade_tilted(-mesh.seen.normals).mean(axis=1)
+    skin = studio.shade_tilted(mesh.seen.normals).mean(axis=1)
     ratio = found / np.maximum(skin, 1e-12)
     return np.where(inside, ratio, np.nan).astype(np.float32)
 
