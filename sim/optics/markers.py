@@ -19,8 +19,6 @@ from workbench.core.camera import Camera
 from workbench.core.optics import MarkerPattern, Markers
 from workbench.core.results import Skin
 
-INK_REFLECTANCE = 0.08
-"""Share of the light that ink returns, relative to the bare skin [1]; black silicone pigment."""
 TIP_REFLECTANCE = 0.85
 """Share of the light that a white pin tip returns [1]; titanium dioxide paint, our choice."""
 

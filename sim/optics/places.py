@@ -153,19 +153,11 @@ def _misplaced(
     return DesignError(message, hint=hint, at=f"{at}.{beside}")
 
 
-def camera_field(number: int) -> str:
-    """Field of `optics.all_cameras[number]` in messages; further cameras count from 1."""
-    return f"optics.cameras[{number}]" if number else "optics.camera"
-
-
-def check_cameras(mesh: MembraneMesh, optics: Optics) -> None:
-    """Refuse any camera of the sensor that `check_camera` refuses.
-
-    Raises:
-        DesignError: Naming the camera; further ones as `optics.cameras[1]` and so on.
-    """
-    for number, camera in enumerate(optics.all_cameras):
-        check_camera(mesh, camera, at=camera_field(number))
+def camera_field(optics: Optics, camera: Camera) -> str:
+    """Field of a camera in messages; further ones are `optics.cameras[1]` and so on."""
+    if camera == optics.camera or camera not in optics.cameras:
+        return "optics.camera"
+    return f"optics.cameras[{optics.cameras.index(camera) + 1}]"
 
 
 def check_lenses(optics: Optics) -> None:
@@ -174,8 +166,8 @@ def check_lenses(optics: Optics) -> None:
     Raises:
         DesignError: As `lens_of`, naming the camera.
     """
-    for number, camera in enumerate(optics.all_cameras):
-        with _named(camera_field(number)):
+    for camera in optics.all_cameras:
+        with _named(camera_field(optics, camera)):
             lens_of(camera)
 
 

@@ -10,7 +10,7 @@ import pytest
 
 from sim.optics.bake import bake_light, emitted
 from sim.optics.lights import place_leds
-from sim.optics.places import check_camera, check_cameras, check_lenses, check_lights
+from sim.optics.places import camera_field, check_camera, check_lenses, check_lights
 from sim.optics.specimen import finger
 from workbench.core.camera import Camera, LensModel
 from workbench.core.errors import DesignError
@@ -190,7 +190,7 @@ def test_one_light_is_enough(mesh: MembraneMesh) -> None:
 
 def test_further_cameras_are_named(mesh: MembraneMesh) -> None:
     """The second further camera is `optics.cameras[2]`, in every message."""
-    good = Camera()
+    good = Camera(fov_x_deg=90.0)
     folds = dataclasses.replace(good, lens=LensModel.OPENCV, distortion=(-0.5, 0.0, 0.0, 0.0))
     with pytest.raises(DesignError) as early:
         check_lenses(Optics(cameras=(good, folds)))
@@ -201,7 +201,7 @@ def test_further_cameras_are_named(mesh: MembraneMesh) -> None:
         (folds, ".distortion"),
     ):
         with pytest.raises(DesignError) as caught:
-            check_cameras(mesh, Optics(cameras=(good, bad)))
+            check_camera(mesh, bad, at=camera_field(Optics(cameras=(good, bad)), bad))
         assert caught.value.at == f"optics.cameras[2]{field}"
 
 
