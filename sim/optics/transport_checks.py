@@ -20,13 +20,14 @@ from sim.optics.specimen import finger
 from sim.optics.table import bin_cosines, look_up, tabulate
 from sim.optics.transport.constants import FIXED_POINT
 from sim.optics.transport.gather import gather_light, scattered_light, virtual_lights
-from sim.optics.transport.nodes import coarse_nodes
+from sim.optics.transport.nodes import coarse_nodes, vertex_areas
 from sim.optics.transport.paths import trace_paths
+from sim.optics.transport.radiance import trace_radiance
 from sim.optics.transport.scene import Scene, build_scene
-from sim.optics.transport.sources import Sources, open_sources
+from sim.optics.transport.sources import open_sources
 from sim.optics.transport.tally import ledger_only, tally_at_nodes
 from sim.optics.transport.view import directions_to_camera
-from sim.optics.transport_scenes import disc, one_light, plane, sphere
+from sim.optics.transport_scenes import beam, disc, disc_source, one_light, plane, sphere
 from workbench.core.camera import Camera
 from workbench.core.light import AZIMUTHS, LightField, Scattered
 from workbench.core.lighting import Baking, LedMount, LedRing, LightModel
@@ -116,7 +117,7 @@ def reciprocity(
     found = []
     for near_mm, far_mm in (radii_mm, radii_mm[::-1]):
         scene = build_scene(_raw(disc(distance_mm, far_mm)), None, coating=BLACK)
-        source = _disc_source(near_mm)
+        source = disc_source(near_mm)
         tally = ledger_only()
         trace_paths(scene, source, tally, photons=photons, seed=1)
         found.append(tally.balance["absorbed"] * math.pi * near_mm**2)
@@ -155,7 +156,7 @@ def refraction_errors(
     worst_share, worst_deg = 0.0, 0.0
     up = np.array([[0.0, 0.0, 1.0]])
     for angle_deg in (0.0, 30.0, 60.0, 80.0):
-        leds = _beam(angle_deg)
+        leds = beam(angle_deg)
         bent, share = refract(leds.axis, up, index_from=1.0, index_to=refractive_index)
         balance, mean = _ledger_and_mean(scene, skin, leds, photons)
         worst_share = max(worst_share, abs(balance["absorbed"] - float(share[0])))
@@ -175,7 +176,7 @@ def total_reflection_error(*, refractive_index: float = 1.41, photons: int = 100
     down = np.array([[0.0, 0.0, -1.0]])
     for angle_deg in (20.0, 40.0, 60.0):
         leds = dataclasses.replace(
-            _beam(angle_deg), position_mm=np.array([[0.0, 0.0, 2.0]]), in_shell=np.array([True])
+            beam(angle_deg), position_mm=np.array([[0.0, 0.0, 2.0]]), in_shell=np.array([True])
         )
         leds = dataclasses.replace(leds, axis=leds.axis * [1.0, 1.0, -1.0])
         _, share = refract(leds.axis, down, index_from=refractive_index, index_to=1.0)
@@ -244,6 +245,30 @@ def direct_table_errors(*, photons: int = 1_000_000) -> tuple[float, float]:
     return float(rms), float(abs(found[lit].mean() / exact[lit].mean() - 1.0))
 
 
+def table_error(*, in_shell: bool, photons: int = 1_000_000) -> float:
+    """The table of all light at rest against photons gathered toward the camera.
+
+    Relative difference of the mean radiance above the base, refraction and all orders of scattering
+    included.
+    """
+    mesh, camera = finger(edge_mm=1.0), Camera()
+    mount, radius_mm = (LedMount.SHELL, 12.5) if in_shell else (LedMount.CAVITY, 9.0)
+    leds = place_leds(LedRing(count=3, mount=mount, radius_mm=radius_mm))
+    transport = Transport(
+        coating=Coating(), refractive_index=1.41, baking=Baking(photons=photons, nodes=5000)
+    )
+    light = _field(leds, *gather_light(mesh, leds, transport))
+    table = tabulate(light, mesh, (camera,), transport, model=LightModel.TABLE)
+    scattered = light.scattered
+    assert scattered is not None
+    places = scattered.nodes, scattered.weights, scattered.frame
+    found = look_up(table.values[0], *places, -mesh.seen.normals)
+    traced = trace_radiance(mesh, leds, camera, transport, photons=photons, first_photon=photons)
+    exact = traced.radiance * (len(leds.rgb) / traced.photons)
+    share = vertex_areas(mesh.seen) * (mesh.seen.points_mm[:, 2] > 3.0)
+    return float(abs(share @ found.sum(axis=1) / (share @ exact.sum(axis=1)) - 1.0))
+
+
 def _raw(skin: Skin) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return skin.points_mm, skin.normals, skin.faces
 
@@ -285,25 +310,6 @@ def _ledger_and_mean(
     trace_paths(scene, sources, tally, photons=photons, seed=1)
     mean = tally.lamps[:, 0, :3].sum(axis=0) / FIXED_POINT
     return tally.balance, mean / np.linalg.norm(mean)
-
-
-def _beam(angle_deg: float) -> Leds:
-    """A beam half a degree wide, at an angle to +Z."""
-    tilt = math.radians(angle_deg)
-    axis = (math.sin(tilt), 0.0, math.cos(tilt))
-    return one_light(axis=axis, exponent=0.0, cone=math.cos(math.radians(0.25)))
-
-
-def _disc_source(radius_mm: float) -> Sources:
-    """A Lambertian disc of any size; `open_sources` would keep it clear of surfaces."""
-    return Sources(
-        position_mm=np.zeros((1, 3), dtype=np.float32),
-        axis=np.array([[0.0, 0.0, 1.0]], dtype=np.float32),
-        emission=np.array([[1.0, 0.0, radius_mm]], dtype=np.float32),
-        in_shell=np.zeros(1, dtype=np.int32),
-        power=np.ones((1, 3), dtype=np.float32),
-        strongest=1.0,
-    )
 
 
 def _field(

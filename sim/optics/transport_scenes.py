@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from sim.optics.lights import Leds
+from sim.optics.transport.sources import Sources
 from workbench.core.results import Skin
 
 
@@ -70,4 +73,23 @@ def one_light(
         cone=np.array([cone]),
         size_mm=np.array([size_mm]),
         in_shell=np.array([in_shell]),
+    )
+
+
+def beam(angle_deg: float) -> Leds:
+    """A beam half a degree wide, at an angle to +Z."""
+    tilt = math.radians(angle_deg)
+    axis = (math.sin(tilt), 0.0, math.cos(tilt))
+    return one_light(axis=axis, exponent=0.0, cone=math.cos(math.radians(0.25)))
+
+
+def disc_source(radius_mm: float) -> Sources:
+    """A Lambertian disc of any size; `open_sources` would keep it clear of surfaces."""
+    return Sources(
+        position_mm=np.zeros((1, 3), dtype=np.float32),
+        axis=np.array([[0.0, 0.0, 1.0]], dtype=np.float32),
+        emission=np.array([[1.0, 0.0, radius_mm]], dtype=np.float32),
+        in_shell=np.zeros(1, dtype=np.int32),
+        power=np.ones((1, 3), dtype=np.float32),
+        strongest=1.0,
     )

@@ -11,17 +11,19 @@ import pytest
 from sim.optics.lights import Leds
 from sim.optics.specimen import finger
 from sim.optics.transport import reference
-from sim.optics.transport.constants import AT_NODES, FLYING
+from sim.optics.transport.constants import AT_NODES, FIXED_POINT, FLYING
 from sim.optics.transport.gather import gather_light
 from sim.optics.transport.nodes import coarse_nodes
 from sim.optics.transport.paths import Driver, trace_paths
 from sim.optics.transport.radiance import trace_radiance
-from sim.optics.transport.scene import Scene, open_scene
+from sim.optics.transport.scene import Scene, build_scene, open_scene
 from sim.optics.transport.sources import open_sources
-from sim.optics.transport.tally import ledger_only
+from sim.optics.transport.tally import Tally, ledger_only, tally_at_nodes
 from sim.optics.transport.view import directions_to_camera
+from sim.optics.transport_scenes import plane
 from sim.specimens import finger_skin
 from workbench.core.camera import Camera
+from workbench.core.light import AZIMUTHS
 from workbench.core.lighting import Baking
 from workbench.core.optics import Coating, Transport
 from workbench.core.results import MembraneMesh
@@ -56,7 +58,12 @@ def mesh() -> MembraneMesh:
 
 
 def step(
-    scene: Scene, photons: reference.Photons, hits: tuple[np.ndarray, ...], seed: int, event: int
+    scene: Scene,
+    photons: reference.Photons,
+    hits: tuple[np.ndarray, ...],
+    seed: int,
+    event: int,
+    tally: Tally | None = None,
 ) -> tuple[reference.Photons, np.ndarray]:
     """One event of photons 0, 1, ... by the kernel; the photons after it and the ledger."""
     import taichi.math as tm
@@ -64,7 +71,7 @@ def step(
     from sim.optics.transport import wavefront_kernels
 
     happen_to_all: Any = wavefront_kernels.happen_to_all
-    tally = ledger_only()
+    tally = tally or ledger_only()
     origin, direction = photons.origin.astype(np.float32), photons.direction.astype(np.float32)
     flux, alive = photons.flux.astype(np.float32), np.zeros(len(photons.flux), dtype=np.int32)
     marks = (photons.fresh + 2 * photons.crossed).astype(np.int32)
@@ -156,6 +163,39 @@ def test_one_event_equals_its_plain_twin(
     # One different choice moves up to 1 of about 5,000.
     assert ledger[0] == pytest.approx(absorbed.sum(), abs=10.0)
     assert ledger[3] == pytest.approx(cut.sum(), abs=10.0)
+
+
+def test_light_is_divided_among_bins_as_its_plain_twin_says(taichi_device: str) -> None:
+    """20,000 photons of one direction fill the twin's bins, in each node's share."""
+    skin = plane(0.0, 1.0, 1)
+    scene = build_scene((skin.points_mm, skin.normals, skin.faces), None, coating=Coating())
+    nodes = coarse_nodes(skin, 10)
+    count, toward = 20_000, np.array([0.5, -0.2, -np.sqrt(0.71)])
+    photons = reference.Photons(
+        origin=np.zeros((count, 3)),
+        direction=np.tile(-toward, (count, 1)),
+        flux=np.ones(count),
+        fresh=np.ones(count, dtype=bool),
+        crossed=np.zeros(count, dtype=bool),
+        fate=np.full(count, FLYING),
+    )
+    hits = (
+        np.zeros(count, dtype=np.int32),
+        np.full(count, 0.2, dtype=np.float32),
+        np.full(count, 0.3, dtype=np.float32),
+    )
+    tally = tally_at_nodes(nodes, 1)
+    step(scene, photons, hits, 7, 0, tally)
+    received = count / np.sqrt(0.71)
+    for node, share in zip(skin.faces[0], (0.5, 0.2, 0.3), strict=True):
+        found = tally.bins[0, node, 0].reshape(-1, AZIMUTHS) / FIXED_POINT
+        twin = reference.expected_bins(toward, nodes.frame[node], received * share)
+        # Counts in a bin of 4,000 photons differ by 60.
+        np.testing.assert_allclose(found, twin, atol=5 * 60 * share / np.sqrt(0.71))
+        assert found.sum() == pytest.approx(received * share, rel=1e-5)
+        lamp = tally.lamps[node, 0] / FIXED_POINT
+        np.testing.assert_allclose(lamp[:3] / lamp[3], toward, atol=1e-5)
+    assert not tally.bins[1].any()
 
 
 def test_random_numbers_are_even_and_the_twins_equal(taichi_device: str) -> None:

@@ -29,15 +29,8 @@ from sim.optics.transport.constants import (
     STEEPEST,
     TOWARD_CAMERA,
 )
-from sim.optics.transport.scatter_functions import (
-    Photon,
-    Surface,
-    emitted,
-    lattice4,
-    meet,
-    random4,
-    surface_at,
-)
+from sim.optics.transport.emission_functions import Photon, emitted, lattice4, random4
+from sim.optics.transport.scatter_functions import Surface, meet, surface_at
 from workbench.core.light import AZIMUTHS
 
 COSINES = tuple(float(cosine) for cosine in bin_cosines())

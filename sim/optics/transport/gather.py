@@ -23,8 +23,10 @@ from workbench.core.monitor import Monitor, part, silent
 from workbench.core.optics import Transport
 from workbench.core.results import MembraneMesh
 
-SMOOTHINGS = 3
-"""Times that the virtual LEDs are averaged with their neighbours; measured."""
+SMOOTHINGS = 1
+"""Times that the virtual LEDs are averaged with their neighbours. Against photons, 1 is as good as
+0 in dents and at rest, and leaves fewer specks where few photons come; 3 blurs the light beside
+the LEDs by 0.7 to 0.9 % of the mean more, 6 by 2 %."""
 
 
 def gather_light(

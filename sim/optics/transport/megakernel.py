@@ -28,6 +28,11 @@ class Megakernel:
     def __init__(self, scene: Scene, sources: Sources, tally: Tally) -> None:
         import taichi.math as tm
 
+        from sim.optics.device_arrays import on_device
+
+        def vectors(array: np.ndarray) -> Any:
+            return on_device(array, vector=3)
+
         self._tally, self._skin_faces = tally, scene.skin_faces
         coating = scene.coating
         lobes = coating.albedo, coating.specular, coating.roughness
@@ -37,19 +42,19 @@ class Megakernel:
         boxes = tree.lower_mm, tree.upper_mm
         surface = scene.points_mm, scene.normals
         self._inputs = [
-            *(_vectors(array) for array in lamps),
-            _numbers(sources.in_shell),
-            *(_vectors(array) for array in boxes),
-            *(_numbers(array) for array in (tree.starts, tree.order)),
-            *(_vectors(array) for array in surface),
-            _vectors(scene.faces),
+            *(vectors(array) for array in lamps),
+            on_device(sources.in_shell),
+            *(vectors(array) for array in boxes),
+            *(on_device(array) for array in (tree.starts, tree.order)),
+            *(vectors(array) for array in surface),
+            vectors(scene.faces),
         ]
-        self._sums = {name: _numbers(getattr(tally, name)) for name in SUMS}
+        self._sums = {name: on_device(getattr(tally, name)) for name in SUMS}
         self._tables = [
-            _vectors(sources.power),
-            *(_vectors(getattr(tally, name)) for name in ("face_nodes", "face_weights", "frames")),
+            vectors(sources.power),
+            *(vectors(getattr(tally, name)) for name in ("face_nodes", "face_weights", "frames")),
         ]
-        self._to_camera = _vectors(tally.to_camera)
+        self._to_camera = vectors(tally.to_camera)
 
     def trace(self, first: int, count: int, seed: int) -> None:
         """Follow photons `first` to `first + count` to their ends."""
@@ -80,24 +85,3 @@ class Megakernel:
         """Copy the sums back."""
         for name, array in self._sums.items():
             setattr(self._tally, name, array.to_numpy())
-
-
-def _numbers(array: np.ndarray) -> Any:
-    """A copy on the device, number by number."""
-    import taichi as ti
-    from taichi.lang.util import to_taichi_type
-
-    copy = ti.ndarray(to_taichi_type(array.dtype), array.shape)
-    copy.from_numpy(np.ascontiguousarray(array))
-    return copy
-
-
-def _vectors(array: np.ndarray) -> Any:
-    """A copy on the device whose last axis, of 3, is one vector."""
-    import taichi as ti
-    from taichi.lang.util import to_taichi_type
-
-    kind = ti.types.vector(3, to_taichi_type(array.dtype))
-    copy = ti.ndarray(kind, array.shape[:-1])
-    copy.from_numpy(np.ascontiguousarray(array))
-    return copy

@@ -99,7 +99,7 @@ def _patches(skin: Skin, count: int) -> tuple[np.ndarray, np.ndarray]:
     from scipy.sparse.csgraph import dijkstra
 
     graph = _edges(skin)
-    share = _vertex_areas(skin)
+    share = vertex_areas(skin)
     random = np.random.default_rng(0)
     # Drawn by area along a line through all vertices: even, whatever the density of the mesh.
     order = random.permutation(len(share))
@@ -152,7 +152,8 @@ def _edges(skin: Skin) -> Any:
     return links.multiply(times.power(-1.0)).tocsr()
 
 
-def _vertex_areas(skin: Skin) -> np.ndarray:
+def vertex_areas(skin: Skin) -> np.ndarray:
+    """A third of the area of the faces about each vertex [mm2], shape (V,)."""
     area = np.repeat(face_areas(skin.points_mm, skin.faces) / 3.0, 3)
     return np.bincount(skin.faces.ravel(), area, len(skin.points_mm))
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import enum
-from typing import Any, Protocol
+from typing import Protocol
 
 from sim.optics.transport.scene import Scene
 from sim.optics.transport.sources import Sources
@@ -67,10 +67,9 @@ def trace_paths(
 
 def driver_of_device() -> Driver:
     """The driver for the device that Taichi was opened on."""
-    import taichi as ti
+    from sim.optics.device_arrays import computes_on_gpu
 
-    settings: Any = ti.cfg
-    return Driver.MEGAKERNEL if settings.arch == ti.cuda else Driver.WAVEFRONT
+    return Driver.MEGAKERNEL if computes_on_gpu() else Driver.WAVEFRONT
 
 
 def _open(driver: Driver, scene: Scene, sources: Sources, tally: Tally) -> _Tracer:

@@ -13,7 +13,6 @@ import numpy as np
 from sim.optics.table import bin_shares
 from sim.optics.transport.constants import (
     ABSORBED,
-    FLATTEST_COSINE,
     FLYING,
     GRAZING,
     LATTICE,
@@ -23,7 +22,7 @@ from sim.optics.transport.constants import (
     SURVIVAL,
 )
 from sim.optics.transport.scene import Scene
-from workbench.core.light import AZIMUTHS
+from workbench.core.light import AZIMUTHS, SINES
 
 FLOOR = 1e-3
 """As in `coating_kernels`."""
@@ -210,18 +209,13 @@ def expected_bins(toward: np.ndarray, frame: np.ndarray, received: np.ndarray) -
     """
     x, y, cosine = frame @ toward
     low, share = bin_shares(np.array([cosine]))
-    bins = np.zeros((11 - 1, AZIMUTHS))
+    bins = np.zeros((len(SINES) - 1, AZIMUTHS))
     turn = (np.arctan2(y, x) / (2.0 * np.pi) + 1.0) * AZIMUTHS
     left = int(np.floor(turn))
     for row, part in ((int(low[0]), 1.0 - share[0]), (int(low[0]) + 1, share[0])):
         bins[row, left % AZIMUTHS] += received * part * (1.0 - (turn - left))
         bins[row, (left + 1) % AZIMUTHS] += received * part * (turn - left)
     return bins
-
-
-def received_flux(flux: np.ndarray, cos_facet: np.ndarray) -> np.ndarray:
-    """Perpendicular flux of photons that meet a facet at a cosine, shape (P,)."""
-    return flux / np.maximum(cos_facet, FLATTEST_COSINE)
 
 
 def _half_vector(view: np.ndarray, roughness: float, u: np.ndarray, v: np.ndarray) -> np.ndarray:

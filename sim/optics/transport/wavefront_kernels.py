@@ -11,6 +11,7 @@ import taichi as ti
 import taichi.math as tm
 
 from sim.optics.transport.constants import FLYING
+from sim.optics.transport.emission_functions import Photon
 from sim.optics.transport.event_functions import (
     Counts2,
     Counts3,
@@ -23,7 +24,6 @@ from sim.optics.transport.event_functions import (
     begin,
     happen,
 )
-from sim.optics.transport.scatter_functions import Photon
 
 
 @ti.kernel
