@@ -42,7 +42,7 @@ def lit(
         frame=frame,
         first=bins,
         rest=bins,
-        nodes=near.astype(np.int32),
+        nodes=np.asarray(near, dtype=np.int32),
         weights=(shares / shares.sum(axis=1, keepdims=True)).astype(np.float32),
         balance={},
         photons=0,

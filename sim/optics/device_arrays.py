@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import taichi as ti
+from taichi.lang import impl
 
 
 def on_device(array: np.ndarray, *, vector: int = 0) -> Any:
@@ -33,4 +34,4 @@ def empty(kind: Any, count: int, *, vector: int = 0) -> Any:
 
 def computes_on_gpu() -> bool:
     """Whether the open device is a GPU."""
-    return ti.lang.impl.current_cfg().arch not in (ti.x64, ti.arm64)
+    return impl.current_cfg().arch not in (ti.x64, ti.arm64)

@@ -127,12 +127,14 @@ class Imager:
         """Write the grey levels of the frames looked at, shape (k, N, 3), uint8."""
         gain = self.backdrop.exposure * (LUT_STEPS - 1)
         images[:] = self.backdrop.background_rgb
-        compose_kernels.expose(*self._seen(len(images)), gain, self._curve, images)
+        arguments = (*self._seen(len(images)), gain, self._curve, images)
+        compose_kernels.expose(*arguments)  # pyright: ignore[reportCallIssue]
 
     def gather_light(self, linear: np.ndarray) -> None:
         """Write the linear light of the frames looked at, shape (k, N, 3), float32."""
         linear[:] = self.backdrop.background
-        compose_kernels.gather_light(*self._seen(len(linear)), linear)
+        arguments = (*self._seen(len(linear)), linear)
+        compose_kernels.gather_light(*arguments)  # pyright: ignore[reportCallIssue]
 
     def _seen(self, frames: int) -> tuple[Any, ...]:
         raster, back = self.raster, self.backdrop

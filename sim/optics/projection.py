@@ -21,6 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim.optics.camera import Rays, focal_px, pixel_directions
+from sim.optics.folds import folds, spread
 from sim.optics.walls import Segments, last_segments
 from workbench.core.camera import Camera
 from workbench.core.results import MembraneMesh, Skin
@@ -28,11 +29,11 @@ from workbench.core.results import MembraneMesh, Skin
 LEAST_PAD_PX = 8
 LARGEST_PAD = 0.25
 """Widest border of the map, as a share of the image's width [1]."""
-JUMP = 0.15
-"""Change of direction or foot between neighbouring pixels that is a discontinuity [rad, and mm per
-mm of the camera's distance to the skin]; smooth walls stay below 0.02 at 320 pixels across."""
 NEWTON_STEPS = 10
-LARGEST_STEP_PX = 8.0
+LARGEST_STEP = 0.1
+"""Longest step, as a share of the map's width [1]: across a fold a step may point anywhere."""
+NO_PIXEL = -1.0
+"""Map coordinate of a point that no ray of the map passes through."""
 FOUND_MM = 0.02
 """Distance from a ray below which a point counts as lying on it [mm]: a twentieth of an edge."""
 
@@ -90,13 +91,13 @@ def open_map(mesh: MembraneMesh, camera: Camera, *, index: float) -> RayMap:
         width_px=camera.width_px,
         height_px=camera.height_px,
     )
-    bad = _folds(
+    bad = folds(
         hit.reshape(*shape, 3),
         segments.direction.reshape(*shape, 3),
         foot.reshape(*shape, 3) - place,
         segments.walls.reshape(shape),
     )
-    folded = _spread(bad, face.reshape(shape), mesh.seen.faces)
+    folded = spread(bad, face.reshape(shape), mesh.seen.faces)
     return RayMap(
         camera=camera,
         pad_px=pad,
@@ -130,52 +131,6 @@ def _meet(seen: Skin, segments: Segments) -> tuple[np.ndarray, np.ndarray]:
     return segments.origin_mm + distance[:, None] * segments.direction, face
 
 
-def _folds(
-    hit: np.ndarray, direction: np.ndarray, foot: np.ndarray, walls: np.ndarray
-) -> np.ndarray:
-    """Pixels beside which the map jumps, or turns over: sign of d . (X_x x X_y), (H, W), bool."""
-    bad = walls < 0
-    for axis in (0, 1):
-        size = np.maximum(np.nanmedian(np.linalg.norm(hit, axis=2)), 1.0)
-        turn = np.linalg.norm(np.diff(direction, axis=axis), axis=2)
-        move = np.linalg.norm(np.diff(foot, axis=axis), axis=2) / size
-        jump = (np.diff(walls, axis=axis) != 0) | (turn > JUMP) | (move > JUMP)
-        if axis == 0:
-            bad[1:] |= jump
-            bad[:-1] |= jump
-        else:
-            bad[:, 1:] |= jump
-            bad[:, :-1] |= jump
-    # Along one ray the sign does not depend on the distance's slope, so X may leave the skin.
-    step_x, step_y = np.gradient(hit, axis=1), np.gradient(hit, axis=0)
-    area = np.einsum("hwi,hwi->hw", direction, np.cross(step_x, step_y))
-    with np.errstate(invalid="ignore"):
-        return bad | (area <= 0.0)
-
-
-def _spread(bad: np.ndarray, face: np.ndarray, faces: np.ndarray) -> np.ndarray:
-    """All pixels that see, or nearly see, a triangle that bad pixels see: (H, W), bool.
-
-    What is folded shows several times; each of its pictures is cast.
-    """
-    if not bad.any():
-        return bad
-    marked = np.zeros(faces.max() + 1, dtype=bool)
-    marked[faces[np.unique(face[bad & (face >= 0)])].ravel()] = True
-    again = marked[faces].any(axis=1)
-    return _grown(bad | ((face >= 0) & again[face]))
-
-
-def _grown(mask: np.ndarray) -> np.ndarray:
-    """The mask and the pixels beside it."""
-    grown = mask.copy()
-    grown[1:] |= mask[:-1]
-    grown[:-1] |= mask[1:]
-    grown[:, 1:] |= mask[:, :-1]
-    grown[:, :-1] |= mask[:, 1:]
-    return grown
-
-
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Projected:
     """N points in map coordinates."""
@@ -207,7 +162,7 @@ def project_points(
         step = np.column_stack([yy * right_x - cross * right_y, xx * right_y - cross * right_x])
         step /= safe[:, None]
         length = np.maximum(np.linalg.norm(step, axis=1, keepdims=True), 1e-12)
-        xy = np.clip(xy + step * np.minimum(1.0, LARGEST_STEP_PX / length), 0.0, highest)
+        xy = np.clip(xy + step * np.minimum(1.0, LARGEST_STEP * highest[0] / length), 0.0, highest)
     miss, _, _, direction, along = _residual(ray_map, points_mm, xy)
     lead = _bilinear(ray_map.lead_mm[..., None], xy)[0][:, 0]
     return Projected(

@@ -6,10 +6,13 @@
 import taichi as ti
 import taichi.math as tm
 
-from sim.optics.projection import LARGEST_STEP_PX
+from sim.optics.projection import LARGEST_STEP, NO_PIXEL
 
-STEPS = 3
-"""From the pixel of the undeformed vertex: after two, 1e-4 px remain at most."""
+MOST_STEPS = 10
+LOST_MM = 0.1
+"""Distance from the ray beyond which a point has no pixel inside the map [mm]."""
+ARRIVED_PX = 0.02
+"""A step this short is the last one [px]: convergence is quadratic, 1e-5 px remain."""
 
 
 @ti.func
@@ -27,10 +30,16 @@ def sample(values: ti.template(), x: ti.f32, y: ti.f32):
 
 @ti.func
 def project(point: tm.vec3, start: tm.vec2, foot_map: ti.template(), way_map: ti.template()):
-    """Map coordinates of a point, and the direction of the ray that passes through it."""
+    """Map coordinates of a point, and the direction of the ray that passes through it.
+
+    A point outside the map stands on its border, so that its triangles reach up to there; one
+    that no ray passes through inside has `NO_PIXEL`.
+    """
     place = start
     last_x, last_y = float(foot_map.shape[1] - 1), float(foot_map.shape[0] - 1)
-    for _ in range(STEPS):
+    going = 0
+    while going < MOST_STEPS:
+        going += 1
         foot, foot_x, foot_y = sample(foot_map, place.x, place.y)
         way, way_x, way_y = sample(way_map, place.x, place.y)
         size = way.norm()
@@ -48,7 +57,14 @@ def project(point: tm.vec3, start: tm.vec2, foot_map: ti.template(), way_map: ti
         if determinant > 1e-20:
             step = tm.vec2(yy * right_x - xy * right_y, xx * right_y - xy * right_x) / determinant
             length = ti.max(step.norm(), 1e-12)
-            place += step * ti.min(1.0, LARGEST_STEP_PX / length)
+            place += step * ti.min(1.0, LARGEST_STEP * last_x / length)
+            if length < ARRIVED_PX:
+                going = MOST_STEPS
         place.x = tm.clamp(place.x, 0.0, last_x)
         place.y = tm.clamp(place.y, 0.0, last_y)
-    return place, sample(way_map, place.x, place.y)[0].normalized()
+    way = sample(way_map, place.x, place.y)[0].normalized()
+    offset = point - sample(foot_map, place.x, place.y)[0]
+    inside = place.x > 0.0 and place.y > 0.0 and place.x < last_x and place.y < last_y
+    if inside and (offset - offset.dot(way) * way).norm() > LOST_MM:
+        place = tm.vec2(NO_PIXEL)
+    return place, way

@@ -24,9 +24,14 @@ GPU_FRAMES = 32
 class Raster:
     """The view of one camera on the device, with room for a batch of frames."""
 
-    def __init__(self, view: SkinView) -> None:
+    def __init__(self, view: SkinView, *, frames: int | None = None) -> None:
+        """Upload a view.
+
+        Args:
+            frames: Most frames of a batch; None is what suits the device.
+        """
         self.view = view
-        self.frames = GPU_FRAMES if computes_on_gpu() else 1
+        self.frames = frames or (GPU_FRAMES if computes_on_gpu() else 1)
         self.vertices, self.pixels = len(view.points_mm), len(view.direction)
         self._upload(view)
         count, pixels = self.frames * self.vertices, self.frames * self.pixels
@@ -130,7 +135,7 @@ class Raster:
             self.seen_pixel,
             self.keys,
         )
-        raster_kernels.resolve(
+        arguments = (
             frames,
             self.vertices,
             self.pixels,
@@ -154,6 +159,7 @@ class Raster:
             self.seen_mm,
             self.on_patch,
         )
+        raster_kernels.resolve(*arguments)
 
     @property
     def tree(self) -> tuple[Any, ...]:

@@ -35,6 +35,8 @@ UNCOVERED = 0x7FFFFFFE
 """The same where its undeformed triangle moved and nothing has been drawn."""
 MARGIN_PX = 0.75
 """How far a triangle may reach over the box of its corners [px]: refraction bends its edges."""
+LARGEST_BOX = 0.25
+"""Largest box of a triangle, as a share of the image [1]."""
 SAME, NOTHING = -2, -1
 """Instead of a face: a pixel that is as in the background; one that sees no skin."""
 
@@ -81,6 +83,9 @@ def draw(
             right = ti.min(int(ti.floor(most.x + MARGIN_PX)) - pad, width - 1)
             top = ti.max(int(ti.ceil(least.y - MARGIN_PX)) - pad, 0)
             bottom = ti.min(int(ti.floor(most.y + MARGIN_PX)) - pad, height - 1)
+            # A corner projected amiss makes a box of half the image; such pixels are cast.
+            if (right - left) * (bottom - top) > LARGEST_BOX * width * height:
+                bottom = top - 1
             for row in range(top, bottom + 1):
                 for column in range(left, right + 1):
                     number = row * width + column

@@ -90,6 +90,16 @@ class Studio:
         """Vertices that the camera sees of the undeformed skin, shape (V,), bool."""
 
     @property
+    def to_camera(self) -> np.ndarray:
+        """Unit vectors from the undeformed vertices along the bent ray, shape (V, 3), float32."""
+        return self.imager.raster.view.to_camera
+
+    @property
+    def exposure(self) -> float:
+        """From radiance behind the cavity wall to display light."""
+        return self.imager.backdrop.exposure
+
+    @property
     def vertex_pixels(self) -> np.ndarray:
         """u, v [px] and range [mm] of the undeformed vertices, shape (V, 3), float32.
 
@@ -98,7 +108,7 @@ class Studio:
         view = self.imager.raster.view
         found = np.column_stack([view.start_pixel + 0.5 - view.pad_px, view.range_mm])
         size = np.array([view.width_px, view.height_px])
-        inside = (view.start_pixel[:, 0] >= 0.0) & (found[:, :2] >= 0.0).all(axis=1)
+        inside = view.projects & (found[:, :2] >= 0.0).all(axis=1)
         inside &= (found[:, :2] <= size).all(axis=1)
         found[~inside] = np.nan
         return found

@@ -108,7 +108,7 @@ class Shader:
         shadows: int,
     ) -> None:
         raster = self._raster
-        shade_vertices(
+        arguments = (
             count,
             self.lit.way_of_lighting,
             vertex_list,
@@ -124,6 +124,7 @@ class Shader:
             *raster.corners,
             radiance,
         )
+        shade_vertices(*arguments)
 
 
 def _take(target: Any, radiance: np.ndarray | None) -> None:

@@ -13,7 +13,7 @@ import numpy as np
 
 from sim.optics.camera import Rays
 from sim.optics.gbuffer import sum_area_vectors
-from sim.optics.projection import FOUND_MM, RayMap, open_map, project_points, seeds
+from sim.optics.projection import FOUND_MM, NO_PIXEL, RayMap, open_map, project_points, seeds
 from sim.optics.tree import order_of_faces
 from sim.optics.walls import STEP_PAST_MM
 from workbench.core.camera import Camera
@@ -23,7 +23,6 @@ MOST_LAYERS = 8
 """Triangles kept along a ray; behind eight walls of skin nothing is lit."""
 HIDDEN_MM = 0.05
 """How much nearer another part of the skin must be to hide a vertex [mm]: a tenth of an edge."""
-NO_PIXEL = -1.0
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -50,7 +49,9 @@ class SkinView:
     """`RayMap.direction`."""
     pad_px: int
     start_pixel: np.ndarray
-    """Map coordinates of each vertex, shape (V, 2), float32; `NO_PIXEL` where it has none."""
+    """Map coordinates of each vertex, or where on the map's border it is nearest, (V, 2)."""
+    projects: np.ndarray
+    """Whether a ray of the map passes through the vertex, shape (V,), bool."""
     range_mm: np.ndarray
     """Length of the line of sight to each vertex [mm], shape (V,), float32."""
     to_camera: np.ndarray
@@ -111,7 +112,7 @@ def open_skin_view(mesh: MembraneMesh, camera: Camera, *, index: float) -> SkinV
     pixels = np.flatnonzero(first >= 0)
     by_face = np.argsort(first[pixels], kind="stable")
     corners = np.argsort(faces.ravel(), kind="stable")
-    start_pixel, to_camera, range_mm, visible = _vertices(skin, camera, ray_map)
+    start_pixel, projects, to_camera, range_mm, visible = _vertices(skin, camera, ray_map)
     return SkinView(
         points_mm=skin.points_mm.astype(np.float32),
         normals=skin.normals.astype(np.float32),
@@ -124,6 +125,7 @@ def open_skin_view(mesh: MembraneMesh, camera: Camera, *, index: float) -> SkinV
         way_map=ray_map.direction,
         pad_px=ray_map.pad_px,
         start_pixel=start_pixel,
+        projects=projects,
         range_mm=range_mm,
         to_camera=to_camera,
         visible=visible,
@@ -192,8 +194,8 @@ def _layers(points: np.ndarray, faces: np.ndarray, rays: Rays) -> _Layers:
 
 def _vertices(
     skin: Skin, camera: Camera, ray_map: RayMap
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Map coordinates, directions to the camera, ranges and visibility of the vertices."""
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Map coordinates, whether they hold, directions to the camera, ranges and visibility."""
     from geometry.rays import RayCaster
 
     points = skin.points_mm
@@ -215,5 +217,13 @@ def _vertices(
     passes = ray_map.rays.transmittance[pixel] > 0.0
     visible = np.zeros(len(points), dtype=bool)
     visible[looked] = ~blocked & passes
-    start_pixel = np.where(met[:, None], spots.xy, NO_PIXEL).astype(np.float32)
-    return start_pixel, to_camera.astype(np.float32), spots.range_mm.astype(np.float32), visible
+    highest = np.array(ray_map.lead_mm.shape[::-1]) - 1.0
+    on_border = ((spots.xy <= 0.0) | (spots.xy >= highest)).any(axis=1)
+    start_pixel = np.where((met | on_border)[:, None], spots.xy, NO_PIXEL).astype(np.float32)
+    return (
+        start_pixel,
+        met,
+        to_camera.astype(np.float32),
+        spots.range_mm.astype(np.float32),
+        visible,
+    )

@@ -11,16 +11,17 @@ from sim.optics.backdrop import Backdrop, at_pixels, dots_of_faces
 from sim.optics.camera import focal_px, rotation_camera_to_sensor
 from sim.optics.display import choose_exposure, encode
 from sim.optics.gbuffer import GBuffer, Hits, describe
+from sim.optics.image_sensor import develop, fixed_exposure
 from sim.optics.imager import Imager
 from sim.optics.lens import ANGULAR
 from sim.optics.markers import TIP_REFLECTANCE, Dots, dots_at, ink, no_ink, print_dots
-from sim.optics.places import check_camera
+from sim.optics.places import camera_field, check_camera
 from sim.optics.raster import Raster
 from sim.optics.shader import Shader
 from sim.optics.shading import straight
 from sim.optics.skin_view import SkinView, open_skin_view
 from sim.optics.vertex_light import vertex_light
-from workbench.core.camera import Camera, ImageSensor
+from workbench.core.camera import Camera
 from workbench.core.errors import OpticsError
 from workbench.core.light import LightField, NormalTable
 from workbench.core.lighting import PAPER, LightModel
@@ -48,20 +49,26 @@ class StudioScene:
     def develop(self, linear: np.ndarray, range_mm: np.ndarray, number: int) -> np.ndarray:
         """Grey levels of linear light (N, 3) behind the image sensor, shape (H, W, 3), uint8."""
         rows, columns = self.imager.shape
-        exposure = self.imager.backdrop.exposure
-        return _developed(
+        return develop(
             linear.reshape(rows, columns, 3),
             self.camera,
-            exposure,
-            range_mm.reshape(rows, columns),
-            number,
+            exposure=self.imager.backdrop.exposure,
+            range_mm=range_mm.reshape(rows, columns),
+            frame=number,
         )
 
 
 def develops_plainly(camera: Camera) -> bool:
     """Whether the image sensor adds nothing: sRGB, no noise, no fall-off, no blur."""
-    sensor = dataclasses.replace(camera.sensor, exposure=0.0, seed=ImageSensor().seed)
-    return sensor == ImageSensor() and camera.aperture_mm == 0.0
+    sensor = camera.sensor
+    added = sensor.noise or sensor.vignetting > 0.0 or sensor.gamma != 0.0
+    return not added and camera.aperture_mm == 0.0
+
+
+def behind_photo(camera: Camera) -> Camera:
+    """The camera whose blur, fall-off and noise a photograph of its own holds already."""
+    sensor = dataclasses.replace(camera.sensor, vignetting=0.0, noise=False)
+    return dataclasses.replace(camera, aperture_mm=0.0, sensor=sensor)
 
 
 def open_scene(
@@ -80,7 +87,7 @@ def open_scene(
         OpticsError: If the image would be black, saying why.
     """
     monitor(0.0, "camera rays")
-    check_camera(mesh, camera)
+    check_camera(mesh, camera, at=camera_field(optics, camera))
     view = open_skin_view(mesh, camera, index=optics.refractive_index)
     monitor(0.2, "light on the skin")
     raster = Raster(view)
@@ -104,6 +111,8 @@ def open_scene(
     range_mm = np.full(len(view.direction), np.nan, dtype=np.float32)
     first = view.layer_start[seen.pixel]
     range_mm[seen.pixel] = view.travelled_mm[seen.pixel] + view.layer_mm[first]
+    if optics.background is not None:
+        camera = behind_photo(camera)
     scene = StudioScene(
         camera=camera,
         imager=Imager(raster, shader, backdrop),
@@ -187,7 +196,7 @@ def _backdrop(
     bare, foreground = at_pixels(view, behind), at_pixels(view, undeformed)
     # White tips on black skin are what must not be overexposed; black dots never are.
     bright = bare * factor if gain > 1.0 else bare
-    exposure = camera.sensor.exposure or choose_exposure(bright[seen.pixel])
+    exposure = fixed_exposure(camera, bright[seen.pixel])
     _expect_light(bright[seen.pixel], view.transmittance[seen.pixel], exposure)
     background, remainder, inked = bare * factor, bare - foreground, 1
     if optics.background is not None:
@@ -243,11 +252,3 @@ def _expect_light(shown: np.ndarray, transmittance: np.ndarray, exposure: float)
             hint=f"set exposure to 0, which chooses {chosen:.3g} here",
             at="optics.camera.sensor.exposure",
         )
-
-
-def _developed(
-    linear: np.ndarray, camera: Camera, exposure: float, range_mm: np.ndarray, number: int
-) -> np.ndarray:
-    from sim.optics.image_sensor import develop
-
-    return develop(linear, camera, exposure, range_mm, number)
