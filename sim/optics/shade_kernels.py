@@ -64,7 +64,7 @@ def lobe(place, led, axis, shape):
     square = ti.max(line.norm_sqr(), CLOSEST_MM * CLOSEST_MM)
     cosine = -line.dot(axis) / ti.sqrt(square)
     strength = 0.0
-    if cosine > 0.0 and cosine >= shape.y:
+    if cosine > 0.0 and cosine > shape.y:
         strength = ti.pow(cosine, shape.x) / square
     return strength
 

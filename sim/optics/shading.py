@@ -1,4 +1,6 @@
-"""Light leaving the skin toward the camera, per vertex and colour channel.
+"""Light leaving the skin toward the camera, per vertex and colour channel: the plain twins.
+
+Images are shaded by `shade_kernels`; these say the same in NumPy, and tests compare the two.
 
 Shading at vertices and interpolating is as good as shading pixels at mesh edges of 0.4 mm, and
 faster: the moved patch has ten times fewer vertices than pixels.
@@ -21,10 +23,9 @@ import numpy as np
 
 from geometry.rays import RayCaster
 from sim.optics.bake import SKIN_OFFSET_MM, emitted, toward
-from sim.optics.camera import Rays
-from sim.optics.gbuffer import MOVED_MM, GBuffer
+from sim.optics.gbuffer import MOVED_MM
 from workbench.core.light import LightField
-from workbench.core.lighting import LightModel
+from workbench.core.lighting import PAPER, LightModel
 from workbench.core.optics import Coating
 
 EDGE_ON = 1e-6
@@ -46,13 +47,13 @@ def shade(
     """Linear radiance per vertex, shape (N, 3), by the reflection law that belongs to the model.
 
     Args:
-        model: The light model; the paper's two fields use Phong.
+        model: The light model; the paper's fields use Phong, the others GGX.
         light: Light at these N vertices.
         coating: Reflectance of the skin.
         normal: Unit normals into the sensor, shape (N, 3).
         to_camera: Unit vectors from the vertices toward the camera along its ray, shape (N, 3).
     """
-    reflect = glossy if model is LightModel.DIRECT else phong
+    reflect = phong if model in PAPER else glossy
     normal, to_camera = normal.astype(np.float32), to_camera.astype(np.float32)
     total = np.zeros((len(normal), 3), dtype=np.float32)
     for number, rgb in enumerate(light.led_rgb.astype(np.float32)):
@@ -99,44 +100,52 @@ def glossy(
 
 def relight(
     light: LightField,
-    vertices: np.ndarray,
+    still_mm: np.ndarray,
     points_mm: np.ndarray,
     normals: np.ndarray,
     *,
-    travel_mm: np.ndarray,
-    emission_exponent: float,
     patch: RayCaster | None,
 ) -> LightField:
-    """The `direct` light at moved vertices, from where they are now.
+    """The light of `direct` and `hybrid` at moved vertices; `shade_kernels` has the equations.
 
     A vertex stays in shadow where the undeformed skin shadowed it, and falls into shadow where
     the moved patch comes between, the more the further it moved itself.
 
     Args:
-        light: The baked field.
-        vertices: Their numbers, shape (N,).
+        light: The field baked at these N vertices.
+        still_mm: Their undeformed positions [mm], shape (N, 3).
         points_mm: Their deformed positions [mm], shape (N, 3).
         normals: Their outward unit normals, shape (N, 3).
-        travel_mm: How far they moved [mm], shape (N,).
-        emission_exponent: Of the LEDs.
         patch: Casts the moved triangles.
     """
     start = points_mm - SKIN_OFFSET_MM * normals
+    travel_mm = np.linalg.norm(points_mm - still_mm, axis=1)
     share = np.log(np.maximum(travel_mm, MOVED_MM) / MOVED_MM) / np.log(FULL_SHADOW_MM / MOVED_MM)
     depth_of_shadow = np.minimum(share, 1.0)
-    direction = np.empty((len(light.led_mm), len(vertices), 3), dtype=np.float32)
-    irradiance = np.zeros((len(light.led_mm), len(vertices)), dtype=np.float32)
+    direction, irradiance = np.empty_like(light.direction), np.zeros_like(light.irradiance)
+    virtual = light.model == LightModel.HYBRID
     for number, led in enumerate(light.led_mm):
-        line, distance = toward(led, start)
+        away = np.linalg.norm(led - still_mm, axis=1, keepdims=True)
+        source = still_mm + away * light.direction[number] if virtual else led
+        line = source - points_mm
+        distance = np.linalg.norm(line, axis=1)
+        line = line / distance[:, None]
         direction[number] = line
-        sees = (light.irradiance[number, vertices] > 0.0) & (_dot(line, normals) < 0.0)
-        lit = np.flatnonzero(sees)
-        axis = light.led_axis[number]
-        received = emitted(line[lit], distance[lit], axis=axis, exponent=emission_exponent)
-        if patch is not None and lit.size:
-            shadow = patch.occluded(start[lit], line[lit], distance[lit])
-            received = received * (1.0 - depth_of_shadow[lit] * shadow)
-        irradiance[number, lit] = received
+        if virtual:
+            ratio = (away[:, 0] / distance) ** 2
+        else:
+            lobe = {
+                "axis": light.led_axis[number],
+                "exponent": float(light.led_exponent[number]),
+                "cone": float(light.led_cone[number]),
+            }
+            then = emitted((led - still_mm) / away, away[:, 0], **lobe)
+            ratio = emitted(line, distance, **lobe) / np.maximum(then, 1e-20)
+        received = light.irradiance[number] * ratio
+        if patch is not None:
+            shadow = patch.occluded(start, line, distance)
+            received = received * (1.0 - depth_of_shadow * shadow)
+        irradiance[number] = np.where(_dot(line, normals) < 0.0, received, 0.0)
     return dataclasses.replace(light, direction=direction, irradiance=irradiance)
 
 
@@ -156,27 +165,6 @@ def straight(light: LightField, points_mm: np.ndarray) -> LightField:
         direction=np.stack(direction).astype(np.float32),
         irradiance=np.ones_like(light.irradiance),
     )
-
-
-def directions_to_camera(
-    seen: GBuffer, rays: Rays, faces: np.ndarray, points_mm: np.ndarray, camera_mm: np.ndarray
-) -> np.ndarray:
-    """Unit vectors from each vertex along the bent ray to the camera, shape (V, 3), float32.
-
-    The mean of the rays that meet a vertex's triangles, weighted by how near they pass; a vertex
-    that no ray meets takes the straight line, which nobody sees.
-    """
-    count = len(points_mm)
-    corners = faces[seen.face].ravel()
-    back = -rays.direction[seen.pixel]
-    total = np.empty((count, 3))
-    for axis in range(3):
-        weighted = (seen.weights * back[:, axis : axis + 1]).ravel()
-        total[:, axis] = np.bincount(corners, weighted, minlength=count)
-    size = np.linalg.norm(total, axis=1, keepdims=True)
-    line = camera_mm - points_mm
-    line = line / np.linalg.norm(line, axis=1, keepdims=True)
-    return np.where(size > FLOOR, total / np.maximum(size, FLOOR), line).astype(np.float32)
 
 
 def _dot(left: np.ndarray, right: np.ndarray) -> np.ndarray:

@@ -1,0 +1,156 @@
+"""Shading on the device against the plain twins, for every light model."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from sim.optics.gbuffer import look, open_view
+from sim.optics.render import Studio
+from sim.optics.shading import relight, shade, take
+from sim.optics.specimen import dent, finger
+from sim.optics.table import look_up
+from tests.synthetic_light import SHADED, lit
+from workbench.core.camera import Camera, ImageSensor
+from workbench.core.errors import OpticsError
+from workbench.core.light import LightField, NormalTable
+from workbench.core.lighting import PAPER, TABULATED, LedMount, LedRing, LightModel
+from workbench.core.optics import Optics
+from workbench.core.results import MembraneMesh
+
+pytestmark = pytest.mark.usefixtures("taichi_device")
+
+SMALL = Camera(width_px=160, height_px=120)
+LOW = LedRing(count=3, radius_mm=12.5, mount=LedMount.SHELL, cone_deg=150.0)
+"""LEDs in the shell light the skin at a graze, so that dents cast shadows."""
+
+
+@pytest.fixture(scope="module")
+def mesh() -> MembraneMesh:
+    return finger(edge_mm=0.8)
+
+
+def studio_of(
+    mesh: MembraneMesh, model: LightModel, ring: LedRing
+) -> tuple[Studio, LightField, NormalTable | None]:
+    light, table = lit(mesh, model, ring)
+    optics = Optics(camera=SMALL, light_model=model, ring=ring)
+    return Studio(mesh, light, optics, table=table), light, table
+
+
+def twin(
+    mesh: MembraneMesh,
+    studio: Studio,
+    light: LightField,
+    table: NormalTable | None,
+    moved: np.ndarray,
+    to_camera: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Vertices near what moved and their radiance by NumPy."""
+    seen = look(open_view(mesh.seen, SMALL, studio.rays), moved)
+    rows = seen.vertices
+    model = LightModel(light.model)
+    here = take(light, rows)
+    normals = seen.normals[rows]
+    total = np.zeros((len(rows), 3))
+    if model is not LightModel.TABLE:
+        if model not in PAPER:
+            still = mesh.seen.points_mm[rows]
+            here = relight(here, still, seen.points_mm[rows], normals, patch=seen.patch)
+        total += shade(model, here, Optics().coating, -normals, to_camera[rows])
+    if model in TABULATED and table is not None and light.scattered is not None:
+        known = light.scattered
+        total += look_up(
+            table.values[0], known.nodes[rows], known.weights[rows], known.frame, -normals
+        )
+    return rows, total
+
+
+@pytest.mark.parametrize("ring", [LedRing(), LOW], ids=["cavity", "shell"])
+@pytest.mark.parametrize("model", SHADED)
+def test_kernel_and_twin_agree(mesh: MembraneMesh, model: LightModel, ring: LedRing) -> None:
+    """Radiance of every moved vertex, shadows included, to single precision."""
+    studio, light, table = studio_of(mesh, model, ring)
+    moved = dent(mesh.outer, at_mm=(15.0, 0.0, 20.0), depth_mm=2.0, radius_mm=4.0)
+    got = studio.radiance_at_vertices(moved)
+    to_camera = studio.imager.raster.to_camera.to_numpy()
+    rows, exact = twin(mesh, studio, light, table, moved, to_camera)
+    assert len(rows) > 300
+    error = np.abs(got[rows] - exact).max(axis=1) / exact.max()
+    # A shadow ray that passes along an edge may fall to either side.
+    assert np.mean(error > 1e-4) < 0.01
+    assert np.median(error) < 1e-5
+    untouched = np.setdiff1d(np.arange(len(got)), rows)
+    assert np.array_equal(got[untouched], studio.imager.backdrop.undeformed[untouched])
+
+
+def test_dents_cast_shadows_in_this_comparison(mesh: MembraneMesh) -> None:
+    """With light at a graze the twin's radiance without the patch is larger somewhere."""
+    studio, light, _ = studio_of(mesh, LightModel.DIRECT, LOW)
+    moved = dent(mesh.outer, at_mm=(15.0, 0.0, 20.0), depth_mm=2.0, radius_mm=4.0)
+    seen = look(open_view(mesh.seen, SMALL, studio.rays), moved)
+    rows = seen.vertices
+    still, here = mesh.seen.points_mm[rows], take(light, rows)
+    points, normals = seen.points_mm[rows], seen.normals[rows]
+    dark = relight(here, still, points, normals, patch=seen.patch).irradiance
+    bright = relight(here, still, points, normals, patch=None).irradiance
+    assert (dark < 0.5 * bright).sum() > 20
+
+
+def test_tilting_normals_to_themselves_changes_nothing(mesh: MembraneMesh) -> None:
+    """`shade_tilted` of the skin's own normals is the undeformed foreground, bit by bit."""
+    studio, _, _ = studio_of(mesh, LightModel.HYBRID, LedRing())
+    same = studio.shade_tilted(mesh.outer.normals)
+    assert np.array_equal(same, studio.imager.backdrop.undeformed)
+    turned = mesh.outer.normals + np.array([0.2, 0.0, 0.0])
+    turned /= np.linalg.norm(turned, axis=1, keepdims=True)
+    assert np.abs(studio.shade_tilted(turned) - same).max() > 0.01 * same.max()
+
+
+def test_given_radiance_is_what_images_show(mesh: MembraneMesh) -> None:
+    """The model photons takes radiance from outside: twice the light in the dent, nowhere else."""
+    light, _ = lit(mesh, LightModel.PHOTONS)
+    flat = np.tile(np.float32([1.0, 0.5, 0.25]), (len(mesh.outer.points_mm), 1))
+    optics = Optics(camera=SMALL, light_model=LightModel.PHOTONS)
+    studio = Studio(mesh, light, optics, radiance=flat)
+    moved = dent(mesh.outer, at_mm=(15.0, 0.0, 22.0), depth_mm=1.2, radius_mm=4.0)[None]
+    before = studio.linear(0.0 * moved, radiance=flat[None])[0]
+    after = studio.linear(moved, radiance=2.0 * flat[None])[0]
+    changed = np.abs(after - before).max(axis=2) > 0.0
+    assert 0.01 < changed.mean() < 0.5
+    # Interpolation of equal values sums weights that add up to 1 in single precision.
+    assert after[changed] == pytest.approx(2.0 * before[changed], rel=1e-5)
+    with pytest.raises(OpticsError, match="radiance of every frame"):
+        studio.images(moved)
+
+
+def test_a_table_model_without_a_table_is_an_error(mesh: MembraneMesh) -> None:
+    """The message names the model."""
+    light, _ = lit(mesh, LightModel.HYBRID)
+    with pytest.raises(OpticsError, match="hybrid looks radiance up"):
+        Studio(mesh, light, Optics(camera=SMALL))
+
+
+def test_an_exposure_too_small_says_so_instead_of_black(mesh: MembraneMesh) -> None:
+    """Exposure 1e-6 would leave every grey level 0."""
+    light, _ = lit(mesh, LightModel.LINEAR)
+    camera = dataclasses.replace(SMALL, sensor=ImageSensor(exposure=1e-6))
+    with pytest.raises(OpticsError, match="leaves the whole image black") as caught:
+        Studio(mesh, light, Optics(camera=camera))
+    assert caught.value.at == "optics.camera.sensor.exposure"
+
+
+def test_noise_and_fall_off_pass_through_the_image_sensor(mesh: MembraneMesh) -> None:
+    """With noise a flat frame differs from the background; with fall-off corners are darker."""
+    light, _ = lit(mesh, LightModel.LINEAR)
+    flat = np.zeros((1, len(mesh.outer.points_mm), 3), dtype=np.float32)
+    plain = Studio(mesh, light, Optics(camera=SMALL)).shoot(flat)
+    noisy = dataclasses.replace(SMALL, sensor=ImageSensor(noise=True))
+    frames = Studio(mesh, light, Optics(camera=noisy)).shoot(flat)
+    assert not np.array_equal(frames.rgb[0], frames.rgb[1])
+    assert not frames.moved.any()
+    dim = dataclasses.replace(SMALL, sensor=ImageSensor(vignetting=1.0))
+    corner = Studio(mesh, light, Optics(camera=dim)).shoot(flat).rgb[1][0, 0].astype(int)
+    assert (corner < plain.rgb[1][0, 0]).all()
