@@ -169,7 +169,7 @@ def test_table_encodes_like_the_formula() -> None:
 
 def test_exposure_puts_the_bright_end_at_80_percent() -> None:
     """A uniform background of radiance 5 becomes display value 0.8 = code 204."""
-    background = np.tile(np.float32([[1.0, 5.0, 2.0]]), (100, 1))
+    background = np.tile(np.array([[1.0, 5.0, 2.0]], dtype=np.float32), (100, 1))
     assert encode(background, choose_exposure(background))[0, 1] == 204
 
 

@@ -112,7 +112,7 @@ def test_tilting_normals_to_themselves_changes_nothing(mesh: MembraneMesh) -> No
 def test_given_radiance_is_what_images_show(mesh: MembraneMesh) -> None:
     """The model photons takes radiance from outside: twice the light in the dent, nowhere else."""
     light, _ = lit(mesh, LightModel.PHOTONS)
-    flat = np.tile(np.float32([1.0, 0.5, 0.25]), (len(mesh.outer.points_mm), 1))
+    flat = np.tile(np.array([1.0, 0.5, 0.25], dtype=np.float32), (len(mesh.outer.points_mm), 1))
     optics = Optics(camera=SMALL, light_model=LightModel.PHOTONS)
     studio = Studio(mesh, light, optics, radiance=flat)
     moved = dent(mesh.outer, at_mm=(15.0, 0.0, 22.0), depth_mm=1.2, radius_mm=4.0)[None]
