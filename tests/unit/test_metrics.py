@@ -70,7 +70,7 @@ def make_contact(displacement: np.ndarray) -> Contact:
 
 
 @pytest.fixture(scope="module")
-def press() -> tuple[Metrics, TactileFrames]:
+def press(taichi_device: str) -> tuple[Metrics, TactileFrames]:
     mesh, optics = finger(edge_mm=1.0), Optics(camera=Camera(width_px=160, height_px=120))
     moved = dent(mesh.outer, at_mm=(15.0, 0.0, 22.0), depth_mm=1.2, radius_mm=4.0)
     displacement = np.stack([0.5 * moved, moved])

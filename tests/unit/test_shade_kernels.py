@@ -18,6 +18,7 @@ from workbench.core.errors import OpticsError
 from workbench.core.light import LightField, NormalTable
 from workbench.core.lighting import PAPER, TABULATED, LedMount, LedRing, LightModel
 from workbench.core.optics import Optics
+from workbench.core.photo import photo
 from workbench.core.results import MembraneMesh
 
 pytestmark = pytest.mark.usefixtures("taichi_device")
@@ -154,3 +155,27 @@ def test_noise_and_fall_off_pass_through_the_image_sensor(mesh: MembraneMesh) ->
     dim = dataclasses.replace(SMALL, sensor=ImageSensor(vignetting=1.0))
     corner = Studio(mesh, light, Optics(camera=dim)).shoot(flat).rgb[1][0, 0].astype(int)
     assert (corner < plain.rgb[1][0, 0]).all()
+
+
+def test_a_photograph_is_the_background_where_nothing_moved(mesh: MembraneMesh) -> None:
+    """Frame 0 is the file, pixel by pixel; a dent adds the difference of the two foregrounds."""
+    import cv2
+
+    light, _ = lit(mesh, LightModel.DIRECT)
+    picture = np.random.default_rng(3).integers(60, 180, (120, 160, 3), dtype=np.uint8)
+    done, data = cv2.imencode(".png", picture[..., ::-1])
+    file = photo("idle.png", data.tobytes(), at="optics.background")
+    plain = Optics(camera=SMALL, light_model=LightModel.DIRECT)
+    moved = dent(mesh.outer, at_mm=(15.0, 0.0, 22.0), depth_mm=1.2, radius_mm=4.0)[None]
+    rendered = Studio(mesh, light, plain)
+    studio = Studio(mesh, light, dataclasses.replace(plain, background=file))
+    frames = studio.shoot(moved)
+    assert done and np.array_equal(frames.rgb[0], picture)
+    still = ~frames.moved[1]
+    assert np.array_equal(frames.rgb[1][still], picture[still]) and 0.5 < still.mean() < 0.99
+    flat = 0.0 * moved
+    exact = rendered.linear(moved) - rendered.linear(flat) + studio.linear(flat)
+    # Sums in another order, relative to a photograph's own light.
+    assert studio.linear(moved) == pytest.approx(
+        np.maximum(exact, 0.0), abs=1e-5 * float(exact.max())
+    )
