@@ -37,8 +37,8 @@ MARGIN_PX = 0.75
 """How far a triangle may reach over the box of its corners [px]: refraction bends its edges."""
 LARGEST_BOX = 0.25
 """Largest box of a triangle, as a share of the image [1]."""
-SAME, NOTHING = -2, -1
-"""Instead of a face: a pixel that is as in the background; one that sees no skin."""
+SAME = -2
+"""Instead of a face: a pixel that is as in the background. One that sees no skin has -1."""
 
 
 @ti.func

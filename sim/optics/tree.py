@@ -32,8 +32,3 @@ def tree_levels(triangles: int) -> tuple[int, np.ndarray, np.ndarray]:
     count, start = np.zeros(LEVELS, dtype=np.int32), np.zeros(LEVELS, dtype=np.int32)
     count[: len(counts)], start[: len(counts)] = counts, starts[:-1]
     return len(counts), start, count
-
-
-def boxes_of(triangles: int) -> int:
-    """Boxes of all levels together."""
-    return int(tree_levels(triangles)[2].sum())
