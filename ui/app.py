@@ -98,7 +98,8 @@ def build_desk(server: Any, session: Session, conductor: Conductor, *, fast: boo
         for label, panel in pages.items():
             with tabs.add_tab(label):
                 desk.panels.append(panel(desk))
-        desk.panels.append(ResultsPanel(desk))
+        results = ResultsPanel(desk)
+        desk.panels += [results, results.maps]
     first_look(desk)
     threading.Thread(target=desk.jobs.pump_forever, name="pump", daemon=True).start()
     return desk

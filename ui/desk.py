@@ -14,7 +14,7 @@ import numpy as np
 from ui.header import Header
 from ui.jobs import Jobs
 from ui.live import LivePress
-from ui.panels.fields import Fields, read_field, whole_shape
+from ui.panels.fields import Fields, whole_shape
 from ui.reports import Reports
 from ui.scene import Scene
 from ui.session import Session
@@ -26,6 +26,7 @@ from workbench.core.errors import SolveError, WorkbenchError
 from workbench.core.indenter import Indenter
 from workbench.core.results import Solid
 from workbench.forms import resolve_shape
+from workbench.item_fields import read_field
 from workbench.pipeline import plan
 from workbench.stages import PARTIAL, Outcome
 
@@ -34,7 +35,7 @@ AUTOSAVE_S = 1.0
 AIM_LIMIT_MM = 4.0
 """Distance from target to skin at which the target follows; the solver refuses beyond 5 mm."""
 SHOWN = (
-    *("build", "mesh", "press", "shoot", "quality", "tets"),
+    *("build", "mesh", "press", "shoot", "maps", "quality", "tets"),
     *("mould", "housing", "recipe", "package"),
 )
 """Stages whose stored results are shown without asking."""
@@ -70,6 +71,8 @@ class Desk:
         """Set by the panel that shows the parts."""
         self.pick: Callable[[int], bool] = lambda face: False
         """Set by the panel that labels faces: whether it took a click on this membrane face."""
+        self.probe: Callable[[np.ndarray, np.ndarray], bool] = lambda origin, direction: False
+        """Set by the panel of maps: whether it told the value where a click's ray meets the map."""
         self.header = Header(
             server.gui,
             on_cancel=self.guarded(lambda event: conductor.cancel()),
@@ -127,8 +130,7 @@ class Desk:
         if not session.store.has("build", session.calls()["build"].key):
             # First of all: the worker builds while the widgets follow.
             self.jobs.submit(SHAPE, session.design, session.case, ("build",))
-        self.scene.rig.show_lights(session.design.optics.ring)
-        self.scene.rig.show_camera(session.design.optics.camera)
+        self.scene.rig.show_optics(session.design.optics)
         self.show_stored()
         if self.current("build"):
             self._keep_aim()
@@ -187,8 +189,11 @@ class Desk:
             self.changed()
 
     def _clicked(self, event: Any) -> None:
-        """A click on the skin labels a face while faces are picked, else moves the target there."""
-        hit = self.scene.body.hit(np.asarray(event.ray_origin), np.asarray(event.ray_direction))
+        """A click tells a map's value, or labels a face, else it moves the target there."""
+        origin, direction = np.asarray(event.ray_origin), np.asarray(event.ray_direction)
+        if self.probe(origin, direction):
+            return
+        hit = self.scene.body.hit(origin, direction)
         if hit is None or self.pick(hit[0]):
             return
         x, y, z = (round(float(c), 2) for c in hit[1])
@@ -200,13 +205,14 @@ class Desk:
         """Show every result that is stored for the state as it stands."""
         for stage in SHOWN:
             # Asked anew each time: showing a body may move the target, and with it later keys.
-            key = self.session.calls()[stage].key
-            if self.session.store.has(stage, key):
-                self._show(stage, key)
+            call = self.session.calls().get(stage)
+            if call is not None and self.session.store.has(stage, call.key):
+                self._show(stage, call.key)
 
     def run(self, topic: str, wanted: tuple[str, ...]) -> None:
         """Compute stages for the state as it stands."""
         self.reports.begin()
+        self.fields.read_typed(now=True)
         if topic != "parts":
             self.put_parts_away()
         self.tell("run", topic)
@@ -252,7 +258,7 @@ class Desk:
             self.session.amend("design.optics.ring.radius_mm", fitted.optics.ring.radius_mm)
             self._edited = time.monotonic()
             self.fields.refresh()
-            self.scene.rig.show_lights(fitted.optics.ring)
+            self.scene.rig.show_optics(fitted.optics)
             self.log(changed)
 
     def tell(self, stage: str, result: Any) -> None:
@@ -275,17 +281,20 @@ class Desk:
 
     def current(self, stage: str) -> bool:
         """Whether what is shown of a stage belongs to the state as it stands."""
-        return self._shown.get(stage) == self.session.calls()[stage].key
+        call = self.session.calls().get(stage)
+        return call is not None and self._shown.get(stage) == call.key
 
     def _asked_now(self, request: Request, failed: str) -> bool:
         """Whether the stage of a request that failed is a stage of the state as it stands."""
         if not failed:
             return request.design == self.session.design
-        return self.session.calls()[failed].key == plan(request.design, request.case)[failed].key
+        now = self.session.calls().get(failed)
+        return now is not None and now.key == plan(request.design, request.case)[failed].key
 
     def _stage_done(self, outcome: Outcome) -> None:
         calls = self.session.calls()
-        if outcome.stage in SHOWN and calls[outcome.stage].key == outcome.key:
+        call = calls.get(outcome.stage) if outcome.stage in SHOWN else None
+        if call is not None and call.key == outcome.key:
             self._show(outcome.stage, outcome.key)
 
     def forget_shown(self, *stages: str) -> None:
@@ -304,7 +313,8 @@ class Desk:
                 self.tell("partial", (contact, error))
 
     def _idle(self) -> None:
-        """Follow the handle, drop old frames, and keep the state once edits have settled."""
+        """Read what was typed, follow the handle, drop old frames, keep what has settled."""
+        self.fields.read_typed()
         self.live.gizmo.turn()
         self.scene.pressed.turn()
         self._autosave()

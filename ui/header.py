@@ -18,6 +18,7 @@ STRIP = {
     "bake": "Light",
     "press": "Contact",
     "shoot": "Image",
+    "maps": "Maps",
     "mould": "Mould",
 }
 """Stages of the strip and their names for people."""
@@ -27,6 +28,8 @@ NAMES = {
     "quality": "Mesh quality",
     "tets": "Tetrahedra",
     "lattice": "Material points",
+    "table": "Light table",
+    "photons": "Photons",
     "object": "Object",
     "housing": "Housing",
     "recipe": "Recipe",
@@ -72,7 +75,10 @@ class Header:
         text = " &nbsp;".join(
             f"{name} {'▶' if stage in active else marks[fresh[stage]]}"
             for stage, name in STRIP.items()
+            if stage in fresh
         ).replace(" ✓", "&nbsp;✓")
+        # Smaller, so that all of them stand on one row.
+        text = f"<small>{text}</small>"
         if self.strip.content != text:
             self.strip.content = text
 

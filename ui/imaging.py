@@ -3,35 +3,15 @@
 from __future__ import annotations
 
 import html
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
-VIRIDIS = np.array(
-    [
-        (0.2777273, 0.0054073, 0.3340998),
-        (0.1050930, 1.4046135, 1.3845902),
-        (-0.3308618, 0.2148476, 0.0950952),
-        (-4.6342305, -5.7991010, -19.3324410),
-        (6.2282700, 14.1799334, 56.6905526),
-        (4.7763850, -13.7451454, -65.3530326),
-        (-5.4354559, 4.6458526, 26.3124352),
-    ]
-)
-"""Polynomial in t of the viridis map: uniform, colour-blind safe. Source: M. Zucker, CC0."""
-
+from workbench.colour_scale import NOTHING_GREY, viridis
 
 REST_SHARE = 0.05
 """Below this share of the maximum the colour of rest shows through."""
-
-
-def viridis(share: np.ndarray) -> np.ndarray:
-    """Colours, shape (N, 3) uint8, of values in [0, 1], shape (N,)."""
-    t = np.clip(np.nan_to_num(share), 0.0, 1.0)[:, None]
-    colour = np.zeros((len(t), 3))
-    for coefficient in VIRIDIS[::-1]:
-        colour = colour * t + coefficient
-    return (np.clip(colour, 0.0, 1.0) * 255).astype(np.uint8)
 
 
 def heat_colours(share: np.ndarray, rest: tuple[int, int, int]) -> np.ndarray:
@@ -63,17 +43,6 @@ def coloured_glb(points: np.ndarray, faces: np.ndarray, colours: np.ndarray) -> 
     return scene.export(file_type="glb", include_normals=True, tree_postprocessor=matt)  # pyright: ignore
 
 
-def difference(image: np.ndarray, background: np.ndarray) -> tuple[np.ndarray, int]:
-    """The change about mid grey, and the factor that makes it visible (at most 8).
-
-    The brightest twentieth of the changed pixels may saturate, as one sparkle would hide the rest.
-    """
-    change = image.astype(np.int16) - background.astype(np.int16)
-    size = np.abs(change[change != 0])
-    gain = max(1, min(8, int(127 // np.percentile(size, 95)))) if size.size else 1
-    return np.clip(128 + gain * change, 0, 255).astype(np.uint8), gain
-
-
 def placeholder(width_px: int = 320, height_px: int = 240) -> np.ndarray:
     """A grey image that stands where none has been rendered."""
     return np.full((height_px, width_px, 3), 70, np.uint8)
@@ -88,4 +57,49 @@ def legend(title: str, high: float, unit: str, rest: tuple[int, int, int]) -> st
         f"<div style='height:10px;border-radius:3px;background:linear-gradient(90deg,{colours})'>"
         f"</div><div style='display:flex;justify-content:space-between'><span>0</span>"
         f"<span>{high:.3g} {html.escape(unit)}</span></div></div>"
+    )
+
+
+def scale_bar(low: float, high: float, unit: str, *, middle: float | None = None) -> str:
+    """A bar of viridis from `low` to `high` as HTML, with the place of a middle value."""
+    stops = ", ".join(f"rgb({r},{g},{b})" for r, g, b in viridis(np.linspace(0, 1, 21)))
+    unit = "" if unit == "1" else f" {html.escape(unit)}"
+    mark = number = ""
+    if middle is not None and np.isfinite(middle):
+        share = 100 * min(max((middle - low) / max(high - low, 1e-30), 0.0), 1.0)
+        mark = (
+            f"<div style='position:absolute;left:{share:.1f}%;top:-3px;width:2px;height:16px;"
+            "background:#fff'></div>"
+        )
+        number = f"<span>median {middle:.3g}</span>"
+    return (
+        "<div style='font-size:12px;margin:4px 12px'>"
+        f"<div style='position:relative;height:10px;border-radius:3px;"
+        f"background:linear-gradient(90deg,{stops})'>{mark}</div>"
+        "<div style='display:flex;justify-content:space-between;margin-top:4px'>"
+        f"<span>{low:.3g}{unit}</span>{number}<span>{high:.3g}{unit}</span></div></div>"
+    )
+
+
+def blind_swatch(words: str) -> str:
+    """The grey of places without a number, and what it means, as HTML."""
+    r, g, b = NOTHING_GREY
+    return (
+        "<div style='font-size:12px;margin:2px 12px'><span style='display:inline-block;width:10px;"
+        f"height:10px;border-radius:2px;background:rgb({r},{g},{b})'></span> "
+        f"{html.escape(words)}</div>"
+    )
+
+
+def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """Rows of text as an HTML table that scrolls when it is long."""
+    style = "padding:2px 6px;text-align:left"
+    top = "".join(f"<th style='{style}'>{html.escape(cell)}</th>" for cell in head)
+    body = "".join(
+        "<tr>" + "".join(f"<td style='{style}'>{html.escape(cell)}</td>" for cell in row) + "</tr>"
+        for row in rows
+    )
+    return (
+        "<div style='max-height:320px;overflow:auto;margin:4px 8px'>"
+        f"<table style='font-size:12px;border-collapse:collapse'><tr>{top}</tr>{body}</table></div>"
     )

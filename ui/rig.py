@@ -1,4 +1,4 @@
-"""LEDs and camera in the 3D view."""
+"""LEDs, lamps and cameras in the 3D view."""
 
 from __future__ import annotations
 
@@ -7,14 +7,18 @@ from typing import Any
 
 import numpy as np
 
+from ui.lamps import LampsView
 from workbench.core.camera import Camera, LensModel
 from workbench.core.leds import colour_sectors, led_places
 from workbench.core.lighting import LedRing
+from workbench.core.optics import Optics
 from workbench.led_colours import shown_colour
 
 FRUSTUM_MM = 4.0
 WIDEST_DEG = 150.0
 """A fisheye is drawn at most so wide."""
+PICTURE_PX = 160
+"""Width at most of the picture in a frustum."""
 LENS_COLOURS = {
     LensModel.PINHOLE: (255, 200, 0),
     LensModel.OPENCV: (255, 200, 0),
@@ -24,55 +28,76 @@ LENS_COLOURS = {
 
 
 class RigView:
-    """Nodes of one ring and one camera."""
+    """Nodes of one ring, the lamps and the cameras."""
 
     def __init__(self, server: Any) -> None:
         self.server = server
         self.api = server.scene
         self.leds: list[Any] = []
-        self.camera: Any = None
+        self.lamps = LampsView(self.api)
+        self.cameras: list[Any] = []
+
+    def show_optics(self, optics: Optics) -> None:
+        """Show all lights and cameras of a design."""
+        with self.server.atomic():
+            self.show_lights(optics.ring)
+            self.lamps.show_lamps(optics.lamps)
+            while len(self.cameras) > len(optics.all_cameras):
+                self.cameras.pop().remove()
+            for number, camera in enumerate(optics.all_cameras):
+                self._show_camera(number, camera)
 
     def show_lights(self, ring: LedRing) -> None:
         """Show the LEDs of a ring in their colours."""
         places, _ = led_places(ring)
         sectors = colour_sectors(ring)
-        with self.server.atomic():
-            while len(self.leds) > ring.count:
-                self.leds.pop().remove()
-            for i, place in enumerate(places):
-                colour = shown_colour(ring.colours[sectors[i]])
-                if i == len(self.leds):
-                    led = self.api.add_icosphere(f"/leds/{i}", radius=0.7, subdivisions=2)
-                    self.leds.append(led)
-                self.leds[i].position = place
-                self.leds[i].color = colour
+        while len(self.leds) > ring.count:
+            self.leds.pop().remove()
+        for i, place in enumerate(places):
+            colour = shown_colour(ring.colours[sectors[i]])
+            if i == len(self.leds):
+                led = self.api.add_icosphere(f"/leds/{i}", radius=0.7, subdivisions=2)
+                self.leds.append(led)
+            self.leds[i].position = place
+            self.leds[i].color = colour
 
-    def show_camera(self, camera: Camera, image: np.ndarray | None = None) -> None:
-        """Show the camera as a frustum, with what it sees where that is given."""
-        across = math.radians(min(camera.fov_x_deg, WIDEST_DEG))
-        high = 2 * math.atan(math.tan(across / 2) * camera.height_px / camera.width_px)
-        aspect = camera.width_px / camera.height_px
+    def _show_camera(self, number: int, camera: Camera) -> None:
+        """Show a camera as a frustum."""
+        high, aspect = frustum(camera)
         colour = LENS_COLOURS[camera.lens]
-        if self.camera is None:
-            self.camera = self.api.add_camera_frustum(
-                "/camera", fov=high, aspect=aspect, scale=FRUSTUM_MM, color=colour
+        if number == len(self.cameras):
+            name = "/camera" if number == 0 else f"/camera_{number + 1}"
+            node = self.api.add_camera_frustum(
+                name, fov=high, aspect=aspect, scale=FRUSTUM_MM, color=colour
             )
-        with self.server.atomic():
-            self.camera.fov = high
-            self.camera.aspect = aspect
-            self.camera.position = camera.position_mm
-            self.camera.wxyz = camera.wxyz
-            self.camera.color = colour
-            if image is not None:
-                self.camera.image = image
+            self.cameras.append(node)
+        node = self.cameras[number]
+        node.fov = high
+        node.aspect = aspect
+        node.position = camera.position_mm
+        node.wxyz = camera.wxyz
+        node.color = colour
+
+    def show_image(self, number: int, image: np.ndarray) -> None:
+        """Show in a frustum what its camera sees, shape (H, W, 3), uint8."""
+        if number < len(self.cameras):
+            step = max(1, image.shape[1] // PICTURE_PX)
+            self.cameras[number].image = image[::step, ::step]
 
     def forget_image(self) -> None:
-        """Take away what the camera of another sensor saw."""
-        if self.camera is not None:
-            self.camera.image = None
+        """Take away what the cameras of another sensor saw."""
+        for node in self.cameras:
+            node.image = None
 
     def show(self, visible: bool) -> None:
-        """Show or hide LEDs and camera."""
-        for node in (self.camera, *self.leds):
-            if node is not None:
-                node.visible = visible
+        """Show or hide lights and cameras."""
+        self.lamps.show(visible)
+        for node in (*self.cameras, *self.leds):
+            node.visible = visible
+
+
+def frustum(camera: Camera) -> tuple[float, float]:
+    """Vertical angle [rad] and aspect of a frustum that stands for a camera."""
+    across = math.radians(min(camera.fov_x_deg, WIDEST_DEG))
+    high = 2 * math.atan(math.tan(across / 2) * camera.height_px / camera.width_px)
+    return high, camera.width_px / camera.height_px

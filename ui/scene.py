@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ui.map_view import MapView
 from ui.nodes import replace
 from ui.parts import PartsView
 from ui.pressed import PressedView
@@ -43,6 +44,7 @@ class Scene:
         self.parts = PartsView(server)
         self.views = Views(server)
         self.pressed = PressedView(self.api, on_click)
+        self.map = MapView(self.api, on_click)
         self._hidden = False
         self._bare = False
         """Whether the object is hidden by itself."""
@@ -85,6 +87,7 @@ class Scene:
             self.clear_frames()
             self.clear_cell()
             self.show_edges(None)
+            self.map.clear()
             self.parts.clear()
             self.body.show_solid(solid)
             low, _ = self.body.bounds_mm
@@ -188,21 +191,40 @@ class Scene:
         self._shown = 0
         self._follow_edges()
         if not self._hidden:
-            self.body.show_skin(True)
+            self._show_skin(True)
+
+    def _show_skin(self, wanted: bool) -> None:
+        """Show the plain skin at rest, unless a map takes its place."""
+        self.body.show_skin(wanted and not self.map.on)
+
+    def show_map(self, skin: Skin, colours: np.ndarray) -> None:
+        """Show the skin at rest in the colours of a map, shape (V, 3), uint8."""
+        with self.server.atomic():
+            self.map.load(skin, colours)
+            self.map.show(not self._hidden)
+            self._show_skin(False)
+            self.show_frame(0)
+
+    def clear_map(self) -> None:
+        """Show the plain skin at rest again."""
+        if self.map.on:
+            self.map.clear()
+            if not self._hidden:
+                self._show_skin(self._shown == 0)
 
     def show_frame(self, number: int) -> None:
-        """Show frame `number` of the press, 0 for the untouched skin."""
+        """Show frame `number` of the press, 0 for the untouched skin, which alone has maps."""
         contact = self.pressed.contact
         if contact is None:
             return
-        number = min(number, self.pressed.count)
+        number = 0 if self.map.on else min(number, self.pressed.count)
         self._shown = number
         self._follow_edges()
         if self._hidden:
             return
         with self.server.atomic():
             self.pressed.show(number)
-            self.body.show_skin(number == 0)
+            self._show_skin(number == 0)
             if self.indenter is not None:
                 self._pose_object(contact, max(number, 1) - 1)
 
@@ -234,6 +256,7 @@ class Scene:
         self._follow_edges()
         with self.server.atomic():
             self.body.show(visible)
+            self.map.show(visible)
             self.rig.show(visible)
             # The core of an exploded mould hangs below the floor, whose lines would cross it.
             self.grid.visible = visible
@@ -241,4 +264,5 @@ class Scene:
                 self.indenter.visible = visible and not self._bare
             self.pressed.show(0)
         if visible:
+            self._show_skin(self._shown == 0)
             self.show_frame(self._shown)

@@ -15,6 +15,7 @@ from typing import Any
 from workbench.core.design import SensorDesign
 from workbench.core.errors import WorkbenchError
 from workbench.core.indenter import Indenter
+from workbench.item_fields import with_field
 from workbench.pipeline import EVERYTHING, PressCase, plan
 from workbench.project import AUTOSAVE, Project, check_design, design_from_toml, load_design
 from workbench.stages import Call
@@ -79,14 +80,14 @@ class Session:
             self.notice = f"the press of the last session is the default one again: {error}"
 
     def change(self, dotted: str, value: Any) -> None:
-        """Set one field, for example `design.optics.ring.count` or `case.press.depth_mm`.
+        """Set one field, for example `design.optics.lamps[1].power` or `case.press.depth_mm`.
 
         Raises:
             DesignError: If the value is refused; the state is as before.
         """
         root, _, rest = dotted.partition(".")
         if root == "design":
-            design = self.design.replace(rest, value)
+            design = with_field(self.design, rest, value)
             check_design(design)
             self._commit(dataclasses.replace(self.state, design=design), dotted)
         else:
@@ -163,14 +164,16 @@ class Session:
         return calls
 
     def fresh(self) -> dict[str, bool]:
-        """Whether each stage's result is stored for the state as it stands."""
+        """Whether each stage's result is stored for the state; stages it has not are left out."""
         calls = self.calls()
-        return {name: self.store.has(name, calls[name].key) for name in EVERYTHING}
+        return {name: self.store.has(name, calls[name].key) for name in EVERYTHING if name in calls}
 
     def result(self, stage: str) -> Any:
         """The stored result of a stage for the state as it stands, or None."""
-        key = self.calls()[stage].key
-        return self.store.load(stage, key) if self.store.has(stage, key) else None
+        call = self.calls().get(stage)
+        if call is None or not self.store.has(stage, call.key):
+            return None
+        return self.store.load(stage, call.key)
 
     def autosave(self) -> None:
         """Keep the state for the next start.

@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from ui.desk import Desk
-from ui.imaging import difference, placeholder
+from ui.imaging import placeholder
 from workbench.core.errors import DesignError, WorkbenchError
 from workbench.core.mapping import to_table
+from workbench.image_views import visible_change
 from workbench.project import design_table
 from workbench.variants import Variant, list_variants, load_variant, save_variant
 
@@ -87,7 +88,7 @@ class ComparePanel:
         same = images[0].shape == images[1].shape
         self.change.visible = same
         if same:
-            self.change.image = difference(images[1], images[0])[0]
+            self.change.image = visible_change(images[1], images[0])[0]
 
     def _image(self, variant: Variant) -> np.ndarray:
         store = self.desk.session.store

@@ -5,11 +5,16 @@ from __future__ import annotations
 import dataclasses
 import html
 import re
+import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from workbench.core.errors import WorkbenchError
+
+TYPED_S = 0.8
+"""Quiet time after which a text is read: viser tells of every letter [s]."""
+NUMBER = re.compile(r"\[\d+\]$")
 
 
 @dataclass(kw_only=True)
@@ -36,6 +41,8 @@ class Fields:
         self._edit = edit
         self._fields: dict[str, Field] = {}
         self._refused: set[str] = set()
+        self._typed: dict[str, float] = {}
+        """Paths of texts that wait to be read, and when each was last typed in [s]."""
 
     def slider(
         self,
@@ -59,10 +66,53 @@ class Fields:
 
         return self._bind(path, handle, kind, lambda v: min(max(kind(v), low), high), remark=ended)
 
-    def number(self, label: str, path: str, *, step: float, hint: str = "") -> Any:
+    def number(
+        self, label: str, path: str, *, step: float, hint: str = "", whole: bool = False
+    ) -> Any:
         """A number box without limits of its own; the design refuses what is wrong."""
-        handle = self.gui.add_number(label, float(self._read(path)), step=step, hint=hint or None)
-        return self._bind(path, handle, float, float)
+        kind = int if whole else float
+        value, by = kind(self._read(path)), kind(step)
+        handle = self.gui.add_number(label, value, step=by, hint=hint or None)
+        return self._bind(path, handle, kind, kind)
+
+    def text(
+        self,
+        label: str,
+        path: str,
+        *,
+        read: Callable[[str], Any],
+        write: Callable[[Any], str],
+        hint: str = "",
+    ) -> Any:
+        """A line of text, read once nobody has typed for a moment; `read` may refuse it."""
+        handle = self.gui.add_text(label, write(self._read(path)), hint=hint or None)
+        field = self._field(path, handle, read, write)
+
+        @handle.on_update
+        def _(event: Any) -> None:
+            if event.client is not None:
+                self._typed[field.path] = time.monotonic()
+
+        return handle
+
+    def read_typed(self, *, now: bool = False) -> None:
+        """Read the texts that nobody types in any more, or with `now` all of them."""
+        quiet = time.monotonic() - (0.0 if now else TYPED_S)
+        for path in [path for path, when in self._typed.items() if when <= quiet]:
+            del self._typed[path]
+            if path in self._fields:
+                self._take(self._fields[path])
+
+    def _take(self, field: Field) -> bool:
+        """Hand a widget's value on; whether it could be read."""
+        try:
+            value = field.to_field(field.handle.value)
+        except WorkbenchError as error:
+            self.refuse(field.path)
+            self.complain(error)
+            return False
+        self._edit(field.path, value)
+        return True
 
     def choice(self, label: str, path: str, options: Sequence[Any], *, hint: str = "") -> Any:
         """A drop-down over the members of an enumeration."""
@@ -104,40 +154,70 @@ class Fields:
         to_widget: Callable[[Any], Any],
         remark: Callable[[Any], str] = lambda value: "",
     ) -> Any:
-        complaint = self.gui.add_markdown("", visible=False)
+        field = self._field(path, handle, to_field, to_widget)
+
+        @handle.on_update
+        def _(event: Any) -> None:
+            # Values set by `refresh` come back here without a client.
+            if event.client is not None and self._take(field):
+                complaint, words = field.complaint, remark(to_field(handle.value))
+                if field.path not in self._refused and not complaint.visible and words:
+                    complaint.content = f"<small>{words}</small>"
+                    complaint.visible = True
+
+        return handle
+
+    def _field(
+        self,
+        path: str,
+        handle: Any,
+        to_field: Callable[[Any], Any],
+        to_widget: Callable[[Any], Any],
+    ) -> Field:
         field = Field(
             path=path,
             label=handle.label,
             handle=handle,
             to_field=to_field,
             to_widget=to_widget,
-            complaint=complaint,
+            complaint=self.gui.add_markdown("", visible=False),
         )
         self._fields[path] = field
+        return field
 
-        @handle.on_update
-        def _(event: Any) -> None:
-            # Values set by `refresh` come back here without a client.
-            if event.client is not None:
-                value = to_field(handle.value)
-                self._edit(path, value)
-                if path not in self._refused and not complaint.visible and remark(value):
-                    complaint.content = f"<small>{remark(value)}</small>"
-                    complaint.visible = True
+    def rebind(self, old: str, new: str) -> None:
+        """Let the widgets of one table edit another of the same kind, and show its values."""
+        if old == new:
+            return
+        moved = [path for path in self._fields if path == old or path.startswith(f"{old}.")]
+        for path in moved:
+            field = self._fields.pop(path)
+            self._refused.discard(path)
+            self._typed.pop(path, None)
+            field.complaint.visible = False
+            field.path = new + path.removeprefix(old)
+            self._fields[field.path] = field
+        self._restore([new + path.removeprefix(old) for path in moved])
 
-        return handle
+    def reveal(self, path: str, wanted: bool) -> None:
+        """Show or hide a widget that means nothing for some designs."""
+        handle = self._fields[path].handle
+        if handle.visible != wanted:
+            handle.visible = wanted
 
     def forget(self, prefix: str) -> None:
         """Remove the widgets whose path begins so."""
         for path in [p for p in self._fields if p.startswith(prefix)]:
             field = self._fields.pop(path)
             self._refused.discard(path)
+            self._typed.pop(path, None)
             if field.handle is not None:
                 field.handle.remove()
             field.complaint.remove()
 
     def refresh(self) -> None:
         """Show the session's values in every widget."""
+        self._typed.clear()
         self._restore(self._fields)
 
     def refuse(self, path: str) -> None:
@@ -203,16 +283,15 @@ class Fields:
                 field.handle.value = value
 
     def _named(self, at: str) -> Field | None:
-        names = (f"design.{at}", f"case.{at}", at.replace("contact.", "case.settings.", 1))
-        return next((self._fields[n] for n in names if n in self._fields), None)
-
-
-def read_field(state: Any, path: str) -> Any:
-    """Value of a dotted path through dataclasses and mappings."""
-    value = state
-    for name in path.split("."):
-        value = value[name] if isinstance(value, Mapping) else getattr(value, name)
-    return value
+        """The field of that name, else the place for messages about all of its table."""
+        while at:
+            names = (f"design.{at}", f"case.{at}", at.replace("contact.", "case.settings.", 1))
+            found = next((self._fields[n] for n in names if n in self._fields), None)
+            if found is not None:
+                return found
+            # A lamp or camera that is not on show has its messages at the list of all.
+            at = NUMBER.sub("", at) if NUMBER.search(at) else at.rpartition(".")[0]
+        return None
 
 
 def whole_shape(shape: Any) -> dict[str, Any]:

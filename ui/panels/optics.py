@@ -1,4 +1,4 @@
-"""Optics: camera, LED ring, light model, markers; renders on a button."""
+"""Optics: light model, lights, cameras, and how skin and picture look; renders on a button."""
 
 from __future__ import annotations
 
@@ -7,8 +7,13 @@ from typing import Any
 import viser
 
 from ui.desk import Desk
-from workbench.core.camera import LensModel
-from workbench.core.lighting import LedMount, LightModel
+from ui.panels.appearance import AppearanceFolders
+from ui.panels.cameras import CameraFolders
+from ui.panels.lamps import LampsFolder
+from workbench.core.lighting import TABULATED, TRACED, LedMount, LightModel
+from workbench.light_edit import MODEL_HINTS, colour_words, read_colours
+
+RING, BAKING = "design.optics.ring", "design.optics.baking"
 
 
 class OpticsPanel:
@@ -16,37 +21,72 @@ class OpticsPanel:
 
     def __init__(self, desk: Desk) -> None:
         self.desk = desk
-        gui, fields = desk.server.gui, desk.fields
-        ring, camera = "design.optics.ring", "design.optics.camera"
-        with gui.add_folder("LED ring"):
-            fields.slider("LEDs", f"{ring}.count", span=(1, 24, 1), whole=True)
-            fields.slider("Ring radius mm", f"{ring}.radius_mm", span=(1.0, 30.0, 0.25))
-            fields.slider("LED height mm", f"{ring}.height_mm", span=(0.0, 40.0, 0.25))
-            fields.slider("First LED deg", f"{ring}.phase_deg", span=(0.0, 360.0, 5.0))
-            fields.slider("LED tilt deg", f"{ring}.tilt_deg", span=(-90.0, 90.0, 5.0))
-            fields.choice("Mount", f"{ring}.mount", list(LedMount))
-        with gui.add_folder("Camera"):
-            fields.slider("View deg", f"{camera}.fov_x_deg", span=(30.0, 170.0, 1.0))
-            fields.choice("Lens", f"{camera}.lens", list(LensModel))
-            hint = "Optical centre, sensor frame: z counts from the base"
-            fields.point("Camera mm", f"{camera}.position_mm", step=0.5, hint=hint)
-        with gui.add_folder("Light and markers"):
-            hint = "direct: 1/r2, shadows, glossy coating; the others as in the SimTac paper"
-            fields.choice("Light model", "design.optics.light_model", list(LightModel), hint=hint)
-            fields.check("Markers", "design.optics.markers.visible")
-            span = (1.0, 10.0, 0.25)
-            fields.slider("Marker pitch mm", "design.optics.markers.spacing_mm", span=span)
-        button = gui.add_button("Render image", icon=viser.Icon.BULB, hint="Bake, then shoot (B)")
+        gui = desk.server.gui
+        # Above the folders, which would bury it.
+        button = gui.add_button("Render image", icon=viser.Icon.BULB, hint="Light, then image (B)")
         button.on_click(desk.guarded(self._render))
         desk.reports.beside("image")
         command = gui.add_command("Render image", hotkey="B")
         command.on_trigger(desk.guarded(self._render))
+        with gui.add_folder("Light model"):
+            self._light_model()
+        with gui.add_folder("LED ring"):
+            self._ring()
+        self.lamps = LampsFolder(desk)
+        self.cameras = CameraFolders(desk)
+        self.appearance = AppearanceFolders(desk)
+        self.refresh()
+
+    def _light_model(self) -> None:
+        fields = self.desk.fields
+        fields.choice("Model", "design.optics.light_model", list(LightModel))
+        self.about = self.desk.server.gui.add_markdown("")
+        hint = "Of the whole bake, or of each frame; four times as many halve the noise"
+        fields.number("Photons", f"{BAKING}.photons", step=1_000_000, whole=True, hint=hint)
+        hint = "Places on the skin at which light is gathered, about"
+        fields.number("Light nodes", f"{BAKING}.nodes", step=1000, whole=True, hint=hint)
+        fields.number("Light seed", f"{BAKING}.seed", step=1, whole=True, hint="Of the photons")
+
+    def _ring(self) -> None:
+        fields = self.desk.fields
+        hint = "0 for a sensor that has only further lights"
+        fields.slider("LEDs", f"{RING}.count", span=(0, 24, 1), whole=True, hint=hint)
+        fields.slider("Ring radius mm", f"{RING}.radius_mm", span=(1.0, 30.0, 0.25))
+        fields.slider("LED height mm", f"{RING}.height_mm", span=(0.0, 40.0, 0.25))
+        fields.slider("First LED deg", f"{RING}.phase_deg", span=(0.0, 360.0, 5.0))
+        hint = "Outward from straight up"
+        fields.slider("LED tilt deg", f"{RING}.tilt_deg", span=(-90.0, 90.0, 5.0), hint=hint)
+        fields.choice("Mount", f"{RING}.mount", list(LedMount))
+        hint = "Of each sector: red, #ff0000, 525nm, 525nm/35nm or 5600K, with commas between"
+        fields.text(
+            "LED colours",
+            f"{RING}.colours",
+            read=lambda text: read_colours(text, at="optics.ring.colours"),
+            write=colour_words,
+            hint=hint,
+        )
+        hint = "Of each LED; the exposure follows, so only ratios to lamps matter"
+        fields.slider("LED power", f"{RING}.power", span=(0.0, 5.0, 0.05), hint=hint)
+        hint = "Diameter of the disc that shines; for traced light and glare"
+        fields.slider("LED size mm", f"{RING}.size_mm", span=(0.1, 5.0, 0.05), hint=hint)
+        hint = "Full angle that an LED shines into; 180 is the half space"
+        fields.slider("LED cone deg", f"{RING}.cone_deg", span=(1.0, 180.0, 1.0), hint=hint)
 
     def _render(self, event: Any) -> None:
         self.desk.run("image", ("shoot",))
 
     def refresh(self) -> None:
-        """All widgets are bound fields."""
+        """Show what the chosen light model reads, and the lists as they stand."""
+        model = self.desk.session.design.optics.light_model
+        fields, text = self.desk.fields, f"<small>{MODEL_HINTS[model]}</small>"
+        if self.about.content != text:
+            self.about.content = text
+        fields.reveal(f"{BAKING}.photons", model in TRACED)
+        fields.reveal(f"{BAKING}.seed", model in TRACED)
+        fields.reveal(f"{BAKING}.nodes", model in TABULATED)
+        self.lamps.refresh()
+        self.cameras.refresh()
+        self.appearance.refresh()
 
     def show(self, stage: str, result: Any) -> None:
         """Nothing here follows results."""

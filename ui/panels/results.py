@@ -1,4 +1,4 @@
-"""The right dock: tactile image, forces, log; and the timeline that steps through the frames."""
+"""The right dock: tactile image, forces, maps, log; and the timeline through the frames."""
 
 from __future__ import annotations
 
@@ -7,16 +7,17 @@ import threading
 import time
 from typing import Any
 
-import numpy as np
 import viser
 
 from ui.desk import Desk
-from ui.imaging import difference, legend, placeholder
+from ui.imaging import legend
 from ui.panels.forces import ForcesTab
+from ui.panels.image import ImageTab
+from ui.panels.maps import MapsPanel
 from ui.sensor import SKIN_COLOUR
 from workbench.core.errors import SolveError
 from workbench.core.press import Press
-from workbench.core.sensing import Contact
+from workbench.core.sensing import Contact, Shot
 from workbench.live_press import Preview, live_press
 from workbench.phases import phase
 from workbench.quantities import Quantity
@@ -24,7 +25,6 @@ from workbench.quantities import Quantity
 FRAME_S = 0.15
 """Time between frames while playing [s]."""
 LOG_ROWS = 60
-NO_IMAGE = "No press of this sensor yet: *Run press* makes an image."
 LIVE_NOTE = "**live**: one frame, not stored; *Run press* computes the path"
 
 
@@ -33,8 +33,6 @@ class ResultsPanel:
 
     def __init__(self, desk: Desk) -> None:
         self.desk = desk
-        self.images: np.ndarray | None = None
-        """Background and frames on show, shape (1 + K, H, W, 3), uint8."""
         self.contact: Contact | None = None
         self.press: Press = desk.session.case.press
         """The press that `contact` is of."""
@@ -50,12 +48,11 @@ class ResultsPanel:
         gui = desk.server.gui
         self.dock = gui.add_panel()
         with self.dock.add_tab("Tactile image", viser.Icon.PHOTO):
-            self.caption = gui.add_markdown(NO_IMAGE)
-            self.image = gui.add_image(placeholder(), label="camera", format="jpeg")
-            self.difference_text = gui.add_markdown("")
-            self.difference = gui.add_image(placeholder(), label="difference", format="jpeg")
+            self.image = ImageTab(desk)
         with self.dock.add_tab("Forces", viser.Icon.CHART_LINE):
             self.forces = ForcesTab(gui)
+        with self.dock.add_tab("Maps", viser.Icon.MAP_2):
+            self.maps = MapsPanel(desk)
         with self.dock.add_tab("Log", viser.Icon.LIST):
             self.log = gui.add_html("")
         self.dock.dock_right()
@@ -126,28 +123,19 @@ class ResultsPanel:
         self._show_forces(number)
 
     def _show_image(self, number: int) -> None:
-        if self.images is None:
-            return
-        number = min(number, len(self.images) - 1)
-        rgb, rest = np.asarray(self.images[number]), np.asarray(self.images[0])
-        change, gain = difference(rgb, rest)
         self._caption(number)
-        with self.desk.server.atomic():
-            self.image.image = rgb
-            self.difference_text.content = f"Difference to the background, × {gain}"
-            self.difference.image = change
+        self.image.show(number)
 
     def _caption(self, number: int) -> None:
-        if self.images is None:
+        last = self.image.last
+        if last is None:
             return
-        last = len(self.images) - 1
         what = "background"
         if number:
             what = f"frame {min(number, last)} of {last}, {self._phase(min(number, last))}"
         stale = "" if self.desk.current("shoot") else " · **stale**: render again"
-        text = f"live, {self._phase(number)}" if self.note == LIVE_NOTE else f"{what}{stale}"
-        if self.caption.content != text:
-            self.caption.content = text
+        live = self.note == LIVE_NOTE
+        self.image.say(f"live, {self._phase(number)}" if live else f"{what}{stale}")
 
     def _phase(self, number: int) -> str:
         """What happens in a frame; a live one is the last of its short path."""
@@ -173,7 +161,9 @@ class ResultsPanel:
         elif stage == "partial":
             self._show_partial(*result)
         elif stage == "shoot":
-            self._show_shot(np.asarray(result.frames.rgb))
+            self._show_shot(result)
+        elif stage == "maps":
+            self.image.measure()
         elif stage == "play":
             self.play_next = True
         elif stage == "run":
@@ -189,26 +179,24 @@ class ResultsPanel:
             rows = "<br>".join(html.escape(line) for line in reversed(result[-LOG_ROWS:]))
             self.log.content = f"<div style='font:12px monospace;margin:8px'>{rows}</div>"
 
-    def _show_shot(self, images: np.ndarray) -> None:
-        self.images = images
-        self._follow_frames(len(images) - 1)
-        self._show_image(int(self.frame.value))
-        self.desk.scene.show_frame(int(self.frame.value))
-        self._show_through_camera(images[int(self.frame.value)])
+    def _show_shot(self, shot: Shot) -> None:
+        self.image.load(shot)
+        self.image.measure()
+        self._follow_frames(self.image.last or 0)
+        number = int(self.frame.value)
+        self._show_image(number)
+        self.desk.scene.show_frame(number)
+        self.image.show_in_frusta(number)
         if self.play_next:
             self.play_next = False
             self.playing.set()
-
-    def _show_through_camera(self, image: np.ndarray) -> None:
-        camera = self.desk.session.design.optics.camera
-        step = max(1, image.shape[1] // 160)
-        self.desk.scene.rig.show_camera(camera, image[::step, ::step])
 
     def _show_live(self, preview: Preview) -> None:
         """Show a live frame and its image; the scene has its skin already."""
         self.playing.clear()
         self.contact, self.press = preview.contact, live_press(self.desk.session.case.press)
-        self.note, self.images = LIVE_NOTE, preview.images
+        self.note = LIVE_NOTE
+        self.image.load_live(preview.images)
         self._show_legend()
         self._follow_frames(1)
         self._show_image(1)
@@ -217,8 +205,7 @@ class ResultsPanel:
 
     def _show_partial(self, contact: Contact, error: SolveError) -> None:
         """Show the frames that settled before a press failed."""
-        self.images = None
-        self.caption.content = NO_IMAGE
+        self.image.forget()
         note = settled_note(error.frame, len(contact.reaction_N))
         self._show_contact(self.desk.session.case.press, contact, note=f"**{note}**")
         self.desk.log(note)
@@ -238,13 +225,11 @@ class ResultsPanel:
 
     def _blank(self) -> None:
         """What was seen and felt belongs to another sensor."""
-        self.images = self.contact = None
+        self.contact = None
         self.note = ""
         self.playing.clear()
         with self.desk.server.atomic():
-            self.caption.content = NO_IMAGE
-            self.difference_text.content = ""
-            self.image.image = self.difference.image = placeholder()
+            self.image.clear()
             self.forces.clear()
 
     def _show_contact(self, press: Press, contact: Contact, *, note: str) -> None:

@@ -1,0 +1,123 @@
+"""The tab of the tactile image: which camera, what is shown of it, its change, and measures."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ui.desk import Desk
+from ui.imaging import placeholder, scale_bar, table
+from workbench.core.sensing import Shot, TactileFrames
+from workbench.image_views import View, looked, views, visible_change
+
+NO_IMAGE = "No press of this sensor yet: *Run press* makes an image."
+
+
+class ImageTab:
+    """Widgets of the tab."""
+
+    def __init__(self, desk: Desk) -> None:
+        self.desk = desk
+        gui = desk.server.gui
+        self.cameras: tuple[tuple[np.ndarray, TactileFrames | None], ...] = ()
+        """Of each camera the background and frames, (1 + K, H, W, 3) uint8, and their fields."""
+        self.number = 0
+        """Frame on show."""
+        self.caption = gui.add_markdown(NO_IMAGE)
+        self.camera = gui.add_dropdown("Camera", ("camera 1",), visible=False)
+        hint = "What the first picture is; below it stands its change"
+        self.view = gui.add_dropdown("Show", (View.IMAGE.value,), visible=False, hint=hint)
+        for handle in (self.camera, self.view):
+            handle.on_update(desk.guarded(lambda event: self.show(self.number)))
+        self.image = gui.add_image(placeholder(), label="camera", format="jpeg")
+        self.legend = gui.add_html("")
+        self.change_text = gui.add_markdown("")
+        self.change = gui.add_image(placeholder(), label="difference", format="jpeg")
+        self.measures = gui.add_folder("Measures", expand_by_default=False, visible=False)
+        with self.measures:
+            self.numbers = gui.add_html("")
+
+    @property
+    def last(self) -> int | None:
+        """Number of the last frame; None without images."""
+        return len(self.cameras[0][0]) - 1 if self.cameras else None
+
+    def load(self, shot: Shot) -> None:
+        """Take the images of a press."""
+        all_frames = (shot.frames, *shot.others)
+        self.cameras = tuple((np.asarray(frames.rgb), frames) for frames in all_frames)
+        self._offer()
+
+    def load_live(self, images: np.ndarray) -> None:
+        """Take the images of a live press, which has nothing else."""
+        self.cameras = ((images, None),)
+        self._offer()
+
+    def forget(self) -> None:
+        """There are no images; what was last on show stays."""
+        self.cameras = ()
+        self.say(NO_IMAGE)
+
+    def clear(self) -> None:
+        """Show no image."""
+        self.forget()
+        self.change_text.content = self.legend.content = ""
+        self.image.image = self.change.image = placeholder()
+        self.camera.visible = self.view.visible = self.measures.visible = False
+
+    def say(self, text: str) -> None:
+        """Write above the picture."""
+        if self.caption.content != text:
+            self.caption.content = text
+
+    def _offer(self) -> None:
+        """Offer the cameras and views that there are."""
+        names = tuple(f"camera {k}" for k in range(1, len(self.cameras) + 1))
+        self._choices(self.camera, names)
+        self._choices(self.view, tuple(view.value for view in views(self.cameras[0][1])))
+        self.camera.visible, self.view.visible = len(names) > 1, True
+
+    @staticmethod
+    def _choices(handle: Any, names: tuple[str, ...]) -> None:
+        if tuple(handle.options) != names:
+            now = handle.value
+            handle.options = names
+            handle.value = now if now in names else names[0]
+
+    def chosen(self) -> tuple[np.ndarray, TactileFrames | None]:
+        """Images and fields of the chosen camera."""
+        return self.cameras[self.camera.options.index(self.camera.value)]
+
+    def show(self, number: int) -> None:
+        """Show a frame, the last one where there are not so many."""
+        if not self.cameras:
+            return
+        images, frames = self.chosen()
+        self.number = number = min(number, len(images) - 1)
+        found = looked(View(self.view.value), images, number, frames)
+        change, gain = visible_change(np.asarray(images[number]), np.asarray(images[0]))
+        bar = found.bar
+        words = f"<div style='font-size:12px;margin:2px 12px'>{found.words}</div>"
+        scale = "" if bar is None else scale_bar(bar.low, bar.high, bar.unit)
+        with self.desk.server.atomic():
+            self.image.image = found.rgb
+            self.legend.content = scale + words if found.words else ""
+            self.change_text.content = f"Difference to the background, × {gain}"
+            self.change.image = change
+
+    def show_in_frusta(self, number: int) -> None:
+        """Show in the 3D view what each camera sees."""
+        for camera, (images, _) in enumerate(self.cameras):
+            self.desk.scene.rig.show_image(camera, np.asarray(images[number]))
+
+    def measure(self) -> None:
+        """List the measures that are stored of the state: of the image, and the maps' scores."""
+        session = self.desk.session
+        shot, maps = session.result("shoot"), session.result("maps")
+        values = {} if shot is None else dict(shot.metrics.values)
+        if maps is not None:
+            values |= {found.score_name: found.score for found in maps.maps}
+        rows = [(name.replace("_", " "), f"{value:.4g}") for name, value in values.items()]
+        self.numbers.content = table(("measure", "value"), rows)
+        self.measures.visible = bool(rows)

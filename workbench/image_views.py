@@ -1,0 +1,144 @@
+"""What can be looked at of a tactile image: itself, its change, and what its pixels see.
+
+Everything here takes some ten milliseconds of an image of 640 x 480; the fields themselves come
+with the image from its stage.
+"""
+
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass
+
+import numpy as np
+
+from workbench.colour_scale import NOTHING_GREY, scale_colours
+from workbench.core.sensing import TactileFrames
+
+MOST_GAIN = 8
+"""A change is strengthened so much at most."""
+ARROW_SHARE = 0.08
+"""Length of the longest arrow over the width of the image, at most."""
+
+
+class View(enum.StrEnum):
+    """Names for people."""
+
+    IMAGE = "image"
+    DIFFERENCE = "difference"
+    NORMALS = "normals"
+    DEPTH = "depth_z"
+    MOTION = "marker motion"
+    CONTACT = "contact mask"
+
+
+OF_IMAGES = (View.IMAGE, View.DIFFERENCE)
+"""Views that need nothing but the images: a live press has no more."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Bar:
+    """A scale of colours."""
+
+    low: float
+    high: float
+    unit: str
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Looked:
+    """A view of one frame."""
+
+    rgb: np.ndarray
+    """Shape (H, W, 3), uint8."""
+    words: str
+    """What it shows."""
+    bar: Bar | None = None
+
+
+def views(frames: TactileFrames | None) -> tuple[View, ...]:
+    """Views that there are; of images without fields the first two."""
+    if frames is None:
+        return OF_IMAGES
+    marked = frames.marker_uv_px.shape[1] > 0
+    return tuple(view for view in View if marked or view is not View.MOTION)
+
+
+def looked(
+    view: View, images: np.ndarray, number: int, frames: TactileFrames | None = None
+) -> Looked:
+    """A view of one frame.
+
+    Args:
+        view: One of `views`; without `frames` others show the image.
+        images: Background and frames, shape (1 + K, H, W, 3), uint8.
+        number: Frame, 0 for the background.
+        frames: The fields that belong to the images, if known.
+    """
+    image = np.asarray(images[number])
+    if view is View.DIFFERENCE:
+        change, gain = visible_change(image, np.asarray(images[0]))
+        return Looked(rgb=change, words=f"change of grey level about mid grey, × {gain}")
+    if frames is None or view is View.IMAGE:
+        return Looked(rgb=image, words="")
+    if view is View.NORMALS:
+        return _normals(np.asarray(frames.normal[number]))
+    if view is View.DEPTH:
+        return _depth(np.asarray(frames.depth_z_mm[number]), np.asarray(frames.depth_z_mm[0]))
+    if view is View.CONTACT:
+        return _mask(frames, number)
+    return _motion(image, frames, number)
+
+
+def visible_change(image: np.ndarray, background: np.ndarray) -> tuple[np.ndarray, int]:
+    """The change about mid grey, and the factor that makes it visible (at most 8).
+
+    The brightest twentieth of the changed pixels may saturate, as one sparkle would hide the rest.
+    """
+    change = image.astype(np.int16) - background.astype(np.int16)
+    size = np.abs(change[change != 0])
+    gain = max(1, min(MOST_GAIN, int(127 // np.percentile(size, 95)))) if size.size else 1
+    return np.clip(128 + gain * change, 0, 255).astype(np.uint8), gain
+
+
+def _normals(normal: np.ndarray) -> Looked:
+    rgb = np.clip(127.5 * (np.nan_to_num(normal.astype(np.float32)) + 1.0), 0.0, 255.0)
+    rgb = np.rint(rgb).astype(np.uint8)
+    # A pixel that misses the skin has no normal.
+    rgb[~(np.abs(normal) > 0.0).any(axis=-1)] = NOTHING_GREY
+    words = "normals toward the camera: red, green, blue are x, y, z of the sensor from -1 to 1"
+    return Looked(rgb=rgb, words=words)
+
+
+def _depth(depth_mm: np.ndarray, rest_mm: np.ndarray) -> Looked:
+    seen = np.isfinite(depth_mm) | np.isfinite(rest_mm)
+    if not seen.any():
+        return Looked(rgb=scale_colours(depth_mm, 0.0, 1.0), words="no pixel sees the skin")
+    both = np.fmin(depth_mm, rest_mm)[seen], np.fmax(depth_mm, rest_mm)[seen]
+    # Of the frame and of the background, so that the colours of both compare.
+    low, high = float(both[0].min()), float(both[1].max())
+    rgb = scale_colours(depth_mm, low, high)
+    bar = Bar(low=low, high=high, unit="mm")
+    return Looked(rgb=rgb, words="depth along the optical axis", bar=bar)
+
+
+def _mask(frames: TactileFrames, number: int) -> Looked:
+    from sim.metrics import contact_pixels
+
+    moved, contact = np.asarray(frames.moved[number]), contact_pixels(frames, number)
+    grey = np.where(contact, 255, np.where(moved, 110, 30)).astype(np.uint8)
+    shares = (100.0 * float(pixels.mean()) for pixels in (contact, moved))
+    words = "white: contact, {:.1f} % of the pixels; grey: displaced skin, {:.1f} %"
+    return Looked(rgb=np.repeat(grey[..., None], 3, axis=-1), words=words.format(*shares))
+
+
+def _motion(image: np.ndarray, frames: TactileFrames, number: int) -> Looked:
+    from sim.optics.marker_motion import draw_arrows
+
+    way = np.asarray(frames.marker_uv_px[number] - frames.marker_uv_px[0], dtype=np.float64)
+    length = np.hypot(way[:, 0], way[:, 1])
+    length = length[np.isfinite(length)]
+    longest = float(length.max(initial=0.0))
+    room = ARROW_SHARE * image.shape[1] / max(longest, 1e-6)
+    scale = max(1, min(MOST_GAIN, int(room)))
+    words = f"marker motion, arrows × {scale}: longest {longest:.2f} px, {len(length)} markers seen"
+    return Looked(rgb=draw_arrows(image, frames, number, scale=float(scale)), words=words)

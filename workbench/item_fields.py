@@ -1,0 +1,74 @@
+"""Fields of a design's numbered items, for example `optics.lamps[2].power`, counted from 1.
+
+A dotted path reaches dataclasses and mappings by `replace` of the design; lamps and further
+cameras are tuples of dataclasses, of which an edit makes a new tuple. Messages of an item do not
+know its number: here it is put into their field.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from workbench.core.design import SensorDesign
+from workbench.core.errors import DesignError
+
+ITEM = re.compile(r"([\w.]+)\[(\d+)\](?:\.([\w.]+))?")
+SPOKEN = {"optics.lamps": "optics.lamps", "optics.cameras": "optics.camera"}
+"""How the messages of an item call the table that it is in."""
+
+
+def read_field(state: Any, path: str) -> Any:
+    """Value of a dotted path through dataclasses, mappings and numbered items."""
+    value = state
+    for step in path.split("."):
+        name, _, number = step.partition("[")
+        value = value[name] if isinstance(value, Mapping) else getattr(value, name)
+        if number:
+            value = value[int(number.removesuffix("]")) - 1]
+    return value
+
+
+def with_field(design: SensorDesign, path: str, value: Any) -> SensorDesign:
+    """A copy with one field changed, which may be one of a numbered item, or a whole item.
+
+    Raises:
+        DesignError: If there is no such field or item, or the value is refused.
+    """
+    found = ITEM.fullmatch(path)
+    if found is None:
+        return design.replace(path, value)
+    owner, number, rest = found[1], int(found[2]), found[3]
+    items = read_field(design, owner)
+    if not 1 <= number <= len(items):
+        raise DesignError(
+            f"{owner} has {len(items)} items, so there is no {path!r}",
+            hint="add one first",
+            at=owner,
+        )
+    if rest:
+        value = _changed(items[number - 1], rest, value, at=f"{owner}[{number}]", owner=owner)
+    return design.replace(owner, (*items[: number - 1], value, *items[number:]))
+
+
+def _changed(item: Any, rest: str, value: Any, *, at: str, owner: str) -> Any:
+    try:
+        return _replaced(item, rest.split("."), value)
+    except DesignError as error:
+        spoken = SPOKEN.get(owner, owner)
+        if error.at.startswith(spoken):
+            error.at = at + error.at.removeprefix(spoken)
+        raise
+
+
+def _replaced(item: Any, steps: list[str], value: Any) -> Any:
+    head, *rest = steps
+    inner = _replaced(getattr(item, head), rest, value) if rest else value
+    return dataclasses.replace(item, **{head: inner})
+
+
+def without_item(items: tuple[Any, ...], number: int) -> tuple[Any, ...]:
+    """The items but that of a number, counted from 1."""
+    return (*items[: number - 1], *items[number:])

@@ -1,0 +1,108 @@
+"""A map of the skin for the eye: colours of the vertices, ends of the scale, scores as rows.
+
+The scale goes from the 5th to the 95th percentile, so that a few odd places do not wash out the
+rest; maps that are 0 or 1 keep that scale, and their blind places are grey.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from workbench.colour_scale import scale_colours
+from workbench.core.maps import PERCENTILES, DesignerMaps, SkinMap
+from workbench.previews import first_hit
+
+BETTER = {"more": "↑ more", "less": "↓ less"}
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class MapLook:
+    """A map, ready for the 3D view."""
+
+    colours: np.ndarray
+    """Of each vertex, shape (V, 3), uint8."""
+    low: float
+    middle: float
+    """Median over the seen skin; NaN where nothing is seen."""
+    high: float
+    words: str
+    """What the ends of the scale are."""
+
+
+def map_look(found: SkinMap) -> MapLook:
+    """Colours and scale of a map."""
+    values = np.asarray(found.values, dtype=np.float64)
+    flag = is_flag(found)
+    low, high = (0.0, 1.0) if flag else scale_of(found)
+    shown = np.where(values > 0.0, values, np.nan) if flag else values
+    return MapLook(
+        colours=scale_colours(shown, low, high),
+        low=low,
+        middle=percentile(found, 50.0),
+        high=high,
+        words="" if flag else "5, 50 and 95 % of the skin",
+    )
+
+
+def is_flag(found: SkinMap) -> bool:
+    """Whether a map says yes or no: all its values are 0 or 1."""
+    values = np.asarray(found.values)
+    finite = values[np.isfinite(values)]
+    return found.name == "visible" or bool(finite.size and np.isin(finite, (0.0, 1.0)).all())
+
+
+def scale_of(found: SkinMap) -> tuple[float, float]:
+    """Ends of the scale of colours, different from each other."""
+    for lower, upper in ((5.0, 95.0), (0.0, 100.0)):
+        low, high = percentile(found, lower), percentile(found, upper)
+        if np.isfinite([low, high]).all() and high > low:
+            return low, high
+    level = percentile(found, 50.0)
+    return (0.0, 1.0) if not np.isfinite(level) else (min(0.0, level), max(0.0, level) or 1.0)
+
+
+def percentile(found: SkinMap, share: float) -> float:
+    """One of `PERCENTILES` of a map."""
+    return float(found.percentiles[PERCENTILES.index(share)])
+
+
+def value_at(
+    found: SkinMap,
+    points_mm: np.ndarray,
+    faces: np.ndarray,
+    origin: np.ndarray,
+    direction: np.ndarray,
+) -> tuple[np.ndarray, float] | None:
+    """Place [mm] and value of a map where a ray first meets the skin from outside, or None.
+
+    The value is that of the nearest corner of the triangle; NaN where there is none.
+    """
+    hit = first_hit(points_mm, faces, origin, direction)
+    if hit is None:
+        return None
+    corners = np.asarray(faces)[hit[0]]
+    nearest = corners[np.argmin(((np.asarray(points_mm)[corners] - hit[1]) ** 2).sum(axis=1))]
+    return hit[1], float(found.values[nearest])
+
+
+def value_words(found: SkinMap, value: float) -> str:
+    """A value for people: with its unit, `blind` where there is none."""
+    if not np.isfinite(value) or (is_flag(found) and value == 0.0):
+        return "blind here" if found.name == "visible" or not np.isfinite(value) else "0"
+    unit = "" if found.unit == "1" else f" {found.unit}"
+    return f"{value:.3g}{unit}"
+
+
+def score_rows(maps: DesignerMaps) -> list[tuple[str, str, str, str]]:
+    """Label, name of the score, value, and which way is better, of each map."""
+    return [
+        (
+            found.label,
+            found.score_name.replace("_", " "),
+            f"{found.score:.3g}" if np.isfinite(found.score) else "-",
+            BETTER.get(found.better, found.better),
+        )
+        for found in maps.maps
+    ]
