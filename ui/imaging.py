@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from workbench.colour_scale import NOTHING_GREY, viridis
+from workbench.colour_scale import viridis
 
 REST_SHARE = 0.05
 """Below this share of the maximum the colour of rest shows through."""
@@ -81,9 +81,9 @@ def scale_bar(low: float, high: float, unit: str, *, middle: float | None = None
     )
 
 
-def blind_swatch(words: str) -> str:
-    """The grey of places without a number, and what it means, as HTML."""
-    r, g, b = NOTHING_GREY
+def swatch(colour: tuple[int, int, int], words: str) -> str:
+    """A spot of a colour and what it means, as HTML."""
+    r, g, b = colour
     return (
         "<div style='font-size:12px;margin:2px 12px'><span style='display:inline-block;width:10px;"
         f"height:10px;border-radius:2px;background:rgb({r},{g},{b})'></span> "
@@ -93,7 +93,7 @@ def blind_swatch(words: str) -> str:
 
 def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     """Rows of text as an HTML table that scrolls when it is long."""
-    style = "padding:2px 6px;text-align:left"
+    style = "padding:2px 5px;text-align:left"
     top = "".join(f"<th style='{style}'>{html.escape(cell)}</th>" for cell in head)
     body = "".join(
         "<tr>" + "".join(f"<td style='{style}'>{html.escape(cell)}</td>" for cell in row) + "</tr>"

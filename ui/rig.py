@@ -15,8 +15,11 @@ from workbench.core.optics import Optics
 from workbench.led_colours import shown_colour
 
 FRUSTUM_MM = 4.0
+"""Length of a frustum."""
 WIDEST_DEG = 150.0
 """A fisheye is drawn at most so wide."""
+USUAL_DEG = 100.0
+"""Wider frusta are shorter, so that they hide no more than one of this angle."""
 PICTURE_PX = 160
 """Width at most of the picture in a frustum."""
 LENS_COLOURS = {
@@ -63,17 +66,18 @@ class RigView:
 
     def _show_camera(self, number: int, camera: Camera) -> None:
         """Show a camera as a frustum."""
-        high, aspect = frustum(camera)
+        high, aspect, scale_mm = frustum(camera)
         colour = LENS_COLOURS[camera.lens]
         if number == len(self.cameras):
             name = "/camera" if number == 0 else f"/camera_{number + 1}"
             node = self.api.add_camera_frustum(
-                name, fov=high, aspect=aspect, scale=FRUSTUM_MM, color=colour
+                name, fov=high, aspect=aspect, scale=scale_mm, color=colour
             )
             self.cameras.append(node)
         node = self.cameras[number]
         node.fov = high
         node.aspect = aspect
+        node.scale = scale_mm
         node.position = camera.position_mm
         node.wxyz = camera.wxyz
         node.color = colour
@@ -96,8 +100,9 @@ class RigView:
             node.visible = visible
 
 
-def frustum(camera: Camera) -> tuple[float, float]:
-    """Vertical angle [rad] and aspect of a frustum that stands for a camera."""
-    across = math.radians(min(camera.fov_x_deg, WIDEST_DEG))
-    high = 2 * math.atan(math.tan(across / 2) * camera.height_px / camera.width_px)
-    return high, camera.width_px / camera.height_px
+def frustum(camera: Camera) -> tuple[float, float, float]:
+    """Vertical angle [rad], aspect and length [mm] of a frustum that stands for a camera."""
+    half = math.tan(math.radians(min(camera.fov_x_deg, WIDEST_DEG)) / 2)
+    high = 2 * math.atan(half * camera.height_px / camera.width_px)
+    shorter = min(1.0, math.tan(math.radians(USUAL_DEG) / 2) / half)
+    return high, camera.width_px / camera.height_px, FRUSTUM_MM * shorter

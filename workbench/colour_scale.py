@@ -44,3 +44,7 @@ def scale_colours(values: np.ndarray, low: float, high: float) -> np.ndarray:
     colours = viridis((np.asarray(values, dtype=np.float64) - low) / span)
     colours[np.isnan(values)] = NOTHING_GREY
     return colours
+
+
+YES: tuple[int, int, int] = (int(_table()[-1][0]), int(_table()[-1][1]), int(_table()[-1][2]))
+"""The upper end of the scale."""

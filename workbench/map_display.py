@@ -14,7 +14,7 @@ from workbench.colour_scale import scale_colours
 from workbench.core.maps import PERCENTILES, DesignerMaps, SkinMap
 from workbench.previews import first_hit
 
-BETTER = {"more": "↑ more", "less": "↓ less"}
+BETTER = {"more": "high", "less": "low"}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -95,8 +95,13 @@ def value_words(found: SkinMap, value: float) -> str:
     return f"{value:.3g}{unit}"
 
 
+def ordered(maps: DesignerMaps) -> list[SkinMap]:
+    """The maps as they are listed: those of single lights, which may be many, come last."""
+    return sorted(maps.maps, key=lambda found: found.name.startswith("led_"))
+
+
 def score_rows(maps: DesignerMaps) -> list[tuple[str, str, str, str]]:
-    """Label, name of the score, value, and which way is better, of each map."""
+    """Label, name of the score, value, and which way is better, of each map in order."""
     return [
         (
             found.label,
@@ -104,5 +109,5 @@ def score_rows(maps: DesignerMaps) -> list[tuple[str, str, str, str]]:
             f"{found.score:.3g}" if np.isfinite(found.score) else "-",
             BETTER.get(found.better, found.better),
         )
-        for found in maps.maps
+        for found in ordered(maps)
     ]

@@ -30,10 +30,10 @@ class ImageTab:
         self.view = gui.add_dropdown("Show", (View.IMAGE.value,), visible=False, hint=hint)
         for handle in (self.camera, self.view):
             handle.on_update(desk.guarded(lambda event: self.show(self.number)))
-        self.image = gui.add_image(placeholder(), label="camera", format="jpeg")
+        self.image = gui.add_image(placeholder(), format="jpeg")
         self.legend = gui.add_html("")
         self.change_text = gui.add_markdown("")
-        self.change = gui.add_image(placeholder(), label="difference", format="jpeg")
+        self.change = gui.add_image(placeholder(), format="jpeg")
         self.measures = gui.add_folder("Measures", expand_by_default=False, visible=False)
         with self.measures:
             self.numbers = gui.add_html("")

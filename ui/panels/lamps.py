@@ -93,11 +93,11 @@ class LampsFolder:
         fields.point("Shines along", f"{path}.axis", step=0.1, hint=hint)
         hint = "Direction of its length, across the way it shines"
         fields.point("Lies along", f"{path}.along", step=0.1, hint=hint)
-        fields.slider("Lamp length mm", f"{path}.length_mm", span=(0.1, 40.0, 0.1))
-        fields.slider("Lamp width mm", f"{path}.width_mm", span=(0.1, 40.0, 0.1))
+        fields.slider("Length mm", f"{path}.length_mm", span=(0.1, 40.0, 0.1))
+        fields.slider("Width mm", f"{path}.width_mm", span=(0.1, 40.0, 0.1))
         hint = "Points of light that it is divided into, about"
         fields.slider("Samples", f"{path}.samples", span=(1, 64, 1), whole=True, hint=hint)
-        fields.slider("Lamp size mm", f"{path}.size_mm", span=(0.1, 5.0, 0.05))
+        fields.slider("Disc mm", f"{path}.size_mm", span=(0.1, 5.0, 0.05))
         fields.text(
             "Lamp colour",
             f"{path}.colour",
@@ -107,8 +107,8 @@ class LampsFolder:
         )
         hint = "Of the whole lamp, in units of a ring LED's"
         fields.slider("Lamp power", f"{path}.power", span=(0.0, 20.0, 0.1), hint=hint)
-        fields.slider("Lamp cone deg", f"{path}.cone_deg", span=(1.0, 180.0, 1.0))
-        fields.choice("Lamp mount", f"{path}.mount", list(LedMount))
+        fields.slider("Cone deg", f"{path}.cone_deg", span=(1.0, 180.0, 1.0))
+        fields.choice("Sits in", f"{path}.mount", list(LedMount))
         fields.anchor("Lamp", path)
 
     def _fit(self, kind: LampKind) -> None:

@@ -9,11 +9,20 @@ import numpy as np
 import viser
 
 from ui.desk import Desk
-from ui.imaging import blind_swatch, scale_bar, table
+from ui.imaging import scale_bar, swatch, table
+from workbench.colour_scale import NOTHING_GREY, YES
 from workbench.core.errors import DesignError
 from workbench.core.maps import DesignerMaps, SkinMap
 from workbench.core.results import Skin
-from workbench.map_display import is_flag, map_look, score_rows, value_at, value_words
+from workbench.map_display import (
+    MapLook,
+    is_flag,
+    map_look,
+    ordered,
+    score_rows,
+    value_at,
+    value_words,
+)
 
 NO_MAPS = "Where on the skin this design sees, and how well. Not measured yet."
 STALE = "**stale**: the design has changed, measure again"
@@ -71,11 +80,8 @@ class MapsPanel:
             self._cover(False)
             return
         look = map_look(found)
-        bar = scale_bar(look.low, look.high, found.unit, middle=look.middle)
-        words = f"<div style='font-size:12px;margin:2px 12px'>{look.words}</div>"
-        blind = blind_swatch("blind" if is_flag(found) else "no value: blind or unlit")
         with self.desk.server.atomic():
-            self.legend.content = bar + (words if look.words else "") + blind
+            self.legend.content = map_legend(found, look)
             self.meaning.content = f"*{html.escape(found.meaning)}*"
             if self.wanted.value:
                 scene.show_map(self.skin, look.colours)
@@ -132,13 +138,13 @@ class MapsPanel:
         if mesh is None:
             return
         self.found, self.skin = maps, mesh.seen
-        names = tuple(found.label for found in maps.maps)
+        names = tuple(found.label for found in ordered(maps))
         if tuple(self.choice.options) != names:
             now = self.choice.value
             self.choice.options = names
             self.choice.value = now if now in names else names[0]
         self.choice.visible = self.wanted.visible = True
-        self.scores.content = table(("map", "score", "", "better"), score_rows(maps))
+        self.scores.content = table(("map", "score", "", "good"), score_rows(maps))
         if self.asked:
             self.asked = False
             self.desk.put_parts_away()
@@ -157,3 +163,14 @@ class MapsPanel:
         self.legend.content = self.meaning.content = self.value.content = ""
         self.scores.content = ""
         self.refresh()
+
+
+def map_legend(found: SkinMap, look: MapLook) -> str:
+    """The colours of a map and what they mean, as HTML."""
+    if is_flag(found):
+        return swatch(YES, "seen" if found.name == "visible" else "yes") + swatch(
+            NOTHING_GREY, "blind" if found.name == "visible" else "no"
+        )
+    bar = scale_bar(look.low, look.high, found.unit, middle=look.middle)
+    words = f"<div style='font-size:12px;margin:2px 12px'>{look.words}</div>"
+    return bar + words + swatch(NOTHING_GREY, "no value: blind or unlit")
