@@ -15,11 +15,11 @@ from workbench.core.optics import Optics
 from workbench.led_colours import shown_colour
 
 FRUSTUM_MM = 4.0
-"""Length of a frustum."""
+"""Size of a frustum; viser gives all of one size the same volume."""
 WIDEST_DEG = 150.0
 """A fisheye is drawn at most so wide."""
 USUAL_DEG = 100.0
-"""Wider frusta are shorter, so that they hide no more than one of this angle."""
+"""Wider frusta are smaller, so that they hide no more than one of this angle."""
 PICTURE_PX = 160
 """Width at most of the picture in a frustum."""
 LENS_COLOURS = {
@@ -101,8 +101,9 @@ class RigView:
 
 
 def frustum(camera: Camera) -> tuple[float, float, float]:
-    """Vertical angle [rad], aspect and length [mm] of a frustum that stands for a camera."""
+    """Vertical angle [rad], aspect and size [mm] of a frustum that stands for a camera."""
     half = math.tan(math.radians(min(camera.fov_x_deg, WIDEST_DEG)) / 2)
     high = 2 * math.atan(half * camera.height_px / camera.width_px)
-    shorter = min(1.0, math.tan(math.radians(USUAL_DEG) / 2) / half)
-    return high, camera.width_px / camera.height_px, FRUSTUM_MM * shorter
+    # At equal volume the far side of a frustum is as wide as the cube root of its tangent.
+    smaller = min(1.0, math.tan(math.radians(USUAL_DEG) / 2) / half) ** (1 / 3)
+    return high, camera.width_px / camera.height_px, FRUSTUM_MM * smaller

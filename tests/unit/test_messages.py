@@ -9,6 +9,7 @@ import pytest
 
 from ui.panels.fields import Fields
 from workbench.core.errors import DesignError
+from workbench.light_edit import colour_words, read_colours
 
 
 class Widget:
@@ -34,6 +35,9 @@ class Page:
     def add_slider(
         self, label: str, low: float, high: float, step: float, value: float, *, hint: Any
     ) -> Widget:
+        return Widget(label, value)
+
+    def add_text(self, label: str, value: str, *, hint: Any) -> Widget:
         return Widget(label, value)
 
     def add_markdown(self, text: str, *, visible: bool) -> Widget:
@@ -97,3 +101,68 @@ def test_messages_use_labels_of_the_part_they_are_about(bench: Bench) -> None:
     text = "lower support_mm or layers.elastomer_mm; width_mm stays"
     words = bench.fields.in_words(text, "layers.elastomer_mm")
     assert words == "lower “Support” or “Wall”; width_mm stays"
+
+
+LAMPS = "design.optics.lamps"
+
+
+class Lights:
+    """Two lamps of a design, of which one is edited, and a line of colours."""
+
+    def __init__(self) -> None:
+        self.state: dict[str, Any] = {
+            f"{LAMPS}[1].power": 1.0,
+            f"{LAMPS}[2].power": 3.0,
+            "design.optics.ring.colours": ("#ff0000",),
+        }
+        self.fields = Fields(
+            SimpleNamespace(gui=Page()), self.state.__getitem__, self.state.__setitem__
+        )
+        self.fields.anchor("Lamps", LAMPS)
+        self.power = self.fields.slider("Power", f"{LAMPS}[1].power", span=(0.0, 5.0, 0.1))
+        self.colours = self.fields.text(
+            "Colours",
+            "design.optics.ring.colours",
+            read=lambda text: read_colours(text, at="optics.ring.colours"),
+            write=colour_words,
+        )
+
+
+@pytest.fixture
+def lights() -> Lights:
+    return Lights()
+
+
+def test_widgets_can_edit_another_lamp(lights: Lights) -> None:
+    """Rebound to lamp 2 they show 3, and what is entered is lamp 2's."""
+    lights.fields.rebind(f"{LAMPS}[1]", f"{LAMPS}[2]")
+    assert lights.power.value == 3.0
+    lights.power.entered(4.0)
+    assert lights.state[f"{LAMPS}[2].power"] == 4.0
+    assert lights.state[f"{LAMPS}[1].power"] == 1.0
+
+
+def test_a_lamp_that_is_not_on_show_has_its_message_at_the_list(lights: Lights) -> None:
+    """Of lamp 1 under its widget, of lamp 2 under the list; of another part nowhere."""
+    error = DesignError("in the wall", at="optics.lamps[1].power")
+    assert lights.fields.complain(error) == f"{LAMPS}[1].power"
+    assert lights.fields.complain(DesignError("in it", at="optics.lamps[2].power")) == LAMPS
+    assert lights.fields.complain(DesignError("dark", at="optics.camera")) == ""
+
+
+def test_a_text_is_read_once_it_is_whole(lights: Lights) -> None:
+    """Letters alone change nothing; when read, red and 525nm; nonsense is told beneath."""
+    path = "design.optics.ring.colours"
+    for text in ("r", "red, 5", "red, 525nm"):
+        lights.colours.entered(text)
+        lights.fields.read_typed()
+        assert lights.state[path] == ("#ff0000",)
+    lights.fields.read_typed(now=True)
+    assert lights.state[path] == ("#ff0000", "525nm")
+    lights.colours.entered(" , ")
+    lights.fields.read_typed(now=True)
+    complaint = lights.fields._fields[path].complaint
+    assert complaint.visible
+    assert "no colour is given" in complaint.content
+    lights.fields.settle()
+    assert lights.colours.value == "red, 525nm"

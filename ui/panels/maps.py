@@ -59,11 +59,13 @@ class MapsPanel:
     def _measure(self) -> None:
         desk = self.desk
         if "maps" not in desk.session.calls():
-            raise DesignError(
+            error = DesignError(
                 "photons traced anew for every frame leave no light to map",
                 hint="choose the light model hybrid or table",
                 at="optics.light_model",
             )
+            desk.reports.report(error, topic=TOPIC)
+            return
         self.asked = True
         desk.run(TOPIC, ("maps",))
 

@@ -1,0 +1,178 @@
+"""What is shown of an image and of a map: exact colours, scales and words of made-up ones."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tests.unit.test_quantities import SQUARE
+from ui.imaging import scale_bar, table
+from workbench.colour_scale import NOTHING_GREY, YES, scale_colours, viridis
+from workbench.core.maps import DesignerMaps, SkinMap
+from workbench.core.sensing import TactileFrames
+from workbench.image_views import OF_IMAGES, View, looked, views, visible_change
+from workbench.map_display import map_look, score_rows, value_at, value_words
+
+HIGH, WIDE = 8, 12
+
+
+def frames(markers: int = 0) -> TactileFrames:
+    """Background and one frame, in which one pixel moved from 10 mm to 12 mm; column 0 misses."""
+    rgb = np.full((2, HIGH, WIDE, 3), 100, np.uint8)
+    rgb[1, 4, 6] = (110, 100, 90)
+    depth = np.full((2, HIGH, WIDE), 10.0, np.float32)
+    depth[1, 4, 6] = 12.0
+    depth[:, :, 0] = np.nan
+    normal = np.zeros((2, HIGH, WIDE, 3), np.float16)
+    normal[..., 2] = 1.0
+    normal[:, :, 0] = 0.0
+    moved = np.zeros((2, HIGH, WIDE), bool)
+    moved[1, 4, 6] = True
+    uv = np.full((2, markers, 2), 5.0, np.float32)
+    uv[1, :1] += 0.5
+    return TactileFrames(
+        rgb=rgb,
+        depth_z_mm=depth,
+        normal=normal,
+        moved=moved,
+        marker_uv_px=uv,
+        exposure=1.0,
+        marker_mm=np.zeros((markers, 3), np.float32),
+    )
+
+
+def test_views_follow_what_there_is() -> None:
+    """A live press has images only; marker motion needs markers."""
+    assert views(None) == OF_IMAGES
+    assert View.MOTION not in views(frames())
+    assert set(views(frames(3))) == set(View)
+
+
+def test_the_image_itself_is_shown_as_it_is() -> None:
+    """Frame 1 to the byte, without a legend."""
+    given = frames()
+    found = looked(View.IMAGE, given.rgb, 1, given)
+    assert np.array_equal(found.rgb, given.rgb[1])
+    assert found.words == ""
+
+
+def test_difference_is_about_mid_grey() -> None:
+    """+10 and -10 grey levels, strengthened 8 times at most; unchanged pixels are 128."""
+    given = frames()
+    change, gain = visible_change(given.rgb[1], given.rgb[0])
+    assert gain == 8
+    assert tuple(change[4, 6]) == (208, 128, 48)
+    assert (change[0] == 128).all()
+
+
+def test_normals_are_coloured_by_axis() -> None:
+    """The normal +Z is (127.5, 127.5, 255) to rounding; a miss is grey."""
+    given = frames()
+    rgb = looked(View.NORMALS, given.rgb, 1, given).rgb
+    assert tuple(rgb[2, 3]) == (128, 128, 255)
+    assert tuple(rgb[2, 0]) == NOTHING_GREY
+
+
+def test_depth_has_the_scale_of_frame_and_background() -> None:
+    """From 10 to 12 mm in both; the deeper pixel has the upper end's colour, a miss is grey."""
+    given = frames()
+    rest, now = (looked(View.DEPTH, given.rgb, k, given) for k in (0, 1))
+    assert now.bar is not None
+    assert (now.bar.low, now.bar.high, now.bar.unit) == (10.0, 12.0, "mm")
+    assert tuple(now.rgb[4, 6]) == YES
+    assert tuple(now.rgb[4, 0]) == NOTHING_GREY
+    assert rest.bar is not None
+    assert rest.bar.low == 10.0
+
+
+def test_contact_mask_tells_its_share() -> None:
+    """One of 96 pixels, 1.0 %, white; the rest dark."""
+    given = frames()
+    found = looked(View.CONTACT, given.rgb, 1, given)
+    assert "1.0 %" in found.words
+    assert tuple(found.rgb[4, 6]) == (255, 255, 255)
+    assert tuple(found.rgb[0, 0]) == (30, 30, 30)
+
+
+def test_marker_motion_tells_the_longest_way() -> None:
+    """One of three markers went 0.5 px in both directions: 0.71 px."""
+    given = frames(3)
+    found = looked(View.MOTION, given.rgb, 1, given)
+    assert "longest 0.71 px, 3 markers" in found.words
+
+
+def skin_map(values: list[float], name: str = "incidence", unit: str = "deg") -> SkinMap:
+    """A map of four vertices; percentiles from 0 to 60 in steps of 10."""
+    return SkinMap(
+        name=name,
+        label=name,
+        unit=unit,
+        values=np.array(values, np.float32),
+        percentiles=np.arange(0.0, 70.0, 10.0),
+        score_name=f"{name}_median_deg",
+        score=30.0,
+        better="less",
+        meaning="",
+    )
+
+
+def test_map_scale_is_from_5_to_95_percent() -> None:
+    """10 and 50 degrees are the ends, 30 the middle; blind places are grey."""
+    look = map_look(skin_map([10.0, 50.0, 70.0, np.nan]))
+    assert (look.low, look.middle, look.high) == (10.0, 30.0, 50.0)
+    assert tuple(look.colours[0]) == tuple(viridis(np.zeros(1))[0])
+    assert tuple(look.colours[1]) == tuple(look.colours[2]) == YES
+    assert tuple(look.colours[3]) == NOTHING_GREY
+
+
+def test_blind_places_of_a_yes_and_no_map_are_grey() -> None:
+    """0 is blind, 1 is seen, whatever the percentiles."""
+    look = map_look(skin_map([0.0, 1.0, 1.0, 1.0], name="visible", unit="1"))
+    assert tuple(look.colours[0]) == NOTHING_GREY
+    assert tuple(look.colours[1]) == YES
+    assert (look.low, look.high) == (0.0, 1.0)
+
+
+@pytest.mark.parametrize("level", [0.0, 3.0, -2.0, np.nan])
+def test_a_map_of_one_value_has_a_scale(level: float) -> None:
+    """Its ends differ and are finite, or the legend would divide by zero."""
+    flat = skin_map([2.5] * 4)
+    flat.percentiles[:] = level
+    look = map_look(flat)
+    assert look.high > look.low
+
+
+def test_a_click_tells_the_value_of_the_nearest_vertex() -> None:
+    """From above near the corner (2, 2): vertex 2 with 70 degrees; beside the skin nothing."""
+    found, down = skin_map([10.0, 50.0, 70.0, np.nan]), np.array([0.0, 0.0, -1.0])
+    hit = value_at(found, SQUARE.points_mm, SQUARE.faces, np.array([1.8, 1.9, 5.0]), down)
+    assert hit is not None
+    np.testing.assert_allclose(hit[0], [1.8, 1.9, 0.0])
+    assert value_words(found, hit[1]) == "70 deg"
+    assert value_at(found, SQUARE.points_mm, SQUARE.faces, np.array([9.0, 9, 5]), down) is None
+    assert value_words(found, np.nan) == "blind here"
+
+
+def test_scores_say_which_way_is_better_and_lights_come_last() -> None:
+    """A row per map; those of single LEDs stand below all others."""
+    maps = DesignerMaps(maps=(skin_map([1.0], "led_01"), skin_map([1.0])), seconds=1.0)
+    rows = score_rows(maps)
+    assert rows[0] == ("incidence", "incidence median deg", "30", "low")
+    assert rows[1][0] == "led_01"
+
+
+def test_colours_of_numbers_that_are_none() -> None:
+    """NaN is grey, beyond the ends the ends' colours, also of a scale without width."""
+    colours = scale_colours(np.array([np.nan, -1e9, 1e9]), 0.0, 1.0)
+    assert tuple(colours[0]) == NOTHING_GREY
+    assert np.array_equal(colours[1:], viridis(np.array([0.0, 1.0])))
+    assert scale_colours(np.array([1.0]), 1.0, 1.0).shape == (1, 3)
+
+
+def test_legend_and_table_escape_and_name_units() -> None:
+    """Both ends have the unit, the median its place; names cannot be HTML."""
+    bar = scale_bar(1.0, 3.0, "mm", middle=2.0)
+    assert "1 mm" in bar
+    assert "3 mm" in bar
+    assert "left:50.0%" in bar
+    assert "<b>" not in table(("a",), (("<b>",),))
