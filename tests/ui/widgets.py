@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -74,6 +74,27 @@ def set_number(page: Any, label: str, value: float) -> None:
     box = control(page, label).locator("xpath=following-sibling::div//input")
     box.fill(str(value))
     box.press("Tab")
+
+
+def boxes(page: Any, label: str) -> Any:
+    """The input boxes beside a label, whose text and vectors have no id."""
+    pattern = re.compile(rf"^\s*{re.escape(label)}\s*$")
+    found = page.locator("label:visible").filter(has_text=pattern).first
+    return found.locator("xpath=ancestor::*[.//input][1]").locator("input")
+
+
+def type_text(page: Any, label: str, text: str) -> None:
+    """Type into a line of text; the workbench reads it a moment later."""
+    boxes(page, label).first.fill(text)
+    page.wait_for_timeout(1500)
+
+
+def type_numbers(page: Any, label: str, values: Sequence[float]) -> None:
+    """Type into the boxes of a vector."""
+    for number, value in enumerate(values):
+        box = boxes(page, label).nth(number)
+        box.fill(str(value))
+        box.press("Tab")
 
 
 def slider_value(page: Any, label: str) -> float:
