@@ -1,8 +1,8 @@
 """Validation of the optics room: each function measures one thing and returns its number(s).
 
-Projection, Snell, Fresnel, irradiance and depth are compared with closed forms; the fields and
-the composition with the properties that define them. What a dent changes in the image is printed
-beside the null, an image of the background alone.
+Projection, Snell, Fresnel, irradiance and depth are compared with closed forms, the fields with the
+properties that define them. `view_checks`, `sensor_checks`, `map_checks` and `transport_checks`
+have the rest.
 """
 
 from __future__ import annotations
@@ -11,26 +11,17 @@ import dataclasses
 
 import numpy as np
 
-from sim.metrics import contact_box, contact_pixels, mae_grey, psnr_dB, ssim
 from sim.optics.bake import bake_light, normal_at
 from sim.optics.camera import focal_px, pixel_centres, project, refracted_rays, unproject
 from sim.optics.gbuffer import open_view
 from sim.optics.lights import place_leds
 from sim.optics.refraction import refract
-from sim.optics.render import shoot
 from sim.optics.section_curve import plane_section, tangent_toward
-from sim.optics.specimen import dent, finger
+from sim.optics.specimen import finger
 from workbench.core.camera import Camera, LensModel
-from workbench.core.errors import OpticsError
 from workbench.core.lighting import LedRing, LightModel
-from workbench.core.optics import Optics
 from workbench.core.results import MembraneMesh
-from workbench.core.sensing import TactileFrames
 
-DENT_MM = (15.0, 0.0, 22.0)
-"""Place of the test dent, on the cylinder at +X."""
-DENT_DEPTH_MM = 1.2
-DENT_RADIUS_MM = 4.0
 ANGLES_DEG = np.linspace(0.0, 89.0, 90)
 SILICONE_INDEX = 1.41
 NEAREST_MM = 2.0
@@ -134,6 +125,8 @@ class PlaneCheck:
     median_deg: float
     """Median angle between closed form and cut curve as lines, without their sense [degree]."""
     percentile_95_deg: float
+    straight_deg: float
+    """The null: the median of the straight line to the light [degree]."""
     other_sense_1: float
     """Share of targets at which the shorter way along the curve to where it comes nearest to the
     light sets out the other way [1]. A light on the far side is then reached over the tip, so this
@@ -153,7 +146,7 @@ def plane_closed_form(
     edges = skin.points_mm[skin.faces[:, 0]] - skin.points_mm[skin.faces[:, 1]]
     step_mm = 1.5 * float(np.linalg.norm(edges, axis=1).mean())
     random = np.random.default_rng(seed)
-    angles, turned = [], 0
+    angles, straight, turned = [], [], 0
     for vertex in random.choice(len(skin.points_mm), targets, replace=False):
         led = int(random.integers(len(light.led_mm)))
         target, source = skin.points_mm[vertex], light.led_mm[led]
@@ -170,20 +163,17 @@ def plane_closed_form(
             continue
         cosine = float(cut @ light.direction[led, vertex])
         angles.append(np.degrees(np.arccos(min(1.0, abs(cosine)))))
+        along = abs(float(cut @ (source - target))) / away
+        straight.append(np.degrees(np.arccos(min(1.0, along))))
         turned += cosine < 0.0
     median, high = np.percentile(angles, (50.0, 95.0))
     return PlaneCheck(
         median_deg=float(median),
         percentile_95_deg=float(high),
+        straight_deg=float(np.median(straight)),
         other_sense_1=turned / len(angles),
         targets=len(angles),
     )
-
-
-def plane_closed_form_error_deg(model: LightModel, mesh: MembraneMesh) -> tuple[float, float]:
-    """Median and 95th percentile [degree] of `plane_closed_form` with the default ring."""
-    found = plane_closed_form(model, mesh, LedRing())
-    return found.median_deg, found.percentile_95_deg
 
 
 def irradiance_error(mesh: MembraneMesh, ring: LedRing) -> float:
@@ -234,51 +224,3 @@ def axis_error_px() -> float:
     rays = refracted_rays(camera, finger(edge_mm=0.5).cavity, SILICONE_INDEX)
     middle = rays.direction[(camera.height_px // 2) * camera.width_px + camera.width_px // 2]
     return float(np.hypot(middle[0], middle[1]) / middle[2] * focal_px(camera))
-
-
-def dented(model: LightModel, mesh: MembraneMesh | None = None) -> TactileFrames:
-    """Background and one image of the default sensor with the test dent."""
-    mesh = mesh or finger(edge_mm=0.5)
-    optics = Optics(light_model=model)
-    moved = dent(mesh.outer, at_mm=DENT_MM, depth_mm=DENT_DEPTH_MM, radius_mm=DENT_RADIUS_MM)
-    light = bake_light(mesh, optics.ring, model=model)
-    return shoot(mesh, light, optics, displacement_mm=moved[None])
-
-
-def recast_error_mm(edge_mm: float = 0.5) -> float:
-    """Largest depth difference [mm] between a frame and a full cast of the deformed skin.
-
-    A frame casts only what moved; casting all of the deformed skin anew must see the same.
-    """
-    mesh, optics = finger(edge_mm=edge_mm), Optics()
-    moved = dent(mesh.outer, at_mm=DENT_MM, depth_mm=DENT_DEPTH_MM, radius_mm=DENT_RADIUS_MM)
-    light = bake_light(mesh, optics.ring, model=LightModel.LINEAR)
-    frames = shoot(mesh, light, optics, displacement_mm=moved[None])
-    deformed = dataclasses.replace(mesh.outer, points_mm=mesh.outer.points_mm + moved)
-    rays = refracted_rays(optics.camera, mesh.cavity, optics.refractive_index)
-    seen = open_view(deformed, optics.camera, rays).background
-    depth_z_mm = frames.depth_z_mm[1].ravel()[seen.pixel]
-    return float(np.abs(depth_z_mm - seen.depth_z_mm).max())
-
-
-def unmoved_difference_grey(frames: TactileFrames) -> int:
-    """Largest difference [grey level] from the background where nothing moved; must be 0."""
-    change = frames.rgb[1:].astype(np.int16) - frames.rgb[0]
-    return int(np.abs(change[~frames.moved[1:]]).max(initial=0))
-
-
-def dent_scores(frames: TactileFrames) -> dict[str, float]:
-    """Mean change [grey level], PSNR [dB] and SSIM [1] of the null in the contact box.
-
-    Raises:
-        OpticsError: If the camera does not see the dent.
-    """
-    box = contact_box(contact_pixels(frames, 1))
-    if box is None:
-        raise OpticsError("the camera does not see the dent", hint="put it nearer to the tip")
-    image, null = frames.rgb[1][box], frames.rgb[0][box]
-    return {
-        "change_grey": mae_grey(image, null),
-        "null_psnr_dB": psnr_dB(null, image),
-        "null_ssim_1": ssim(null, image),
-    }

@@ -11,7 +11,6 @@ import pytest
 
 from sim.optics.bake import bake_light
 from sim.optics.camera import refracted_rays
-from sim.optics.checks import unmoved_difference_grey
 from sim.optics.gbuffer import open_view
 from sim.optics.markers import ink, no_ink, place_markers, print_dots
 from sim.optics.render import shoot
@@ -49,10 +48,10 @@ def test_unmoved_pixels_are_exactly_the_background(mesh: MembraneMesh, model: Li
     frames = render(mesh, Optics(camera=SMALL, light_model=model))
     still = ~frames.moved[1:]
     assert 0.01 < 1.0 - still[1].mean() < 0.5
-    assert unmoved_difference_grey(frames) == 0
-    for images in (frames.depth_z_mm, frames.normal):
+    for images in (frames.rgb, frames.depth_z_mm, frames.normal):
         repeated = np.broadcast_to(images[:1], images[1:].shape)
-        assert np.array_equal(images[1:][still], repeated[still], equal_nan=True)
+        gaps = images.dtype.kind == "f"
+        assert np.array_equal(images[1:][still], repeated[still], equal_nan=gaps)
 
 
 @pytest.mark.parametrize("model", SHADED)

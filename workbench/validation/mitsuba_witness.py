@@ -1,0 +1,329 @@
+"""`workbench validate optics --reference mitsuba`: traced photons beside the renderer Mitsuba 3.
+
+A matte finger with three wide LEDs, at index 1.41 and without refraction, at rest and with a dent,
+is written as a scene, rendered by Mitsuba in a process of its own (extra `mitsuba`, its plain
+variant `scalar_rgb`, which needs no LLVM), and compared in rings about the image's centre, in
+octants of each colour and where the dent is. Nothing is fitted: power, areas and units are equal.
+
+To what the workbench draws, 1 / n^2 of it since Mitsuba counts radiance in air, come the mirror
+images of skin (`sim.optics.ghost`) and LEDs (`maps.glare`) in the cavity's wall: a path tracer
+shows them, the product leaves them out of its images. Mitsuba's standard error is that of two
+halves with different seeds: a mean of N pixels a_i, b_i has sqrt(sum (a_i - b_i)^2) / (2 N). A
+region counts where that is below 1 %; the others are stated.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import importlib
+import importlib.util
+import itertools
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from workbench.core.camera import Camera
+from workbench.core.errors import DeviceError
+from workbench.core.light import LightField
+from workbench.core.lighting import LedRing, LightModel
+from workbench.core.optics import Coating, Optics
+from workbench.core.results import MembraneMesh
+from workbench.rows import Row, compared, failed, stated
+
+LIMIT = 0.03
+CONVERGED = 0.01
+RINGS_PX = (0, 4, 8, 12, 16, 20, 24)
+OCTANTS = 8
+FINER = 6
+"""Mirror images of LEDs are a pixel wide: they are averaged over this many rays squared."""
+PHOTONS = 10_000_000
+SAMPLES = {1.41: 1000, 1.0: 300}
+"""Of a pixel in each half, by refractive index; lights are found by chance behind a wall."""
+RING = LedRing(count=3, radius_mm=6.0, size_mm=6.0, height_mm=0.5, phase_deg=90.0)
+COATING = Coating(albedo=0.6, specular=0.0)
+CAMERA = Camera(width_px=64, height_px=48)
+DENT = {"at_mm": (0.0, 14.0, 32.0), "depth_mm": 1.5, "radius_mm": 5.0}
+MOVED_MM = 0.1
+REMEDY = 'pip install "sensor-workbench[mitsuba]"'
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Case:
+    """One scene."""
+
+    index: float
+    dented: bool
+
+    @property
+    def name(self) -> str:
+        """For rows, for example `n = 1.41, dented`."""
+        return f"n = {self.index:g}, {'dented' if self.dented else 'at rest'}"
+
+
+CASES = tuple(Case(index=index, dented=dented) for index in (1.41, 1.0) for dented in (False, True))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Witness:
+    """Images of one scene in Mitsuba's units, each (H, W, 3)."""
+
+    mitsuba: np.ndarray
+    error: np.ndarray
+    """Standard error of each of Mitsuba's pixels."""
+    traced: np.ndarray
+    """Photons and mirror images."""
+    direct: np.ndarray
+    """The null: direct light alone, drawn by the workbench."""
+    moved: np.ndarray
+    """Pixels that see the dent, (H, W), bool."""
+
+
+def rows() -> list[Row]:
+    """All rows of the room."""
+    from workbench.devices import open_device
+
+    if importlib.util.find_spec("mitsuba") is None:
+        why = f"Mitsuba is not installed: {REMEDY}"
+        return [failed("mitsuba", "the whole room", unit="1", why=why)]
+    open_device()
+    return [row for case in CASES for row in case_rows(case)]
+
+
+def case_rows(case: Case) -> list[Row]:
+    """The rows of one scene."""
+    try:
+        seen = witness(case)
+    except DeviceError as error:
+        return [failed("mitsuba", case.name, unit="1", why=error.message)]
+    found = [
+        _row(case, f"ring {low} to {high} px", seen, inside)
+        for (low, high), inside in zip(_pairs(RINGS_PX), rings(), strict=True)
+    ]
+    if case.dented:
+        inside = np.repeat(seen.moved[:, :, None], 3, axis=2)
+        found.append(_row(case, "where the dent is", seen, inside))
+    return [*found, _octants(case, seen)]
+
+
+def _row(case: Case, region: str, seen: Witness, inside: np.ndarray) -> Row:
+    """Ratio of a region's light, beside the null; stated where Mitsuba has not converged."""
+    error = standard_error(seen, inside)
+    told = f"{case.name}, {region}; ceiling: Mitsuba's standard error; null: direct light alone"
+    value, null = (ratio(image, seen.mitsuba, inside) for image in (seen.traced, seen.direct))
+    if error >= CONVERGED:
+        told += "; not converged"
+        return stated("mitsuba", told, value, unit="1", null=null, ceiling=error)
+    return compared("mitsuba", told, value, 1.0, unit="1", limit=LIMIT, null=null, ceiling=error)
+
+
+def _octants(case: Case, seen: Witness) -> Row:
+    """The worst octant of those that converged."""
+    regions = [inside for inside in octants() if standard_error(seen, inside) < CONVERGED]
+    told = f"{case.name}, worst octant"
+    if not regions:
+        return failed("mitsuba_octant", told, unit="1", why="none converged")
+    told += f"; {len(regions)} of {OCTANTS} converged; null: direct light alone"
+    ratios = [ratio(seen.traced, seen.mitsuba, inside) for inside in regions]
+    nulls = [ratio(seen.direct, seen.mitsuba, inside) for inside in regions]
+    value, null = (max(found, key=lambda r: abs(r - 1.0)) for found in (ratios, nulls))
+    return compared("mitsuba_octant", told, value, 1.0, unit="1", limit=LIMIT, null=null)
+
+
+def ratio(image: np.ndarray, reference: np.ndarray, inside: np.ndarray) -> float:
+    """Light of one image over that of another in a region (H, W, 3)."""
+    return float(image[inside].sum(dtype=np.float64) / reference[inside].sum(dtype=np.float64))
+
+
+def standard_error(seen: Witness, inside: np.ndarray) -> float:
+    """Relative standard error [1] of Mitsuba's mean over a region (H, W, 3)."""
+    spread = np.sqrt((seen.error[inside].astype(np.float64) ** 2).sum())
+    return float(spread / seen.mitsuba[inside].sum(dtype=np.float64))
+
+
+def rings() -> list[np.ndarray]:
+    """Masks (H, W, 3) of the rings about the image's centre, whole ones only."""
+    x, y = _from_centre()
+    away = np.hypot(x, y)
+    return [_all_colours((away >= low) & (away < high)) for low, high in _pairs(RINGS_PX)]
+
+
+def octants() -> list[np.ndarray]:
+    """Masks (H, W, 3) of the octants of the largest ring's disc."""
+    x, y = _from_centre()
+    around = np.floor((np.arctan2(y, x) / (2.0 * np.pi) + 0.5) * OCTANTS).astype(int) % OCTANTS
+    inside = np.hypot(x, y) < RINGS_PX[-1]
+    return [_all_colours((around == octant) & inside) for octant in range(OCTANTS)]
+
+
+def _pairs(borders: tuple[int, ...]) -> list[tuple[int, int]]:
+    return list(itertools.pairwise(borders))
+
+
+def _from_centre() -> tuple[np.ndarray, np.ndarray]:
+    rows_px, columns_px = np.mgrid[: CAMERA.height_px, : CAMERA.width_px]
+    return columns_px + 0.5 - CAMERA.width_px / 2.0, rows_px + 0.5 - CAMERA.height_px / 2.0
+
+
+def _all_colours(mask: np.ndarray) -> np.ndarray:
+    return np.repeat(mask[:, :, None], 3, axis=2)
+
+
+@functools.cache
+def body() -> MembraneMesh:
+    """The finger at edges of 1 mm, as both programs see it."""
+    from sim.optics.specimen import finger
+
+    return finger(edge_mm=1.0)
+
+
+def displacement_mm(case: Case) -> np.ndarray:
+    """Of the seen skin's vertices [mm], shape (V, 3)."""
+    from sim.optics.specimen import dent
+
+    skin = body().seen
+    return dent(skin, **DENT) if case.dented else np.zeros_like(skin.points_mm, dtype=np.float32)
+
+
+def witness(case: Case, *, photons: int = PHOTONS, samples: int | None = None) -> Witness:
+    """Both programs' images of one scene.
+
+    Raises:
+        DeviceError: If Mitsuba cannot render.
+    """
+    mitsuba, error = rendered(case, samples or SAMPLES[case.index])
+    optics = Optics(
+        camera=CAMERA,
+        ring=RING,
+        coating=COATING,
+        refractive_index=case.index,
+        light_model=LightModel.PHOTONS,
+    )
+    traced, moved = _traced(case, optics, photons)
+    return Witness(
+        mitsuba=mitsuba,
+        error=error,
+        traced=traced,
+        direct=_direct(case, optics) / case.index**2,
+        moved=moved,
+    )
+
+
+def _traced(case: Case, optics: Optics, photons: int) -> tuple[np.ndarray, np.ndarray]:
+    """What photons show, mirror images included, and the pixels that see the dent."""
+    from sim.optics.bake import bake_light
+    from sim.optics.ghost import mirrored_radiance
+    from sim.optics.render import Studio
+
+    mesh, moved = body(), displacement_mm(case)
+    radiance = _radiance(case, optics, photons)
+    light = bake_light(mesh, RING, model=LightModel.PHOTONS)
+    studio = Studio(mesh, light, optics, radiance=radiance)
+    image = studio.linear(moved[None], radiance=radiance[None])[0].astype(np.float64)
+    skin = dataclasses.replace(mesh.seen, points_mm=mesh.seen.points_mm + moved)
+    pressed = dataclasses.replace(mesh, outer=skin)
+    image += mirrored_radiance(pressed, CAMERA, case.index, radiance)
+    marked = np.repeat((np.linalg.norm(moved, axis=1) > MOVED_MM)[:, None], 3, axis=1)
+    shown = studio.linear(moved[None], radiance=marked[None].astype(np.float32))[0]
+    return image / case.index**2 + _glare(mesh, light, case.index), shown[:, :, 0] > 0.0
+
+
+def _radiance(case: Case, optics: Optics, photons: int) -> np.ndarray:
+    """Toward the camera at the seen skin's vertices, shape (V, 3)."""
+    from sim.optics.lights import place_leds
+    from sim.optics.transport.radiance import trace_radiance
+
+    transport, leds = optics.transport, place_leds(RING)
+    if transport is None:
+        raise ValueError("photons trace light")
+    found = trace_radiance(
+        body(),
+        leds,
+        CAMERA,
+        transport,
+        photons=photons,
+        first_photon=0,
+        displacement_mm=displacement_mm(case) if case.dented else None,
+    )
+    return found.radiance * (len(leds.rgb) / found.photons)
+
+
+def _glare(mesh: MembraneMesh, light: LightField, index: float) -> np.ndarray:
+    """Mirror images of the LEDs in air, shape (H, W, 3)."""
+    from sim.optics.camera import refracted_rays
+    from sim.optics.maps.glare import glare_radiance
+
+    if index == 1.0:
+        return np.zeros((CAMERA.height_px, CAMERA.width_px, 3))
+    fine = dataclasses.replace(
+        CAMERA, width_px=FINER * CAMERA.width_px, height_px=FINER * CAMERA.height_px
+    )
+    rays = refracted_rays(fine, mesh.cavity, index)
+    shining = glare_radiance(fine, rays, mesh.cavity, light, index)
+    blocks = shining.reshape(CAMERA.height_px, FINER, CAMERA.width_px, FINER, 3)
+    return blocks.mean(axis=(1, 3))
+
+
+def _direct(case: Case, optics: Optics) -> np.ndarray:
+    from sim.optics.bake import bake_light
+    from sim.optics.render import Studio
+
+    light = bake_light(body(), RING, model=LightModel.DIRECT)
+    plain = dataclasses.replace(optics, light_model=LightModel.DIRECT)
+    return Studio(body(), light, plain).linear(displacement_mm(case)[None])[0].astype(np.float64)
+
+
+def rendered(case: Case, samples: int) -> tuple[np.ndarray, np.ndarray]:
+    """Mitsuba's image and the standard error of its pixels, (H, W, 3) each.
+
+    Raises:
+        DeviceError: If it fails.
+    """
+    from sim.optics.lights import place_leds
+    from sim.optics.mitsuba_scene import write_scene
+    from workbench.core.lighting import Baking
+    from workbench.core.optics import Transport
+
+    transport = Transport(coating=COATING, refractive_index=case.index, baking=Baking())
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        moved = displacement_mm(case) if case.dented else None
+        leds = place_leds(RING)
+        write_scene(folder, body(), leds, CAMERA, transport, displacement_mm=moved)
+        halves = [render(folder, samples=samples, seed=seed) for seed in (1, 2)]
+    return (halves[0] + halves[1]) / 2.0, np.abs(halves[0] - halves[1]) / 2.0
+
+
+def render(folder: Path, *, samples: int, seed: int) -> np.ndarray:
+    """Linear RGB (H, W, 3) of the scene in a folder, by Mitsuba in a process of its own.
+
+    Raises:
+        DeviceError: With the last line that Mitsuba said.
+    """
+    target = folder / f"image_{seed}.npy"
+    words = [str(folder / "scene.xml"), str(samples), str(seed), str(target)]
+    done = subprocess.run(
+        [sys.executable, "-m", __name__, *words], capture_output=True, text=True, check=False
+    )
+    if done.returncode != 0 or not target.exists():
+        said = (done.stderr.strip() or "nothing").splitlines()[-1]
+        raise DeviceError(f"Mitsuba stopped with {done.returncode}: {said}", hint=REMEDY)
+    return np.load(target).astype(np.float64)
+
+
+def main(words: list[str]) -> None:
+    """Render SCENE with SAMPLES and SEED to OUT: the process that `render` starts."""
+    scene, samples, seed, target = words
+    mitsuba: Any = importlib.import_module("mitsuba")
+    mitsuba.set_variant("scalar_rgb")
+    image = mitsuba.render(mitsuba.load_file(scene), spp=int(samples), seed=int(seed))
+    np.save(target, np.array(image)[:, :, :3])
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
