@@ -4,7 +4,10 @@ At the place where a ray from inside leaves the skin, with outward normal n, hei
 the tangent plane and tangential coordinates u, w: the object's face is the profile p(u, w) above
 its lowest point, pushed in by the depth d, and the skin moves inward by a softened overlap
 
-    disp = s ln(1 + exp((k + d - p) / s)),  s = 0.12 mm.
+    disp = s ln(1 + exp((k + d - p) / s)),  s = 0.25 mm,
+
+so that the foot of a dent is rounded over more than a triangle of 0.4 mm, as an elastomer of 2 mm
+rounds it; a sharper foot would compare the triangles of both methods instead of their light.
 
 No elasticity: dents with steep and gentle slopes, known to everyone who compares with them.
 """
@@ -19,7 +22,7 @@ import numpy as np
 from workbench.core.errors import OpticsError
 from workbench.core.results import Skin
 
-SOFTNESS_MM = 0.12
+SOFTNESS_MM = 0.25
 LEAST_MM = 2e-3
 """Displacements below this are cut off: a tenth of a grey level."""
 REACH_MM = 9.0
@@ -143,6 +146,6 @@ def _profile(kind: DentKind, u: np.ndarray, w: np.ndarray) -> np.ndarray:
 
 
 def _bar(u: np.ndarray, w: np.ndarray, *, half_width_mm: float) -> np.ndarray:
-    """A bar of 8 mm length with flanks of about 50 degrees."""
+    """A bar of 8 mm length with flanks of about 40 degrees."""
     across, beyond = np.abs(u) - half_width_mm, np.abs(w) - 4.0
-    return 1.1 * np.maximum(across, 0.0) + 1.3 * np.maximum(beyond, 0.0)
+    return 0.8 * np.maximum(across, 0.0) + 0.9 * np.maximum(beyond, 0.0)

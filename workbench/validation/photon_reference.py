@@ -96,7 +96,10 @@ def read_scenes(file: Path) -> dict[str, Any]:
 
 
 def trace(file: Path, out: Path, photons: int, names: list[str]) -> None:
-    """Trace the halves of every frame of the named scenes, all without names."""
+    """Trace the halves of every frame of the named scenes, all without names.
+
+    Frames whose file is there already are kept.
+    """
     from sim.optics.lights import place_leds
     from sim.optics.transport.radiance import trace_radiance
     from workbench.devices import open_device
@@ -108,6 +111,9 @@ def trace(file: Path, out: Path, photons: int, names: list[str]) -> None:
             continue
         leds = place_leds(optics.ring, optics.lamps)
         for frame, displacement in frames.items():
+            target = out / f"{name.replace(' ', '_')}_{frame}.npz"
+            if target.exists():
+                continue
             start = time.perf_counter()
             halves = []
             for half in range(2):
@@ -122,7 +128,6 @@ def trace(file: Path, out: Path, photons: int, names: list[str]) -> None:
                 )
                 halves.append(found.radiance * (len(leds.rgb) / found.photons))
             seconds = time.perf_counter() - start
-            target = out / f"{name.replace(' ', '_')}_{frame}.npz"
             np.savez_compressed(
                 target,
                 halves=np.stack(halves).astype(np.float32),

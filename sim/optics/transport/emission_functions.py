@@ -24,7 +24,7 @@ class Photon:
     origin: tm.vec3
     direction: tm.vec3
     flux: ti.f32
-    fresh: ti.i32  # 1 until it was scattered, reflected, or bent twice.
+    fresh: ti.i32  # 1 until it was scattered, thrown back into the cavity, or bent twice.
     crossed: ti.i32  # 1 once it was bent into the solid, or began there.
     fate: ti.i32
 

@@ -16,6 +16,7 @@ from sim.optics.transport.constants import FIXED_POINT
 from sim.optics.transport.nodes import Nodes, coarse_nodes, neighbours
 from sim.optics.transport.paths import Driver, trace_paths
 from sim.optics.transport.scene import open_scene
+from sim.optics.transport.smoothing import smoothed_bins
 from sim.optics.transport.sources import Sources, open_sources
 from sim.optics.transport.tally import Tally, tally_at_nodes
 from workbench.core.light import Scattered
@@ -75,7 +76,11 @@ def scattered_light(nodes: Nodes, sources: Sources, tally: Tally) -> Scattered:
     # One photon carries the power of its light over the photons of that light.
     unit = sources.strongest * sources.count / tally.photons / FIXED_POINT
     area = np.maximum(nodes.area_mm2, 1e-9)[:, None, None]
-    first, rest = ((sums * (unit / area)).astype(np.float32) for sums in tally.bins)
+    links = neighbours(nodes)
+    first, rest = (
+        smoothed_bins((sums * (unit / area)).astype(np.float32), nodes.frame, links)
+        for sums in tally.bins
+    )
     return Scattered(
         frame=nodes.frame,
         first=first,

@@ -121,7 +121,7 @@ def at_wall(photons: Photons, places: Places, choice: np.ndarray, index: float) 
         photons,
         origin=places.point + side * OFFSET_MM * facing,
         direction=_unit(np.where(back[:, None], mirrored, onward)),
-        fresh=photons.fresh & ~back & ~through_again,
+        fresh=photons.fresh & np.where(back, ~places.outward, ~through_again),
         crossed=photons.crossed | (~back & (index != 1.0)),
     )
 

@@ -89,7 +89,9 @@ def at_wall(photon: Photon, surface: Surface, choice: ti.f32, index: ti.f32) -> 
         p = (cos_in - ratio * cos_out) / (cos_in + ratio * cos_out)
         reflectance = 0.5 * (s * s + p * p)
     if choice < reflectance:
-        after.fresh = 0
+        # Light that runs along the shell is reflected by its inner side again and again.
+        if surface.outward == 1:
+            after.fresh = 0
         bent = d + 2.0 * cos_in * normal
         if bent.dot(facing) < GRAZING:
             bent = d - 2.0 * d.dot(facing) * facing
