@@ -15,6 +15,8 @@ from workbench.core.maps import PERCENTILES, DesignerMaps, SkinMap
 from workbench.previews import first_hit
 
 BETTER = {"more": "high", "less": "low"}
+OF_ONE_LIGHT = "led_"
+"""Begins the names of maps of single lights."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -97,7 +99,16 @@ def value_words(found: SkinMap, value: float) -> str:
 
 def ordered(maps: DesignerMaps) -> list[SkinMap]:
     """The maps as they are listed: those of single lights, which may be many, come last."""
-    return sorted(maps.maps, key=lambda found: found.name.startswith("led_"))
+    return sorted(maps.maps, key=lambda found: found.name.startswith(OF_ONE_LIGHT))
+
+
+def scores(maps: DesignerMaps) -> dict[str, float]:
+    """Finite scores of the maps of a whole design by name; single lights are left out."""
+    return {
+        found.score_name: float(found.score)
+        for found in maps.maps
+        if np.isfinite(found.score) and not found.name.startswith(OF_ONE_LIGHT)
+    }
 
 
 def score_rows(maps: DesignerMaps) -> list[tuple[str, str, str, str]]:

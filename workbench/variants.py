@@ -11,6 +11,7 @@ from typing import Any
 
 from workbench.core.errors import DesignError
 from workbench.core.sensing import Shot
+from workbench.map_display import scores
 from workbench.project import Project, design_to_toml, write_atomically
 from workbench.stages import Call
 from workbench.state import State, case_table, read_state
@@ -27,7 +28,7 @@ class Variant:
 
 
 def save_variant(project: Project, name: str, state: State, calls: dict[str, Call]) -> Path:
-    """Keep a design and its press, whose results are stored.
+    """Keep a design and its press, whose results are stored, with the maps' scores if there are.
 
     Raises:
         DesignError: If the name cannot be a file name.
@@ -38,6 +39,9 @@ def save_variant(project: Project, name: str, state: State, calls: dict[str, Cal
         "press_depth_mm": state.case.press.depth_mm,
         **shot.metrics.values,
     }
+    maps = calls.get("maps")
+    if maps is not None and project.store.has("maps", maps.key):
+        metrics |= scores(project.store.load("maps", maps.key))
     table = {"name": name, "shoot_key": calls["shoot"].key, "metrics": metrics}
     press_case = case_table(state.case, project)
     named = dataclasses.replace(state.design, name=name)

@@ -11,7 +11,7 @@ from workbench.colour_scale import NOTHING_GREY, YES, scale_colours, viridis
 from workbench.core.maps import DesignerMaps, SkinMap
 from workbench.core.sensing import TactileFrames
 from workbench.image_views import OF_IMAGES, View, looked, views, visible_change
-from workbench.map_display import map_look, score_rows, value_at, value_words
+from workbench.map_display import map_look, score_rows, scores, value_at, value_words
 
 HIGH, WIDE = 8, 12
 
@@ -159,6 +159,7 @@ def test_scores_say_which_way_is_better_and_lights_come_last() -> None:
     rows = score_rows(maps)
     assert rows[0] == ("incidence", "incidence median deg", "30", "low")
     assert rows[1][0] == "led_01"
+    assert scores(maps) == {"incidence_median_deg": 30.0}
 
 
 def test_colours_of_numbers_that_are_none() -> None:

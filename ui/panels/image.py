@@ -10,6 +10,7 @@ from ui.desk import Desk
 from ui.imaging import placeholder, scale_bar, table
 from workbench.core.sensing import Shot, TactileFrames
 from workbench.image_views import View, looked, views, visible_change
+from workbench.map_display import scores
 
 NO_IMAGE = "No press of this sensor yet: *Run press* makes an image."
 
@@ -117,7 +118,7 @@ class ImageTab:
         shot, maps = session.result("shoot"), session.result("maps")
         values = {} if shot is None else dict(shot.metrics.values)
         if maps is not None:
-            values |= {found.score_name: found.score for found in maps.maps}
+            values |= scores(maps)
         rows = [(name.replace("_", " "), f"{value:.4g}") for name, value in values.items()]
         self.numbers.content = table(("measure", "value"), rows)
         self.measures.visible = bool(rows)
