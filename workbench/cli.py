@@ -142,6 +142,8 @@ def parser() -> argparse.ArgumentParser:
     _unit_option(export)
     export.add_argument("--out", required=True, type=Path, metavar="DIR")
     export.add_argument("--tets", action="store_true", help="also tetrahedra: about a minute")
+    text = "also mitsuba/scene.xml, the sensor at rest for the renderer Mitsuba 3"
+    export.add_argument("--mitsuba", action="store_true", help=text)
     export.add_argument("--json", action="store_true")
     command(commands.presets).add_argument("--json", action="store_true")
     for handler in (commands.validate, commands.bench):

@@ -128,7 +128,8 @@ def export(options: argparse.Namespace, project: Project) -> int:
     printer = Progress(as_json=options.json)
     design = load_design(options.design, unit=options.unit, project=project)
     start = _start(design, options, project, printer)
-    for path in export_design(start.design, options.out, project.store, printer, tets=options.tets):
+    extra = {"tets": options.tets, "mitsuba": options.mitsuba}
+    for path in export_design(start.design, options.out, project.store, printer, **extra):
         say(json.dumps({"file": str(path)}) if options.json else path)
     return 0
 
@@ -175,10 +176,10 @@ def compare(options: argparse.Namespace, project: Project) -> int:
 
 def validate(options: argparse.Namespace, project: Project) -> int:
     """Compare with closed forms."""
-    from workbench.validate import ROOMS
+    from workbench.validate import ROOMS, room_of
 
     if options.reference:
-        options.room = f"{options.room}_{options.reference}"
+        options.room = room_of(options.room, options.reference)
     return _print_rows(options, ROOMS)
 
 

@@ -10,8 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from workbench.core.design import SensorDesign
-from workbench.core.errors import DeviceError
-from workbench.core.results import VolumeMesh
+from workbench.core.errors import DeviceError, StoreError
+from workbench.core.optics import Transport
+from workbench.core.results import MembraneMesh, VolumeMesh
 from workbench.folder import prepare, remove_stale
 from workbench.outputs import write_package
 from workbench.pipeline import InlineRunner, PressCase, StageMonitor, evaluate, plan, results
@@ -19,13 +20,19 @@ from workbench.project import design_files, design_to_toml, write_atomically
 from workbench.store import Store
 from workbench.vtkfiles import write_vtk
 
-OPTIONAL = ("mesh.npz", "tets.npz", "exploded.png", "bodies/*")
+OPTIONAL = ("mesh.npz", "tets.npz", "exploded.png", "bodies/*", "mitsuba/*")
 """Files that not every export writes."""
 STAGES = ("mesh", "mould", "housing", "recipe", "package")
 
 
 def export_design(
-    design: SensorDesign, out: Path, store: Store, monitor: StageMonitor, *, tets: bool = False
+    design: SensorDesign,
+    out: Path,
+    store: Store,
+    monitor: StageMonitor,
+    *,
+    tets: bool = False,
+    mitsuba: bool = False,
 ) -> Iterator[Path]:
     """Write the files of a design and yield their paths.
 
@@ -37,12 +44,16 @@ def export_design(
 
     Args:
         tets: Also write `tets.npz`: nodes, tetrahedra, labels; takes about a minute.
+        mitsuba: Also write the sensor at rest as a scene of Mitsuba 3, `mitsuba/scene.xml`.
 
     Raises:
+        DesignError: If Mitsuba has no like of the camera or the lights.
         WorkbenchError: If a stage fails or the folder cannot be written.
     """
     from geometry.export import stl_bytes
 
+    if mitsuba:
+        _check_scene(design)
     prepare(out)
     runner = InlineRunner(store)
     wanted = (*STAGES, "tets") if tets else STAGES
@@ -74,6 +85,36 @@ def export_design(
     write_package(out, found["package"])
     for name in found["package"].files:
         yield out / name
+    if mitsuba:
+        yield from _write_scene(out / "mitsuba", design, found["mesh"])
+
+
+def _check_scene(design: SensorDesign) -> None:
+    from sim.optics.lights import place_leds
+    from sim.optics.mitsuba_scene import check_scene
+
+    optics = design.optics
+    check_scene(place_leds(optics.ring, optics.lamps), optics.camera)
+
+
+def _write_scene(folder: Path, design: SensorDesign, mesh: MembraneMesh) -> Iterator[Path]:
+    from sim.optics.lights import place_leds
+    from sim.optics.mitsuba_scene import SCENE_FILES, write_scene
+
+    optics = design.optics
+    transport = Transport(
+        coating=optics.coating, refractive_index=optics.refractive_index, baking=optics.baking
+    )
+    leds = place_leds(optics.ring, optics.lamps)
+    try:
+        write_scene(folder, mesh, leds, optics.camera, transport)
+    except OSError as error:
+        raise StoreError(
+            f"cannot write {folder}: {error.strerror or error}",
+            hint="free some space, or name another folder",
+            at="--out",
+        ) from error
+    yield from (folder / name for name in SCENE_FILES)
 
 
 def _volume_bytes(mesh: VolumeMesh) -> bytes:

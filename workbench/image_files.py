@@ -36,6 +36,7 @@ def write_images(out: Path, shot: Shot, *, fields: bool = False) -> list[str]:
     with `fields` what each pixel sees as `frames.npz`; of a further camera the same in `camera_2`.
     """
     names = _write_camera(out, shot.frames, fields=fields)
+    remove_stale(out, ("camera_*/*",), keep=())
     for number, frames in enumerate(shot.others, start=2):
         _write_camera(out / f"camera_{number}", frames, fields=fields)
     return names
@@ -83,7 +84,7 @@ def _marker_files(frames: TactileFrames) -> dict[str, bytes]:
     lines = ["frame,marker,x_mm,y_mm,z_mm,u_px,v_px,du_px,dv_px"]
     for number in range(1, len(frames.rgb)):
         for marker, place in enumerate(frames.marker_mm):
-            uv, by = frames.marker_uv_px[number, marker], moved[number, marker]
+            uv, by = frames.marker_uv_px[number, marker], moved[number - 1, marker]
             # A marker that the camera does not see has a place on the skin but none in the image.
             seen = [f"{value:.4f}" if np.isfinite(value) else "" for value in (*uv, *by)]
             cells = [str(number - 1), str(marker), *(f"{x:.4f}" for x in place), *seen]

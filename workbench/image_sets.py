@@ -47,7 +47,14 @@ def pairs(images: Path, reference: Path) -> list[Pair]:
             hint="give two runs, or two folders whose runs have the same names",
             at="compare",
         )
-    return [pair for name in names for pair in _run_pairs(ours[name], theirs[name])]
+    found = [pair for name in names for pair in _run_pairs(ours[name], theirs[name])]
+    if not found:
+        raise DesignError(
+            f"no image of {images} has the number of an image of {reference}",
+            hint="give runs with the same frames",
+            at="compare",
+        )
+    return found
 
 
 def _runs(folder: Path) -> dict[str, Path]:
@@ -66,7 +73,7 @@ def _runs(folder: Path) -> dict[str, Path]:
 def _run_pairs(ours: Path, theirs: Path) -> list[Pair]:
     from sim.optics.comparison import Pair
 
-    press = json.loads((theirs / "summary.json").read_text()).get("press", {})
+    press = _press_of(theirs / "summary.json")
     null = _read(theirs / "background.png")
     depths = press.get("depths_mm", [])
     found = []
@@ -91,6 +98,16 @@ def _run_pairs(ours: Path, theirs: Path) -> list[Pair]:
             Pair(image=image, reference=truth, null=null, box=_box(truth, null), labels=labels)
         )
     return found
+
+
+def _press_of(summary: Path) -> dict[str, Any]:
+    """What a run says of its press; nothing of runs that hold none."""
+    try:
+        return json.loads(summary.read_text()).get("press", {})
+    except ValueError as error:
+        raise DesignError(
+            f"{summary} is not JSON: {error}", hint="write the run anew", at="compare"
+        ) from error
 
 
 def _box(image: np.ndarray, background: np.ndarray) -> tuple[slice, slice] | None:

@@ -7,8 +7,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from workbench.core.errors import DesignError
 from workbench.rows import Row
-from workbench.validation import contact, fem, forces, geometry, optics, robustness
+from workbench.validation import (
+    contact,
+    fem,
+    forces,
+    geometry,
+    mitsuba_witness,
+    optics,
+    robustness,
+)
 
 ROOMS: dict[str, Callable[[], list[Row]]] = {
     "geometry": geometry.rows,
@@ -18,4 +27,22 @@ ROOMS: dict[str, Callable[[], list[Row]]] = {
     "forces": forces.rows,
     "robustness": robustness.rows,
     "robustness_sample": robustness.sample_rows,
+    "optics_mitsuba": mitsuba_witness.rows,
 }
+
+
+def room_of(room: str, reference: str) -> str:
+    """The room that compares a room with an independent program.
+
+    Raises:
+        DesignError: If there is none, naming those there are.
+    """
+    found = f"{room}_{reference}"
+    if found in ROOMS:
+        return found
+    known = sorted(name.removeprefix("optics_") for name in ROOMS if name.startswith("optics_"))
+    raise DesignError(
+        f"the room {room!r} has no reference {reference!r}",
+        hint=f"the room optics has {', '.join(known)}",
+        at="--reference",
+    )

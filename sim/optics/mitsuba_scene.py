@@ -26,6 +26,7 @@ from workbench.core.errors import DesignError
 from workbench.core.optics import Transport
 from workbench.core.results import MembraneMesh, Skin
 
+SCENE_FILES = ("scene.xml", "skin.ply", "wall.ply")
 SAMPLES = 256
 """Samples of a pixel in the written scene."""
 LEAST_SIDE_MM = 1e-6
@@ -55,7 +56,7 @@ def write_scene(
     Raises:
         DesignError: If the scene has something that Mitsuba has no like of.
     """
-    _check(leds, camera)
+    check_scene(leds, camera)
     folder.mkdir(parents=True, exist_ok=True)
     skin = mesh.seen
     points, normals = skin.points_mm, skin.normals
@@ -72,7 +73,12 @@ def write_scene(
     return path
 
 
-def _check(leds: Leds, camera: Camera) -> None:
+def check_scene(leds: Leds, camera: Camera) -> None:
+    """Refuse what Mitsuba has no like of.
+
+    Raises:
+        DesignError: Naming the lens or the lights.
+    """
     if camera.lens is not LensModel.PINHOLE:
         raise DesignError(
             f"Mitsuba has no {camera.lens.value} lens",
