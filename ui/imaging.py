@@ -10,6 +10,8 @@ import numpy as np
 
 from workbench.colour_scale import viridis
 
+SRGB_GAMMA = 2.2
+"""Power that comes near the curve of sRGB."""
 REST_SHARE = 0.05
 """Below this share of the maximum the colour of rest shows through."""
 
@@ -21,10 +23,12 @@ def heat_colours(share: np.ndarray, rest: tuple[int, int, int]) -> np.ndarray:
 
 
 def coloured_glb(points: np.ndarray, faces: np.ndarray, colours: np.ndarray) -> bytes:
-    """A mesh with a colour at each vertex as a GLB file with a matt material."""
+    """A mesh with an sRGB colour at each vertex as a GLB file with a matt material."""
     import trimesh
 
-    mesh = trimesh.Trimesh(points, faces, process=False, vertex_colors=colours)
+    # glTF takes the colours of vertices as linear light.
+    linear = np.rint(255.0 * (np.asarray(colours) / 255.0) ** SRGB_GAMMA).astype(np.uint8)
+    mesh = trimesh.Trimesh(points, faces, process=False, vertex_colors=linear)
     mesh.vertex_normals  # noqa: B018 - computed now, so that the file carries smooth normals
 
     def matt(tree: dict[str, Any]) -> None:

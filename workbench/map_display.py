@@ -15,6 +15,8 @@ from workbench.core.maps import PERCENTILES, DesignerMaps, SkinMap
 from workbench.previews import first_hit
 
 BETTER = {"more": "high", "less": "low"}
+LEAST_SPAN = 1e-6
+"""Ends of a scale that are nearer than this differ by rounding only, in any unit of the maps."""
 OF_ONE_LIGHT = "led_"
 """Begins the names of maps of single lights."""
 
@@ -30,7 +32,7 @@ class MapLook:
     """Median over the seen skin; NaN where nothing is seen."""
     high: float
     words: str
-    """What the ends of the scale are."""
+    """What the ends of the scale are, where they are percentiles."""
 
 
 def map_look(found: SkinMap) -> MapLook:
@@ -38,13 +40,14 @@ def map_look(found: SkinMap) -> MapLook:
     values = np.asarray(found.values, dtype=np.float64)
     flag = is_flag(found)
     low, high = (0.0, 1.0) if flag else scale_of(found)
+    usual = (percentile(found, 5.0), percentile(found, 95.0)) == (low, high)
     shown = np.where(values > 0.0, values, np.nan) if flag else values
     return MapLook(
         colours=scale_colours(shown, low, high),
         low=low,
         middle=percentile(found, 50.0),
         high=high,
-        words="" if flag else "5, 50 and 95 % of the skin",
+        words="" if flag or not usual else "5, 50 and 95 % of the skin",
     )
 
 
@@ -59,10 +62,12 @@ def scale_of(found: SkinMap) -> tuple[float, float]:
     """Ends of the scale of colours, different from each other."""
     for lower, upper in ((5.0, 95.0), (0.0, 100.0)):
         low, high = percentile(found, lower), percentile(found, upper)
-        if np.isfinite([low, high]).all() and high > low:
+        if np.isfinite([low, high]).all() and high - low > LEAST_SPAN:
             return low, high
     level = percentile(found, 50.0)
-    return (0.0, 1.0) if not np.isfinite(level) else (min(0.0, level), max(0.0, level) or 1.0)
+    if not np.isfinite(level) or abs(level) < LEAST_SPAN:
+        return 0.0, 1.0
+    return min(0.0, level), max(0.0, level)
 
 
 def percentile(found: SkinMap, share: float) -> float:
