@@ -98,7 +98,7 @@ class Fields:
     def read_typed(self, *, now: bool = False) -> None:
         """Read the texts that nobody types in any more, or with `now` all of them."""
         quiet = time.monotonic() - (0.0 if now else TYPED_S)
-        for path in [path for path, when in self._typed.items() if when <= quiet]:
+        for path in [path for path, when in list(self._typed.items()) if when <= quiet]:
             del self._typed[path]
             if path in self._fields:
                 self._take(self._fields[path])
