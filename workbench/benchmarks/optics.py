@@ -11,8 +11,10 @@ import numpy as np
 
 from workbench.benchmarks.timing import RUNS, median_s, timed_row
 from workbench.core.camera import Camera
-from workbench.core.light import LightField
-from workbench.core.lighting import LightModel
+from workbench.core.design import SensorDesign
+from workbench.core.light import LightField, NormalTable
+from workbench.core.lighting import Baking, LedRing, LightModel
+from workbench.core.maps import DesignerMaps
 from workbench.core.monitor import silent
 from workbench.core.optics import Optics
 from workbench.core.results import MembraneMesh
@@ -33,7 +35,18 @@ VIDEO_EDGE_MM = 0.32
 TURN_RAD = 0.16
 """How far the dent of the video moves about the axis per frame."""
 RISE_MM = 0.3
-BAKES = (LightModel.LINEAR, LightModel.PLANE_TARGET, LightModel.PLANE_SOURCE, LightModel.DIRECT)
+BAKES_S = {
+    LightModel.LINEAR: 5.0,
+    LightModel.PLANE_TARGET: 5.0,
+    LightModel.PLANE_SOURCE: 5.0,
+    LightModel.GEODESIC: 10.0,
+    LightModel.DIRECT: 5.0,
+}
+"""Longest bake of the default finger [s]."""
+TRACED_S = 15.0
+"""Longest bake of traced light at 5,000 nodes, with its table [s]."""
+MAPS_S = 5.0
+TRACED_RUNS = 3
 VIDEO_FPS = {
     (LightModel.HYBRID, 640): 35.0,
     (LightModel.HYBRID, 320): 70.0,
@@ -112,21 +125,68 @@ def video_fps(model: LightModel, width_px: int) -> float:
     return 1.0 / float(np.median(times))
 
 
+def _bakes() -> list[Row]:
+    """Light of the default finger by every model that has any at rest."""
+    ring = LedRing()
+    plain = [
+        timed_row(
+            "bake",
+            model.value,
+            lambda model=model: bake(finger_mesh(), ring, (), model, monitor=silent),
+            limit_s,
+        )
+        for model, limit_s in BAKES_S.items()
+    ]
+    traced = [
+        timed_row(
+            "bake",
+            f"{model.value}, {Baking().nodes} nodes, {Baking().photons // 10**6} M photons, "
+            "with its table",
+            lambda model=model: traced_light(finger_mesh(), model),
+            TRACED_S,
+            runs=TRACED_RUNS,
+        )
+        for model in (LightModel.TABLE, LightModel.HYBRID)
+    ]
+    return [*plain, *traced]
+
+
+def traced_light(mesh: MembraneMesh, model: LightModel) -> tuple[LightField, NormalTable]:
+    """Traced light and its table, as the two stages make them."""
+    optics = Optics(light_model=model)
+    traced = optics.transport
+    if traced is None:
+        raise ValueError(f"{model.value} traces no light")
+    light = bake(mesh, optics.ring, (), model, traced, monitor=silent)
+    return light, table(mesh, light, optics.all_cameras, traced, model, monitor=silent)
+
+
+def _maps() -> list[Row]:
+    """All maps of the default finger, from light that is baked already."""
+    from sim.optics.maps.measure import designer_maps
+
+    light = functools.cache(lambda: traced_light(finger_mesh(), LightModel.HYBRID))
+    optics = Optics(light_model=LightModel.HYBRID)
+    young_MPa = SensorDesign().material.young_MPa
+
+    def measure() -> DesignerMaps:
+        field, looked_up = light()
+        return designer_maps(finger_mesh(), field, optics, looked_up, young_MPa=young_MPa)
+
+    return [
+        timed_row(
+            "maps_seconds", "hybrid, 640x480, baked already", measure, MAPS_S, runs=TRACED_RUNS
+        )
+    ]
+
+
 def rows() -> list[Row]:
     """All rows of the room."""
     from sim.optics.render import shoot
 
     open_device()
     optics = Optics()
-    found = [
-        timed_row(
-            "bake",
-            model.value,
-            lambda model=model: bake(finger_mesh(), optics.ring, (), model, monitor=silent),
-            5.0,
-        )
-        for model in BAKES
-    ]
+    found = [*_bakes(), *_maps()]
 
     @functools.cache
     def light() -> LightField:
