@@ -28,6 +28,7 @@ from workbench.pipeline import PressCase, plan
 from workbench.previews import outer_faces
 from workbench.stages import Ref
 from workbench.store import Store
+from workbench.surface_detail import detailed
 
 if TYPE_CHECKING:
     from sim.contact.live import LiveContact
@@ -147,6 +148,7 @@ class Previewer:
         begun = time.perf_counter()
         open_device()
         from sim.contact.live import LiveContact
+        from sim.optics.detail import open_detail
 
         if self._live is None:
             self._live = LiveContact()
@@ -162,9 +164,12 @@ class Previewer:
             monitor=monitor,
         )
         studio = self._open_studio(store, call, mesh)
+        shown = detailed(call.optics, call.indenter, call.settings)
+        young_MPa, poisson = call.material.young_MPa, call.material.poisson
+        detail = open_detail(shown, mesh, contact, young_MPa=young_MPa, poisson=poisson)
         return Preview(
             contact=contact,
-            images=studio.shoot(mesh.seen_displacement_mm(contact)).rgb,
+            images=studio.shoot(mesh.seen_displacement_mm(contact), detail=detail).rgb,
             way=self._live.way.value,
             seconds=time.perf_counter() - begun,
         )

@@ -20,6 +20,7 @@ from workbench.core.optics import Markers, Optics
 from workbench.core.press import ContactSettings, Press
 from workbench.stages import STAGES, Call, Outcome, run
 from workbench.store import Store
+from workbench.surface_detail import detailed
 
 Design = TypeVar("Design", Elastomer, LedRing, Indenter)
 
@@ -116,7 +117,11 @@ def plan(design: SensorDesign, case: PressCase) -> dict[str, Call]:
     press = Call("press", (*pressed, *(call.ref for call in objects)))
     table = light[1].ref if len(light) > 1 else None
     seen = _seen(optics)
-    shoot = Call("shoot", (mesh.ref, bake.ref, seen, press.ref, table))
+    shown = detailed(optics, case.indenter, case.settings)
+    fine = (None, 0.0, 0.0)
+    if shown is not None:
+        fine = (_shape(shown), material.young_MPa, material.poisson)
+    shoot = Call("shoot", (mesh.ref, bake.ref, seen, press.ref, table, *fine))
     maps = _maps_calls(design, mesh, light)
     mould = Call("mould", (build.ref, design.mould))
     unbuilt = ("power", "powers", "emission_exponent", "cone_deg", "size_mm")
@@ -163,7 +168,8 @@ def _light_calls(optics: Optics, mesh: Call) -> tuple[Call, ...]:
 
 
 def _seen(optics: Optics) -> Optics:
-    """The optics without what the baked light holds already."""
+    """The optics without what the baked light, or the object that is passed, says already."""
+    optics = dataclasses.replace(optics, detail=True)
     if optics.light_model is LightModel.PHOTONS:
         return optics
     rest = {"ring": LedRing(), "lamps": (), "baking": Baking(), "light_model": LightModel.DIRECT}

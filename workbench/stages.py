@@ -334,14 +334,19 @@ def shoot(
     optics: Optics,
     contact: Contact,
     table: NormalTable | None = None,
+    indenter: Indenter | None = None,
+    young_MPa: float = 0.0,
+    poisson: float = 0.0,
     *batches: VertexRadiance,
     monitor: Monitor,
 ) -> Shot:
-    """Tactile images of all frames, the background first, and their measures."""
+    """Images of all frames, the background first; `indenter` has texture finer than contact's."""
     _open_device(monitor)
     from sim.metrics import measure
+    from sim.optics.detail import open_detail
     from sim.optics.render import Studio
 
+    detail = open_detail(indenter, mesh, contact, young_MPa=young_MPa, poisson=poisson)
     moved = mesh.seen_displacement_mm(contact)
     cameras = optics.all_cameras
     radiance = _radiance(batches, len(light.led_mm), len(cameras), len(moved) + 1)
@@ -353,7 +358,7 @@ def shoot(
         studio = Studio(
             mesh, light, optics, table=table, camera=camera, radiance=rest, monitor=span
         )
-        seen.append(studio.shoot(moved, radiance=later, monitor=span))
+        seen.append(studio.shoot(moved, radiance=later, detail=detail, monitor=span))
     return Shot(
         frames=seen[0],
         metrics=measure(mesh, contact, seen[0], light),

@@ -10,6 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from sim.optics.detail import Detail, DetailPixels
+from sim.optics.display import encode
 from sim.optics.imager import Imager
 from sim.optics.markers import Coverage, centroids
 from sim.optics.raster_kernels import SAME
@@ -142,6 +144,12 @@ class Studio:
         self._check(displacement_mm)
         return self.imager.linear(displacement_mm, radiance)
 
+    def detailed(self, displacement_mm: np.ndarray, detail: Detail) -> np.ndarray:
+        """Linear radiance of one displaced skin, (V, 3), with the detail of frame 0: (N, 3)."""
+        self._check(displacement_mm[None])
+        self.imager.look(displacement_mm[None])
+        return self._linear(detail.seen(self.imager, 0))
+
     def radiance_at_vertices(self, displacement_mm: np.ndarray) -> np.ndarray:
         """Foreground radiance of all vertices of one displaced skin, (V, 3) to (V, 3), float32."""
         self._check(displacement_mm[None])
@@ -161,16 +169,22 @@ class Studio:
         displacement_mm: np.ndarray,
         *,
         radiance: np.ndarray | None = None,
+        detail: Detail | None = None,
         monitor: Monitor = silent,
     ) -> TactileFrames:
-        """The background and one image per frame, with depth, normals and markers; as `images`."""
+        """The background and one image per frame, with depth, normals and markers; as `images`.
+
+        Args:
+            detail: The object's fine relief in these frames.
+        """
         self._check(displacement_mm)
         count = len(displacement_mm)
         frames = _blank(self._scene, count)
         for number, moved in enumerate(displacement_mm, start=1):
             monitor(0.3 + 0.7 * (number - 1) / count, f"image {number} of {count}")
             self.imager.look(moved[None], None if radiance is None else radiance[number - 1, None])
-            self._expose(frames, number)
+            fine = None if detail is None else detail.seen(self.imager, number - 1)
+            self._expose(frames, number, fine)
         monitor(1.0, "images ready")
         return frames
 
@@ -184,19 +198,25 @@ class Studio:
                     at="press.depth_mm",
                 )
 
-    def _expose(self, frames: TactileFrames, number: int) -> None:
+    def _expose(self, frames: TactileFrames, number: int, fine: DetailPixels | None) -> None:
         """Write frame `number`: only the pixels that moved differ from the background."""
-        scene, raster = self._scene, self.imager.raster
+        scene, raster, axis = self._scene, self.imager.raster, self.imager.backdrop.axis
         changed = raster.seen_face.to_numpy()[: raster.pixels] != SAME
         rgb = frames.rgb[number].reshape(-1, 3)
         if develops_plainly(scene.camera):
             self.imager.expose(rgb[None])
+            if fine is not None:
+                light = self._linear(fine)[fine.pixel]
+                rgb[fine.pixel] = encode(light, self.imager.backdrop.exposure)
         else:
-            frames.rgb[number] = self._developed(number)
+            frames.rgb[number] = self._developed(number, fine)
         frames.moved[number].reshape(-1)[changed] = True
         normal = np.zeros((raster.pixels, 3), dtype=np.float32)
         depth = np.zeros(raster.pixels, dtype=np.float32)
         self.imager.describe(normal, depth)
+        if fine is not None:
+            normal[fine.pixel] = fine.normal
+            depth[fine.pixel] += fine.away_mm * (raster.view.direction[fine.pixel] @ axis)
         frames.depth_z_mm[number].reshape(-1)[changed] = depth[changed]
         frames.normal[number].reshape(-1, 3)[changed] = normal[changed]
         if len(scene.dots_mm):
@@ -208,15 +228,27 @@ class Studio:
             uv = centroids(coverage, len(scene.dots_mm), raster.view.width_px)
             frames.marker_uv_px[number] = uv
 
-    def _developed(self, number: int) -> np.ndarray:
-        """The frame just looked at, through the image sensor: (H, W, 3), uint8."""
-        raster = self.imager.raster
+    def _linear(self, fine: DetailPixels | None = None) -> np.ndarray:
+        """Linear light of the frame just looked at, with its detail, shape (N, 3), float32."""
+        raster, back = self.imager.raster, self.imager.backdrop
         linear = np.empty((1, raster.pixels, 3), dtype=np.float32)
         self.imager.gather_light(linear)
+        if fine is not None:
+            factor = raster.view.transmittance[fine.pixel]
+            if len(back.dots_mm):
+                factor = factor * (1.0 + (back.ink_gain - 1.0) * self.imager.ink()[1][fine.pixel])
+            brought = linear[0, fine.pixel] + factor[:, None] * fine.change
+            linear[0, fine.pixel] = np.maximum(brought, 0.0)
+        return linear[0]
+
+    def _developed(self, number: int, fine: DetailPixels | None = None) -> np.ndarray:
+        """The frame just looked at, through the image sensor: (H, W, 3), uint8."""
+        raster = self.imager.raster
+        linear = self._linear(fine)
         face = raster.seen_face.to_numpy()[: raster.pixels]
         away = raster.view.travelled_mm + raster.seen_mm.to_numpy()[: raster.pixels]
         range_mm = np.where(face == SAME, self._scene.range_mm, np.where(face >= 0, away, np.nan))
-        return self._scene.develop(linear[0], range_mm, number)
+        return self._scene.develop(linear, range_mm, number)
 
 
 def _blank(scene: StudioScene, count: int) -> TactileFrames:

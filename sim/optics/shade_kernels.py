@@ -69,6 +69,38 @@ def lobe(place, led, axis, shape):
     return strength
 
 
+@ti.func
+def arriving(way_of_lighting, was, here, baked, led, axis, shape):
+    """Direction to a light, distance [mm] and perpendicular irradiance at a displaced vertex."""
+    way, received, reach = baked.xyz, baked.w, 0.0
+    if way_of_lighting != FIELD:
+        source = led
+        if way_of_lighting == HYBRID:
+            source = was + way * ti.max((led - was).norm(), CLOSEST_MM)
+        line = source - here
+        reach = ti.max(line.norm(), CLOSEST_MM)
+        way = line / reach
+        if way_of_lighting == HYBRID:
+            ratio = (source - was).norm() / reach
+            received *= ratio * ratio
+        else:
+            then = lobe(was, source, axis, shape)
+            now = lobe(here, source, axis, shape)
+            received *= now / ti.max(then, 1e-20)
+    return way, reach, received
+
+
+@ti.func
+def returned_share(way_of_lighting, way, view, inward, diffuse, specular, gloss):
+    """Radiance per irradiance by the law of the model; `gloss` as in `shade_vertices`."""
+    returned = 0.0
+    if way_of_lighting == FIELD:
+        returned = phong(way, view, inward, diffuse, specular, gloss)
+    else:
+        returned = reflected(way, view, inward, diffuse, specular, gloss)
+    return returned
+
+
 @ti.kernel
 def shade_vertices(
     count: ti.i32,
@@ -128,26 +160,18 @@ def shade_vertices(
             for number in range(led.shape[0]):
                 baked = light[vertex, number]
                 if baked.w > 0.0:
-                    way, received, reach = baked.xyz, baked.w, 0.0
-                    if way_of_lighting != FIELD:
-                        source = led[number]
-                        if way_of_lighting == HYBRID:
-                            source = was + way * ti.max((led[number] - was).norm(), CLOSEST_MM)
-                        line = source - here
-                        reach = ti.max(line.norm(), CLOSEST_MM)
-                        way = line / reach
-                        if way_of_lighting == HYBRID:
-                            ratio = (source - was).norm() / reach
-                            received *= ratio * ratio
-                        else:
-                            then = lobe(was, source, led_axis[number], led_shape[number])
-                            now = lobe(here, source, led_axis[number], led_shape[number])
-                            received *= now / ti.max(then, 1e-20)
-                    returned = 0.0
-                    if way_of_lighting == FIELD:
-                        returned = phong(way, view, inward, diffuse, specular, gloss)
-                    else:
-                        returned = reflected(way, view, inward, diffuse, specular, gloss)
+                    way, reach, received = arriving(
+                        way_of_lighting,
+                        was,
+                        here,
+                        baked,
+                        led[number],
+                        led_axis[number],
+                        led_shape[number],
+                    )
+                    returned = returned_share(
+                        way_of_lighting, way, view, inward, diffuse, specular, gloss
+                    )
                     if returned > 0.0 and depth > 0.0:
                         blocker, _far = nearest(
                             frame,

@@ -22,7 +22,7 @@ class Shader:
     def __init__(self, raster: Raster, lit: VertexLight) -> None:
         self._raster = raster
         self.lit = lit
-        self._lights = (
+        self.lights = (
             on_device(lit.light, vector=4),
             on_device(lit.led_mm, vector=3),
             on_device(lit.led_axis, vector=3),
@@ -35,9 +35,8 @@ class Shader:
             lit.diffuse,
             lit.specular,
             lit.gloss,
-            MOVED_MM,
-            FULL_SHADOW_MM,
         )
+        """What the kernels that shade take of a light, in their order."""
 
     @property
     def given(self) -> bool:
@@ -117,7 +116,9 @@ class Shader:
             placed,
             turned,
             to_camera,
-            *self._lights,
+            *self.lights,
+            MOVED_MM,
+            FULL_SHADOW_MM,
             shadows,
             *raster.tree,
             raster.faces,

@@ -8,10 +8,11 @@ from typing import Any
 import pytest
 
 from geometry.primitives import rounded_box
+from workbench.core.errors import DesignError
 from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
 from workbench.core.lighting import LightModel
 from workbench.core.motion import Mover
-from workbench.core.press import ContactSettings, Press
+from workbench.core.press import ContactSettings, Method, Press
 from workbench.core.soft_body import SoftBody
 from workbench.core.texture import Pattern, Texture
 from workbench.pipeline import PressCase, needed, plan
@@ -120,3 +121,55 @@ def test_only_what_takes_long_to_sample_has_a_stage_of_its_own() -> None:
     assert "object" not in plan(design, PressCase())
     dots = Texture(pattern=Pattern.DOTS)
     assert "object" in plan(design, PressCase(indenter=Indenter(texture=dots)))
+
+
+FINE = Indenter(texture=Texture(pattern=Pattern.WAVES, height_mm=0.03, pitch_mm=0.5))
+
+
+def test_images_read_an_object_only_for_its_texture() -> None:
+    """Smooth objects leave their key; of a textured one detail, and the switch, are in it."""
+    design = load_design("finger")
+    plain = design.replace("optics.detail", False)
+    assert plan(design, PressCase())["shoot"].key == plan(plain, PressCase())["shoot"].key
+    dotted = PressCase(indenter=DOTTED)
+    shown, hidden = (plan(d, dotted) for d in (design, plain))
+    assert {name for name, call in shown.items() if hidden[name].key != call.key} == {"shoot"}
+    assert [i for i in shown["shoot"].inputs if isinstance(i, Indenter)] == [
+        dataclasses.replace(DOTTED, edge_radius_mm=Indenter().edge_radius_mm)
+    ]
+    assert not [i for i in hidden["shoot"].inputs if isinstance(i, Indenter)]
+
+
+@pytest.mark.parametrize(
+    ("design_field", "case", "says"),
+    [
+        (("optics.detail", False), PressCase(indenter=FINE), "optics.detail is off"),
+        (
+            ("optics.detail", True),
+            PressCase(indenter=dataclasses.replace(FINE, soft=SoftBody())),
+            "no detail is shown of a soft object",
+        ),
+        (
+            ("optics.detail", True),
+            PressCase(indenter=FINE, settings=ContactSettings(method=Method.PARTICLES)),
+            "particles finds no pressure",
+        ),
+        (
+            ("optics.light_model", LightModel.PHOTONS),
+            PressCase(indenter=FINE),
+            "the light model photons shows no detail",
+        ),
+    ],
+)
+def test_a_texture_that_nothing_shows_is_refused(
+    design_field: tuple[str, object], case: PressCase, says: str
+) -> None:
+    """0.5 mm wide, contact holds 0.8 mm: a press goes on only where images show the rest."""
+    design = load_design("finger")
+    assert "object" in plan(design, PressCase(indenter=FINE))
+    with pytest.raises(DesignError, match=r"contact resolves 0\.80 mm") as caught:
+        plan(design.replace(*design_field), case)
+    assert says in caught.value.message
+    assert "raise the pitch to 0.80 mm or lower contact.grid_mm" in caught.value.hint
+    close = dataclasses.replace(case.settings, grid_mm=0.25)
+    plan(design.replace(*design_field), dataclasses.replace(case, settings=close))

@@ -161,13 +161,52 @@ def test_remedy_of_a_steep_texture_holds() -> None:
     assert Texture(pattern=Pattern.WAVES, height_mm=1.0, pitch_mm=2.1).slope < STEEPEST
 
 
-def test_ridges_too_fine_for_the_grid_are_refused() -> None:
-    """Waves of 0.5 mm are 0.5 mm wide; samples of 0.2 mm resolve 0.8 mm, of 0.1 mm 0.4 mm."""
+def test_contact_feels_too_fine_ridges_as_a_layer_of_their_mean() -> None:
+    """Waves of 0.5 mm are 0.5 mm wide; samples of 0.2 mm hold 0.8 mm, of 0.1 mm 0.4 mm.
+
+    The face of a cube at z = -3 then comes to -3.05, half the height.
+    """
     fine = Texture(pattern=Pattern.WAVES, height_mm=0.1, pitch_mm=0.5)
-    with pytest.raises(DesignError, match=r"resolves 0\.80 mm") as caught:
+    cube = Indenter(kind=IndenterKind.CUBE, texture=fine)
+    place = plan(200)
+    coarse, close = (make_collider(cube, grid_mm=grid_mm) for grid_mm in (0.5, 0.25))
+    assert np.abs(lowest(lambda p: coarse.distance(p)[0], place) + 3.05).max() < 1e-3
+    assert np.ptp(lowest(lambda p: close.distance(p)[0], place)) > 0.08
+    # No crest is there whose radius contact would have to resolve.
+    assert coarse.least_radius_mm == cube.edge_radius_mm
+    assert coarse.half_height_mm == 3.1
+
+
+def test_contact_feels_too_fine_letters_filtered() -> None:
+    """An upright through a Gaussian of 0.3 mm, as its section convolved with one."""
+    fine = Texture(pattern=Pattern.LETTERS, text="I", height_mm=0.05, pitch_mm=1.0)
+    x = np.linspace(-2.0, 2.0, 401)
+    place = np.column_stack([x, np.zeros(401)])
+    felt, true = textures.heights(fine, SPACING_MM)(place), textures.true_heights(fine)(place)
+    bell = np.exp(-0.5 * (x / 0.3) ** 2)
+    smooth = np.convolve(true, bell / bell.sum(), mode="same")
+    # Letters are drawn with 40 pixels for contact, and end 0.5 mm above and below: 10 % is lost.
+    assert np.abs(felt - smooth).max() < 0.2 * smooth.max()
+    assert true.max() == pytest.approx(0.05, rel=0.02)
+
+
+def test_ridges_that_no_image_shows_are_refused() -> None:
+    """Strokes of letters 0.15 mm high are 0.048 mm wide; images show 0.05 mm."""
+    fine = Texture(pattern=Pattern.LETTERS, text="A", height_mm=0.01, pitch_mm=0.15)
+    with pytest.raises(DesignError, match=r"neither contact nor image shows less") as caught:
         make_collider(Indenter(texture=fine), grid_mm=0.5)
-    assert caught.value.hint == "raise the pitch to 0.80 mm or lower contact.grid_mm"
-    make_collider(Indenter(texture=fine), grid_mm=0.25)
+    assert caught.value.hint == "raise the pitch to 0.16 mm"
+    assert caught.value.at == "indenter.texture.pitch_mm"
+
+
+def test_a_step_of_a_picture_rises_with_the_steepest_slope() -> None:
+    """0.2 mm high, with pixels of 0.02 mm: 1.5, the limit, along its edges; more at a corner."""
+    step = HeightImage(heights=np.repeat([[0.0] * 100 + [1.0] * 100], 200, axis=0))
+    picture = Texture(pattern=Pattern.IMAGE, image=step, pitch_mm=4.0, height_mm=0.2)
+    line = np.column_stack([np.linspace(-0.5, 0.5, 2001), np.zeros(2001)])
+    slope = np.abs(np.diff(textures.true_heights(picture)(line))) / 5e-4
+    # Linear interpolation between pixels of 0.01 mm.
+    assert slope.max() == pytest.approx(STEEPEST, rel=0.03)
 
 
 def test_steep_image_is_refused() -> None:

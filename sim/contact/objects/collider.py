@@ -123,5 +123,7 @@ def _collider(indenter: Indenter, grid_mm: float, field: SampledDistance) -> Col
         samples=field.coefficients,
         reach_mm=reach_mm,
         half_height_mm=lowest_mm(indenter) + raised_mm,
-        least_radius_mm=min(least_radius_mm, textures.sharpest_mm(indenter.texture)),
+        least_radius_mm=min(
+            least_radius_mm, textures.sharpest_mm(indenter.texture, field.spacing_mm)
+        ),
     )

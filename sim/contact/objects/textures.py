@@ -5,6 +5,10 @@ place is that of the smooth body at (x, y, z + h s), where s is 1 below the body
 to 0 at the top, so that sides stay upright and edges rounded. The function is a distance no
 more, which `redistance` cures.
 Letters are drawn by OpenCV (Hershey's strokes) once, and their flanks by the distance to a stroke.
+
+What is too fine for the samples of a distance is left to the image (`fine_surface`,
+`sim.optics.detail`): contact then feels repeated patterns as a layer of their mean height, letters
+and pictures through a Gaussian filter.
 Left out: the displacement is along Z also where the smooth surface is steep.
 """
 
@@ -22,8 +26,19 @@ Heights = Callable[[np.ndarray], np.ndarray]
 
 LEAST_FEATURE_SAMPLES = 4.0
 """Width of the narrowest ridge in distance samples: fewer, and crests are lost."""
+FINEST_MM = 0.05
+"""Width of the narrowest ridge that an image shows [mm]: two pixels of a camera with 640 of them
+that sees 16 mm of skin, as flat sensors have it."""
 LETTER_PIXELS = 40
 """Pixels of a capital's height; heights between pixels are linear."""
+FINE_LETTER_PIXELS = 160
+"""The same for images, where the steps of a slanting stroke would show."""
+PIXEL_BLUR = 0.7
+"""Standard deviation of the blur of a picture in its own pixels; the edges of squares are gone."""
+MOST_PIXELS = 4_000_000
+"""Of a picture that is made finer: 32 MB."""
+MEAN_PLACES = 64
+"""Places per pitch and direction at which the mean height of a pattern is taken."""
 HERSHEY_CAPITAL = 20.2
 """Height of a capital of OpenCV's simplex font in pixels at scale 1, as drawn."""
 FILTER_SAMPLES = 1.5
@@ -31,17 +46,68 @@ FILTER_SAMPLES = 1.5
 
 
 def heights(texture: Texture, spacing_mm: float) -> Heights:
-    """The height field of a texture, for a distance that is sampled at `spacing_mm`.
+    """The height field of a texture as a distance that is sampled at `spacing_mm` holds it.
 
     Raises:
-        DesignError: If its ridges are too narrow for the samples, or an image too steep.
+        DesignError: If its ridges are too narrow even for an image, or a picture is too steep.
     """
-    _check_resolved(texture, spacing_mm)
-    if texture.pattern is Pattern.LETTERS:
-        return _pixels(_lettering(texture), texture, texture.pitch_mm / LETTER_PIXELS)
+    _check_fine(texture)
     if texture.pattern is Pattern.IMAGE:
         return _image(texture, spacing_mm)
+    lettered, fine = texture.pattern is Pattern.LETTERS, not resolved(texture, spacing_mm)
+    if lettered:
+        pixel_mm = texture.pitch_mm / LETTER_PIXELS
+        shares = _lettering(texture, LETTER_PIXELS)
+        if fine:
+            shares = _filtered(shares, filter_mm(texture, spacing_mm) / pixel_mm)
+        return _pixels(shares, texture, pixel_mm)
+    if fine:
+        mean_mm = _mean_mm(texture)
+        return lambda place: np.full(len(place), mean_mm)
     return lambda place: _repeated(texture, place)
+
+
+def true_heights(texture: Texture) -> Heights:
+    """The height field as the object has it, whatever contact can resolve.
+
+    A picture's steps are blurred until they rise with `STEEPEST`: a skin follows no steeper ones.
+
+    Raises:
+        DesignError: If its ridges are too narrow for an image.
+    """
+    _check_fine(texture)
+    if texture.pattern is Pattern.LETTERS:
+        shares = _lettering(texture, FINE_LETTER_PIXELS)
+        return _pixels(shares, texture, texture.pitch_mm / FINE_LETTER_PIXELS)
+    if texture.pattern is Pattern.IMAGE:
+        assert texture.image is not None
+        pixel_mm = texture.pitch_mm / texture.image.heights.shape[1]
+        step_mm = texture.height_mm / (STEEPEST * np.sqrt(2.0 * np.pi))
+        # The picture's own pixels must not show as steps.
+        sigma_mm = max(step_mm, 0.5 * FINEST_MM, PIXEL_BLUR * pixel_mm)
+        most = int((MOST_PIXELS / texture.image.heights.size) ** 0.5)
+        finer = max(1, min(int(np.ceil(2.0 * pixel_mm / sigma_mm)), most))
+        shares = np.kron(texture.image.heights, np.ones((finer, finer)))
+        pixel_mm /= finer
+        return _pixels(_filtered(shares, sigma_mm / pixel_mm), texture, pixel_mm)
+    return lambda place: _repeated(texture, place)
+
+
+def resolved(texture: Texture, spacing_mm: float) -> bool:
+    """Whether samples of a distance hold the ridges of a pattern; pictures are filtered instead."""
+    return 2.0 * texture.flank_mm >= LEAST_FEATURE_SAMPLES * spacing_mm
+
+
+def filter_mm(texture: Texture, spacing_mm: float) -> float:
+    """Standard deviation [mm] of the filter between texture and contact.
+
+    0 where the samples hold it; infinite where contact feels the mean height alone.
+    """
+    if texture.pattern is not Pattern.IMAGE and resolved(texture, spacing_mm):
+        return 0.0
+    if texture.pattern in (Pattern.IMAGE, Pattern.LETTERS):
+        return FILTER_SAMPLES * spacing_mm
+    return float("inf")
 
 
 def textured(
@@ -67,23 +133,24 @@ def displaced(points_mm: np.ndarray, field: Heights, top_mm: float) -> np.ndarra
     return moved
 
 
-def sharpest_mm(texture: Texture) -> float:
-    """Least radius of curvature of a crest [mm]; infinite for none and for an image."""
-    if not texture.raised or not texture.height_mm:
+def sharpest_mm(texture: Texture, spacing_mm: float = 0.0) -> float:
+    """Least radius of curvature of a crest [mm] that samples at `spacing_mm` hold.
+
+    Infinite for none, for an image and for what is too fine for the samples.
+    """
+    if not texture.raised or not texture.height_mm or not resolved(texture, spacing_mm):
         return float("inf")
     return 2.0 * texture.flank_mm**2 / (np.pi**2 * texture.height_mm)
 
 
-def _check_resolved(texture: Texture, spacing_mm: float) -> None:
-    least = LEAST_FEATURE_SAMPLES * spacing_mm
+def _check_fine(texture: Texture) -> None:
     width = 2.0 * texture.flank_mm
-    if width < least:
-        pitch = texture.pitch_mm * least / width
+    if width < FINEST_MM:
+        pitch = texture.pitch_mm * FINEST_MM / width
         raise DesignError(
-            f"{texture.pattern} with a pitch of {texture.pitch_mm:g} mm have ridges {width:.2f} mm "
-            f"wide; the distance is sampled every {spacing_mm:.2f} mm, which resolves {least:.2f} "
-            "mm",
-            hint=f"raise the pitch to {pitch:.2f} mm or lower contact.grid_mm",
+            f"{texture.pattern} with a pitch of {texture.pitch_mm:g} mm have ridges {width:.3f} mm "
+            f"wide; neither contact nor image shows less than {FINEST_MM:g} mm",
+            hint=f"raise the pitch to {pitch:.2f} mm",
             at="indenter.texture.pitch_mm",
         )
 
@@ -105,30 +172,32 @@ def _repeated(texture: Texture, place: np.ndarray) -> np.ndarray:
     return texture.height_mm * _crest(away, texture.flank_mm)
 
 
-def _lettering(texture: Texture) -> np.ndarray:
-    """Letters as shares of the height, shape (rows, columns)."""
+def _mean_mm(texture: Texture) -> float:
+    """Mean height of a repeated pattern."""
+    line = texture.pitch_mm * (np.arange(MEAN_PLACES) + 0.5) / MEAN_PLACES
+    x, y = np.meshgrid(line, line)
+    return float(_repeated(texture, np.column_stack([x.ravel(), y.ravel()])).mean())
+
+
+def _lettering(texture: Texture, pixels: int) -> np.ndarray:
+    """Letters, a capital `pixels` high, as shares of the height, shape (rows, columns)."""
     import cv2
 
     font = cv2.FONT_HERSHEY_SIMPLEX
-    scale = LETTER_PIXELS / HERSHEY_CAPITAL
+    scale = pixels / HERSHEY_CAPITAL
     (width, _), _ = cv2.getTextSize(texture.text, font, scale, 1)
-    margin = LETTER_PIXELS // 2
-    paper = np.full((LETTER_PIXELS + 2 * margin, width + 2 * margin), 255, np.uint8)
-    cv2.putText(paper, texture.text, (margin, margin + LETTER_PIXELS), font, scale, 0, 1)
+    margin = pixels // 2
+    paper = np.full((pixels + 2 * margin, width + 2 * margin), 255, np.uint8)
+    cv2.putText(paper, texture.text, (margin, margin + pixels), font, scale, 0, 1)
     away_mm = cv2.distanceTransform(paper, cv2.DIST_L2, cv2.DIST_MASK_PRECISE).astype(np.float64)
-    away_mm *= texture.pitch_mm / LETTER_PIXELS
+    away_mm *= texture.pitch_mm / pixels
     return _crest(away_mm, texture.flank_mm)
 
 
 def _image(texture: Texture, spacing_mm: float) -> Heights:
-    from scipy.ndimage import gaussian_filter
-
     assert texture.image is not None
     pixel_mm = texture.pitch_mm / texture.image.heights.shape[1]
-    sigma = FILTER_SAMPLES * spacing_mm / pixel_mm
-    # Nothing stands outside the picture, and its rim must not be a cliff.
-    padded = np.pad(texture.image.heights, int(np.ceil(3.0 * sigma)) + 1)
-    smooth = gaussian_filter(padded, sigma)
+    smooth = _filtered(texture.image.heights, FILTER_SAMPLES * spacing_mm / pixel_mm)
     rise, run = np.gradient(smooth * texture.height_mm, pixel_mm)
     slope = float(np.hypot(rise, run).max())
     if slope > STEEPEST:
@@ -138,6 +207,14 @@ def _image(texture: Texture, spacing_mm: float) -> Heights:
             at="indenter.texture.height_mm",
         )
     return _pixels(smooth, texture, pixel_mm)
+
+
+def _filtered(shares: np.ndarray, sigma: float) -> np.ndarray:
+    """Shares through a Gaussian filter of `sigma` pixels, padded."""
+    from scipy.ndimage import gaussian_filter
+
+    # Nothing stands outside the picture, and its rim must not be a cliff.
+    return gaussian_filter(np.pad(shares, int(np.ceil(3.0 * sigma)) + 1), sigma)
 
 
 def _pixels(shares: np.ndarray, texture: Texture, pixel_mm: float) -> Heights:
