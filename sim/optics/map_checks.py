@@ -27,7 +27,7 @@ from workbench.core.results import Skin
 EDGE_MM = 0.2
 """Edges of the skin: three in a contact radius."""
 REACH = 6.0
-"""Radius in contact radii beyond which the dent ends [1]; a tenth of its depth is left there."""
+"""Radius in contact radii beyond which the dent ends [1]; Hertz leaves 7 % of its depth there."""
 LOWEST_MM, NEAREST_MM = 6.0, 5.0
 """Least height of a dent, and least distance between two [mm]."""
 
