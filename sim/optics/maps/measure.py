@@ -75,9 +75,9 @@ def designer_maps(
     if LightModel(light.model) not in PAPER:
         maps.append(_washed_out(best))
     areas = seeing.vertex_areas_mm2(mesh.seen.points_mm, mesh.seen.faces)
-    judged = tuple(judged(draft, areas) for draft in maps)
+    found = tuple(judged(draft, areas) for draft in maps)
     monitor(1.0, "maps ready")
-    return DesignerMaps(maps=judged, seconds=time.perf_counter() - start)
+    return DesignerMaps(maps=found, seconds=time.perf_counter() - start)
 
 
 def _look(
