@@ -7,12 +7,9 @@ contact. Bump `version` when the output of a stage changes.
 
 from __future__ import annotations
 
-import dataclasses
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
-
-import numpy as np
 
 from workbench.core.camera import Camera
 from workbench.core.design import Elastomer, Layers, Meshing, MouldOptions
@@ -21,12 +18,9 @@ from workbench.core.errors import SolveError, StoreError
 from workbench.core.fabrication import HousingSet, MouldSet, Recipe, SheetHead
 from workbench.core.imported import ImportedBody, Pick, ReadBody
 from workbench.core.indenter import Indenter
-from workbench.core.light import LightField, NormalTable, VertexRadiance
-from workbench.core.lighting import Baking, Lamp, LedRing, LightModel
+from workbench.core.lighting import LedRing
 from workbench.core.making import Casting, Housing
-from workbench.core.maps import DesignerMaps
 from workbench.core.monitor import Monitor, part, silent
-from workbench.core.optics import Optics, Transport
 from workbench.core.press import ContactSettings, Press
 from workbench.core.results import (
     Bundle,
@@ -38,13 +32,12 @@ from workbench.core.results import (
     VolumeMesh,
 )
 from workbench.core.sampled import SampledDistance
-from workbench.core.sensing import Contact, Shot
+from workbench.core.sensing import Contact
+from workbench.optical_stages import bake, maps, photon_parts, photons, shoot, start_device, table
 from workbench.store import Store, timed
 
 PARTIAL = "press_partial"
 """Where the store keeps the settled frames of a press that failed, by the key of that press."""
-PHOTON_BATCH = 5_000_000
-"""Photons of a part: some ten seconds on two cores."""
 PARTS_SHARE = 0.95
 """Share of the progress of a divided stage that its parts take."""
 
@@ -58,9 +51,9 @@ class Stage:
     lane: str
     """Worker process that runs it: `cad` or `sim`."""
     function: Callable[..., Any]
-    parts: Callable[[Store, tuple[Any, ...]], tuple[Call, ...]] | None = None
-    """Calls that long work is divided into, from its inputs. Each is stored once it is done, so
-    that work which was stopped goes on where it was; their results follow the inputs."""
+    parts: Callable[[Store, tuple[Any, ...]], Sequence[tuple[str, tuple[Any, ...]]]] | None = None
+    """Stages and inputs that long work is divided into, from its inputs. Each result is stored, so
+    that work which was stopped goes on where it was; the results follow the inputs."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -111,7 +104,8 @@ def run(store: Store, call: Call, monitor: Monitor = silent) -> Outcome:
     key = call.key
     if store.has(stage.name, key):
         return Outcome(stage=stage.name, key=key, cached=True, seconds=0.0)
-    parts = stage.parts(store, call.inputs) if stage.parts else ()
+    divided = stage.parts(store, call.inputs) if stage.parts else ()
+    parts = [Call(name, inputs) for name, inputs in divided]
     spent_s = 0.0
     for number, piece in enumerate(parts):
         span = (PARTS_SHARE * number / len(parts), PARTS_SHARE * (number + 1) / len(parts))
@@ -199,46 +193,6 @@ def lattice(solid: Solid, grid_mm: float, *, monitor: Monitor) -> MaterialPoints
     return material_points(solid.membrane, grid_mm, monitor=monitor)
 
 
-def bake(
-    mesh: MembraneMesh,
-    ring: LedRing,
-    lamps: tuple[Lamp, ...],
-    model: LightModel,
-    transport: Transport | None = None,
-    *,
-    monitor: Monitor,
-) -> LightField:
-    """Light of each LED at each vertex of the skin."""
-    from sim.optics.bake import bake_light
-
-    if transport is not None:
-        _open_device(monitor)
-    return bake_light(mesh, ring, lamps, model=model, transport=transport, monitor=monitor)
-
-
-def table(
-    mesh: MembraneMesh,
-    light: LightField,
-    cameras: tuple[Camera, ...],
-    transport: Transport,
-    model: LightModel,
-    *,
-    monitor: Monitor,
-) -> NormalTable:
-    """Traced light as radiance toward each camera, by the tilt of the skin's normal."""
-    _open_device(monitor)
-    from sim.optics.table import tabulate
-
-    return tabulate(light, mesh, cameras, transport, model=model, monitor=monitor)
-
-
-def _open_device(monitor: Monitor) -> None:
-    from workbench.devices import open_device
-
-    monitor(0.0, "opening the device")
-    open_device()
-
-
 def object_distance(indenter: Indenter, grid_mm: float, *, monitor: Monitor) -> SampledDistance:
     """Signed distance of an object made of triangles or with a texture: up to a minute."""
     from workbench.devices import open_device
@@ -262,140 +216,12 @@ def press(
     monitor: Monitor,
 ) -> Contact:
     """Quasi-static contact along a press path; `sampled` is the object's distance, if known."""
-    _open_device(monitor)
+    start_device(monitor)
     from sim.contact.solver import press_membrane
 
     return press_membrane(
         mesh, points, material, indenter, path, settings, sampled=sampled, monitor=monitor
     )
-
-
-def photons(
-    mesh: MembraneMesh,
-    ring: LedRing,
-    lamps: tuple[Lamp, ...],
-    camera: Camera,
-    transport: Transport,
-    contact: Contact | None,
-    frame: int,
-    first_photon: int,
-    count: int,
-    *,
-    monitor: Monitor,
-) -> VertexRadiance:
-    """One batch of photons of one frame; frame 0 is the undeformed skin."""
-    _open_device(monitor)
-    from sim.optics.lights import place_leds
-    from sim.optics.transport.radiance import trace_radiance
-
-    moved = None if contact is None else mesh.seen_displacement_mm(contact)[frame - 1]
-    return trace_radiance(
-        mesh,
-        place_leds(ring, lamps),
-        camera,
-        transport,
-        photons=count,
-        first_photon=first_photon,
-        displacement_mm=moved,
-        monitor=monitor,
-    )
-
-
-def photon_parts(store: Store, inputs: tuple[Any, ...]) -> tuple[Call, ...]:
-    """The batches of photons that `shoot` needs, camera by camera and frame by frame.
-
-    Of their number of photons only the batch's own is in a key: more photons go on from there.
-    """
-    mesh, _, optics, contact, *_ = inputs
-    if optics.light_model is not LightModel.PHOTONS:
-        return ()
-    frames = len(store.load(contact.stage, contact.key).reaction_N)
-    transport = dataclasses.replace(
-        optics.transport, baking=dataclasses.replace(Baking(), seed=optics.baking.seed)
-    )
-    total = optics.baking.photons
-    return tuple(
-        Call(
-            "photons",
-            (
-                *(mesh, optics.ring, optics.lamps, camera, transport),
-                *(contact if frame else None, frame, first, min(PHOTON_BATCH, total - first)),
-            ),
-        )
-        for camera in optics.all_cameras
-        for frame in range(frames + 1)
-        for first in range(0, total, PHOTON_BATCH)
-    )
-
-
-def shoot(
-    mesh: MembraneMesh,
-    light: LightField,
-    optics: Optics,
-    contact: Contact,
-    table: NormalTable | None = None,
-    indenter: Indenter | None = None,
-    young_MPa: float = 0.0,
-    poisson: float = 0.0,
-    *batches: VertexRadiance,
-    monitor: Monitor,
-) -> Shot:
-    """Images of all frames, the background first; `indenter` has texture finer than contact's."""
-    _open_device(monitor)
-    from sim.metrics import measure
-    from sim.optics.detail import open_detail
-    from sim.optics.render import Studio
-
-    detail = open_detail(indenter, mesh, contact, young_MPa=young_MPa, poisson=poisson)
-    moved = mesh.seen_displacement_mm(contact)
-    cameras = optics.all_cameras
-    radiance = _radiance(batches, len(light.led_mm), len(cameras), len(moved) + 1)
-    seen = []
-    for number, camera in enumerate(cameras):
-        span = part(monitor, 0.9 * number / len(cameras), 0.9 * (number + 1) / len(cameras))
-        rest = radiance[number][0] if radiance else None
-        later = radiance[number][1] if radiance else None
-        studio = Studio(
-            mesh, light, optics, table=table, camera=camera, radiance=rest, monitor=span
-        )
-        seen.append(studio.shoot(moved, radiance=later, detail=detail, monitor=span))
-    return Shot(
-        frames=seen[0],
-        metrics=measure(mesh, contact, seen[0], light),
-        others=tuple(seen[1:]),
-    )
-
-
-def _radiance(
-    batches: tuple[VertexRadiance, ...], lights: int, cameras: int, frames: int
-) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Radiance (V, 3) of each camera's undeformed skin and (K, V, 3) of its frames; [] of none."""
-    if not batches:
-        return []
-    share = len(batches) // (cameras * frames)
-    means = []
-    for start in range(0, len(batches), share):
-        group = batches[start : start + share]
-        photons = sum(batch.photons for batch in group)
-        means.append(lights / photons * np.sum([batch.radiance for batch in group], axis=0))
-    of_camera = np.stack(means).astype(np.float32).reshape(cameras, frames, *means[0].shape)
-    return [(one[0], one[1:]) for one in of_camera]
-
-
-def maps(
-    mesh: MembraneMesh,
-    light: LightField,
-    optics: Optics,
-    young_MPa: float,
-    table: NormalTable | None = None,
-    *,
-    monitor: Monitor,
-) -> DesignerMaps:
-    """Where on the skin this design sees, and how well."""
-    _open_device(monitor)
-    from sim.optics.maps.measure import designer_maps
-
-    return designer_maps(mesh, light, optics, table, young_MPa=young_MPa, monitor=monitor)
 
 
 def mould(solid: Solid, options: MouldOptions, *, monitor: Monitor) -> MouldSet:

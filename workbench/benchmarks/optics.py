@@ -19,9 +19,9 @@ from workbench.core.monitor import silent
 from workbench.core.optics import Optics
 from workbench.core.results import MembraneMesh
 from workbench.devices import open_device
+from workbench.optical_stages import bake, table
 from workbench.rows import Row, bounded
 from workbench.specimens import finger_mesh
-from workbench.stages import bake, table
 
 if TYPE_CHECKING:
     from sim.optics.render import Studio

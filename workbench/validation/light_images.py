@@ -153,7 +153,7 @@ def _scene_arrays(
     traced: Path,
 ) -> dict[str, np.ndarray]:
     from workbench.core.monitor import silent
-    from workbench.stages import bake
+    from workbench.optical_stages import bake
 
     light = bake(mesh, optics.ring, optics.lamps, LightModel.PHOTONS, monitor=silent)
     data = {name: np.load(traced / f"{scene.replace(' ', '_')}_{name}.npz") for name in frames}

@@ -78,6 +78,8 @@ class Witness:
     """Standard error of each of Mitsuba's pixels."""
     traced: np.ndarray
     """Photons and mirror images."""
+    product: np.ndarray
+    """Photons alone: what the workbench shows."""
     direct: np.ndarray
     """The null: direct light alone, drawn by the workbench."""
     moved: np.ndarray
@@ -108,6 +110,8 @@ def case_rows(case: Case) -> list[Row]:
     if case.dented:
         inside = np.repeat(seen.moved[:, :, None], 3, axis=2)
         found.append(_row(case, "where the dent is", seen, inside))
+    if case.index != 1.0:
+        found.append(_product(case, seen))
     return [*found, _octants(case, seen)]
 
 
@@ -115,11 +119,27 @@ def _row(case: Case, region: str, seen: Witness, inside: np.ndarray) -> Row:
     """Ratio of a region's light, beside the null; stated where Mitsuba has not converged."""
     error = standard_error(seen, inside)
     told = f"{case.name}, {region}; ceiling: Mitsuba's standard error; null: direct light alone"
+    if case.index != 1.0:
+        told += "; with mirror images in the wall, which the product leaves out"
     value, null = (ratio(image, seen.mitsuba, inside) for image in (seen.traced, seen.direct))
     if error >= CONVERGED:
         told += "; not converged"
         return stated("mitsuba", told, value, unit="1", null=null, ceiling=error)
     return compared("mitsuba", told, value, 1.0, unit="1", limit=LIMIT, null=null, ceiling=error)
+
+
+def _product(case: Case, seen: Witness) -> Row:
+    """What the product's images lack: their worst ring of those that converged."""
+    found = [
+        ratio(seen.product, seen.mitsuba, inside)
+        for inside in rings()
+        if standard_error(seen, inside) < CONVERGED
+    ]
+    told = f"{case.name}, worst ring without mirror images, as the product draws it"
+    if not found:
+        return failed("mitsuba_product", told, unit="1", why="no ring converged")
+    value = max(found, key=lambda share: abs(share - 1.0))
+    return stated("mitsuba_product", told, value, unit="1")
 
 
 def _octants(case: Case, seen: Witness) -> Row:
@@ -204,18 +224,19 @@ def witness(case: Case, *, photons: int = PHOTONS, samples: int | None = None) -
         refractive_index=case.index,
         light_model=LightModel.PHOTONS,
     )
-    traced, moved = _traced(case, optics, photons)
+    product, mirrored, moved = _traced(case, optics, photons)
     return Witness(
         mitsuba=mitsuba,
         error=error,
-        traced=traced,
+        traced=product + mirrored,
+        product=product,
         direct=_direct(case, optics) / case.index**2,
         moved=moved,
     )
 
 
-def _traced(case: Case, optics: Optics, photons: int) -> tuple[np.ndarray, np.ndarray]:
-    """What photons show, mirror images included, and the pixels that see the dent."""
+def _traced(case: Case, optics: Optics, photons: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """What photons show and mirror images add, (H, W, 3), and the pixels that see the dent."""
     from sim.optics.bake import bake_light
     from sim.optics.ghost import mirrored_radiance
     from sim.optics.render import Studio
@@ -224,13 +245,13 @@ def _traced(case: Case, optics: Optics, photons: int) -> tuple[np.ndarray, np.nd
     radiance = _radiance(case, optics, photons)
     light = bake_light(mesh, RING, model=LightModel.PHOTONS)
     studio = Studio(mesh, light, optics, radiance=radiance)
-    image = studio.linear(moved[None], radiance=radiance[None])[0].astype(np.float64)
+    image = studio.linear(moved[None], radiance=radiance[None])[0] / case.index**2
     skin = dataclasses.replace(mesh.seen, points_mm=mesh.seen.points_mm + moved)
     pressed = dataclasses.replace(mesh, outer=skin)
-    image += mirrored_radiance(pressed, CAMERA, case.index, radiance)
+    mirrored = mirrored_radiance(pressed, CAMERA, case.index, radiance) / case.index**2
     marked = np.repeat((np.linalg.norm(moved, axis=1) > MOVED_MM)[:, None], 3, axis=1)
     shown = studio.linear(moved[None], radiance=marked[None].astype(np.float32))[0]
-    return image / case.index**2 + _glare(mesh, light, case.index), shown[:, :, 0] > 0.0
+    return image, mirrored + _glare(mesh, light, case.index), shown[:, :, 0] > 0.0
 
 
 def _radiance(case: Case, optics: Optics, photons: int) -> np.ndarray:
