@@ -171,6 +171,7 @@ def test_mitsuba_reads_the_scene(tmp_path: Path, mesh: MembraneMesh) -> None:
     assert (image.mean(axis=(0, 1)) > 0.0).all() and np.isfinite(image).all()
 
 
+@pytest.mark.slow
 def test_export_writes_the_scene(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """`workbench export geltip --mitsuba`: XML and both surfaces beside the other files."""
     out = tmp_path / "out"

@@ -112,6 +112,7 @@ def flat(traced: float, error: float) -> Witness:
         mitsuba=ones,
         error=error * ones,
         traced=traced * ones,
+        product=0.9 * traced * ones,
         direct=0.4 * ones,
         moved=np.zeros(ones.shape[:2], dtype=bool),
     )
