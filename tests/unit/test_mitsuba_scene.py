@@ -163,7 +163,7 @@ def test_a_mesh_file_has_no_more_than_its_header_says() -> None:
 def test_mitsuba_reads_the_scene(tmp_path: Path, mesh: MembraneMesh) -> None:
     """Loaded and rendered with a few samples in a process of its own: light in each colour."""
     pytest.importorskip("mitsuba")
-    from workbench.validation.mitsuba_witness import render
+    from workbench.validation.mitsuba_images import render
 
     scene(tmp_path, mesh, transport=dataclasses.replace(MATTE, refractive_index=1.0))
     image = render(tmp_path, samples=2, seed=1)

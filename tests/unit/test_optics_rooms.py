@@ -17,8 +17,8 @@ from workbench.core.camera import Camera
 from workbench.core.errors import DesignError, DeviceError
 from workbench.core.lighting import LightModel
 from workbench.core.results import MembraneMesh
-from workbench.validation import mitsuba_witness
-from workbench.validation.mitsuba_witness import CAMERA, Case, Witness
+from workbench.validation import mitsuba_images, mitsuba_witness
+from workbench.validation.mitsuba_images import CAMERA, Case, Witness
 
 SMALL = Camera(width_px=160, height_px=120)
 
@@ -152,7 +152,7 @@ def test_a_mitsuba_that_stops_is_a_failed_row(tmp_path: Path) -> None:
     pytest.importorskip("mitsuba")
     (tmp_path / "scene.xml").write_text("<scene")
     with pytest.raises(DeviceError, match="Mitsuba stopped with"):
-        mitsuba_witness.render(tmp_path, samples=1, seed=1)
+        mitsuba_images.render(tmp_path, samples=1, seed=1)
 
 
 @pytest.mark.slow
@@ -160,7 +160,7 @@ def test_photons_and_mitsuba_agree_without_refraction(taichi_device: str) -> Non
     """At index 1 every ring is within 3 %, with few samples of both."""
     pytest.importorskip("mitsuba")
     case = Case(index=1.0, dented=True)
-    seen = mitsuba_witness.witness(case, photons=1_000_000, samples=40)
+    seen = mitsuba_images.witness(case, photons=1_000_000, samples=40)
     for inside in _rings():
         assert mitsuba_witness.ratio(seen.traced, seen.mitsuba, inside) == pytest.approx(
             1.0, abs=0.03
