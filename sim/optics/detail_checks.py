@@ -13,8 +13,9 @@ import dataclasses
 import numpy as np
 
 from sim.contact.objects.fine_surface import fine_surface
+from sim.contact.objects.textures import true_heights
 from sim.optics.bake import bake_light
-from sim.optics.detail import Detail, TouchedPixels, touched_pixels
+from sim.optics.detail import Detail, TouchedPixels, touched_edge_mm, touched_pixels
 from sim.optics.detail_filling import filling
 from sim.optics.imager import Imager
 from sim.optics.render import Studio
@@ -26,6 +27,7 @@ from workbench.core.results import MembraneMesh, Skin
 from workbench.core.texture import Pattern, Texture
 
 WAVES = Texture(pattern=Pattern.WAVES, pitch_mm=0.5, height_mm=0.03)
+CARRIED = Texture(pattern=Pattern.WAVES, pitch_mm=1.5, height_mm=0.06)
 RADIUS_MM, CYLINDER_MM = 8.0, 6.0
 PATCH_MM = 2.0
 """Radius of the patch under pressure."""
@@ -55,22 +57,64 @@ def wave_contrast(model: LightModel = LightModel.DIRECT) -> tuple[float, float]:
     fine, fine_moved = _witness(mesh, moved, detail)
     fine_light = bake_light(fine, RING, model=model)
     witness = Studio(fine, fine_light, optics).linear(fine_moved[None])[0].reshape(-1, 3)
+    return _contrast(witness, detailed, plain, touched, WAVES.pitch_mm)
+
+
+def carried_contrast() -> tuple[float, float]:
+    """As `wave_contrast`, of waves of 1.5 mm that contact resolves and the skin carries in part.
+
+    The coarse skin's vertices lie on the object; the witness's do, at every 0.05 mm.
+    """
+    mesh = finger(radius_mm=RADIUS_MM, elastomer_mm=1.5, cylinder_mm=CYLINDER_MM, edge_mm=0.4)
+    detail = tip_detail(mesh.outer, texture=CARRIED, pressed=50.0)
+    within = detail.pressure_MPa[0] > 0.0
+    moved = _dent(mesh.outer)
+    skin, (_, fine) = _divided(mesh.outer, within, [mesh.outer.normals, moved])
+    optics = Optics(camera=CAMERA, ring=RING, light_model=LightModel.DIRECT)
+    studio = Studio(mesh, bake_light(mesh, RING, model=LightModel.DIRECT), optics)
+    coarse = moved + _raised(mesh.outer.points_mm)
+    divided = dataclasses.replace(mesh, outer=skin)
+    light = bake_light(divided, RING, model=LightModel.DIRECT)
+    witness = Studio(divided, light, optics)
+    true = witness.linear((fine + _raised(skin.points_mm)).astype(np.float32)[None])[0]
+    plain = studio.linear(coarse[None])[0].reshape(-1, 3)
+    touched = touched_pixels(studio.imager, detail.pressure_MPa[0])
+    shown = studio.detailed(coarse, detail)
+    return _contrast(true.reshape(-1, 3), shown, plain, touched, CARRIED.pitch_mm)
+
+
+def _raised(points_mm: np.ndarray) -> np.ndarray:
+    """Displacement of skin that lies on the carried waves, fading beyond the patch, (V, 3)."""
+    height = true_heights(CARRIED)(points_mm[:, :2]) - 0.5 * CARRIED.height_mm
+    top_mm = RADIUS_MM + CYLINDER_MM
+    away = np.linalg.norm(points_mm - [0.0, 0.0, top_mm], axis=1)
+    height *= np.clip(4.0 - away / (0.5 * PATCH_MM), 0.0, 1.0)
+    return (-height[:, None] * [0.0, 0.0, 1.0]).astype(np.float32)
+
+
+def _contrast(
+    true: np.ndarray,
+    shown: np.ndarray,
+    plain: np.ndarray,
+    touched: TouchedPixels,
+    pitch_mm: float,
+) -> tuple[float, float]:
     near = np.linalg.norm(touched.place_mm[:, :2], axis=1) < COMPARED * PATCH_MM
     pixel, place = touched.pixel[near], touched.place_mm[near]
-    true = _amplitudes(witness[pixel], place)
-    scale = float(true @ true)
-    shown, null = (float(_amplitudes(a[pixel], place) @ true) for a in (detailed, plain))
-    return shown / scale, null / scale
+    right = _amplitudes(true[pixel], place, pitch_mm)
+    found = [float(_amplitudes(a[pixel], place, pitch_mm) @ right) for a in (shown, plain)]
+    return found[0] / float(right @ right), found[1] / float(right @ right)
 
 
 def tip_detail(skin: Skin, *, texture: Texture = WAVES, pressed: float = 2.0) -> Detail:
     """Detail at the tip of a finger under Hertz's pressure, at most `pressed` of the full one."""
-    surface = fine_surface(texture, GRID_MM)
-    assert surface is not None
-    relief = filling(surface, PLANE_STRAIN_MPa)
     top_mm = float(skin.points_mm[:, 2].max())
     away = np.linalg.norm(skin.points_mm - [0.0, 0.0, top_mm], axis=1) / PATCH_MM
     share = np.sqrt(np.maximum(1.0 - away**2, 0.0))
+    edge_mm = touched_edge_mm(skin, share[None])
+    surface = fine_surface(texture, grid_mm=GRID_MM, edge_mm=edge_mm)
+    assert surface is not None
+    relief = filling(surface, PLANE_STRAIN_MPa)
     return Detail(
         filling=relief,
         pose=np.array([[0.0, 0.0, top_mm + 5.0, 1.0, 0.0, 0.0, 0.0]]),
@@ -131,10 +175,10 @@ def _divided(
     return Skin(points_mm=points, faces=faces, normals=normals), [normals, *others]
 
 
-def _amplitudes(light: np.ndarray, place_mm: np.ndarray) -> np.ndarray:
+def _amplitudes(light: np.ndarray, place_mm: np.ndarray, pitch_mm: float) -> np.ndarray:
     """Cosine and sine parts at the wave's period beside a smooth trend, all colours, shape (6,)."""
     x, y = place_mm[:, 0], place_mm[:, 1]
-    phase = 2.0 * np.pi * x / WAVES.pitch_mm
+    phase = 2.0 * np.pi * x / pitch_mm
     powers = [x**i * y**j for i in range(5) for j in range(5 - i)]
     terms = np.column_stack([np.cos(phase), np.sin(phase), *powers])
     return np.linalg.lstsq(terms, light, rcond=None)[0][:2].ravel()

@@ -13,6 +13,7 @@ from sim.optics.detail import Detail, open_detail, touched_pixels
 from sim.optics.detail_checks import (
     WAVES,
     PLANE_STRAIN_MPa,
+    carried_contrast,
     flat_patch_tilt_deg,
     tip_detail,
     wave_contrast,
@@ -117,6 +118,18 @@ def test_contrast_is_that_of_a_fine_mesh(model: LightModel) -> None:
     # The witness's own edges, ten per period, lose 3 % of the tilt; with twenty this is 1.013.
     assert shown == pytest.approx(1.0, abs=0.1)
     assert abs(null) < 0.01
+
+
+@pytest.mark.slow
+def test_detail_and_skin_share_a_pattern_between_them() -> None:
+    """Waves of 1.5 mm on a skin of 0.4 mm triangles: with detail the witness's contrast.
+
+    The skin alone shows less, as its normals are averaged over triangles.
+    """
+    shown, alone = carried_contrast()
+    # The split takes the mean square of edges that differ with direction.
+    assert shown == pytest.approx(1.0, abs=0.1)
+    assert 0.3 < alone < 0.9
 
 
 def test_depth_follows_the_relief(mesh: MembraneMesh, moved: np.ndarray) -> None:

@@ -11,6 +11,7 @@ from workbench.core.texture import SMOOTH, HeightImage, Pattern, Texture
 
 FINE = Texture(pattern=Pattern.WAVES, pitch_mm=0.5, height_mm=0.03)
 PLANE_STRAIN_MPa = 0.18
+COARSE = {"grid_mm": 0.5, "edge_mm": 0.4}
 
 
 def line(length_mm: float) -> np.ndarray:
@@ -21,7 +22,7 @@ def line(length_mm: float) -> np.ndarray:
 
 def test_waves_finer_than_the_samples_are_left_whole() -> None:
     """f = (H / 2) cos(2 pi x / P), its slope at most pi H / P: 0.1885."""
-    surface = fine_surface(FINE, 0.5)
+    surface = fine_surface(FINE, **COARSE)
     assert surface is not None
     place = line(3.0)
     height, slope = surface.read(place)
@@ -32,12 +33,12 @@ def test_waves_finer_than_the_samples_are_left_whole() -> None:
     assert surface.slope_rms == pytest.approx(np.pi * 0.03 / 0.5 / 2.0**0.5, rel=3e-3)
 
 
-def test_waves_that_the_grid_carries_are_left_in_part() -> None:
-    """Four cells per period: 1 - exp(-(2 pi 0.25 / 2)^2 / 2) = 26.5 % of the amplitude 0.1 mm."""
-    surface = fine_surface(Texture(pattern=Pattern.WAVES, pitch_mm=2.0, height_mm=0.2), 0.5)
+def test_waves_that_the_skin_carries_are_left_in_part() -> None:
+    """Five edges per period: 1 - exp(-(2 pi 0.4 / 2)^2 / 4) = 32.6 % of the amplitude 0.1 mm."""
+    surface = fine_surface(Texture(pattern=Pattern.WAVES, pitch_mm=2.0, height_mm=0.2), **COARSE)
     assert surface is not None
-    assert surface.high_mm == pytest.approx(0.02654, rel=1e-3)
-    assert surface.low_mm == pytest.approx(-0.02654, rel=1e-3)
+    assert surface.high_mm == pytest.approx(0.03262, rel=1e-3)
+    assert surface.low_mm == pytest.approx(-0.03262, rel=1e-3)
 
 
 @pytest.mark.parametrize(
@@ -56,7 +57,7 @@ def test_waves_that_the_grid_carries_are_left_in_part() -> None:
 )
 def test_detail_has_no_mean_and_ends(texture: Texture) -> None:
     """Mean of f is 0 to 1 % of the height; slopes are those of f; beside a picture there is 0."""
-    surface = fine_surface(texture, 0.5)
+    surface = fine_surface(texture, **COARSE)
     assert surface is not None
     assert abs(surface.raster[..., 0].mean()) < 0.01 * texture.height_mm
     place = line(2.0)
@@ -71,11 +72,11 @@ def test_detail_has_no_mean_and_ends(texture: Texture) -> None:
 
 
 def test_smooth_objects_leave_nothing() -> None:
-    """No texture, one of height 0, and one that the grid carries whole."""
-    assert fine_surface(SMOOTH, 0.5) is None
-    assert fine_surface(Texture(pattern=Pattern.DOTS, height_mm=0.0), 0.5) is None
+    """No texture, one of height 0, and one that the skin carries whole."""
+    assert fine_surface(SMOOTH, **COARSE) is None
+    assert fine_surface(Texture(pattern=Pattern.DOTS, height_mm=0.0), **COARSE) is None
     wide = Texture(pattern=Pattern.WAVES, pitch_mm=60.0, height_mm=0.05)
-    assert fine_surface(wide, 0.5) is None
+    assert fine_surface(wide, **COARSE) is None
 
 
 @pytest.mark.parametrize(
@@ -110,7 +111,7 @@ def test_slope_of_the_skin_is_that_of_its_height() -> None:
 
 def test_full_pressure_is_westergaards() -> None:
     """pi E* d / l = pi 0.18 0.015 / 0.5 = 16.96 kPa."""
-    surface = fine_surface(FINE, 0.5)
+    surface = fine_surface(FINE, **COARSE)
     assert surface is not None
     exact = np.pi * PLANE_STRAIN_MPa * 0.015 / 0.5
     found = full_pressure_MPa(surface.slope_rms, PLANE_STRAIN_MPa)
@@ -120,7 +121,7 @@ def test_full_pressure_is_westergaards() -> None:
 @pytest.mark.parametrize("share", [0.0, 0.1, 0.5, 1.0, 2.0])
 def test_skin_is_flat_without_pressure_and_the_relief_under_all_of_it(share: float) -> None:
     """Range over H: 0, then 1 - sqrt(1 - q) + q arcosh(1 / sqrt(q)), then 1; the mean stays 0."""
-    surface = fine_surface(FINE, 0.5)
+    surface = fine_surface(FINE, **COARSE)
     assert surface is not None
     relief = filling(surface, PLANE_STRAIN_MPa)
     # One thousand periods' phases, none twice.
