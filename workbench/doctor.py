@@ -25,6 +25,7 @@ REQUIRED = (
     "pyvista",
     "embreex",
     "manifold3d",
+    "potpourri3d",
     "scipy",
     "numpy",
     "shapely",

@@ -21,10 +21,11 @@ import pytest
 from workbench import bench, doctor, outputs, validate
 from workbench.benchmarks.pipeline import rerun_row
 from workbench.cli import main, parser
-from workbench.core.design import Law
+from workbench.core.design import Law, SensorDesign
 from workbench.core.errors import SolveError
 from workbench.core.press import ContactSettings, Extent, Method, Press
 from workbench.core.trajectory import unit_pose
+from workbench.pipeline import PressCase
 from workbench.press_options import press_case
 from workbench.project import load_design
 from workbench.rows import Row, as_json, as_text, bounded, compared, failed
@@ -431,8 +432,9 @@ def test_summary_names_the_device_that_computed(monkeypatch: pytest.MonkeyPatch)
     shot: Any = SimpleNamespace(metrics=SimpleNamespace(values={}))
     monkeypatch.setenv("WORKBENCH_DEVICE", "cpu")
     monkeypatch.setattr(outputs, "contact_summary", lambda *args: {})
-    design: Any = SimpleNamespace(name="n", family="f")
-    summary = outputs.summary_table(design, Press(), contact, shot, 1.0, [])
+    monkeypatch.setattr(outputs, "press_summary", lambda *args: {})
+    design = SensorDesign(name="n", family="f")
+    summary = outputs.summary_table(design, PressCase(), contact, shot, 1.0, [])
     assert summary["device"] == "cuda"
 
 

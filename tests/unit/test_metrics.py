@@ -12,6 +12,7 @@ from sim.optics.bake import bake_light
 from sim.optics.render import shoot
 from sim.optics.specimen import dent, finger
 from workbench.core.camera import Camera
+from workbench.core.lighting import LightModel
 from workbench.core.optics import Optics
 from workbench.core.sensing import Contact, Metrics, TactileFrames
 
@@ -71,7 +72,10 @@ def make_contact(displacement: np.ndarray) -> Contact:
 
 @pytest.fixture(scope="module")
 def press(taichi_device: str) -> tuple[Metrics, TactileFrames]:
-    mesh, optics = finger(edge_mm=1.0), Optics(camera=Camera(width_px=160, height_px=120))
+    mesh, optics = (
+        finger(edge_mm=1.0),
+        Optics(camera=Camera(width_px=160, height_px=120), light_model=LightModel.DIRECT),
+    )
     moved = dent(mesh.outer, at_mm=(15.0, 0.0, 22.0), depth_mm=1.2, radius_mm=4.0)
     displacement = np.stack([0.5 * moved, moved])
     light = bake_light(mesh, optics.ring, model=optics.light_model)

@@ -65,7 +65,7 @@ def test_a_dent_shows_in_every_colour(mesh: MembraneMesh, model: LightModel) -> 
 
 def test_frame_zero_is_the_background_alone(mesh: MembraneMesh) -> None:
     """Without displacement there is one image; it equals frame 0 of a press."""
-    optics = Optics(camera=SMALL)
+    optics = Optics(camera=SMALL, light_model=LightModel.DIRECT)
     light = bake_light(mesh, optics.ring, model=optics.light_model)
     alone = shoot(mesh, light, optics)
     assert alone.rgb.shape == (1, 120, 160, 3) and not alone.moved.any()
@@ -74,14 +74,14 @@ def test_frame_zero_is_the_background_alone(mesh: MembraneMesh) -> None:
 
 def test_no_displacement_is_the_background(mesh: MembraneMesh) -> None:
     """A displacement below 1e-3 mm moves no pixel."""
-    frames = render(mesh, Optics(camera=SMALL), depth_mm=0.9e-3)
+    frames = render(mesh, Optics(camera=SMALL, light_model=LightModel.DIRECT), depth_mm=0.9e-3)
     assert not frames.moved.any()
     assert np.array_equal(frames.rgb[2], frames.rgb[0])
 
 
 def test_normals_face_the_camera(mesh: MembraneMesh) -> None:
     """On the axis the skin's normal points straight back at the camera: (0, 0, -1)."""
-    frames = render(mesh, Optics(camera=SMALL))
+    frames = render(mesh, Optics(camera=SMALL, light_model=LightModel.DIRECT))
     # float16 resolves 5e-4; the centre pixels lie 0.5 px = 0.2 mm from the axis on R 15.
     assert frames.normal[0, 60, 80].astype(float) == pytest.approx([0, 0, -1], abs=0.05)
     assert np.linalg.norm(frames.normal[0].astype(float), axis=2) == pytest.approx(1.0, abs=2e-3)
@@ -101,7 +101,7 @@ def test_light_comes_from_a_camera_free_bake() -> None:
 
 def test_coating_and_camera_change_the_image_without_a_new_bake(mesh: MembraneMesh) -> None:
     """One light field serves two cameras and two coatings."""
-    optics = Optics(camera=SMALL)
+    optics = Optics(camera=SMALL, light_model=LightModel.DIRECT)
     light = bake_light(mesh, optics.ring, model=optics.light_model)
     first = shoot(mesh, light, optics)
     glossy = dataclasses.replace(optics, coating=Coating(specular=0.9, albedo=0.1))
@@ -112,7 +112,10 @@ def test_coating_and_camera_change_the_image_without_a_new_bake(mesh: MembraneMe
 
 def test_a_single_colour_lights_a_single_channel(mesh: MembraneMesh) -> None:
     """Blue LEDs leave red and green at 0, and blue is exposed to 0.8, not saturated."""
-    frames = render(mesh, Optics(camera=SMALL, ring=LedRing(colours=("#0000ff",))))
+    frames = render(
+        mesh,
+        Optics(camera=SMALL, ring=LedRing(colours=("#0000ff",)), light_model=LightModel.DIRECT),
+    )
     assert not frames.rgb[0][..., :2].any()
     assert np.percentile(frames.rgb[0][..., 2], 99) == pytest.approx(204, abs=1)
 
@@ -122,7 +125,12 @@ def test_a_dent_shadows_the_skin_behind_it(mesh: MembraneMesh) -> None:
     ring = LedRing(
         count=1, radius_mm=12.5, phase_deg=0.0, mount=LedMount.SHELL, colours=("#ff0000",)
     )
-    frames = render(mesh, Optics(camera=SMALL, ring=ring), depth_mm=2.5, radius_mm=5.0)
+    frames = render(
+        mesh,
+        Optics(camera=SMALL, ring=ring, light_model=LightModel.DIRECT),
+        depth_mm=2.5,
+        radius_mm=5.0,
+    )
     darkest = frames.rgb[2][..., 0][frames.moved[2]].min()
     before = frames.rgb[0][..., 0][frames.moved[2]].min()
     assert darkest < 0.2 * before
@@ -131,7 +139,9 @@ def test_a_dent_shadows_the_skin_behind_it(mesh: MembraneMesh) -> None:
 def test_light_that_misses_the_view_is_an_error_not_a_black_image(mesh: MembraneMesh) -> None:
     """LEDs turned to the base light nothing above them."""
     with pytest.raises(OpticsError) as caught:
-        render(mesh, Optics(camera=SMALL, ring=LedRing(tilt_deg=180.0)))
+        render(
+            mesh, Optics(camera=SMALL, ring=LedRing(tilt_deg=180.0), light_model=LightModel.DIRECT)
+        )
     assert "no light reaches" in caught.value.message and "black" in caught.value.message
     assert caught.value.at == "optics.ring.tilt_deg" and "tilt" in caught.value.hint
 
@@ -140,13 +150,13 @@ def test_a_blind_camera_is_an_error(mesh: MembraneMesh) -> None:
     """A camera turned to the open base is refused by shoot, with exit status 2."""
     camera = dataclasses.replace(SMALL, wxyz=(0.0, 1.0, 0.0, 0.0))
     with pytest.raises(DesignError, match="of the pixels see the skin") as caught:
-        render(mesh, Optics(camera=camera))
+        render(mesh, Optics(camera=camera, light_model=LightModel.DIRECT))
     assert caught.value.exit_code == 2
 
 
 def test_a_displacement_that_is_not_finite_names_its_frame(mesh: MembraneMesh) -> None:
     """Frame 2 holds a NaN."""
-    optics = Optics(camera=SMALL)
+    optics = Optics(camera=SMALL, light_model=LightModel.DIRECT)
     light = bake_light(mesh, optics.ring, model=optics.light_model)
     displacement = np.zeros((2, len(mesh.outer.points_mm), 3), dtype=np.float32)
     displacement[1, 5, 0] = np.nan
@@ -159,7 +169,7 @@ def test_a_light_field_of_another_mesh_is_a_bug(mesh: MembraneMesh) -> None:
     other = finger(edge_mm=2.0)
     light = bake_light(other, LedRing(), model=LightModel.LINEAR)
     with pytest.raises(ValueError, match="light field has shape"):
-        shoot(mesh, light, Optics(camera=SMALL))
+        shoot(mesh, light, Optics(camera=SMALL, light_model=LightModel.DIRECT))
 
 
 def test_cancelling_stops_between_images(mesh: MembraneMesh) -> None:
@@ -172,7 +182,7 @@ def test_cancelling_stops_between_images(mesh: MembraneMesh) -> None:
     with pytest.raises(Cancelled):
         bake_light(mesh, LedRing(), model=LightModel.LINEAR, monitor=stop)
     with pytest.raises(Cancelled):
-        shoot(mesh, light, Optics(camera=SMALL), monitor=stop)
+        shoot(mesh, light, Optics(camera=SMALL, light_model=LightModel.DIRECT), monitor=stop)
 
 
 def test_markers_keep_their_distance(mesh: MembraneMesh) -> None:
@@ -191,7 +201,9 @@ def test_hidden_markers_are_none() -> None:
 
 def test_the_tip_marker_sits_in_the_image_centre(mesh: MembraneMesh) -> None:
     """The first dot is the highest vertex, on the optical axis: 80, 60 px; dots out of view NaN."""
-    frames = render(mesh, Optics(camera=SMALL, markers=Markers(visible=True)))
+    frames = render(
+        mesh, Optics(camera=SMALL, markers=Markers(visible=True), light_model=LightModel.DIRECT)
+    )
     assert frames.marker_uv_px.shape[0] == 3
     # The axis passes between four pixels, whose shares balance to a tenth of a pixel.
     assert frames.marker_uv_px[0, 0] == pytest.approx([80.0, 60.0], abs=0.1)
@@ -201,7 +213,12 @@ def test_the_tip_marker_sits_in_the_image_centre(mesh: MembraneMesh) -> None:
 
 def test_markers_follow_the_skin(mesh: MembraneMesh) -> None:
     """Moving the tip region 1 mm toward +X moves the tip dot by f / depth = 134 / 41.7 px."""
-    optics = Optics(camera=SMALL, markers=Markers(visible=True), refractive_index=1.0)
+    optics = Optics(
+        camera=SMALL,
+        markers=Markers(visible=True),
+        refractive_index=1.0,
+        light_model=LightModel.DIRECT,
+    )
     light = bake_light(mesh, optics.ring, model=optics.light_model)
     sideways = np.zeros((1, len(mesh.outer.points_mm), 3), dtype=np.float32)
     sideways[0, mesh.outer.points_mm[:, 2] > 38.0, 0] = 1.0

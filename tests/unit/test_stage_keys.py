@@ -19,7 +19,8 @@ from workbench.pipeline import PressCase, needed, plan
 from workbench.project import load_design
 
 FILES = {"recipe", "package"}
-SEEN = {"bake", "shoot", "maps"}
+SEEN = {"bake", "table", "shoot", "maps"}
+LOOKED = {"table", "shoot", "maps"}
 DEFORMED = {"press", "shoot"}
 RINGED = {"housing", "picture", *FILES}
 
@@ -34,14 +35,14 @@ def rerun(field: str, value: object) -> set[str]:
 @pytest.mark.parametrize(
     ("field", "value", "stages"),
     [
-        ("optics.camera.fov_x_deg", 80.0, {"shoot", "maps"}),
-        ("optics.camera.position_mm", (0.0, 0.0, 1.0), {"shoot", "maps", *RINGED}),
+        ("optics.camera.fov_x_deg", 80.0, LOOKED),
+        ("optics.camera.position_mm", (0.0, 0.0, 1.0), {*LOOKED, *RINGED}),
         ("optics.light_model", LightModel.LINEAR, SEEN),
         ("optics.ring.colours", ("#ffffff",), {*SEEN, *FILES}),
         ("optics.ring.power", 0.5, SEEN),
         ("optics.ring.emission_exponent", 2.0, SEEN),
         ("optics.ring.radius_mm", 8.5, {*SEEN, *RINGED}),
-        ("optics.coating.albedo", 0.5, {"shoot", "maps"}),
+        ("optics.coating.albedo", 0.5, SEEN),
         ("material.friction", 0.5, {"press", "shoot"}),
         ("material.density_g_cm3", 1.1, FILES),
         ("material.young_MPa", 0.2, {"press", "shoot", "maps", *FILES}),
@@ -82,7 +83,7 @@ def test_an_object_of_triangles_is_sampled_once_for_all_its_presses() -> None:
     assert len(keys) == 3
     assert call.ref in plan(design, case)["press"].inputs
     names = needed(plan(design, case), ("shoot",))
-    assert names == ["build", "mesh", "lattice", "bake", "object", "press", "shoot"]
+    assert names == ["build", "mesh", "lattice", "bake", "table", "object", "press", "shoot"]
 
 
 @pytest.mark.parametrize(

@@ -99,7 +99,7 @@ class Optics:
     markers: Markers = field(default_factory=Markers)
     refractive_index: float = 1.41
     """Index of elastomer and support [1]. Source: silicone, 1.40-1.43."""
-    light_model: LightModel = LightModel.DIRECT
+    light_model: LightModel = LightModel.HYBRID
     baking: Baking = field(default_factory=Baking)
     background: Photo | None = None
     """Photograph of the real sensor at rest, to which the contact is added; None renders it."""

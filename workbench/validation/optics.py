@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from workbench.rows import Row
-from workbench.validation import optics_physics, optics_views
+from workbench.validation import light_models, optics_physics, optics_views
 
 
 def rows() -> list[Row]:
@@ -13,4 +13,4 @@ def rows() -> list[Row]:
 
     open_device()
     mesh = finger(edge_mm=0.5)
-    return [*optics_physics.rows(mesh), *optics_views.rows(mesh)]
+    return [*optics_physics.rows(mesh), *optics_views.rows(mesh), *light_models.rows()]
