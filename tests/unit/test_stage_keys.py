@@ -37,7 +37,7 @@ def rerun(field: str, value: object) -> set[str]:
     [
         ("optics.camera.fov_x_deg", 80.0, LOOKED),
         ("optics.camera.position_mm", (0.0, 0.0, 1.0), {*LOOKED, *RINGED}),
-        ("optics.light_model", LightModel.LINEAR, SEEN),
+        ("optics.light_model", LightModel.TABLE, SEEN),
         ("optics.ring.colours", ("#ffffff",), {*SEEN, *FILES}),
         ("optics.ring.power", 0.5, SEEN),
         ("optics.ring.emission_exponent", 2.0, SEEN),
