@@ -16,7 +16,7 @@ import pytest
 from workbench.core.camera import Camera
 from workbench.core.codec import pack
 from workbench.core.design import Meshing, SensorDesign
-from workbench.core.lighting import LedRing
+from workbench.core.lighting import Baking, LedRing
 from workbench.core.optics import Optics
 from workbench.core.press import ContactSettings, Press
 from workbench.pipeline import InlineRunner, PressCase, evaluate, plan, results
@@ -27,13 +27,17 @@ FILE = Path(__file__).parent / "stages.json"
 DESIGN = SensorDesign(
     shape={"outer_radius_mm": 8.0, "cylinder_mm": 8.0},
     meshing=Meshing(hex_mm=0.8),
-    optics=Optics(camera=Camera(width_px=64, height_px=48), ring=LedRing(radius_mm=3.0)),
+    optics=Optics(
+        camera=Camera(width_px=64, height_px=48),
+        ring=LedRing(radius_mm=3.0),
+        baking=Baking(photons=200_000, nodes=1000),
+    ),
 )
 CASE = PressCase(
     press=Press(target_mm=(0.0, 0.0, 16.0), depth_mm=0.5, frames=1),
     settings=ContactSettings(grid_mm=0.8, active_radius_mm=6.0),
 )
-STAGES_WITH_NUMBERS = ("build", "mesh", "lattice", "bake", "press", "shoot", "mould")
+STAGES_WITH_NUMBERS = tuple("build mesh lattice bake table press shoot maps mould".split())
 RELATIVE = 2e-3
 """Libraries and compilers move the last digits; a changed method moves more."""
 SKIPPED = ("brep", "device", "seconds", "substeps", "residual", "kinetic")

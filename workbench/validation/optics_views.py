@@ -9,7 +9,7 @@ from workbench.core.camera import Camera
 from workbench.core.errors import WorkbenchError
 from workbench.core.lighting import LightModel
 from workbench.core.results import MembraneMesh
-from workbench.rows import Row, bounded, failed, stated
+from workbench.rows import Row, bounded, compared, failed, stated
 from workbench.validation.light_scenes import camera_of, mesh_of
 
 if TYPE_CHECKING:
@@ -21,6 +21,8 @@ DRAWN_MEDIAN_MM, DRAWN_RARE_MM = 1e-3, 0.02
 NEWTON_MEDIAN_PX, NEWTON_HIGH_PX = 0.01, 0.1
 """The ray map is bilinear between pixels; the prototype's steps left 0.003 px."""
 LEAST_CORRELATION = 0.8
+CONTRAST_LIMIT = 0.1
+"""What the project set itself for textures below the grid."""
 SMALL = Camera(width_px=320, height_px=240)
 
 
@@ -32,6 +34,7 @@ def rows(mesh: MembraneMesh) -> list[Row]:
         *_depth_maps(mesh),
         *(row for model in LightModel for row in _dent(model, mesh)),
         *_sensitivity(),
+        *_detail(),
     ]
 
 
@@ -204,3 +207,33 @@ def _sensitivity() -> list[Row]:
             unit="1",
         ),
     ]
+
+
+def _detail() -> list[Row]:
+    """Contrast of fine waves in the image over that of a skin meshed 10 times per period."""
+    from sim.optics import detail_checks
+
+    told = {
+        "waves of 0.5 mm, which contact cannot resolve": detail_checks.wave_contrast,
+        "waves of 1.5 mm, which the skin carries in part": detail_checks.carried_contrast,
+    }
+    found = []
+    for case, measure in told.items():
+        try:
+            with_detail, without = measure()
+        except WorkbenchError as error:
+            found.append(failed("surface_detail", case, unit="1", why=error.message))
+            continue
+        found.append(
+            compared(
+                "surface_detail",
+                case,
+                with_detail,
+                1.0,
+                unit="1",
+                limit=CONTRAST_LIMIT,
+                relative=False,
+                null=without,
+            )
+        )
+    return found
