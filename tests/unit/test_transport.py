@@ -13,7 +13,7 @@ from sim.optics.specimen import finger
 from sim.optics.transport import reference
 from sim.optics.transport.constants import AT_NODES, FIXED_POINT, FLYING
 from sim.optics.transport.gather import gather_light
-from sim.optics.transport.nodes import coarse_nodes
+from sim.optics.transport.nodes import coarse_nodes, neighbours
 from sim.optics.transport.paths import Driver, trace_paths
 from sim.optics.transport.radiance import trace_radiance
 from sim.optics.transport.scene import Scene, build_scene, open_scene
@@ -314,6 +314,17 @@ def test_nodes_never_mix_two_sides_of_a_thin_fin() -> None:
     deep = np.abs(u) > 8
     mixed = np.sign(nodes.points_mm[nodes.nodes[deep], 0]) != np.sign(side[deep])[:, None]
     assert not (mixed & (nodes.weights[deep] > 1e-6)).any()
+
+
+def test_a_node_without_area_takes_the_light_of_its_neighbours(mesh: MembraneMesh) -> None:
+    """A stray photon over an area of 0 is no light: all means are those of sound nodes, 1."""
+    nodes = coarse_nodes(mesh.seen, 300)
+    area = nodes.area_mm2.copy()
+    area[7] = 0.0
+    light = np.ones(len(area))
+    light[7] = 1e9
+    found = neighbours(dataclasses.replace(nodes, area_mm2=area)) @ light
+    assert found == pytest.approx(np.ones(len(area)))
 
 
 def test_the_bent_way_to_the_camera_meets_the_rays_of_the_camera(mesh: MembraneMesh) -> None:
