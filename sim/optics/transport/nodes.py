@@ -24,7 +24,7 @@ from workbench.core.results import Skin
 ROUNDS = 5
 """Times that the centres move."""
 LEAST_AREA = 0.01
-"""Of the median node's, below which a node gathers nothing that could be divided by its area [1]."""
+"""Of the median area, below which what a node gathers says nothing of its light [1]."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
