@@ -26,6 +26,8 @@ from workbench.core.sensing import Contact, Shot
 from workbench.folder import remove_stale
 from workbench.forces import check_finite, csv_bytes, force_columns, slip_columns
 from workbench.image_files import write_images
+from workbench.map_display import scores
+from workbench.map_files import write_maps
 from workbench.pipeline import PressCase, results
 from workbench.project import write_atomically
 from workbench.stages import Call, Outcome
@@ -281,6 +283,9 @@ def write_all(
     seconds = store.entry("press", calls["press"].key).seconds
     summary = summary_table(design, case, load["press"], load["shoot"], seconds, outcomes)
     summary["images"] = write_images(out, load["shoot"], fields=fields)
+    maps = load.get("maps")
+    summary["maps"] = write_maps(out, load["mesh"], maps)
+    summary["metrics"] |= {} if maps is None else scores(maps)
     write_press(out, path, load["build"], load["mesh"], load["press"])
     write_package(out, load["package"])
     summary["notices"] = {

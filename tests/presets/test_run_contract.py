@@ -27,7 +27,7 @@ OPTIONS = (
 ).split()
 FRAMES = 4
 """Two of the approach, two of the shear."""
-STAGES = ["build", "mesh", "lattice", "bake", "press", "shoot"]
+STAGES = ["build", "mesh", "lattice", "bake", "table", "press", "shoot", "maps"]
 STAGES += ["mould", "housing", "recipe", "package", "picture"]
 
 
@@ -49,6 +49,18 @@ def summary(out: Path) -> dict[str, Any]:
 def arrays(out: Path) -> dict[str, np.ndarray]:
     with np.load(out / "contact.npz") as file:
         return dict(file)
+
+
+def test_maps_are_in_file_summary_and_score_card(out: Path, summary: dict[str, Any]) -> None:
+    """Every map of the summary is an array over the seen skin, and its score is a metric."""
+    with np.load(out / "maps.npz") as file:
+        maps = dict(file)
+    names = [row["name"] for row in summary["maps"]]
+    assert {"visible", "mm_per_pixel", "resolvability", "sensitivity_force", "glare"} <= {*names}
+    assert all(maps[name].shape == (len(maps["surface_points_mm"]),) for name in names)
+    assert summary["metrics"]["skin_seen_percent"] == pytest.approx(
+        summary["maps"][0]["score"]["value"]
+    )
 
 
 def test_summary_has_every_key_with_its_type(summary: dict[str, Any]) -> None:
@@ -203,7 +215,7 @@ def test_only_the_image_depends_on_the_camera(
     wider.write_text(coarse.read_text() + "fov_x_deg = 120.0\n")
     run = workbench("run", wider, *OPTIONS, "--out", tmp_path / "out")
     assert run.code == 0
-    assert run.computed() == ["shoot"]
+    assert run.computed() == ["table", "shoot", "maps"]
     before = {row["stage"]: row["key"] for row in summary["stages"]}
     assert {stage for stage, key in run.keys().items() if key != before[stage]} == {"shoot"}
 
@@ -296,4 +308,4 @@ def test_full_disk_during_a_stage_keeps_the_stages_before(
     assert not list((project / "store").glob("*/.part-*"))
     again = workbench("run", wider, *OPTIONS, "--out", tmp_path / "out")
     assert again.code == 0
-    assert again.computed() == ["shoot"]
+    assert again.computed() == ["table", "shoot", "maps"]
