@@ -186,17 +186,21 @@ def page(rows: Sequence[np.ndarray]) -> np.ndarray:
     return picture
 
 
+def save(picture: np.ndarray, path: Path) -> None:
+    """Write a picture as a small PNG, and say how small."""
+    compact = [cv2.IMWRITE_PNG_COMPRESSION, 9]
+    compact += [cv2.IMWRITE_PNG_STRATEGY, cv2.IMWRITE_PNG_STRATEGY_FILTERED]
+    path.write_bytes(cv2.imencode(".png", picture, compact)[1].tobytes())
+    print(f"{path}: {path.stat().st_size / 1000:.0f} kB")
+
+
 def main() -> None:
     """Write the gallery."""
     # Taichi greets on stdout when it is imported.
     os.environ.setdefault("ENABLE_TAICHI_HEADER_PRINT", "0")
     project = Project()
     rows = [row(*computed(name, project)) for name in PRESETS]
-    compact = [cv2.IMWRITE_PNG_COMPRESSION, 9]
-    compact += [cv2.IMWRITE_PNG_STRATEGY, cv2.IMWRITE_PNG_STRATEGY_FILTERED]
-    png = cv2.imencode(".png", page([*rows, legend()]), compact)[1]
-    PICTURE.write_bytes(png.tobytes())
-    print(f"{PICTURE}: {PICTURE.stat().st_size / 1000:.0f} kB")
+    save(page([*rows, legend()]), PICTURE)
 
 
 if __name__ == "__main__":
