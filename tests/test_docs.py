@@ -3,14 +3,22 @@
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import importlib
+import inspect
 import re
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from sim.optics.maps import measure
 from workbench.cli import parser
-from workbench.project import presets
+from workbench.core.camera import Camera, ImageSensor, LensModel
+from workbench.core.lighting import Baking, Lamp, LampKind, LedMount, LedRing, LightModel
+from workbench.core.optics import Coating, MarkerPattern, Markers, Optics
+from workbench.photos import shipped_photos
+from workbench.project import design_from_toml, presets
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text()
@@ -20,6 +28,7 @@ KEYS = (
     "metrics surface_points_mm surface_faces displacement_mm indenter_pose background.png "
     "frame_000.png contact.npz report.html summary.json "
     "forces.csv slip.csv poses.csv failed settled von_mises_MPa cauchy_MPa contact_force_N "
+    "light_model press maps difference_000.png motion_000.png markers.csv frames.npz maps.npz "
     "name case value unit reference null ceiling error error_kind limit sense ok"
 ).split()
 PROSE = re.sub(r"^```.*?^```$", "", README, flags=re.MULTILINE | re.DOTALL)
@@ -70,6 +79,41 @@ def test_every_room_is_documented(name: str) -> None:
 def test_every_contract_key_is_documented(key: str) -> None:
     """Other tools read these names: each stands in the README as code, a whole word."""
     assert key in re.findall(r"[\w.]+", CODE)
+
+
+@pytest.mark.parametrize("part", [Camera, ImageSensor, LedRing, Lamp, Coating, Markers, Baking])
+def test_every_field_of_the_optics_is_documented(part: Any) -> None:
+    """A designer finds each field that a design file may hold."""
+    fields = {item.name for item in dataclasses.fields(part)}
+    # The table of the image sensor has a name of its own: `[optics.camera.sensor]`.
+    assert fields - {"sensor"} <= set(re.findall(r"\w+", CODE)), part
+
+
+@pytest.mark.parametrize("choice", [LightModel, LensModel, LampKind, LedMount, MarkerPattern])
+def test_every_choice_of_the_optics_is_documented(choice: Any) -> None:
+    """Each light model, lens, form of a lamp, mount and pattern stands in the README as code."""
+    assert {member.value for member in choice} <= set(re.findall(r"\w+", CODE))
+
+
+def test_every_shipped_photograph_is_documented() -> None:
+    """Each is written as a design names it."""
+    assert {f"builtin:{name}" for name in shipped_photos()} <= set(CODE.split())
+
+
+def test_every_map_and_its_score_are_documented() -> None:
+    """Names as the maps' source gives them; single lights are numbered there."""
+    found = re.findall(r'name=f?"([\w.{}:]+)"', inspect.getsource(measure))
+    names = {name.replace("{number:02d}", "01") for name in found}
+    assert len(names) == 20
+    assert names <= set(re.findall(r"[\w.]+", CODE)), names
+
+
+def test_the_example_of_optics_is_a_design() -> None:
+    """Two cameras, 6 LEDs and a line of 9 points over a photograph, as the README writes it."""
+    blocks = re.findall(r"^```toml\n(\[optics\].*?)^```$", README, flags=re.MULTILINE | re.DOTALL)
+    (optics,) = (design_from_toml(block).optics for block in blocks)
+    assert isinstance(optics, Optics) and optics.background is not None
+    assert (len(optics.all_cameras), optics.lights) == (2, 15)
 
 
 def test_links_lead_somewhere() -> None:
