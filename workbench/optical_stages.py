@@ -5,24 +5,18 @@ Pure functions as those of `stages`, which names and numbers them.
 
 from __future__ import annotations
 
-import dataclasses
-from typing import Any
-
 import numpy as np
 
 from workbench.core.camera import Camera
 from workbench.core.indenter import Indenter
 from workbench.core.light import LightField, NormalTable, VertexRadiance
-from workbench.core.lighting import Baking, Lamp, LedRing, LightModel
+from workbench.core.lighting import Lamp, LedRing, LightModel
 from workbench.core.maps import DesignerMaps
 from workbench.core.monitor import Monitor, part
 from workbench.core.optics import Optics, Transport
 from workbench.core.results import MembraneMesh
-from workbench.core.sensing import Contact, Shot
-from workbench.store import Store
-
-PHOTON_BATCH = 5_000_000
-"""Photons of a part: some ten seconds on two cores."""
+from workbench.core.sensing import Contact, Metrics, Shot
+from workbench.map_display import scores
 
 
 def bake(
@@ -97,58 +91,28 @@ def photons(
     )
 
 
-def photon_parts(store: Store, inputs: tuple[Any, ...]) -> list[tuple[str, tuple[Any, ...]]]:
-    """The batches of photons that `shoot` needs, camera by camera and frame by frame.
-
-    Of their number of photons only the batch's own is in a key: more photons go on from there.
-    """
-    mesh, _, optics, contact, *_ = inputs
-    if optics.light_model is not LightModel.PHOTONS:
-        return []
-    frames = len(store.load(contact.stage, contact.key).reaction_N)
-    baking = Baking(seed=optics.baking.seed)
-    transport = dataclasses.replace(optics.transport, baking=baking)
-    total = optics.baking.photons
-    # Each light emits as many photons as the others.
-    batch = -(-PHOTON_BATCH // optics.lights) * optics.lights
-    scene = (mesh, optics.ring, optics.lamps)
-    return [
-        (
-            "photons",
-            (
-                *scene,
-                camera,
-                transport,
-                contact if frame else None,
-                frame,
-                first,
-                min(batch, total - first),
-            ),
-        )
-        for camera in optics.all_cameras
-        for frame in range(frames + 1)
-        for first in range(0, total, batch)
-    ]
-
-
 def shoot(
     mesh: MembraneMesh,
     light: LightField,
     optics: Optics,
     contact: Contact,
-    table: NormalTable | None = None,
+    young_MPa: float,
     indenter: Indenter | None = None,
-    young_MPa: float = 0.0,
     poisson: float = 0.0,
-    *batches: VertexRadiance,
+    *parts: NormalTable | DesignerMaps | VertexRadiance,
     monitor: Monitor,
 ) -> Shot:
-    """Images of all frames, the background first; `indenter` has texture finer than contact's."""
+    """Images of all frames, the background first, and the measures of press and design.
+
+    `indenter` has texture finer than contact's; the parts are those of `light_calls.shoot_parts`.
+    """
     start_device(monitor)
     from sim.metrics import measure
     from sim.optics.detail import open_detail
     from sim.optics.render import Studio
 
+    table = next((found for found in parts if isinstance(found, NormalTable)), None)
+    batches = tuple(found for found in parts if isinstance(found, VertexRadiance))
     detail = open_detail(indenter, mesh, contact, young_MPa=young_MPa, poisson=poisson)
     moved = mesh.seen_displacement_mm(contact)
     cameras = optics.all_cameras
@@ -162,9 +126,13 @@ def shoot(
             mesh, light, optics, table=table, camera=camera, radiance=rest, monitor=span
         )
         seen.append(studio.shoot(moved, radiance=later, detail=detail, monitor=span))
+    values = measure(mesh, contact, seen[0], light).values
+    for found in parts:
+        if isinstance(found, DesignerMaps):
+            values = values | scores(found)
     return Shot(
         frames=seen[0],
-        metrics=measure(mesh, contact, seen[0], light),
+        metrics=Metrics(values=values),
         others=tuple(seen[1:]),
     )
 

@@ -26,7 +26,6 @@ from workbench.core.sensing import Contact, Shot
 from workbench.folder import remove_stale
 from workbench.forces import check_finite, csv_bytes, force_columns, slip_columns
 from workbench.image_files import write_images
-from workbench.map_display import scores
 from workbench.map_files import write_maps
 from workbench.pipeline import PressCase, results
 from workbench.project import write_atomically
@@ -285,7 +284,6 @@ def write_all(
     summary["images"] = write_images(out, load["shoot"], fields=fields)
     maps = load.get("maps")
     summary["maps"] = write_maps(out, load["mesh"], maps)
-    summary["metrics"] |= {} if maps is None else scores(maps)
     write_press(out, path, load["build"], load["mesh"], load["press"])
     write_package(out, load["package"])
     summary["notices"] = {

@@ -14,10 +14,10 @@ from typing import Any, Protocol, TypeVar
 from workbench.bodies import IMPORTED, check_body
 from workbench.core.design import Elastomer, SensorDesign
 from workbench.core.indenter import EDGELESS, Indenter
-from workbench.core.lighting import TABULATED, Baking, LedRing, LightModel
+from workbench.core.lighting import LedRing
 from workbench.core.monitor import Monitor, silent
-from workbench.core.optics import Markers, Optics
 from workbench.core.press import ContactSettings, Press
+from workbench.light_calls import bake_call, maps_calls, seen_optics, table_calls
 from workbench.stages import STAGES, Call, Outcome, run
 from workbench.store import Store
 from workbench.surface_detail import detailed
@@ -31,7 +31,6 @@ NEEDED = (
     "bake",
     "press",
     "shoot",
-    "maps",
     "mould",
     "housing",
     "recipe",
@@ -104,8 +103,6 @@ def plan(design: SensorDesign, case: PressCase) -> dict[str, Call]:
     quality = Call("quality", (build.ref, mesh.ref))
     tets = Call("tets", (build.ref, design.meshing.tet_mm))
     lattice = Call("lattice", (build.ref, case.settings.grid_mm))
-    light = _light_calls(design.optics, mesh)
-    bake = light[0]
     material, optics, eye = design.material, design.optics, design.optics.camera
     elastic = at_defaults(material, "density_g_cm3")
     objects = tuple(
@@ -115,14 +112,12 @@ def plan(design: SensorDesign, case: PressCase) -> dict[str, Call]:
     )
     pressed = (mesh.ref, lattice.ref, elastic, case.indenter, case.press, case.settings)
     press = Call("press", (*pressed, *(call.ref for call in objects)))
-    table = light[1].ref if len(light) > 1 else None
-    seen = _seen(optics)
+    bake, seen = bake_call(optics, mesh.ref), seen_optics(optics)
+    tables = table_calls(seen, mesh.ref, bake.ref)
     shown = detailed(optics, case.indenter, case.settings)
-    fine = (None, 0.0, 0.0)
-    if shown is not None:
-        fine = (_shape(shown), material.young_MPa, material.poisson)
-    shoot = Call("shoot", (mesh.ref, bake.ref, seen, press.ref, table, *fine))
-    maps = _maps_calls(design, mesh, light)
+    fine = (None, 0.0) if shown is None else (_shape(shown), material.poisson)
+    shoot = Call("shoot", (mesh.ref, bake.ref, seen, press.ref, material.young_MPa, *fine))
+    maps = maps_calls(seen, mesh.ref, bake.ref, material.young_MPa)
     mould = Call("mould", (build.ref, design.mould))
     unbuilt = ("power", "powers", "emission_exponent", "cone_deg", "size_mm")
     coloured = at_defaults(optics.ring, *unbuilt)
@@ -139,7 +134,8 @@ def plan(design: SensorDesign, case: PressCase) -> dict[str, Call]:
         build,
         mesh,
         lattice,
-        *light,
+        bake,
+        *tables,
         *objects,
         press,
         shoot,
@@ -153,38 +149,6 @@ def plan(design: SensorDesign, case: PressCase) -> dict[str, Call]:
         picture,
     )
     return {call.stage: call for call in calls}
-
-
-def _light_calls(optics: Optics, mesh: Call) -> tuple[Call, ...]:
-    """The call `bake`, and `table` for the models that look radiance up."""
-    model = optics.light_model
-    transport = optics.transport if model in TABULATED else None
-    bake = Call("bake", (mesh.ref, optics.ring, optics.lamps, model, transport))
-    if transport is None:
-        return (bake,)
-    # Photons, nodes and seed are in the baked light already.
-    collapse = dataclasses.replace(transport, baking=Baking())
-    return bake, Call("table", (mesh.ref, bake.ref, optics.all_cameras, collapse, model))
-
-
-def _seen(optics: Optics) -> Optics:
-    """The optics without what the baked light, or the object that is passed, says already."""
-    optics = dataclasses.replace(optics, detail=True)
-    if optics.light_model is LightModel.PHOTONS:
-        return optics
-    rest = {"ring": LedRing(), "lamps": (), "baking": Baking(), "light_model": LightModel.DIRECT}
-    return dataclasses.replace(optics, **rest)
-
-
-def _maps_calls(design: SensorDesign, mesh: Call, light: tuple[Call, ...]) -> tuple[Call, ...]:
-    """The call `maps`; of photons traced for every frame there is no baked light to map."""
-    if design.optics.light_model is LightModel.PHOTONS:
-        return ()
-    unread = {"markers": Markers(), "background": None}
-    optics = dataclasses.replace(_seen(design.optics), **unread)
-    bake, *tables = (call.ref for call in light)
-    inputs = (mesh.ref, bake, optics, design.material.young_MPa, *tables)
-    return (Call("maps", inputs),)
 
 
 def _shape(indenter: Indenter) -> Indenter:

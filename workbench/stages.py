@@ -7,13 +7,11 @@ contact. Bump `version` when the output of a stage changes.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
+from workbench.calls import Call, Outcome, Ref, Stage
 from workbench.core.camera import Camera
 from workbench.core.design import Elastomer, Layers, Meshing, MouldOptions
-from workbench.core.digest import digest
 from workbench.core.errors import SolveError, StoreError
 from workbench.core.fabrication import HousingSet, MouldSet, Recipe, SheetHead
 from workbench.core.imported import ImportedBody, Pick, ReadBody
@@ -33,64 +31,14 @@ from workbench.core.results import (
 )
 from workbench.core.sampled import SampledDistance
 from workbench.core.sensing import Contact
-from workbench.optical_stages import bake, maps, photon_parts, photons, shoot, start_device, table
+from workbench.light_calls import shoot_parts
+from workbench.optical_stages import bake, maps, photons, shoot, start_device, table
 from workbench.store import Store, timed
 
 PARTIAL = "press_partial"
 """Where the store keeps the settled frames of a press that failed, by the key of that press."""
 PARTS_SHARE = 0.95
 """Share of the progress of a divided stage that its parts take."""
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Stage:
-    """One step of the chain."""
-
-    name: str
-    version: int
-    lane: str
-    """Worker process that runs it: `cad` or `sim`."""
-    function: Callable[..., Any]
-    parts: Callable[[Store, tuple[Any, ...]], Sequence[tuple[str, tuple[Any, ...]]]] | None = None
-    """Stages and inputs that long work is divided into, from its inputs. Each result is stored, so
-    that work which was stopped goes on where it was; the results follow the inputs."""
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Ref:
-    """A stored result that a later stage reads."""
-
-    stage: str
-    key: str
-
-
-@dataclass(frozen=True, slots=True)
-class Call:
-    """A stage with its inputs; upstream results stand as `Ref`, so keys need no computing."""
-
-    stage: str
-    inputs: tuple[Any, ...]
-
-    @property
-    def key(self) -> str:
-        """Key of the result in the store."""
-        return digest((self.stage, STAGES[self.stage].version, self.inputs))
-
-    @property
-    def ref(self) -> Ref:
-        """The result, as an input of a later stage."""
-        return Ref(stage=self.stage, key=self.key)
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Outcome:
-    """A stage that is done."""
-
-    stage: str
-    key: str
-    cached: bool
-    seconds: float
-    """Time spent now [s]; for a cached result the time of the look-up."""
 
 
 def run(store: Store, call: Call, monitor: Monitor = silent) -> Outcome:
@@ -104,8 +52,7 @@ def run(store: Store, call: Call, monitor: Monitor = silent) -> Outcome:
     key = call.key
     if store.has(stage.name, key):
         return Outcome(stage=stage.name, key=key, cached=True, seconds=0.0)
-    divided = stage.parts(store, call.inputs) if stage.parts else ()
-    parts = [Call(name, inputs) for name, inputs in divided]
+    parts = stage.parts(store, call.inputs) if stage.parts else ()
     spent_s = 0.0
     for number, piece in enumerate(parts):
         span = (PARTS_SHARE * number / len(parts), PARTS_SHARE * (number + 1) / len(parts))
@@ -314,7 +261,7 @@ STAGES = {
         Stage(name="object", version=1, lane="sim", function=object_distance),
         Stage(name="press", version=7, lane="sim", function=press),
         Stage(name="photons", version=1, lane="sim", function=photons),
-        Stage(name="shoot", version=3, lane="sim", function=shoot, parts=photon_parts),
+        Stage(name="shoot", version=3, lane="sim", function=shoot, parts=shoot_parts),
         Stage(name="maps", version=1, lane="sim", function=maps),
         Stage(name="mould", version=2, lane="cad", function=mould),
         Stage(name="housing", version=2, lane="cad", function=housing),

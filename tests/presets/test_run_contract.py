@@ -27,7 +27,7 @@ OPTIONS = (
 ).split()
 FRAMES = 4
 """Two of the approach, two of the shear."""
-STAGES = ["build", "mesh", "lattice", "bake", "table", "press", "shoot", "maps"]
+STAGES = ["build", "mesh", "lattice", "bake", "press", "shoot"]
 STAGES += ["mould", "housing", "recipe", "package", "picture"]
 
 
@@ -215,7 +215,7 @@ def test_only_the_image_depends_on_the_camera(
     wider.write_text(coarse.read_text() + "fov_x_deg = 120.0\n")
     run = workbench("run", wider, *OPTIONS, "--out", tmp_path / "out")
     assert run.code == 0
-    assert run.computed() == ["table", "shoot", "maps"]
+    assert run.computed() == ["shoot"]
     before = {row["stage"]: row["key"] for row in summary["stages"]}
     assert {stage for stage, key in run.keys().items() if key != before[stage]} == {"shoot"}
 
@@ -308,4 +308,4 @@ def test_full_disk_during_a_stage_keeps_the_stages_before(
     assert not list((project / "store").glob("*/.part-*"))
     again = workbench("run", wider, *OPTIONS, "--out", tmp_path / "out")
     assert again.code == 0
-    assert again.computed() == ["table", "shoot", "maps"]
+    assert again.computed() == ["shoot"]

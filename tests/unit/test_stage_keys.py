@@ -83,7 +83,7 @@ def test_an_object_of_triangles_is_sampled_once_for_all_its_presses() -> None:
     assert len(keys) == 3
     assert call.ref in plan(design, case)["press"].inputs
     names = needed(plan(design, case), ("shoot",))
-    assert names == ["build", "mesh", "lattice", "bake", "table", "object", "press", "shoot"]
+    assert names == ["build", "mesh", "lattice", "bake", "object", "press", "shoot"]
 
 
 @pytest.mark.parametrize(
