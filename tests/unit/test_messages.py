@@ -8,7 +8,12 @@ from typing import Any
 import pytest
 
 from ui.panels.fields import Fields
+from workbench.core.camera import Camera
+from workbench.core.design import SensorDesign
 from workbench.core.errors import DesignError
+from workbench.core.lighting import Lamp
+from workbench.core.optics import Optics
+from workbench.item_fields import read_field
 from workbench.light_edit import colour_words, read_colours
 
 
@@ -166,3 +171,24 @@ def test_a_text_is_read_once_it_is_whole(lights: Lights) -> None:
     assert "no colour is given" in complaint.content
     lights.fields.settle()
     assert lights.colours.value == "red, 525nm"
+
+
+@pytest.mark.parametrize(("items", "name"), [("lamps", "power"), ("cameras", "fov_x_deg")])
+def test_a_refused_value_goes_with_its_lamp_or_camera(items: str, name: str) -> None:
+    """Item 1 holds a refused value and is removed: its widget stays, nothing is raised."""
+    optics = Optics(lamps=(Lamp(power=2.0),), cameras=(Camera(fov_x_deg=50.0),))
+    state = {"design": SensorDesign(optics=optics)}
+    path = f"design.optics.{items}[1].{name}"
+    server = SimpleNamespace(gui=Page())
+    fields = Fields(server, lambda field: read_field(state, field), lambda path, value: None)
+    widget = fields.slider("Number", path, span=(0.0, 90.0, 0.5))
+    widget.value = 80.0
+    fields.refuse(path)
+    fields.settle()
+    assert widget.value == {"lamps": 2.0, "cameras": 50.0}[items]
+    fields.refuse(path)
+    state["design"] = state["design"].replace(f"optics.{items}", ())
+    assert fields.complain(DesignError("in the wall", at=f"optics.{items}[1].{name}")) == path
+    fields.settle()
+    fields.refresh()
+    assert not fields._fields[path].complaint.visible

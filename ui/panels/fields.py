@@ -231,7 +231,7 @@ class Fields:
             return ""
         parts = [self.in_words(error.message, error.at), self.in_words(error.hint, error.at)]
         if field.handle is not None:
-            kept = field.to_widget(self._read(field.path))
+            kept = self._kept(field)
             if isinstance(kept, (int, float)) and kept != field.handle.value:
                 parts.append(f"still using {kept:g}")
         words = html.escape("; ".join(part for part in parts if part))
@@ -278,9 +278,18 @@ class Fields:
             field = self._fields.get(path)
             if field is None or field.handle is None:
                 continue
-            value = field.to_widget(self._read(path))
-            if field.handle.value != value:
+            value = self._kept(field)
+            if value is not None and field.handle.value != value:
                 field.handle.value = value
+
+    def _kept(self, field: Field) -> Any:
+        """The design's value as the widget shows it; None of a lamp or camera that is gone."""
+        try:
+            value = self._read(field.path)
+        except IndexError:
+            # The item goes first; its widgets are bound anew or removed when the panel follows.
+            return None
+        return field.to_widget(value)
 
     def _named(self, at: str) -> Field | None:
         """The field of that name, else the place for messages about all of its table."""
