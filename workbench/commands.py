@@ -152,9 +152,12 @@ def presets(options: argparse.Namespace, project: Project) -> int:
 
 def compare(options: argparse.Namespace, project: Project) -> int:
     """Score the images of one run, or set of runs, against another's."""
+    from workbench.folder import prepare
     from workbench.image_sets import compare_sets, page, table
     from workbench.project import write_atomically
 
+    if options.out is not None:
+        prepare(options.out, clear=())
     scores = compare_sets(options.images, options.reference)
     if options.out is not None:
         title = f"{options.images} beside {options.reference}"

@@ -1,7 +1,8 @@
 """`workbench compare`: the images of one set of runs beside those of another, scored.
 
 A set is the folder of one run, or a folder of such folders; runs are paired by the names of their
-folders, images by their numbers. The second set is the reference, and its backgrounds are the null.
+folders, images by their cameras and numbers. The second set is the reference, and its backgrounds
+are the null.
 """
 
 from __future__ import annotations
@@ -9,6 +10,9 @@ from __future__ import annotations
 import dataclasses
 import html
 import json
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -21,11 +25,16 @@ if TYPE_CHECKING:
 
 CONTACT_SHARE = 0.1
 """Pixels that changed by this share of the largest change belong to the contact box."""
+FRAME = re.compile(r"frame_(\d+)\.png", re.ASCII)
+FURTHER = range(2, 9)
+"""Numbers of the cameras that have folders of their own."""
+LARGEST_MM = 1e6
+"""Of a depth or place that a summary may hold; beyond it the file is damaged."""
 COLUMNS = ("ssim_1", "psnr_dB", "mse_grey2", "mae_grey")
 
 
 def compare_sets(images: Path, reference: Path) -> tuple[Scores, ...]:
-    """Scores of all pairs, then by indenter, contact angle, depth and position.
+    """Scores of all pairs, then by camera, indenter, contact angle, depth, position.
 
     Raises:
         DesignError: If a folder holds no run, nothing pairs, or sizes differ.
@@ -71,43 +80,98 @@ def _runs(folder: Path) -> dict[str, Path]:
 
 
 def _run_pairs(ours: Path, theirs: Path) -> list[Pair]:
+    press = _labels_of(theirs / "summary.json")
+    folders = {1: "."}
+    for number in FURTHER:
+        if all((run / f"camera_{number}").is_dir() for run in (ours, theirs)):
+            folders[number] = f"camera_{number}"
+    found = []
+    for number, folder in folders.items():
+        named = {"camera": str(number)} if len(folders) > 1 else {}
+        found += _camera_pairs(ours / folder, theirs / folder, press, named)
+    return found
+
+
+def _camera_pairs(
+    ours: Path, theirs: Path, press: PressLabels, named: Mapping[str, str]
+) -> list[Pair]:
+    """Every image of one camera with the reference's image of the same number."""
     from sim.optics.comparison import Pair
 
-    press = _press_of(theirs / "summary.json")
     null = _read(theirs / "background.png")
-    depths = press.get("depths_mm", [])
     found = []
-    for path in sorted(theirs.glob("frame_*.png")):
-        if not (ours / path.name).is_file():
+    for path in sorted(theirs.iterdir()):
+        frame = FRAME.fullmatch(path.name)
+        if frame is None or not (ours / path.name).is_file():
             continue
-        number = int(path.stem.split("_")[1])
         image, truth = _read(ours / path.name), _read(path)
-        if image.shape != truth.shape:
-            raise DesignError(
-                f"{ours / path.name} has {image.shape[1]} x {image.shape[0]} pixels, its "
-                f"reference {truth.shape[1]} x {truth.shape[0]}",
-                hint="render both with the same camera",
-                at="compare",
-            )
-        labels = {name: str(press[name]) for name in ("indenter", "angle_deg") if name in press}
-        if number < len(depths):
-            labels["depth_mm"] = f"{depths[number]:.2f}"
-        if "position_mm" in press:
-            labels["position_mm"] = f"{press['position_mm']:.1f}"
+        _check_sizes(ours / path.name, image, "its reference", truth)
+        _check_sizes(theirs / "background.png", null, path.name, truth)
+        labels = {**named, **press.of(int(frame[1]))}
         found.append(
             Pair(image=image, reference=truth, null=null, box=_box(truth, null), labels=labels)
         )
     return found
 
 
-def _press_of(summary: Path) -> dict[str, Any]:
+def _check_sizes(path: Path, image: np.ndarray, other: str, truth: np.ndarray) -> None:
+    if image.shape == truth.shape:
+        return
+    raise DesignError(
+        f"{path} has {image.shape[1]} x {image.shape[0]} pixels, {other} "
+        f"{truth.shape[1]} x {truth.shape[0]}",
+        hint="render both with the same camera",
+        at="compare",
+    )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class PressLabels:
+    """What pairs of one run are grouped by."""
+
+    run: Mapping[str, str]
+    """Of all its frames."""
+    depths_mm: Sequence[float]
+    """Of each frame [mm]; may be shorter than the frames."""
+
+    def of(self, frame: int) -> dict[str, str]:
+        """Labels of a frame by its number from 0."""
+        labels = dict(self.run)
+        if frame < len(self.depths_mm):
+            labels["depth_mm"] = f"{self.depths_mm[frame]:.2f}"
+        if "position_mm" in labels:
+            # Groups come in the order of labels, the position last.
+            labels["position_mm"] = labels.pop("position_mm")
+        return labels
+
+
+def _labels_of(summary: Path) -> PressLabels:
     """What a run says of its press; nothing of runs that hold none."""
     try:
-        return json.loads(summary.read_text()).get("press", {})
-    except ValueError as error:
-        raise DesignError(
-            f"{summary} is not JSON: {error}", hint="write the run anew", at="compare"
-        ) from error
+        table = json.loads(summary.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError) as error:
+        raise _damaged(summary, f"is not JSON: {error}") from error
+    press = table.get("press", {}) if isinstance(table, dict) else None
+    if not isinstance(press, dict):
+        raise _damaged(summary, "is not the summary of a run: its press is no table")
+    labels = {name: str(press[name]) for name in ("indenter", "angle_deg") if name in press}
+    depths = press.get("depths_mm", [])
+    if not isinstance(depths, list):
+        raise _damaged(summary, "has depths_mm that are no list of numbers")
+    if "position_mm" in press:
+        labels["position_mm"] = f"{_number(summary, 'position_mm', press['position_mm']):.1f}"
+    numbers = [_number(summary, "depths_mm", depth) for depth in depths]
+    return PressLabels(run=labels, depths_mm=numbers)
+
+
+def _number(summary: Path, name: str, value: object) -> float:
+    if isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) < LARGEST_MM:
+        return value
+    raise _damaged(summary, f"has {str(value)[:40]} in {name}, which is not a number of mm")
+
+
+def _damaged(summary: Path, what: str) -> DesignError:
+    return DesignError(f"{summary} {what}", hint="write the run anew", at="compare")
 
 
 def _box(image: np.ndarray, background: np.ndarray) -> tuple[slice, slice] | None:

@@ -141,6 +141,70 @@ def test_a_damaged_summary_is_refused(tmp_path: Path) -> None:
     assert "summary.json is not JSON" in refused(ours, theirs).message
 
 
+@pytest.mark.parametrize(
+    ("summary", "told"),
+    [
+        ([1, 2], "its press is no table"),
+        ({"press": 3}, "its press is no table"),
+        ({"press": {"depths_mm": ["deep"]}}, "deep in depths_mm"),
+        ({"press": {"depths_mm": 3}}, "depths_mm that are no list"),
+        ({"press": {"position_mm": "here"}}, "here in position_mm"),
+        ({"press": {"position_mm": 10**400}}, "in position_mm"),
+    ],
+)
+def test_a_summary_of_something_else_is_refused(
+    tmp_path: Path, summary: object, told: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Valid JSON that no run wrote: exit code 2 and what is wrong."""
+    ours, theirs = write_run(tmp_path / "ours", 9), write_run(tmp_path / "theirs", 9)
+    (theirs / "summary.json").write_text(json.dumps(summary))
+    message = refused(ours, theirs).message
+    assert "summary.json" in message and told in message
+    assert main(["compare", str(ours), str(theirs), "--project", str(tmp_path / "p")]) == 2
+    assert told in capsys.readouterr().err
+
+
+def test_only_numbered_frames_are_compared(tmp_path: Path) -> None:
+    """A picture frame_x.png of the designer's own is passed over."""
+    ours, theirs = write_run(tmp_path / "ours", 9), write_run(tmp_path / "theirs", 9)
+    for run in (ours, theirs):
+        (run / "frame_x.png").write_bytes((run / "frame_000.png").read_bytes())
+    assert len(pairs(ours, theirs)) == 2
+
+
+def test_a_background_of_another_size_is_refused(tmp_path: Path) -> None:
+    """The null must have the size of the frames; both sizes are named."""
+    ours, theirs = write_run(tmp_path / "ours", 9), write_run(tmp_path / "theirs", 9)
+    other = np.full((HEIGHT, 60, 3), 90, dtype=np.uint8)
+    (theirs / "background.png").write_bytes(png_bytes(other))
+    message = refused(ours, theirs).message
+    assert "background.png has 60 x 40 pixels, frame_000.png 48 x 40" in message
+
+
+def test_further_cameras_are_compared_as_well(tmp_path: Path) -> None:
+    """Camera 2 changes by 10 beside 20; camera 3 is in one run only and left out."""
+    ours, theirs = write_run(tmp_path / "ours", 20), write_run(tmp_path / "theirs", 20)
+    write_run(ours / "camera_2", 10)
+    write_run(theirs / "camera_2", 20)
+    write_run(theirs / "camera_3", 20)
+    scores = {row.value: row for row in compare_sets(ours, theirs) if row.group == "camera"}
+    assert list(scores) == ["1", "2"]
+    # Frames differ by 0 and 0, then by 10 and 20 grey levels in the box.
+    assert (scores["1"].mae_grey, scores["2"].mae_grey) == (0.0, 15.0)
+
+
+def test_compare_needs_a_folder_to_write_into(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """`--out` that is a file: exit code 2, and the file stays."""
+    ours, theirs = write_run(tmp_path / "ours", 9), write_run(tmp_path / "theirs", 9)
+    file = tmp_path / "file"
+    file.write_text("mine")
+    words = ["compare", str(ours), str(theirs), "--out", str(file)]
+    assert main([*words, "--project", str(tmp_path / "p")]) == 2
+    assert "is a file" in capsys.readouterr().err and file.read_text() == "mine"
+
+
 def test_compare_prints_and_writes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """`--json` prints what `comparison.json` holds; the page has a row for each group."""
     ours, theirs = write_run(tmp_path / "ours", 20), write_run(tmp_path / "theirs", 25)
