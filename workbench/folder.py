@@ -9,9 +9,17 @@ from pathlib import Path
 from workbench.core.errors import DesignError, StoreError
 from workbench.project import write_atomically
 
+NUMBER = "[0-9][0-9][0-9]"
+IMAGE_FILES = (
+    *("background.png", "markers.csv", "frames.npz"),
+    *(f"{name}_{NUMBER}.png" for name in ("frame", "difference", "motion")),
+)
+"""All that a run writes of one camera; nothing else may be removed, it is the designer's own."""
+CAMERA_FILES = tuple(f"camera_[2-8]/{pattern}" for pattern in IMAGE_FILES)
 RUN_FILES = (
-    *("summary.json", "report.html", "background.png", "frame_*.png", "difference_*.png"),
-    *("motion_*.png", "markers.csv", "frames.npz", "maps.npz", "camera_*/*"),
+    *("summary.json", "report.html", "maps.npz"),
+    *IMAGE_FILES,
+    *CAMERA_FILES,
     *("contact.npz", "poses.csv", "forces.csv", "slip.csv"),
     *("mesh.vtu", "membrane.vtp", "contact_*.vtp", "contact.pvd"),
     *(

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
 from pathlib import Path
 
 import numpy as np
 
 from workbench.core.sensing import Shot, TactileFrames
-from workbench.folder import remove_stale
+from workbench.folder import CAMERA_FILES, IMAGE_FILES, remove_stale
 from workbench.project import write_atomically
 
 FIELDS = "frames.npz"
@@ -36,7 +37,11 @@ def write_images(out: Path, shot: Shot, *, fields: bool = False) -> list[str]:
     with `fields` what each pixel sees as `frames.npz`; of a further camera the same in `camera_2`.
     """
     names = _write_camera(out, shot.frames, fields=fields)
-    remove_stale(out, ("camera_*/*",), keep=())
+    remove_stale(out, CAMERA_FILES, keep=())
+    for folder in out.glob("camera_[2-8]"):
+        with contextlib.suppress(OSError):
+            # Not empty: it holds something of the designer's.
+            folder.rmdir()
     for number, frames in enumerate(shot.others, start=2):
         _write_camera(out / f"camera_{number}", frames, fields=fields)
     return names
@@ -51,7 +56,7 @@ def _write_camera(out: Path, frames: TactileFrames, *, fields: bool) -> list[str
         files |= _marker_files(frames)
     if fields:
         files[FIELDS] = field_bytes(frames)
-    remove_stale(out, ("*.png", "markers.csv", FIELDS), keep=files)
+    remove_stale(out, IMAGE_FILES, keep=files)
     for name, content in files.items():
         write_atomically(out / name, content)
     return names

@@ -10,12 +10,13 @@ import dataclasses
 from typing import Any
 
 from workbench.calls import Call, Ref
+from workbench.core.camera import Camera
 from workbench.core.lighting import TABULATED, Baking, LedRing, LightModel
 from workbench.core.optics import Markers, Optics
 from workbench.store import Store
 
-PHOTON_BATCH = 5_000_000
-"""Photons of a part: some ten seconds on two cores."""
+PHOTON_BATCH = 1_000_000
+"""Photons of a part: some two to four seconds on two cores."""
 
 
 def bake_call(optics: Optics, mesh: Ref) -> Call:
@@ -37,7 +38,13 @@ def table_calls(seen: Optics, mesh: Ref, light: Ref) -> tuple[Call, ...]:
     """The call `table` of the models that look radiance up."""
     if seen.light_model not in TABULATED:
         return ()
-    return (Call("table", (mesh, light, seen.all_cameras, seen.transport, seen.light_model)),)
+    eyes = tuple(_eye(camera) for camera in seen.all_cameras)
+    return (Call("table", (mesh, light, eyes, seen.transport, seen.light_model)),)
+
+
+def _eye(camera: Camera) -> Camera:
+    """All that light on its way to a camera depends on: where it stands."""
+    return Camera(position_mm=camera.position_mm)
 
 
 def maps_calls(seen: Optics, mesh: Ref, light: Ref, young_MPa: float) -> tuple[Call, ...]:
@@ -80,7 +87,7 @@ def _photon_calls(store: Store, mesh: Ref, optics: Optics, contact: Ref) -> list
             "photons",
             (
                 *scene,
-                camera,
+                _eye(camera),
                 transport,
                 contact if frame else None,
                 frame,

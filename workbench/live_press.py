@@ -17,7 +17,7 @@ import numpy as np
 from workbench.core.design import Elastomer, SensorDesign
 from workbench.core.digest import digest
 from workbench.core.indenter import Indenter
-from workbench.core.lighting import LightModel
+from workbench.core.lighting import Baking, LightModel
 from workbench.core.monitor import Monitor
 from workbench.core.motion import Mover
 from workbench.core.optics import Optics
@@ -38,6 +38,8 @@ NEEDED = ("mesh", "lattice", "bake", "table")
 """Stages that must be stored before a live call; the last only of models that have it."""
 WIDEST_PX = 320
 """Width of a preview's image: that of the page's dock."""
+FEWEST_PX = 16
+"""Least width and height of a camera."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -96,7 +98,10 @@ def live_design(design: SensorDesign) -> SensorDesign:
     """The design that a live press shows: nobody waits for photons while dragging."""
     if design.optics.light_model is not LightModel.PHOTONS:
         return design
-    return design.replace("optics.light_model", LightModel.HYBRID)
+    baking = design.optics.baking
+    fewer = dataclasses.replace(baking, photons=min(baking.photons, Baking().photons))
+    baked = design.replace("optics.light_model", LightModel.HYBRID)
+    return baked.replace("optics.baking", fewer)
 
 
 def live_call(design: SensorDesign, case: PressCase) -> LiveCall:
@@ -191,7 +196,7 @@ def small(optics: Optics) -> Optics:
     camera = optics.camera
     share = min(1.0, WIDEST_PX / camera.width_px)
     width_px, height_px = (
-        max(1, round(share * count)) for count in (camera.width_px, camera.height_px)
+        max(FEWEST_PX, round(share * count)) for count in (camera.width_px, camera.height_px)
     )
     reduced = dataclasses.replace(camera, width_px=width_px, height_px=height_px)
     # A photograph fits the camera's own pixels only.

@@ -256,7 +256,7 @@ STAGES = {
         Stage(name="quality", version=1, lane="cad", function=quality),
         Stage(name="tets", version=1, lane="cad", function=tets),
         Stage(name="lattice", version=2, lane="cad", function=lattice),
-        Stage(name="bake", version=2, lane="sim", function=bake),
+        Stage(name="bake", version=3, lane="sim", function=bake),
         Stage(name="table", version=1, lane="sim", function=table),
         Stage(name="object", version=1, lane="sim", function=object_distance),
         Stage(name="press", version=7, lane="sim", function=press),

@@ -107,6 +107,9 @@ def open_scene(
     monitor(0.25, "background")
     seen = _background_buffer(mesh, camera, view)
     dots, gain = _dots(mesh, LightModel(light.model), optics, camera)
+    # The photograph is what the first camera saw; the others' backgrounds are rendered.
+    if camera != optics.camera:
+        optics = dataclasses.replace(optics, background=None)
     backdrop = _backdrop(mesh, optics, camera, view, seen, undeformed, behind, dots, gain)
     range_mm = np.full(len(view.direction), np.nan, dtype=np.float32)
     first = view.layer_start[seen.pixel]

@@ -160,3 +160,23 @@ def test_writing_twice_leaves_the_same_bytes(tmp_path: Path, markers: int) -> No
         write_images(tmp_path, shot_of(frames_of(markers=markers)), fields=True)
         found.append({path.name: path.read_bytes() for path in tmp_path.iterdir()})
     assert found[0] == found[1]
+
+
+def test_the_designers_own_files_stay(tmp_path: Path) -> None:
+    """A photograph, notes and folders that no run wrote are left alone."""
+    own = [tmp_path / "idle.png", tmp_path / "frame_best.png", tmp_path / "camera_raw" / "a.txt"]
+    own += [tmp_path / "camera_2" / "notes.txt"]
+    for path in own:
+        path.parent.mkdir(exist_ok=True)
+        path.write_bytes(b"mine")
+    write_images(tmp_path, shot_of(frames_of(3), frames_of(3)))
+    write_images(tmp_path, shot_of(frames_of(1)))
+    assert all(path.read_bytes() == b"mine" for path in own)
+    assert not (tmp_path / "camera_2" / "background.png").exists()
+
+
+def test_the_folder_of_a_camera_that_is_gone_goes(tmp_path: Path) -> None:
+    """A run with one camera leaves no empty folder of the second one of the run before."""
+    write_images(tmp_path, shot_of(frames_of(1), frames_of(1)))
+    write_images(tmp_path, shot_of(frames_of(1)))
+    assert not (tmp_path / "camera_2").exists()

@@ -93,11 +93,11 @@ def test_random_edits_undo_to_the_start_byte_for_byte(session: Session, clock: C
 
 
 def test_camera_move_makes_only_what_looks_stale(session: Session) -> None:
-    """Of all keys only those of the table toward the camera, `shoot` and `maps` change."""
+    """Of all keys only those of `shoot` and `maps` change."""
     before = {name: call.key for name, call in session.calls().items()}
     session.change("design.optics.camera.fov_x_deg", 90.0)
     after = {name: call.key for name, call in session.calls().items()}
-    assert [name for name in before if before[name] != after[name]] == ["table", "shoot", "maps"]
+    assert [name for name in before if before[name] != after[name]] == ["shoot", "maps"]
 
 
 def test_restart_finds_design_and_press(tmp_path: Path, session: Session) -> None:

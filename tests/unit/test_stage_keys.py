@@ -15,6 +15,7 @@ from workbench.core.motion import Mover
 from workbench.core.press import ContactSettings, Method, Press
 from workbench.core.soft_body import SoftBody
 from workbench.core.texture import Pattern, Texture
+from workbench.live_press import live_design
 from workbench.pipeline import PressCase, needed, plan
 from workbench.project import load_design
 
@@ -35,7 +36,7 @@ def rerun(field: str, value: object) -> set[str]:
 @pytest.mark.parametrize(
     ("field", "value", "stages"),
     [
-        ("optics.camera.fov_x_deg", 80.0, LOOKED),
+        ("optics.camera.fov_x_deg", 80.0, {"shoot", "maps"}),
         ("optics.camera.position_mm", (0.0, 0.0, 1.0), {*LOOKED, *RINGED}),
         ("optics.light_model", LightModel.TABLE, SEEN),
         ("optics.ring.colours", ("#ffffff",), {*SEEN, *FILES}),
@@ -174,3 +175,11 @@ def test_a_texture_that_nothing_shows_is_refused(
     assert "raise the pitch to 0.80 mm or lower contact.grid_mm" in caught.value.hint
     close = dataclasses.replace(case.settings, grid_mm=0.25)
     plan(design.replace(*design_field), dataclasses.replace(case, settings=close))
+
+
+def test_live_presses_bake_instead_of_tracing_every_frame() -> None:
+    """A reference of 10^9 photons a frame is shown live by a bake of the usual 4 million."""
+    traced = load_design("finger").replace("optics.light_model", LightModel.PHOTONS)
+    shown = live_design(traced.replace("optics.baking.photons", 10**9)).optics
+    assert shown.light_model is LightModel.HYBRID
+    assert shown.baking.photons == 4_000_000

@@ -119,7 +119,7 @@ class MapsPanel:
         if self.found is not None and not self.desk.current("maps"):
             text = STALE
         elif self.found is not None:
-            text = f"{len(self.found.maps)} maps, measured in {self.found.seconds:.1f} s"
+            text = f"{len(self.found.maps)} maps"
         if self.about.content != text:
             self.about.content = text
 

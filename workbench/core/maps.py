@@ -36,7 +36,6 @@ class DesignerMaps:
     """All maps of one design."""
 
     maps: tuple[SkinMap, ...]
-    seconds: float
 
     def named(self, name: str) -> SkinMap:
         """One map by its name.

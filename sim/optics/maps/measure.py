@@ -9,7 +9,6 @@ where it ends.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -23,7 +22,7 @@ from workbench.core.camera import Camera
 from workbench.core.light import LightField, NormalTable
 from workbench.core.lighting import PAPER, LightModel
 from workbench.core.maps import DesignerMaps
-from workbench.core.monitor import Monitor, silent
+from workbench.core.monitor import Monitor, part, silent
 from workbench.core.optics import Optics
 from workbench.core.results import MembraneMesh, Skin
 
@@ -63,12 +62,12 @@ def designer_maps(
         DesignError: If a camera is outside the cavity or sees nothing of the skin.
         OpticsError: If no light reaches what a camera sees.
     """
-    start = time.perf_counter()
     cameras = optics.all_cameras
     looks = []
     for number, camera in enumerate(cameras):
         monitor(0.8 * number / len(cameras), f"maps of camera {number + 1} of {len(cameras)}")
-        looks.append(_look(mesh, light, optics, table, camera))
+        span = part(monitor, 0.8 * number / len(cameras), 0.8 * (number + 1) / len(cameras))
+        looks.append(_look(mesh, light, optics, table, camera, span))
     monitor(0.8, "maps")
     best = _best(looks)
     maps = [*_seen(best), *_lit(mesh, light), *_felt(mesh, best, young_MPa)]
@@ -77,7 +76,7 @@ def designer_maps(
     areas = seeing.vertex_areas_mm2(mesh.seen.points_mm, mesh.seen.faces)
     found = tuple(judged(draft, areas) for draft in maps)
     monitor(1.0, "maps ready")
-    return DesignerMaps(maps=found, seconds=time.perf_counter() - start)
+    return DesignerMaps(maps=found)
 
 
 def _look(
@@ -86,8 +85,11 @@ def _look(
     optics: Optics,
     table: NormalTable | None,
     camera: Camera,
+    monitor: Monitor,
 ) -> _Look:
-    studio = Studio(mesh, light, optics, table=table, camera=camera)
+    studio = Studio(
+        mesh, light, optics, table=table, camera=camera, monitor=part(monitor, 0.0, 0.6)
+    )
     skin, visible, sensor = mesh.seen, studio.visible, camera.sensor
     inward = -skin.normals
     uv = studio.vertex_pixels[:, :2]

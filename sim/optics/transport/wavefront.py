@@ -19,8 +19,8 @@ from sim.optics.transport.scene import Scene
 from sim.optics.transport.sources import Sources
 from sim.optics.transport.tally import Tally
 
-BATCH = 500_000
-"""Photons that fly together: 20 MB, and 0.5 s between two reports of progress."""
+BATCH = 120_000
+"""Photons that fly together: 5 MB, and under a second between two reports of progress."""
 LEAST_PART = 20_000
 """Rays that are worth a thread of their own."""
 
