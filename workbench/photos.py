@@ -14,6 +14,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
+from workbench.core.camera import Camera
 from workbench.core.design import SensorDesign
 from workbench.core.errors import DesignError
 from workbench.core.mapping import suggest
@@ -98,14 +99,27 @@ def check_photos(design: SensorDesign) -> None:
     Raises:
         DesignError: If one cannot be read, or the background has another size than the camera.
     """
-    from sim.optics.background import photo_radiance
-    from sim.optics.photo_file import read_rgb
-
+    camera = design.optics.camera
     for field, picture in design_photos(design).items():
         if field == "optics.background":
-            photo_radiance(picture, design.optics.camera, 1.0)
+            _check_background(picture, camera.width_px, camera.height_px)
         else:
-            read_rgb(picture, at=field)
+            _check_readable(picture, field)
+
+
+@functools.lru_cache(maxsize=2)
+def _check_background(picture: Photo, width_px: int, height_px: int) -> None:
+    """Every edit of a design asks: one of 12 million pixels takes a second to decode."""
+    from sim.optics.background import photo_radiance
+
+    photo_radiance(picture, Camera(width_px=width_px, height_px=height_px), 1.0)
+
+
+@functools.lru_cache(maxsize=2)
+def _check_readable(picture: Photo, field: str) -> None:
+    from sim.optics.photo_file import read_rgb
+
+    read_rgb(picture, at=field)
 
 
 def take_photos(table: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:

@@ -9,10 +9,18 @@ import numpy as np
 import pytest
 
 from sim.optics.photo_file import read_rgb
+from workbench import photos
 from workbench.core.digest import digest
 from workbench.core.errors import DesignError
 from workbench.photos import design_photos, shipped_photos
-from workbench.project import Project, design_from_toml, design_table, design_to_toml, load_design
+from workbench.project import (
+    Project,
+    check_design,
+    design_from_toml,
+    design_table,
+    design_to_toml,
+    load_design,
+)
 
 HEAD = 'schema = 1\nname = "w"\nfamily = "finger"\n'
 GELTIP = "geltip_idle_640x480.png"
@@ -52,6 +60,31 @@ def test_saved_designs_keep_their_pictures_and_travel(folder: Path) -> None:
     assert again == design and digest(again) == digest(design)
     assert [picture.name for picture in design_photos(again).values()] == ["idle.png", "dots.png"]
     assert design_to_toml(again) == design_to_toml(design)
+
+
+def test_an_edit_does_not_read_the_pictures_again(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Once for each picture; again, and refused each time, for a camera of another size."""
+    decoded: list[int] = []
+    decode = cv2.imdecode
+
+    def counted(data: np.ndarray, flags: int) -> object:
+        decoded.append(len(data))
+        return decode(data, flags)
+
+    photos._check_background.cache_clear()
+    photos._check_readable.cache_clear()
+    monkeypatch.setattr(cv2, "imdecode", counted)
+    design = load_design(str(folder / "w.toml"))
+    assert len(decoded) == 2
+    check_design(design.replace("optics.ring.power", 2.0))
+    check_design(design.replace("optics.camera.sensor.gamma", 2.2))
+    assert len(decoded) == 2
+    for _ in range(2):
+        with pytest.raises(DesignError, match="64 x 48 pixels, the camera 80 x 48"):
+            check_design(design.replace("optics.camera.width_px", 80))
+    assert len(decoded) == 4
 
 
 def test_equal_pictures_of_other_names_are_one(folder: Path) -> None:
