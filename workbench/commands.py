@@ -122,11 +122,14 @@ def run(options: argparse.Namespace, project: Project) -> int:
 
 def export(options: argparse.Namespace, project: Project) -> int:
     """Write a design's bodies, mould and meshes."""
-    from workbench.exports import export_design
+    from workbench.exports import export_design, scene_notice
     from workbench.project import load_design
 
     printer = Progress(as_json=options.json)
     design = load_design(options.design, unit=options.unit, project=project)
+    notice = scene_notice(design) if options.mitsuba else ""
+    if notice:
+        complain(f"notice: {notice}")
     start = _start(design, options, project, printer)
     extra = {"tets": options.tets, "mitsuba": options.mitsuba}
     for path in export_design(start.design, options.out, project.store, printer, **extra):

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from workbench.core.design import SensorDesign
-from workbench.core.errors import DeviceError, StoreError
+from workbench.core.errors import DeviceError
 from workbench.core.optics import Transport
 from workbench.core.results import MembraneMesh, VolumeMesh
 from workbench.folder import prepare, remove_stale
@@ -47,7 +47,8 @@ def export_design(
         mitsuba: Also write the sensor at rest as a scene of Mitsuba 3, `mitsuba/scene.xml`.
 
     Raises:
-        DesignError: If Mitsuba has no like of the camera or the lights.
+        DesignError: If Mitsuba has no like of the camera or the lights, or they cannot be where
+            they are.
         WorkbenchError: If a stage fails or the folder cannot be written.
     """
     from geometry.export import stl_bytes
@@ -57,6 +58,11 @@ def export_design(
     prepare(out)
     runner = InlineRunner(store)
     wanted = (*STAGES, "tets") if tets else STAGES
+    if mitsuba:
+        for _ in evaluate(design, PressCase(), runner, wanted=("mesh",), monitor=monitor):
+            pass
+        mesh = results(store, plan(design, PressCase()), ("mesh",))["mesh"]
+        _check_places(design, mesh)
     for _ in evaluate(design, PressCase(), runner, wanted=wanted, monitor=monitor):
         pass
     # A machine without an off-screen renderer still gets all files but the picture.
@@ -89,6 +95,18 @@ def export_design(
         yield from _write_scene(out / "mitsuba", design, found["mesh"])
 
 
+def scene_notice(design: SensorDesign) -> str:
+    """What of the design's optics a scene of Mitsuba leaves out, as a sentence, or \"\"."""
+    optics = design.optics
+    held = {
+        "markers": optics.markers.visible,
+        "the photographed background": optics.background is not None,
+        "further cameras": bool(optics.cameras),
+    }
+    left_out = [name for name, there in held.items() if there]
+    return f"the scene of Mitsuba leaves out {' and '.join(left_out)}" if left_out else ""
+
+
 def _check_scene(design: SensorDesign) -> None:
     from sim.optics.lights import place_leds
     from sim.optics.mitsuba_scene import check_scene
@@ -97,24 +115,25 @@ def _check_scene(design: SensorDesign) -> None:
     check_scene(place_leds(optics.ring, optics.lamps), optics.camera)
 
 
+def _check_places(design: SensorDesign, mesh: MembraneMesh) -> None:
+    from sim.optics.places import check_camera, check_lights
+
+    check_lights(mesh, design.optics.ring, design.optics.lamps)
+    check_camera(mesh, design.optics.camera)
+
+
 def _write_scene(folder: Path, design: SensorDesign, mesh: MembraneMesh) -> Iterator[Path]:
     from sim.optics.lights import place_leds
-    from sim.optics.mitsuba_scene import SCENE_FILES, write_scene
+    from sim.optics.mitsuba_scene import scene_files
 
     optics = design.optics
     transport = Transport(
         coating=optics.coating, refractive_index=optics.refractive_index, baking=optics.baking
     )
     leds = place_leds(optics.ring, optics.lamps)
-    try:
-        write_scene(folder, mesh, leds, optics.camera, transport)
-    except OSError as error:
-        raise StoreError(
-            f"cannot write {folder}: {error.strerror or error}",
-            hint="free some space, or name another folder",
-            at="--out",
-        ) from error
-    yield from (folder / name for name in SCENE_FILES)
+    for name, content in scene_files(mesh, leds, optics.camera, transport).items():
+        write_atomically(folder / name, content)
+        yield folder / name
 
 
 def _volume_bytes(mesh: VolumeMesh) -> bytes:

@@ -26,7 +26,6 @@ from workbench.core.errors import DesignError
 from workbench.core.optics import Transport
 from workbench.core.results import MembraneMesh, Skin
 
-SCENE_FILES = ("scene.xml", "skin.ply", "wall.ply")
 SAMPLES = 256
 """Samples of a pixel in the written scene."""
 LEAST_SIDE_MM = 1e-6
@@ -42,10 +41,28 @@ def write_scene(
     samples: int = SAMPLES,
     displacement_mm: np.ndarray | None = None,
 ) -> Path:
-    """Write `scene.xml`, `skin.ply` and `wall.ply`; returns the XML file.
+    """Write the files of `scene_files` into a folder, made if need be; returns the XML file."""
+    files = scene_files(
+        mesh, leds, camera, transport, samples=samples, displacement_mm=displacement_mm
+    )
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, content in files.items():
+        (folder / name).write_bytes(content)
+    return folder / "scene.xml"
+
+
+def scene_files(
+    mesh: MembraneMesh,
+    leds: Leds,
+    camera: Camera,
+    transport: Transport,
+    *,
+    samples: int = SAMPLES,
+    displacement_mm: np.ndarray | None = None,
+) -> dict[str, bytes]:
+    """Content of `skin.ply`, `wall.ply` and `scene.xml`, which names the two.
 
     Args:
-        folder: Made if it is not there.
         mesh: The skins; the seen one reflects.
         leds: The lights.
         camera: A pinhole.
@@ -57,7 +74,6 @@ def write_scene(
         DesignError: If the scene has something that Mitsuba has no like of.
     """
     check_scene(leds, camera)
-    folder.mkdir(parents=True, exist_ok=True)
     skin = mesh.seen
     points, normals = skin.points_mm, skin.normals
     if displacement_mm is not None:
@@ -65,12 +81,12 @@ def write_scene(
 
         points = points + displacement_mm
         normals = vertex_normals(points, skin.faces)
-    (folder / "skin.ply").write_bytes(ply_bytes(points, normals, skin.faces))
     wall: Skin = mesh.cavity
-    (folder / "wall.ply").write_bytes(ply_bytes(wall.points_mm, wall.normals, wall.faces))
-    path = folder / "scene.xml"
-    path.write_text(_scene_xml(leds, camera, transport, samples))
-    return path
+    return {
+        "skin.ply": ply_bytes(points, normals, skin.faces),
+        "wall.ply": ply_bytes(wall.points_mm, wall.normals, wall.faces),
+        "scene.xml": _scene_xml(leds, camera, transport, samples).encode(),
+    }
 
 
 def check_scene(leds: Leds, camera: Camera) -> None:

@@ -16,10 +16,13 @@ from sim.optics.mitsuba_scene import ply_bytes, write_scene
 from sim.optics.specimen import dent, finger
 from workbench.cli import main
 from workbench.core.camera import Camera, LensModel
+from workbench.core.design import SensorDesign
 from workbench.core.errors import DesignError
 from workbench.core.lighting import Baking, LedRing
 from workbench.core.optics import Coating, Transport
 from workbench.core.results import MembraneMesh
+from workbench.exports import scene_notice
+from workbench.photos import shipped_photos
 
 RING = LedRing(count=3, radius_mm=6.0, size_mm=4.0, height_mm=0.5, tilt_deg=30.0)
 TURNED = Camera(
@@ -169,6 +172,39 @@ def test_mitsuba_reads_the_scene(tmp_path: Path, mesh: MembraneMesh) -> None:
     image = render(tmp_path, samples=2, seed=1)
     assert image.shape == (TURNED.height_px, TURNED.width_px, 3)
     assert (image.mean(axis=(0, 1)) > 0.0).all() and np.isfinite(image).all()
+
+
+def test_the_notice_names_what_the_scene_leaves_out() -> None:
+    """Markers, the photograph and further cameras, where the design has them."""
+    plain = SensorDesign()
+    assert scene_notice(plain) == ""
+    photo = shipped_photos()["geltip_idle_640x480.png"]
+    marked = plain.replace("optics.markers.visible", True).replace("optics.background", photo)
+    assert scene_notice(marked) == (
+        "the scene of Mitsuba leaves out markers and the photographed background"
+    )
+    assert scene_notice(plain.replace("optics.cameras", (TURNED,))).endswith("further cameras")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("table", "told"),
+    [
+        ("camera]\nposition_mm = [0.0, 0.0, 90.0]", "the camera at (0, 0, 90) mm"),
+        ("ring]\nradius_mm = 60.0", "LED 1 of 9 at radius 60 mm"),
+    ],
+)
+def test_no_scene_of_an_impossible_design_is_written(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], table: str, told: str
+) -> None:
+    """A camera or LEDs outside the sensor: exit code 2, and no file."""
+    design, out = tmp_path / "d.toml", tmp_path / "out"
+    head = 'schema = 1\nname = "d"\nfamily = "finger"\n[optics]\nlight_model = "direct"\n'
+    design.write_text(f"{head}[optics.{table}\n")
+    words = ["export", str(design), "--mitsuba", "--out", str(out)]
+    assert main([*words, "--project", str(tmp_path / "p")]) == 2
+    assert told in capsys.readouterr().err
+    assert not list(out.iterdir())
 
 
 @pytest.mark.slow
