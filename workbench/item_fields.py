@@ -14,10 +14,9 @@ from typing import Any
 
 from workbench.core.design import SensorDesign
 from workbench.core.errors import DesignError
+from workbench.core.mapping import name_item, suggest
 
 ITEM = re.compile(r"([\w.]+)\[(\d+)\](?:\.([\w.]+))?")
-SPOKEN = {"optics.lamps": "optics.lamps", "optics.cameras": "optics.camera"}
-"""How the messages of an item call the table that it is in."""
 
 
 def read_field(state: Any, path: str) -> Any:
@@ -49,23 +48,21 @@ def with_field(design: SensorDesign, path: str, value: Any) -> SensorDesign:
             at=owner,
         )
     if rest:
-        value = _changed(items[number - 1], rest, value, at=f"{owner}[{number}]", owner=owner)
+        try:
+            value = _replaced(items[number - 1], rest.split("."), value, f"{owner}[{number}]")
+        except DesignError as error:
+            name_item(error, owner, number)
+            raise
     return design.replace(owner, (*items[: number - 1], value, *items[number:]))
 
 
-def _changed(item: Any, rest: str, value: Any, *, at: str, owner: str) -> Any:
-    try:
-        return _replaced(item, rest.split("."), value)
-    except DesignError as error:
-        spoken = SPOKEN.get(owner, owner)
-        if error.at.startswith(spoken):
-            error.at = at + error.at.removeprefix(spoken)
-        raise
-
-
-def _replaced(item: Any, steps: list[str], value: Any) -> Any:
+def _replaced(item: Any, steps: list[str], value: Any, at: str) -> Any:
     head, *rest = steps
-    inner = _replaced(getattr(item, head), rest, value) if rest else value
+    names: list[str] = [*getattr(item, "__dataclass_fields__", ())]
+    where = f"{at}.{head}"
+    if head not in names:
+        raise DesignError(f"there is no field {where!r}", hint=suggest(head, names), at=where)
+    inner = _replaced(getattr(item, head), rest, value, where) if rest else value
     return dataclasses.replace(item, **{head: inner})
 
 

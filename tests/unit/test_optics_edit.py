@@ -27,7 +27,7 @@ from workbench.light_edit import (
     read_colours,
     read_numbers,
 )
-from workbench.project import Project
+from workbench.project import Project, design_from_toml
 
 LAMPS = (Lamp(), Lamp(kind=LampKind.LINE, power=2.0))
 
@@ -157,6 +157,42 @@ def test_refusals_name_the_item(path: str, value: object) -> None:
     with pytest.raises(DesignError) as caught:
         with_field(design, path, value)
     assert caught.value.at == path
+
+
+@pytest.mark.parametrize(
+    ("text", "at"),
+    [
+        ("[[optics.cameras]]\n[[optics.cameras]]\nfov_x_deg = 0", "optics.cameras[2].fov_x_deg"),
+        ("[[optics.cameras]]\nsensor = {gamma = 9}", "optics.cameras[1].sensor.gamma"),
+        ("[[optics.lamps]]\npower = -1", "optics.lamps[1].power"),
+        ("[[optics.lamps]]\n[[optics.lamps]]\nbogus = 1", "optics.lamps[2].bogus"),
+        ("[[optics.lamps]]\nkind = 'spot'", "optics.lamps[1].kind"),
+        ("[optics.camera]\nfov_x_deg = 0", "optics.camera.fov_x_deg"),
+    ],
+)
+def test_messages_of_design_files_name_the_item(text: str, at: str) -> None:
+    """Counted from 1, as in the browser; the hint of a view of 0 is not about pinholes."""
+    with pytest.raises(DesignError) as caught:
+        design_from_toml(f'schema = 1\nname = "w"\nfamily = "finger"\n{text}\n')
+    assert caught.value.at == at
+    assert caught.value.hint and "pinhole" not in caught.value.hint
+
+
+def test_a_view_too_wide_for_a_pinhole_names_another_lens() -> None:
+    """178 degrees need an equidistant lens."""
+    with pytest.raises(DesignError) as caught:
+        Camera(fov_x_deg=178.0)
+    assert "equidistant" in caught.value.hint
+
+
+@pytest.mark.parametrize("name", ["bogus", "power.bogus"])
+def test_a_field_that_no_item_has_is_refused(tmp_path: Path, name: str) -> None:
+    """As any unknown field of a design."""
+    session = Session(Project(tmp_path))
+    session.change("design.optics.lamps", LAMPS)
+    with pytest.raises(DesignError, match="there is no field") as caught:
+        session.change(f"design.optics.lamps[1].{name}", 1.0)
+    assert caught.value.at == f"optics.lamps[1].{name}"
 
 
 def test_an_item_that_is_not_there_is_refused() -> None:

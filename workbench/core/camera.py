@@ -102,10 +102,10 @@ class Camera:
         for name in ("width_px", "height_px"):
             at = f"optics.camera.{name}"
             within(getattr(self, name), 16, 4096, what=name, unit="px", at=at)
-        hint = "a pinhole lens cannot see 180 degrees: choose lens = 'equidistant'"
+        widest, at = WIDEST_DEG[self.lens], "optics.camera.fov_x_deg"
+        hint = f"choose from 5 to {widest:g} degrees; lens = 'equidistant' sees up to 180"
         if self.lens in (LensModel.EQUIDISTANT, LensModel.OPENCV_FISHEYE):
             hint = "choose from 5 to 180 degrees; lenses of this size see 60 to 180"
-        widest, at = WIDEST_DEG[self.lens], "optics.camera.fov_x_deg"
         within(self.fov_x_deg, 5.0, widest, what="field of view", unit="degree", at=at, hint=hint)
         hint = "give x, y, z in mm from the centre of the base, each from -500 to 500"
         at = "optics.camera.position_mm"

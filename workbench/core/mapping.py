@@ -122,4 +122,30 @@ def _tuple(parts: tuple[Any, ...], raw: Any, at: str) -> tuple[Any, ...]:
             f"{at} is {raw!r}, expected a list of {count}", hint="see the README", at=at
         )
     kinds = [parts[0]] * len(items) if open_ended else list(parts)
+    if open_ended and dataclasses.is_dataclass(parts[0]):
+        return tuple(_item(kinds[0], item, at, k) for k, item in enumerate(items, start=1))
     return tuple(_convert(k, item, at) for k, item in zip(kinds, items, strict=True))
+
+
+def _item(hint: Any, raw: Any, owner: str, number: int) -> Any:
+    try:
+        return _convert(hint, raw, f"{owner}[{number}]")
+    except DesignError as error:
+        name_item(error, owner, number)
+        raise
+
+
+def name_item(error: DesignError, owner: str, number: int) -> None:
+    """Let a message of one item of a list say which: `optics.lamps[1].power`, from 1.
+
+    Args:
+        error: The message; an item, which does not know its number, names the list
+            (`optics.lamps.power`) or the first of its kind (`optics.camera.fov_x_deg`).
+        owner: Field of the list, for example `optics.cameras`.
+        number: Of the item, from 1.
+    """
+    for spoken in (owner, owner.removesuffix("s")):
+        rest = error.at.removeprefix(spoken)
+        if error.at.startswith(spoken) and rest[:1] in ("", "."):
+            error.at = f"{owner}[{number}]{rest}"
+            return
