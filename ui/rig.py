@@ -45,6 +45,9 @@ class RigView:
         with self.server.atomic():
             self.show_lights(optics.ring)
             self.lamps.show_lamps(optics.lamps)
+            if len(self.cameras) != len(optics.all_cameras):
+                # Pictures are told apart by the numbers of cameras, and these have moved up.
+                self.forget_image()
             while len(self.cameras) > len(optics.all_cameras):
                 self.cameras.pop().remove()
             for number, camera in enumerate(optics.all_cameras):
@@ -89,7 +92,7 @@ class RigView:
             self.cameras[number].image = image[::step, ::step]
 
     def forget_image(self) -> None:
-        """Take away what the cameras of another sensor saw."""
+        """Take away what the cameras of another sensor, or another list of cameras, saw."""
         for node in self.cameras:
             node.image = None
 

@@ -1,8 +1,8 @@
 """Runs the pipeline behind the browser: one thread per topic, newest request wins.
 
 A topic is what the designer waits for: `shape` (the body that follows the sliders), `press`,
-`image`, `mesh`, `tetrahedra`, `parts`, `import`, `object`, and `live` (a press that follows a
-drag).
+`image`, `maps`, `mesh`, `tetrahedra`, `parts`, `import`, `object`, and `live` (a press that
+follows a drag).
 Widget callbacks call `submit` and return; the browser's pump reads `events`. Nothing here touches
 a widget, and nothing heavy runs in these threads: they wait for the lanes.
 """

@@ -19,6 +19,7 @@ aperture, colour filters, dark current and fixed patterns.
 from __future__ import annotations
 
 import functools
+import hashlib
 
 import numpy as np
 
@@ -124,10 +125,11 @@ def defocus(linear: np.ndarray, sigma_px: np.ndarray) -> np.ndarray:
 def noisy(light: np.ndarray, camera: Camera, frame: int) -> np.ndarray:
     """Display light with the noise of its electrons, same shape, float32.
 
-    Equal seeds and frames give equal noise.
+    Equal seeds and frames give equal noise, but no two cameras of a sensor the same.
     """
     sensor = camera.sensor
-    random = np.random.Generator(np.random.Philox(key=[sensor.seed, frame]))
+    start = np.array([0, 0, 0, _place_number(camera)], dtype=np.uint64)
+    random = np.random.Generator(np.random.Philox(key=[sensor.seed, frame], counter=start))
     white_e = sensor.full_well_e / _gain(camera)
     # A full well holds no more, whatever the light.
     electrons = random.poisson(np.minimum(light * white_e, sensor.full_well_e)).astype(np.float32)
@@ -137,11 +139,18 @@ def noisy(light: np.ndarray, camera: Camera, frame: int) -> np.ndarray:
     return electrons / np.float32(white_e)
 
 
+def _place_number(camera: Camera) -> int:
+    """A number in [0, 2^64) that stands for where a camera is and looks, on every machine."""
+    # Adding 0.0 makes zeros of both signs one.
+    place = np.array([*camera.position_mm, *camera.wxyz], dtype="<f8") + 0.0
+    return int.from_bytes(hashlib.blake2b(place.tobytes(), digest_size=8).digest(), "little")
+
+
 def _gain(camera: Camera) -> float:
     return 10.0 ** (camera.sensor.gain_dB / 20.0)
 
 
-@functools.lru_cache(maxsize=8)
+@functools.lru_cache(maxsize=2)
 def _vignette(camera: Camera) -> np.ndarray:
     """Share of the light that each pixel keeps, shape (H, W), float32."""
     cosine = np.maximum(axis_cosines(camera), 0.0).reshape(camera.height_px, camera.width_px)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 
 import numpy as np
@@ -59,6 +60,19 @@ def test_noise_is_seeded_by_picture() -> None:
     )
     assert np.array_equal(first, again)
     assert not np.array_equal(first, frame) and not np.array_equal(first, seed)
+
+
+def test_two_cameras_have_noise_of_their_own() -> None:
+    """Equal seeds, another place or direction: no correlation above 5 sigma of its own noise."""
+    light = np.full((HEIGHT, WIDTH, 3), 0.3, np.float32)
+    here = camera(ImageSensor(noise=True, seed=4))
+    moved = dataclasses.replace(here, position_mm=(0.0, 0.5, 0.3))
+    turned = dataclasses.replace(here, wxyz=(0.0, 0.0, 0.0, 1.0))
+    one, two, three = (noisy(light, of, 0).ravel() for of in (here, moved, turned))
+    limit = 5.0 / math.sqrt(one.size)
+    correlation = np.corrcoef([one, two, three])[np.triu_indices(3, 1)]
+    assert (np.abs(correlation) < limit).all()
+    assert np.array_equal(one, noisy(light, dataclasses.replace(here), 0).ravel())
 
 
 def test_circle_of_confusion_is_that_of_a_thin_lens() -> None:

@@ -216,3 +216,13 @@ def test_a_fisheye_sees_the_skin_however_it_is_tilted(
     check_camera(
         mesh, Camera(lens=lens, fov_x_deg=180.0, position_mm=(0.0, 0.0, 10.0), wxyz=turned)
     )
+
+
+@pytest.mark.parametrize("name", ["axis", "along"])
+def test_directions_of_a_lamp_have_an_upper_limit(name: str) -> None:
+    """1e200 is finite, but its square is not; a million is taken."""
+    for taken in ((1e6, 0.0, 0.0), (0.0, -1e6, 0.0)):
+        assert getattr(dataclasses.replace(Lamp(), **{name: taken}), name) == taken
+    with pytest.raises(DesignError, match="outside -1e\\+06 to 1e\\+06") as caught:
+        dataclasses.replace(Lamp(), **{name: (0.0, 0.0, 1e200)})
+    assert caught.value.at == f"optics.lamps.{name}"

@@ -194,6 +194,10 @@ class Lamp:
                     hint="give x, y, z of any length but 0; 0, 0, 1 is up",
                     at=f"{at}.{name}",
                 )
+            for part in vector:
+                # Beyond it the squares of lengths and products leave what a float holds.
+                what = f"part of the lamp's {name}"
+                within(part, -1e6, 1e6, what=what, unit="", at=f"{at}.{name}")
         within(self.length_mm, 0.05, 200.0, what="lamp length", unit="mm", at=f"{at}.length_mm")
         within(self.width_mm, 0.05, 200.0, what="lamp width", unit="mm", at=f"{at}.width_mm")
         within(self.samples, 1, 256, what="points of a lamp", unit="", at=f"{at}.samples")

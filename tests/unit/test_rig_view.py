@@ -1,0 +1,34 @@
+"""Cameras in the 3D view, on a page without a browser."""
+
+from __future__ import annotations
+
+import contextlib
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from ui.rig import RigView
+from workbench.core.camera import Camera
+from workbench.core.lighting import LedRing
+from workbench.core.optics import Optics
+
+
+def node(*_: Any, **values: Any) -> SimpleNamespace:
+    """A node of the scene."""
+    return SimpleNamespace(image=None, remove=lambda: None, **values)
+
+
+def test_frusta_forget_pictures_when_cameras_come_or_go() -> None:
+    """Of cameras 1, 2, 3 the second goes: the third is number 2, whose picture was another's."""
+    api = SimpleNamespace(add_icosphere=node, add_camera_frustum=node)
+    rig = RigView(SimpleNamespace(scene=api, atomic=contextlib.nullcontext))
+    further = (Camera(fov_x_deg=60.0), Camera(fov_x_deg=70.0))
+    three = Optics(ring=LedRing(count=1), cameras=further)
+    rig.show_optics(three)
+    for number in range(3):
+        rig.show_image(number, np.full((4, 4, 3), number, dtype=np.uint8))
+    rig.show_optics(three)
+    assert [camera.image is not None for camera in rig.cameras] == [True] * 3
+    rig.show_optics(Optics(ring=LedRing(count=1), cameras=further[1:]))
+    assert [camera.image for camera in rig.cameras] == [None] * 2
