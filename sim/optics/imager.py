@@ -31,6 +31,8 @@ class Imager:
 
     def __init__(self, raster: Raster, shader: Shader, backdrop: Backdrop) -> None:
         self.raster, self.shader, self.backdrop = raster, shader, backdrop
+        self.whole_shadows = False
+        """Whether shadows do not fade toward skin that did not move: for absolute images."""
         self._undeformed = on_device(backdrop.undeformed, vector=3)
         self._remainder = on_device(backdrop.remainder, vector=3)
         self._curve = on_device(srgb_table())
@@ -90,7 +92,7 @@ class Imager:
         """Find, shade and ink what the pixels of at most one batch of frames see."""
         moved = np.ascontiguousarray(displacement_mm, dtype=np.float32)
         self.raster.look(moved)
-        self.shader.shade(radiance)
+        self.shader.shade(radiance, whole=self.whole_shadows)
         if len(self.backdrop.dots_mm):
             self._spread_ink(len(moved))
 

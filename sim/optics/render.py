@@ -2,14 +2,15 @@
 
 A `Studio` is one camera of one sensor with its light. Opening it casts rays, projects the vertices
 and shades the undeformed skin; frames then only draw, shade and compose what moved, on the compute
-device (`imager`), which the process must have opened. How images are composed stands in `backdrop`.
-Left out: the shadow that a dent casts on skin that did not move.
+device (`imager`), which the process must have opened. How images are composed stands in `backdrop`,
+what an absolute image adds in `absolute`.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+from sim.optics.absolute import cast_change
 from sim.optics.detail import Detail, DetailPixels
 from sim.optics.display import encode
 from sim.optics.imager import Imager
@@ -21,7 +22,7 @@ from workbench.core.check import expect
 from workbench.core.errors import OpticsError
 from workbench.core.light import LightField, NormalTable
 from workbench.core.monitor import Monitor, silent
-from workbench.core.optics import Optics
+from workbench.core.optics import Composition, Optics
 from workbench.core.results import MembraneMesh
 from workbench.core.sensing import TactileFrames
 
@@ -85,6 +86,8 @@ class Studio:
             mesh, light, optics, table, camera or optics.camera, radiance, monitor
         )
         self.imager: Imager = self._scene.imager
+        self._absolute = optics.composition is Composition.ABSOLUTE
+        self.imager.whole_shadows = self._absolute
         view = self.imager.raster.view
         self.rays = view.rays
         """The rays of the image's pixels."""
@@ -128,7 +131,7 @@ class Studio:
             OpticsError: If a displacement is not finite.
         """
         self._check(displacement_mm)
-        if develops_plainly(self._scene.camera):
+        if develops_plainly(self._scene.camera) and not self._absolute:
             return self.imager.images(displacement_mm, radiance)
         rows, columns = self.imager.shape
         found = np.empty((len(displacement_mm), rows, columns, 3), dtype=np.uint8)
@@ -142,7 +145,14 @@ class Studio:
     ) -> np.ndarray:
         """Linear radiance with ink, before the image sensor, (K, H, W, 3), float32; as `images`."""
         self._check(displacement_mm)
-        return self.imager.linear(displacement_mm, radiance)
+        if not self._absolute:
+            return self.imager.linear(displacement_mm, radiance)
+        rows, columns = self.imager.shape
+        found = np.empty((len(displacement_mm), rows, columns, 3), dtype=np.float32)
+        for number, moved in enumerate(displacement_mm):
+            self.imager.look(moved[None], None if radiance is None else radiance[number, None])
+            found[number] = self._linear().reshape(rows, columns, 3)
+        return found
 
     def detailed(self, displacement_mm: np.ndarray, detail: Detail) -> np.ndarray:
         """Linear radiance of one displaced skin, (V, 3), with the detail of frame 0: (N, 3)."""
@@ -203,7 +213,7 @@ class Studio:
         scene, raster, axis = self._scene, self.imager.raster, self.imager.backdrop.axis
         changed = raster.seen_face.to_numpy()[: raster.pixels] != SAME
         rgb = frames.rgb[number].reshape(-1, 3)
-        if develops_plainly(scene.camera):
+        if develops_plainly(scene.camera) and not self._absolute:
             self.imager.expose(rgb[None])
             if fine is not None:
                 light = self._linear(fine)[fine.pixel]
@@ -239,6 +249,8 @@ class Studio:
                 factor = factor * (1.0 + (back.ink_gain - 1.0) * self.imager.ink()[1][fine.pixel])
             brought = linear[0, fine.pixel] + factor[:, None] * fine.change
             linear[0, fine.pixel] = np.maximum(brought, 0.0)
+        if self._absolute:
+            linear[0] = np.maximum(linear[0] + cast_change(self.imager), 0.0)
         return linear[0]
 
     def _developed(self, number: int, fine: DetailPixels | None = None) -> np.ndarray:

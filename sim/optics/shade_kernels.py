@@ -36,6 +36,8 @@ from sim.optics.tree_kernels import nearest
 
 FIELD, DIRECT, HYBRID, TABLE, GIVEN = 0, 1, 2, 3, 4
 """Ways of lighting: the paper's fields, the models of these names, and radiance from outside."""
+NO_SHADOWS, FADING, EVERYWHERE = 0, 1, 2
+"""Shadows of the moved patch: none, fading toward skin that did not move, or whole."""
 EDGE_ON = 1e-6
 """Cosine below which light grazes the skin: single-precision rounding of a tangential field."""
 SKIN_OFFSET_MM = 5e-3
@@ -157,6 +159,8 @@ def shade_vertices(
                     full_shadow_mm / least_mm
                 )
                 depth = ti.min(fade, 1.0)
+                if shadows == EVERYWHERE:
+                    depth = 1.0
             for number in range(led.shape[0]):
                 baked = light[vertex, number]
                 if baked.w > 0.0:

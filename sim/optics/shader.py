@@ -10,7 +10,13 @@ import taichi as ti
 from sim.optics.device_arrays import computes_on_gpu, empty, on_device
 from sim.optics.gbuffer import MOVED_MM
 from sim.optics.raster import Raster
-from sim.optics.shade_kernels import GIVEN, shade_vertices
+from sim.optics.shade_kernels import (
+    EVERYWHERE,
+    FADING,
+    GIVEN,
+    NO_SHADOWS,
+    shade_vertices,
+)
 from sim.optics.shading import FULL_SHADOW_MM
 from sim.optics.vertex_light import VertexLight
 from workbench.core.errors import OpticsError
@@ -43,11 +49,12 @@ class Shader:
         """Whether radiance comes from outside, frame by frame."""
         return self.lit.way_of_lighting == GIVEN
 
-    def shade(self, radiance: np.ndarray | None) -> None:
+    def shade(self, radiance: np.ndarray | None, *, whole: bool = False) -> None:
         """Fill the raster's radiance for the frames it looks at.
 
         Args:
             radiance: Where it is given: of each frame and vertex, shape (k, V, 3), float32.
+            whole: Shadows do not fade toward skin that did not move.
         """
         raster = self._raster
         if self.given:
@@ -60,8 +67,31 @@ class Shader:
             raster.turned,
             raster.to_camera,
             raster.radiance,
-            shadows=1,
+            shadows=EVERYWHERE if whole else FADING,
         )
+
+    def everywhere(self) -> np.ndarray:
+        """Radiance of all vertices of the one frame looked at, with whole shadows, (V, 3), float32.
+
+        Skin that did not move is shaded where it was; of moved vertices the value has no meaning.
+        """
+        raster = self._raster
+        if self.given:
+            return raster.radiance.to_numpy()[: raster.vertices]
+        placed = raster.points.to_numpy()
+        entries = raster.vertex_list.to_numpy()[: raster.vertex_entries]
+        placed[entries] = raster.placed.to_numpy()[entries]
+        found = empty(ti.f32, raster.vertices, vector=3)
+        self._run(
+            raster.vertices,
+            on_device(np.arange(raster.vertices, dtype=np.int32)),
+            on_device(placed, vector=3),
+            raster.normals,
+            raster.still_to_camera,
+            found,
+            shadows=EVERYWHERE,
+        )
+        return found.to_numpy()
 
     def undeformed(self, normals: np.ndarray | None = None) -> np.ndarray:
         """Radiance of the undeformed skin, shape (V, 3), float32.
@@ -91,7 +121,7 @@ class Shader:
             turned,
             raster.still_to_camera,
             found,
-            shadows=0,
+            shadows=NO_SHADOWS,
         )
         return found.to_numpy()
 

@@ -37,6 +37,15 @@ class Coating:
         within(exponent, 1.0, 1e3, what="Phong exponent", unit="", at=f"{at}.phong_exponent")
 
 
+class Composition(enum.StrEnum):
+    """How a frame is put together."""
+
+    OVER_BACKGROUND = "over_background"
+    """Skin that did not move keeps the background exactly, as the paper composes images."""
+    ABSOLUTE = "absolute"
+    """Dents cast the shadows of their lights on all of the skin; slower."""
+
+
 class MarkerPattern(enum.StrEnum):
     """How the dots are laid out."""
 
@@ -103,6 +112,7 @@ class Optics:
     baking: Baking = field(default_factory=Baking)
     background: Photo | None = None
     """Photograph of the real sensor at rest, to which the contact is added; None renders it."""
+    composition: Composition = Composition.OVER_BACKGROUND
     detail: bool = True
     """Show textures of the object that are finer than the grid of the contact solver."""
 

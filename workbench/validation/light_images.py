@@ -9,6 +9,7 @@ ceiling is one half of the photons against the other.
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,7 +21,7 @@ from sim.optics.display import choose_exposure, encode
 from sim.optics.render import Studio
 from workbench.core.errors import OpticsError, StoreError
 from workbench.core.lighting import LightModel
-from workbench.core.optics import Optics
+from workbench.core.optics import Composition, Optics
 from workbench.core.results import MembraneMesh
 
 FILE = Path(__file__).with_name("photon_reference.npz")
@@ -158,6 +159,7 @@ def _scene_arrays(
     light = bake(mesh, optics.ring, optics.lamps, LightModel.PHOTONS, monitor=silent)
     data = {name: np.load(traced / f"{scene.replace(' ', '_')}_{name}.npz") for name in frames}
     rest = data["flat"]["halves"].mean(axis=0)
+    optics = dataclasses.replace(optics, composition=Composition.ABSOLUTE)
     studio = Studio(mesh, light, optics, radiance=rest)
     flat = studio.linear(np.zeros((1, *rest.shape), dtype=np.float32), radiance=rest[None])[0]
     exposure = flat_exposure(flat)

@@ -28,7 +28,7 @@ from workbench.core.results import MembraneMesh
 from workbench.validation.light_scenes import SCENES, LightScene, mesh_of, optics_of, skins_of
 
 FILE = Path(__file__).with_name("photon_reference.npz")
-PHOTONS = 4_000_000_000
+PHOTONS = 1_000_000_000
 """Of each half of each frame."""
 BATCH = 200_000_000
 
