@@ -37,7 +37,7 @@ NEEDED = (
     "package",
 )
 """Stages of a whole run, in order."""
-EVERYTHING = (*NEEDED, "quality", "tets", "picture")
+EVERYTHING = (*NEEDED, "maps", "quality", "tets", "picture")
 """All stages; a machine without an off-screen renderer cannot run the last."""
 
 

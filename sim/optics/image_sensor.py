@@ -61,7 +61,7 @@ def develop(
     if range_mm is not None and camera.aperture_mm > 0.0:
         linear = defocus(linear, blur_px(camera, range_mm) / 4.0)
     if sensor.vignetting > 0.0:
-        linear = linear * _vignette(camera)[:, :, None]
+        linear = linear * vignette(camera)[:, :, None]
     if not sensor.noise:
         return _display(linear, exposure, sensor.gamma)
     light = np.clip(linear * np.float32(exposure), 0.0, None)
@@ -151,7 +151,7 @@ def _gain(camera: Camera) -> float:
 
 
 @functools.lru_cache(maxsize=2)
-def _vignette(camera: Camera) -> np.ndarray:
+def vignette(camera: Camera) -> np.ndarray:
     """Share of the light that each pixel keeps, shape (H, W), float32."""
     cosine = np.maximum(axis_cosines(camera), 0.0).reshape(camera.height_px, camera.width_px)
     share = camera.sensor.vignetting

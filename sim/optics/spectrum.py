@@ -37,6 +37,11 @@ TO_SRGB = np.array(
 """XYZ to linear sRGB. Source: IEC 61966-2-1."""
 
 
+FAR_RED_NM, FAR_RED_FALL_NM = 690.0, 14.0
+"""Where the fit ends, and how fast the responses fall beyond: a tenth every 32 nm in the CIE's
+tables."""
+
+
 def linear_rgb(colour: str) -> tuple[float, float, float]:
     """Linear RGB in [0, 1] of a colour that `check_colour` accepts.
 
@@ -71,13 +76,15 @@ def _wavelengths_nm() -> np.ndarray:
 
 def _matching() -> np.ndarray:
     """xbar, ybar, zbar, shape (3, wavelengths)."""
-    nm = _wavelengths_nm()
+    every_nm = _wavelengths_nm()
+    # The fit's tails cross in the far red, where the eye's responses fall together.
+    nm = np.minimum(every_nm, FAR_RED_NM)
     found = np.zeros((3, len(nm)))
     for row, lobes in zip(found, LOBES, strict=True):
         for height, peak, below, above in lobes:
             width = np.where(nm < peak, below, above)
             row += height * np.exp(-0.5 * ((nm - peak) / width) ** 2)
-    return found
+    return found * np.exp(-(every_nm - nm) / FAR_RED_FALL_NM)
 
 
 def _gaussian(peak_nm: float, fwhm_nm: float) -> np.ndarray:

@@ -8,7 +8,7 @@ import viser
 
 from ui.desk import Desk
 from workbench.core.lighting import PAPER
-from workbench.core.optics import MarkerPattern
+from workbench.core.optics import Composition, MarkerPattern
 from workbench.core.photo import PICTURE_ENDINGS, photo
 from workbench.photos import shipped_photos
 from workbench.uploads import own_name
@@ -74,6 +74,9 @@ class AppearanceFolders:
         self.photograph = gui.add_upload_button("Load photograph", mime_type=PICTURES,
                                                 icon=viser.Icon.PHOTO_UP, hint=hint)  # fmt: skip
         self.photograph.on_upload(desk.guarded(self._load_photograph))
+        hint = "absolute: dents cast shadows on all of the skin, which takes longer"
+        path = "design.optics.composition"
+        fields.choice("Composition", path, list(Composition), hint=hint)
         hint = "Textures of the object that are finer than the contact's grid"
         fields.check("Surface detail", "design.optics.detail", hint=hint)
 

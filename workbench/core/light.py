@@ -18,7 +18,7 @@ from workbench.core.check import expect
 
 AZIMUTHS = 24
 """Bins of direction about the normal."""
-SINES = (0.0, 0.02, 0.05, 0.09, 0.15, 0.23, 0.34, 0.48, 0.65, 0.82, 1.0)
+SINES = (0.0, 0.02, 0.05, 0.09, 0.15, 0.23, 0.34, 0.48, 0.65, 0.82, 0.93, 0.98, 1.0)
 """Borders of the bins of direction in the cosine to the normal, dense near grazing."""
 TILTS = 9
 TILT_SPAN = 0.85

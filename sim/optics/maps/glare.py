@@ -2,11 +2,13 @@
 
 A pixel's straight ray from the camera may end on a cavity LED's disc; its mirror image in the
 cavity wall may, dimmed by Fresnel's reflectance; its bent ray in the clear solid may, for LEDs in
-the shell. A disc of area A that emits I(angle) has the radiance I / (A cos(angle)), I = P I0
-cos^m. The glare of a pixel is that radiance over the radiance of the skin behind it, both averaged
-over the colours: above 1 the LED outshines the skin.
+the shell, times T / n^2 for the way out of the solid. A disc of area A that emits I(angle) has the
+radiance I / (A cos(angle)), I = P I0 cos^m. The glare of a pixel is that radiance over the radiance
+of the skin behind it as it arrives in the cavity, both averaged over the colours: above 1 the LED
+outshines the skin.
 
-Left out: light reflected more than once, and lens flare.
+Left out: light reflected more than once, lens flare, and what hides an LED from a bent or mirrored
+ray.
 """
 
 from __future__ import annotations
@@ -83,7 +85,7 @@ def glare_radiance(
     total = led_radiance(eye, straight, light, distance)
     beyond = np.full(len(straight), np.inf)
     total += (
-        rays.transmittance[:, None]
+        (rays.transmittance / refractive_index**2)[:, None]
         * led_radiance(
             rays.origin_mm.astype(np.float64), rays.direction.astype(np.float64), light, beyond
         )

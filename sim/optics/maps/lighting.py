@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from sim.optics.table import bin_directions
 from workbench.core.light import AZIMUTHS, SINES, LightField, Scattered
 
 LEAST = 1e-12
@@ -29,7 +30,7 @@ def light_in_all(light: LightField, inward: np.ndarray) -> np.ndarray:
     total = np.einsum("lv,lc->vc", light_of_each(light, inward), light.led_rgb.astype(np.float32))
     if light.scattered is None:
         return total
-    cosine = bin_directions()[:, 2]
+    cosine = _gathered_from()[:, 2]
     return total + _spread(light.scattered, light.scattered.rest @ cosine)
 
 
@@ -39,7 +40,7 @@ def light_vectors(light: LightField) -> np.ndarray:
     total = np.einsum("lvi,lc->vci", weighted, light.led_rgb.astype(np.float32))
     if light.scattered is None:
         return total
-    local = light.scattered.rest @ bin_directions()
+    local = light.scattered.rest @ _gathered_from()
     world = np.einsum("nci,nij->ncj", local, light.scattered.frame)
     return total + _spread(light.scattered, world)
 
@@ -52,14 +53,9 @@ def separability(light: LightField) -> np.ndarray:
     return np.abs(np.linalg.det(vectors / np.maximum(size, floor))).astype(np.float32)
 
 
-def bin_directions() -> np.ndarray:
-    """Unit directions of the middle of each bin in the node's frame t, b, n, (B, 3), float32."""
-    cosine = (np.asarray(SINES[:-1]) + SINES[1:]) / 2.0
-    azimuth = 2.0 * np.pi * np.arange(AZIMUTHS) / AZIMUTHS
-    sine = np.sqrt(1.0 - cosine**2)[:, None]
-    around = np.stack([sine * np.cos(azimuth), sine * np.sin(azimuth)], axis=-1)
-    upward = np.broadcast_to(cosine[:, None, None], (len(cosine), AZIMUTHS, 1))
-    return np.concatenate([around, upward], axis=-1).reshape(-1, 3).astype(np.float32)
+def _gathered_from() -> np.ndarray:
+    """Unit directions of the bins of traced light in the node's frame t, b, n, (B, 3), float32."""
+    return bin_directions()[: AZIMUTHS * (len(SINES) - 1)].astype(np.float32)
 
 
 def _spread(scattered: Scattered, values: np.ndarray) -> np.ndarray:

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim.optics.camera import refracted_rays
+from sim.optics.image_sensor import vignette
 from sim.optics.maps import glare, lighting, seeing, signal
 from sim.optics.maps.judging import Draft, judged
 from sim.optics.render import Studio
@@ -94,8 +95,10 @@ def _look(
     inward = -skin.normals
     uv = studio.vertex_pixels[:, :2]
 
+    dimmed = studio.exposure * _passing(studio, camera)[:, None]
+
     def shown(normals: np.ndarray) -> np.ndarray:
-        return studio.exposure * studio.shade_tilted(-normals)
+        return dimmed * studio.shade_tilted(-normals)
 
     return _Look(
         visible=visible,
@@ -105,6 +108,17 @@ def _look(
         noise=signal.noise_grey(shown(inward), sensor),
         glare=_glare(mesh, light, optics, studio, camera),
     )
+
+
+def _passing(studio: Studio, camera: Camera) -> np.ndarray:
+    """Share of a vertex's light that reaches its pixel past wall and lens, shape (V,); 1 unseen."""
+    uv = studio.vertex_pixels[:, :2]
+    seen = np.isfinite(uv).all(axis=1)
+    column = np.clip(np.nan_to_num(uv[:, 0]).astype(int), 0, camera.width_px - 1)
+    row = np.clip(np.nan_to_num(uv[:, 1]).astype(int), 0, camera.height_px - 1)
+    pixel = row * camera.width_px + column
+    share = studio.rays.transmittance[pixel] * vignette(camera).reshape(-1)[pixel]
+    return np.where(seen, share, 1.0)
 
 
 def _glare(
@@ -119,7 +133,9 @@ def _glare(
     column = np.clip(np.nan_to_num(uv[:, 0]).astype(int), 0, small.width_px - 1)
     row = np.clip(np.nan_to_num(uv[:, 1]).astype(int), 0, small.height_px - 1)
     found = shining.mean(axis=1)[row * small.width_px + column]
-    skin = studio.shade_tilted(mesh.seen.normals).mean(axis=1)
+    # Both as they arrive in the air of the cavity: T / n^2 of the radiance in the solid.
+    leaving = rays.transmittance[row * small.width_px + column] / optics.refractive_index**2
+    skin = leaving * studio.shade_tilted(mesh.seen.normals).mean(axis=1)
     ratio = found / np.maximum(skin, 1e-12)
     return np.where(inside, ratio, np.nan).astype(np.float32)
 
@@ -128,7 +144,13 @@ def _best(looks: Sequence[_Look]) -> _Look:
     """At each vertex the camera with the most pixels there."""
     if len(looks) == 1:
         return looks[0]
-    sizes = np.stack([np.nan_to_num(look.mm_per_pixel, nan=np.inf) for look in looks])
+    # A vertex that one camera sees without a whole triangle still belongs to that camera.
+    sizes = np.stack(
+        [
+            np.where(look.visible, np.nan_to_num(look.mm_per_pixel, nan=1e9), np.inf)
+            for look in looks
+        ]
+    )
     chosen = np.argmin(sizes, axis=0)
     every = np.arange(len(chosen))
 

@@ -124,5 +124,6 @@ def virtual_lights(
         lit = size > 0.0
         mean = here[:, :3] / np.where(lit, size, 1.0)[:, None]
         direction[number] = np.where(lit[:, None], mean, straight)
-        irradiance[number] = np.where(lit, here[:, 3], 0.0)
+        # The length of the vector sum: what a matte skin receives along it.
+        irradiance[number] = size
     return direction, irradiance

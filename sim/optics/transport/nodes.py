@@ -97,7 +97,9 @@ def neighbours(nodes: Nodes) -> Any:
     ends = nodes.faces.ravel(), np.roll(nodes.faces, -1, axis=1).ravel()
     links = coo_matrix((np.ones(nodes.faces.size), ends), (count, count)).tocsr()
     links = ((links + links.T) > 0).astype(np.float64) + identity(count)
-    sound = nodes.area_mm2 >= LEAST_AREA * np.median(nodes.area_mm2)
+    gathers = nodes.area_mm2 > 0.0
+    usual = np.median(nodes.area_mm2[gathers]) if gathers.any() else 0.0
+    sound = gathers & (nodes.area_mm2 >= LEAST_AREA * usual)
     links = links @ diags(sound.astype(np.float64))
     return diags(1.0 / np.maximum(np.asarray(links.sum(axis=1)).ravel(), 1.0)) @ links
 
