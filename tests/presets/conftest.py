@@ -21,6 +21,9 @@ outer_radius_mm = 8.0
 cylinder_mm = 8.0
 [meshing]
 hex_mm = 0.8
+[optics.baking]
+photons = 200000
+nodes = 1000
 [optics.ring]
 radius_mm = 3.0
 [optics.camera]

@@ -15,6 +15,8 @@ name = "coarse"
 family = "finger"
 [meshing]
 hex_mm = 0.8
+[optics]
+light_model = "direct"
 [optics.camera]
 width_px = 320
 height_px = 240
