@@ -18,6 +18,7 @@ import numpy as np
 
 from sim.optics.bake import bake_light
 from sim.optics.maps import signal
+from sim.optics.maps.measure import display_light
 from sim.optics.render import Studio
 from sim.optics.specimen import finger
 from workbench.core.lighting import LightModel
@@ -58,11 +59,8 @@ def sensitivity_check(*, places: int = 10, seed: int = 4) -> SensitivityCheck:
     light = bake_light(mesh, optics.ring, model=LightModel.DIRECT)
     studio, sensor = Studio(mesh, light, optics), optics.camera.sensor
 
-    def shown(normals: np.ndarray) -> np.ndarray:
-        return studio.exposure * studio.shade_tilted(-normals)
-
     skin = mesh.seen
-    jacobian = signal.tilt_jacobian(shown, -skin.normals, sensor)
+    jacobian = signal.tilt_jacobian(display_light(studio, optics.camera), -skin.normals, sensor)
     mapped = signal.sensitivity_grey(jacobian, signal.dent_slope_deg(signal.DENT_MM))
     radius_mm = float(np.sqrt(signal.BALL_RADIUS_MM * signal.DENT_MM))
     seen_mm = _seen_mm(studio)

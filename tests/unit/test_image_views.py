@@ -155,7 +155,7 @@ def test_a_click_tells_the_value_of_the_nearest_vertex() -> None:
 
 def test_scores_say_which_way_is_better_and_lights_come_last() -> None:
     """A row per map; those of single LEDs stand below all others."""
-    maps = DesignerMaps(maps=(skin_map([1.0], "led_01"), skin_map([1.0])), seconds=1.0)
+    maps = DesignerMaps(maps=(skin_map([1.0], "led_01"), skin_map([1.0])))
     rows = score_rows(maps)
     assert rows[0] == ("incidence", "incidence median deg", "30", "low")
     assert rows[1][0] == "led_01"

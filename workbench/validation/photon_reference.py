@@ -15,6 +15,7 @@ witness from outside.
 
 from __future__ import annotations
 
+import json
 import sys
 import time
 from pathlib import Path
@@ -70,20 +71,12 @@ def write_scenes(file: Path) -> None:
         found, tree = pack((mesh, optics, frames_of(scene, mesh)))
         trees[scene.name] = tree
         arrays |= {f"{scene.name}|{name}": array for name, array in found.items()}
-    arrays["trees"] = np.array([_json(trees)])
+    arrays["trees"] = np.array([json.dumps(trees)])
     np.savez_compressed(file, allow_pickle=False, **arrays)
-
-
-def _json(value: Any) -> str:
-    import json
-
-    return json.dumps(value)
 
 
 def read_scenes(file: Path) -> dict[str, Any]:
     """Mesh, optics and frames of each scene by its name."""
-    import json
-
     with np.load(file) as data:
         trees = json.loads(str(data["trees"][0]))
         arrays = {name: data[name] for name in data.files if name != "trees"}
@@ -134,7 +127,7 @@ def trace(file: Path, out: Path, photons: int, names: list[str]) -> None:
                 photons=photons,
                 device=device,
                 seconds=seconds,
-                balance=_json(found.balance),
+                balance=json.dumps(found.balance),
             )
             print(f"{target.name}: 2 x {photons:.3g} photons in {seconds:.1f} s", flush=True)
 

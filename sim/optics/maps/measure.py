@@ -9,7 +9,7 @@ where it ends.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -95,11 +95,7 @@ def _look(
     inward = -skin.normals
     uv = studio.vertex_pixels[:, :2]
 
-    dimmed = studio.exposure * _passing(studio, camera)[:, None]
-
-    def shown(normals: np.ndarray) -> np.ndarray:
-        return dimmed * studio.shade_tilted(-normals)
-
+    shown = display_light(studio, camera)
     return _Look(
         visible=visible,
         mm_per_pixel=seeing.mm_per_pixel(skin.points_mm, skin.faces, uv, visible),
@@ -110,15 +106,24 @@ def _look(
     )
 
 
-def _passing(studio: Studio, camera: Camera) -> np.ndarray:
-    """Share of a vertex's light that reaches its pixel past wall and lens, shape (V,); 1 unseen."""
-    uv = studio.vertex_pixels[:, :2]
-    seen = np.isfinite(uv).all(axis=1)
-    column = np.clip(np.nan_to_num(uv[:, 0]).astype(int), 0, camera.width_px - 1)
-    row = np.clip(np.nan_to_num(uv[:, 1]).astype(int), 0, camera.height_px - 1)
-    pixel = row * camera.width_px + column
+def display_light(studio: Studio, camera: Camera) -> Callable[[np.ndarray], np.ndarray]:
+    """Display light (V, 3) of the undeformed skin at its pixels, by its inward normals (V, 3).
+
+    Wall and lens dim it; of vertices outside the image it is not dimmed.
+    """
+    pixel, seen = _pixels(studio, camera, camera)
     share = studio.rays.transmittance[pixel] * vignette(camera).reshape(-1)[pixel]
-    return np.where(seen, share, 1.0)
+    dimmed = studio.exposure * np.where(seen, share, 1.0)[:, None]
+    return lambda inward: dimmed * studio.shade_tilted(-inward)
+
+
+def _pixels(studio: Studio, camera: Camera, image: Camera) -> tuple[np.ndarray, np.ndarray]:
+    """Pixel of each vertex in an image of the same camera, and whether it has one, (V,) each."""
+    uv = studio.vertex_pixels[:, :2]
+    place = np.nan_to_num(uv * (image.width_px / camera.width_px)).astype(int)
+    column = np.clip(place[:, 0], 0, image.width_px - 1)
+    row = np.clip(place[:, 1], 0, image.height_px - 1)
+    return row * image.width_px + column, np.isfinite(uv.sum(axis=1))
 
 
 def _glare(
@@ -128,16 +133,13 @@ def _glare(
     small = glare.small(camera)
     rays = refracted_rays(small, mesh.cavity, optics.refractive_index)
     shining = glare.glare_radiance(small, rays, mesh.cavity, light, optics.refractive_index)
-    uv = studio.vertex_pixels[:, :2] * (small.width_px / camera.width_px)
-    inside = studio.visible & np.isfinite(uv).all(axis=1)
-    column = np.clip(np.nan_to_num(uv[:, 0]).astype(int), 0, small.width_px - 1)
-    row = np.clip(np.nan_to_num(uv[:, 1]).astype(int), 0, small.height_px - 1)
-    found = shining.mean(axis=1)[row * small.width_px + column]
+    pixel, in_image = _pixels(studio, camera, small)
+    found = shining.mean(axis=1)[pixel]
     # Both as they arrive in the air of the cavity: T / n^2 of the radiance in the solid.
-    leaving = rays.transmittance[row * small.width_px + column] / optics.refractive_index**2
+    leaving = rays.transmittance[pixel] / optics.refractive_index**2
     skin = leaving * studio.shade_tilted(mesh.seen.normals).mean(axis=1)
     ratio = found / np.maximum(skin, 1e-12)
-    return np.where(inside, ratio, np.nan).astype(np.float32)
+    return np.where(studio.visible & in_image, ratio, np.nan).astype(np.float32)
 
 
 def _best(looks: Sequence[_Look]) -> _Look:
