@@ -77,11 +77,21 @@ def bake_light(
     check_lights(mesh, ring, lamps)
     leds = place_leds(ring, lamps)
     if model in TABULATED:
-        direction, irradiance, scattered = _traced(mesh, leds, transport, monitor)
+        found = _traced(mesh, leds, transport, monitor)
     else:
-        fields = _fields(ring, lamps)
-        direction, irradiance, scattered = _analytic(mesh, leds, model, fields, monitor)
+        found = _analytic(mesh, leds, model, _fields(ring, lamps), monitor)
     monitor(1.0, "light field ready")
+    return light_field(leds, model, *found)
+
+
+def light_field(
+    leds: Leds,
+    model: LightModel,
+    direction: np.ndarray,
+    irradiance: np.ndarray,
+    scattered: Scattered | None,
+) -> LightField:
+    """What arrives at the vertices, together with the points of light that it comes from."""
     return LightField(
         model=str(model),
         direction=direction,

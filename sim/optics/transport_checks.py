@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from sim.optics.bake import emitted, toward
+from sim.optics.bake import emitted, light_field, toward
 from sim.optics.lights import Leds, place_leds
 from sim.optics.refraction import refract
 from sim.optics.shading import glossy
@@ -29,7 +29,7 @@ from sim.optics.transport.tally import ledger_only, tally_at_nodes
 from sim.optics.transport.view import directions_to_camera
 from sim.optics.transport_scenes import beam, disc, disc_source, one_light, plane, sphere
 from workbench.core.camera import Camera
-from workbench.core.light import AZIMUTHS, LightField, Scattered
+from workbench.core.light import AZIMUTHS, Scattered
 from workbench.core.lighting import Baking, LedMount, LedRing, LightModel
 from workbench.core.optics import Coating, Transport
 from workbench.core.results import Skin
@@ -226,7 +226,7 @@ def direct_table_errors(*, photons: int = 1_000_000) -> tuple[float, float]:
     )
     direction, irradiance, scattered = gather_light(mesh, leds, transport)
     alone = dataclasses.replace(scattered, rest=np.zeros_like(scattered.rest))
-    light = _field(leds, direction, irradiance, alone)
+    light = light_field(leds, LightModel.TABLE, direction, irradiance, alone)
     table = tabulate(light, mesh, (camera,), transport, model=LightModel.TABLE)
     normals = -mesh.seen.normals
     found = look_up(table.values[0], alone.nodes, alone.weights, alone.frame, normals)
@@ -257,7 +257,7 @@ def table_error(*, in_shell: bool, photons: int = 1_000_000) -> float:
     transport = Transport(
         coating=Coating(), refractive_index=1.41, baking=Baking(photons=photons, nodes=5000)
     )
-    light = _field(leds, *gather_light(mesh, leds, transport))
+    light = light_field(leds, LightModel.TABLE, *gather_light(mesh, leds, transport))
     table = tabulate(light, mesh, (camera,), transport, model=LightModel.TABLE)
     scattered = light.scattered
     assert scattered is not None
@@ -310,20 +310,3 @@ def _ledger_and_mean(
     trace_paths(scene, sources, tally, photons=photons, seed=1)
     mean = tally.lamps[:, 0, :3].sum(axis=0) / FIXED_POINT
     return tally.balance, mean / np.linalg.norm(mean)
-
-
-def _field(
-    leds: Leds, direction: np.ndarray, irradiance: np.ndarray, scattered: Scattered
-) -> LightField:
-    return LightField(
-        model=str(LightModel.TABLE),
-        direction=direction,
-        irradiance=irradiance,
-        led_mm=leds.position_mm,
-        led_axis=leds.axis,
-        led_rgb=leds.rgb,
-        led_exponent=leds.exponent,
-        led_cone=leds.cone,
-        led_size_mm=leds.size_mm,
-        scattered=scattered,
-    )
