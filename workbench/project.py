@@ -161,7 +161,8 @@ def load_design(name: str, *, unit: str = "auto", project: Project | None = None
     if name.endswith(".toml") or os.sep in name:
         path = Path(name)
         kept = () if project is None else (project.folder,)
-        roots = (path.parent, path.parent.parent, *kept)
+        beside = path.absolute().parent
+        roots = (beside, beside.parent, *kept)
         return design_from_toml(_read(path), source=name, roots=roots)
     raise DesignError(
         f"there is no preset, family, TOML, STL or STEP file named {name!r}",

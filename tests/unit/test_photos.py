@@ -137,6 +137,17 @@ def test_a_missing_picture_is_refused_with_its_field(folder: Path, named: str, s
         assert caught.value.at == at and caught.value.hint
 
 
+def test_each_place_is_named_once(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also of a file named without its folder, whose own folder's folder is not that folder."""
+    (folder / "idle.png").unlink()
+    monkeypatch.chdir(folder)
+    with pytest.raises(DesignError) as caught:
+        load_design("w.toml")
+    places = caught.value.hint.removeprefix("looked for ").partition(";")[0].split(" and ")
+    assert str(folder / "idle.png") in places
+    assert len(set(places)) == len(places) == 4
+
+
 def test_a_photograph_of_another_size_is_refused_with_the_design(folder: Path) -> None:
     """When the file is read, not after minutes of contact: both sizes, both ways out."""
     text = (folder / "w.toml").read_text().replace("width_px = 64", "width_px = 80")
