@@ -96,7 +96,7 @@ def swatch(colour: tuple[int, int, int], words: str) -> str:
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """Rows of text as an HTML table that scrolls when it is long."""
+    """Rows of text as an HTML table; a long one scrolls with its panel."""
     style = "padding:2px 5px;text-align:left"
     top = "".join(f"<th style='{style}'>{html.escape(cell)}</th>" for cell in head)
     body = "".join(
@@ -104,6 +104,6 @@ def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
         for row in rows
     )
     return (
-        "<div style='max-height:320px;overflow:auto;margin:4px 8px'>"
-        f"<table style='font-size:12px;border-collapse:collapse'><tr>{top}</tr>{body}</table></div>"
+        "<table style='font-size:12px;border-collapse:collapse;margin:4px 8px'>"
+        f"<tr>{top}</tr>{body}</table>"
     )
