@@ -73,6 +73,11 @@ class Desk:
         """Set by the panel that labels faces: whether it took a click on this membrane face."""
         self.probe: Callable[[np.ndarray, np.ndarray], bool] = lambda origin, direction: False
         """Set by the panel of maps: whether it told the value where a click's ray meets the map."""
+        self.takers: list[Callable[[np.ndarray, np.ndarray], bool]] = []
+        """Asked in turn, with a click's ray, before the click aims: the first that takes it has it.
+
+        Panels add themselves, for example while two points are being measured.
+        """
         self.header = Header(
             server.gui,
             on_cancel=self.guarded(lambda event: conductor.cancel()),
@@ -189,8 +194,10 @@ class Desk:
             self.changed()
 
     def _clicked(self, event: Any) -> None:
-        """A click tells a map's value, or labels a face, else it moves the target there."""
+        """A click goes to who asked for clicks; else it labels a face, or moves the target there."""
         origin, direction = np.asarray(event.ray_origin), np.asarray(event.ray_direction)
+        if any(takes(origin, direction) for takes in self.takers):
+            return
         if self.probe(origin, direction):
             return
         hit = self.scene.body.hit(origin, direction)
