@@ -194,7 +194,7 @@ class Desk:
             self.changed()
 
     def _clicked(self, event: Any) -> None:
-        """A click goes to who asked for clicks; else it labels a face, or moves the target there."""
+        """A click goes to who asked for it; else it labels a face, or moves the target there."""
         origin, direction = np.asarray(event.ray_origin), np.asarray(event.ray_direction)
         if any(takes(origin, direction) for takes in self.takers):
             return
