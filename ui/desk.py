@@ -91,7 +91,7 @@ class Desk:
         self.jobs.on_idle = self._idle
         self.jobs.on_failed = self._failed
         self.live = LivePress(self)
-        self.jobs.on_live = self.live.show
+        self.jobs.on_preview[LIVE] = self.live.show
         self._edited: float | None = None
         self._indenter: Indenter | None = None
         """The object on show."""

@@ -7,17 +7,20 @@ widgets happens under the lock that widget callbacks take.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 from ui.header import NAMES, Header
 from ui.reports import Reports
 from workbench.conductor import (
+    CUT,
+    GLIMPSE,
     LIVE,
     QUIET,
     SHAPE,
     Conductor,
     Event,
     Finished,
-    LiveDone,
+    PreviewDone,
     Progress,
     Request,
     StageDone,
@@ -25,7 +28,6 @@ from workbench.conductor import (
 from workbench.core.design import SensorDesign
 from workbench.core.errors import Cancelled, WorkbenchError
 from workbench.core.units import human_seconds
-from workbench.live_press import Preview
 from workbench.pipeline import PressCase
 from workbench.stages import Outcome
 
@@ -48,8 +50,8 @@ class Jobs:
         """Set by the desk: called each time the pump turns."""
         self.asked_now: Callable[[Request, str], bool] = lambda request, failed: True
         """Set by the desk: whether a stage that failed still belongs to the state."""
-        self.on_live: Callable[[Preview, Request], None] = lambda preview, request: None
-        """Set by the desk: shows a live press."""
+        self.on_preview: dict[str, Callable[[Any, Request], None]] = {}
+        """Who shows the previews of a topic; filled by the desk and the panels."""
         self.on_failed: Callable[[WorkbenchError, str], None] = lambda error, topic: None
         """Set by the desk: shows what an error leaves to look at."""
         self._then: dict[str, Callable[[Finished], None]] = {}
@@ -97,8 +99,8 @@ class Jobs:
                 name = NAMES.get(outcome.stage, outcome.stage)
                 self.reports.log(f"{name} done in {human_seconds(outcome.seconds)}")
             self.on_done(outcome)
-        elif isinstance(event, LiveDone):
-            self.on_live(event.preview, event.request)
+        elif isinstance(event, PreviewDone):
+            self.on_preview[event.topic](event.preview, event.request)
         else:
             self._finish(event)
 
@@ -122,6 +124,9 @@ class Jobs:
                 then(event)
         elif then is not None:
             then(event)
+        elif error is not None and event.topic in (GLIMPSE, CUT):
+            # What was wrong with the design itself is told by the topic of its shape.
+            log(f"{event.topic}: {error.message}")
         elif error is not None and event.topic == LIVE:
             self.reports.report(error)
             self.on_failed(error, event.topic)

@@ -16,21 +16,28 @@ import time
 import traceback
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 from workbench.core.design import SensorDesign
 from workbench.core.errors import Cancelled, WorkbenchError
 from workbench.core.monitor import Monitor, seconds_left
-from workbench.live_press import NEEDED, LiveCall, Preview, live_call, live_design
+from workbench.live_press import live_call, live_design
 from workbench.pipeline import PressCase, evaluate, needed, plan, stage_monitor
+from workbench.preview_call import PreviewCall
 from workbench.stages import Call, Outcome
 from workbench.store import Store
 
 SHAPE = "shape"
-"""The topic that follows the sliders: Cancel is not meant for it."""
+"""The topic of the body that follows the sliders."""
 LIVE = "live"
 """The topic of live presses: each request stops the one before."""
-QUIET = (SHAPE, LIVE)
+GLIMPSE = "glimpse"
+"""The topic of the small picture that follows the sliders."""
+CUT = "cut"
+"""The topic of the section view."""
+FOLLOWING = (SHAPE, GLIMPSE, CUT)
+"""Topics that are too quick for a bar and that Cancel is not meant for."""
+QUIET = (*FOLLOWING, LIVE)
 """Topics that follow the designer's hand: nothing is logged of them."""
 
 
@@ -41,8 +48,8 @@ class Runner(Protocol):
         """Compute the call unless it is stored."""
         ...
 
-    def preview(self, call: LiveCall, monitor: Monitor) -> Preview:
-        """Compute a live call; nothing is stored."""
+    def preview(self, call: PreviewCall, monitor: Monitor) -> Any:
+        """Compute a preview; nothing is stored."""
         ...
 
     def close(self) -> None:
@@ -57,8 +64,8 @@ class Request:
     design: SensorDesign
     case: PressCase
     wanted: tuple[str, ...]
-    live: bool = False
-    """Whether a live press follows the stages."""
+    preview: PreviewCall | None = None
+    """What is asked for once the stages are stored."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -82,11 +89,11 @@ class StageDone:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class LiveDone:
-    """A live press that settled."""
+class PreviewDone:
+    """A preview that was answered."""
 
     topic: str
-    preview: Preview
+    preview: Any
     request: Request
 
 
@@ -104,7 +111,7 @@ class Finished:
     """Stage that raised the error; empty without one, or when no stage had begun."""
 
 
-Event = Progress | StageDone | LiveDone | Finished
+Event = Progress | StageDone | PreviewDone | Finished
 
 
 class Conductor:
@@ -129,8 +136,12 @@ class Conductor:
 
     def press_live(self, design: SensorDesign, case: PressCase) -> None:
         """Ask for a live press; the one that runs is stopped, and none ever waits in line."""
-        shown = live_design(design)
-        self._submit(LIVE, Request(design=shown, case=case, wanted=NEEDED, live=True))
+        self.ask(LIVE, live_design(design), case, live_call(design, case))
+
+    def ask(self, topic: str, design: SensorDesign, case: PressCase, call: PreviewCall) -> None:
+        """Ask for a preview and what it needs; a request of the same topic is replaced."""
+        request = Request(design=design, case=case, wanted=call.needs, preview=call)
+        self._submit(topic, request)
 
     def stop_live(self) -> None:
         """Stop the live press that runs, if any."""
@@ -153,11 +164,11 @@ class Conductor:
                 found.append(self.events.get_nowait())
         return found
 
-    def cancel(self, *, shape: bool = False) -> None:
-        """Stop what runs and forget what waits; the shape's topic only when asked to."""
+    def cancel(self, *, following: bool = False) -> None:
+        """Stop what runs and forget what waits; what follows the hand only when asked to."""
         with self._guard:
             for topic in self._topics.values():
-                if shape or topic.name != SHAPE:
+                if following or topic.name not in FOLLOWING:
                     topic.cancel()
 
     @property
@@ -168,7 +179,7 @@ class Conductor:
 
     def close(self) -> None:
         """Stop everything and end the worker processes."""
-        self.cancel(shape=True)
+        self.cancel(following=True)
         self.runner.close()
 
 
@@ -260,10 +271,10 @@ class _Topic:
             ):
                 waiting.pop(0)
                 events.put(StageDone(topic=self.name, outcome=outcome, request=request))
-            if request.live:
-                call = live_call(request.design, request.case)
+            if request.preview is not None:
+                call = request.preview
                 preview = self.conductor.runner.preview(call, stage_monitor(reporter, call.stage))
-                events.put(LiveDone(topic=self.name, preview=preview, request=request))
+                events.put(PreviewDone(topic=self.name, preview=preview, request=request))
         except WorkbenchError as raised:
             error = raised
         except Exception as bug:

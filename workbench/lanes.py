@@ -4,7 +4,7 @@ Some libraries hold the interpreter for minutes and cannot be interrupted, so he
 *lane*: one spawned process that executes one call at a time. A soft cancel makes the stage's next
 `monitor` call raise `Cancelled`; after `GRACE_S` the process is killed and a new one takes its
 place. Results travel through the store, never through the pipe; only previews
-(`workbench.live_press`), which are not kept, are sent back as they are.
+(`workbench.preview_call`), which are not kept, are sent back as they are.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from workbench.core.errors import Cancelled, LaneError, WorkbenchError
 from workbench.core.indenter import Indenter
 from workbench.core.monitor import Monitor, silent
 from workbench.core.press import ContactSettings, Press
-from workbench.live_press import LiveCall, Preview, Previewer
+from workbench.preview_call import PreviewCall
 from workbench.stages import STAGES, Call, Outcome, run
 from workbench.store import Store
 
@@ -41,8 +41,13 @@ REPORT_S = 0.05
 WARM_UP = {
     "cad": ("designs.finger", "geometry.solid", "build123d", "manifold3d", "embreex"),
     "sim": ("sim.contact.solver", "sim.optics.render", "embreex", "scipy.ndimage"),
+    "look": ("sim.optics.render", "geometry.solid", "manifold3d", "embreex"),
 }
-"""What each lane imports before its first job, so that the first click is warm."""
+"""What each lane imports before its first job, so that the first click is warm.
+
+`cad` shapes and meshes, `sim` presses and renders, `look` answers what follows the designer's hand
+while the other two are busy.
+"""
 IDLE_S = 3.0
 """A simulation lane without a job for so long gets ready for its first press [s]."""
 
@@ -84,11 +89,11 @@ class Lane:
         """
         return self._in_turn(call, monitor, GRACE_S)
 
-    def preview(self, call: LiveCall, monitor: Monitor) -> Preview:
-        """Execute a live call in the worker, in turn with the others; raises as `run`."""
+    def preview(self, call: PreviewCall, monitor: Monitor) -> Any:
+        """Execute a preview's call in the worker, in turn with the others; raises as `run`."""
         return self._in_turn(call, monitor, PREVIEW_GRACE_S)
 
-    def _in_turn(self, call: Call | LiveCall, monitor: Monitor, grace_s: float) -> Any:
+    def _in_turn(self, call: Call | PreviewCall, monitor: Monitor, grace_s: float) -> Any:
         while not self._turn.acquire(timeout=0.1):
             monitor(0.0, f"waiting for the {self.name} worker")
         try:
@@ -96,7 +101,7 @@ class Lane:
         finally:
             self._turn.release()
 
-    def _run(self, call: Call | LiveCall, monitor: Monitor, grace_s: float) -> Any:
+    def _run(self, call: Call | PreviewCall, monitor: Monitor, grace_s: float) -> Any:
         if self._closed:
             raise Cancelled("the workbench is closing")
         if not self._process.is_alive():
@@ -183,9 +188,9 @@ class LaneRunner:
             return Outcome(stage=call.stage, key=call.key, cached=True, seconds=0.0)
         return self.lanes[STAGES[call.stage].lane].run(call, monitor)
 
-    def preview(self, call: LiveCall, monitor: Monitor) -> Preview:
-        """Compute a live call in the simulation lane; nothing is stored."""
-        return self.lanes["sim"].preview(call, monitor)
+    def preview(self, call: PreviewCall, monitor: Monitor) -> Any:
+        """Compute a preview in the lane it names; nothing is stored."""
+        return self.lanes[call.lane].preview(call, monitor)
 
     def close(self) -> None:
         """End all worker processes."""
@@ -200,7 +205,7 @@ def _serve(name: str, modules: Sequence[str], root: Path, pipe: Connection, canc
     os.environ.setdefault("ENABLE_TAICHI_HEADER_PRINT", "0")
     _follow_parent()
     unready = _warm_up(name, modules)
-    store, previewer = Store(root), Previewer()
+    store, kept = Store(root), {}
     if name == "sim" and unready is None and not pipe.poll(IDLE_S):
         _rehearse()
     while True:
@@ -211,7 +216,7 @@ def _serve(name: str, modules: Sequence[str], root: Path, pipe: Connection, canc
         # What was missing may have been installed since.
         unready = unready and _warm_up(name, modules)
         monitor = _reporter(pipe, cancelled, number)
-        answer = ("error", unready) if unready else _answer(store, previewer, call, monitor)
+        answer = ("error", unready) if unready else _answer(store, kept, call, monitor)
         pipe.send((number, *answer))
 
 
@@ -243,12 +248,12 @@ def _rehearse() -> None:
 
 
 def _answer(
-    store: Store, previewer: Previewer, call: Call | LiveCall, monitor: Monitor
+    store: Store, kept: dict[str, Any], call: Call | PreviewCall, monitor: Monitor
 ) -> tuple[str, Any]:
     try:
-        if isinstance(call, LiveCall):
-            return "done", previewer.answer(store, call, monitor)
-        return "done", run(store, call, monitor)
+        if isinstance(call, Call):
+            return "done", run(store, call, monitor)
+        return "done", call.answer(store, kept, monitor)
     except WorkbenchError as error:
         return "error", error
     except MemoryError:

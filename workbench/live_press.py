@@ -1,8 +1,7 @@
 """What is shown while the designer drags: one settled frame and its image, computed in a lane.
 
-A `LiveCall` is to a preview what a `Call` is to a stored result: it names its inputs and is small
-to send. Its answer is not stored; it travels through the pipe of the lane. The lane keeps the last
-press (`sim.contact.live`) and the scene of the last image, for requests like the one before.
+A `LiveCall` is a `workbench.preview_call`. The lane keeps the last press (`sim.contact.live`) and
+the scene of the last image, for requests like the one before.
 """
 
 from __future__ import annotations
@@ -10,7 +9,7 @@ from __future__ import annotations
 import dataclasses
 import time
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -57,9 +56,24 @@ class LiveCall:
     settings: ContactSettings
 
     @property
+    def lane(self) -> str:
+        """The worker that answers it."""
+        return "sim"
+
+    @property
     def stage(self) -> str:
         """What messages call it."""
         return "live press"
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """Stages that must be stored before."""
+        return NEEDED
+
+    def answer(self, store: Store, kept: dict[str, Any], monitor: Monitor) -> Preview:
+        """Press and look, going on from the last press of this process."""
+        previewer: Previewer = kept.setdefault(self.stage, Previewer())
+        return previewer.answer(store, self, monitor)
 
     @property
     def key(self) -> str:

@@ -11,7 +11,7 @@ from typing import cast
 import numpy as np
 import pytest
 
-from workbench.conductor import LIVE, SHAPE, Conductor, Finished, LiveDone
+from workbench.conductor import LIVE, SHAPE, Conductor, Finished, PreviewDone
 from workbench.core.design import SensorDesign
 from workbench.core.errors import Cancelled, MeshingError
 from workbench.core.monitor import Monitor
@@ -194,7 +194,9 @@ def test_of_many_drags_the_first_is_stopped_and_only_the_last_is_pressed(tmp_pat
     assert finished(conductor).superseded
     assert runner.depths_mm.get(timeout=WAIT_S) == pytest.approx(1.2)
     runner.release.set()
-    shown = next(event for event in iter(conductor.events.get, None) if isinstance(event, LiveDone))
+    shown = next(
+        event for event in iter(conductor.events.get, None) if isinstance(event, PreviewDone)
+    )
     assert shown.request.case.press.depth_mm == pytest.approx(1.2)
     assert finished(conductor).error is None
     assert runner.depths_mm.empty()
