@@ -126,7 +126,7 @@ def test_cancel_leaves_the_live_body_alone(conductor: Conductor, slow: Slow) -> 
     assert (end.topic, end.superseded) == ("press", False)
     assert isinstance(end.error, Cancelled)
     assert conductor.busy
-    conductor.cancel(shape=True)
+    conductor.cancel(following=True)
     assert finished(conductor).topic == SHAPE
     assert not conductor.busy
 
@@ -136,7 +136,7 @@ def test_cancelled_waiting_request_is_told(conductor: Conductor, slow: Slow) -> 
     submit(conductor, SHAPE, "running")
     slow.begun.get(timeout=WAIT_S)
     submit(conductor, SHAPE, "waiting")
-    conductor.cancel(shape=True)
+    conductor.cancel(following=True)
     names = {(e.request.design.name, type(e.error)) for e in (finished(conductor) for _ in "ab")}
     assert names == {("running", Cancelled), ("waiting", Cancelled)}
     assert not conductor.busy
