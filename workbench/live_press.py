@@ -205,10 +205,10 @@ class Previewer:
         return self._studio[1]
 
 
-def small(optics: Optics) -> Optics:
+def small(optics: Optics, widest_px: int = WIDEST_PX) -> Optics:
     """The same optics with no more pixels across than the page shows."""
     camera = optics.camera
-    share = min(1.0, WIDEST_PX / camera.width_px)
+    share = min(1.0, widest_px / camera.width_px)
     width_px, height_px = (
         max(FEWEST_PX, round(share * count)) for count in (camera.width_px, camera.height_px)
     )

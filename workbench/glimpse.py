@@ -1,0 +1,158 @@
+"""The small picture that follows the sliders: what the camera would see, within a moment.
+
+The body is meshed coarsely, lit by straight light with shadows, and dented by geometry alone
+(`sim.optics.sketch`): no photons, no elasticity. It tells framing, colours and where the dent lies;
+*Run press* tells the rest. A `GlimpseCall` is a `workbench.preview_call` and is answered in a lane
+of its own, which keeps the last coarse mesh and the last lit scene.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import time
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from workbench.core.design import Meshing, SensorDesign
+from workbench.core.digest import digest
+from workbench.core.indenter import Indenter
+from workbench.core.lighting import LightModel
+from workbench.core.monitor import Monitor, silent
+from workbench.core.optics import Optics
+from workbench.live_press import small
+from workbench.pipeline import PressCase, plan
+from workbench.stages import Ref
+from workbench.store import Store
+
+if TYPE_CHECKING:
+    from sim.optics.render import Studio
+    from workbench.core.results import MembraneMesh
+
+WIDTH_PX = 160
+CELL_MM = 0.8
+"""Cells of the coarse mesh: half the vertices' distance below which a dent of 1 mm shows [mm]."""
+QUICK = (LightModel.LINEAR, LightModel.PLANE_TARGET, LightModel.PLANE_SOURCE, LightModel.DIRECT)
+"""Light models that take milliseconds; the others are sketched by straight light."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Glimpse:
+    """What the camera would see."""
+
+    images: np.ndarray
+    """At rest and dented, shape (2, H, W, 3), uint8, `WIDTH_PX` wide at most."""
+    model: LightModel
+    """How it was lit."""
+    seconds: float
+    """Time from the call to the answer [s]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class GlimpseCall:
+    """One glimpse; a `PreviewCall`."""
+
+    solid: Ref
+    optics: Optics
+    """With few pixels and a quick light model."""
+    indenter: Indenter
+    target_mm: tuple[float, float, float]
+    depth_mm: float
+
+    @property
+    def lane(self) -> str:
+        """The worker that answers it."""
+        return "look"
+
+    @property
+    def stage(self) -> str:
+        """What messages call it."""
+        return "glimpse"
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """Stages that must be stored before."""
+        return ("build",)
+
+    def answer(self, store: Store, kept: dict[str, Any], monitor: Monitor) -> Glimpse:
+        """Mesh, light and look; raises as those do."""
+        glimpser: Glimpser = kept.setdefault(self.stage, Glimpser())
+        return glimpser.answer(store, self)
+
+
+def glimpse_call(design: SensorDesign, case: PressCase) -> GlimpseCall:
+    """The glimpse of a state.
+
+    Raises:
+        DesignError: As `plan`.
+    """
+    model = design.optics.light_model
+    quick = model if model in QUICK else LightModel.DIRECT
+    optics = dataclasses.replace(small(design.optics, WIDTH_PX), light_model=quick)
+    return GlimpseCall(
+        solid=plan(design, case)["build"].ref,
+        optics=optics,
+        indenter=case.indenter,
+        target_mm=case.press.target_mm,
+        depth_mm=case.press.depth_mm,
+    )
+
+
+class Glimpser:
+    """Answers glimpses in one process, and keeps what the next one may need."""
+
+    def __init__(self) -> None:
+        self._mesh: tuple[Ref, MembraneMesh] | None = None
+        self._studio: tuple[str, Studio] | None = None
+        self._object: tuple[Indenter, tuple[np.ndarray, np.ndarray]] | None = None
+
+    def answer(self, store: Store, call: GlimpseCall) -> Glimpse:
+        """What the camera sees at rest and dented."""
+        from sim.optics.sketch import sketched
+        from workbench.devices import open_device
+
+        begun = time.perf_counter()
+        open_device()
+        mesh = self._coarse(store, call.solid)
+        studio = self._open_studio(call, mesh)
+        target_mm = np.asarray(call.target_mm)
+        points_mm, faces = self._shape(call.indenter)
+        moved = sketched(mesh.seen, points_mm, faces, target_mm=target_mm, depth_mm=call.depth_mm)
+        images = studio.images(np.stack([np.zeros_like(moved), moved]))
+        return Glimpse(
+            images=images, model=call.optics.light_model, seconds=time.perf_counter() - begun
+        )
+
+    def _coarse(self, store: Store, solid: Ref) -> MembraneMesh:
+        from workbench.stages import mesh
+
+        if self._mesh is None or self._mesh[0] != solid:
+            body = store.load(solid.stage, solid.key)
+            self._mesh = (solid, mesh(body, Meshing(hex_mm=CELL_MM), monitor=silent))
+        return self._mesh[1]
+
+    def _open_studio(self, call: GlimpseCall, mesh: MembraneMesh) -> Studio:
+        from sim.optics.bake import bake_light
+        from sim.optics.render import Studio
+
+        key = digest((call.solid, call.optics))
+        if self._studio is None or self._studio[0] != key:
+            optics = call.optics
+            light = bake_light(
+                mesh,
+                optics.ring,
+                optics.lamps,
+                model=optics.light_model,
+                transport=None,
+                monitor=silent,
+            )
+            self._studio = (key, Studio(mesh, light, optics))
+        return self._studio[1]
+
+    def _shape(self, indenter: Indenter) -> tuple[np.ndarray, np.ndarray]:
+        from workbench.indenter_display import display_mesh
+
+        if self._object is None or self._object[0] != indenter:
+            self._object = (indenter, display_mesh(indenter))
+        return self._object[1]
