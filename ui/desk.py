@@ -11,6 +11,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from ui.glimpse import GlimpseFollower
 from ui.header import Header
 from ui.jobs import Jobs
 from ui.live import LivePress
@@ -92,6 +93,7 @@ class Desk:
         self.jobs.on_failed = self._failed
         self.live = LivePress(self)
         self.jobs.on_preview[LIVE] = self.live.show
+        self.glimpse = GlimpseFollower(self)
         self._edited: float | None = None
         self._indenter: Indenter | None = None
         """The object on show."""
@@ -150,6 +152,7 @@ class Desk:
             self.live.follow()
         for panel in self.panels:
             panel.refresh()
+        self.glimpse.follow()
         self.refresh_header()
 
     def _follow_indenter(self) -> None:

@@ -129,7 +129,7 @@ class Conductor:
     ) -> None:
         """Ask for stages; a request of the same topic that has not begun is replaced.
 
-        One that runs is stopped, except in the topic of the shape: it is done before a person
+        One that runs is stopped, except in topics that follow the hand: it is done before a person
         could wait for it, and a slider that moves on would otherwise never see a body.
         """
         self._submit(topic, Request(design=design, case=case, wanted=tuple(wanted)))
@@ -211,7 +211,7 @@ class _Topic:
     def submit(self, request: Request) -> None:
         with self._wake:
             self._next = request
-            if self.name != SHAPE and self._stop is not None and not self._stop.asked:
+            if self._stop is not None and not self._stop.asked and self.name not in FOLLOWING:
                 self._stop.superseded = True
                 self._stop.asked = True
             self._wake.notify()

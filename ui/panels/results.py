@@ -18,6 +18,7 @@ from ui.sensor import SKIN_COLOUR
 from workbench.core.errors import SolveError
 from workbench.core.press import Press
 from workbench.core.sensing import Contact, Shot
+from workbench.glimpse import Glimpse
 from workbench.live_press import Preview, live_press
 from workbench.phases import phase
 from workbench.quantities import Quantity
@@ -26,6 +27,7 @@ FRAME_S = 0.15
 """Time between frames while playing [s]."""
 LOG_ROWS = 60
 LIVE_NOTE = "**live**: one frame, not stored; *Run press* computes the path"
+GLIMPSE_NOTE = "**preview**: {model} light, dent by geometry; *Run press* computes the image"
 
 
 class ResultsPanel:
@@ -38,6 +40,8 @@ class ResultsPanel:
         """The press that `contact` is of."""
         self.note = ""
         """What is said of frames that are not a whole press: a live one, or what settled."""
+        self.sketch = ""
+        """What is said of a picture that follows the sliders; empty while images are shown."""
         self.play_next = False
         """Whether the next images are played as soon as they are there."""
         self.playing = threading.Event()
@@ -133,6 +137,9 @@ class ResultsPanel:
         what = "background"
         if number:
             what = f"frame {min(number, last)} of {last}, {self._phase(min(number, last))}"
+        if self.sketch:
+            self.image.say(self.sketch)
+            return
         stale = "" if self.desk.current("shoot") else " · **stale**: render again"
         live = self.note == LIVE_NOTE
         self.image.say(f"live, {self._phase(number)}" if live else f"{what}{stale}")
@@ -158,6 +165,8 @@ class ResultsPanel:
             self._show_contact(self.desk.session.case.press, result, note="")
         elif stage == "live":
             self._show_live(result)
+        elif stage == "glimpse":
+            self._show_glimpse(result)
         elif stage == "partial":
             self._show_partial(*result)
         elif stage == "shoot":
@@ -180,6 +189,7 @@ class ResultsPanel:
             self.log.content = f"<div style='font:12px monospace;margin:8px'>{rows}</div>"
 
     def _show_shot(self, shot: Shot) -> None:
+        self.sketch = ""
         self.image.load(shot)
         self.image.measure()
         self._follow_frames(self.image.last or 0)
@@ -194,6 +204,7 @@ class ResultsPanel:
     def _show_live(self, preview: Preview) -> None:
         """Show a live frame and its image; the scene has its skin already."""
         self.playing.clear()
+        self.sketch = ""
         self.contact, self.press = preview.contact, live_press(self.desk.session.case.press)
         self.note = LIVE_NOTE
         self.image.load_live(preview.images)
@@ -202,6 +213,13 @@ class ResultsPanel:
         self._show_image(1)
         self.forces.load(self.press, preview.contact)
         self._show_forces(1)
+
+    def _show_glimpse(self, glimpse: Glimpse) -> None:
+        """Show the small picture of a state without images, in place of a stale one."""
+        self.playing.clear()
+        self.sketch = GLIMPSE_NOTE.format(model=glimpse.model.value)
+        self.image.load_live(glimpse.images)
+        self._show_image(1)
 
     def _show_partial(self, contact: Contact, error: SolveError) -> None:
         """Show the frames that settled before a press failed."""
@@ -226,7 +244,7 @@ class ResultsPanel:
     def _blank(self) -> None:
         """What was seen and felt belongs to another sensor."""
         self.contact = None
-        self.note = ""
+        self.note = self.sketch = ""
         self.playing.clear()
         with self.desk.server.atomic():
             self.image.clear()

@@ -1,0 +1,46 @@
+"""The small picture that follows the sliders while the tactile image is stale.
+
+The desk tells it of every change; it asks the conductor, where the newest request waits for the
+running one, and hands what came to the panels as `glimpse`. What a press has rendered is never
+covered by it: once the state has images, they are shown instead.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from workbench.conductor import GLIMPSE, Request
+from workbench.glimpse import Glimpse, GlimpseCall, glimpse_call
+
+if TYPE_CHECKING:
+    from ui.desk import Desk
+
+
+class GlimpseFollower:
+    """The glimpse of one desk."""
+
+    def __init__(self, desk: Desk) -> None:
+        self.desk = desk
+        self._asked: GlimpseCall | None = None
+        desk.jobs.on_preview[GLIMPSE] = self._show
+
+    def follow(self) -> None:
+        """Ask for the state as it stands, unless it has images or was asked last."""
+        desk, session = self.desk, self.desk.session
+        if desk.live.on or desk.current("shoot"):
+            self._asked = None
+            return
+        call = glimpse_call(session.design, session.case)
+        if call != self._asked:
+            self._asked = call
+            desk.conductor.ask(GLIMPSE, session.design, session.case, call)
+
+    def _show(self, glimpse: Glimpse, request: Request) -> None:
+        """Show what came, unless images have come meanwhile or the design is another one."""
+        desk = self.desk
+        other = request.design.family != desk.session.design.family
+        if other or desk.live.on or desk.current("shoot"):
+            return
+        # A step back to a state that has images shows them again.
+        desk.forget_shown("shoot")
+        desk.tell("glimpse", glimpse)
