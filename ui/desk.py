@@ -19,6 +19,7 @@ from ui.panels.fields import Fields, whole_shape
 from ui.reports import Reports
 from ui.scene import Scene
 from ui.session import Session
+from ui.upkeep import Upkeep
 from workbench.aim import default_target_mm, with_fitting_ring
 from workbench.bodies import IMPORTED
 from workbench.conductor import LIVE, SHAPE, Conductor, Finished, Request
@@ -84,6 +85,7 @@ class Desk:
             on_cancel=self.guarded(lambda event: conductor.cancel()),
             on_fit=self.guarded(lambda event: self.scene.fit_view()),
         )
+        self.upkeep = Upkeep(self)
         self.reports.banner = self.header.banner
         self.jobs = Jobs(conductor, self.reports, self.header)
         self.jobs.on_done = self._stage_done
@@ -132,6 +134,7 @@ class Desk:
     def changed(self) -> None:
         """Follow a change of state: live view, stage strip, autosave."""
         self._edited = time.monotonic()
+        self.upkeep.edited()
         session = self.session
         self._follow_sensor()
         if not session.store.has("build", session.calls()["build"].key):
@@ -327,6 +330,7 @@ class Desk:
         self.fields.read_typed()
         self.live.gizmo.turn()
         self.scene.pressed.turn()
+        self.upkeep.turn()
         self._autosave()
 
     def _autosave(self) -> None:
@@ -339,3 +343,4 @@ class Desk:
         """Show which stages are done and which are stale."""
         self.header.show_stages(self.session.fresh(), self.jobs.running)
         self.header.show_design(self.session.design)
+        self.upkeep.refresh()

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from workbench.core.results import MembraneMesh
 
 WIDTH_PX = 160
+"""Rendered width; shown twice as large, as wide as the page's dock."""
 CELL_MM = 0.8
 """Cells of the coarse mesh: half the vertices' distance below which a dent of 1 mm shows [mm]."""
 QUICK = (LightModel.LINEAR, LightModel.PLANE_TARGET, LightModel.PLANE_SOURCE, LightModel.DIRECT)
@@ -42,7 +43,7 @@ class Glimpse:
     """What the camera would see."""
 
     images: np.ndarray
-    """At rest and dented, shape (2, H, W, 3), uint8, `WIDTH_PX` wide at most."""
+    """At rest and dented, shape (2, H, W, 3), uint8, up to twice `WIDTH_PX` wide."""
     model: LightModel
     """How it was lit."""
     seconds: float
@@ -119,7 +120,7 @@ class Glimpser:
         target_mm = np.asarray(call.target_mm)
         points_mm, faces = self._shape(call.indenter)
         moved = sketched(mesh.seen, points_mm, faces, target_mm=target_mm, depth_mm=call.depth_mm)
-        images = studio.images(np.stack([np.zeros_like(moved), moved]))
+        images = enlarged(studio.images(np.stack([np.zeros_like(moved), moved])))
         return Glimpse(
             images=images, model=call.optics.light_model, seconds=time.perf_counter() - begun
         )
@@ -156,3 +157,11 @@ class Glimpser:
         if self._object is None or self._object[0] != indenter:
             self._object = (indenter, display_mesh(indenter))
         return self._object[1]
+
+
+def enlarged(images: np.ndarray) -> np.ndarray:
+    """Images of shape (K, H, W, 3), uint8, at twice the size, interpolated."""
+    import cv2
+
+    size = (2 * images.shape[2], 2 * images.shape[1])
+    return np.stack([cv2.resize(image, size, interpolation=cv2.INTER_LINEAR) for image in images])
