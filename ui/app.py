@@ -20,7 +20,9 @@ from typing import Any
 import viser
 
 from ui.desk import Desk
+from ui.editor import Editor
 from ui.guard import LOOPBACK, Gate, guarded
+from ui.incoming import Incoming
 from ui.panels.compare import ComparePanel
 from ui.panels.make import MakePanel
 from ui.panels.mesh import MeshPanel
@@ -83,6 +85,8 @@ def build_desk(server: Any, session: Session, conductor: Conductor, *, fast: boo
     gui.configure_theme(dark_mode=True, show_logo=False, show_share_button=False, brand_color=BRAND)
     gui.main_panel.dock_left()
     gui.main_panel.set_width(385)
+    editor = Editor(server)
+    incoming = Incoming(server, editor)
     with server.atomic():
         desk = Desk(server, session, conductor, fast=fast)
         tabs = gui.add_tab_group()
@@ -100,6 +104,7 @@ def build_desk(server: Any, session: Session, conductor: Conductor, *, fast: boo
                 desk.panels.append(panel(desk))
         results = ResultsPanel(desk)
         desk.panels += [results, results.maps]
+    editor.on_change = incoming.on_refused = desk.log
     first_look(desk)
     threading.Thread(target=desk.jobs.pump_forever, name="pump", daemon=True).start()
     return desk

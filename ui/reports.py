@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import html
 import sys
-import threading
 import time
 import traceback
 from collections.abc import Callable
@@ -36,7 +35,7 @@ class Reports:
         """Hidden markdown beside the button of each topic."""
         self.notices: list[Any] = []
         """Notifications of errors; they go with what they tell of."""
-        self.lock = threading.RLock()
+        self.lock = fields.lock
 
     def beside(self, *topics: str) -> None:
         """Make a place under the button just made, for what became of these topics' requests."""

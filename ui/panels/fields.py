@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import html
 import re
+import threading
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -37,6 +38,8 @@ class Fields:
 
     def __init__(self, server: Any, read: Callable[[str], Any], edit: Callable[..., None]) -> None:
         self.gui = server.gui
+        self.lock = threading.RLock()
+        """Held while a widget is read and its value is taken, or while state and widgets change."""
         self._read = read
         self._edit = edit
         self._fields: dict[str, Field] = {}
@@ -158,8 +161,13 @@ class Fields:
 
         @handle.on_update
         def _(event: Any) -> None:
-            # Values set by `refresh` come back here without a client.
-            if event.client is not None and self._take(field):
+            if event.client is None:
+                # A value set by `refresh` comes back here.
+                return
+            # Read under the lock: a value read before an undo must not be taken after it.
+            with self.lock:
+                if not self._take(field):
+                    return
                 complaint, words = field.complaint, remark(to_field(handle.value))
                 if field.path not in self._refused and not complaint.visible and words:
                     complaint.content = f"<small>{words}</small>"

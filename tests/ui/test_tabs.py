@@ -1,0 +1,130 @@
+"""Several tabs: one edits, the others follow; a reload and a restart in mid-job lose nothing.
+
+Most of it speaks viser's protocol without a browser (`workbench.benchmarks.tab`).
+"""
+
+from __future__ import annotations
+
+import time
+import tomllib
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.ui.conftest import Server
+from tests.ui.widgets import button, coarse_project, open_page, tab, wait_until
+from workbench.benchmarks.tab import Tab
+
+pytestmark = [pytest.mark.ui, pytest.mark.slow]
+
+Start = Callable[..., Server]
+LENGTH, RADIUS = "Straight length mm", "Outer radius mm"
+
+
+@pytest.fixture
+def server(tmp_path: Path, start_server: Start) -> Server:
+    """A server whose first press is over or stopped."""
+    return start_server(coarse_project(tmp_path))
+
+
+@pytest.fixture
+def two(server: Server) -> Iterator[tuple[Tab, Tab]]:
+    """The editor and a follower."""
+    with Tab(server.url) as editor:
+        editor.uuid(LENGTH)
+        with Tab(server.url) as follower:
+            follower.uuid("Edit here")
+            yield editor, follower
+
+
+def saved(server: Server, *names: str) -> Any:
+    """A value of the autosaved design."""
+    value: Any = tomllib.loads((server.project / "designs" / "autosave.toml").read_text())
+    for name in names:
+        value = value.get(name, {})
+    return value
+
+
+def test_a_tab_that_follows_sees_all_and_changes_nothing(
+    server: Server, two: tuple[Tab, Tab]
+) -> None:
+    """Its slider snaps back, its button and command do nothing, it is told; it sees each edit."""
+    editor, follower = two
+    assert not editor.find("Edit here")
+    follower.set(LENGTH, 20.0)
+    follower.wait(lambda: follower.value(LENGTH) == 27.0, 5, "the slider snapped back")
+    follower.wait(lambda: follower.told("Another tab edits. Click"), 5, "it is told why")
+    follower.trigger("Undo")
+    editor.set(LENGTH, 22.0)
+    follower.wait(lambda: follower.value(LENGTH) == 22.0, 5, "it sees the edit")
+    wait_until(lambda: saved(server, "shape", "cylinder_mm") == 22.0, 10, "the edit is saved")
+    assert editor.value(LENGTH) == 22.0
+
+
+def test_take_over_and_leave(server: Server, two: tuple[Tab, Tab]) -> None:
+    """The former editor follows and is told; when the new one leaves, it edits again."""
+    editor, follower = two
+    follower.click("Edit here")
+    editor.wait(lambda: editor.find("Edit here"), 5, "the former editor follows")
+    assert editor.told("Another tab took over")
+    assert not follower.find("Edit here")
+    editor.set(LENGTH, 20.0)
+    editor.wait(lambda: editor.value(LENGTH) == 27.0, 5, "its slider snaps back")
+    follower.set(LENGTH, 21.0)
+    editor.wait(lambda: editor.value(LENGTH) == 21.0, 5, "it sees the other's edit")
+    follower.close()
+    editor.wait(lambda: not editor.find("Edit here"), 10, "it edits again")
+    editor.set(LENGTH, 23.0)
+    wait_until(lambda: saved(server, "shape", "cylinder_mm") == 23.0, 10, "its edit is taken")
+
+
+def test_a_reload_keeps_the_place_of_the_editor(server: Server, two: tuple[Tab, Tab]) -> None:
+    """The tab that comes within seconds of the editor's leaving edits; the follower follows on."""
+    editor, follower = two
+    editor.close()
+    with Tab(server.url) as reloaded:
+        reloaded.uuid(LENGTH)
+        time.sleep(5.0)
+        assert not reloaded.find("Edit here")
+        assert follower.find("Edit here")
+
+
+def test_racing_edits_end_in_one_good_state(server: Server, two: tuple[Tab, Tab]) -> None:
+    """Two sliders at once with undo between: widgets, the other tab and the file agree."""
+    editor, follower = two
+    for step in range(30):
+        editor.set(LENGTH, 20.0 + 0.2 * step)
+        editor.set(RADIUS, 12.0 + 0.05 * step)
+        if step % 7 == 3:
+            editor.trigger("Undo")
+
+    def agree() -> bool:
+        return all(
+            who.value(label) == saved(server, "shape", name)
+            for who in (editor, follower)
+            for label, name in ((LENGTH, "cylinder_mm"), (RADIUS, "outer_radius_mm"))
+        )
+
+    wait_until(agree, 30, "both tabs and the file agree")
+    # It is the end, not a moment on the way.
+    time.sleep(3.0)
+    assert agree()
+    assert "Internal error" not in str(editor.seen)
+    assert "Traceback" not in server.log.read_text()
+
+
+def test_a_reload_in_mid_job_shows_progress_and_then_the_result(
+    tmp_path: Path, page: Any, start_server: Start
+) -> None:
+    """The job goes on without the page; the new page shows its bar, then its image."""
+    server = start_server(coarse_project(tmp_path))
+    open_page(page, server.url)
+    button(page, "Cancel").wait_for(timeout=60_000)
+    page.reload()
+    tab(page, "Shape").wait_for()
+    button(page, "Cancel").wait_for(timeout=30_000)
+    assert not button(page, "Edit here").is_visible()
+    wait_until(lambda: page.get_by_text("Image ✓").count(), 150, "the result is shown")
+    page.locator("img:visible").first.wait_for()

@@ -1,0 +1,106 @@
+"""Which of several tabs edits: the first one; the others follow until they take over.
+
+viser shares all widgets among the tabs of a server, so two people would pull at one slider. Here
+one tab is the editor. A tab that follows sees everything and may look around; what it sends to
+shared widgets is dropped by `ui.incoming`, and a note on top of its left dock says so and offers
+*Edit here*. When the editor's tab closes, the tab that comes next within `RELOAD_S` takes its place
+(a reload), else the one that has followed longest.
+
+Left out: rights. Whoever may open the page may take over.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from typing import Any
+
+import viser
+
+RELOAD_S = 4.0
+"""Time that the place of a tab that left is kept for its reload [s]."""
+REMIND_S = 8.0
+FIRST = -1000.0
+"""Order of the note: above all else in the left dock."""
+AMBER = "#f5a623"
+FOLLOWS = f"<span style='color:{AMBER}'>**This tab follows:** another tab edits.</span>"
+
+
+class Editor:
+    """The one tab that edits, and the notes in all others."""
+
+    def __init__(self, server: Any, *, reload_s: float = RELOAD_S) -> None:
+        self.server = server
+        self.reload_s = reload_s
+        self.tab: int | None = None
+        """Number of the tab that edits; None while there is none."""
+        self.on_change: Callable[[str], None] = lambda text: None
+        """Told when the editor changes, in words."""
+        self._notes: dict[int, list[Any]] = {}
+        self._lock = threading.RLock()
+        server.on_client_connect(self._came)
+        server.on_client_disconnect(self._left)
+
+    def edits(self, tab: int) -> bool:
+        """Whether what this tab sends is taken."""
+        return tab == self.tab
+
+    def take_over(self, client: Any) -> None:
+        """Make a tab the editor; the one before follows, and both are told."""
+        with self._lock:
+            before = self.server.get_clients().get(self.tab)
+            self.tab = client.client_id
+            self._unnote(client.client_id)
+            if before is not None and before is not client:
+                self._note(before)
+                _tell(before, "This tab follows now", "Another tab took over the editing.")
+            _tell(client, "This tab edits now", "The others follow.")
+        self.on_change("another tab edits now")
+
+    def remind(self, tab: int) -> None:
+        """Tell a tab that follows why nothing happened."""
+        client = self.server.get_clients().get(tab)
+        if client is not None:
+            _tell(
+                client, "This tab follows", "Another tab edits. Click \u201cEdit here\u201d first."
+            )
+
+    async def _came(self, client: Any) -> None:
+        with self._lock:
+            if self.tab is None:
+                self.tab = client.client_id
+            else:
+                self._note(client)
+
+    async def _left(self, client: Any) -> None:
+        with self._lock:
+            self._notes.pop(client.client_id, None)
+            if self.tab != client.client_id:
+                return
+            self.tab = None
+        timer = threading.Timer(self.reload_s, self._promote)
+        timer.daemon = True
+        timer.start()
+
+    def _promote(self) -> None:
+        """Let the tab that has followed longest edit, where none has come back."""
+        with self._lock:
+            clients = self.server.get_clients()
+            if self.tab is None and clients:
+                self.take_over(clients[min(clients)])
+
+    def _note(self, client: Any) -> None:
+        gui = client.gui
+        words = gui.add_markdown(FOLLOWS, order=FIRST)
+        hint = "What you change in this tab is not taken until then"
+        button = gui.add_button("Edit here", icon=viser.Icon.PENCIL, hint=hint, order=FIRST + 1)
+        button.on_click(lambda event: self.take_over(client))
+        self._notes[client.client_id] = [words, button]
+
+    def _unnote(self, tab: int) -> None:
+        for handle in self._notes.pop(tab, []):
+            handle.remove()
+
+
+def _tell(client: Any, title: str, body: str) -> None:
+    client.add_notification(title, body, auto_close_seconds=REMIND_S)
