@@ -35,6 +35,8 @@ NAMES = {
     "recipe": "Recipe",
     "package": "Files",
     "picture": "Drawing",
+    "portrait": "Thumbnail",
+    "portrait_pressed": "Thumbnail of the press",
 }
 AMBER = "#f5a623"
 WAIT_S = 3.0

@@ -229,6 +229,20 @@ def picture(solid: Solid, moulds: MouldSet, housing: HousingSet, *, monitor: Mon
     return Picture(png=exploded_sensor(solid, moulds, housing))
 
 
+def portrait(solid: Solid, *, monitor: Monitor) -> Picture:
+    """The membrane at rest, small, for lists; a DeviceError where nothing can render."""
+    from geometry.portraits import at_rest
+
+    return Picture(png=at_rest(solid))
+
+
+def portrait_pressed(mesh: MembraneMesh, contact: Contact, *, monitor: Monitor) -> Picture:
+    """The skin in the last frame of a press, small, for lists; a DeviceError likewise."""
+    from geometry.portraits import pressed
+
+    return Picture(png=pressed(mesh.outer, contact.displacement_mm[-1], contact.normal))
+
+
 def package(
     moulds: MouldSet,
     housing: HousingSet,
@@ -268,5 +282,7 @@ STAGES = {
         Stage(name="recipe", version=2, lane="cad", function=recipe),
         Stage(name="package", version=2, lane="cad", function=package),
         Stage(name="picture", version=2, lane="cad", function=picture),
+        Stage(name="portrait", version=1, lane="cad", function=portrait),
+        Stage(name="portrait_pressed", version=1, lane="cad", function=portrait_pressed),
     )
 }

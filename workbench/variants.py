@@ -1,20 +1,32 @@
-"""Saved variants: a design, the keys of its results and its numbers, one TOML file each."""
+"""Saved variants: a design with its press, tags, a note, its figures and the keys of its results.
+
+One TOML file each, `variants/NAME.toml`, and beside it `NAME.png`, its picture. The name is that
+of the file. `variant_files` lists, renames and deletes them.
+"""
 
 from __future__ import annotations
 
 import dataclasses
+import time
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from workbench import __version__
 from workbench.core.errors import DesignError
-from workbench.core.sensing import Shot
-from workbench.map_display import scores
-from workbench.project import Project, design_to_toml, write_atomically
-from workbench.stages import Call
+from workbench.pipeline import plan
+from workbench.project import MAX_TOML_BYTES, Project, design_to_toml, write_atomically
+from workbench.score_card import figures, finite_figures
 from workbench.state import State, case_table, read_state
+
+FOLDER = "variants"
+KEPT = ("build", "mesh", "press", "shoot", "maps", "mould", "housing", "recipe")
+"""Stages whose keys a variant keeps."""
+LONGEST_NOTE = 2000
+RESERVED = ("-",)
+"""Names that mean none in the lists of the front."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -23,38 +35,100 @@ class Variant:
 
     name: str
     state: State
-    shoot_key: str
+    keys: Mapping[str, str]
+    """Keys of the results by stage, as they were when it was kept."""
     metrics: Mapping[str, float]
+    """Finite figures of the score card."""
+    tags: tuple[str, ...] = ()
+    note: str = ""
+    saved: str = ""
+    """When it was kept: date and time of day; "" of a file from before that was noted."""
+    version: str = ""
+    """Version of the workbench that kept it."""
 
 
-def save_variant(project: Project, name: str, state: State, calls: dict[str, Call]) -> Path:
-    """Keep a design and its press, whose results are stored, with the maps' scores if there are.
+def folder(project: Project) -> Path:
+    """Where the variants of a project lie."""
+    return project.folder / FOLDER
+
+
+def variant_path(project: Project, name: str) -> Path:
+    """File of a variant.
 
     Raises:
-        DesignError: If the name cannot be a file name.
-        StoreError: If the results are missing or the folder cannot be written.
+        DesignError: If the name cannot be one.
     """
-    shot: Shot = project.store.load("shoot", calls["shoot"].key)
-    metrics = {
-        "press_depth_mm": state.case.press.depth_mm,
-        **shot.metrics.values,
-    }
-    maps = calls.get("maps")
-    if maps is not None and project.store.has("maps", maps.key):
-        metrics |= scores(project.store.load("maps", maps.key))
-    table = {"name": name, "shoot_key": calls["shoot"].key, "metrics": metrics}
-    press_case = case_table(state.case, project)
-    named = dataclasses.replace(state.design, name=name)
-    project.keep_files(named)
-    text = design_to_toml(named, press_case=press_case, variant=table)
-    path = _folder(project) / project.design_path(name).name
-    write_atomically(path, text.encode())
+    path = folder(project) / project.design_path(name).name
+    if name != name.strip() or not name.isprintable() or name in RESERVED:
+        raise DesignError(
+            f"{name!r} cannot be the name of a variant",
+            hint="use letters, digits, spaces and dashes, at most 80",
+            at="name",
+        )
     return path
 
 
-def list_variants(project: Project) -> list[str]:
-    """Names of all kept variants."""
-    return sorted(path.stem for path in _folder(project).glob("*.toml"))
+def save_variant(
+    project: Project,
+    name: str,
+    state: State,
+    *,
+    tags: Sequence[str] = (),
+    note: str = "",
+    replace: bool = False,
+) -> Variant:
+    """Keep a design and its press with the figures of all that is stored of them.
+
+    Args:
+        project: Where to.
+        name: Of the variant.
+        state: Design and press.
+        tags: Words to find it by.
+        note: Free text.
+        replace: Whether a variant of that name may be overwritten.
+
+    Raises:
+        DesignError: If the name cannot be one or is taken, or the note is too long.
+        StoreError: If a result is damaged or the folder cannot be written.
+    """
+    path = variant_path(project, name)
+    if not replace:
+        refuse_taken(path)
+    if len(note) > LONGEST_NOTE:
+        raise DesignError(
+            f"the note has {len(note)} characters, the limit is {LONGEST_NOTE}",
+            hint="shorten it",
+            at="note",
+        )
+    calls = plan(state.design, state.case)
+    keys = {s: calls[s].key for s in KEPT if s in calls and project.store.has(s, calls[s].key)}
+    variant = Variant(
+        name=name,
+        state=State(design=dataclasses.replace(state.design, name=name), case=state.case),
+        keys=keys,
+        metrics=figures(project.store, state, keys),
+        tags=read_tags(",".join(tags)),
+        note=note,
+        saved=time.strftime("%Y-%m-%d %H:%M"),
+        version=__version__,
+    )
+    write_variant(project, variant)
+    return variant
+
+
+def write_variant(project: Project, variant: Variant) -> None:
+    """Write the file of a variant, in place of one of that name.
+
+    Raises:
+        StoreError: If the folder cannot be written.
+    """
+    path = variant_path(project, variant.name)
+    names = ("name", "tags", "note", "saved", "version", "keys", "metrics")
+    table = {name: getattr(variant, name) for name in names}
+    project.keep_files(variant.state.design)
+    press = case_table(variant.state.case, project)
+    text = design_to_toml(variant.state.design, press_case=press, variant=table)
+    write_atomically(path, text.encode())
 
 
 def load_variant(project: Project, name: str) -> Variant:
@@ -63,23 +137,69 @@ def load_variant(project: Project, name: str) -> Variant:
     Raises:
         DesignError: If the file is gone or was edited into nonsense.
     """
-    path = _folder(project) / project.design_path(name).name
+    path = variant_path(project, name)
     try:
+        if path.stat().st_size > MAX_TOML_BYTES:
+            raise ValueError(f"it is larger than {MAX_TOML_BYTES} bytes")
         text = path.read_text(encoding="utf-8")
-        table: dict[str, Any] = tomllib.loads(text).pop("variant")
-        metrics = {str(k): float(v) for k, v in table["metrics"].items()}
-        key = str(table["shoot_key"])
+        table: dict[str, Any] = tomllib.loads(text)["variant"]
+        fields = _fields(table)
     except (OSError, ValueError, KeyError, AttributeError, TypeError) as error:
+        what = f"it has no {error}" if isinstance(error, KeyError) else str(error)
         raise DesignError(
-            f"variant {name!r} cannot be read: {error}", hint=f"see {path}", at="name"
+            f"variant {name!r} cannot be read: {what}", hint=f"see {path}", at="name"
         ) from error
-    return Variant(
-        name=name,
-        state=read_state(text, project, source=str(path)),
-        shoot_key=key,
-        metrics=metrics,
-    )
+    state = read_state(text, project, source=str(path))
+    named = State(design=dataclasses.replace(state.design, name=name), case=state.case)
+    return Variant(name=name, state=named, **fields)
 
 
-def _folder(project: Project) -> Path:
-    return project.folder / "variants"
+def _fields(table: Mapping[str, Any]) -> dict[str, Any]:
+    """The table of a variant; files of the first version have a `shoot_key` alone.
+
+    Raises:
+        ValueError: If a figure is not a number.
+        KeyError: If there are no figures or no keys.
+    """
+    keys = table["keys"] if "keys" in table else {"shoot": table["shoot_key"]}
+    return {
+        "keys": {str(stage): _key(key) for stage, key in keys.items()},
+        "metrics": finite_figures({str(k): float(v) for k, v in table["metrics"].items()}),
+        "tags": read_tags(",".join(str(tag) for tag in table.get("tags", ()))),
+        "note": str(table.get("note", ""))[:LONGEST_NOTE],
+        "saved": str(table.get("saved", "")),
+        "version": str(table.get("version", "")),
+    }
+
+
+def _key(key: Any) -> str:
+    # A key becomes part of a path in the store.
+    if not str(key).isalnum():
+        raise ValueError(f"{key!r} is not the key of a result")
+    return str(key)
+
+
+def read_tags(text: str) -> tuple[str, ...]:
+    """Words between commas, each once, in their order."""
+    return tuple(dict.fromkeys(word.strip()[:40] for word in text.split(",") if word.strip()))
+
+
+def result_keys(project: Project, variant: Variant) -> dict[str, str]:
+    """Keys of the variant's results that are still stored, by stage.
+
+    Of a stage that a newer version computed again the kept result goes first: the figures are its.
+    """
+    store = project.store
+    kept = {stage: key for stage, key in variant.keys.items() if store.has(stage, key)}
+    planned = plan(variant.state.design, variant.state.case)
+    found = {s: planned[s].key for s in KEPT if s in planned and store.has(s, planned[s].key)}
+    return found | kept
+
+
+def refuse_taken(path: Path) -> None:
+    if path.exists():
+        raise DesignError(
+            f"there is a variant {path.stem!r} already",
+            hint="choose another name, or rename the other one first",
+            at="name",
+        )

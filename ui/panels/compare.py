@@ -1,21 +1,22 @@
-"""Compare: keep variants with their numbers and images, and set two beside each other."""
+"""Compare: variants, their score card, two against each other, sweeps of one parameter, reports."""
 
 from __future__ import annotations
 
-import html
+import threading
 from typing import Any
 
-import numpy as np
-
 from ui.desk import Desk
-from ui.imaging import placeholder
-from workbench.core.errors import DesignError, WorkbenchError
-from workbench.core.mapping import to_table
-from workbench.image_views import visible_change
-from workbench.project import design_table
-from workbench.variants import Variant, list_variants, load_variant, save_variant
+from ui.panels.score_card import NOW_SHORT, ScoreFolder
+from ui.panels.variants import VariantsFolder
+from ui.panels.versus import VersusFolder
+from workbench.core.errors import WorkbenchError
+from workbench.score_card import Figures
+from workbench.sides import NOW, Side, side_as_it_stands, side_of_variant
+from workbench.state import State
+from workbench.variants import KEPT, load_variant
 
-NONE = "-"
+SETTLE_S = 0.4
+"""Quiet time after which the design as it stands is compared anew [s]."""
 
 
 class ComparePanel:
@@ -23,126 +24,67 @@ class ComparePanel:
 
     def __init__(self, desk: Desk) -> None:
         self.desk = desk
-        gui = desk.server.gui
-        self.name = gui.add_text("Variant", next_name(list_variants(desk.session.project)))
-        save = gui.add_button("Save variant", hint="Keeps the design, the press and its numbers")
-        save.on_click(desk.guarded(self._save))
-        self.a = gui.add_dropdown("A", (NONE,))
-        self.b = gui.add_dropdown("B", (NONE,))
-        for handle in (self.a, self.b):
-            handle.on_update(desk.guarded(lambda event: self._compare()))
-        self.load = gui.add_button_group("Load", ("A", "B"))
-        self.load.on_click(desk.guarded(self._load))
-        self.image_a = gui.add_image(placeholder(), label="A", format="jpeg", visible=False)
-        self.image_b = gui.add_image(placeholder(), label="B", format="jpeg", visible=False)
-        self.change = gui.add_image(placeholder(), label="B - A", format="jpeg", visible=False)
-        self.table = gui.add_html("")
-        self._offer()
+        self._now: tuple[State, dict[str, str], Side] | None = None
+        """State and keys of stored results that the design as it stands was read from, and it."""
+        self._timer: threading.Timer | None = None
+        self.variants = VariantsFolder(desk, self._listed)
+        self.score = ScoreFolder(desk)
+        self.versus = VersusFolder(desk, self._side)
+        self.variants.on_save = self.versus.fill
+        self.variants.list()
 
-    def _save(self, event: Any) -> None:
-        session = self.desk.session
-        shot, contact = session.result("shoot"), session.result("press")
-        if shot is None or contact is None:
-            raise DesignError(
-                "this design has not been pressed yet", hint="press Run press, then save", at="name"
-            )
-        name = self.name.value.strip()
-        save_variant(session.project, name, session.state, session.calls())
-        self.desk.log(f"variant {name} saved")
-        self.desk.reports.notify("Saved", f"{name}: design, press and numbers", color="green")
-        self._offer()
-        empty = [handle for handle in (self.a, self.b) if handle.value == NONE]
-        if empty:
-            empty[0].value = name
-        self.name.value = next_name(list_variants(session.project))
+    def _listed(self) -> None:
+        """Follow the files of variants."""
+        entries = self.variants.entries
+        self.versus.offer(tuple(entry.name for entry in entries if entry.variant is not None))
+        self._score()
 
-    def _offer(self) -> None:
-        names = (NONE, *list_variants(self.desk.session.project))
-        for handle in (self.a, self.b):
-            now = handle.value
-            handle.options = names
-            handle.value = now if now in names else NONE
+    def _score(self) -> None:
+        kept = [(e.name, e.variant.metrics) for e in self.variants.entries if e.variant is not None]
+        designs: list[tuple[str, Figures]] = [(NOW_SHORT, self._as_it_stands().figures), *kept]
+        self.score.load(designs)
 
-    def _variant(self, handle: Any) -> Variant | None:
-        if handle.value == NONE:
-            return None
-        return load_variant(self.desk.session.project, handle.value)
-
-    def _load(self, event: Any) -> None:
-        variant = self._variant(self.a if self.load.value == "A" else self.b)
-        if variant is not None:
-            self.desk.session.replace_state(variant.state)
-            self.desk.replaced()
-
-    def _compare(self) -> None:
-        a, b = self._variant(self.a), self._variant(self.b)
-        both = a is not None and b is not None
-        for handle in (self.image_a, self.image_b, self.change):
-            handle.visible = both
-        if a is None or b is None:
-            self.table.content = ""
-            return
-        self.table.content = comparison(a, b)
-        images = [self._image(variant) for variant in (a, b)]
-        self.image_a.image, self.image_b.image = images
-        same = images[0].shape == images[1].shape
-        self.change.visible = same
-        if same:
-            self.change.image = visible_change(images[1], images[0])[0]
-
-    def _image(self, variant: Variant) -> np.ndarray:
-        store = self.desk.session.store
+    def _side(self, name: str) -> Side | None:
+        if name == NOW:
+            return self._as_it_stands()
+        project = self.desk.session.project
         try:
-            return np.asarray(store.load("shoot", variant.shoot_key).frames.rgb[-1])
+            return side_of_variant(project, load_variant(project, name))
         except WorkbenchError as error:
             self.desk.reports.report(error)
-            return placeholder()
+            return None
+
+    def _as_it_stands(self) -> Side:
+        """The design as it stands; read anew once it or what is stored of it has changed."""
+        session = self.desk.session
+        calls, store = session.calls(), session.store
+        there = {s: calls[s].key for s in KEPT if s in calls and store.has(s, calls[s].key)}
+        state, now = session.state, self._now
+        # By identity: a state may hold arrays, and every edit makes another one.
+        if now is None or now[0] is not state or now[1] != there:
+            now = self._now = (state, there, side_as_it_stands(store, state, calls))
+        return now[2]
 
     def refresh(self) -> None:
-        """Variants do not follow the state."""
+        """Follow the design as it stands, once it has rested: a drag must not wait for images."""
+        if self._timer is not None:
+            self._timer.cancel()
+        self._timer = threading.Timer(SETTLE_S, self.desk.guarded(self._follow), (None,))
+        self._timer.daemon = True
+        self._timer.start()
+
+    def _follow(self, event: Any) -> None:
+        before = self._now
+        self._score()
+        chosen = (self.versus.choice_a.value, self.versus.choice_b.value)
+        if NOW in chosen and self._now is not before:
+            self.versus.compare()
 
     def show(self, stage: str, result: Any) -> None:
-        """Variants do not follow results."""
-
-
-def next_name(taken: list[str]) -> str:
-    """The first free name of variant A, B, ... Z, else one with a number."""
-    letters = (f"variant {letter}" for letter in "ABCDEFGHIJKLMNOPQRSTUVWXYZ")
-    return next((name for name in letters if name not in taken), f"variant {len(taken) + 1}")
-
-
-def comparison(a: Variant, b: Variant) -> str:
-    """Parameters in which two variants differ, then their numbers, side by side as HTML."""
-    left, right = _parameters(a), _parameters(b)
-    rows = [
-        (name, left.get(name, NONE), right.get(name, NONE))
-        for name in {**left, **right}
-        if left.get(name) != right.get(name) and name != "name"
-    ]
-    rows += [
-        (name, f"{a.metrics[name]:.4g}", f"{b.metrics[name]:.4g}")
-        for name in a.metrics
-        if name in b.metrics
-    ]
-    cells = "".join(
-        "<tr>"
-        + "".join(f"<td style='padding:2px 8px'>{html.escape(c)}</td>" for c in row)
-        + "</tr>"
-        for row in (("", a.name, b.name), *rows)
-    )
-    return f"<table style='font-size:12px;margin:8px'>{cells}</table>"
-
-
-def _parameters(variant: Variant) -> dict[str, str]:
-    state = variant.state
-    return {**_flat(design_table(state.design)), **_flat(to_table(state.case.press), "press.")}
-
-
-def _flat(table: dict[str, Any], prefix: str = "") -> dict[str, str]:
-    flat: dict[str, str] = {}
-    for name, value in table.items():
-        if isinstance(value, dict):
-            flat |= _flat(value, f"{prefix}{name}.")
-        else:
-            flat[f"{prefix}{name}"] = str(value)
-    return flat
+        """Follow results, another sensor in the view, and parts that cover it."""
+        if stage in KEPT:
+            self.refresh()
+        elif stage == "sensor":
+            self.versus.forget_view()
+        elif stage == "covered":
+            self.versus.cover(bool(result))

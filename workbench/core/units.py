@@ -25,3 +25,32 @@ def human_seconds(duration_s: float) -> str:
         return f"{duration_s:.0f} s"
     minutes, seconds = divmod(round(duration_s), 60)
     return f"{minutes} min {seconds:02d} s"
+
+
+UNITS = {
+    "mm": "mm",
+    "mm2": "mm²",
+    "mm3": "mm³",
+    "deg": "°",
+    "N": "N",
+    "MPa": "MPa",
+    "px": "px",
+    "percent": "%",
+    "s": "s",
+    "ml": "ml",
+    "g": "g",
+    "dB": "dB",
+    "K": "K",
+    "e": "electrons",
+}
+"""Endings of names and the units that people read."""
+
+
+def split_unit(name: str) -> tuple[str, str]:
+    """A name with its unit, for example `press_depth_mm`, as label and unit for people."""
+    if name.endswith("_g_cm3"):
+        return name.removesuffix("_g_cm3").replace("_", " "), "g/cm³"
+    stem, _, ending = name.rpartition("_")
+    if stem and ending in UNITS:
+        return stem.replace("_", " "), UNITS[ending]
+    return name.replace("_", " "), ""

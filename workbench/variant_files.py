@@ -1,0 +1,172 @@
+"""The files of all variants: listed, renamed, copied, moved to the trash and brought back.
+
+A file that was edited into nonsense, or belongs to a newer version, is listed with its reason; it
+can be deleted like any other.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from workbench.core.errors import DesignError, StoreError, WorkbenchError
+from workbench.project import Project, write_atomically
+from workbench.variants import (
+    Variant,
+    folder,
+    load_variant,
+    refuse_taken,
+    variant_path,
+    write_variant,
+)
+
+TRASH = "trash"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Entry:
+    """A file of the list: a variant, or why it cannot be read."""
+
+    name: str
+    variant: Variant | None
+    reason: str = ""
+    picture: Path | None = None
+    """PNG file of its thumbnail, if there is one."""
+
+
+@dataclass
+class Shelf:
+    """The variants of a project; files that did not change are read once."""
+
+    project: Project
+    _read: dict[str, tuple[tuple[int, int], Entry]] = field(default_factory=dict)
+
+    def entries(self) -> list[Entry]:
+        """All variants by name; those that cannot be read stand among them with the reason."""
+        return [self._entry(path) for path in sorted(folder(self.project).glob("*.toml"))]
+
+    def _entry(self, path: Path) -> Entry:
+        try:
+            about = path.stat()
+            stamp = (about.st_mtime_ns, about.st_size)
+        except OSError as error:
+            return Entry(name=path.stem, variant=None, reason=error.strerror or str(error))
+        known = self._read.get(path.stem)
+        if known is None or known[0] != stamp:
+            known = self._read[path.stem] = (stamp, _entry(self.project, path.stem))
+        picture = path.with_suffix(".png")
+        return dataclasses.replace(known[1], picture=picture if picture.is_file() else None)
+
+
+def _entry(project: Project, name: str) -> Entry:
+    try:
+        return Entry(name=name, variant=load_variant(project, name))
+    except WorkbenchError as error:
+        return Entry(name=name, variant=None, reason=error.message)
+
+
+def list_variants(project: Project) -> list[str]:
+    """Names of all files of variants, readable or not."""
+    return sorted(path.stem for path in folder(project).glob("*.toml"))
+
+
+def next_name(taken: Sequence[str]) -> str:
+    """The first free name of variant A, B, ... Z, else one with a number."""
+    letters = (f"variant {letter}" for letter in "ABCDEFGHIJKLMNOPQRSTUVWXYZ")
+    free = next((name for name in letters if name not in taken), "")
+    return free or _numbered("variant", taken)
+
+
+def _numbered(name: str, taken: Sequence[str]) -> str:
+    number = 2
+    while f"{name} {number}" in taken:
+        number += 1
+    return f"{name} {number}"
+
+
+def rename_variant(project: Project, old: str, new: str) -> None:
+    """Give a variant another name.
+
+    Raises:
+        DesignError: If the new name is taken or cannot be one, or the variant cannot be read.
+        StoreError: If the folder cannot be written.
+    """
+    path, target = variant_path(project, old), variant_path(project, new)
+    if old == new:
+        return
+    refuse_taken(target)
+    _write_as(project, old, new)
+    _move(path.with_suffix(".png"), target.with_suffix(".png"))
+    path.unlink(missing_ok=True)
+
+
+def duplicate_variant(project: Project, name: str) -> str:
+    """Copy a variant; returns the name of the copy.
+
+    Raises:
+        DesignError: If the variant cannot be read.
+        StoreError: If the folder cannot be written.
+    """
+    copy = _numbered(name[:70].strip(), list_variants(project))
+    _write_as(project, name, copy)
+    picture = variant_path(project, name).with_suffix(".png")
+    if picture.is_file():
+        write_atomically(variant_path(project, copy).with_suffix(".png"), picture.read_bytes())
+    return copy
+
+
+def _write_as(project: Project, name: str, other: str) -> None:
+    variant = load_variant(project, name)
+    design = dataclasses.replace(variant.state.design, name=other)
+    state = dataclasses.replace(variant.state, design=design)
+    write_variant(project, dataclasses.replace(variant, name=other, state=state))
+
+
+def delete_variant(project: Project, name: str) -> str:
+    """Move a variant to the trash, readable or not; returns its name there.
+
+    Raises:
+        DesignError: If there is none of that name.
+        StoreError: If the folder cannot be written.
+    """
+    path = folder(project) / f"{name}.toml"
+    if name not in list_variants(project):
+        raise DesignError(f"there is no variant {name!r}", hint="it is gone already", at="name")
+    trash = folder(project) / TRASH
+    taken = [kept.stem for kept in trash.glob("*.toml")]
+    kept = name if name not in taken else _numbered(name, taken)
+    for ending in (".toml", ".png"):
+        _move(path.with_name(path.stem + ending), trash / f"{kept}{ending}")
+    return kept
+
+
+def restore_variant(project: Project, kept: str) -> str:
+    """Bring a variant back from the trash; returns its name, which may have got a number.
+
+    Raises:
+        DesignError: If the trash does not hold it.
+        StoreError: If the folder cannot be written.
+    """
+    trash, taken = folder(project) / TRASH, list_variants(project)
+    if kept not in [path.stem for path in trash.glob("*.toml")]:
+        raise DesignError(f"the trash has no variant {kept!r}", hint=f"look in {trash}", at="name")
+    name = kept if kept not in taken else _numbered(kept, taken)
+    for ending in (".toml", ".png"):
+        _move(trash / f"{kept}{ending}", folder(project) / f"{name}{ending}")
+    return name
+
+
+def _move(source: Path, target: Path) -> None:
+    """Move a file, if it is there."""
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        if source.is_file():
+            source.replace(target)
+    except OSError as error:
+        raise StoreError(
+            f"cannot move {source} to {target}: {error.strerror or error}",
+            hint="make the project folder writable; the file is where it was",
+            at=str(source),
+        ) from error
