@@ -1,0 +1,62 @@
+"""Draw the small pictures of the galleries: every preset and family, every object of the studio.
+
+`.venv/bin/python docs/thumbnails.py` writes `designs/thumbnails/*.png` and `keys.toml`, which says
+what each was drawn of, so that a test can tell when one is out of date. Takes about a minute.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import cv2  # noqa: TID253 (a program of its own, not part of the package)
+import numpy as np
+import tomli_w
+
+from geometry.pictures import thumbnail
+from geometry.rendering import canvas, draw, look, png
+from workbench import stages
+from workbench.core.indenter import Indenter
+from workbench.core.monitor import silent
+from workbench.forms import choices
+from workbench.indenter_edit import another, gallery
+from workbench.pipeline import PressCase, plan
+from workbench.previews import indenter_shape
+from workbench.project import load_design
+from workbench.thumbnails import FOLDER, KEYS, object_key, start_key
+
+SIZE_PX, FINER = 144, 3
+OBJECT_COLOUR = "#e87c2c"
+FROM_BELOW = np.array([1.0, -1.6, -1.1])
+"""Toward the eye: objects are told apart by the face that touches."""
+
+
+def pictures() -> Iterator[tuple[str, str, np.ndarray]]:
+    """Name, key and PNG bytes of each, at `FINER` times the size."""
+    size = (FINER * SIZE_PX, FINER * SIZE_PX)
+    for name in choices():
+        solid = stages.build(*plan(load_design(name), PressCase())["build"].inputs, monitor=silent)
+        yield f"start-{name}", start_key(name), thumbnail(solid, size)
+    for name in gallery().values():
+        points, faces = indenter_shape(another(name, Indenter()))
+        plotter = canvas(size)
+        draw(plotter, points, faces, OBJECT_COLOUR)
+        look(plotter, FROM_BELOW, points)
+        yield f"object-{name}", object_key(name), png(plotter, clear=True)
+
+
+def main() -> None:
+    """Write all of them."""
+    folder = Path(__file__).parent.parent / FOLDER
+    keys = {}
+    for name, key, data in pictures():
+        large = cv2.imdecode(data, cv2.IMREAD_UNCHANGED)
+        small = cv2.resize(large, (SIZE_PX, SIZE_PX), interpolation=cv2.INTER_AREA)
+        cv2.imwrite(str(folder / f"{name}.png"), small, [cv2.IMWRITE_PNG_COMPRESSION, 9])
+        keys[name] = key
+        print(name)
+    (folder / KEYS).write_text(tomli_w.dumps(keys))
+
+
+if __name__ == "__main__":
+    main()

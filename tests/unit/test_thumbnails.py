@@ -1,0 +1,32 @@
+"""Every card of a gallery has a picture, of what it starts from today."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+import pytest
+
+from workbench.forms import choices
+from workbench.indenter_edit import gallery
+from workbench.thumbnails import object_key, shipped_keys, start_key, thumbnail_png
+
+STARTS = tuple(f"start-{name}" for name in choices())
+OBJECTS = tuple(f"object-{name}" for name in gallery().values())
+
+
+@pytest.mark.parametrize("name", [*STARTS, *OBJECTS])
+def test_every_card_has_a_picture(name: str) -> None:
+    """144 x 144 with a clear ground, something drawn on at least a tenth of it."""
+    data = thumbnail_png(name)
+    assert data is not None
+    picture = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED)
+    assert picture.shape == (144, 144, 4)
+    drawn = picture[..., 3] > 128
+    assert 0.1 < drawn.mean() < 0.95
+
+
+def test_pictures_are_of_todays_bodies_and_objects() -> None:
+    """The keys beside the pictures are those of today; else run docs/thumbnails.py."""
+    now = {f"start-{name}": start_key(name) for name in choices()}
+    now |= {f"object-{name}": object_key(name) for name in gallery().values()}
+    assert shipped_keys() == now
