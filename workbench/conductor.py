@@ -145,9 +145,13 @@ class Conductor:
 
     def stop_live(self) -> None:
         """Stop the live press that runs, if any."""
+        self.stop(LIVE)
+
+    def stop(self, topic: str) -> None:
+        """Stop what one topic computes, and forget what waits in it."""
         with self._guard:
-            if LIVE in self._topics:
-                self._topics[LIVE].cancel()
+            if topic in self._topics:
+                self._topics[topic].cancel()
 
     def _submit(self, topic: str, request: Request) -> None:
         with self._guard:

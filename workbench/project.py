@@ -52,7 +52,7 @@ VARIABLE = "WORKBENCH_PROJECT"
 DEFAULT_FOLDER = ".workbench"
 AUTOSAVE = "autosave"
 MAX_TOML_BYTES = 1_000_000
-GUEST_TABLES = ("press_case", "variant")
+GUEST_TABLES = ("press_case", "variant", "sweep")
 """Tables of a design file that the design itself does not read."""
 
 
