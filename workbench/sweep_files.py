@@ -1,0 +1,100 @@
+"""Sweeps of a project as TOML files, `sweeps/NAME.toml`: a design file with the table `sweep`.
+
+Figures stand in the file, so that the plot outlives the results; images come from the store.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from workbench.core.errors import DesignError
+from workbench.project import MAX_TOML_BYTES, Project, design_to_toml, write_atomically
+from workbench.score_card import finite_figures
+from workbench.state import case_table, read_state
+from workbench.sweeps import MOST, Point, Status, Sweep
+
+FOLDER = "sweeps"
+
+
+def sweep_path(project: Project, name: str) -> Path:
+    """File of a sweep.
+
+    Raises:
+        DesignError: If the name cannot be one.
+    """
+    return project.folder / FOLDER / project.design_path(name).name
+
+
+def list_sweeps(project: Project) -> list[str]:
+    """Names of all files of sweeps, the newest first."""
+    files = (project.folder / FOLDER).glob("*.toml")
+    return [path.stem for path in sorted(files, key=lambda p: -p.stat().st_mtime)]
+
+
+def next_sweep_name(project: Project, path: str) -> str:
+    """A free name for a sweep of this field, for example `elastomer_mm 2`."""
+    stem = path.rsplit(".", 1)[-1].replace("[", " ").replace("]", "")
+    taken, number = set(list_sweeps(project)), 1
+    while f"{stem} {number}" in taken:
+        number += 1
+    return f"{stem} {number}"
+
+
+def save_sweep(project: Project, sweep: Sweep) -> Path:
+    """Write a sweep as it stands.
+
+    Raises:
+        StoreError: If the folder cannot be written.
+    """
+    path = sweep_path(project, sweep.name)
+    project.keep_files(sweep.base.design)
+    press = case_table(sweep.base.case, project)
+    table = {"path": sweep.path, "parts": sweep.parts, "points": sweep.points}
+    text = design_to_toml(sweep.base.design, press_case=press, sweep=table)
+    write_atomically(path, text.encode())
+    return path
+
+
+def load_sweep(project: Project, name: str) -> Sweep:
+    """Read a sweep.
+
+    Raises:
+        DesignError: If the file is gone or was edited into nonsense.
+    """
+    path = sweep_path(project, name)
+    try:
+        if path.stat().st_size > MAX_TOML_BYTES:
+            raise ValueError(f"it is larger than {MAX_TOML_BYTES} bytes")
+        text = path.read_text(encoding="utf-8")
+        table: dict[str, Any] = tomllib.loads(text)["sweep"]
+        points = tuple(_point(row) for row in table["points"])
+        if not 1 <= len(points) <= MOST:
+            raise ValueError(f"it has {len(points)} points")
+        field, parts = str(table["path"]), bool(table["parts"])
+    except (OSError, ValueError, KeyError, AttributeError, TypeError) as error:
+        what = f"it has no {error}" if isinstance(error, KeyError) else str(error)
+        raise DesignError(
+            f"sweep {name!r} cannot be read: {what}", hint=f"see {path}", at="sweep"
+        ) from error
+    base = read_state(text, project, source=str(path))
+    sweep = Sweep(name=name, base=base, path=field, points=points, parts=parts)
+    # A field that the family has not any more is told now, not in the middle of a run.
+    _ = sweep.field
+    return sweep
+
+
+def _point(row: Mapping[str, Any]) -> Point:
+    keys = {str(stage): str(key) for stage, key in row["keys"].items()}
+    if not all(key.isalnum() for key in keys.values()):
+        raise ValueError("a point has a key that is none")
+    return Point(
+        value=float(row["value"]),
+        status=Status(row["status"]),
+        message=str(row["message"]),
+        figures=finite_figures({str(k): float(v) for k, v in row["figures"].items()}),
+        keys=keys,
+        seconds=float(row["seconds"]),
+    )
