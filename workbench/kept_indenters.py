@@ -72,6 +72,25 @@ def read_indenter(table: Any, project: Project) -> Indenter:
     return dataclasses.replace(found, texture=pictured)
 
 
+def kept_arrays(table: Mapping[str, Any], project: Project) -> dict[str, bytes]:
+    """The files that an indenter's table names, by path relative to the project's folder.
+
+    Raises:
+        DesignError: If one is gone.
+    """
+    keys = [str(table[name]) for name in ("mesh_key", "image_key") if name in table]
+    files = {}
+    for key in keys:
+        path = _path(project, key)
+        try:
+            files[f"{path.parent.name}/{path.name}"] = path.read_bytes()
+        except OSError as error:
+            raise DesignError(
+                f"a file of this press's indenter is gone: {error}", hint="load it again", at=AT
+            ) from error
+    return files
+
+
 def _of_mesh(mesh: IndenterMesh, plain: Mapping[str, Any]) -> Indenter:
     """An indenter of triangles with the fields of a table that such a one has."""
     sizes = ("size_mm", "edge_radius_mm", "mesh_rounding_mm")

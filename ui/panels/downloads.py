@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import io
-import zipfile
-from collections.abc import Mapping
 from functools import partial
 from typing import Any
 
@@ -14,18 +11,10 @@ from ui.desk import Desk
 from workbench.core.errors import WorkbenchError
 from workbench.core.fabrication import FabricationPart
 from workbench.core.results import Bundle
+from workbench.design_bundle import zipped
 
 FORMATS = ("stl", "step", "3mf")
 NO_PART = "-"
-
-
-def zipped(files: Mapping[str, bytes]) -> bytes:
-    """Files by their path inside a zip archive."""
-    buffer = io.BytesIO()
-    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, content in files.items():
-            archive.writestr(name, content)
-    return buffer.getvalue()
 
 
 class Downloads:

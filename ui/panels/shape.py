@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ui.desk import Desk
+from ui.panels.design_files import DesignFiles
 from ui.panels.history import History
 from ui.panels.intake import IntakeFolder
 from workbench.forms import choices, family, load_design, purpose, sliders
@@ -27,8 +28,10 @@ class ShapePanel:
         )
         self.start.on_update(desk.guarded(self._start_from))
         self.about = gui.add_markdown("")
-        self.name = gui.add_text("Name", desk.session.design.name)
-        self.name.on_update(desk.guarded(self._rename))
+        self.files = DesignFiles(desk)
+        self.files.gallery_button()
+        self.files.name_widgets()
+        History(desk)
         self.folder = gui.add_folder("Body")
         self.family = ""
         self._fill()
@@ -38,7 +41,7 @@ class ShapePanel:
             self._material()
         with gui.add_folder("Own body (STEP or STL)", expand_by_default=False):
             self.intake = IntakeFolder(desk)
-        History(desk)
+        self.files.file_widgets()
         self._tell_about()
 
     def _layers(self) -> None:
@@ -90,10 +93,6 @@ class ShapePanel:
             self.desk.session.replace_design(load_design(self.start.value))
             self.desk.replaced()
 
-    def _rename(self, event: Any) -> None:
-        if event.client is not None and self.name.value.strip():
-            self.desk.edit("design.name", self.name.value.strip()[:80])
-
     def _tell_about(self) -> None:
         origin = self._origin()
         parts = ("" if origin == OWN else f"*{purpose(origin)}*", self.desk.scene.body.tints())
@@ -113,8 +112,7 @@ class ShapePanel:
         if tuple(self.start.options) != offered:
             self.start.options = offered
         self._tell_about()
-        if self.name.value != self.desk.session.design.name:
-            self.name.value = self.desk.session.design.name
+        self.files.refresh()
 
     def show(self, stage: str, result: Any) -> None:
         """An imported body's faces can be picked once it is built."""

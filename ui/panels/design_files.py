@@ -1,0 +1,195 @@
+"""The design as something to keep: name, save, copy, open, delete, download and load.
+
+What is opened replaces the whole design and press; Undo brings yours back. Drawing the small
+picture of a kept design is left to the worker, in a thread that only waits for it.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import threading
+from typing import Any
+
+import viser
+
+from ui.desk import Desk
+from ui.gallery import Card, open_gallery
+from workbench.core.errors import WorkbenchError
+from workbench.core.monitor import silent
+from workbench.design_bundle import bundle, unbundle
+from workbench.forms import choices, load_design, purpose
+from workbench.pipeline import plan
+from workbench.portraits import portrait_calls
+from workbench.saved_designs import (
+    SavedDesign,
+    delete_design,
+    free_name,
+    open_design,
+    save_named,
+    saved_designs,
+    saved_names,
+)
+from workbench.state import State
+from workbench.thumbnails import thumbnail_png
+
+SAVE, COPY = "Save design", "Duplicate"
+YOURS = "Your designs"
+MARK = " (yours)"
+"""Ends the card of a kept design."""
+NOTHING = "-"
+
+
+class DesignFiles:
+    """Widgets about the design as a whole."""
+
+    def __init__(self, desk: Desk) -> None:
+        self.desk = desk
+        self.project = desk.session.project
+
+    def gallery_button(self) -> None:
+        """Make the button that opens the gallery."""
+        hint = "Presets, families and your own designs as pictures (G)"
+        button = self.desk.server.gui.add_button(
+            "Gallery of designs", icon=viser.Icon.LAYOUT_GRID, hint=hint
+        )
+        button.on_click(self.desk.guarded(self._open_gallery))
+        command = self.desk.server.gui.add_command("Gallery of designs", hotkey="G")
+        command.on_trigger(self.desk.guarded(self._open_gallery))
+
+    def name_widgets(self) -> None:
+        """Make the name and what keeps the design under it."""
+        desk, gui = self.desk, self.desk.server.gui
+        self.name = gui.add_text("Name", desk.session.design.name)
+        self.name.on_update(desk.guarded(self._rename))
+        hint = "Save keeps it under its name (Ctrl+S); Duplicate goes on with a copy"
+        keep = gui.add_button_group("Design", (SAVE, COPY), hint=hint)
+        keep.on_click(desk.guarded(lambda event: self._keep(keep.value)))
+        command = gui.add_command(SAVE, hotkey="S", modifier="cmd/ctrl")
+        command.on_trigger(desk.guarded(lambda event: self._keep(SAVE)))
+        desk.fields.anchor("Name", "design.name")
+
+    def file_widgets(self) -> None:
+        """Make the folder of files."""
+        desk, gui = self.desk, self.desk.server.gui
+        with gui.add_folder("Design files", expand_by_default=False):
+            hint = "Of your own; the gallery shows them as pictures"
+            self.kept = gui.add_dropdown("Saved design", (NOTHING,), hint=hint)
+            hint = "Delete moves the file to the project's designs/trash"
+            acts = gui.add_button_group("With it", ("Open", "Delete"), hint=hint)
+            acts.on_click(desk.guarded(lambda event: self._with_kept(acts.value)))
+            hint = "Readable TOML; a zip where it needs files of its own"
+            button = gui.add_button("Download design", icon=viser.Icon.DOWNLOAD, hint=hint)
+            button.on_click(desk.guarded(self._download))
+            self.upload = gui.add_upload_button("Load design (TOML)", mime_type=".toml,.zip")
+            self.upload.on_upload(desk.guarded(self._load))
+        self._list()
+
+    def refresh(self) -> None:
+        """Show the name as it stands."""
+        if self.name.value != self.desk.session.design.name:
+            self.name.value = self.desk.session.design.name
+
+    def _list(self) -> None:
+        names = saved_names(self.project) or (NOTHING,)
+        if tuple(self.kept.options) != names:
+            now = self.kept.value
+            self.kept.options = names
+            self.kept.value = now if now in names else names[0]
+
+    def _rename(self, event: Any) -> None:
+        if event.client is not None and self.name.value.strip():
+            self.desk.edit("design.name", self.name.value.strip()[:80])
+
+    def _keep(self, what: str) -> None:
+        desk = self.desk
+        desk.fields.read_typed(now=True)
+        if what == COPY:
+            design = desk.session.design
+            copy = dataclasses.replace(design, name=free_name(self.project, design.name))
+            desk.session.replace_state(dataclasses.replace(desk.session.state, design=copy))
+            desk.replaced()
+        state = desk.session.state
+        save_named(self.project, state)
+        self._list()
+        desk.log(f"design {state.design.name} saved")
+        desk.reports.notify("Saved", f"{state.design.name}: design and press", color="green")
+        self._draw(state)
+
+    def _draw(self, state: State) -> None:
+        """Have the small picture of a design drawn, if its body is stored."""
+        store, runner = self.project.store, self.desk.conductor.runner
+
+        def wait(call: Any) -> None:
+            try:
+                runner.run(call, silent)
+            except WorkbenchError as error:
+                # A design without a picture is still a design.
+                self.desk.log(f"no picture of {state.design.name}: {error.message}")
+
+        keys = {"build": plan(state.design, state.case)["build"].key}
+        for call in portrait_calls(store, keys):
+            threading.Thread(target=wait, args=(call,), name="picture", daemon=True).start()
+
+    def _with_kept(self, what: str) -> None:
+        name = self.kept.value
+        if name == NOTHING:
+            return
+        if what == "Open":
+            self._open(open_design(self.project, name))
+            return
+        kept = delete_design(self.project, name)
+        self._list()
+        self.desk.reports.notify("Deleted", f"{name}: kept as {kept.parent.name}/{kept.name}")
+
+    def _open(self, state: State) -> None:
+        self.desk.session.replace_state(state)
+        self.desk.replaced()
+
+    def _start(self, name: str) -> None:
+        self.desk.session.replace_design(load_design(name))
+        self.desk.replaced()
+
+    def _download(self, event: Any) -> None:
+        name, content = bundle(self.desk.session.state, self.project)
+        event.client.send_file_download(name, content, save_immediately=True)
+
+    def _load(self, event: Any) -> None:
+        file = self.upload.value
+        self._open(unbundle(file.name, file.content, self.project))
+
+    def _open_gallery(self, event: Any) -> None:
+        kept = {f"{found.name}{MARK}": found for found in saved_designs(self.project)}
+        shipped = [
+            Card(name=name, words=_short(purpose(name)), png=thumbnail_png(f"start-{name}"))
+            for name in choices()
+        ]
+        own = [self._own_card(label, found) for label, found in kept.items()]
+
+        def choose(name: str) -> None:
+            if name in kept:
+                self._open(open_design(self.project, kept[name].name))
+            else:
+                self._start(name)
+
+        open_gallery(event.client.gui, "Start from", (*shipped, *own), self.desk.guarded(choose))
+
+    def _own_card(self, label: str, found: SavedDesign) -> Card:
+        words = found.reason or found.family
+        return Card(name=label, words=_short(words), png=self._picture(found), group=YOURS)
+
+    def _picture(self, found: SavedDesign) -> bytes | None:
+        """What was drawn of a kept design, else its family's picture."""
+        if found.reason:
+            return None
+        state, store = open_design(self.project, found.name), self.project.store
+        keys = {"build": plan(state.design, state.case)["build"].key}
+        for call in portrait_calls(store, keys):
+            if store.has(call.stage, call.key):
+                return bytes(store.load(call.stage, call.key).png)
+        return thumbnail_png(f"start-{found.family}")
+
+
+def _short(words: str) -> str:
+    """The first sentence, cut to what a card holds."""
+    first = words.split(": ", 1)[-1].split(". ", 1)[0].rstrip(".")
+    return first if len(first) <= 90 else f"{first[:87]}..."
