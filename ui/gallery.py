@@ -52,7 +52,7 @@ def open_gallery(
         cards: In their order; cards of a group stand together.
         choose: Called with the name of the chosen card.
     """
-    window = gui.add_modal(title, size="xl")
+    window = gui.add_modal(title)
 
     def chosen(event: Any) -> None:
         window.close()
