@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import errno
+import importlib
 import os
 import secrets
 import signal
@@ -30,6 +31,7 @@ from ui.panels.optics import OpticsPanel
 from ui.panels.results import ResultsPanel
 from ui.panels.shape import ShapePanel
 from ui.panels.simulate import SimulatePanel
+from ui.panels.view import ViewPanel
 from ui.session import Session
 from workbench import __version__
 from workbench.conductor import Conductor
@@ -38,6 +40,8 @@ from workbench.lanes import LaneRunner
 from workbench.project import Project
 
 BRAND = (37, 99, 235)
+DRAWING = ("cv2", "scipy.spatial", "trimesh")
+"""Heavy packages with which this process draws."""
 
 
 def serve(options: argparse.Namespace, project: Project) -> int:
@@ -63,6 +67,7 @@ def serve(options: argparse.Namespace, project: Project) -> int:
         server.stop()
         raise _port_taken(options.port)
     conductor = Conductor(project.store, LaneRunner(project.store))
+    threading.Thread(target=warm_up, name="warm-up", daemon=True).start()
     build_desk(server, session, conductor, fast=options.fast_scene)
     gate.health = lambda: {"ok": True, "version": __version__, "busy": conductor.busy}
     name = f"[{options.host}]" if ":" in options.host else options.host
@@ -103,7 +108,7 @@ def build_desk(server: Any, session: Session, conductor: Conductor, *, fast: boo
             with tabs.add_tab(label):
                 desk.panels.append(panel(desk))
         results = ResultsPanel(desk)
-        desk.panels += [results, results.maps]
+        desk.panels += [results, results.maps, ViewPanel(desk, results.dock)]
     editor.on_change = incoming.on_refused = desk.log
     first_look(desk)
     threading.Thread(target=desk.jobs.pump_forever, name="pump", daemon=True).start()
@@ -119,6 +124,12 @@ def first_look(desk: Desk) -> None:
     if not any(fresh.values()):
         desk.log("first start: pressing the example in the background, a minute or so")
         desk.run("press", ("press", "shoot"))
+
+
+def warm_up() -> None:
+    """Import what drawing a result needs: the first result would hold all tabs up for seconds."""
+    for module in DRAWING:
+        importlib.import_module(module)
 
 
 def wait_for_stop() -> None:

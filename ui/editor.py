@@ -15,8 +15,6 @@ import threading
 from collections.abc import Callable
 from typing import Any
 
-import viser
-
 RELOAD_S = 4.0
 """Time that the place of a tab that left is kept for its reload [s]."""
 REMIND_S = 8.0
@@ -93,7 +91,7 @@ class Editor:
         gui = client.gui
         words = gui.add_markdown(FOLLOWS, order=FIRST)
         hint = "What you change in this tab is not taken until then"
-        button = gui.add_button("Edit here", icon=viser.Icon.PENCIL, hint=hint, order=FIRST + 1)
+        button = gui.add_button("Edit here", hint=hint, order=FIRST + 1)
         button.on_click(lambda event: self.take_over(client))
         self._notes[client.client_id] = [words, button]
 

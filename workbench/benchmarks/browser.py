@@ -20,6 +20,7 @@ from typing import Any
 
 import numpy as np
 
+from workbench.benchmarks.tabs import blocked_s, key_to_server_s
 from workbench.rows import Row, bounded, failed
 
 FLAGS = (
@@ -38,6 +39,8 @@ ROWS = {
     "healthz": ("finger cached", 10.0),
     "gui_usable": ("finger cached, software rendering", 20.0),
     "slider_to_membrane": ("key press to the new skin in graphics memory, software rendering", 0.5),
+    "slider_to_callback": ("key press to the server's callback, another tab watching", 0.1),
+    "other_tab_blocked": ("longest wait of a second tab while a press runs", 0.2),
     "drag_to_settled": ("release of the handle to the settled skin, software rendering", 2.0),
 }
 """Case and limit [s] of each row, in the order they are measured."""
@@ -115,8 +118,10 @@ def _measure(program: str, figures_s: dict[str, float]) -> str:
                 figures_s["drag_to_settled"] = drag_s(page)
                 page.locator('[role="tab"]').filter(has_text="Shape").click()
                 figures_s["slider_to_membrane"] = _slider_s(page)
+                figures_s["slider_to_callback"] = key_to_server_s(page, url)
                 opened.close()
-        except (Error, subprocess.SubprocessError) as error:
+                figures_s["other_tab_blocked"] = blocked_s(url)
+        except (Error, TimeoutError, subprocess.SubprocessError) as error:
             return str(error)[:300]
     return ""
 
