@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from workbench.colour_scale import viridis
+from workbench.section_cut import Plane, clip, packed
 
 SRGB_GAMMA = 2.2
 """Power that comes near the curve of sRGB."""
@@ -22,10 +23,26 @@ def heat_colours(share: np.ndarray, rest: tuple[int, int, int]) -> np.ndarray:
     return ((1 - strength) * np.array(rest) + strength * viridis(share)).astype(np.uint8)
 
 
-def coloured_glb(points: np.ndarray, faces: np.ndarray, colours: np.ndarray) -> bytes:
-    """A mesh with an sRGB colour at each vertex as a GLB file with a matt material."""
+def coloured_glb(
+    points: np.ndarray, faces: np.ndarray, colours: np.ndarray, plane: Plane | None = None
+) -> bytes:
+    """A mesh with an sRGB colour at each vertex as a GLB file with a matt material, cut or whole.
+
+    Args:
+        points: Vertices [mm], shape (N, 3).
+        faces: Triangles, shape (M, 3).
+        colours: Shape (N, 3), uint8.
+        plane: What the mesh is cut by, if it is.
+    """
     import trimesh
 
+    if plane is not None:
+        kept = clip(points, faces, plane)
+        points, faces, used = packed(kept.points_mm, kept.faces)
+        colours = kept.carry(colours)[used]
+        if not len(faces):
+            # A file must have a mesh: a triangle without an area.
+            points, faces, colours = np.zeros((3, 3)), np.array([[0, 1, 2]]), np.zeros((3, 3))
     # glTF takes the colours of vertices as linear light.
     linear = np.rint(255.0 * (np.asarray(colours) / 255.0) ** SRGB_GAMMA).astype(np.uint8)
     mesh = trimesh.Trimesh(points, faces, process=False, vertex_colors=linear)

@@ -9,6 +9,7 @@ import numpy as np
 
 from ui.imaging import coloured_glb
 from workbench.core.results import Skin
+from workbench.section_cut import Plane
 
 
 class MapView:
@@ -20,6 +21,9 @@ class MapView:
         self._node: Any = None
         self._label: Any = None
         self._series = 0
+        self._drawn: tuple[Skin, np.ndarray] | None = None
+        self.plane: Plane | None = None
+        """What the skin is cut by."""
 
     @property
     def on(self) -> bool:
@@ -30,12 +34,19 @@ class MapView:
         """Show a map in place of the one before; colours of shape (V, 3), uint8."""
         self.forget_value()
         before, self._series = self._node, self._series + 1
+        self._drawn = skin, colours
         points = np.asarray(skin.points_mm, np.float32)
-        glb = coloured_glb(points, np.asarray(skin.faces), colours)
+        glb = coloured_glb(points, np.asarray(skin.faces), colours, self.plane)
         self._node = self.api.add_glb(f"/map/{self._series}", glb)
         self._node.on_click(self.on_click)
         if before is not None:
             before.remove()
+
+    def cut(self, plane: Plane | None) -> None:
+        """Cut the map by a plane, or make it whole."""
+        self.plane = plane
+        if self._node is not None and self._drawn is not None:
+            self.load(*self._drawn)
 
     def tell(self, place_mm: np.ndarray, text: str) -> None:
         """Write a value at a place of the skin."""
@@ -62,4 +73,4 @@ class MapView:
         self.forget_value()
         if self._node is not None:
             self._node.remove()
-            self._node = None
+            self._node = self._drawn = None

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from ui.nodes import Meshes
 from workbench.core.fabrication import FabricationPart, PartGroup
+from workbench.section_cut import Plane
 
 MOULD_COLOURS = ((122, 162, 214), (146, 186, 160), (214, 182, 112), (180, 150, 200))
 SENSOR_COLOURS = ((150, 150, 156), (205, 140, 120), (120, 190, 200), (200, 190, 150))
@@ -19,6 +21,11 @@ class PartsView:
     def __init__(self, server: Any) -> None:
         self.server = server
         self.meshes = Meshes(server.scene, "/parts")
+        self.plane: Plane | None = None
+        """What the parts are cut by, where they stand."""
+        self.meshes.plane = self._plane
+        self.on_moved: Callable[[], None] = lambda: None
+        """Set by the scene: other parts are on show, or they stand elsewhere."""
         self.parts: dict[str, FabricationPart] = {}
         self.shown: set[str] = set()
         self.spread = 1.0
@@ -35,11 +42,24 @@ class PartsView:
             # Meshes travel when they are first asked for: a housing nobody looks at costs nothing.
             for name in self.shown - set(self.meshes.nodes):
                 part = self.parts[name]
-                looks = {"color": self._colour(name), "flat_shading": True}
+                looks = {"color": self.colour(name), "flat_shading": True}
                 self.meshes.put(name, part.points_mm, part.faces, looks)
             for name, node in self.meshes.nodes.items():
                 node.position = self.moved(name, (0.0, 0.0, 0.0))
                 node.visible = name in self.shown
+            if self.plane is not None:
+                # Parts move through the plane as they move apart.
+                self.meshes.recut()
+        self.on_moved()
+
+    def _plane(self, name: str) -> Plane | None:
+        """The plane as a part sees it from where it stands."""
+        return self.plane and self.plane.moved(np.asarray(self.moved(name, (0.0, 0.0, 0.0))))
+
+    def cut(self, plane: Plane | None) -> None:
+        """Cut the parts by a plane, or make them whole."""
+        self.plane = plane
+        self.meshes.recut()
 
     def clear(self) -> None:
         """Take every part away."""
@@ -65,7 +85,8 @@ class PartsView:
         ]
         return np.min(corners, axis=0), np.max(corners, axis=0)
 
-    def _colour(self, name: str) -> tuple[int, int, int]:
+    def colour(self, name: str) -> tuple[int, int, int]:
+        """In what colour a part is drawn."""
         group = self.parts[name].group
         colours = MOULD_COLOURS if group is PartGroup.MOULD else SENSOR_COLOURS
         names = [n for n, part in self.parts.items() if part.group is group]

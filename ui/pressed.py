@@ -1,9 +1,10 @@
 """The pressed skin in the 3D view: a coloured mesh for every frame, and arrows of force.
 
-Frames are prepared when a press arrives, so that stepping only shows and hides them; of a long
-press they are made as they are asked for. A live frame takes the place of the one before only once
-the page has had time to read it, or the skin would flicker: the desk's pump calls `turn`, which
-removes what was replaced.
+Stepping only shows and hides frames that are there. They are made a few at a time when the desk's
+pump turns, the last one first, so that a long press holds nobody up; one that is asked for before
+its turn is made at once. A frame that takes the place of another, live or cut elsewhere, does so
+only once the page has had time to read it, or the skin would flicker: `turn` removes what was
+replaced.
 """
 
 from __future__ import annotations
@@ -19,14 +20,21 @@ from ui.sensor import SKIN_COLOUR
 from workbench.core.results import Skin
 from workbench.core.sensing import Contact
 from workbench.quantities import Quantity, Shown, force_arrows, largest_arrow_N, shown
+from workbench.section_cut import Plane
 
 ARROW_COLOUR = (255, 210, 60)
 MOST_PREPARED = 60
-"""Frames of which the meshes are made at once."""
+"""Frames of which the meshes are made beforehand."""
 MOST_KEPT = 120
 """Meshes that are kept at all."""
 LINGER_S = 0.6
 """How long a replaced live frame stays: software rendering takes so long to read a new one."""
+CUT_LINGER_S = 0.25
+"""The same of a frame that was cut elsewhere, whose rest stands beyond the plane meanwhile."""
+SLICE_S = 0.04
+"""Time for making frames at each turn of the pump: other tabs wait so long at most [s]."""
+QUIET_S = 0.4
+"""A plane that has not moved for so long is where the other frames are cut [s]."""
 
 
 class PressedView:
@@ -51,8 +59,15 @@ class PressedView:
         self._top_N = 0.0
         self._number = 0
         self._series = 0
+        self._waiting: list[int] = []
+        """Frames that are still to be made."""
+        self._not_before_s = 0.0
+        self.plane: Plane | None = None
+        """What the frames are cut by."""
+        self.allowed = True
+        """Whether the designer wants to see the skin at all."""
         self._lingering: list[tuple[float, Any]] = []
-        """Replaced live frames and when each goes [s]."""
+        """Replaced frames and when each goes [s]."""
 
     @property
     def count(self) -> int:
@@ -68,17 +83,22 @@ class PressedView:
 
     def load_live(self, skin: Skin, contact: Contact) -> None:
         """Take a press of one frame, and show it in place of the one before."""
-        before = [node for node in self._nodes.values() if node.visible]
-        rest = [node for node in self._nodes.values() if not node.visible]
-        self._nodes.clear()
-        for node in rest:
-            node.remove()
+        self._let_linger(LINGER_S)
         self._skin, self.contact = skin, contact
         self._measure()
-        self._series += 1
-        leave_s = self._clock() + LINGER_S
-        self._lingering += [(leave_s, node) for node in before]
         self.show(1)
+
+    def _let_linger(self, seconds: float) -> None:
+        """Forget all frames; the one on show stays until the page has read its successor."""
+        leave_s = self._clock() + seconds
+        for node in self._nodes.values():
+            if node.visible:
+                self._lingering.append((leave_s, node))
+            else:
+                node.remove()
+        self._nodes.clear()
+        self._waiting.clear()
+        self._series += 1
 
     def turn(self) -> None:
         """Remove the replaced live frames whose time is over."""
@@ -87,16 +107,56 @@ class PressedView:
         self._lingering = [entry for entry in self._lingering if entry[0] > now_s]
         for node in over:
             node.remove()
+        if now_s >= self._not_before_s:
+            self._make_some()
+
+    def _make_some(self) -> None:
+        """Make frames that wait for as long as nobody minds, and at least one."""
+        until_s = self._clock() + SLICE_S
+        while self._waiting:
+            self._node(self._waiting.pop(0))
+            if self._clock() >= until_s:
+                break
+
+    @property
+    def ready(self) -> bool:
+        """Whether every frame that is made beforehand is there."""
+        return not self._waiting
+
+    def cut(self, plane: Plane | None) -> None:
+        """Cut the frames by a plane, or make them whole."""
+        self.plane = plane
+        if self.contact is not None:
+            self._let_linger(CUT_LINGER_S)
+            self.show(self._number)
+            self._prepare()
+            self._not_before_s = self._clock() + QUIET_S
+
+    def allow(self, wanted: bool) -> None:
+        """Let the skin be seen, or hide it whatever else is shown."""
+        self.allowed = wanted
+        self.show(self._number)
+
+    def name_of(self, number: int) -> str:
+        """Name of the node of a frame, which is made if it is not there."""
+        return self._node(number).name
+
+    def surface(self) -> tuple[np.ndarray, np.ndarray] | None:
+        """Vertices [mm] and triangles of the frame on show, not cut; None where none is."""
+        if not self._number or self._skin is None or self.contact is None or not self.allowed:
+            return None
+        number = min(self._number, self.count)
+        moved = np.asarray(self.contact.displacement_mm[number - 1])
+        return np.asarray(self._skin.points_mm) + moved, np.asarray(self._skin.faces)
 
     def paint(self, quantity: Quantity) -> None:
         """Colour the skin by another quantity."""
         self.quantity = quantity
         if self.contact is not None:
-            number = self._number
-            self._forget_nodes()
+            self._let_linger(CUT_LINGER_S)
             self._measure()
+            self.show(self._number)
             self._prepare()
-            self.show(number)
 
     def draw_arrows(self, wanted: bool) -> None:
         """Draw the forces of the frame on show, or take them away."""
@@ -109,8 +169,9 @@ class PressedView:
         if number:
             self._node(number)
         for k, node in self._nodes.items():
-            if (k == number) != node.visible:
-                node.visible = k == number
+            wanted = k == number and self.allowed
+            if wanted != node.visible:
+                node.visible = wanted
         self._follow_arrows()
 
     def clear(self) -> None:
@@ -126,9 +187,10 @@ class PressedView:
             self._top_N = largest_arrow_N(self._skin, self.contact)
 
     def _prepare(self) -> None:
-        self._series += 1
-        for k in range(1, min(self.count, MOST_PREPARED) + 1):
-            self._node(k)
+        """Let the frames of a press of usual length be made, the last one first."""
+        frames = range(1, min(self.count, MOST_PREPARED) + 1)
+        self._waiting = [self.count, *frames] if self.count else []
+        self._not_before_s = 0.0
 
     def _node(self, number: int) -> Any:
         """The mesh of a frame, made when it is first asked for."""
@@ -141,7 +203,7 @@ class PressedView:
         moved = np.asarray(self.contact.displacement_mm[number - 1])
         points = (np.asarray(self._skin.points_mm) + moved).astype(np.float32)
         colours = heat_colours(self.shown.shares[number - 1], SKIN_COLOUR)
-        glb = coloured_glb(points, np.asarray(self._skin.faces), colours)
+        glb = coloured_glb(points, np.asarray(self._skin.faces), colours, self.plane)
         node = self.api.add_glb(f"/frames/{self._series}/{number}", glb, visible=False)
         node.on_click(self.on_click)
         self._nodes[number] = node
@@ -154,6 +216,8 @@ class PressedView:
         for node in self._nodes.values():
             node.remove()
         self._nodes.clear()
+        self._waiting.clear()
+        self._series += 1
 
     def _follow_arrows(self) -> None:
         if self._arrows is not None:

@@ -39,6 +39,12 @@ class RigView:
         self.leds: list[Any] = []
         self.lamps = LampsView(self.api)
         self.cameras: list[Any] = []
+        self.lights_allowed = True
+        """Whether the designer wants to see LEDs and lamps at all."""
+        self.cameras_allowed = True
+        self._opacity: float | None = None
+        """Of the LEDs, if the designer chose one."""
+        self._shown = True
 
     def show_optics(self, optics: Optics) -> None:
         """Show all lights and cameras of a design."""
@@ -52,6 +58,7 @@ class RigView:
                 self.cameras.pop().remove()
             for number, camera in enumerate(optics.all_cameras):
                 self._show_camera(number, camera)
+            self.show(self._shown)
 
     def show_lights(self, ring: LedRing) -> None:
         """Show the LEDs of a ring in their colours."""
@@ -63,6 +70,7 @@ class RigView:
             colour = shown_colour(ring.colours[sectors[i]])
             if i == len(self.leds):
                 led = self.api.add_icosphere(f"/leds/{i}", radius=0.7, subdivisions=2)
+                led.opacity = self._opacity
                 self.leds.append(led)
             self.leds[i].position = place
             self.leds[i].color = colour
@@ -97,10 +105,24 @@ class RigView:
             node.image = None
 
     def show(self, visible: bool) -> None:
-        """Show or hide lights and cameras."""
-        self.lamps.show(visible)
-        for node in (*self.cameras, *self.leds):
-            node.visible = visible
+        """Show or hide lights and cameras, as far as the designer wants to see them."""
+        self._shown = visible
+        self.lamps.show(visible and self.lights_allowed)
+        for node in self.leds:
+            node.visible = visible and self.lights_allowed
+        for node in self.cameras:
+            node.visible = visible and self.cameras_allowed
+
+    def fade_lights(self, opacity: float) -> None:
+        """Draw the LEDs with an opacity in [0, 1]."""
+        self._opacity = opacity
+        for node in self.leds:
+            node.opacity = opacity
+
+    def allow(self, *, lights: bool, cameras: bool) -> None:
+        """Let them be seen, or hide them whatever else is shown."""
+        self.lights_allowed, self.cameras_allowed = lights, cameras
+        self.show(self._shown)
 
 
 def frustum(camera: Camera) -> tuple[float, float, float]:

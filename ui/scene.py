@@ -12,6 +12,7 @@ from ui.nodes import replace
 from ui.parts import PartsView
 from ui.pressed import PressedView
 from ui.rig import RigView
+from ui.section import Section
 from ui.sensor import SensorView
 from ui.views import Views
 from workbench.core.indenter import Indenter
@@ -45,10 +46,17 @@ class Scene:
         self.views = Views(server)
         self.pressed = PressedView(self.api, on_click)
         self.map = MapView(self.api, on_click)
-        self._hidden = False
+        self.section = Section(self)
+        self.parts.on_moved = self.section.follow
+        self.hidden = False
+        """Whether parts are looked at in place of the sensor."""
         self._bare = False
         """Whether the object is hidden by itself."""
-        self._shown = 0
+        self._seen_through = False
+        self._object_opacity: float | None = None
+        self.object_allowed = True
+        """Whether the designer wants to see the object at all."""
+        self.shown_frame = 0
         self._lowest_mm = 0.0
         self.standing = np.array([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
         """Where the object stands: x, y, z [mm], qw, qx, qy, qz."""
@@ -89,7 +97,9 @@ class Scene:
             self.show_edges(None)
             self.map.clear()
             self.parts.clear()
+            self.section.take_mesh(None)
             self.body.show_solid(solid)
+            self.section.follow()
             low, _ = self.body.bounds_mm
             self.grid.position = (0.0, 0.0, float(low[2]) - GRID_BELOW_MM)
 
@@ -98,9 +108,14 @@ class Scene:
         self.views.frame(*self.body.bounds_mm)
 
     def fit_view(self) -> None:
-        """Look at all that is on show: the parts, else the body."""
-        shown = self._hidden and self.parts.shown
-        self.views.fit(*(self.parts.bounds_mm() if shown else self.body.bounds_mm))
+        """Look at all that is on show."""
+        self.views.fit(*self.bounds_mm)
+
+    @property
+    def bounds_mm(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lowest and highest corner of what is on show: the parts, else the body [mm]."""
+        shown = self.hidden and self.parts.shown
+        return self.parts.bounds_mm() if shown else self.body.bounds_mm
 
     def show_edges(self, ends_mm: np.ndarray | None) -> None:
         """Draw the edges of a mesh, shape (E, 2, 3), on the body at rest; None takes them away."""
@@ -120,7 +135,7 @@ class Scene:
     def _follow_edges(self) -> None:
         """The mesh is that of the body at rest."""
         if self._edges is not None:
-            self._edges.visible = not self._hidden and self._shown == 0
+            self._edges.visible = not self.hidden and self.shown_frame == 0
 
     def show_indenter(self, indenter: Indenter, path: Press) -> None:
         """Show the indenter standing on the skin at the target."""
@@ -133,6 +148,8 @@ class Scene:
             self.indenter = self.api.add_mesh_simple(
                 "/indenter", vertices, triangles, color=INDENTER_COLOUR, flat_shading=False
             )
+            self.see_through(self._seen_through)
+            self.follow_object()
         else:
             with self.server.atomic():
                 replace(self.indenter, vertices, triangles)
@@ -147,13 +164,23 @@ class Scene:
     def hide_indenter(self, wanted: bool) -> None:
         """Hide the object, or show it again."""
         self._bare = wanted
+        self.follow_object()
+
+    def follow_object(self) -> None:
+        """Show the object where nothing hides it."""
         if self.indenter is not None:
-            self.indenter.visible = not (wanted or self._hidden)
+            self.indenter.visible = self.object_allowed and not (self._bare or self.hidden)
 
     def see_through(self, wanted: bool) -> None:
         """Let the object be seen through, so that what happens below it shows."""
+        self._seen_through = wanted
         if self.indenter is not None:
-            self.indenter.opacity = SEEN_THROUGH if wanted else None
+            self.indenter.opacity = SEEN_THROUGH if wanted else self._object_opacity
+
+    def fade_object(self, opacity: float) -> None:
+        """Draw the object with an opacity in [0, 1]."""
+        self._object_opacity = opacity
+        self.see_through(self._seen_through)
 
     def _pose_object(self, contact: Contact, frame: int) -> None:
         """Put the object where a frame of a press has it, in the shape that it has there."""
@@ -177,21 +204,23 @@ class Scene:
 
     def show_live(self, skin: Skin, contact: Contact) -> None:
         """Show the one frame of a live press."""
-        self._shown = 1
-        if self._hidden:
+        self.shown_frame = 1
+        if self.hidden:
             return
         with self.server.atomic():
             self.pressed.load_live(skin, contact)
             self.body.show_skin(False)
             self._pose_object(contact, 0)
+            self.section.follow()
 
     def clear_frames(self) -> None:
         """Forget the frames of a press."""
         self.pressed.clear()
-        self._shown = 0
+        self.shown_frame = 0
         self._follow_edges()
-        if not self._hidden:
+        if not self.hidden:
             self._show_skin(True)
+        self.section.follow()
 
     def _show_skin(self, wanted: bool) -> None:
         """Show the plain skin at rest, unless a map takes its place."""
@@ -201,7 +230,7 @@ class Scene:
         """Show the skin at rest in the colours of a map, shape (V, 3), uint8."""
         with self.server.atomic():
             self.map.load(skin, colours)
-            self.map.show(not self._hidden)
+            self.map.show(not self.hidden)
             self._show_skin(False)
             self.show_frame(0)
 
@@ -209,8 +238,8 @@ class Scene:
         """Show the plain skin at rest again."""
         if self.map.on:
             self.map.clear()
-            if not self._hidden:
-                self._show_skin(self._shown == 0)
+            if not self.hidden:
+                self._show_skin(self.shown_frame == 0)
 
     def show_frame(self, number: int) -> None:
         """Show frame `number` of the press, 0 for the untouched skin, which alone has maps."""
@@ -218,15 +247,20 @@ class Scene:
         if contact is None:
             return
         number = 0 if self.map.on else min(number, self.pressed.count)
-        self._shown = number
+        self.shown_frame = number
         self._follow_edges()
-        if self._hidden:
+        if self.hidden:
             return
         with self.server.atomic():
             self.pressed.show(number)
             self._show_skin(number == 0)
             if self.indenter is not None:
                 self._pose_object(contact, max(number, 1) - 1)
+            self.section.follow()
+
+    def resting_nodes(self) -> list[str]:
+        """Names of what a pressed frame takes the place of."""
+        return [node.name for node in self.body.skin.nodes.values()]
 
     def show_cell(self, corners_mm: np.ndarray) -> None:
         """Draw the edges of one cell of a mesh: triangle, tetrahedron or hexahedron."""
@@ -252,7 +286,7 @@ class Scene:
 
     def show_sensor(self, visible: bool) -> None:
         """Show or hide everything but the parts."""
-        self._hidden = not visible
+        self.hidden = not visible
         self._follow_edges()
         with self.server.atomic():
             self.body.show(visible)
@@ -260,9 +294,9 @@ class Scene:
             self.rig.show(visible)
             # The core of an exploded mould hangs below the floor, whose lines would cross it.
             self.grid.visible = visible
-            if self.indenter is not None:
-                self.indenter.visible = visible and not self._bare
+            self.follow_object()
             self.pressed.show(0)
         if visible:
-            self._show_skin(self._shown == 0)
-            self.show_frame(self._shown)
+            self._show_skin(self.shown_frame == 0)
+            self.show_frame(self.shown_frame)
+        self.section.follow()

@@ -14,6 +14,7 @@ import numpy as np
 from ui.nodes import Meshes
 from workbench.core.results import Label, Solid
 from workbench.previews import corner_normals, first_hit, outer_faces, skin_parts
+from workbench.section_cut import Plane, clip
 
 SKIN_COLOUR = (196, 206, 220)
 ACTUATOR_COLOURS = ((240, 150, 70), (90, 175, 240), (170, 120, 230), (120, 200, 110))
@@ -34,8 +35,12 @@ class SensorView:
         self.api = api
         self.skin = Meshes(api, "/sensor/skin", on_click)
         self.inside = Meshes(api, "/sensor/inside")
-        self.rigid = Meshes(api, "/sensor/rigid")
+        self.support = Meshes(api, "/sensor/rigid")
+        self.foot = Meshes(api, "/sensor/foot")
         self.tips: Any = None
+        self._skin_shown = True
+        self.plane: Plane | None = None
+        """What the body is cut by."""
         self.points = np.zeros((0, 3))
         """Vertices of the sensing side [mm], shape (N, 3)."""
         self.normals = np.zeros((0, 3))
@@ -56,8 +61,8 @@ class SensorView:
         self.inside.keep(() if pins is None else ("pins",))
         # Where the support stands on the foot, only one of both is drawn: they would flicker.
         clear = solid.support.faces[~solid.support.has(Label.BASE)]
-        self.rigid.put("support", solid.support.points_mm, clear, SUPPORT)
-        self.rigid.put("foot", solid.base.points_mm, solid.base.faces, FOOT)
+        self.support.put("support", solid.support.points_mm, clear, SUPPORT)
+        self.foot.put("foot", solid.base.points_mm, solid.base.faces, FOOT)
         self._show_tips(solid)
         self.show(True)
 
@@ -65,7 +70,11 @@ class SensorView:
         if self.tips is not None:
             self.tips.remove()
             self.tips = None
-        count = len(solid.tips_mm)
+        tips = np.asarray(solid.tips_mm)
+        if self.plane is not None and len(tips):
+            # A ball is small: it is on show where its middle is kept.
+            tips = tips[self.plane.depth_mm(tips) > 0.0]
+        count = len(tips)
         if count:
             points, faces = ball(solid.tip_radius_mm)
             self.tips = self.api.add_batched_meshes_simple(
@@ -73,7 +82,7 @@ class SensorView:
                 points,
                 faces,
                 batched_wxyzs=np.tile(np.array([1.0, 0.0, 0.0, 0.0]), (count, 1)),
-                batched_positions=np.asarray(solid.tips_mm),
+                batched_positions=tips,
                 batched_colors=TIP_COLOUR,
             )
 
@@ -88,14 +97,30 @@ class SensorView:
     def show(self, visible: bool) -> None:
         """Show or hide all of it."""
         self.show_skin(visible)
-        self.rigid.show(visible)
+        self.support.show(visible)
+        self.foot.show(visible)
+
+    @property
+    def groups(self) -> tuple[Meshes, ...]:
+        """All meshes of the body."""
+        return self.skin, self.inside, self.support, self.foot
+
+    def cut(self, plane: Plane | None) -> None:
+        """Cut the body by a plane, or make it whole."""
+        self.plane = plane
+        for meshes in self.groups:
+            meshes.plane = lambda name: plane
+            meshes.recut()
+        if self.solid is not None and len(self.solid.tips_mm):
+            self._show_tips(self.solid)
+            self.follow_tips()
 
     def show_skin(self, visible: bool) -> None:
         """Show or hide what the coloured skin of a press takes the place of."""
+        self._skin_shown = visible
         self.skin.show(visible)
         self.inside.show(visible)
-        if self.tips is not None:
-            self.tips.visible = visible
+        self.follow_tips()
 
     def hit(self, origin: np.ndarray, direction: np.ndarray) -> tuple[int, np.ndarray] | None:
         """Membrane triangle and point [mm] that a click ray meets first on the skin, or None."""
@@ -107,8 +132,23 @@ class SensorView:
             membrane.has(Label.OUTER)
             | ((self.solid.patches >= 0) if len(self.solid.patches) else False)
         )
-        found = first_hit(membrane.points_mm, membrane.faces[clickable], origin, direction)
+        points, faces = membrane.points_mm, membrane.faces[clickable]
+        if self.plane is not None:
+            kept = clip(points, faces, self.plane)
+            points, faces, clickable = kept.points_mm, kept.faces, clickable[kept.source]
+        found = first_hit(points, faces, origin, direction)
         return None if found is None else (int(clickable[found[0]]), found[1])
+
+    def normal_near(self, target_mm: tuple[float, float, float]) -> np.ndarray:
+        """Outward unit normal of the skin nearest to a point, shape (3,); up without a body."""
+        if not len(self.points):
+            return np.array([0.0, 0.0, 1.0])
+        return self.normals[np.argmin(((self.points - np.asarray(target_mm)) ** 2).sum(axis=1))]
+
+    def follow_tips(self) -> None:
+        """Show the tips of pins where the pins are shown."""
+        if self.tips is not None:
+            self.tips.visible = self._skin_shown and self.inside.allowed
 
     def nearest(self, target_mm: tuple[float, float, float]) -> tuple[np.ndarray, float]:
         """The skin vertex nearest to a point and its distance [mm]."""

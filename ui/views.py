@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import enum
 from collections.abc import Sequence
 from typing import Any
 
@@ -24,6 +25,29 @@ POINTER_SHARE = 0.12
 POINTER_UP = np.array([0.0, 0.0, 0.7])
 """Added to the direction of the pointer, which would otherwise be seen end-on."""
 MARK_COLOUR = (255, 45, 85)
+
+
+class Side(enum.StrEnum):
+    """Where to look from; names for people, in the order of their keys."""
+
+    FRONT = "Front"
+    RIGHT = "Right"
+    TOP = "Top"
+    CONTACT = "Contact"
+    ISOMETRIC = "Isometric"
+
+
+TOWARD = {
+    Side.FRONT: (0.0, -1.0, 0.0),
+    Side.RIGHT: (1.0, 0.0, 0.0),
+    # Straight down the upright axis a turntable camera has no up.
+    Side.TOP: (0.0, -0.001, 1.0),
+    # From the side that bodies are first seen from.
+    Side.ISOMETRIC: (1.0, 1.0, 1.0),
+}
+"""Directions from the sensor toward the eye, of any length; Z is up."""
+STEEPEST = 0.999
+"""Largest share of the upright axis in a direction toward the eye."""
 
 
 class Views:
@@ -60,6 +84,37 @@ class Views:
             with client.atomic():
                 client.camera.position = centre + distance_mm * side
                 client.camera.look_at = centre
+
+    def look_from(
+        self,
+        side: Side,
+        low_mm: np.ndarray,
+        high_mm: np.ndarray,
+        *,
+        client: Any = None,
+        toward: np.ndarray | None = None,
+    ) -> None:
+        """Look at a box from a side, in one tab or, without one, in all.
+
+        Args:
+            side: Which side.
+            low_mm: Lowest corner of the box.
+            high_mm: Highest corner of the box.
+            client: The tab that asked.
+            toward: Direction to the eye in place of the side's own.
+        """
+        self.close = False
+        centre = (low_mm + high_mm) / 2
+        size_mm = float(np.linalg.norm(high_mm - low_mm))
+        way = np.asarray(TOWARD[side] if toward is None else toward, dtype=float)
+        way = way / np.linalg.norm(way)
+        if abs(way[2]) > STEEPEST and toward is not None:
+            way = np.array(TOWARD[Side.TOP])
+        tabs = self.server.get_clients().values() if client is None else (client,)
+        for tab in tabs:
+            with tab.atomic():
+                tab.camera.position = centre + _distance_mm(size_mm, tab.camera.aspect) * way
+                tab.camera.look_at = centre
 
     def step_back(self, low_mm: np.ndarray, high_mm: np.ndarray) -> None:
         """Look at another box for a while; remembers where each tab was."""

@@ -76,7 +76,12 @@ def _packed(surface: LabelledSurface, mask: np.ndarray) -> tuple[np.ndarray, np.
 
 
 def first_hit(
-    points_mm: np.ndarray, faces: np.ndarray, origin: np.ndarray, direction: np.ndarray
+    points_mm: np.ndarray,
+    faces: np.ndarray,
+    origin: np.ndarray,
+    direction: np.ndarray,
+    *,
+    both_sides: bool = False,
 ) -> tuple[int, np.ndarray] | None:
     """The face a ray enters first from outside, and where [mm]; None when it misses.
 
@@ -87,12 +92,13 @@ def first_hit(
         faces: Triangles counter-clockwise from outside, shape (M, 3).
         origin: Start of the ray [mm], shape (3,).
         direction: Unit direction, shape (3,).
+        both_sides: Whether faces are met from inside as well.
     """
     a, b, c = (np.asarray(points_mm)[faces[:, i]] for i in range(3))
     edge_1, edge_2, offset = b - a, c - a, origin - a
     across = np.cross(direction, edge_2)
     volume = np.einsum("ij,ij->i", edge_1, across)
-    front = volume > LEAST_SINE
+    front = (np.abs(volume) if both_sides else volume) > LEAST_SINE
     scale = 1.0 / np.where(front, volume, 1.0)
     u = np.einsum("ij,ij->i", offset, across) * scale
     turned = np.cross(offset, edge_1)

@@ -51,13 +51,14 @@ class ResultsPanel:
         """Whether parts or a mesh are looked at instead of the press."""
         gui = desk.server.gui
         self.dock = gui.add_panel()
-        with self.dock.add_tab("Tactile image", viser.Icon.PHOTO):
+        # Five labels without icons fit on one row.
+        with self.dock.add_tab("Tactile image"):
             self.image = ImageTab(desk)
-        with self.dock.add_tab("Forces", viser.Icon.CHART_LINE):
+        with self.dock.add_tab("Forces"):
             self.forces = ForcesTab(gui)
-        with self.dock.add_tab("Maps", viser.Icon.MAP_2):
+        with self.dock.add_tab("Maps"):
             self.maps = MapsPanel(desk)
-        with self.dock.add_tab("Log", viser.Icon.LIST):
+        with self.dock.add_tab("Log"):
             self.log = gui.add_html("")
         self.dock.dock_right()
         self.dock.set_width(350)
