@@ -50,6 +50,15 @@ def gent_MPa(shore_a: float) -> float:
     return 0.0981 * (56.0 + 7.62336 * shore_a) / (0.137505 * (254.0 - 2.54 * shore_a))
 
 
+def shore_a(young_MPa: float) -> float:
+    """Shore A hardness of a rubber of this Young's modulus [MPa]: the inverse of `gent_MPa`.
+
+    Below 0 where the rubber is softer than the scale reaches; the scale ends at 100.
+    """
+    scaled = 0.137505 * young_MPa / 0.0981
+    return (254.0 * scaled - 56.0) / (7.62336 + 2.54 * scaled)
+
+
 def doubled_MPa(stress_psi: float) -> float:
     """Young's modulus [MPa] of a neo-Hookean rubber from its nominal stress at 100 % strain [psi].
 

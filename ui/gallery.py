@@ -18,12 +18,12 @@ PRESS = (
     "if(b.innerText.trim()===wanted){b.click();break}"
 )
 """Presses the button of the window whose text is the card's name."""
-GRID = "display:grid;grid-template-columns:repeat(auto-fill,minmax(150px,1fr));gap:10px;margin:8px"
+GRID = "display:grid;grid-template-columns:repeat(auto-fill,minmax(105px,1fr));gap:8px;margin:6px"
 CARD = (
-    "border:1px solid #8886;border-radius:8px;padding:8px;cursor:pointer;text-align:center;"
-    "font-size:12px;line-height:1.3"
+    "border:1px solid #8886;border-radius:8px;padding:6px;cursor:pointer;text-align:center;"
+    "font-size:11px;line-height:1.25"
 )
-PICTURE = "width:100%;height:104px;object-fit:contain"
+PICTURE = "width:100%;height:76px;object-fit:contain"
 IN_A_ROW = 5
 """Buttons of a row below the cards."""
 

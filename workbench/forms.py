@@ -14,9 +14,13 @@ __all__ = [
     "choices",
     "families",
     "family",
+    "gent_MPa",
+    "hardness",
     "load_design",
+    "moduli_MPa",
     "purpose",
     "resolve_shape",
+    "shore_a",
     "silicones",
     "sliders",
 ]
@@ -32,6 +36,34 @@ def choices() -> tuple[str, ...]:
 def purpose(name: str) -> str:
     """One line about what a name of `choices` is."""
     return presets().get(name) or family(name).title
+
+
+def moduli_MPa() -> dict[str, float]:
+    """Young's modulus [MPa] of each silicone of the table."""
+    from geometry.silicones import SILICONES
+
+    return {name: row.young_MPa for name, row in SILICONES.items()}
+
+
+def hardness(name: str) -> str:
+    """Shore hardness of a silicone of the table, with its scale."""
+    from geometry.silicones import silicone
+
+    return silicone(name).hardness
+
+
+def gent_MPa(shore: float) -> float:
+    """Young's modulus [MPa] of a Shore A hardness; good to some 30 %."""
+    from geometry.silicones import gent_MPa
+
+    return gent_MPa(shore)
+
+
+def shore_a(young_MPa: float) -> float:
+    """Shore A hardness of a Young's modulus [MPa]; below 0 where it is softer than the scale."""
+    from geometry.silicones import shore_a
+
+    return shore_a(young_MPa)
 
 
 def silicones() -> tuple[str, ...]:

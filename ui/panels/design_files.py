@@ -37,6 +37,8 @@ YOURS = "Your designs"
 MARK = " (yours)"
 """Ends the card of a kept design."""
 NOTHING = "-"
+LONGEST = 60
+"""Letters of the line below a card."""
 
 
 class DesignFiles:
@@ -192,4 +194,8 @@ class DesignFiles:
 def _short(words: str) -> str:
     """The first sentence, cut to what a card holds."""
     first = words.split(": ", 1)[-1].split(". ", 1)[0].rstrip(".")
-    return first if len(first) <= 90 else f"{first[:87]}..."
+    return (
+        first
+        if len(first) <= LONGEST
+        else f"{first[: LONGEST - 1].rstrip()}\N{HORIZONTAL ELLIPSIS}"
+    )

@@ -8,6 +8,7 @@ from ui.desk import Desk
 from ui.panels.design_files import DesignFiles
 from ui.panels.history import History
 from ui.panels.intake import IntakeFolder
+from ui.panels.material import MaterialFolder
 from workbench.forms import choices, family, load_design, purpose, sliders
 
 OWN = "own design"
@@ -37,8 +38,7 @@ class ShapePanel:
         self._fill()
         with gui.add_folder("Layers"):
             self._layers()
-        with gui.add_folder("Material", expand_by_default=False):
-            self._material()
+        self.material = MaterialFolder(desk)
         with gui.add_folder("Own body (STEP or STL)", expand_by_default=False):
             self.intake = IntakeFolder(desk)
         self.files.file_widgets()
@@ -50,15 +50,6 @@ class ShapePanel:
         fields.slider("Elastomer mm", "design.layers.elastomer_mm", span=span, hint=hint)
         span, hint = (0.4, 5.0, 0.1), "Rigid clear shell or plate"
         fields.slider("Support mm", "design.layers.support_mm", span=span, hint=hint)
-
-    def _material(self) -> None:
-        fields = self.desk.fields
-        hint = "0.145 MPa is the silicone of the GelTip"
-        fields.number("Young MPa", "design.material.young_MPa", step=0.005, hint=hint)
-        fields.number("Poisson", "design.material.poisson", step=0.01, hint="Below 0.495")
-        fields.number("Friction", "design.material.friction", step=0.05, hint="Coulomb")
-        hint = "Gel behind skins with a gap (DigiTac); 0 is air. Bonded skins ignore it"
-        fields.number("Backing gel MPa", "design.material.backing_MPa", step=0.005, hint=hint)
 
     def _fill(self) -> None:
         """Sliders of the family; made anew when the family changes."""
@@ -113,6 +104,7 @@ class ShapePanel:
             self.start.options = offered
         self._tell_about()
         self.files.refresh()
+        self.material.refresh()
 
     def show(self, stage: str, result: Any) -> None:
         """An imported body's faces can be picked once it is built."""
