@@ -22,6 +22,8 @@ COLOURS = ((64, 160, 255), (255, 140, 50))
 OPACITY = 0.45
 GAP_SHARE = 0.25
 """Between two sensors, over the width of the wider."""
+OUTWARD = 0.004
+"""A ghost over another body is so much larger, or equal skins would flicker."""
 ABOVE_MM = 3.0
 """Height of a label over what it names [mm]."""
 
@@ -112,8 +114,10 @@ class GhostView:
             self._remove()
             with self.server.atomic():
                 for number, (ghost, points, faces) in enumerate(made):
-                    shift = offset_mm((low, high), points, ghost.place)
-                    placed = points + shift
+                    placed = points + offset_mm((low, high), points, ghost.place)
+                    if ghost.place == 0:
+                        middle = placed.mean(axis=0)
+                        placed = middle + (1.0 + OUTWARD * (number + 1)) * (placed - middle)
                     self._put(number, ghost, placed, faces)
                     low = np.minimum(low, placed.min(axis=0))
                     high = np.maximum(high, placed.max(axis=0))

@@ -197,7 +197,7 @@ def table(scores: tuple[Scores, ...]) -> list[dict[str, Any]]:
 
 def page(scores: tuple[Scores, ...], title: str) -> str:
     """One HTML page without outside links."""
-    from workbench.report import STYLE
+    from workbench.html_page import page as whole_page
 
     heads = ["group", "", "images", *(name for c in COLUMNS for name in (c, "null"))]
     rows = []
@@ -212,7 +212,4 @@ def page(scores: tuple[Scores, ...], title: str) -> str:
         "scores. SSIM as Wang and others 2004; PSNR from the mean square error of the group."
     )
     body = f"<h1>{html.escape(title)}</h1><p>{explained}</p><table>{head}{''.join(rows)}</table>"
-    return (
-        f"<!doctype html><html><head><meta charset='utf-8'><title>{html.escape(title)}</title>"
-        f"<style>{STYLE}</style></head><body>{body}</body></html>"
-    )
+    return whole_page(title, body)

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import base64
 import html
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,6 +16,7 @@ from workbench.core.press import Press
 from workbench.core.results import MembraneMesh, Picture, Skin, Solid
 from workbench.core.sensing import Contact, Shot
 from workbench.forces import slip_columns
+from workbench.html_page import figure, page, table
 from workbench.image_files import png_bytes
 from workbench.outputs import frame_depths_mm
 from workbench.project import design_table
@@ -26,15 +26,6 @@ EXPLODED = (
     "Exploded view. Left the mould: outer parts and core. Right the sensor, from the top: "
     "membrane, support, LED ring holder, base, camera mount."
 )
-STYLE = """
-body{font:15px/1.5 system-ui,sans-serif;max-width:1000px;margin:2em auto;padding:0 1em}
-body{color:#1b1f24}
-h1{font-size:1.6em;margin-bottom:0}h2{font-size:1.15em;margin-top:1.8em}
-.images{display:flex;flex-wrap:wrap;gap:10px}figure{margin:0}figcaption{font-size:.85em;color:#555}
-img{max-width:100%;border-radius:4px}table{border-collapse:collapse;font-size:.92em}
-td,th{padding:2px 14px 2px 0;text-align:left;border-bottom:1px solid #e3e6ea}
-td.n{text-align:right;font-variant-numeric:tabular-nums}
-"""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -58,7 +49,7 @@ def report_html(
 ) -> str:
     """The report as one page without outside links."""
     force = summary["contact"]
-    title = html.escape(f"{design.name} ({design.family})")
+    title = f"{design.name} ({design.family})"
     pressed = (
         f"Pressed {path.depth_mm:g} mm: <b>{force['normal_N']:.3f} N</b> along the normal, "
         f"residual {force['residual']:.1e}, force balance {100 * force['force_balance']:.2f} %, "
@@ -67,32 +58,28 @@ def report_html(
         f"{html.escape(summary['device'])} in {force['seconds']:.1f} s."
     )
     sections = [
-        f"<h1>{title}</h1><p>{pressed}</p>",
+        f"<h1>{html.escape(title)}</h1><p>{pressed}</p>",
         "<h2>Tactile image</h2>" + _images(shot),
         "<h2>Force against depth</h2>" + _force_curve(path, contact),
         _drives(path, contact),
         "<h2>Displacement</h2>" + _drawn(drawings.pressed, "Outer skin in the last frame"),
-        "<h2>Score card</h2>" + _table(sorted(summary["metrics"].items())),
+        "<h2>Score card</h2>" + table(sorted(summary["metrics"].items())),
         "<h2>Mould and sensor</h2>" + _drawn(drawings.parts, EXPLODED),
-        _table(
+        table(
             (m["file"], f"{m['volume_mm3']:.0f} mm3, {'closed' if m['watertight'] else 'OPEN'}")
             for m in summary["moulds"]
         ),
         "<h2>Design</h2>" + _drawn(drawings.membrane, "Membrane", width=310),
-        _table([*_flat(design_table(design)), *_constants(design)]),
-        "<h2>Press</h2>" + _table(_flat(_press_table(path))),
-        "<h2>Files beside this page</h2>" + _table(_files(contact)),
+        table([*_flat(design_table(design)), *_constants(design)]),
+        "<h2>Press</h2>" + table(_flat(_press_table(path))),
+        "<h2>Files beside this page</h2>" + table(_files(contact)),
         "<h2>Stages</h2>"
-        + _table(
+        + table(
             (s["stage"], f"{'cached' if s['cached'] else format(s['seconds'], '.2f') + ' s'}")
             for s in summary["stages"]
         ),
     ]
-    body = "\n".join(sections)
-    return (
-        f"<!doctype html><html lang='en'><meta charset='utf-8'><title>{title}</title>"
-        f"<style>{STYLE}</style><body>{body}</body></html>"
-    )
+    return page(title, "\n".join(sections))
 
 
 def _drives(path: Press, contact: Contact) -> str:
@@ -146,20 +133,12 @@ def _images(shot: Shot) -> str:
         (rgb[-1], f"Frame {len(rgb) - 1} of {len(rgb) - 1}"),
         (change * np.uint8(gain), f"Absolute difference, x {gain}"),
     ]
-    figures = (_figure(png_bytes(p), text, width=310) for p, text in pictures)
+    figures = (figure(png_bytes(p), text, width=310) for p, text in pictures)
     return f"<div class='images'>{''.join(figures)}</div>"
 
 
-def _figure(png: bytes, caption: str, *, width: int = 640) -> str:
-    data = base64.b64encode(png).decode()
-    return (
-        f"<figure><img width='{width}' src='data:image/png;base64,{data}' "
-        f"alt='{html.escape(caption)}'><figcaption>{html.escape(caption)}</figcaption></figure>"
-    )
-
-
 def _drawn(png: bytes | None, caption: str, *, width: int = 640) -> str:
-    return NO_RENDERER if png is None else _figure(png, caption, width=width)
+    return NO_RENDERER if png is None else figure(png, caption, width=width)
 
 
 def drawings(
@@ -234,16 +213,6 @@ def _press_table(path: Press) -> dict[str, Any]:
         trajectory = path.trajectory
         table["trajectory"] = f"{len(trajectory.poses)} rows, {trajectory.duration_s:g} s"
     return table
-
-
-def _table(rows: Iterable[Sequence[Any]]) -> str:
-    lines = []
-    for name, value in rows:
-        number = isinstance(value, (int, float)) and not isinstance(value, bool)
-        text = f"{value:.5g}" if number else html.escape(str(value))
-        kind = " class='n'" if number else ""
-        lines.append(f"<tr><td>{html.escape(str(name))}</td><td{kind}>{text}</td></tr>")
-    return f"<table>{''.join(lines)}</table>"
 
 
 def _flat(table: Mapping[str, Any], prefix: str = "") -> Iterable[tuple[str, Any]]:

@@ -6,9 +6,12 @@ import threading
 from typing import Any
 
 from ui.desk import Desk
+from ui.panels.comparison_report import ReportFolder
 from ui.panels.score_card import NOW_SHORT, ScoreFolder
+from ui.panels.sweep import SweepFolder
 from ui.panels.variants import VariantsFolder
 from ui.panels.versus import VersusFolder
+from workbench.comparison_report import Reported
 from workbench.core.errors import WorkbenchError
 from workbench.score_card import Figures
 from workbench.sides import NOW, Side, side_as_it_stands, side_of_variant
@@ -31,6 +34,8 @@ class ComparePanel:
         self.score = ScoreFolder(desk)
         self.versus = VersusFolder(desk, self._side)
         self.variants.on_save = self.versus.fill
+        self.sweep = SweepFolder(desk, self._kept)
+        self.report = ReportFolder(desk, self._reported)
         self.variants.list()
 
     def _listed(self) -> None:
@@ -39,10 +44,25 @@ class ComparePanel:
         self.versus.offer(tuple(entry.name for entry in entries if entry.variant is not None))
         self._score()
 
+    def _kept(self, name: str) -> None:
+        """A point of a sweep became a variant."""
+        self.variants.portraits.draw(name)
+        self.variants.list()
+
+    def _reported(self) -> tuple[Side | None, Side | None, Reported]:
+        """What stands in the report: both sides, the other variants, and the sweep on show."""
+        a, b = self.versus.a, self.versus.b
+        taken = {side.name for side in (a, b) if side is not None}
+        others = tuple((name, values) for name, values in self._variants() if name not in taken)
+        sweep, metric = self.sweep.shown()
+        return a, b, Reported(others=others, sweep=sweep, metric=metric)
+
+    def _variants(self) -> list[tuple[str, Figures]]:
+        """Names and figures of the listed variants."""
+        return [(e.name, e.variant.metrics) for e in self.variants.entries if e.variant is not None]
+
     def _score(self) -> None:
-        kept = [(e.name, e.variant.metrics) for e in self.variants.entries if e.variant is not None]
-        designs: list[tuple[str, Figures]] = [(NOW_SHORT, self._as_it_stands().figures), *kept]
-        self.score.load(designs)
+        self.score.load([(NOW_SHORT, self._as_it_stands().figures), *self._variants()])
 
     def _side(self, name: str) -> Side | None:
         if name == NOW:
@@ -75,6 +95,7 @@ class ComparePanel:
 
     def _follow(self, event: Any) -> None:
         before = self._now
+        self.sweep.refresh()
         self._score()
         chosen = (self.versus.choice_a.value, self.versus.choice_b.value)
         if NOW in chosen and self._now is not before:
