@@ -20,6 +20,14 @@ from typing import Any
 LOOPBACK = ("127.0.0.1", "localhost", "[::1]")
 COOKIE = "workbench_token"
 HEALTH_PATH = "/healthz"
+MOST_MESSAGE_BYTES = 16 * 2**20
+"""Of one message: a file comes in parts of half a megabyte, a picture of the view in one."""
+SAFE_HEADERS = {
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+    "X-Frame-Options": "SAMEORIGIN",
+}
+"""Of every answer: no page of another site shows the workbench in a frame, or learns the token."""
 
 
 @dataclass(kw_only=True)
@@ -91,13 +99,22 @@ def guarded(gate: Gate) -> Iterator[None]:
     def serve(
         handler: Any, host: Any, port: Any, *, process_request: Any = None, **rest: Any
     ) -> Any:
+        rest["max_size"] = MOST_MESSAGE_BYTES
+
         def ask(connection: Any, request: Any) -> Any:
-            answer = gate.decide(request.path, request.headers)
+            try:
+                answer = gate.decide(request.path, request.headers)
+            except LookupError:
+                # Two headers of one name: which of them is meant cannot be told.
+                answer = 400, {}, b"a header is given twice\n"
             if answer is None:
-                return process_request(connection, request) if process_request else None
+                page = process_request(connection, request) if process_request else None
+                if page is not None:
+                    page.headers.update(SAFE_HEADERS)
+                return page
             status, headers, body = answer
-            all_headers = Headers({"Content-Length": str(len(body)), **headers})
-            return Response(status, "", all_headers, body)
+            own = {"Content-Length": str(len(body)), **SAFE_HEADERS, **headers}
+            return Response(status, "", Headers(own), body)
 
         return real(handler, host, port, process_request=ask, **rest)
 
