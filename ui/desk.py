@@ -11,6 +11,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from ui.gizmo import Gizmo
 from ui.glimpse import GlimpseFollower
 from ui.header import Header
 from ui.jobs import Jobs
@@ -93,7 +94,10 @@ class Desk:
         self.jobs.on_events = self.refresh_header
         self.jobs.on_idle = self._idle
         self.jobs.on_failed = self._failed
+        self.gizmos: list[Gizmo] = []
+        """Handles in the 3D view, asked each time the pump turns."""
         self.live = LivePress(self)
+        self.gizmos.append(self.live.gizmo)
         self.jobs.on_preview[LIVE] = self.live.show
         self.glimpse = GlimpseFollower(self)
         self._edited: float | None = None
@@ -328,7 +332,8 @@ class Desk:
     def _idle(self) -> None:
         """Read what was typed, follow the handle, drop old frames, keep what has settled."""
         self.fields.read_typed()
-        self.live.gizmo.turn()
+        for gizmo in self.gizmos:
+            gizmo.turn()
         self.scene.pressed.turn()
         self.upkeep.turn()
         self._autosave()

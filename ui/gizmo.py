@@ -1,8 +1,8 @@
-"""The handle by which the object is dragged over the skin.
+"""Handles by which things are dragged in the 3D view: the object, a camera, the LED ring, a lamp.
 
-The page sends a place many times a second; only the newest counts, and it is taken up when the
+The page sends a pose many times a second; only the newest counts, and it is taken up when the
 desk's pump turns. While the designer holds the handle it stays under the mouse; once let go it
-stands at the object again.
+stands at its thing again.
 """
 
 from __future__ import annotations
@@ -14,40 +14,63 @@ import numpy as np
 
 SCALE_MM = 9.0
 """Length of the arms."""
+UPRIGHT = (1.0, 0.0, 0.0, 0.0)
 
 
 class Gizmo:
-    """One handle; `moved` is told where it was dragged to."""
+    """One handle; `moved` is told where it was dragged and how it was turned.
 
-    def __init__(self, api: Any, moved: Callable[[np.ndarray], None]) -> None:
+    `moved` gets the position [mm], shape (3,), and the unit quaternion w, x, y, z, shape (4,).
+    """
+
+    def __init__(
+        self,
+        api: Any,
+        moved: Callable[[np.ndarray, np.ndarray], None],
+        *,
+        name: str = "/drag",
+        scale_mm: float = SCALE_MM,
+        turns: bool = False,
+        axes: tuple[bool, bool, bool] = (True, True, True),
+    ) -> None:
         self.moved = moved
-        self._newest: np.ndarray | None = None
+        self._newest: tuple[np.ndarray, np.ndarray] | None = None
         self._held = False
         self.handle = api.add_transform_controls(
-            "/drag",
-            scale=SCALE_MM,
+            name,
+            scale=scale_mm,
             line_width=4.0,
-            disable_rotations=True,
+            active_axes=axes,
+            disable_sliders=not all(axes),
+            disable_rotations=not turns,
             depth_test=False,
             visible=False,
         )
 
         @self.handle.on_update
         async def _(event: Any) -> None:
-            # On the event loop, so that the places come in order; nothing is computed here.
+            # On the event loop, so that the poses come in order; nothing is computed here.
             self._held = event.phase != "end"
-            self._newest = np.array(self.handle.position, dtype=float)
+            self._newest = (
+                np.array(self.handle.position, dtype=float),
+                np.array(self.handle.wxyz, dtype=float),
+            )
 
     def turn(self) -> None:
-        """Hand over the newest place, if one has come."""
+        """Hand over the newest pose, if one has come."""
         newest, self._newest = self._newest, None
         if newest is not None:
-            self.moved(newest)
+            self.moved(*newest)
 
-    def place(self, position: np.ndarray) -> None:
-        """Stand at the object, unless the designer holds it."""
-        if not self._held and not np.allclose(self.handle.position, position, atol=1e-4):
+    def place(self, position: np.ndarray, wxyz: np.ndarray | None = None) -> None:
+        """Stand at a place, unless the designer holds it."""
+        if self._held:
+            return
+        if not np.allclose(self.handle.position, position, atol=1e-4):
             self.handle.position = tuple(float(x) for x in position)
+        turned = UPRIGHT if wxyz is None else tuple(float(x) for x in wxyz)
+        if not np.allclose(self.handle.wxyz, turned, atol=1e-6):
+            self.handle.wxyz = turned
 
     def show(self, visible: bool) -> None:
         """Show or hide it."""

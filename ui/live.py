@@ -77,7 +77,7 @@ class LivePress:
         self._asked = None
         self.told("not solved: see the message")
 
-    def _dragged(self, place_mm: np.ndarray) -> None:
+    def _dragged(self, place_mm: np.ndarray, wxyz: np.ndarray) -> None:
         """Aim at the skin nearest to where the handle was dragged."""
         desk = self.desk
         if not self.on or desk.scene.body.solid is None:

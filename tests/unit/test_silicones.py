@@ -14,6 +14,6 @@ def test_hardness_and_modulus_are_inverse(shore: float) -> None:
 
 
 def test_the_geltips_silicone_is_softer_than_shore_a() -> None:
-    """0.145 MPa lies below 0; Gent's relation begins at .0981 * 56 / (.137505 * 254) = .1573 MPa."""
+    """0.145 MPa lies below 0; the scale begins at .0981 * 56 / (.137505 * 254) = .1573 MPa."""
     assert gent_MPa(0.0) == pytest.approx(0.1573, abs=1e-4)
     assert shore_a(0.145) < 0.0

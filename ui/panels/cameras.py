@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ui.desk import Desk
+from ui.handles import Handle
 from workbench.camera_edit import LENSES, angles_of, further_camera, with_lens, wxyz_of
 from workbench.core.camera import COEFFICIENTS, Camera, LensModel
 from workbench.item_fields import without_item
@@ -26,6 +27,7 @@ class CameraFolders:
         with gui.add_folder("Camera"):
             self.choice = gui.add_dropdown("Edited", ("camera 1",), visible=False)
             self.choice.on_update(desk.guarded(self._choose))
+            self.handle = Handle(desk, "Camera handle", path=lambda: self.path, turns=True)
             self._place()
             self._lens()
             hint = "Further cameras of the same sensor; Remove takes the edited one"
@@ -132,6 +134,7 @@ class CameraFolders:
         path = FIRST if self.number == 1 else f"{FURTHER}[{self.number - 1}]"
         self.desk.fields.rebind(self.path, path)
         self.path = path
+        self.handle.follow()
         self._show_turn()
         sensor = f"{path}.sensor"
         for name in ("full_well_e", "read_noise_e", "seed"):

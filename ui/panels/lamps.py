@@ -7,6 +7,7 @@ from typing import Any
 import viser
 
 from ui.desk import Desk
+from ui.handles import Handle
 from workbench.core.lighting import Lamp, LampKind, LedMount
 from workbench.item_fields import without_item
 from workbench.light_edit import colour_words, new_lamp, read_colour
@@ -31,6 +32,7 @@ class LampsFolder:
             self.choice = gui.add_dropdown("Lamp", (NONE,), visible=False)
             self.choice.on_update(desk.guarded(self._choose))
             desk.fields.anchor("Lamps", LAMPS)
+            self.handle = Handle(desk, "Lamp handle", path=lambda: self.edited)
             self.body = gui.add_folder(None, visible=False)
             self.drop = gui.add_button("Remove lamp", icon=viser.Icon.TRASH, visible=False)
             self.drop.on_click(desk.guarded(self._remove))
@@ -70,6 +72,7 @@ class LampsFolder:
             if handle.visible != bool(lamps):
                 handle.visible = bool(lamps)
         self._follow(f"{LAMPS}[{self.number}]" if lamps else "")
+        self.handle.follow()
         if lamps:
             self._fit(lamps[self.number - 1].kind)
 

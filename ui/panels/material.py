@@ -61,8 +61,11 @@ class MaterialFolder:
 
     def refresh(self) -> None:
         """Show the modulus as it stands in all three ways."""
-        young_MPa = self.desk.session.design.material.young_MPa
-        now = next((label for label, name in self.labels.items() if _same(name, young_MPa)), OWN)
+        design = self.desk.session.design
+        young_MPa, cast = design.material.young_MPa, design.casting.silicone
+        same = [label for label, name in self.labels.items() if _same(name, young_MPa)]
+        # Some silicones share a modulus: of these the one that is cast.
+        now = min(same, key=lambda label: self.labels[label] != cast, default=OWN)
         if self.choice.value != now:
             self.choice.value = now
         shore = min(max(shore_a(young_MPa), 0.0), HARDEST)

@@ -9,6 +9,7 @@ from typing import Any
 import viser
 
 from ui.desk import Desk
+from ui.gallery import Card, open_gallery
 from workbench.conductor import Finished
 from workbench.core.errors import Cancelled, DesignError
 from workbench.core.indenter import Indenter, IndenterKind
@@ -28,9 +29,12 @@ from workbench.indenter_edit import (
     textured,
     uploaded,
 )
+from workbench.thumbnails import thumbnail_png
 
 LOADED = "loaded mesh"
 PLAIN = tuple(p.value for p in Pattern if p is not Pattern.IMAGE)
+GROUPS = {"seen": "The paper's, seen in training", "unseen": "The paper's, unseen in training"}
+"""Headings of the gallery, by the first word of a label."""
 SPAN_MM, MESH_SPAN_MM = 30.0, 300.0
 """Ends of the size slider."""
 
@@ -53,6 +57,9 @@ class ObjectFolder:
                 "Object shape", (*self.names, LOADED), initial_value=self._label(now), hint=hint
             )
             self.kind.on_update(guarded(self._choose))
+            hint = "All objects as pictures of the face that touches"
+            pictures = gui.add_button("Gallery of objects", icon=viser.Icon.LAYOUT_GRID, hint=hint)
+            pictures.on_click(guarded(self._open_gallery))
             hint = "Diameter, else the largest width"
             size_mm = min(now.size_mm, MESH_SPAN_MM)
             self.size = gui.add_slider("Size mm", 0.5, MESH_SPAN_MM, 0.5, size_mm, hint=hint)
@@ -98,9 +105,26 @@ class ObjectFolder:
         if event.client is None or self.kind.value == LOADED:
             self.refresh()
             return
-        indenter = another(self.names[self.kind.value], self.desk.session.case.indenter)
-        self.chosen, self.chosen_mesh = self.kind.value, indenter.mesh
+        self._start(self.kind.value)
+
+    def _start(self, label: str) -> None:
+        """Take the object of a label of the gallery."""
+        indenter = another(self.names[label], self.desk.session.case.indenter)
+        self.chosen, self.chosen_mesh = label, indenter.mesh
         self._take(indenter)
+
+    def _open_gallery(self, event: Any) -> None:
+        cards = []
+        for label, name in self.names.items():
+            group, _, words = label.partition(": ")
+            png = thumbnail_png(f"object-{name}")
+            cards.append(Card(name=words, png=png, group=GROUPS.get(group, group)))
+        labels = {label.partition(": ")[2]: label for label in self.names}
+
+        def choose(words: str) -> None:
+            self._start(labels[words])
+
+        open_gallery(event.client.gui, "Object to press", cards, self.desk.guarded(choose))
 
     def _size(self) -> float:
         return float(self.size.value)

@@ -7,13 +7,14 @@ from typing import Any
 import viser
 
 from ui.desk import Desk
+from ui.handles import RING, Handle
 from ui.panels.appearance import AppearanceFolders
 from ui.panels.cameras import CameraFolders
 from ui.panels.lamps import LampsFolder
 from workbench.core.lighting import TABULATED, TRACED, LedMount, LightModel
 from workbench.light_edit import MODEL_HINTS, colour_words, read_colours
 
-RING, BAKING = "design.optics.ring", "design.optics.baking"
+BAKING = "design.optics.baking"
 
 
 class OpticsPanel:
@@ -49,6 +50,8 @@ class OpticsPanel:
 
     def _ring(self) -> None:
         fields = self.desk.fields
+        up = (False, False, True)
+        self.handle = Handle(self.desk, "Ring handle", path=lambda: RING, axes=up)
         hint = "0 for a sensor that has only further lights"
         fields.slider("LEDs", f"{RING}.count", span=(0, 24, 1), whole=True, hint=hint)
         fields.slider("Ring radius mm", f"{RING}.radius_mm", span=(1.0, 30.0, 0.25))
@@ -84,6 +87,7 @@ class OpticsPanel:
         fields.reveal(f"{BAKING}.photons", model in TRACED)
         fields.reveal(f"{BAKING}.seed", model in TRACED)
         fields.reveal(f"{BAKING}.nodes", model in TABULATED)
+        self.handle.follow()
         self.lamps.refresh()
         self.cameras.refresh()
         self.appearance.refresh()

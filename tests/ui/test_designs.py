@@ -1,0 +1,110 @@
+"""A designer starts from a picture, changes what it is made of, and keeps it under a name."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.ui.conftest import Server
+from tests.ui.widgets import (
+    button,
+    choose,
+    coarse_project,
+    control,
+    image_source,
+    open_page,
+    set_number,
+    slider_value,
+    stop_first_press,
+    tab,
+    type_text,
+    wait_until,
+)
+
+pytestmark = [pytest.mark.ui, pytest.mark.slow]
+
+Start = Callable[..., Server]
+
+
+def test_start_from_a_picture_and_keep_it(tmp_path: Path, page: Any, start_server: Start) -> None:
+    """Gallery -> trunk -> silicone -> name -> save -> duplicate -> open: files and widgets agree."""
+    project = coarse_project(tmp_path)
+    server = start_server(project)
+    open_page(page, server.url)
+    stop_first_press(page)
+    button(page, "Gallery of designs").click()
+    page.locator('[data-name="trunk"] img').click()
+    wait_until(lambda: page.get_by_text("Lobe height mm").count(), 30, "the trunk's sliders")
+
+    button(page, "Material").click()
+    choose(page, "Elastomer", "Dragon Skin 10 (10A)")
+    wait_until(lambda: slider_value(page, "Shore A") == 10, 20, "the hardness follows")
+    type_text(page, "Name", "soft trunk")
+    button(page, "Save design").click()
+    file = project / "designs" / "soft trunk.toml"
+    wait_until(file.exists, 20, "the file is written")
+    kept = tomllib.loads(file.read_text())
+    assert kept["family"] == "trunk"
+    assert kept["material"]["young_MPa"] == pytest.approx(0.3796, abs=5e-4)
+    assert kept["casting"]["silicone"] == "Dragon Skin 10"
+
+    button(page, "Duplicate").click()
+    wait_until((project / "designs" / "soft trunk 2.toml").exists, 20, "the copy is written")
+    set_number(page, "Width mm", 40)
+    button(page, "Gallery of designs").click()
+    page.locator('[data-name="soft trunk (yours)"]').click()
+    wait_until(lambda: slider_value(page, "Width mm") == 34, 20, "the kept design is open")
+
+
+def test_a_small_picture_follows_the_sliders(
+    tmp_path: Path, page: Any, start_server: Start
+) -> None:
+    """Shape, light and depth each change the preview; an undo brings the rendered image back."""
+    server = start_server(coarse_project(tmp_path))
+    open_page(page, server.url)
+    wait_until(lambda: page.get_by_text("Image ✓").count(), 180, "the example is pressed")
+    rendered = image_source(page)
+    set_number(page, "Straight length mm", 24)
+    wait_until(lambda: page.get_by_text("dent by geometry").count(), 60, "the preview is shown")
+    seen = [rendered, image_source(page)]
+    tab(page, "Optics").click()
+    set_number(page, "LED height mm", 6)
+    wait_until(lambda: image_source(page) not in seen, 30, "the preview follows the light")
+    seen.append(image_source(page))
+    tab(page, "Simulate").click()
+    set_number(page, "Depth mm", 1.6)
+    wait_until(lambda: image_source(page) not in seen, 30, "the preview follows the depth")
+    page.locator("canvas").first.focus()
+    for _ in range(3):
+        page.keyboard.press("Control+z")
+        page.wait_for_timeout(300)
+    wait_until(lambda: not page.get_by_text("dent by geometry").count(), 30, "the image is back")
+
+
+def test_results_follow_by_themselves_once_edits_settle(
+    tmp_path: Path, page: Any, start_server: Start
+) -> None:
+    """With Auto update two edits end in one fresh image, without a button."""
+    server = start_server(coarse_project(tmp_path))
+    open_page(page, server.url)
+    wait_until(lambda: page.get_by_text("Image ✓").count(), 180, "the example is pressed")
+    control(page, "Auto update").click(force=True)
+    set_number(page, "Straight length mm", 24)
+    set_number(page, "Elastomer mm", 2.4)
+    wait_until(lambda: page.get_by_text("Image ○").count(), 20, "the image is stale")
+    wait_until(lambda: page.get_by_text("Image ✓").count(), 180, "the image follows by itself")
+
+
+def test_objects_are_chosen_from_pictures(tmp_path: Path, page: Any, start_server: Start) -> None:
+    """A click on the cube's picture makes it the object, under its label."""
+    server = start_server(coarse_project(tmp_path))
+    open_page(page, server.url)
+    stop_first_press(page)
+    tab(page, "Simulate").click()
+    button(page, "Gallery of objects").click()
+    page.locator('[data-name="cube"] img').click()
+    wait_until(lambda: "cube" in control(page, "Object shape").input_value(), 20, "the cube")
