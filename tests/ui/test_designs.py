@@ -31,7 +31,7 @@ Start = Callable[..., Server]
 
 
 def test_start_from_a_picture_and_keep_it(tmp_path: Path, page: Any, start_server: Start) -> None:
-    """Gallery -> trunk -> silicone -> name -> save -> duplicate -> open: files and widgets agree."""
+    """Gallery, trunk, silicone, name, save, duplicate, open: files and widgets agree."""
     project = coarse_project(tmp_path)
     server = start_server(project)
     open_page(page, server.url)
@@ -40,7 +40,7 @@ def test_start_from_a_picture_and_keep_it(tmp_path: Path, page: Any, start_serve
     page.locator('[data-name="trunk"] img').click()
     wait_until(lambda: page.get_by_text("Lobe height mm").count(), 30, "the trunk's sliders")
 
-    button(page, "Material").click()
+    page.get_by_text("Material", exact=True).first.click()
     choose(page, "Elastomer", "Dragon Skin 10 (10A)")
     wait_until(lambda: slider_value(page, "Shore A") == 10, 20, "the hardness follows")
     type_text(page, "Name", "soft trunk")
