@@ -19,7 +19,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from workbench import __version__, commands
+from workbench import __version__, commands, sweep_command
 from workbench.core.design import Law
 from workbench.core.errors import Cancelled, StoreError, WorkbenchError
 from workbench.core.imported import LengthUnit
@@ -29,7 +29,16 @@ from workbench.core.press import Extent, Method
 from workbench.project import Project
 from workbench.terminal import complain, say
 
-NUMBERS = ("--target", "--shear-mm", "--twist-deg", "--depth-mm", "--size-mm", "--object-pose")
+NUMBERS = (
+    "--target",
+    "--shear-mm",
+    "--twist-deg",
+    "--depth-mm",
+    "--size-mm",
+    "--object-pose",
+    "--from",
+    "--to",
+)
 """Options whose value may begin with a minus sign."""
 INDENTERS = (
     "sphere, cylinder_end, cylinder_side, cube, cone, cross, triangle, pacman, hexagon, ellipsoid, "
@@ -158,8 +167,26 @@ def parser() -> argparse.ArgumentParser:
     compare.add_argument("reference", type=Path, metavar="DIR")
     compare.add_argument("--out", type=Path, metavar="DIR", help="also comparison.html and .json")
     compare.add_argument("--json", action="store_true")
+    _sweep_options(command(sweep_command.sweep))
     command(commands.doctor)
     return top
+
+
+def _sweep_options(sub: argparse.ArgumentParser) -> None:
+    sub.add_argument("design", metavar="NAME|FILE", help="a variant's file brings its press")
+    _unit_option(sub)
+    text = "for example design.shape.length_mm or case.press.depth_mm"
+    sub.add_argument("--field", required=True, metavar="FIELD", help=text)
+    sub.add_argument("--from", dest="start", required=True, type=float, metavar="VALUE")
+    sub.add_argument("--to", dest="stop", required=True, type=float, metavar="VALUE")
+    sub.add_argument("--steps", type=int, default=5, help="2 to 15, both ends included (default 5)")
+    sub.add_argument("--metric", metavar="NAME", help="figure of the plot (default: mean change)")
+    sub.add_argument("--parts", action="store_true", help="also mould and housing, for checks")
+    sub.add_argument("--depth-mm", type=float, help="of the press (default: the design's, else 1)")
+    sub.add_argument("--frames", type=int, help="of the press")
+    sub.add_argument("--grid-mm", type=float, help="grid cell of the contact solver")
+    sub.add_argument("--out", required=True, type=Path, metavar="DIR")
+    sub.add_argument("--json", action="store_true", help="progress as one JSON object per line")
 
 
 def _unit_option(sub: argparse.ArgumentParser) -> None:

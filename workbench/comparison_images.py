@@ -44,27 +44,42 @@ class Pair:
     words: str
 
 
-def image_of(shot: Shot, moment: Moment) -> tuple[np.ndarray, str]:
-    """An image of a press and how it was strengthened, "" where it was not."""
-    rgb = shot.frames.rgb
-    if moment is Moment.CHANGE:
-        change, gain = visible_change(np.asarray(rgb[-1]), np.asarray(rgb[0]))
-        return change, f"× {gain}"
-    return np.asarray(rgb[-1 if moment is Moment.LAST else 0]), ""
-
-
 def pair(a: Shot, b: Shot, moment: Moment) -> Pair:
-    """Images of two presses at a moment; of changes, the difference is that of the images."""
-    (image_a, gain_a), (image_b, gain_b) = image_of(a, moment), image_of(b, moment)
-    strength = f" (A {gain_a}, B {gain_b})" if gain_a else ""
-    shown_a, shown_b, note = alike(image_a, image_b)
-    source = Moment.LAST if moment is Moment.CHANGE else moment
-    raw_a, raw_b, _ = alike(image_of(a, source)[0], image_of(b, source)[0])
-    if note.startswith("their proportions"):
-        return Pair(a=shown_a, b=shown_b, difference=None, words=f"{moment}{strength}; {note}")
-    change, gain = visible_change(raw_b, raw_a)
-    words = f"{moment}{strength}; difference B − A of the {source} about mid grey, × {gain}"
-    return Pair(a=shown_a, b=shown_b, difference=change, words=f"{words}; {note}".rstrip("; "))
+    """Images of two presses at a moment, changes of both strengthened alike.
+
+    The difference is that of the images themselves, of changes too.
+    """
+    image_a, image_b = _image(a, moment), _image(b, moment)
+    raw_a, raw_b, note = alike(image_a, image_b)
+    shown_a, shown_b, words = raw_a, raw_b, str(moment)
+    if moment is Moment.CHANGE:
+        rest_a, rest_b = _image(a, Moment.REST), _image(b, Moment.REST)
+        gain = min(visible_change(image_a, rest_a)[1], visible_change(image_b, rest_b)[1])
+        strong = _strengthened(image_a, rest_a, gain), _strengthened(image_b, rest_b, gain)
+        shown_a, shown_b, _ = alike(*strong)
+        words = f"{words}, both × {gain}"
+    source = Moment.REST if moment is Moment.REST else Moment.LAST
+    difference = None
+    if same_proportions(image_a, image_b):
+        difference, gain = visible_change(raw_b, raw_a)
+        words = f"{words}; difference B − A of the images {source} about mid grey, × {gain}"
+    words = f"{words}; {note}" if note else words
+    return Pair(a=shown_a, b=shown_b, difference=difference, words=words)
+
+
+def _image(shot: Shot, moment: Moment) -> np.ndarray:
+    return np.asarray(shot.frames.rgb[0 if moment is Moment.REST else -1])
+
+
+def _strengthened(image: np.ndarray, rest: np.ndarray, gain: int) -> np.ndarray:
+    change = image.astype(np.int16) - rest.astype(np.int16)
+    return np.clip(128 + gain * change, 0, 255).astype(np.uint8)
+
+
+def same_proportions(a: np.ndarray, b: np.ndarray) -> bool:
+    """Whether a pixel of one image belongs to a place in the other."""
+    ratio = (a.shape[1] / a.shape[0]) / (b.shape[1] / b.shape[0])
+    return abs(ratio - 1.0) < ALIKE
 
 
 def alike(a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray, str]:
@@ -72,8 +87,7 @@ def alike(a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray, str]:
     if a.shape == b.shape:
         return a, b, ""
     sizes = f"A has {a.shape[1]} × {a.shape[0]} px, B {b.shape[1]} × {b.shape[0]} px"
-    ratio = (a.shape[1] / a.shape[0]) / (b.shape[1] / b.shape[0])
-    if abs(ratio - 1.0) < ALIKE:
+    if same_proportions(a, b):
         scaled = framed(b, (a.shape[1], a.shape[0]), GROUND)
         return a, scaled, f"{sizes}: B is resampled to the size of A"
     size = (max(a.shape[1], b.shape[1]), max(a.shape[0], b.shape[0]))

@@ -68,12 +68,11 @@ def comparison_page(store: Store, a: Side, b: Side, more: Reported | None = None
     full = card(designs)
     sections = [
         f"<h1>{html.escape(title)}</h1><p>{summary}</p>",
-        _who(store, a, "A"),
-        _who(store, b, "B"),
-        "<h2>Tactile images</h2>" + _images(store, a, b),
+        f"<div class='images'>{_who(store, a, 'A')}{_who(store, b, 'B')}</div>",
         "<h2>Parameters that differ</h2>"
         + parameter_table(parameter_differences(a.state, b.state), *names),
         f"<h2>Figures</h2><p>{ARROWS}</p>" + change_table(rows, *names),
+        "<h2>Tactile images</h2>" + _images(store, a, b),
         "<h2>Score card</h2>" + card_table(full) + f"<p>{html.escape(remedies(full))}</p>",
     ]
     if more.sweep is not None:
@@ -103,7 +102,7 @@ def _who(store: Store, side: Side, letter: str) -> str:
     if picture is not None:
         caption = "Membrane at rest and pressed (darker moved farther), and its tactile image"
         drawn = figure(picture, caption, width=IMAGE_PX)
-    return f"<h2>{head}</h2>{note}{drawn}"
+    return f"<section style='max-width:{IMAGE_PX}px'><h2>{head}</h2>{note}{drawn}</section>"
 
 
 def _images(store: Store, a: Side, b: Side) -> str:
@@ -116,8 +115,8 @@ def _images(store: Store, a: Side, b: Side) -> str:
     for moment in (Moment.REST, Moment.LAST, Moment.CHANGE):
         both = pair(shot_a, shot_b, moment)
         parts += [
-            photograph(both.a, f"A, {moment}", width=IMAGE_PX),
-            photograph(both.b, f"B, {moment}", width=IMAGE_PX),
+            photograph(both.a, f"A, {both.words.partition(';')[0]}", width=IMAGE_PX),
+            photograph(both.b, f"B, {both.words.partition(';')[0]}", width=IMAGE_PX),
         ]
     last = pair(shot_a, shot_b, Moment.LAST)
     if last.difference is not None:

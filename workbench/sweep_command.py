@@ -1,0 +1,163 @@
+"""`workbench sweep`: one number of a design in steps, as plot data and report.
+
+Writes `sweep.json` (every point with value, status, figures and keys), `sweep.csv` (the same
+figures as a table) and `sweep.html`. Results are stored: a sweep that was stopped and is asked for
+again goes on where it was.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import dataclasses
+import io
+import json
+import time
+from pathlib import Path
+from typing import Any
+
+from workbench.aim import default_target_mm, with_fitting_ring
+from workbench.core.errors import Cancelled, DesignError, WorkbenchError
+from workbench.core.mapping import suggest
+from workbench.core.units import human_seconds
+from workbench.pipeline import InlineRunner, evaluate, plan
+from workbench.project import Project, load_design, parse_toml, write_atomically
+from workbench.state import State, fresh_state, read_state
+from workbench.sweeps import Status, Sweep, done, failed, make_sweep, metrics_of, state_at
+from workbench.terminal import Progress, complain, say
+
+FILES = ("sweep.json", "sweep.csv", "sweep.html")
+
+
+def sweep(options: argparse.Namespace, project: Project) -> int:
+    """Run a design at several values of one parameter; write figures, plot and images."""
+    from workbench.comparison_report import sweep_page
+    from workbench.folder import prepare
+    from workbench.metric_rules import RULES
+
+    if options.metric and options.metric not in RULES:
+        hint = suggest(options.metric, RULES)
+        raise DesignError(f"there is no figure {options.metric!r}", hint=hint, at="--metric")
+    printer = Progress(as_json=options.json)
+    what = make_sweep(
+        "sweep",
+        base_state(options, project, printer),
+        options.field,
+        start=options.start,
+        stop=options.stop,
+        steps=options.steps,
+        parts=options.parts,
+    )
+    prepare(options.out, clear=FILES)
+    project.store.sweep()
+    what = compute(what, project, printer, as_json=options.json)
+    contents = {
+        "sweep.json": json.dumps(sweep_table(what), indent=1, allow_nan=False),
+        "sweep.csv": sweep_csv(what),
+        "sweep.html": sweep_page(project.store, what, options.metric or ""),
+    }
+    for name, content in contents.items():
+        write_atomically(options.out / name, content.encode())
+    if options.json:
+        say(json.dumps(sweep_table(what), allow_nan=False))
+    else:
+        say(f"open {options.out / 'sweep.html'}")
+    return 0 if all(point.status is Status.DONE for point in what.points) else 3
+
+
+def base_state(options: argparse.Namespace, project: Project, printer: Progress) -> State:
+    """Design and press that the options name; a design file brings the press that it holds.
+
+    Raises:
+        DesignError: If there is no such design or a value is refused.
+    """
+    design = load_design(options.design, unit=options.unit, project=project)
+    if options.design.endswith(".toml"):
+        text = Path(options.design).read_text(encoding="utf-8")
+        held = read_state(text, project, source=options.design).case
+        pressed = "press_case" in parse_toml(text, source=options.design)
+        state = State(design=design, case=held) if pressed else fresh_state(design)
+    else:
+        state = fresh_state(design)
+    if design.body is not None:
+        state = _aimed(state, project, printer)
+    press = {name: getattr(options, name) for name in ("depth_mm", "frames")}
+    named = {name: value for name, value in press.items() if value is not None}
+    case = dataclasses.replace(state.case, press=dataclasses.replace(state.case.press, **named))
+    if options.grid_mm is not None:
+        settings = dataclasses.replace(case.settings, grid_mm=options.grid_mm)
+        case = dataclasses.replace(case, settings=settings)
+    return State(design=state.design, case=case)
+
+
+def _aimed(state: State, project: Project, printer: Progress) -> State:
+    """A body from a file has to be built to be aimed at, and gets LEDs that fit inside."""
+    runner = InlineRunner(project.store)
+    for outcome in evaluate(state.design, state.case, runner, wanted=("build",), monitor=printer):
+        printer.done(outcome)
+    solid = project.store.load("build", plan(state.design, state.case)["build"].key)
+    design, _ = with_fitting_ring(state.design, solid)
+    press = dataclasses.replace(state.case.press, target_mm=default_target_mm(design, solid))
+    return State(design=design, case=dataclasses.replace(state.case, press=press))
+
+
+def compute(what: Sweep, project: Project, printer: Progress, *, as_json: bool) -> Sweep:
+    """All points in order; one that fails is told and left.
+
+    Raises:
+        Cancelled: If the user asked to stop; finished results are stored.
+    """
+    runner = InlineRunner(project.store)
+    for number, point in enumerate(what.points):
+        started = time.monotonic()
+        try:
+            state = state_at(what, number)
+            for outcome in evaluate(
+                state.design, state.case, runner, wanted=what.wanted, monitor=printer
+            ):
+                printer.done(outcome)
+            what = done(what, number, project.store, time.monotonic() - started)
+        except Cancelled:
+            raise
+        except WorkbenchError as error:
+            what = failed(what, number, error)
+        spent = human_seconds(time.monotonic() - started)
+        told = what.points[number]
+        if not as_json:
+            words = told.message or "done"
+            complain(f"{number + 1} of {len(what.points)}: {point.value:g} {words}, {spent}")
+    return what
+
+
+def sweep_table(what: Sweep) -> dict[str, Any]:
+    """A sweep as plain tables."""
+    return {
+        "schema": 1,
+        "design": what.base.design.name,
+        "family": what.base.design.family,
+        "field": what.path,
+        "label": what.field.label,
+        "unit": what.field.unit,
+        "points": [
+            {
+                "value": point.value,
+                "status": point.status.value,
+                "message": point.message,
+                "figures": dict(point.figures),
+                "keys": dict(point.keys),
+            }
+            for point in what.points
+        ],
+    }
+
+
+def sweep_csv(what: Sweep) -> str:
+    """Values and figures as comma-separated values; what a point has not is empty."""
+    names = metrics_of(what)
+    buffer = io.StringIO()
+    writer = csv.writer(buffer, lineterminator="\n")
+    writer.writerow([what.path.rpartition(".")[2], "status", *names])
+    for point in what.points:
+        figures = [point.figures.get(name, "") for name in names]
+        writer.writerow([point.value, point.status.value, *figures])
+    return buffer.getvalue()
