@@ -121,6 +121,7 @@ def first_look(desk: Desk) -> None:
     desk.changed()
     if desk.session.notice:
         desk.log(desk.session.notice)
+        desk.reports.remark(desk.session.notice)
     if not any(fresh.values()):
         desk.log("first start: pressing the example in the background, a minute or so")
         desk.run("press", ("press", "shoot"))

@@ -5,7 +5,6 @@ Handlers of widgets call `edit` or `run` and return; what comes of it arrives th
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from typing import Any, Protocol
 
@@ -18,6 +17,7 @@ from ui.jobs import Jobs
 from ui.live import LivePress
 from ui.panels.fields import Fields, whole_shape
 from ui.reports import Reports
+from ui.saving import Saving
 from ui.scene import Scene
 from ui.session import Session
 from ui.upkeep import Upkeep
@@ -33,8 +33,6 @@ from workbench.item_fields import read_field
 from workbench.pipeline import plan
 from workbench.stages import PARTIAL, Outcome
 
-AUTOSAVE_S = 1.0
-"""Quiet time after an edit before the design is written [s]."""
 AIM_LIMIT_MM = 4.0
 """Distance from target to skin at which the target follows; the solver refuses beyond 5 mm."""
 SHOWN = (
@@ -100,7 +98,7 @@ class Desk:
         self.gizmos.append(self.live.gizmo)
         self.jobs.on_preview[LIVE] = self.live.show
         self.glimpse = GlimpseFollower(self)
-        self._edited: float | None = None
+        self.saving = Saving(session, self.reports, self.header.unsaved)
         self._indenter: Indenter | None = None
         """The object on show."""
         self._framed: tuple[str, str] | None = None
@@ -137,7 +135,7 @@ class Desk:
 
     def changed(self) -> None:
         """Follow a change of state: live view, stage strip, autosave."""
-        self._edited = time.monotonic()
+        self.saving.edited()
         self.upkeep.edited()
         session = self.session
         self._follow_sensor()
@@ -273,7 +271,7 @@ class Desk:
         fitted, changed = with_fitting_ring(self.session.design, solid)
         if changed:
             self.session.amend("design.optics.ring.radius_mm", fitted.optics.ring.radius_mm)
-            self._edited = time.monotonic()
+            self.saving.edited()
             self.fields.refresh()
             self.scene.rig.show_optics(fitted.optics)
             self.log(changed)
@@ -292,7 +290,7 @@ class Desk:
                 point = default_target_mm(design, solid)
             x, y, z = (round(float(c), 2) for c in point)
             self.session.amend("case.press.target_mm", (x, y, z))
-            self._edited = time.monotonic()
+            self.saving.edited()
             self.fields.refresh()
             self.log(f"the target was {distance_mm:.1f} mm off the skin: it is now {x}, {y}, {z}")
 
@@ -336,13 +334,7 @@ class Desk:
             gizmo.turn()
         self.scene.pressed.turn()
         self.upkeep.turn()
-        self._autosave()
-
-    def _autosave(self) -> None:
-        """Keep the state once edits have settled."""
-        if self._edited is not None and time.monotonic() - self._edited > AUTOSAVE_S:
-            self._edited = None
-            self.session.autosave()
+        self.saving.turn()
 
     def refresh_header(self) -> None:
         """Show which stages are done and which are stale."""

@@ -52,6 +52,7 @@ class Header:
         self.title = gui.add_markdown("")
         self.strip = gui.add_markdown("")
         self.banner = gui.add_markdown("", visible=False)
+        self.unsaved = gui.add_markdown("", visible=False)
         self.notice = gui.add_markdown("", visible=False)
         hint = "Look at all that is on show, from where you look now (F)"
         gui.add_button("Fit view", icon=viser.Icon.FOCUS_CENTERED, hint=hint).on_click(on_fit)

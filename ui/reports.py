@@ -75,8 +75,7 @@ class Reports:
         self.log(f"{type(error).__name__}: {words} {error.hint}")
         text = html.escape(f"{words}.{hint}")
         if not (at_field and at_field == edited):
-            self.banner.content = f"<span style='color:{RED}'>**{text}**</span>"
-            self.banner.visible = True
+            self._show_banner(text)
         if topic in self.places:
             self.places[topic].content = f"<span style='color:{RED}'>{text}</span>"
             self.places[topic].visible = True
@@ -87,6 +86,14 @@ class Reports:
             # A traceback from a worker; a full disk must not hide the message itself.
             with contextlib.suppress(WorkbenchError):
                 self.session.project.write_crash(error.hint)
+
+    def remark(self, words: str) -> None:
+        """Show words on top until the next edit, for example what became of the last session."""
+        self._show_banner(html.escape(f"{words[0].upper()}{words[1:]}"))
+
+    def _show_banner(self, text: str) -> None:
+        self.banner.content = f"<span style='color:{RED}'>**{text}**</span>"
+        self.banner.visible = True
 
     def settle(self, path: str = "") -> None:
         """Take back what was complained about: a good value has come, of the field `path`."""

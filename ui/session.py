@@ -7,6 +7,7 @@ quick succession (a drag) are one step of undo.
 from __future__ import annotations
 
 import dataclasses
+import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -36,6 +37,7 @@ class Session:
         self.notice = ""
         """What happened while loading, to be shown once."""
         self._clock = clock
+        self._saving = threading.Lock()
         self._past: list[State] = []
         self._future: list[State] = []
         self._last_edit = ("", -1e9)
@@ -72,12 +74,21 @@ class Session:
             roots = (self.project.folder,)
             self.state = fresh_state(design_from_toml(text, source=str(path), roots=roots))
         except (WorkbenchError, OSError, UnicodeDecodeError) as error:
-            self.notice = f"the last session could not be read: {error}"
+            self.notice = f"the last session could not be read: {error}{self._aside()}"
             return
         try:
             self.state = read_state(text, self.project, source=str(path))
         except WorkbenchError as error:
-            self.notice = f"the press of the last session is the default one again: {error}"
+            words = "the press of the last session is the default one again"
+            self.notice = f"{words}: {error}{self._aside()}"
+
+    def _aside(self) -> str:
+        """Keep an autosave that cannot be read from being written over; in words."""
+        try:
+            kept = self.project.keep_aside(AUTOSAVE)
+        except WorkbenchError as error:
+            return f"; {error.message}"
+        return f"; the file is kept as {kept.name}"
 
     def change(self, dotted: str, value: Any) -> None:
         """Set one field, for example `design.optics.lamps[1].power` or `case.press.depth_mm`.
@@ -175,12 +186,13 @@ class Session:
             return None
         return self.store.load(stage, call.key)
 
-    def autosave(self) -> None:
-        """Keep the state for the next start.
+    def autosave(self, state: State | None = None) -> None:
+        """Keep a state, by default the one that stands, for the next start.
 
         Raises:
-            StoreError: If the project folder cannot be written.
+            StoreError: If the project folder cannot be written; the file there stays.
         """
-        self.project.save_design(
-            AUTOSAVE, self.design, press_case=case_table(self.case, self.project)
-        )
+        with self._saving:
+            kept = self.state if state is None else state
+            press_case = case_table(kept.case, self.project)
+            self.project.save_design(AUTOSAVE, kept.design, press_case=press_case)

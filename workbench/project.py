@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
+import itertools
 import os
 import secrets
 import time
@@ -94,11 +95,40 @@ class Project:
             if not (self.folder / name).exists():
                 write_atomically(self.folder / name, content)
 
+    def keep_aside(self, name: str) -> Path:
+        """Copy a design file that cannot be read to a free name beside it; returns that file.
+
+        Raises:
+            StoreError: If the folder cannot be written.
+        """
+        path = self.design_path(name)
+        kept = _free(path.with_name(f"{path.stem}-broken{path.suffix}"))
+        try:
+            content = path.read_bytes()
+        except OSError as error:
+            raise StoreError(
+                f"cannot read {path}: {error.strerror or error}",
+                hint="check the file and its permissions",
+                at=str(path),
+            ) from error
+        write_atomically(kept, content)
+        return kept
+
     def write_crash(self, text: str) -> Path:
         """Keep a traceback for a bug report; returns the file."""
-        path = self.folder / "crash" / f"{time.strftime('%Y%m%d-%H%M%S')}-{os.getpid()}.txt"
+        name = f"{time.strftime('%Y%m%d-%H%M%S')}-{os.getpid()}.txt"
+        # Two bugs in one second, or in an hour that a clock set back lives twice.
+        path = _free(self.folder / "crash" / name)
         write_atomically(path, text.encode())
         return path
+
+
+def _free(path: Path) -> Path:
+    """The path, or the first of it with a number that is not taken."""
+    numbered = (
+        path.with_name(f"{path.stem}-{number}{path.suffix}") for number in itertools.count(2)
+    )
+    return next(free for free in itertools.chain((path,), numbered) if not free.exists())
 
 
 def write_atomically(path: Path, content: bytes) -> None:

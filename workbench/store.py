@@ -144,7 +144,8 @@ class Store:
         """
         removed = 0
         for part in self.root.glob("*/.part-*"):
-            if not _alive(int(part.name.split("-")[1])):
+            pid = part.name.split("-")[1]
+            if not (pid.isdecimal() and _alive(int(pid))):
                 shutil.rmtree(part, ignore_errors=True)
                 removed += 1
         entries: list[tuple[float, int, Path]] = []
