@@ -15,6 +15,8 @@ from workbench.section_cut import clip
 COLOUR = (255, 45, 85)
 BALL_MM = 0.35
 """Radius of the ball at an end."""
+LIFT_MM = 1.0
+"""How far the label stands above the middle of the line."""
 ASK = "Click the first point."
 ASK_NEXT = "Click the second point."
 
@@ -88,7 +90,7 @@ class Measure:
             self.told(ASK_NEXT)
             return
         line = np.stack(self._ends).astype(np.float32)[None]
-        middle = np.mean(self._ends, axis=0)
+        middle = np.mean(self._ends, axis=0) + np.array([0.0, 0.0, LIFT_MM])
         text = measured(*self._ends)
         self._nodes += [
             api.add_line_segments("/measure/line", line, colors=COLOUR, line_width=3.0),

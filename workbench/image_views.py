@@ -27,12 +27,20 @@ class View(enum.StrEnum):
     DIFFERENCE = "difference"
     NORMALS = "normals"
     DEPTH = "depth_z"
+    MARKERS = "markers"
     MOTION = "marker motion"
     CONTACT = "contact mask"
 
 
 OF_IMAGES = (View.IMAGE, View.DIFFERENCE)
 """Views that need nothing but the images: a live press has no more."""
+
+
+OF_MARKERS = (View.MARKERS, View.MOTION)
+CROSS, RIM = (255, 45, 85), (250, 250, 250)
+"""Colours of the cross at a chosen pixel, and of its rim."""
+CROSS_SHARE = 0.03
+"""Half the length of the cross over the width of the image."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -60,7 +68,7 @@ def views(frames: TactileFrames | None) -> tuple[View, ...]:
     if frames is None:
         return OF_IMAGES
     marked = frames.marker_uv_px.shape[1] > 0
-    return tuple(view for view in View if marked or view is not View.MOTION)
+    return tuple(view for view in View if marked or view not in OF_MARKERS)
 
 
 def looked(
@@ -86,6 +94,8 @@ def looked(
         return _depth(np.asarray(frames.depth_z_mm[number]), np.asarray(frames.depth_z_mm[0]))
     if view is View.CONTACT:
         return _mask(frames, number)
+    if view is View.MARKERS:
+        return _markers(image, frames, number)
     return _motion(image, frames, number)
 
 
@@ -129,6 +139,38 @@ def _mask(frames: TactileFrames, number: int) -> Looked:
     shares = (100.0 * float(pixels.mean()) for pixels in (contact, moved))
     words = "white: contact, {:.1f} % of the pixels; grey: displaced skin, {:.1f} %"
     return Looked(rgb=np.repeat(grey[..., None], 3, axis=-1), words=words.format(*shares))
+
+
+def crossed(image: np.ndarray, uv_px: np.ndarray) -> np.ndarray:
+    """A copy of an image, shape (H, W, 3), uint8, with a cross at (column, row) [px]."""
+    drawn = np.array(image)
+    high, wide = drawn.shape[:2]
+    reach = max(4, int(CROSS_SHARE * wide))
+    column, row = (int(c) for c in np.floor(uv_px))
+    for colour, width in ((RIM, 2), (CROSS, 1)):
+        side = width - 1
+        rows = slice(max(row - side, 0), row + side + 1)
+        drawn[rows, max(column - reach, 0) : column + reach + 1] = colour
+        columns = slice(max(column - side, 0), column + side + 1)
+        drawn[max(row - reach, 0) : row + reach + 1, columns] = colour
+    if 0 <= row < high and 0 <= column < wide:
+        # The pixel itself stays visible.
+        drawn[row, column] = image[row, column]
+    return drawn
+
+
+def _markers(image: np.ndarray, frames: TactileFrames, number: int) -> Looked:
+    """Rings about the centres of the markers that are seen."""
+    import cv2
+
+    drawn = np.ascontiguousarray(image).copy()
+    centres = np.asarray(frames.marker_uv_px[number], dtype=np.float64)
+    centres = centres[np.isfinite(centres).all(axis=1)]
+    radius = max(2, round(image.shape[1] / 100))
+    for column, row in np.rint(centres - 0.5).astype(int):
+        cv2.circle(drawn, (int(column), int(row)), radius, RIM, 1, cv2.LINE_AA)
+    total = frames.marker_uv_px.shape[1]
+    return Looked(rgb=drawn, words=f"centres of the markers: {len(centres)} of {total} seen")
 
 
 def _motion(image: np.ndarray, frames: TactileFrames, number: int) -> Looked:

@@ -16,7 +16,7 @@ from workbench.phases import finite, number, of_frame, phase
 NO_PRESS = "No press of this sensor yet."
 MOST_ROWS = 400
 """Frames of the table."""
-BLUE, ORANGE, GREEN = "#3b82f6", "#f5a623", "#46a758"
+BLUE, ORANGE, GREEN, WHITE = "#3b82f6", "#f5a623", "#46a758", "#ffffff"
 
 
 class ForcesTab:
@@ -25,12 +25,16 @@ class ForcesTab:
     def __init__(self, gui: Any) -> None:
         self.text = gui.add_markdown(NO_PRESS)
         empty = (np.zeros(2), np.zeros(2), np.zeros(2))
+        point = {"show": True, "size": 11, "fill": WHITE}
+        self._curves = empty
+        self._marked = -1
         self.depth = gui.add_uplot(
-            empty,
+            (*empty, np.full(2, np.nan)),
             (
                 uplot.Series(label="depth mm"),
                 uplot.Series(label="normal force N", stroke=BLUE, width=2),
                 uplot.Series(label="tangential force N", stroke=ORANGE, width=2),
+                uplot.Series(label="frame on show", stroke=WHITE, width=0, points=point),  # pyright: ignore[reportArgumentType]
             ),
             scales={"x": uplot.Scale(time=False)},
             title="Force [N] against depth [mm], way in",
@@ -53,8 +57,10 @@ class ForcesTab:
     def clear(self) -> None:
         """Show no press."""
         zero = np.zeros(2)
+        self._curves = zero, zero, zero
         self.text.content, self.table.content = NO_PRESS, ""
-        self.depth.data = self.slip.data = (zero, zero, zero)
+        self.depth.data = (zero, zero, zero, np.full(2, np.nan))
+        self.slip.data = (zero, zero, zero)
 
     def load(self, press: Press, contact: Contact) -> None:
         """Show all frames of a press."""
@@ -62,10 +68,12 @@ class ForcesTab:
         # A plot goes to the right: the way in ends where the object first stops going deeper.
         falls = np.flatnonzero(np.diff(depth_mm) <= 0.0)
         count = int(falls[0]) + 1 if len(falls) else len(depth_mm)
-        self.depth.data = tuple(
+        self._curves = tuple(
             np.r_[0.0, finite(values)[:count]]
             for values in (depth_mm, contact.normal_N, tangential_force_N(contact))
         )
+        self._marked = -1
+        self.mark(len(depth_mm))
         ratio, share = slip_curve(contact)
         self.slip.data = (
             np.arange(len(ratio) + 1.0),
@@ -73,6 +81,15 @@ class ForcesTab:
             np.r_[0.0, finite(share)],
         )
         self.table.content = table_html(press, contact)
+
+    def mark(self, frame: int) -> None:
+        """Mark a frame, counted from 1, on the curve of force; one after the way in has no mark."""
+        marks = np.full(len(self._curves[0]), np.nan)
+        if frame < len(marks):
+            marks[frame] = self._curves[1][frame]
+        if frame != self._marked or len(marks) != len(self.depth.data[0]):
+            self._marked = frame
+            self.depth.data = (*self._curves, marks)
 
     def show(self, contact: Contact, k: int, *, what: str, note: str) -> None:
         """Show the numbers of frame `k`, counted from 0, in which `what` happens, below a note."""

@@ -1,17 +1,25 @@
-"""The tab of the tactile image: which camera, what is shown of it, its change, and measures."""
+"""The tab of the tactile image: which camera, what is shown of it, its change, and measures.
+
+Blinking between the frame and the rest shows small changes better than two pictures do.
+"""
 
 from __future__ import annotations
 
+import threading
+import time
 from typing import Any
 
 import numpy as np
 
 from ui.desk import Desk
 from ui.imaging import placeholder, scale_bar, table
+from ui.panels.probe import Probe
 from workbench.core.sensing import Shot, TactileFrames
-from workbench.image_views import View, looked, views, visible_change
+from workbench.image_views import View, crossed, looked, views, visible_change
 from workbench.map_display import scores
 
+BLINK_S = 0.5
+"""How long each of the two blinking pictures is shown [s]."""
 NO_IMAGE = "No press of this sensor yet: *Run press* makes an image."
 
 
@@ -31,6 +39,9 @@ class ImageTab:
         self.view = gui.add_dropdown("Show", (View.IMAGE.value,), visible=False, hint=hint)
         for handle in (self.camera, self.view):
             handle.on_update(desk.guarded(lambda event: self.show(self.number)))
+        hint = "Show the untouched skin every other half second"
+        self.blink = gui.add_checkbox("Blink with rest", False, visible=False, hint=hint)
+        self.blink.on_update(desk.guarded(lambda event: self._blinks()))
         self.image = gui.add_image(placeholder(), format="jpeg")
         self.legend = gui.add_html("")
         self.change_text = gui.add_markdown("")
@@ -38,6 +49,12 @@ class ImageTab:
         self.measures = gui.add_folder("Measures", expand_by_default=False, visible=False)
         with self.measures:
             self.numbers = gui.add_html("")
+        self.probe = Probe(desk)
+        self.probe.on_moved = lambda: self.show(self.number)
+        self._blinking = threading.Event()
+        self._resting = False
+        """Whether blinking shows the rest just now."""
+        threading.Thread(target=self._blink_forever, name="blink", daemon=True).start()
 
     @property
     def last(self) -> int | None:
@@ -66,6 +83,7 @@ class ImageTab:
         self.change_text.content = self.legend.content = ""
         self.image.image = self.change.image = placeholder()
         self.camera.visible = self.view.visible = self.measures.visible = False
+        self.blink.visible = self.blink.value = False
 
     def say(self, text: str) -> None:
         """Write above the picture."""
@@ -78,6 +96,7 @@ class ImageTab:
         self._choices(self.camera, names)
         self._choices(self.view, tuple(view.value for view in views(self.cameras[0][1])))
         self.camera.visible, self.view.visible = len(names) > 1, True
+        self.blink.visible = True
 
     @staticmethod
     def _choices(handle: Any, names: tuple[str, ...]) -> None:
@@ -96,16 +115,43 @@ class ImageTab:
             return
         images, frames = self.chosen()
         self.number = number = min(number, len(images) - 1)
-        found = looked(View(self.view.value), images, number, frames)
+        self.probe.follow(self.camera.options.index(self.camera.value), number)
+        seen = 0 if self._resting else number
+        found = looked(View(self.view.value), images, seen, frames)
         change, gain = visible_change(np.asarray(images[number]), np.asarray(images[0]))
         bar = found.bar
         words = f"<div style='font-size:12px;margin:2px 12px'>{found.words}</div>"
         scale = "" if bar is None else scale_bar(bar.low, bar.high, bar.unit)
         with self.desk.server.atomic():
-            self.image.image = found.rgb
+            self.image.image = self._crossed(found.rgb)
             self.legend.content = scale + words if found.words else ""
             self.change_text.content = f"Difference to the background, × {gain}"
             self.change.image = change
+
+    def _crossed(self, image: np.ndarray) -> np.ndarray:
+        """The picture with a cross at the chosen pixel, of the camera's or of fewer pixels."""
+        uv_px, cameras = self.probe.uv_px, self.desk.session.design.optics.all_cameras
+        if uv_px is None or self.probe.camera >= len(cameras):
+            return image
+        return crossed(image, uv_px * (image.shape[1] / cameras[self.probe.camera].width_px))
+
+    def _blinks(self) -> None:
+        if self.blink.value:
+            self._blinking.set()
+        else:
+            self._blinking.clear()
+            self._resting = False
+            self.show(self.number)
+
+    def _blink_forever(self) -> None:
+        while self._blinking.wait():
+            time.sleep(BLINK_S)
+            self.desk.guarded(lambda event: self._turn_over())(None)
+
+    def _turn_over(self) -> None:
+        if self._blinking.is_set():
+            self._resting = not self._resting
+            self.show(self.number)
 
     def show_in_frusta(self, number: int) -> None:
         """Show in the 3D view what each camera sees."""

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import html
-import threading
-import time
 from typing import Any
 
 import viser
@@ -14,6 +12,7 @@ from ui.imaging import legend
 from ui.panels.forces import ForcesTab
 from ui.panels.image import ImageTab
 from ui.panels.maps import MapsPanel
+from ui.player import SPEEDS, Player
 from ui.sensor import SKIN_COLOUR
 from workbench.core.errors import SolveError
 from workbench.core.press import Press
@@ -23,8 +22,6 @@ from workbench.live_press import Preview, live_press
 from workbench.phases import phase
 from workbench.quantities import Quantity
 
-FRAME_S = 0.15
-"""Time between frames while playing [s]."""
 LOG_ROWS = 60
 LIVE_NOTE = "**live**: one frame, not stored; *Run press* computes the path"
 GLIMPSE_NOTE = "**preview**: {model} light, dent by geometry; *Run press* computes the image"
@@ -44,7 +41,6 @@ class ResultsPanel:
         """What is said of a picture that follows the sliders; empty while images are shown."""
         self.play_next = False
         """Whether the next images are played as soon as they are there."""
-        self.playing = threading.Event()
         self.stepping = False
         """Whether there are frames to step through."""
         self.covered = False
@@ -69,7 +65,13 @@ class ResultsPanel:
         self.timeline = panel = gui.add_panel(visible=False)
         with panel.add_tab("Timeline", viser.Icon.CLOCK):
             self.frame = gui.add_slider("Frame", 0, 1, 1, 0, hint="0 is the untouched skin")
-            self.play = gui.add_button("Play / pause", icon=viser.Icon.PLAYER_PLAY)
+            hint = "P or space; J and K go a frame back and on"
+            self.play = gui.add_button("Play / pause", icon=viser.Icon.PLAYER_PLAY, hint=hint)
+            hint = "1 × is twelve frames a second; frames that come too late are left out"
+            speeds = tuple(SPEEDS)
+            self.speed = gui.add_dropdown("Speed", speeds, initial_value=speeds[2], hint=hint)
+            hint = "Begin again after the last frame; off, playing stops there"
+            self.loop = gui.add_checkbox("Loop", False, hint=hint)
             self.legend = gui.add_html("")
             names = tuple(quantity.value for quantity in Quantity)
             hint = "The scale is that of all frames together"
@@ -84,9 +86,28 @@ class ResultsPanel:
         self.quantity.on_update(self.desk.guarded(lambda event: self._paint()))
         self.arrows.on_update(self.desk.guarded(lambda event: self._draw_arrows()))
         self.bare.on_update(self.desk.guarded(lambda event: self._hide_object()))
-        command = gui.add_command("Play or pause", hotkey="P")
-        command.on_trigger(self.desk.guarded(self._toggle))
-        threading.Thread(target=self._play_forever, daemon=True).start()
+        self.player = Player(self.frame)
+        self.speed.on_update(self.desk.guarded(lambda event: self._pace()))
+        self.loop.on_update(self.desk.guarded(lambda event: self._pace()))
+        self._keys()
+
+    def _keys(self) -> None:
+        gui, guarded = self.desk.server.gui, self.desk.guarded
+        for name, key, handler in (
+            ("Play or pause", "P", self._toggle),
+            ("Play or pause (space)", "space", self._toggle),
+            ("Previous frame", "J", lambda event: self._step(-1)),
+            ("Next frame", "K", lambda event: self._step(1)),
+        ):
+            gui.add_command(name, hotkey=key).on_trigger(guarded(handler))
+
+    def _pace(self) -> None:
+        self.player.speed = SPEEDS[self.speed.value]
+        self.player.loop = bool(self.loop.value)
+
+    def _step(self, frames: int) -> None:
+        if self.timeline.visible:
+            self.player.step(frames)
 
     def _paint(self) -> None:
         self.desk.scene.pressed.paint(Quantity(self.quantity.value))
@@ -110,16 +131,10 @@ class ResultsPanel:
         self.desk.scene.hide_indenter(bool(self.bare.value))
 
     def _toggle(self, event: Any) -> None:
-        if self.playing.is_set():
-            self.playing.clear()
-        else:
-            self.playing.set()
-
-    def _play_forever(self) -> None:
-        while self.playing.wait():
-            time.sleep(FRAME_S)
-            count = int(self.frame.max)
-            self.frame.value = (int(self.frame.value) + 1) % (count + 1)
+        if self.player.playing:
+            self.player.stop()
+        elif self.timeline.visible:
+            self.player.start()
 
     def _show_frame(self) -> None:
         number = int(self.frame.value)
@@ -162,7 +177,9 @@ class ResultsPanel:
 
     def show(self, stage: str, result: Any) -> None:
         """Follow results and the log."""
-        if stage == "press":
+        if stage in ("build", "mesh"):
+            self.image.probe.take_mesh(result if stage == "mesh" else None)
+        elif stage == "press":
             self._show_contact(self.desk.session.case.press, result, note="")
         elif stage == "live":
             self._show_live(result)
@@ -177,7 +194,7 @@ class ResultsPanel:
         elif stage == "play":
             self.play_next = True
         elif stage == "run":
-            self.playing.clear()
+            self.player.stop()
         elif stage == "sensor":
             self._blank()
         elif stage == "covered":
@@ -200,11 +217,11 @@ class ResultsPanel:
         self.image.show_in_frusta(number)
         if self.play_next:
             self.play_next = False
-            self.playing.set()
+            self.player.start()
 
     def _show_live(self, preview: Preview) -> None:
         """Show a live frame and its image; the scene has its skin already."""
-        self.playing.clear()
+        self.player.stop()
         self.sketch = ""
         self.contact, self.press = preview.contact, live_press(self.desk.session.case.press)
         self.note = LIVE_NOTE
@@ -217,7 +234,7 @@ class ResultsPanel:
 
     def _show_glimpse(self, glimpse: Glimpse) -> None:
         """Show the small picture of a state without images, in place of a stale one."""
-        self.playing.clear()
+        self.player.stop()
         self.sketch = GLIMPSE_NOTE.format(model=glimpse.model.value)
         self.image.load_live(glimpse.images)
         self._show_image(1)
@@ -246,7 +263,7 @@ class ResultsPanel:
         """What was seen and felt belongs to another sensor."""
         self.contact = None
         self.note = self.sketch = ""
-        self.playing.clear()
+        self.player.stop()
         with self.desk.server.atomic():
             self.image.clear()
             self.forces.clear()
@@ -272,6 +289,7 @@ class ResultsPanel:
         note = self.note
         if not note and not self.desk.current("press"):
             note = "**stale**: run the press again"
+        self.forces.mark(number)
         self.forces.show(self.contact, k, what=self._phase(k + 1), note=note)
 
 
