@@ -23,6 +23,7 @@ from tests.ui.widgets import (
     slider_value,
     stop_first_press,
     tab,
+    type_numbers,
     type_text,
     wait_until,
 )
@@ -87,7 +88,7 @@ def test_from_a_preset_to_a_report_and_a_mould(
     fresh(page, "Shape")
     tab(page, "Optics").click()
     set_number(page, "LED height mm", 4)
-    set_number(page, "Photons", 400_000)
+    type_numbers(page, "Photons", [400_000])
     tab(page, "Simulate").click()
     set_number(page, "Frames", 2)
     page.get_by_text("Solver", exact=True).first.click()
