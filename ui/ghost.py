@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from workbench.core.errors import StoreError
 from workbench.previews import outer_faces
 from workbench.sides import Side
 from workbench.store import Store
@@ -103,7 +104,11 @@ class GhostView:
         low, high = bounds_mm
         made, missing = [], []
         for ghost in ghosts:
-            mesh = ghost_mesh(self.store, ghost)
+            try:
+                mesh = ghost_mesh(self.store, ghost)
+            except StoreError:
+                # Damaged is as good as not stored.
+                mesh = None
             if mesh is None:
                 missing.append(ghost.label)
             else:

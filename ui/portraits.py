@@ -12,6 +12,7 @@ import threading
 from collections.abc import Callable
 from typing import Any
 
+from ui.reports import Reports
 from workbench.conductor import Runner
 from workbench.core.errors import Cancelled, WorkbenchError
 from workbench.core.monitor import silent
@@ -23,10 +24,10 @@ from workbench.variants import load_variant, result_keys, variant_path
 class Portraits:
     """A queue of variants without thumbnails and the thread that works it off."""
 
-    def __init__(self, project: Project, runner: Runner, log: Callable[[str], None]) -> None:
+    def __init__(self, project: Project, runner: Runner, reports: Reports) -> None:
         self.project = project
         self.runner = runner
-        self.log = log
+        self.reports = reports
         self.on_drawn: Callable[[], None] = lambda: None
         """Set by the panel: a file has come."""
         self._waiting: queue.Queue[str] = queue.Queue()
@@ -45,7 +46,10 @@ class Portraits:
                 return
             except WorkbenchError as error:
                 # A variant without a picture is still a variant.
-                self.log(f"no thumbnail of {name}: {error.message}")
+                self.reports.log(f"no thumbnail of {name}: {error.message}")
+            except Exception as bug:
+                # The thread must outlive a bug, and the designer must hear of it.
+                self.reports.crash(bug)
             self.on_drawn()
 
     def _draw(self, name: str) -> None:
@@ -65,4 +69,4 @@ class Portraits:
             if path.exists():
                 write_atomically(path.with_suffix(".png"), content)
         if unable is not None:
-            self.log(f"thumbnail of {name}: {unable.message}")
+            self.reports.log(f"thumbnail of {name}: {unable.message}")

@@ -4,7 +4,8 @@
 .workbench/
   store/     results by stage and key
   designs/   autosave.toml
-  variants/  kept designs with their press and numbers
+  variants/  kept designs with their press, figures and thumbnails; `trash/` has deleted ones
+  sweeps/    one-parameter sweeps with their figures
   bodies/    files of imported bodies by hash
   pictures/  backgrounds and patterns of markers by hash
   indenters/ meshes of STL indenters by key

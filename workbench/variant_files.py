@@ -133,7 +133,7 @@ def delete_variant(project: Project, name: str) -> str:
     """
     path = folder(project) / f"{name}.toml"
     if name not in list_variants(project):
-        raise DesignError(f"there is no variant {name!r}", hint="it is gone already", at="name")
+        raise DesignError(f"there is no variant {name!r}", hint="it is gone already", at="variant")
     trash = folder(project) / TRASH
     taken = [kept.stem for kept in trash.glob("*.toml")]
     kept = name if name not in taken else _numbered(name, taken)
@@ -151,7 +151,7 @@ def restore_variant(project: Project, kept: str) -> str:
     """
     trash, taken = folder(project) / TRASH, list_variants(project)
     if kept not in [path.stem for path in trash.glob("*.toml")]:
-        raise DesignError(f"the trash has no variant {kept!r}", hint=f"look in {trash}", at="name")
+        raise DesignError(f"the trash has no variant {kept!r}", hint=f"look in {trash}", at="variant")
     name = kept if kept not in taken else _numbered(kept, taken)
     for ending in (".toml", ".png"):
         _move(trash / f"{kept}{ending}", folder(project) / f"{name}{ending}")

@@ -6,6 +6,7 @@ of the file. `variant_files` lists, renames and deletes them.
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import time
 import tomllib
@@ -58,14 +59,17 @@ def variant_path(project: Project, name: str) -> Path:
     Raises:
         DesignError: If the name cannot be one.
     """
-    path = folder(project) / project.design_path(name).name
-    if name != name.strip() or not name.isprintable() or name in RESERVED:
-        raise DesignError(
-            f"{name!r} cannot be the name of a variant",
-            hint="use letters, digits, spaces and dashes, at most 80",
-            at="name",
-        )
-    return path
+    fits = name == name.strip() and name.isprintable() and name not in RESERVED
+    with contextlib.suppress(DesignError):
+        path = folder(project) / project.design_path(name).name
+        if fits:
+            return path
+    # The design's own name is another field: the message must not land there.
+    raise DesignError(
+        f"{name!r} cannot be what a variant is called",
+        hint="use letters, digits, spaces and dashes, at most 80",
+        at="variant",
+    )
 
 
 def save_variant(
@@ -147,7 +151,7 @@ def load_variant(project: Project, name: str) -> Variant:
     except (OSError, ValueError, KeyError, AttributeError, TypeError) as error:
         what = f"it has no {error}" if isinstance(error, KeyError) else str(error)
         raise DesignError(
-            f"variant {name!r} cannot be read: {what}", hint=f"see {path}", at="name"
+            f"variant {name!r} cannot be read: {what}", hint=f"see {path}", at="variant"
         ) from error
     state = read_state(text, project, source=str(path))
     named = State(design=dataclasses.replace(state.design, name=name), case=state.case)
@@ -201,5 +205,5 @@ def refuse_taken(path: Path) -> None:
         raise DesignError(
             f"there is a variant {path.stem!r} already",
             hint="choose another name, or rename the other one first",
-            at="name",
+            at="variant",
         )

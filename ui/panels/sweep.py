@@ -2,26 +2,21 @@
 
 from __future__ import annotations
 
-import base64
-import html
 import threading
 import time
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
 import viser
-from viser import uplot
 
 from ui.desk import Desk
+from ui.header import NAMES
+from ui.panels.sweep_results import SweepResults
 from ui.panels.variants import offer
-from workbench.comparison_report import default_metric, point_state, strip
+from workbench.comparison_report import point_state
 from workbench.conductor import Finished
 from workbench.core.errors import Cancelled, DesignError, WorkbenchError
 from workbench.core.units import human_seconds
-from workbench.html_page import jpeg_bytes
-from workbench.metric_rules import rule
-from workbench.portraits import framed
 from workbench.sweep_fields import SweepField, field_value, sweep_fields
 from workbench.sweep_files import list_sweeps, load_sweep, next_sweep_name, save_sweep
 from workbench.sweeps import (
@@ -29,12 +24,9 @@ from workbench.sweeps import (
     MOST,
     Status,
     Sweep,
-    curve,
     done,
     failed,
-    lost,
     make_sweep,
-    metrics_of,
     refusal,
     seconds_left,
     state_at,
@@ -46,8 +38,6 @@ NONE = "-"
 TOPIC = "sweep"
 TELL_S = 0.5
 """Between two looks at how far a sweep is [s]."""
-TILE_PX = (104, 78)
-BLUE, RED = "#3b82f6", "#e5484d"
 
 
 class SweepFolder:
@@ -97,13 +87,7 @@ class SweepFolder:
         hint = "Computes what is missing; what is stored costs nothing"
         self.resume = gui.add_button("Resume sweep", hint=hint, visible=False)
         self.resume.on_click(guarded(self._resume))
-        self.metric = gui.add_dropdown("Plot figure", (NONE,), visible=False)
-        self.metric.on_update(guarded(lambda event: self._draw()))
-        empty = (np.zeros(2), np.zeros(2))
-        series = (uplot.Series(label="value"), uplot.Series(label="figure", stroke=BLUE, width=2))
-        scales = {"x": uplot.Scale(time=False)}
-        self.plot = gui.add_uplot(empty, series, scales=scales, aspect=1.6, visible=False)
-        self.tiles = gui.add_html("")
+        self.results = SweepResults(self.desk)
         self.point = gui.add_dropdown("Point", (NONE,), visible=False)
         hint = "Under the name of sweep and value"
         self.keep = gui.add_button("Keep point as variant", hint=hint, visible=False)
@@ -223,78 +207,42 @@ class SweepFolder:
         save_sweep(self.project, sweep)
 
     def _tell(self) -> None:
-        """Say how far the sweep is until it ends; holds no lock."""
-        while self.left and self.sweep is not None:
-            count, number = len(self.sweep.points), self.running
-            if number is not None:
-                running_s = time.monotonic() - self.began
-                eta_s = seconds_left(self.sweep, len(self.left), running_s)
-                ends = f", about {human_seconds(eta_s)} left" if eta_s is not None else ""
-                now = self.desk.jobs.running.get(TOPIC)
-                stage = f" · {now.stage} {100.0 * now.fraction:.0f} %" if now is not None else ""
-                place = count - len(self.left) + 1
-                self.progress.content = f"**{place} of {count}**{ends}{stage}"
+        """Say how far the sweep is until it ends."""
+        while self.left:
+            with self.desk.reports.lock:
+                words = self._words()
+                if words:
+                    self.progress.content = words
             time.sleep(TELL_S)
+
+    def _words(self) -> str:
+        """How far the sweep is, and how long it still takes; "" between two points."""
+        if self.sweep is None or self.running is None:
+            return ""
+        eta_s = seconds_left(self.sweep, len(self.left), time.monotonic() - self.began)
+        ends = f", about {human_seconds(eta_s)} left" if eta_s is not None else ""
+        now = self.desk.jobs.running.get(TOPIC)
+        name = "" if now is None else NAMES.get(now.stage, now.stage)
+        stage = "" if now is None else f" · {name} {100.0 * now.fraction:.0f} %"
+        count = len(self.sweep.points)
+        return f"**{count - len(self.left) + 1} of {count}**{ends}{stage}"
 
     def _follow(self) -> None:
         """Show the sweep as it stands."""
         sweep, store = self.sweep, self.desk.session.store
         busy = self.running is not None
         open_points = [] if sweep is None else todo(sweep, store)
-        known = [] if sweep is None else metrics_of(sweep)
+        values = [] if sweep is None else [f"{p.value:.6g}" for p in sweep.points if p.figures]
         self.cancel.visible = busy
         self.resume.visible = bool(open_points) and not busy
-        for handle in (self.metric, self.plot, self.point, self.keep):
-            handle.visible = bool(known)
-        if known:
-            labels = tuple(rule(name).label for name in known)
-            chosen = "" if self.metric.value in labels else rule(default_metric(known)).label
-            offer(self.metric, labels, preferred=chosen)
-        if sweep is not None:
-            values = [f"{p.value:.6g}" for p in sweep.points if p.status is Status.DONE]
-            offer(self.point, tuple(values) or (NONE,))
-        self._draw()
-
-    def _chosen_metric(self) -> str:
-        known = [] if self.sweep is None else metrics_of(self.sweep)
-        found = [name for name in known if rule(name).label == self.metric.value]
-        return found[0] if found else default_metric(known)
+        for handle in (self.point, self.keep):
+            handle.visible = bool(values)
+        offer(self.point, tuple(values) or (NONE,))
+        self.results.load(sweep)
 
     def shown(self) -> tuple[Sweep | None, str]:
         """The sweep on show and the figure that it is plotted by."""
-        return self.sweep, self._chosen_metric()
-
-    def _draw(self) -> None:
-        sweep = self.sweep
-        if sweep is None:
-            self.tiles.content = ""
-            return
-        metric = self._chosen_metric()
-        x, y = curve(sweep, metric)
-        about = rule(metric)
-        if len(x) > 1:
-            unit = f" [{about.unit}]" if about.unit else ""
-            self.plot.title = f"{about.label}{unit} against {sweep.field.title}"
-            self.plot.data = (np.array(x), np.array(y))
-        self.plot.visible = len(x) > 1
-        self.tiles.content = self._strip(sweep, metric)
-
-    def _strip(self, sweep: Sweep, metric: str) -> str:
-        """Images with their values, then what failed or is lost."""
-        store = self.desk.session.store
-        tiles = "".join(_tile(image, caption) for image, caption in strip(store, sweep, metric))
-        unit = html.escape(sweep.field.unit)
-        words = [
-            f"<div style='color:{RED}'>{p.value:.6g} {unit} failed: {html.escape(p.message)}</div>"
-            for p in sweep.points
-            if p.status is Status.FAILED
-        ]
-        if lost(sweep, store):
-            words.append("<div>Some images were cleared from the store: resume the sweep.</div>")
-        return (
-            "<div style='display:flex;flex-wrap:wrap;gap:6px;margin:4px 8px;font-size:12px'>"
-            f"{tiles}</div><div style='margin:4px 8px;font-size:12px'>{''.join(words)}</div>"
-        )
+        return self.sweep, self.results.chosen()
 
     def _keep(self, event: Any) -> None:
         if self.sweep is None or self.point.value == NONE:
@@ -304,13 +252,3 @@ class SweepFolder:
         save_variant(self.project, name, state, tags=(self.sweep.name,))
         self.desk.log(f"variant {name} saved")
         self.on_keep(name)
-
-
-def _tile(image: np.ndarray, caption: str) -> str:
-    """A small image with its caption as HTML."""
-    data = base64.b64encode(jpeg_bytes(framed(image, TILE_PX))).decode()
-    return (
-        f"<figure style='margin:0'><img alt='' src='data:image/jpeg;base64,{data}' "
-        "style='border-radius:3px;display:block'>"
-        f"<figcaption>{html.escape(caption)}</figcaption></figure>"
-    )

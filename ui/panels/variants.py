@@ -12,7 +12,7 @@ import viser
 
 from ui.desk import Desk
 from ui.portraits import Portraits
-from workbench.core.errors import DesignError
+from workbench.core.errors import Cancelled, DesignError
 from workbench.variant_files import (
     Entry,
     Shelf,
@@ -52,7 +52,7 @@ class VariantsFolder:
         self.trashed = ""
         """Name in the trash of what was deleted last."""
         gui = desk.server.gui
-        self.portraits = Portraits(self.project, desk.conductor.runner, desk.log)
+        self.portraits = Portraits(self.project, desk.conductor.runner, desk.reports)
         self.portraits.on_drawn = lambda: desk.guarded(lambda event: self.list())(None)
         with gui.add_folder("Variants"):
             self._form()
@@ -209,8 +209,13 @@ class VariantsFolder:
         variant = load_variant(self.project, self._name())
 
         def then(finished: Any) -> None:
+            if isinstance(finished.error, Cancelled):
+                return
             if finished.error is not None:
                 raise finished.error
+            if variant.name not in list_variants(self.project):
+                # Renamed or deleted meanwhile: it must not come back.
+                return
             state, tags, note = variant.state, variant.tags, variant.note
             save_variant(self.project, variant.name, state, tags=tags, note=note, replace=True)
             self.portraits.draw(variant.name)
