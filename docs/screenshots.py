@@ -56,7 +56,7 @@ def main() -> None:
     port = free_port()
     with tempfile.TemporaryDirectory() as project, sync_playwright() as playwright:
         command = [sys.executable, "-m", "workbench.cli", "serve", "--port", str(port)]
-        server = subprocess.Popen([*command, "--project", project, "--fast-scene"])
+        server = subprocess.Popen([*command, "--project", project, "--fast-scene", "--no-tour"])
         try:
             wait_for_server(f"http://127.0.0.1:{port}")
             browser = playwright.chromium.launch(executable_path=program, args=list(FLAGS))

@@ -23,6 +23,7 @@ import viser
 from ui.desk import Desk
 from ui.editor import Editor
 from ui.guard import LOOPBACK, Gate, guarded
+from ui.help import Help
 from ui.incoming import Incoming
 from ui.panels.compare import ComparePanel
 from ui.panels.make import MakePanel
@@ -68,7 +69,7 @@ def serve(options: argparse.Namespace, project: Project) -> int:
         raise _port_taken(options.port)
     conductor = Conductor(project.store, LaneRunner(project.store))
     threading.Thread(target=warm_up, name="warm-up", daemon=True).start()
-    build_desk(server, session, conductor, fast=options.fast_scene)
+    build_desk(server, session, conductor, fast=options.fast_scene, tour=not options.no_tour)
     gate.health = lambda: {"ok": True, "version": __version__, "busy": conductor.busy}
     name = f"[{options.host}]" if ":" in options.host else options.host
     link = f"http://{name}:{options.port}/" + (f"?token={token}" if token else "")
@@ -84,7 +85,9 @@ def serve(options: argparse.Namespace, project: Project) -> int:
     return 0
 
 
-def build_desk(server: Any, session: Session, conductor: Conductor, *, fast: bool) -> Desk:
+def build_desk(
+    server: Any, session: Session, conductor: Conductor, *, fast: bool, tour: bool
+) -> Desk:
     """Lay out all panels and show what is stored for the design."""
     gui = server.gui
     gui.configure_theme(dark_mode=True, show_logo=False, show_share_button=False, brand_color=BRAND)
@@ -93,6 +96,7 @@ def build_desk(server: Any, session: Session, conductor: Conductor, *, fast: boo
     editor = Editor(server)
     incoming = Incoming(server, editor)
     with server.atomic():
+        guide = Help(server, incoming)
         desk = Desk(server, session, conductor, fast=fast)
         tabs = gui.add_tab_group()
         # Six labels without icons fit on one row.
@@ -107,8 +111,14 @@ def build_desk(server: Any, session: Session, conductor: Conductor, *, fast: boo
         for label, panel in pages.items():
             with tabs.add_tab(label):
                 desk.panels.append(panel(desk))
+                guide.button(label)
         results = ResultsPanel(desk)
         desk.panels += [results, results.maps, ViewPanel(desk, results.dock)]
+        with results.dock.add_tab("?"):
+            guide.button("Results")
+            guide.button("View")
+    if tour:
+        guide.begin()
     editor.on_change = incoming.on_refused = desk.log
     first_look(desk)
     threading.Thread(target=desk.jobs.pump_forever, name="pump", daemon=True).start()

@@ -62,7 +62,8 @@ class Header:
         with self.job.add_tab("Running", viser.Icon.LOADER):
             self.progress = gui.add_progress_bar(0.0, animated=True)
             self.progress_text = gui.add_markdown("")
-            gui.add_button("Cancel", color="red").on_click(on_cancel)
+            gui.add_button("Cancel", color="red", hint="Stop what runs (X)").on_click(on_cancel)
+        gui.add_command("Cancel what runs", hotkey="X").on_trigger(on_cancel)
         self.job.float(x=405, y=15, width=330)
 
     def show_design(self, design: SensorDesign) -> None:

@@ -205,6 +205,7 @@ def _serve_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--port", type=int, default=8080)
     sub.add_argument("--open", action="store_true", help="open the system's browser")
     sub.add_argument("--fast-scene", action="store_true", help="no shadows: software rendering")
+    sub.add_argument("--no-tour", action="store_true", help="no tour for a browser that is new")
 
 
 def _run_options(sub: argparse.ArgumentParser) -> None:

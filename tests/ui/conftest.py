@@ -33,13 +33,14 @@ def free_port() -> int:
 class Server:
     """A workbench in its own process, as a user starts it."""
 
-    def __init__(self, project: Path, *words: str) -> None:
+    def __init__(self, project: Path, *words: str, tour: bool = False) -> None:
         self.project = project
         self.port = free_port()
         self.url = f"http://127.0.0.1:{self.port}"
         self.log = project.parent / f"server-{self.port}.log"
         command = [sys.executable, "-u", "-m", "workbench.cli", "serve", *words]
         command += ["--port", str(self.port), "--project", str(project), "--fast-scene"]
+        command += [] if tour else ["--no-tour"]
         started = time.monotonic()
         with self.log.open("wb") as out:
             self.process = subprocess.Popen(command, stdout=out, stderr=out)
@@ -77,8 +78,8 @@ def start_server() -> Iterator[Callable[..., Server]]:
     """Starts servers and stops them after the test."""
     servers: list[Server] = []
 
-    def start(project: Path, *words: str) -> Server:
-        servers.append(Server(project, *words))
+    def start(project: Path, *words: str, tour: bool = False) -> Server:
+        servers.append(Server(project, *words, tour=tour))
         return servers[-1]
 
     yield start

@@ -131,7 +131,15 @@ def _server(project: Path) -> Iterator[tuple[str, float]]:
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
-    command = [sys.executable, "-m", "workbench.cli", "serve", "geltip", "--fast-scene"]
+    command = [
+        sys.executable,
+        "-m",
+        "workbench.cli",
+        "serve",
+        "geltip",
+        "--fast-scene",
+        "--no-tour",
+    ]
     command += ["--project", str(project), "--port", str(port)]
     start = time.perf_counter()
     with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as server:

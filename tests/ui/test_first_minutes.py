@@ -1,0 +1,70 @@
+"""The first minutes: a tour shown once, help on every panel, every command in the keyboard map."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.ui.conftest import Server
+from tests.ui.widgets import button, coarse_project, open_page, tab
+from ui.help import PANELS, STEPS
+from ui.help import page as help_page
+from ui.keys import Command, clashes, in_words
+from workbench.benchmarks.tab import Tab
+
+pytestmark = [pytest.mark.ui, pytest.mark.slow]
+
+Start = Callable[..., Server]
+
+
+def test_the_tour_is_shown_once_and_again_on_request(
+    tmp_path: Path, page: Any, start_server: Start
+) -> None:
+    """Three steps in a new browser; none after a reload; the palette's command opens it again."""
+    server = start_server(coarse_project(tmp_path), tour=True)
+    open_page(page, server.url)
+    for number, (title, _) in enumerate(STEPS):
+        page.get_by_text(title).first.wait_for()
+        button(page, "Next" if number < len(STEPS) - 1 else "Close").click()
+    page.get_by_text(STEPS[-1][0]).first.wait_for(state="hidden")
+    page.reload()
+    tab(page, "Shape").wait_for()
+    page.wait_for_timeout(4_000)
+    assert not page.get_by_text(STEPS[0][0]).count()
+    page.keyboard.press("Control+k")
+    page.get_by_placeholder("Search commands").fill("Tour")
+    page.keyboard.press("Enter")
+    page.get_by_text(STEPS[0][0]).first.wait_for()
+    page.screenshot(path=str(tmp_path / "tour.png"))
+    page.keyboard.press("Escape")
+    page.get_by_text(STEPS[0][0]).first.wait_for(state="hidden")
+
+
+def test_help_opens_on_every_panel_also_in_a_tab_that_follows(
+    tmp_path: Path, start_server: Start
+) -> None:
+    """Each button opens its own page; the keyboard map names every command once, with its key."""
+    server = start_server(coarse_project(tmp_path))
+    with Tab(server.url) as editor, Tab(server.url) as follower:
+        editor.uuid("Help: Shape")
+        for panel in PANELS:
+            for who in (editor, follower):
+                who.click(f"Help: {panel}")
+                words = help_page(panel).splitlines()[0]
+                who.wait(lambda w=who, t=words: w.told(t[:60]), 10, f"help on {panel}")
+        shared = [
+            Command(label=props["label"], keys=in_words(props["hotkey"], props["modifier"]))
+            for props in editor.commands.values()
+            if not props["label"].startswith("Close:")
+        ]
+        assert clashes(shared) == []
+        labels = {command.label for command in shared}
+        wanted = {"Run press", "Render image", "Cancel what runs", "Undo", "Redo", "Fit view"}
+        assert labels >= wanted | {"Tour", "Keyboard map"} | {f"Help on {p}" for p in PANELS}
+        editor.trigger("Keyboard map")
+        for command in shared:
+            row = f"| {command.label} | {command.keys} |"
+            editor.wait(lambda r=row: editor.told(r), 10, f"the map has {row}")
