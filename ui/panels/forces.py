@@ -25,16 +25,15 @@ class ForcesTab:
     def __init__(self, gui: Any) -> None:
         self.text = gui.add_markdown(NO_PRESS)
         empty = (np.zeros(2), np.zeros(2), np.zeros(2))
-        point = {"show": True, "size": 11, "fill": WHITE}
         self._curves = empty
         self._marked = -1
         self.depth = gui.add_uplot(
-            (*empty, np.full(2, np.nan)),
+            (*empty, np.zeros(2)),
             (
                 uplot.Series(label="depth mm"),
                 uplot.Series(label="normal force N", stroke=BLUE, width=2),
                 uplot.Series(label="tangential force N", stroke=ORANGE, width=2),
-                uplot.Series(label="frame on show", stroke=WHITE, width=0, points=point),  # pyright: ignore[reportArgumentType]
+                uplot.Series(label="frame on show", stroke=WHITE, width=1),
             ),
             scales={"x": uplot.Scale(time=False)},
             title="Force [N] against depth [mm], way in",
@@ -59,7 +58,7 @@ class ForcesTab:
         zero = np.zeros(2)
         self._curves = zero, zero, zero
         self.text.content, self.table.content = NO_PRESS, ""
-        self.depth.data = (zero, zero, zero, np.full(2, np.nan))
+        self.depth.data = (zero, zero, zero, zero)
         self.slip.data = (zero, zero, zero)
 
     def load(self, press: Press, contact: Contact) -> None:
@@ -83,13 +82,20 @@ class ForcesTab:
         self.table.content = table_html(press, contact)
 
     def mark(self, frame: int) -> None:
-        """Mark a frame, counted from 1, on the curve of force; one after the way in has no mark."""
-        marks = np.full(len(self._curves[0]), np.nan)
-        if frame < len(marks):
-            marks[frame] = self._curves[1][frame]
-        if frame != self._marked or len(marks) != len(self.depth.data[0]):
-            self._marked = frame
-            self.depth.data = (*self._curves, marks)
+        """Draw a line under the curve of force at a frame, counted from 1; none after the way in.
+
+        The plot takes no gaps: the frame's place stands three times, so that the line goes up and
+        down there.
+        """
+        count = len(self._curves[0])
+        here = frame if 0 < frame < count else 0
+        if here == self._marked:
+            return
+        self._marked = here
+        places = np.sort(np.r_[np.arange(count), [here] * 2])
+        line = np.zeros(count + 2)
+        line[here + 1] = self._curves[1][here]
+        self.depth.data = (*(values[places] for values in self._curves), line)
 
     def show(self, contact: Contact, k: int, *, what: str, note: str) -> None:
         """Show the numbers of frame `k`, counted from 0, in which `what` happens, below a note."""

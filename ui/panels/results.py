@@ -67,11 +67,6 @@ class ResultsPanel:
             self.frame = gui.add_slider("Frame", 0, 1, 1, 0, hint="0 is the untouched skin")
             hint = "P or space; J and K go a frame back and on"
             self.play = gui.add_button("Play / pause", icon=viser.Icon.PLAYER_PLAY, hint=hint)
-            hint = "1 × is twelve frames a second; frames that come too late are left out"
-            speeds = tuple(SPEEDS)
-            self.speed = gui.add_dropdown("Speed", speeds, initial_value=speeds[2], hint=hint)
-            hint = "Begin again after the last frame; off, playing stops there"
-            self.loop = gui.add_checkbox("Loop", False, hint=hint)
             self.legend = gui.add_html("")
             names = tuple(quantity.value for quantity in Quantity)
             hint = "The scale is that of all frames together"
@@ -80,6 +75,12 @@ class ResultsPanel:
             self.arrows = gui.add_checkbox("Force arrows", False, hint=hint)
             hint = "Look at the skin below the object"
             self.bare = gui.add_checkbox("Hide object", False, hint=hint)
+            with gui.add_folder("Pace", expand_by_default=False):
+                hint = "1 × is twelve frames a second; frames that come too late are left out"
+                speeds = tuple(SPEEDS)
+                self.speed = gui.add_dropdown("Speed", speeds, initial_value=speeds[2], hint=hint)
+                hint = "Begin again after the last frame; off, playing stops there"
+                self.loop = gui.add_checkbox("Loop", False, hint=hint)
         panel.float(x=405, y=-15, width=380)
         self.frame.on_update(self.desk.guarded(lambda event: self._show_frame()))
         self.play.on_click(self.desk.guarded(self._toggle))
