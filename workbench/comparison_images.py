@@ -62,7 +62,7 @@ def pair(a: Shot, b: Shot, moment: Moment) -> Pair:
     difference = None
     if same_proportions(image_a, image_b):
         difference, gain = visible_change(raw_b, raw_a)
-        words = f"{words}; difference B − A of the images {source} about mid grey, × {gain}"
+        words = f"{words}; difference B − A ({source}) about mid grey, × {gain}"
     words = f"{words}; {note}" if note else words
     return Pair(a=shown_a, b=shown_b, difference=difference, words=words)
 

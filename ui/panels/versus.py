@@ -126,9 +126,9 @@ class VersusFolder:
         differing = parameter_differences(a.state, b.state)
         self.tables.content = (
             "<div style='font-size:12px;margin:8px 8px 0'><b>Parameters that differ</b></div>"
-            + scrolled(parameter_table(differing, a.name, b.name))
+            + scrolled(parameter_table(differing, short(a), short(b)))
             + "<div style='font-size:12px;margin:8px 8px 0'><b>Figures</b></div>"
-            + scrolled(change_table(rows, a.name, b.name))
+            + scrolled(change_table(rows, short(a), short(b)))
         )
 
     def _pair(self, a: Side, b: Side) -> None:
