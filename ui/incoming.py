@@ -96,10 +96,17 @@ class Incoming:
             self._put_handle_back(tab, message.name)
         elif isinstance(message, messages.FileTransferStartUpload):
             self._end_upload(tab, message)
+        if self._escapes(message):
+            # The key also closes what is the tab's own.
+            return
         now = time.monotonic()
         if now - self._reminded.get(tab, -REMIND_S) >= REMIND_S:
             self._reminded[tab] = now
             self.roles.remind(tab)
+
+    def _escapes(self, message: Any) -> bool:
+        command = self.server.gui._command_handle_from_uuid.get(getattr(message, "uuid", ""))
+        return command is not None and command.hotkey == "escape"
 
     def _send(self, tab: int, *answers: Any) -> None:
         client = self.server.get_clients().get(tab)

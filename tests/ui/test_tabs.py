@@ -115,6 +115,28 @@ def test_racing_edits_end_in_one_good_state(server: Server, two: tuple[Tab, Tab]
     assert "Traceback" not in server.log.read_text()
 
 
+def test_an_edit_of_the_last_moment_survives_a_stop_in_mid_job(
+    tmp_path: Path, start_server: Start
+) -> None:
+    """Ctrl-C during a press, at once after an edit: the restart has the edit."""
+    server = start_server(coarse_project(tmp_path))
+    with Tab(server.url) as editor:
+        editor.uuid(LENGTH)
+        wait_until(lambda: editor.told("press: started"), 30, "the example is being pressed")
+        with Tab(server.url) as follower:
+            uuid = follower.uuid(LENGTH)
+            editor.set(LENGTH, 20.0)
+            follower.wait(lambda: follower.widgets[uuid].get("value") == 20.0, 10, "it arrived")
+        time.sleep(0.2)
+        server.stop()
+    assert saved(server, "shape", "cylinder_mm") == 20.0
+    again = start_server(server.project)
+    with Tab(again.url) as tab_again:
+        tab_again.wait(
+            lambda: tab_again.find(LENGTH) and tab_again.value(LENGTH) == 20.0, 20, "it is there"
+        )
+
+
 def test_a_reload_in_mid_job_shows_progress_and_then_the_result(
     tmp_path: Path, page: Any, start_server: Start
 ) -> None:
