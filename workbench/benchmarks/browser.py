@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 
 from workbench.benchmarks.tabs import blocked_s, key_to_server_s
+from workbench.benchmarks.playback import WATCH_DRAWS, frame_s
 from workbench.rows import Row, bounded, failed
 
 FLAGS = (
@@ -41,6 +42,7 @@ ROWS = {
     "slider_to_membrane": ("key press to the new skin in graphics memory, software rendering", 0.5),
     "slider_to_callback": ("key press to the server's callback, another tab watching", 0.1),
     "other_tab_blocked": ("longest wait of a second tab while a press runs", 0.2),
+    "playback_20k": ("frame to frame of a skin of 26 000 vertices, software rendering", 0.1),
     "drag_to_settled": ("release of the handle to the settled skin, software rendering", 2.0),
 }
 """Case and limit [s] of each row, in the order they are measured."""
@@ -112,9 +114,11 @@ def _measure(program: str, figures_s: dict[str, float]) -> str:
                 page = opened.new_page(viewport={"width": 1280, "height": 900})
                 start = time.perf_counter()
                 page.add_init_script(WATCH_UPLOADS)
+                page.add_init_script(WATCH_DRAWS)
                 page.goto(f"{url}/?fixedDpr=0.4")
                 page.locator('[role="tab"]').filter(has_text="Optics").wait_for(timeout=60_000)
                 figures_s["gui_usable"] = healthy_s + time.perf_counter() - start
+                figures_s["playback_20k"] = frame_s(page)[0]
                 figures_s["drag_to_settled"] = drag_s(page)
                 page.locator('[role="tab"]').filter(has_text="Shape").click()
                 figures_s["slider_to_membrane"] = _slider_s(page)

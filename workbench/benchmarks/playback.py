@@ -1,0 +1,43 @@
+"""Playing the frames of a press in the browser: time from one skin drawn to the next.
+
+Each frame is a mesh with buffers of its own, so a large draw call from other buffers than the one
+before is a frame that was applied.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+WATCH_DRAWS = """
+window.applied = []; window.bound = null; window.skin = null;
+const bind = WebGL2RenderingContext.prototype.bindVertexArray;
+WebGL2RenderingContext.prototype.bindVertexArray = function (given) {
+  window.bound = given;
+  return bind.call(this, given);
+};
+const draw = WebGL2RenderingContext.prototype.drawElements;
+WebGL2RenderingContext.prototype.drawElements = function (...given) {
+  if (given[1] > 30000 && window.bound !== window.skin) {
+    window.skin = window.bound;
+    window.applied.push([performance.now(), given[1]]);
+  }
+  return draw.apply(this, given);
+};
+"""
+"""Notes when another large mesh is drawn [ms], and its corners."""
+WARM_MS, SPAN_MS = 6_000, 8_000
+
+
+def frame_s(page: Any) -> tuple[float, int]:
+    """Mean time between frames applied at speed 1 [s], and triangles of the skin."""
+    page.get_by_text("Pace").click()
+    label = page.locator("label[for]").filter(has_text="Loop").first
+    page.locator(f'[id="{label.get_attribute("for")}"]').click(force=True)
+    play = page.get_by_role("button", name="Play / pause", exact=True)
+    play.click()
+    page.wait_for_timeout(WARM_MS)
+    page.evaluate("() => { window.applied = []; }")
+    page.wait_for_timeout(SPAN_MS)
+    applied = page.evaluate("() => window.applied")
+    play.click()
+    return SPAN_MS / 1000 / max(len(applied), 1), max((n for _, n in applied), default=0) // 3
