@@ -20,8 +20,8 @@ from typing import Any
 
 import numpy as np
 
-from workbench.benchmarks.tabs import blocked_s, key_to_server_s
 from workbench.benchmarks.playback import WATCH_DRAWS, frame_s
+from workbench.benchmarks.tabs import blocked_s, key_to_server_s
 from workbench.rows import Row, bounded, failed
 
 FLAGS = (
