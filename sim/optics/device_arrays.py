@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import weakref
 from typing import Any
 
 import numpy as np
@@ -21,7 +22,7 @@ def on_device(array: np.ndarray, *, vector: int = 0) -> Any:
     if 0 in shape:
         shape = tuple(max(length, 1) for length in shape)
         array = np.zeros((*shape, vector) if vector else shape, dtype=array.dtype)
-    made = ti.Vector.ndarray(vector, kind, shape=shape) if vector else ti.ndarray(kind, shape=shape)
+    made = _made(kind, shape, vector)
     made.from_numpy(array)
     return made
 
@@ -29,7 +30,24 @@ def on_device(array: np.ndarray, *, vector: int = 0) -> Any:
 def empty(kind: Any, count: int, *, vector: int = 0) -> Any:
     """A flat array of at least one element, zero."""
     shape = (max(count, 1),)
-    return ti.Vector.ndarray(vector, kind, shape=shape) if vector else ti.ndarray(kind, shape=shape)
+    return _made(kind, shape, vector)
+
+
+def _made(kind: Any, shape: tuple[int, ...], vector: int) -> Any:
+    """An array on the device that is given back when nothing refers to it any more."""
+    if not vector:
+        return ti.ndarray(kind, shape=shape)
+    made = ti.Vector.ndarray(vector, kind, shape=shape)
+    # Taichi 1.7 gives scalar arrays back when they are collected, but forgets those of vectors: a
+    # worker that renders all day would grow by megabytes with every studio it opens.
+    program = impl.get_runtime().prog
+    weakref.finalize(made, _give_back, program, made.arr).atexit = False
+    return made
+
+
+def _give_back(program: Any, memory: Any) -> None:
+    if impl.get_runtime().prog is program:
+        program.delete_ndarray(memory)
 
 
 def computes_on_gpu() -> bool:
