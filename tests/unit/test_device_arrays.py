@@ -23,7 +23,7 @@ def resident_mb() -> float:
 
 @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="reads Linux's own figures")
 @pytest.mark.parametrize("vector", [0, 3])
-def test_an_array_is_given_back(vector: int) -> None:
+def test_an_array_is_given_back(taichi_device: str, vector: int) -> None:
     """40 arrays of 6 MB, one after the other, take less than 5 of them at once."""
     on_device(ARRAY, vector=vector)
     before = resident_mb()
