@@ -10,6 +10,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from ui.aiming import Aiming
 from ui.gizmo import Gizmo
 from ui.glimpse import GlimpseFollower
 from ui.header import Header
@@ -20,26 +21,15 @@ from ui.reports import Reports
 from ui.saving import Saving
 from ui.scene import Scene
 from ui.session import Session
+from ui.showing import Showing
 from ui.upkeep import Upkeep
-from workbench.aim import default_target_mm, with_fitting_ring
-from workbench.bodies import IMPORTED
 from workbench.conductor import LIVE, SHAPE, Conductor, Finished, Request
 from workbench.core.design import SensorDesign
 from workbench.core.errors import SolveError, WorkbenchError
-from workbench.core.indenter import Indenter
-from workbench.core.results import Solid
 from workbench.forms import resolve_shape
 from workbench.item_fields import read_field
 from workbench.pipeline import plan
-from workbench.stages import PARTIAL, Outcome
-
-AIM_LIMIT_MM = 4.0
-"""Distance from target to skin at which the target follows; the solver refuses beyond 5 mm."""
-SHOWN = (
-    *("build", "mesh", "press", "shoot", "maps", "quality", "tets"),
-    *("mould", "housing", "recipe", "package"),
-)
-"""Stages whose stored results are shown without asking."""
+from workbench.stages import PARTIAL
 
 
 class Panel(Protocol):
@@ -66,7 +56,12 @@ class Desk:
         self.reports.on_log = lambda lines: self.tell("log", lines)
         self.guarded = self.reports.guarded
         self.log = self.reports.log
-        self.scene = Scene(server, fast=fast, on_click=self.guarded(self._clicked))
+        self.scene = Scene(
+            server, fast=fast, on_click=self.guarded(lambda e: self.aiming.clicked(e))
+        )
+        self.aiming = Aiming(self)
+        self.showing = Showing(self)
+        self.current = self.showing.current
         self.panels: list[Panel] = []
         self.put_parts_away: Callable[[], None] = lambda: None
         """Set by the panel that shows the parts."""
@@ -87,7 +82,7 @@ class Desk:
         self.upkeep = Upkeep(self)
         self.reports.banner = self.header.banner
         self.jobs = Jobs(conductor, self.reports, self.header)
-        self.jobs.on_done = self._stage_done
+        self.jobs.on_done = self.showing.stage_done
         self.jobs.asked_now = self._asked_now
         self.jobs.on_events = self.refresh_header
         self.jobs.on_idle = self._idle
@@ -99,13 +94,8 @@ class Desk:
         self.jobs.on_preview[LIVE] = self.live.show
         self.glimpse = GlimpseFollower(self)
         self.saving = Saving(session, self.reports, self.header.unsaved)
-        self._indenter: Indenter | None = None
-        """The object on show."""
-        self._framed: tuple[str, str] | None = None
         self._sensor: tuple[str, str] | None = None
         self._covering: set[str] = set()
-        self._notices: dict[str, str] = {}
-        self._shown: dict[str, str] = {}
         self._lock = self.reports.lock
 
     def read(self, path: str) -> Any:
@@ -143,13 +133,13 @@ class Desk:
             # First of all: the worker builds while the widgets follow.
             self.jobs.submit(SHAPE, session.design, session.case, ("build",))
         self.scene.rig.show_optics(session.design.optics)
-        self.show_stored()
+        self.showing.show_stored()
         if self.current("build"):
-            self._keep_aim()
-        self._follow_indenter()
+            self.aiming.keep_aim()
+        self.aiming.follow_indenter()
         if not self.current("press"):
             # What was pressed was another press: the skin is at rest again, or follows live.
-            self._shown.pop("press", None)
+            self.showing.forget("press")
             if not self.live.on:
                 self.scene.clear_frames()
             self.scene.place_indenter(session.case.press)
@@ -159,13 +149,6 @@ class Desk:
             panel.refresh()
         self.glimpse.follow()
         self.refresh_header()
-
-    def _follow_indenter(self) -> None:
-        """Show the object that is pressed, once there is a body for it to stand on."""
-        indenter = self.session.case.indenter
-        if self._indenter is not indenter and self.scene.body.solid is not None:
-            self._indenter = indenter
-            self.scene.show_indenter(indenter, self.session.case.press)
 
     def cover(self, what: str, shown: bool) -> None:
         """Tell all panels whether parts, or the edges of a mesh, are looked at, not the press."""
@@ -179,14 +162,15 @@ class Desk:
 
     def _follow_sensor(self) -> None:
         """Take away what was pressed and rendered of another family or another file."""
-        sensor = self._origin()
+        sensor = self.origin()
         if self._sensor not in (None, sensor):
-            self._shown.clear()
+            self.showing.forget_all()
             self.scene.rig.forget_image()
             self.tell("sensor", None)
         self._sensor = sensor
 
-    def _origin(self) -> tuple[str, str]:
+    def origin(self) -> tuple[str, str]:
+        """What kind of sensor the design is: its family, and the file of its body."""
         design = self.session.design
         return design.family, design.body.outer.sha256 if design.body is not None else ""
 
@@ -200,29 +184,6 @@ class Desk:
             self.reports.settle()
             self.put_parts_away()
             self.changed()
-
-    def _clicked(self, event: Any) -> None:
-        """A click goes to who asked for it; else it labels a face, or moves the target there."""
-        origin, direction = np.asarray(event.ray_origin), np.asarray(event.ray_direction)
-        if any(takes(origin, direction) for takes in self.takers):
-            return
-        if self.probe(origin, direction):
-            return
-        hit = self.scene.body.hit(origin, direction)
-        if hit is None or self.pick(hit[0]):
-            return
-        x, y, z = (round(float(c), 2) for c in hit[1])
-        self.edit("case.press.target_mm", (x, y, z))
-        self.fields.refresh()
-        self.log(f"target {x:.1f}, {y:.1f}, {z:.1f} mm")
-
-    def show_stored(self) -> None:
-        """Show every result that is stored for the state as it stands."""
-        for stage in SHOWN:
-            # Asked anew each time: showing a body may move the target, and with it later keys.
-            call = self.session.calls().get(stage)
-            if call is not None and self.session.store.has(stage, call.key):
-                self._show(stage, call.key)
 
     def run(self, topic: str, wanted: tuple[str, ...]) -> None:
         """Compute stages for the state as it stands."""
@@ -239,65 +200,10 @@ class Desk:
         """Compute a stage of a design that is not the state; `then` decides by how it ended."""
         self.jobs.submit(topic, design, self.session.case, (wanted,), then)
 
-    def _show(self, stage: str, key: str) -> None:
-        if self._shown.get(stage) == key:
-            return
-        result = self.session.store.load(stage, key)
-        if stage == "build":
-            # Another body: what was shown of the old one goes.
-            self._shown = {stage: key}
-            self._notices.clear()
-            self._show_body(result)
-        self._shown[stage] = key
-        if stage in ("build", "mesh"):
-            self._notices[stage] = result.notice
-            self.header.show_notice(self._notices)
-        self.tell(stage, result)
-
-    def _show_body(self, solid: Solid) -> None:
-        self.scene.show_solid(solid)
-        origin = self._origin()
-        if origin != self._framed:
-            # Another kind of body; within a family the designer's own view is kept.
-            self._framed = origin
-            self.scene.frame_body()
-            self._fit_ring(solid)
-        self._keep_aim()
-        self._indenter = None
-        self._follow_indenter()
-
-    def _fit_ring(self, solid: Solid) -> None:
-        """Bring the LEDs of a body that has just come from a file inside it, and say so."""
-        fitted, changed = with_fitting_ring(self.session.design, solid)
-        if changed:
-            self.session.amend("design.optics.ring.radius_mm", fitted.optics.ring.radius_mm)
-            self.saving.edited()
-            self.fields.refresh()
-            self.scene.rig.show_optics(fitted.optics)
-            self.log(changed)
-
     def tell(self, stage: str, result: Any) -> None:
         """Hand a result, or another piece of news, to all panels."""
         for panel in self.panels:
             panel.show(stage, result)
-
-    def _keep_aim(self) -> None:
-        """Bring a target that a change of shape left in the air back to the skin, and say so."""
-        point, distance_mm = self.scene.body.nearest(self.session.case.press.target_mm)
-        if distance_mm > AIM_LIMIT_MM:
-            design, solid = self.session.design, self.scene.body.solid
-            if design.family == IMPORTED and solid is not None:
-                point = default_target_mm(design, solid)
-            x, y, z = (round(float(c), 2) for c in point)
-            self.session.amend("case.press.target_mm", (x, y, z))
-            self.saving.edited()
-            self.fields.refresh()
-            self.log(f"the target was {distance_mm:.1f} mm off the skin: it is now {x}, {y}, {z}")
-
-    def current(self, stage: str) -> bool:
-        """Whether what is shown of a stage belongs to the state as it stands."""
-        call = self.session.calls().get(stage)
-        return call is not None and self._shown.get(stage) == call.key
 
     def _asked_now(self, request: Request, failed: str) -> bool:
         """Whether the stage of a request that failed is a stage of the state as it stands."""
@@ -305,17 +211,6 @@ class Desk:
             return request.design == self.session.design
         now = self.session.calls().get(failed)
         return now is not None and now.key == plan(request.design, request.case)[failed].key
-
-    def _stage_done(self, outcome: Outcome) -> None:
-        calls = self.session.calls()
-        call = calls.get(outcome.stage) if outcome.stage in SHOWN else None
-        if call is not None and call.key == outcome.key:
-            self._show(outcome.stage, outcome.key)
-
-    def forget_shown(self, *stages: str) -> None:
-        """Show the stored results of these stages again when the state is next followed."""
-        for stage in stages:
-            self._shown.pop(stage, None)
 
     def _failed(self, error: WorkbenchError, topic: str) -> None:
         """Show the frames that settled before a press failed."""

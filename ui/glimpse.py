@@ -42,5 +42,5 @@ class GlimpseFollower:
         if other or desk.live.on or desk.current("shoot"):
             return
         # A step back to a state that has images shows them again.
-        desk.forget_shown("shoot")
+        desk.showing.forget("shoot")
         desk.tell("glimpse", glimpse)

@@ -1,0 +1,73 @@
+"""Which stored results are on show, and showing those of the state as it stands."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from workbench.stages import Outcome
+
+if TYPE_CHECKING:
+    from ui.desk import Desk
+
+SHOWN = (
+    *("build", "mesh", "press", "shoot", "maps", "quality", "tets"),
+    *("mould", "housing", "recipe", "package"),
+)
+"""Stages whose stored results are shown without asking."""
+
+
+class Showing:
+    """Results of one desk."""
+
+    def __init__(self, desk: Desk) -> None:
+        self.desk = desk
+        self._keys: dict[str, str] = {}
+        """Key of what is on show, by stage."""
+        self._notices: dict[str, str] = {}
+        """What builder and mesher had to change."""
+
+    def current(self, stage: str) -> bool:
+        """Whether what is shown of a stage belongs to the state as it stands."""
+        call = self.desk.session.calls().get(stage)
+        return call is not None and self._keys.get(stage) == call.key
+
+    def show_stored(self) -> None:
+        """Show every result that is stored for the state as it stands."""
+        session = self.desk.session
+        for stage in SHOWN:
+            # Asked anew each time: showing a body may move the target, and with it later keys.
+            call = session.calls().get(stage)
+            if call is not None and session.store.has(stage, call.key):
+                self._show(stage, call.key)
+
+    def stage_done(self, outcome: Outcome) -> None:
+        """Show a result that has just been computed, if the state still asks for it."""
+        calls = self.desk.session.calls()
+        call = calls.get(outcome.stage) if outcome.stage in SHOWN else None
+        if call is not None and call.key == outcome.key:
+            self._show(outcome.stage, outcome.key)
+
+    def forget(self, *stages: str) -> None:
+        """Show the stored results of these stages again when the state is next followed."""
+        for stage in stages:
+            self._keys.pop(stage, None)
+
+    def forget_all(self) -> None:
+        """Nothing that is on show belongs to the state any more."""
+        self._keys.clear()
+
+    def _show(self, stage: str, key: str) -> None:
+        if self._keys.get(stage) == key:
+            return
+        desk = self.desk
+        result = desk.session.store.load(stage, key)
+        if stage == "build":
+            # Another body: what was shown of the old one goes.
+            self._keys = {stage: key}
+            self._notices.clear()
+            desk.aiming.show_body(result)
+        self._keys[stage] = key
+        if stage in ("build", "mesh"):
+            self._notices[stage] = result.notice
+            desk.header.show_notice(self._notices)
+        desk.tell(stage, result)
