@@ -56,10 +56,8 @@ class Desk:
         self.reports.on_log = lambda lines: self.tell("log", lines)
         self.guarded = self.reports.guarded
         self.log = self.reports.log
-        self.scene = Scene(
-            server, fast=fast, on_click=self.guarded(lambda e: self.aiming.clicked(e))
-        )
         self.aiming = Aiming(self)
+        self.scene = Scene(server, fast=fast, on_click=self.guarded(self.aiming.clicked))
         self.showing = Showing(self)
         self.current = self.showing.current
         self.panels: list[Panel] = []
