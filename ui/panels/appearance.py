@@ -50,10 +50,25 @@ class AppearanceFolders:
     def _markers(self) -> None:
         desk, fields, gui = self.desk, self.desk.fields, self.desk.server.gui
         fields.check("Markers", f"{MARKERS}.visible", hint="Dots printed on the skin")
-        fields.choice("Pattern", f"{MARKERS}.pattern", list(MarkerPattern))
+        fields.choice(
+            "Pattern",
+            f"{MARKERS}.pattern",
+            list(MarkerPattern),
+            hint="even: over the whole skin; grid or rings about the tip; picture: of a file",
+        )
         span = (0.5, 10.0, 0.25)
-        fields.slider("Marker pitch mm", f"{MARKERS}.spacing_mm", span=span)
-        fields.slider("Marker size mm", f"{MARKERS}.diameter_mm", span=(0.1, 5.0, 0.05))
+        fields.slider(
+            "Marker pitch mm",
+            f"{MARKERS}.spacing_mm",
+            span=span,
+            hint="From dot to dot on the skin at rest",
+        )
+        fields.slider(
+            "Marker size mm",
+            f"{MARKERS}.diameter_mm",
+            span=(0.1, 5.0, 0.05),
+            hint="Diameter of a dot",
+        )
         hint = "Share of light that the ink returns, over the bare skin's"
         fields.slider("Ink", f"{MARKERS}.reflectance", span=(0.0, 2.0, 0.02), hint=hint)
         hint = "Width of the picture on the skin"

@@ -25,7 +25,9 @@ class CameraFolders:
         self.path = FIRST
         gui = desk.server.gui
         with gui.add_folder("Camera"):
-            self.choice = gui.add_dropdown("Edited", ("camera 1",), visible=False)
+            self.choice = gui.add_dropdown(
+                "Edited", ("camera 1",), visible=False, hint="The camera whose numbers stand below"
+            )
             self.choice.on_update(desk.guarded(self._choose))
             self.handle = Handle(desk, "Camera handle", path=lambda: self.path, turns=True)
             self._place()
@@ -65,7 +67,12 @@ class CameraFolders:
         self.preset.on_click(self.desk.guarded(self._take_lens))
         hint = "Across the image; above 175 only fisheyes"
         fields.slider("View deg", f"{FIRST}.fov_x_deg", span=(5.0, 180.0, 1.0), hint=hint)
-        fields.choice("Lens", f"{FIRST}.lens", list(LensModel))
+        fields.choice(
+            "Lens",
+            f"{FIRST}.lens",
+            list(LensModel),
+            hint="Projection: pinhole for narrow views, equidistant for fisheyes, or OpenCV's",
+        )
         fields.text(
             "Distortion",
             f"{FIRST}.distortion",
@@ -73,8 +80,20 @@ class CameraFolders:
             write=number_words,
             hint="opencv: k1, k2, p1, p2, k3; opencv_fisheye: k1 to k4; empty is none",
         )
-        fields.number("Width px", f"{FIRST}.width_px", step=16, whole=True)
-        fields.number("Height px", f"{FIRST}.height_px", step=16, whole=True)
+        fields.number(
+            "Width px",
+            f"{FIRST}.width_px",
+            step=16,
+            whole=True,
+            hint="Pixels of an image row, 16 to 4096",
+        )
+        fields.number(
+            "Height px",
+            f"{FIRST}.height_px",
+            step=16,
+            whole=True,
+            hint="Rows of an image, 16 to 4096",
+        )
 
     def _sensor(self) -> None:
         fields, sensor = self.desk.fields, f"{FIRST}.sensor"
@@ -94,7 +113,9 @@ class CameraFolders:
         hint = "Electrons of a white pixel at no gain"
         fields.number("Full well e", f"{sensor}.full_well_e", step=1000.0, hint=hint)
         fields.number("Read noise e", f"{sensor}.read_noise_e", step=0.5, hint="Electrons")
-        fields.number("Noise seed", f"{sensor}.seed", step=1, whole=True)
+        fields.number(
+            "Noise seed", f"{sensor}.seed", step=1, whole=True, hint="Equal seeds give equal noise"
+        )
 
     def _turn(self, event: Any) -> None:
         if event.client is not None:

@@ -61,7 +61,11 @@ class DesignFiles:
     def name_widgets(self) -> None:
         """Make the name and what keeps the design under it."""
         desk, gui = self.desk, self.desk.server.gui
-        self.name = gui.add_text("Name", desk.session.design.name)
+        self.name = gui.add_text(
+            "Name",
+            desk.session.design.name,
+            hint="Of the design; Save design keeps it under this name",
+        )
         self.name.on_update(desk.guarded(self._rename))
         hint = "Save keeps it under its name (Ctrl+S); Duplicate goes on with a copy"
         keep = gui.add_button_group("Design", (SAVE, COPY), hint=hint)
@@ -82,7 +86,11 @@ class DesignFiles:
             hint = "Readable TOML; a zip where it needs files of its own"
             button = gui.add_button("Download design", icon=viser.Icon.DOWNLOAD, hint=hint)
             button.on_click(desk.guarded(self._download))
-            self.upload = gui.add_upload_button("Load design (TOML)", mime_type=".toml,.zip")
+            self.upload = gui.add_upload_button(
+                "Load design (TOML)",
+                mime_type=".toml,.zip",
+                hint="A design, or a zip with its files; Undo brings yours back",
+            )
             self.upload.on_upload(desk.guarded(self._load))
         self._list()
 

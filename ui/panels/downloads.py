@@ -13,7 +13,12 @@ from workbench.core.fabrication import FabricationPart
 from workbench.core.results import Bundle
 from workbench.design_bundle import zipped
 
-FORMATS = ("stl", "step", "3mf")
+FORMATS = {
+    "stl": "Triangles in mm, for slicers",
+    "step": "Exact faces, for CAD",
+    "3mf": "Triangles with their unit, for slicers",
+}
+"""Endings of files, and what each is for."""
 NO_PART = "-"
 
 
@@ -28,10 +33,10 @@ class Downloads:
 
     def _fill(self) -> None:
         gui, desk = self.desk.server.gui, self.desk
-        self.part = gui.add_dropdown("Part", (NO_PART,))
-        for name in FORMATS:
+        self.part = gui.add_dropdown("Part", (NO_PART,), hint="Whose file is downloaded")
+        for name, hint in FORMATS.items():
             label = f"Download part {name.upper()}"
-            button = gui.add_button(label, icon=viser.Icon.DOWNLOAD)
+            button = gui.add_button(label, icon=viser.Icon.DOWNLOAD, hint=hint)
             button.on_click(desk.guarded(partial(self._one, name)))
         hint = "All parts, assemblies, build sheet and parts list"
         everything = gui.add_button("Download all (zip)", hint=hint)

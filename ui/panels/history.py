@@ -11,7 +11,9 @@ class History:
     def __init__(self, desk: Desk) -> None:
         self.desk = desk
         gui = desk.server.gui
-        steps = gui.add_button_group("History", ("Undo", "Redo"))
+        steps = gui.add_button_group(
+            "History", ("Undo", "Redo"), hint="Ctrl+Z and Ctrl+Shift+Z; a drag is one step"
+        )
         steps.on_click(desk.guarded(lambda event: self._step(steps.value)))
         undo = gui.add_command("Undo", hotkey="Z", modifier="cmd/ctrl")
         undo.on_trigger(desk.guarded(lambda event: self._step("Undo")))

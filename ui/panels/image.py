@@ -34,7 +34,9 @@ class ImageTab:
         self.number = 0
         """Frame on show."""
         self.caption = gui.add_markdown(NO_IMAGE)
-        self.camera = gui.add_dropdown("Camera", ("camera 1",), visible=False)
+        self.camera = gui.add_dropdown(
+            "Camera", ("camera 1",), visible=False, hint="Whose image is shown"
+        )
         hint = "What the first picture is; below it stands its change"
         self.view = gui.add_dropdown("Show", (View.IMAGE.value,), visible=False, hint=hint)
         for handle in (self.camera, self.view):
@@ -42,6 +44,7 @@ class ImageTab:
         hint = "Show the untouched skin every other half second"
         self.blink = gui.add_checkbox("Blink with rest", False, visible=False, hint=hint)
         self.blink.on_update(desk.guarded(lambda event: self._blinks()))
+        clicks = gui.add_html("")
         self.image = gui.add_image(placeholder(), format="jpeg")
         self.legend = gui.add_html("")
         self.change_text = gui.add_markdown("")
@@ -49,7 +52,7 @@ class ImageTab:
         self.measures = gui.add_folder("Measures", expand_by_default=False, visible=False)
         with self.measures:
             self.numbers = gui.add_html("")
-        self.probe = Probe(desk)
+        self.probe = Probe(desk, clicks)
         self.probe.on_moved = lambda: self.show(self.number)
         self._blinking = threading.Event()
         self._resting = False
@@ -146,6 +149,8 @@ class ImageTab:
     def _blink_forever(self) -> None:
         while self._blinking.wait():
             time.sleep(BLINK_S)
+            if not self.desk.server.get_clients():
+                continue
             self.desk.guarded(lambda event: self._turn_over())(None)
 
     def _turn_over(self) -> None:

@@ -27,14 +27,25 @@ class LampsFolder:
         self.edited = ""
         """Path of the lamp that the widgets edit; "" without any."""
         with gui.add_folder("Further lights", expand_by_default=False):
-            self.add = gui.add_button_group("Add lamp", tuple(kind.value for kind in LampKind))
+            self.add = gui.add_button_group(
+                "Add lamp",
+                tuple(kind.value for kind in LampKind),
+                hint="A point, a line or an area of light, beside the ring",
+            )
             self.add.on_click(desk.guarded(self._add))
-            self.choice = gui.add_dropdown("Lamp", (NONE,), visible=False)
+            self.choice = gui.add_dropdown(
+                "Lamp", (NONE,), visible=False, hint="The lamp that is edited below"
+            )
             self.choice.on_update(desk.guarded(self._choose))
             desk.fields.anchor("Lamps", LAMPS)
             self.handle = Handle(desk, "Lamp handle", path=lambda: self.edited)
             self.body = gui.add_folder(None, visible=False)
-            self.drop = gui.add_button("Remove lamp", icon=viser.Icon.TRASH, visible=False)
+            self.drop = gui.add_button(
+                "Remove lamp",
+                icon=viser.Icon.TRASH,
+                visible=False,
+                hint="Takes the lamp that is edited; Undo brings it back",
+            )
             self.drop.on_click(desk.guarded(self._remove))
 
     @property
@@ -96,11 +107,23 @@ class LampsFolder:
         fields.point("Shines along", f"{path}.axis", step=0.1, hint=hint)
         hint = "Direction of its length, across the way it shines"
         fields.point("Lies along", f"{path}.along", step=0.1, hint=hint)
-        fields.slider("Length mm", f"{path}.length_mm", span=(0.1, 40.0, 0.1))
-        fields.slider("Width mm", f"{path}.width_mm", span=(0.1, 40.0, 0.1))
+        fields.slider(
+            "Length mm",
+            f"{path}.length_mm",
+            span=(0.1, 40.0, 0.1),
+            hint="Of the line or area that shines",
+        )
+        fields.slider(
+            "Width mm", f"{path}.width_mm", span=(0.1, 40.0, 0.1), hint="Of the area that shines"
+        )
         hint = "Points of light that it is divided into, about"
         fields.slider("Samples", f"{path}.samples", span=(1, 64, 1), whole=True, hint=hint)
-        fields.slider("Disc mm", f"{path}.size_mm", span=(0.1, 5.0, 0.05))
+        fields.slider(
+            "Disc mm",
+            f"{path}.size_mm",
+            span=(0.1, 5.0, 0.05),
+            hint="Diameter of the point that shines; for traced light and glare",
+        )
         fields.text(
             "Lamp colour",
             f"{path}.colour",
@@ -110,8 +133,18 @@ class LampsFolder:
         )
         hint = "Of the whole lamp, in units of a ring LED's"
         fields.slider("Lamp power", f"{path}.power", span=(0.0, 20.0, 0.1), hint=hint)
-        fields.slider("Cone deg", f"{path}.cone_deg", span=(1.0, 180.0, 1.0))
-        fields.choice("Sits in", f"{path}.mount", list(LedMount))
+        fields.slider(
+            "Cone deg",
+            f"{path}.cone_deg",
+            span=(1.0, 180.0, 1.0),
+            hint="Full angle that it shines into; 180 is the half space",
+        )
+        fields.choice(
+            "Sits in",
+            f"{path}.mount",
+            list(LedMount),
+            hint="cavity: in the air behind the skin; shell: in the clear support",
+        )
         fields.anchor("Lamp", path)
 
     def _fit(self, kind: LampKind) -> None:

@@ -52,8 +52,15 @@ class MakePanel:
     def _mould(self) -> None:
         fields, mould = self.desk.fields, "design.mould"
         named = {"least undercut decides": 0, "2": 2, "3": 3, "4": 4}
-        fields.options("Outer parts", f"{mould}.outer_parts", named)
-        fields.slider("Mould wall mm", f"{mould}.wall_mm", span=(3.0, 15.0, 0.5))
+        fields.options(
+            "Outer parts",
+            f"{mould}.outer_parts",
+            named,
+            hint="Into how many the outer mould is split",
+        )
+        fields.slider(
+            "Mould wall mm", f"{mould}.wall_mm", span=(3.0, 15.0, 0.5), hint="Around the cavity"
+        )
         hint = "Linear, of the silicone while curing; the cavity is larger by it"
         fields.slider("Shrinkage %", f"{mould}.shrink_percent", span=(0.0, 3.0, 0.05), hint=hint)
         hint = "Taper of the core toward its tip"
@@ -62,11 +69,22 @@ class MakePanel:
         fields.slider("Clearance mm", f"{mould}.clearance_mm", span=(0.0, 0.6, 0.05), hint=hint)
         hint = "Mouth of the pouring funnel"
         fields.slider("Gate mm", f"{mould}.gate_diameter_mm", span=(2.0, 20.0, 0.5), hint=hint)
-        fields.slider("Vents", f"{mould}.vent_count", span=(1, 8, 1), whole=True)
+        fields.slider(
+            "Vents",
+            f"{mould}.vent_count",
+            span=(1, 8, 1),
+            whole=True,
+            hint="Channels for the air that the silicone drives out",
+        )
 
     def _casting(self) -> None:
         fields = self.desk.fields
-        fields.options("Silicone", "design.casting.silicone", {n: n for n in silicones()})
+        fields.options(
+            "Silicone",
+            "design.casting.silicone",
+            {n: n for n in silicones()},
+            hint="For the casting recipe; the modulus is chosen on Shape",
+        )
         hint = "Left in cup, gate and vents"
         fields.slider("Waste %", "design.casting.waste_percent", span=(0.0, 100.0, 5.0), hint=hint)
         hint = "Room of the printer along X, Y and Z"
@@ -81,11 +99,32 @@ class MakePanel:
             ("Camera height mm", "camera_height_mm"),
             ("Camera depth mm", "camera_depth_mm"),
         ):
-            fields.slider(label, f"{housing}.{name}", span=(3.0, 30.0, 0.5))
-        fields.slider("LED width mm", f"{housing}.led_width_mm", span=(0.5, 6.0, 0.1))
-        fields.slider("LED height mm", f"{housing}.led_height_mm", span=(0.5, 6.0, 0.1))
-        fields.slider("Housing wall mm", f"{housing}.wall_mm", span=(1.0, 6.0, 0.25))
-        fields.slider("Fit gap mm", f"{housing}.clearance_mm", span=(0.0, 0.6, 0.05))
+            hint = "Of the camera module, for its pocket"
+            fields.slider(label, f"{housing}.{name}", span=(3.0, 30.0, 0.5), hint=hint)
+        fields.slider(
+            "LED width mm",
+            f"{housing}.led_width_mm",
+            span=(0.5, 6.0, 0.1),
+            hint="Of the LED's body, for its pocket",
+        )
+        fields.slider(
+            "LED height mm",
+            f"{housing}.led_height_mm",
+            span=(0.5, 6.0, 0.1),
+            hint="Of the LED's body, for its pocket",
+        )
+        fields.slider(
+            "Housing wall mm",
+            f"{housing}.wall_mm",
+            span=(1.0, 6.0, 0.25),
+            hint="Of base, ring and camera mount",
+        )
+        fields.slider(
+            "Fit gap mm",
+            f"{housing}.clearance_mm",
+            span=(0.0, 0.6, 0.05),
+            hint="Between parts that slide into each other",
+        )
 
     def _make(self, event: Any) -> None:
         self.asked = True

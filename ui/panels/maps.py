@@ -45,7 +45,9 @@ class MapsPanel:
         button.on_click(guarded(lambda event: self._measure()))
         desk.reports.beside(TOPIC)
         self.about = gui.add_markdown(NO_MAPS)
-        self.choice = gui.add_dropdown("Map", ("-",), visible=False)
+        self.choice = gui.add_dropdown(
+            "Map", ("-",), visible=False, hint="What is measured; its meaning stands below"
+        )
         self.choice.on_update(guarded(lambda event: self._draw()))
         hint = "Click on the skin to read its value; off, a click aims the press again"
         self.wanted = gui.add_checkbox("Show on the skin", False, visible=False, hint=hint)

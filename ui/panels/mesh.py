@@ -31,7 +31,11 @@ class MeshPanel:
         fields.slider("Hexahedra mm", "design.meshing.hex_mm", span=(0.2, 1.5, 0.05), hint=hint)
         hint = "Edge of a tetrahedron; halving it takes four times as long"
         fields.slider("Tet edge mm", "design.meshing.tet_mm", span=(0.6, 4.0, 0.1), hint=hint)
-        check = gui.add_button("Check mesh", icon=viser.Icon.CHART_HISTOGRAM)
+        check = gui.add_button(
+            "Check mesh",
+            icon=viser.Icon.CHART_HISTOGRAM,
+            hint="Quality and edge lengths as histograms, the worst cell in 3D",
+        )
         check.on_click(desk.guarded(lambda event: self._run("mesh", "quality")))
         hint = "Conforming tetrahedra for other solvers; a minute or so, Cancel stops it"
         tets = gui.add_button("Tetrahedra", icon=viser.Icon.PYRAMID, hint=hint)

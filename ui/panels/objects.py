@@ -67,8 +67,9 @@ class ObjectFolder:
             hint = "Rounding of edges; sharper than a grid cell cannot be resolved"
             self.edge = gui.add_slider("Edge radius mm", 0.0, 3.0, 0.05, edge_mm(now), hint=hint)
             self.edge.on_update(guarded(self._by_slider(rounded, self._edge)))
+            hint = "STL or OBJ in mm, or STEP"
             self.file = gui.add_upload_button("Load object", mime_type=".stl,.obj,.step,.stp",
-                                              icon=viser.Icon.UPLOAD)  # fmt: skip
+                                              icon=viser.Icon.UPLOAD, hint=hint)  # fmt: skip
             self.file.on_upload(guarded(self._load_file))
             hint = "Its own elastomer and grid; takes several times as long"
             self.soft = gui.add_checkbox("Soft object", now.soft is not None, hint=hint)
@@ -83,15 +84,21 @@ class ObjectFolder:
     def _texture_widgets(self, now: Indenter) -> None:
         gui, guarded, texture = self.desk.server.gui, self.desk.guarded, now.texture
         self.pattern = gui.add_dropdown(
-            "Pattern", (*PLAIN, Pattern.IMAGE.value), initial_value=texture.pattern.value
+            "Pattern",
+            (*PLAIN, Pattern.IMAGE.value),
+            initial_value=texture.pattern.value,
+            hint="What is raised on the face that touches",
         )
-        self.height = gui.add_slider("Height mm", 0.0, 2.0, 0.05, texture.height_mm)
+        self.height = gui.add_slider(
+            "Height mm", 0.0, 2.0, 0.05, texture.height_mm, hint="How far the texture stands out"
+        )
         hint = "Period; of letters the height of a capital, of a picture its width"
         pitch_mm = min(texture.pitch_mm, 20.0)
         self.pitch = gui.add_slider("Pitch mm", 0.2, 20.0, 0.1, pitch_mm, hint=hint)
-        self.text = gui.add_text("Letters", texture.text or "A")
+        self.text = gui.add_text("Letters", texture.text or "A", hint="What the texture spells")
+        hint = "Bright places stand out"
         self.picture = gui.add_upload_button("Load picture", mime_type="image/*",
-                                             icon=viser.Icon.PHOTO_UP)  # fmt: skip
+                                             icon=viser.Icon.PHOTO_UP, hint=hint)  # fmt: skip
         for widget in (self.pattern, self.height, self.pitch, self.text):
             widget.on_update(guarded(self._weave))
         self.picture.on_upload(guarded(self._load_picture))

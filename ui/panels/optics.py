@@ -40,7 +40,12 @@ class OpticsPanel:
 
     def _light_model(self) -> None:
         fields = self.desk.fields
-        fields.choice("Model", "design.optics.light_model", list(LightModel))
+        fields.choice(
+            "Model",
+            "design.optics.light_model",
+            list(LightModel),
+            hint="How light reaches skin and camera; what each knows stands below",
+        )
         self.about = self.desk.server.gui.add_markdown("")
         hint = "Of the whole bake, or of each frame; four times as many halve the noise"
         fields.number("Photons", f"{BAKING}.photons", step=1_000_000, whole=True, hint=hint)
@@ -54,12 +59,29 @@ class OpticsPanel:
         self.handle = Handle(self.desk, "Ring handle", path=lambda: RING, axes=up)
         hint = "0 for a sensor that has only further lights"
         fields.slider("LEDs", f"{RING}.count", span=(0, 24, 1), whole=True, hint=hint)
-        fields.slider("Ring radius mm", f"{RING}.radius_mm", span=(1.0, 30.0, 0.25))
-        fields.slider("LED height mm", f"{RING}.height_mm", span=(0.0, 40.0, 0.25))
-        fields.slider("First LED deg", f"{RING}.phase_deg", span=(0.0, 360.0, 5.0))
+        fields.slider(
+            "Ring radius mm",
+            f"{RING}.radius_mm",
+            span=(1.0, 30.0, 0.25),
+            hint="From the axis to the middle of each LED",
+        )
+        fields.slider(
+            "LED height mm", f"{RING}.height_mm", span=(0.0, 40.0, 0.25), hint="Above the base"
+        )
+        fields.slider(
+            "First LED deg",
+            f"{RING}.phase_deg",
+            span=(0.0, 360.0, 5.0),
+            hint="Azimuth of the first LED, from X to Y",
+        )
         hint = "Outward from straight up"
         fields.slider("LED tilt deg", f"{RING}.tilt_deg", span=(-90.0, 90.0, 5.0), hint=hint)
-        fields.choice("Mount", f"{RING}.mount", list(LedMount))
+        fields.choice(
+            "Mount",
+            f"{RING}.mount",
+            list(LedMount),
+            hint="cavity: in the air behind the skin; shell: in the clear support",
+        )
         hint = "Of each sector: red, #ff0000, 525nm, 525nm/35nm or 5600K, with commas between"
         fields.text(
             "LED colours",

@@ -53,7 +53,7 @@ class PartsTree:
             folder = gui.add_folder(title)
         self.closed.append(folder)
         with folder:
-            every = gui.add_checkbox(f"All {title.lower()}", ticked)
+            every = gui.add_checkbox(f"All {title.lower()}", ticked, hint="On show or not")
             every.on_update(self.desk.guarded(lambda event: self._tick_group(group, event)))
             self.groups[group] = every
             for part in members:

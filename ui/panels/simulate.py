@@ -52,7 +52,12 @@ class SimulatePanel:
         fields.slider("Depth mm", "case.press.depth_mm", span=(0.0, 3.0, 0.05), hint=hint)
         hint = "Of the approach; shear and twist take as many again"
         fields.slider("Frames", "case.press.frames", span=(1, 40, 1), whole=True, hint=hint)
-        fields.slider("Twist deg", "case.press.twist_deg", span=(-45.0, 45.0, 1.0))
+        fields.slider(
+            "Twist deg",
+            "case.press.twist_deg",
+            span=(-45.0, 45.0, 1.0),
+            hint="About the outward normal, at full depth",
+        )
         hint = "U is +Z along the skin, V is across"
         self.shear = gui.add_vector2(
             "Shear U V mm", desk.session.case.press.shear_mm, step=0.1, hint=hint
@@ -66,7 +71,12 @@ class SimulatePanel:
 
     def _solver_widgets(self) -> None:
         fields = self.desk.fields
-        fields.slider("Grid mm", "case.settings.grid_mm", span=(0.25, 1.5, 0.05))
+        fields.slider(
+            "Grid mm",
+            "case.settings.grid_mm",
+            span=(0.25, 1.5, 0.05),
+            hint="Cell of the contact solver; smaller shows smaller dents and takes longer",
+        )
         hint = "Only the region around the contact, or the whole membrane"
         fields.choice("Extent", "case.settings.extent", list(Extent), hint=hint)
         hint = "Radius of the simulated region; 0: chosen from contact and wall"

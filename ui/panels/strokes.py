@@ -38,17 +38,27 @@ class MotionFolder:
             self.list = gui.add_folder("Strokes")
             desk.fields.anchor("Strokes", "case.press.strokes")
             kinds = tuple(kind.value for kind in StrokeKind)
-            self.kind = gui.add_dropdown("Stroke", kinds, initial_value=StrokeKind.SLIDE.value)
+            self.kind = gui.add_dropdown(
+                "Stroke",
+                kinds,
+                initial_value=StrokeKind.SLIDE.value,
+                hint="What the object does after the approach",
+            )
             self.kind.on_update(guarded(lambda event: self._suggest()))
-            self.amount = gui.add_text("Amount", "")
+            self.amount = gui.add_text("Amount", "", hint="In the unit that stands below")
             self.unit = gui.add_markdown("")
-            self.frames = gui.add_slider("Stroke frames", 1, 60, 1, 10)
-            button = gui.add_button("Add stroke", icon=viser.Icon.PLUS)
+            self.frames = gui.add_slider(
+                "Stroke frames", 1, 60, 1, 10, hint="Frames that this move takes"
+            )
+            button = gui.add_button(
+                "Add stroke", icon=viser.Icon.PLUS, hint="After those that are listed"
+            )
             button.on_click(guarded(self._add))
             with gui.add_folder("Trajectory", expand_by_default=False):
                 desk.fields.anchor("Trajectory", "case.press.trajectory")
+                hint = "CSV of times and poses; in place of depth, shear, twist and strokes"
                 self.file = gui.add_upload_button("Load trajectory", mime_type=".csv,text/csv",
-                                                  icon=viser.Icon.UPLOAD)  # fmt: skip
+                                                  icon=viser.Icon.UPLOAD, hint=hint)  # fmt: skip
                 self.file.on_upload(guarded(self._load))
                 hint = "The poses of this press, or of a straight one, as a file to edit"
                 button = gui.add_button("Trajectory template", icon=viser.Icon.DOWNLOAD, hint=hint)

@@ -74,10 +74,16 @@ class SweepFolder:
         self.steps = gui.add_slider("Steps", FEWEST, MOST, 1, 5, hint=hint)
         hint = "Also mould and housing, for the counts of checks; slower"
         self.parts = gui.add_checkbox("With mould checks", False, hint=hint)
-        run = gui.add_button("Run sweep", icon=viser.Icon.PLAYER_PLAY)
+        run = gui.add_button(
+            "Run sweep",
+            icon=viser.Icon.PLAYER_PLAY,
+            hint="Presses the design at each value, one after the other",
+        )
         run.on_click(guarded(self._begin))
         self.progress = gui.add_markdown("")
-        self.cancel = gui.add_button("Cancel sweep", color="red", visible=False)
+        self.cancel = gui.add_button(
+            "Cancel sweep", color="red", visible=False, hint="Points that are done are kept"
+        )
         self.cancel.on_click(guarded(lambda event: self.desk.conductor.stop(TOPIC)))
 
     def _results(self, gui: Any) -> None:
@@ -88,7 +94,9 @@ class SweepFolder:
         self.resume = gui.add_button("Resume sweep", hint=hint, visible=False)
         self.resume.on_click(guarded(self._resume))
         self.results = SweepResults(self.desk)
-        self.point = gui.add_dropdown("Point", (NONE,), visible=False)
+        self.point = gui.add_dropdown(
+            "Point", (NONE,), visible=False, hint="What Keep point as variant keeps"
+        )
         hint = "Under the name of sweep and value"
         self.keep = gui.add_button("Keep point as variant", hint=hint, visible=False)
         self.keep.on_click(guarded(self._keep))

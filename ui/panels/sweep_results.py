@@ -28,7 +28,9 @@ class SweepResults:
         self.desk = desk
         self.sweep: Sweep | None = None
         gui = desk.server.gui
-        self.metric = gui.add_dropdown("Plot figure", (NONE,), visible=False)
+        self.metric = gui.add_dropdown(
+            "Plot figure", (NONE,), visible=False, hint="What is drawn over the values"
+        )
         self.metric.on_update(desk.guarded(lambda event: self._draw()))
         empty = (np.zeros(2), np.zeros(2))
         series = (uplot.Series(label="value"), uplot.Series(label="figure", stroke=BLUE, width=2))

@@ -92,9 +92,20 @@ class VariantsFolder:
             self.question = gui.add_folder(None, visible=False)
             with self.question:
                 self.asked = gui.add_markdown("")
-                gui.add_button("Yes, delete it", color="red").on_click(desk.guarded(self._delete))
-                gui.add_button("No, keep it").on_click(desk.guarded(self._keep))
-        self.restore = gui.add_button("Undo delete", icon=viser.Icon.ARROW_BACK_UP, visible=False)
+                gui.add_button(
+                    "Yes, delete it",
+                    color="red",
+                    hint="Moves it to the trash; Undo delete brings it back",
+                ).on_click(desk.guarded(self._delete))
+                gui.add_button("No, keep it", hint="Nothing is deleted").on_click(
+                    desk.guarded(self._keep)
+                )
+        self.restore = gui.add_button(
+            "Undo delete",
+            icon=viser.Icon.ARROW_BACK_UP,
+            visible=False,
+            hint="Brings the variant deleted last back",
+        )
         self.restore.on_click(desk.guarded(self._restore))
 
     def _buttons(self, *buttons: tuple[str, Any, str, Callable[[Any], None]]) -> None:

@@ -65,7 +65,9 @@ class VersusFolder:
         names = (BESIDE, BLINK, DIFFERENCE)
         hint = f"Blink: one in place of the other, every {BLINK_S:g} s"
         self.mode = gui.add_dropdown("Images", names, hint=hint)
-        self.moment = gui.add_dropdown("Moment", tuple(m.value for m in Moment))
+        self.moment = gui.add_dropdown(
+            "Moment", tuple(m.value for m in Moment), hint="Which image of each press is compared"
+        )
         for handle in (self.mode, self.moment):
             handle.on_update(desk.guarded(lambda event: self._show_images()))
         self.caption = gui.add_markdown("")
@@ -77,7 +79,9 @@ class VersusFolder:
         desk = self.desk
         hint = "Translucent and in colours of their own, made of what is stored"
         self.in_view = gui.add_checkbox("Show B in 3D", False, hint=hint)
-        self.placing = gui.add_dropdown("B stands", (STANDS_BESIDE, OVERLAID))
+        self.placing = gui.add_dropdown(
+            "B stands", (STANDS_BESIDE, OVERLAID), hint="Where B is drawn in the 3D view"
+        )
         self.dented = gui.add_checkbox("B pressed", False, hint="In the last frame of its press")
         self.view_words = gui.add_markdown("", visible=False)
         self.in_view.on_update(desk.guarded(self._toggle_view))
