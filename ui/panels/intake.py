@@ -59,7 +59,9 @@ class IntakeFolder:
         )
         self.inner.on_upload(desk.guarded(self._load_inner))
         fields.anchor("Load inner body", f"{BODY}.inner")
-        self.drop = gui.add_button("Remove inner body", visible=False)
+        self.drop = gui.add_button(
+            "Remove inner body", visible=False, hint="The wall is even again"
+        )
         self.drop.on_click(desk.guarded(self._drop_inner))
         hint = "A second click on a face takes the label back"
         self.label = gui.add_dropdown("Clicks label", (AIM, *REGIONS), hint=hint)

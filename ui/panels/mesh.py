@@ -43,7 +43,9 @@ class MeshPanel:
         desk.reports.beside(*TOPICS)
         self.found: dict[str, MeshQuality] = {}
         self.notice = ""
-        self.choice = gui.add_dropdown("Mesh shown", ("-",), visible=False)
+        self.choice = gui.add_dropdown(
+            "Mesh shown", ("-",), visible=False, hint="Whose cells are judged and drawn"
+        )
         self.choice.on_update(desk.guarded(lambda event: self._tell()))
         hint = "Of the mesh shown, on the body at rest"
         self.edges = gui.add_checkbox("Show edges", False, visible=False, hint=hint)
@@ -53,7 +55,12 @@ class MeshPanel:
         self.numbers = gui.add_markdown(NOTHING)
         self.measure = self._plot("% of cells", "#3b82f6")
         self.lengths = self._plot("% of edges", "#30a46c")
-        self.worst = gui.add_button("Show worst cell", icon=viser.Icon.ZOOM_IN, visible=False)
+        self.worst = gui.add_button(
+            "Show worst cell",
+            icon=viser.Icon.ZOOM_IN,
+            visible=False,
+            hint="Flies to it and marks it",
+        )
         self.worst.on_click(desk.guarded(lambda event: self._fly()))
 
     def _run(self, topic: str, stage: str) -> None:
