@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import html
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
 from workbench.colour_scale import viridis
+from workbench.glb import Topology, write_glb
 from workbench.section_cut import Plane, clip, packed
 
-SRGB_GAMMA = 2.2
-"""Power that comes near the curve of sRGB."""
 REST_SHARE = 0.05
 """Below this share of the maximum the colour of rest shows through."""
 
@@ -24,7 +22,11 @@ def heat_colours(share: np.ndarray, rest: tuple[int, int, int]) -> np.ndarray:
 
 
 def coloured_glb(
-    points: np.ndarray, faces: np.ndarray, colours: np.ndarray, plane: Plane | None = None
+    points: np.ndarray,
+    faces: np.ndarray,
+    colours: np.ndarray,
+    plane: Plane | None = None,
+    topology: Topology | None = None,
 ) -> bytes:
     """A mesh with an sRGB colour at each vertex as a GLB file with a matt material, cut or whole.
 
@@ -33,35 +35,18 @@ def coloured_glb(
         faces: Triangles, shape (M, 3).
         colours: Shape (N, 3), uint8.
         plane: What the mesh is cut by, if it is.
+        topology: That of the whole mesh, where it is known.
     """
-    import trimesh
-
     if plane is not None:
         kept = clip(points, faces, plane)
         points, faces, used = packed(kept.points_mm, kept.faces)
         colours = kept.carry(colours)[used]
         if not len(faces):
             # A file must have a mesh: a triangle without an area.
-            points, faces, colours = np.zeros((3, 3)), np.array([[0, 1, 2]]), np.zeros((3, 3))
-    # glTF takes the colours of vertices as linear light.
-    linear = np.rint(255.0 * (np.asarray(colours) / 255.0) ** SRGB_GAMMA).astype(np.uint8)
-    mesh = trimesh.Trimesh(points, faces, process=False, vertex_colors=linear)
-    mesh.vertex_normals  # noqa: B018 - computed now, so that the file carries smooth normals
-
-    def matt(tree: dict[str, Any]) -> None:
-        # Without a material glTF means polished metal, which is black without an environment.
-        tree["materials"] = [
-            {
-                "pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 0.7},
-                "doubleSided": True,
-            }
-        ]
-        for part in tree["meshes"]:
-            for primitive in part["primitives"]:
-                primitive["material"] = 0
-
-    scene = trimesh.Scene(mesh)
-    return scene.export(file_type="glb", include_normals=True, tree_postprocessor=matt)  # pyright: ignore
+            points, faces = np.zeros((3, 3)), np.array([[0, 1, 2]])
+            colours = np.zeros((3, 3), np.uint8)
+        topology = None
+    return write_glb(points, colours, topology or Topology.of(faces, len(points)))
 
 
 def placeholder(width_px: int = 320, height_px: int = 240) -> np.ndarray:
