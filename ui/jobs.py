@@ -29,9 +29,12 @@ from workbench.core.design import SensorDesign
 from workbench.core.errors import Cancelled, WorkbenchError
 from workbench.core.units import human_seconds
 from workbench.pipeline import PressCase
+from workbench.preview_call import PreviewCall
 from workbench.stages import Outcome
+from workbench.state import State
 
 PUMP_S = 0.1
+Then = Callable[[Finished], None]
 
 
 class Jobs:
@@ -54,7 +57,7 @@ class Jobs:
         """Who shows the previews of a topic; filled by the desk and the panels."""
         self.on_failed: Callable[[WorkbenchError, str], None] = lambda error, topic: None
         """Set by the desk: shows what an error leaves to look at."""
-        self._then: dict[str, Callable[[Finished], None]] = {}
+        self._then: dict[str, Then] = {}
 
     def submit(
         self,
@@ -62,7 +65,7 @@ class Jobs:
         design: SensorDesign,
         case: PressCase,
         wanted: tuple[str, ...],
-        then: Callable[[Finished], None] | None = None,
+        then: Then | None = None,
     ) -> None:
         """Ask for stages; `then` takes the place of reporting how it ended."""
         if then is not None:
@@ -70,6 +73,15 @@ class Jobs:
         if topic not in QUIET:
             self.reports.log(f"{topic}: started")
         self.conductor.submit(topic, design, case, wanted)
+
+    def ask(self, topic: str, call: PreviewCall, state: State, then: Then) -> None:
+        """Ask for a preview that the designer waits for; `then` is told how it ended.
+
+        The answer itself goes to `on_preview`, before.
+        """
+        self._then[topic] = then
+        self.reports.log(f"{topic}: started")
+        self.conductor.ask(topic, state.design, state.case, call)
 
     def pump_forever(self) -> None:
         """Drain events into widgets until the process ends."""

@@ -72,7 +72,12 @@ def views(frames: TactileFrames | None) -> tuple[View, ...]:
 
 
 def looked(
-    view: View, images: np.ndarray, number: int, frames: TactileFrames | None = None
+    view: View,
+    images: np.ndarray,
+    number: int,
+    frames: TactileFrames | None = None,
+    *,
+    beside: int = 0,
 ) -> Looked:
     """A view of one frame.
 
@@ -81,6 +86,7 @@ def looked(
         images: Background and frames, shape (1 + K, H, W, 3), uint8.
         number: Frame, 0 for the background.
         frames: The fields that belong to the images, if known.
+        beside: Frame that this one is looked at beside, whose depths have the same colours.
     """
     image = np.asarray(images[number])
     if view is View.DIFFERENCE:
@@ -91,7 +97,7 @@ def looked(
     if view is View.NORMALS:
         return _normals(np.asarray(frames.normal[number]))
     if view is View.DEPTH:
-        return _depth(np.asarray(frames.depth_z_mm[number]), np.asarray(frames.depth_z_mm[0]))
+        return _depth(*(np.asarray(frames.depth_z_mm[k]) for k in (number, beside)))
     if view is View.CONTACT:
         return _mask(frames, number)
     if view is View.MARKERS:
@@ -119,12 +125,12 @@ def _normals(normal: np.ndarray) -> Looked:
     return Looked(rgb=rgb, words=words)
 
 
-def _depth(depth_mm: np.ndarray, rest_mm: np.ndarray) -> Looked:
-    seen = np.isfinite(depth_mm) | np.isfinite(rest_mm)
+def _depth(depth_mm: np.ndarray, other_mm: np.ndarray) -> Looked:
+    seen = np.isfinite(depth_mm) | np.isfinite(other_mm)
     if not seen.any():
         return Looked(rgb=scale_colours(depth_mm, 0.0, 1.0), words="no pixel sees the skin")
-    both = np.fmin(depth_mm, rest_mm)[seen], np.fmax(depth_mm, rest_mm)[seen]
-    # Of the frame and of the background, so that the colours of both compare.
+    both = np.fmin(depth_mm, other_mm)[seen], np.fmax(depth_mm, other_mm)[seen]
+    # Of the frame and of the one beside it, so that the colours of both compare.
     low, high = float(both[0].min()), float(both[1].max())
     rgb = scale_colours(depth_mm, low, high)
     bar = Bar(low=low, high=high, unit="mm")

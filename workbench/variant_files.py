@@ -151,7 +151,9 @@ def restore_variant(project: Project, kept: str) -> str:
     """
     trash, taken = folder(project) / TRASH, list_variants(project)
     if kept not in [path.stem for path in trash.glob("*.toml")]:
-        raise DesignError(f"the trash has no variant {kept!r}", hint=f"look in {trash}", at="variant")
+        raise DesignError(
+            f"the trash has no variant {kept!r}", hint=f"look in {trash}", at="variant"
+        )
     name = kept if kept not in taken else _numbered(kept, taken)
     for ending in (".toml", ".png"):
         _move(trash / f"{kept}{ending}", folder(project) / f"{name}{ending}")

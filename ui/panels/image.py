@@ -5,12 +5,11 @@ Blinking between the frame and the rest shows small changes better than two pict
 
 from __future__ import annotations
 
-import threading
-import time
 from typing import Any
 
 import numpy as np
 
+from ui.blink import Blink
 from ui.desk import Desk
 from ui.imaging import placeholder, scale_bar, table
 from ui.panels.probe import Probe
@@ -46,6 +45,8 @@ class ImageTab:
         self.blink.on_update(desk.guarded(lambda event: self._blinks()))
         clicks = gui.add_html("")
         self.image = gui.add_image(placeholder(), format="jpeg")
+        self.rest = gui.add_image(placeholder(), format="jpeg", visible=False)
+        self.turns = Blink(desk.server, self.image, self.rest, period_s=BLINK_S)
         self.legend = gui.add_html("")
         self.change_text = gui.add_markdown("")
         self.change = gui.add_image(placeholder(), format="jpeg")
@@ -54,10 +55,6 @@ class ImageTab:
             self.numbers = gui.add_html("")
         self.probe = Probe(desk, clicks)
         self.probe.on_moved = lambda: self.show(self.number)
-        self._blinking = threading.Event()
-        self._resting = False
-        """Whether blinking shows the rest just now."""
-        threading.Thread(target=self._blink_forever, name="blink", daemon=True).start()
 
     @property
     def last(self) -> int | None:
@@ -119,14 +116,17 @@ class ImageTab:
         images, frames = self.chosen()
         self.number = number = min(number, len(images) - 1)
         self.probe.follow(self.camera.options.index(self.camera.value), number)
-        seen = 0 if self._resting else number
-        found = looked(View(self.view.value), images, seen, frames)
+        what = View(self.view.value)
+        found = looked(what, images, number, frames)
         change, gain = visible_change(np.asarray(images[number]), np.asarray(images[0]))
         bar = found.bar
         words = f"<div style='font-size:12px;margin:2px 12px'>{found.words}</div>"
         scale = "" if bar is None else scale_bar(bar.low, bar.high, bar.unit)
         with self.desk.server.atomic():
             self.image.image = self._crossed(found.rgb)
+            if self.blink.value:
+                rest = looked(what, images, 0, frames, beside=number)
+                self.rest.image = self._crossed(rest.rgb)
             self.legend.content = scale + words if found.words else ""
             self.change_text.content = f"Difference to the background, × {gain}"
             self.change.image = change
@@ -140,23 +140,10 @@ class ImageTab:
 
     def _blinks(self) -> None:
         if self.blink.value:
-            self._blinking.set()
+            self.show(self.number)
+            self.turns.start()
         else:
-            self._blinking.clear()
-            self._resting = False
-            self.show(self.number)
-
-    def _blink_forever(self) -> None:
-        while self._blinking.wait():
-            time.sleep(BLINK_S)
-            if not self.desk.server.get_clients():
-                continue
-            self.desk.guarded(lambda event: self._turn_over())(None)
-
-    def _turn_over(self) -> None:
-        if self._blinking.is_set():
-            self._resting = not self._resting
-            self.show(self.number)
+            self.turns.stop()
 
     def show_in_frusta(self, number: int) -> None:
         """Show in the 3D view what each camera sees."""

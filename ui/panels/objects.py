@@ -27,10 +27,11 @@ from workbench.indenter_edit import (
     resized,
     rounded,
     textured,
-    uploaded,
 )
+from workbench.object_file import ObjectFile
 from workbench.thumbnails import thumbnail_png
 
+TOPIC = "object"
 LOADED = "loaded mesh"
 PLAIN = tuple(p.value for p in Pattern if p is not Pattern.IMAGE)
 GROUPS = {"seen": "The paper's, seen in training", "unseen": "The paper's, unseen in training"}
@@ -49,6 +50,7 @@ class ObjectFolder:
         self.chosen = ""
         """Label of the last choice, to name an everyday object, which is a mesh by now."""
         self.chosen_mesh: Any = None
+        desk.jobs.on_preview[TOPIC] = lambda found, request: self._take(found)
         gui, guarded = desk.server.gui, desk.guarded
         now = desk.session.case.indenter
         with gui.add_folder("Object"):
@@ -191,12 +193,14 @@ class ObjectFolder:
 
     def _load_file(self, event: Any) -> None:
         file, desk = self.file.value, self.desk
-        if not needs_cad(file.name):
-            self._take(uploaded(file.name, file.content))
+        if needs_cad(file.name):
+            trial = cad_trial(file.name, file.content)
+            desk.reports.settle()
+            desk.trial(TOPIC, trial, "intake", self._read)
             return
-        trial = cad_trial(file.name, file.content)
+        call = ObjectFile(name=file.name, content=file.content)
         desk.reports.settle()
-        desk.trial("object", trial, "intake", self._read)
+        desk.jobs.ask(TOPIC, call, desk.session.state, self._read)
 
     def _read(self, event: Finished) -> None:
         """Take the object that the worker has read."""
@@ -207,7 +211,8 @@ class ObjectFolder:
                 # To the reader it was a body.
                 event.error.at = AT
             raise event.error
-        self._take(cad_object(event.request.design, self.desk.session.store))
+        if event.request.preview is None:
+            self._take(cad_object(event.request.design, self.desk.session.store))
 
     def _take(self, indenter: Indenter) -> None:
         desk = self.desk

@@ -1,6 +1,7 @@
 """From a pixel of the tactile image to the skin it sees, and from a click on the skin to its pixel.
 
-A picture of viser has no clicks: a pixel is chosen by its column and row, and shown by a cross.
+A pixel is chosen by a click on the picture (`ui.picture_click`) or by its column and row, and shown
+by a cross.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from ui.desk import Desk
+from ui.picture_click import COLUMN, ROW, picture_clicks
 from workbench.core.results import MembraneMesh
 from workbench.phases import number as written
 from workbench.pixel_link import PixelLink, SkinPoint, frame_link
@@ -25,8 +27,10 @@ KILO = 1000.0
 class Probe:
     """Widgets that join pixels and places, below the image."""
 
-    def __init__(self, desk: Desk) -> None:
+    def __init__(self, desk: Desk, clicks: Any) -> None:
         self.desk = desk
+        self.clicks = clicks
+        """The HTML before the pictures, which catches clicks on them while probing."""
         self.camera = 0
         """Number of the camera on show, from 0."""
         self.frame = 0
@@ -41,12 +45,14 @@ class Probe:
         gui, guarded = desk.server.gui, desk.guarded
         self.folder = gui.add_folder("Pixel and skin", expand_by_default=False, visible=False)
         with self.folder:
-            hint = "A click on the skin shows its pixel instead of aiming the press there"
+            hint = "A click on the picture shows the place on the skin that the pixel sees; "
+            hint += "a click on the skin shows its pixel, instead of aiming the press there"
             self.on = gui.add_checkbox("Probe on click", False, hint=hint)
+            self.on.on_update(guarded(lambda event: self._switch()))
             hint = "Shows where on the skin this pixel looks, from the left"
-            self.column = gui.add_slider("Pixel column px", 0, 1, 1, 0, hint=hint)
+            self.column = gui.add_slider(COLUMN, 0, 1, 1, 0, hint=hint)
             hint = "Shows where on the skin this pixel looks, from the top"
-            self.row = gui.add_slider("Pixel row px", 0, 1, 1, 0, hint=hint)
+            self.row = gui.add_slider(ROW, 0, 1, 1, 0, hint=hint)
             clear = gui.add_button("Clear probe", hint="Take the cross and the mark away")
             self.said = gui.add_markdown("")
         for slider in (self.column, self.row):
@@ -59,6 +65,9 @@ class Probe:
         self.folder.visible = mesh is not None
         if mesh is None:
             self.clear()
+
+    def _switch(self) -> None:
+        self.clicks.content = picture_clicks(bool(self.on.value))
 
     def follow(self, camera: int, frame: int) -> None:
         """Look through another camera, or at another frame, by the same pixel."""
@@ -171,6 +180,8 @@ class Probe:
     def clear(self) -> None:
         """Take cross and mark away."""
         self.uv_px = None
+        # Else a click on the same pixel would change nothing, and show nothing.
+        self.column.value = self.row.value = 0
         self._unmark()
         self.said.content = ""
         self.on_moved()

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import html
-import threading
-import time
 from collections.abc import Callable
 from typing import Any
 
 import viser
 
+from ui.blink import Blink
 from ui.desk import Desk
 from ui.ghost import COLOURS, Ghost, GhostView
 from ui.imaging import placeholder
@@ -39,14 +38,12 @@ class VersusFolder:
         self.ghosts = GhostView(desk.server, desk.session.store)
         self.hidden = False
         """Whether parts are looked at, so that no ghost stands among them."""
-        self._blinking = threading.Event()
         gui = desk.server.gui
         with gui.add_folder("A against B"):
             self._choices(gui)
             self._images(gui)
             self._view(gui)
             self.tables = gui.add_html("")
-        threading.Thread(target=self._blink, name="blink", daemon=True).start()
 
     def _choices(self, gui: Any) -> None:
         desk = self.desk
@@ -74,6 +71,7 @@ class VersusFolder:
         self.image = gui.add_image(placeholder(), format="jpeg", visible=False)
         self.blink_a = gui.add_image(placeholder(), label="A", format="jpeg", visible=False)
         self.blink_b = gui.add_image(placeholder(), label="B", format="jpeg", visible=False)
+        self.turns = Blink(desk.server, self.blink_a, self.blink_b, period_s=BLINK_S)
 
     def _view(self, gui: Any) -> None:
         desk = self.desk
@@ -153,7 +151,7 @@ class VersusFolder:
         if self.a is not None and self.b is not None and self.both is not None:
             self._pair(self.a, self.b)
         both, mode = self.both, self.mode.value
-        self._blinking.clear()
+        self.turns.stop()
         none = mode == DIFFERENCE and (both is None or both.difference is None)
         with self.desk.server.atomic():
             self.image.visible = both is not None and mode != BLINK and not none
@@ -170,16 +168,7 @@ class VersusFolder:
                 self.image.image = both.difference
             elif mode == BLINK:
                 self.blink_a.image, self.blink_b.image = both.a, both.b
-                self._blinking.set()
-
-    def _blink(self) -> None:
-        """Show B for A and A for B in turn; holds no lock, and rests while nobody looks."""
-        while self._blinking.wait():
-            time.sleep(BLINK_S)
-            if self._blinking.is_set() and self.desk.server.get_clients():
-                first = self.blink_a.visible
-                with self.desk.server.atomic():
-                    self.blink_a.visible, self.blink_b.visible = not first, first
+                self.turns.start()
 
     def _toggle_view(self, event: Any) -> None:
         if self.in_view.value and (self.a is None or self.b is None):

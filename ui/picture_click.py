@@ -1,0 +1,58 @@
+"""Clicks on the tactile picture, which viser's pictures do not have: they fill the pixel's boxes.
+
+A piece of HTML beside the picture installs one handler in the page. It turns the place of a click
+into a column and a row of the camera and types both into the sliders' boxes, so that all else goes
+the way of typed values: a tab that follows is refused, and the server knows of no second way. The
+sliders' ends tell the camera's size, whatever the picture's own size and however large it is shown.
+"""
+
+from __future__ import annotations
+
+import html
+
+COLUMN, ROW = "Pixel column px", "Pixel row px"
+"""Labels of the sliders that are filled."""
+PIXEL_GIF = "data:image/gif;base64,R0lGODlhAQABAIAAAAAAAP///yH5BAEAAAAALAAAAAABAAEAAAIBRAA7"
+"""An image that loads at once, by which the page runs the handler's script."""
+TARGET = "probe-picture"
+"""Class of the piece of HTML; its parents are searched for pictures and boxes."""
+INSTALL = """
+document.removeEventListener('click', window.probePicture, true);
+window.probePicture = event => {
+  const mark = document.querySelector('.probe-picture');
+  if (!mark || event.target.tagName !== 'IMG' || !event.target.src.startsWith('blob:')) return;
+  let tab = mark;
+  while (tab && !tab.querySelector('img[src^="blob:"]')) tab = tab.parentElement;
+  if (!tab || !tab.contains(event.target)) return;
+  const box = event.target.getBoundingClientRect();
+  const shares = {
+    'Pixel column px': (event.clientX - box.left) / box.width,
+    'Pixel row px': (event.clientY - box.top) / box.height,
+  };
+  event.stopPropagation();
+  for (const label of tab.querySelectorAll('label[for]')) {
+    const slider = document.getElementById(label.htmlFor);
+    const share = shares[label.innerText.trim() || label.textContent.trim()];
+    if (share === undefined || !slider) continue;
+    const most = Number(slider.querySelector('[role=slider]').getAttribute('aria-valuemax'));
+    const input = slider.parentElement.querySelector('input:not([type=hidden])');
+    const value = Math.min(most, Math.max(0, Math.floor(share * (most + 1))));
+    const own = Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, 'value');
+    own.set.call(input, String(value));
+    input.dispatchEvent(new Event('input', {bubbles: true}));
+    input.dispatchEvent(new Event('focusout', {bubbles: true}));
+  }
+};
+document.addEventListener('click', window.probePicture, true);
+"""
+"""Installs the handler, in place of one of an earlier page of the same server."""
+CROSSHAIR = '<style>div:has(> .{0}) ~ div img[src^="blob:"]{{cursor:crosshair}}</style>'
+
+
+def picture_clicks(on: bool) -> str:
+    """What stands before the pictures, as HTML: the handler where clicks are wanted, or nothing."""
+    if not on:
+        return ""
+    script = html.escape(" ".join(INSTALL.split()), quote=True)
+    loads = f'<img alt="" style="display:none" src="{PIXEL_GIF}" onload="{script}">'
+    return f'<div class="{TARGET}">{CROSSHAIR.format(TARGET)}{loads}</div>'
