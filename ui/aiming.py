@@ -50,7 +50,7 @@ class Aiming:
         case, scene = self.desk.session.case, self.desk.scene
         if self._indenter is not case.indenter and scene.body.solid is not None:
             self._indenter = case.indenter
-            scene.show_indenter(case.indenter, case.press)
+            scene.object.show(case.indenter, case.press)
 
     def show_body(self, solid: Solid) -> None:
         """Show another body, with the object on it."""

@@ -41,7 +41,7 @@ from workbench.lanes import LaneRunner
 from workbench.project import Project
 
 BRAND = (37, 99, 235)
-DRAWING = ("cv2", "scipy.spatial", "trimesh")
+DRAWING = ("cv2", "scipy.sparse", "scipy.spatial", "trimesh")
 """Heavy packages with which this process draws."""
 
 

@@ -11,6 +11,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from ui.aiming import Aiming
+from ui.backstage import Backstage
 from ui.gizmo import Gizmo
 from ui.glimpse import GlimpseFollower
 from ui.header import Header
@@ -26,6 +27,7 @@ from ui.upkeep import Upkeep
 from workbench.conductor import LIVE, SHAPE, Conductor, Finished, Request
 from workbench.core.design import SensorDesign
 from workbench.core.errors import SolveError, WorkbenchError
+from workbench.core.sensing import Contact
 from workbench.forms import resolve_shape
 from workbench.item_fields import read_field
 from workbench.pipeline import plan
@@ -57,7 +59,9 @@ class Desk:
         self.guarded = self.reports.guarded
         self.log = self.reports.log
         self.aiming = Aiming(self)
-        self.scene = Scene(server, fast=fast, on_click=self.guarded(self.aiming.clicked))
+        self.backstage = Backstage(on_error=self.reports.tell)
+        on_click = self.guarded(self.aiming.clicked)
+        self.scene = Scene(server, fast=fast, on_click=on_click, backstage=self.backstage)
         self.showing = Showing(self)
         self.current = self.showing.current
         self.panels: list[Panel] = []
@@ -75,7 +79,6 @@ class Desk:
         self.header = Header(
             server.gui,
             on_cancel=self.guarded(lambda event: conductor.cancel()),
-            on_fit=self.guarded(lambda event: self.scene.fit_view()),
         )
         self.upkeep = Upkeep(self)
         self.reports.banner = self.header.banner
@@ -140,7 +143,7 @@ class Desk:
             self.showing.forget("press")
             if not self.live.on:
                 self.scene.clear_frames()
-            self.scene.place_indenter(session.case.press)
+            self.scene.object.place(session.case.press)
         if self.live.on:
             self.live.follow()
         for panel in self.panels:
@@ -217,14 +220,18 @@ class Desk:
         kept = error.kept if isinstance(error, SolveError) else ""
         if kept and topic != LIVE and kept == self.session.calls()["press"].key:
             if self.session.store.has(PARTIAL, kept):
-                contact = self.session.store.load(PARTIAL, kept)
-                self.tell("partial", (contact, error))
+                self.showing.fetch(PARTIAL, kept, lambda contact: self._settled(contact, error))
+
+    def _settled(self, contact: Contact, error: WorkbenchError) -> None:
+        if isinstance(error, SolveError) and error.kept == self.session.calls()["press"].key:
+            self.tell("partial", (contact, error))
 
     def _idle(self) -> None:
         """Read what was typed, follow the handle, drop old frames, keep what has settled."""
         self.fields.read_typed()
         for gizmo in self.gizmos:
             gizmo.turn()
+        self.backstage.turn()
         self.scene.pressed.turn()
         self.upkeep.turn()
         self.saving.turn()

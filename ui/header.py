@@ -39,6 +39,8 @@ NAMES = {
     "portrait_pressed": "Thumbnail of the press",
 }
 AMBER = "#f5a623"
+WIDTH_PX = 200
+"""Width of the panel of the running job."""
 WAIT_S = 3.0
 """A live press that takes longer than this is worth a bar and a Cancel."""
 
@@ -46,17 +48,12 @@ WAIT_S = 3.0
 class Header:
     """Widgets that every page of the left dock has above it."""
 
-    def __init__(
-        self, gui: Any, *, on_cancel: Callable[[Any], None], on_fit: Callable[[Any], None]
-    ) -> None:
+    def __init__(self, gui: Any, *, on_cancel: Callable[[Any], None]) -> None:
         self.title = gui.add_markdown("")
         self.strip = gui.add_markdown("")
         self.banner = gui.add_markdown("", visible=False)
         self.unsaved = gui.add_markdown("", visible=False)
         self.notice = gui.add_markdown("", visible=False)
-        hint = "Look at all that is on show, from where you look now (F)"
-        gui.add_button("Fit view", icon=viser.Icon.FOCUS_CENTERED, hint=hint).on_click(on_fit)
-        gui.add_command("Fit view", hotkey="F").on_trigger(on_fit)
         # A panel of its own: widgets must not move under the mouse when a job starts or ends.
         self.job = gui.add_panel(visible=False)
         with self.job.add_tab("Running", viser.Icon.LOADER):
@@ -64,7 +61,8 @@ class Header:
             self.progress_text = gui.add_markdown("")
             gui.add_button("Cancel", color="red", hint="Stop what runs (X)").on_click(on_cancel)
         gui.add_command("Cancel what runs", hotkey="X").on_trigger(on_cancel)
-        self.job.float(x=405, y=15, width=330)
+        # Notifications come in at the left; on a narrow page both find place side by side.
+        self.job.float(x=-15, y=15, width=WIDTH_PX)
 
     def show_design(self, design: SensorDesign) -> None:
         """Name and family."""

@@ -59,10 +59,10 @@ def legend(title: str, high: float, unit: str, rest: tuple[int, int, int]) -> st
     stops = heat_colours(np.r_[0.0, 0.025, np.linspace(0.05, 1, 20)], rest)
     colours = ", ".join(f"rgb({r},{g},{b})" for r, g, b in stops)
     return (
-        f"<div style='font-size:12px;margin:4px 12px'>{html.escape(title)}"
-        f"<div style='height:10px;border-radius:3px;background:linear-gradient(90deg,{colours})'>"
-        f"</div><div style='display:flex;justify-content:space-between'><span>0</span>"
-        f"<span>{high:.3g} {html.escape(unit)}</span></div></div>"
+        f"<div style='font-size:12px;margin:0 12px'>{html.escape(title)}"
+        f"<span style='float:right'>0 to {high:.3g} {html.escape(unit)}</span>"
+        f"<div style='height:8px;border-radius:3px;background:linear-gradient(90deg,{colours})'>"
+        "</div></div>"
     )
 
 

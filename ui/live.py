@@ -49,7 +49,7 @@ class LivePress:
         """Ask for the state as it stands, unless that was asked last."""
         session = self.desk.session
         call = live_call(session.design, session.case)
-        self.gizmo.place(self.desk.scene.standing[:3])
+        self.gizmo.place(self.desk.scene.object.standing[:3])
         if call != self._asked:
             self._asked = call
             self.told("solving")
@@ -64,7 +64,7 @@ class LivePress:
         if mesh is None:
             return
         desk.scene.show_live(mesh.outer, preview.contact)
-        self.gizmo.place(desk.scene.standing[:3])
+        self.gizmo.place(desk.scene.object.standing[:3])
         desk.tell("live", preview)
         force_N = float(preview.contact.normal_N[-1])
         self.told(

@@ -48,8 +48,7 @@ class Look:
         scene = self.scene
         with scene.server.atomic():
             if what is Seen.OBJECT:
-                scene.object_allowed = wanted
-                scene.follow_object()
+                scene.object.allow(wanted)
             elif what is Seen.LEDS:
                 scene.rig.allow(lights=wanted, cameras=scene.rig.cameras_allowed)
             elif what is Seen.CAMERAS:
@@ -67,7 +66,7 @@ class Look:
         scene = self.scene
         with scene.server.atomic():
             if what is Seen.OBJECT:
-                scene.fade_object(opacity)
+                scene.object.fade(opacity)
             elif what is Seen.LEDS:
                 scene.rig.fade_lights(opacity)
             elif what in self._groups:

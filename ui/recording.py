@@ -71,9 +71,9 @@ def _pose(serializer: Any, scene: Scene, frame: int) -> None:
     from viser import _messages
 
     contact = scene.pressed.contact
-    if scene.indenter is not None and contact is not None:
+    if scene.object.node is not None and contact is not None:
         x, y, z, *wxyz = (float(c) for c in contact.indenter_pose[frame - 1])
-        name = scene.indenter.name
+        name = scene.object.node.name
         serializer._insert_message(_messages.SetPositionMessage(name, (x, y, z)))
         serializer._insert_message(_messages.SetOrientationMessage(name, tuple(wxyz)))  # pyright: ignore[reportArgumentType]
 

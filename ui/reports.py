@@ -58,6 +58,14 @@ class Reports:
 
         return call
 
+    def tell(self, error: Exception) -> None:
+        """Show what went wrong in another thread than a widget's."""
+
+        def again(event: Any) -> None:
+            raise error
+
+        self.guarded(again)(None)
+
     def report(self, error: WorkbenchError, *, edited: str = "", topic: str = "") -> None:
         """Show an error at its field, and where the designer looks.
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
 from workbench.stages import Outcome
 
@@ -14,6 +15,8 @@ SHOWN = (
     *("mould", "housing", "recipe", "package"),
 )
 """Stages whose stored results are shown without asking."""
+HEAVY = ("press",)
+"""Stages whose results are read backstage: unpacking one would hold all tabs up."""
 
 
 class Showing:
@@ -23,6 +26,8 @@ class Showing:
         self.desk = desk
         self._keys: dict[str, str] = {}
         """Key of what is on show, by stage."""
+        self._fetched: dict[str, str] = {}
+        """Key of what is being read backstage, by stage."""
         self._notices: dict[str, str] = {}
         """What builder and mesher had to change."""
 
@@ -42,6 +47,8 @@ class Showing:
 
     def stage_done(self, outcome: Outcome) -> None:
         """Show a result that has just been computed, if the state still asks for it."""
+        # What could not be read before has been computed anew.
+        self._fetched.pop(outcome.stage, None)
         calls = self.desk.session.calls()
         call = calls.get(outcome.stage) if outcome.stage in SHOWN else None
         if call is not None and call.key == outcome.key:
@@ -59,8 +66,32 @@ class Showing:
     def _show(self, stage: str, key: str) -> None:
         if self._keys.get(stage) == key:
             return
+        if stage not in HEAVY:
+            self._put(stage, key, self.desk.session.store.load(stage, key))
+        elif self._fetched.get(stage) != key:
+            self.fetch(stage, key, lambda result: self._arrived(stage, key, result))
+
+    def fetch(self, stage: str, key: str, take: Callable[[Any], None]) -> None:
+        """Read a stored result backstage; a newer request of the stage takes its place."""
+        self._fetched[stage] = key
+        store = self.desk.session.store
+
+        def arrived(result: Any) -> None:
+            self._fetched.pop(stage, None)
+            take(result)
+
+        self.desk.backstage.ask(
+            f"read {stage}", (store.load(stage, key) for _ in range(1)), arrived
+        )
+
+    def _arrived(self, stage: str, key: str, result: Any) -> None:
+        """Show what has been read, unless the state asks for another by now."""
+        call = self.desk.session.calls().get(stage)
+        if call is not None and call.key == key != self._keys.get(stage):
+            self._put(stage, key, result)
+
+    def _put(self, stage: str, key: str, result: Any) -> None:
         desk = self.desk
-        result = desk.session.store.load(stage, key)
         if stage == "build":
             # Another body: what was shown of the old one goes.
             self._keys = {stage: key}

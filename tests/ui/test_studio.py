@@ -87,7 +87,9 @@ def test_strokes_are_run_in_order_and_named(tmp_path: Path, page: Any, start_ser
     wait_until(lambda: page.get_by_text("Image ✓").count(), 180, "the image is rendered")
     page.get_by_text("frame 4 of 4, stroke 1: slide:3,0").wait_for()
     for quantity, unit in (("pressure", "kPa"), ("slip distance", "mm")):
+        tab(page, "Skin").click()
         choose(page, "Colours", quantity)
+        tab(page, "Timeline").click()
         title = f"{quantity.capitalize()} of the skin, scale of all frames"
         page.get_by_text(title).wait_for()
         assert unit in page.get_by_text(title).inner_text()

@@ -140,8 +140,9 @@ def test_playing_stops_at_the_end_or_loops(page: Any, server: Server) -> None:
     while time.monotonic() < deadline:
         seen.add(slider_value(page, "Frame"))
     assert slider_value(page, "Frame") == 2
-    page.get_by_text("Pace").click()
+    tab(page, "Pace").click()
     switch(page, "Loop")
+    tab(page, "Timeline").click()
     button(page, "Play / pause").click()
     deadline = time.monotonic() + 5.0
     turns, last = 0, 2.0

@@ -94,8 +94,8 @@ class MeshPanel:
         quality = self._chosen()
         self._draw()
         if quality is None:
-            if self.desk.scene.marked:
-                self.desk.scene.clear_cell()
+            if self.desk.scene.marks.marked:
+                self.desk.scene.marks.clear_cell()
             self.numbers.content = NOTHING
             return
         name = self.choice.value
@@ -104,7 +104,7 @@ class MeshPanel:
         self.measure.data = steps(quality.measure_borders, quality.measure_counts)
         self.lengths.title = f"{name}: edge length [mm]"
         self.lengths.data = steps(quality.edge_borders_mm, quality.edge_counts)
-        if self.desk.scene.marked:
+        if self.desk.scene.marks.marked:
             # The mark follows the mesh that is chosen.
             self._fly()
 
@@ -113,7 +113,7 @@ class MeshPanel:
         scene, name = self.desk.scene, self.choice.value
         if not self.edges.value or name not in self.found:
             self.drawn = ""
-            scene.show_edges(None)
+            scene.marks.show_edges(None)
             self.desk.cover("edges", False)
             return
         stage = "tets" if name == "tetrahedra" else "mesh"
@@ -121,7 +121,7 @@ class MeshPanel:
         mesh = None if drawn == self.drawn else self.desk.session.result(stage)
         if mesh is not None:
             self.drawn = drawn
-            scene.show_edges(mesh_edges(_member(mesh, name)))
+            scene.marks.show_edges(mesh_edges(_member(mesh, name)))
             scene.show_frame(0)
             self.desk.cover("edges", True)
 
@@ -138,7 +138,7 @@ class MeshPanel:
         membrane = solid.membrane
         toward = clear_view(membrane.points_mm, membrane.faces, middle, distance_mm)
         scene.show_frame(0)
-        scene.show_cell(corners)
+        scene.marks.show_cell(corners)
         text = f"worst cell: {quality.measure[0]:.3g}"
         scene.views.fly_to(middle, toward, distance_mm, text, ball=False)
         x, y, z = middle

@@ -113,7 +113,7 @@ class PartsTree:
 
     def _view(self) -> None:
         scene = self.desk.scene
-        scene.clear_cell()
+        scene.marks.clear_cell()
         if self.view.value and self.parts:
             scene.show_sensor(False)
             self._show()
@@ -127,6 +127,6 @@ class PartsTree:
 
     def _show(self) -> None:
         if self.view.value:
-            self.desk.scene.clear_cell()
+            self.desk.scene.marks.clear_cell()
             ticked = {name for name, box in self.boxes.items() if box.value}
             self.desk.scene.parts.show(ticked, self.spread.value)

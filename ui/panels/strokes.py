@@ -106,7 +106,7 @@ class MotionFolder:
     def _template(self, event: Any) -> None:
         desk = self.desk
         contact = desk.session.result("press") if desk.current("press") else None
-        text = template_csv(desk.session.case.press, contact, desk.scene.standing)
+        text = template_csv(desk.session.case.press, contact, desk.scene.object.standing)
         event.client.send_file_download("trajectory.csv", text.encode(), save_immediately=True)
 
     def _clear(self, event: Any) -> None:

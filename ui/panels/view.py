@@ -47,6 +47,12 @@ class ViewPanel:
             command = gui.add_command(f"Look from: {side.value}", hotkey=str(number))  # pyright: ignore[reportArgumentType]
             command.on_trigger(guarded(partial(self._turn, side)))
 
+        hint = "Look at all that is on show, from where you look now (F)"
+        fit = gui.add_button("Fit view", icon=viser.Icon.FOCUS_CENTERED, hint=hint)
+        fit.on_click(guarded(lambda event: self.desk.scene.fit_view()))
+        command = gui.add_command("Fit view", hotkey="F")
+        command.on_trigger(guarded(lambda event: self.desk.scene.fit_view()))
+
     def _turn(self, side: Side, event: Any) -> None:
         scene, press = self.desk.scene, self.desk.session.case.press
         toward = None

@@ -30,9 +30,10 @@ WARM_MS, SPAN_MS = 6_000, 8_000
 
 def frame_s(page: Any) -> tuple[float, int]:
     """Mean time between frames applied at speed 1 [s], and triangles of the skin."""
-    page.get_by_text("Pace").click()
+    page.locator('[role="tab"]').filter(has_text="Pace").click()
     label = page.locator("label[for]").filter(has_text="Loop").first
     page.locator(f'[id="{label.get_attribute("for")}"]').click(force=True)
+    page.locator('[role="tab"]').filter(has_text="Timeline").click()
     play = page.get_by_role("button", name="Play / pause", exact=True)
     play.click()
     page.wait_for_timeout(WARM_MS)

@@ -1,0 +1,115 @@
+"""The object that presses, in the 3D view: where it stands, its shape, and who hides it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ui.nodes import replace
+from ui.sensor import SensorView
+from workbench.core.indenter import Indenter
+from workbench.core.press import Press
+from workbench.core.sensing import Contact
+from workbench.previews import indenter_shape, standing_pose
+from workbench.soft_shape import deformed_mm, is_soft
+
+OBJECT_COLOUR = (232, 124, 44)
+SEEN_THROUGH = 0.35
+"""Opacity of an object that is seen through."""
+
+
+class ObjectView:
+    """One mesh, made once and then moved; it stands on a body."""
+
+    def __init__(self, server: Any, body: SensorView) -> None:
+        self.server = server
+        self.body = body
+        self.node: Any = None
+        self.allowed = True
+        """Whether the designer wants to see the object at all."""
+        self._present = True
+        """Whether what it presses is looked at."""
+        self._bare = False
+        """Whether the object is hidden by itself."""
+        self._seen_through = False
+        self._opacity: float | None = None
+        self._lowest_mm = 0.0
+        self.standing = np.array([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
+        """Where the object stands: x, y, z [mm], qw, qx, qy, qz."""
+        self._rest = np.zeros((0, 3)), np.zeros((0, 3), np.uint32)
+        """Undeformed vertices [mm] and triangles."""
+        self._bent = False
+        """Whether the object is drawn deformed."""
+
+    def show(self, indenter: Indenter, path: Press) -> None:
+        """Show the object standing on the skin at the target."""
+        points, faces = indenter_shape(indenter)
+        vertices, triangles = points.astype(np.float32), faces.astype(np.uint32)
+        self._rest = points, triangles
+        self._bent = False
+        self._lowest_mm = -float(points[:, 2].min())
+        if self.node is None:
+            self.node = self.server.scene.add_mesh_simple(
+                "/indenter", vertices, triangles, color=OBJECT_COLOUR, flat_shading=False
+            )
+            self.see_through(self._seen_through)
+            self.follow()
+        else:
+            with self.server.atomic():
+                replace(self.node, vertices, triangles)
+        self.place(path)
+
+    def place(self, path: Press) -> None:
+        """Stand the object on the skin near the target of a press."""
+        body = self.body
+        if self.node is not None and len(body.points):
+            self._pose(standing_pose(body.points, body.normals, path.target_mm, self._lowest_mm))
+
+    def press(self, contact: Contact, frame: int) -> None:
+        """Put it where a frame, counted from 0, has it, in the shape that it has there."""
+        if self.node is None:
+            return
+        self._pose(contact.indenter_pose[frame])
+        if is_soft(contact) or self._bent:
+            points, triangles = self._rest
+            self._bent = is_soft(contact)
+            shape = deformed_mm(contact, frame, points) if self._bent else points
+            replace(self.node, shape.astype(np.float32), triangles)
+
+    def _pose(self, pose: np.ndarray) -> None:
+        self.standing = np.asarray(pose)
+        with self.server.atomic():
+            self.node.position = tuple(pose[:3])
+            self.node.wxyz = tuple(pose[3:])
+
+    def hide(self, wanted: bool) -> None:
+        """Hide the object by itself, or show it again."""
+        self._bare = wanted
+        self.follow()
+
+    def allow(self, wanted: bool) -> None:
+        """Let it be seen, or hide it whatever else is shown."""
+        self.allowed = wanted
+        self.follow()
+
+    def attend(self, present: bool) -> None:
+        """Show it beside the sensor; where parts are looked at instead, it goes with the sensor."""
+        self._present = present
+        self.follow()
+
+    def follow(self) -> None:
+        """Show the object where nothing hides it."""
+        if self.node is not None:
+            self.node.visible = self.allowed and self._present and not self._bare
+
+    def see_through(self, wanted: bool) -> None:
+        """Let the object be seen through, so that what happens below it shows."""
+        self._seen_through = wanted
+        if self.node is not None:
+            self.node.opacity = SEEN_THROUGH if wanted else self._opacity
+
+    def fade(self, opacity: float) -> None:
+        """Draw the object with an opacity in [0, 1]."""
+        self._opacity = opacity
+        self.see_through(self._seen_through)
