@@ -68,6 +68,11 @@ class MapsPanel:
             )
             desk.reports.report(error, topic=TOPIC)
             return
+        if self.found is not None and desk.current("maps"):
+            # They are there already, and nothing would come that shows them.
+            desk.put_parts_away()
+            self.wanted.value = True
+            return
         self.asked = True
         desk.run(TOPIC, ("maps",))
 
