@@ -1,7 +1,8 @@
 """Other designs in the 3D view: translucent, in colours of their own, beside the sensor or over it.
 
 What is drawn is made by a thread of its own from stored results, so that a large body holds up
-nobody; a newer wish makes an older one void. The body or the pressed skin is drawn, not the parts.
+nobody; a newer wish makes an older one void. Body or pressed skin, lights and cameras are drawn,
+not the parts.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from ui.ghost_rig import ghost_rig
 from workbench.core.errors import StoreError
 from workbench.previews import outer_faces
 from workbench.sides import Side
@@ -119,11 +121,15 @@ class GhostView:
             self._remove()
             with self.server.atomic():
                 for number, (ghost, points, faces) in enumerate(made):
-                    placed = points + offset_mm((low, high), points, ghost.place)
+                    offset = offset_mm((low, high), points, ghost.place)
+                    placed = points + offset
                     if ghost.place == 0:
                         middle = placed.mean(axis=0)
                         placed = middle + (1.0 + OUTWARD * (number + 1)) * (placed - middle)
                     self._put(number, ghost, placed, faces)
+                    optics, name = ghost.side.state.design.optics, f"/ghosts/{number}_rig"
+                    api = self.server.scene
+                    self._nodes += ghost_rig(api, name, optics, offset, ghost.colour)
                     low = np.minimum(low, placed.min(axis=0))
                     high = np.maximum(high, placed.max(axis=0))
                 if made:

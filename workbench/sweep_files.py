@@ -15,6 +15,7 @@ from workbench.project import MAX_TOML_BYTES, Project, design_to_toml, write_ato
 from workbench.score_card import finite_figures
 from workbench.state import case_table, read_state
 from workbench.sweeps import MOST, Point, Status, Sweep
+from workbench.variant_files import TRASH, move_file, numbered
 
 FOLDER = "sweeps"
 
@@ -56,6 +57,37 @@ def save_sweep(project: Project, sweep: Sweep) -> Path:
     text = design_to_toml(sweep.base.design, press_case=press, sweep=table)
     write_atomically(path, text.encode())
     return path
+
+
+def delete_sweep(project: Project, name: str) -> str:
+    """Move a sweep to the trash, readable or not; returns its name there. Its results stay stored.
+
+    Raises:
+        DesignError: If there is none of that name.
+        StoreError: If the folder cannot be written.
+    """
+    if name not in list_sweeps(project):
+        raise DesignError(f"there is no sweep {name!r}", hint="it is gone already", at="sweep")
+    trash = project.folder / FOLDER / TRASH
+    taken = [path.stem for path in trash.glob("*.toml")]
+    kept = name if name not in taken else numbered(name, taken)
+    move_file(project.folder / FOLDER / f"{name}.toml", trash / f"{kept}.toml")
+    return kept
+
+
+def restore_sweep(project: Project, kept: str) -> str:
+    """Bring a sweep back from the trash; returns its name, which may have got a number.
+
+    Raises:
+        DesignError: If the trash does not hold it.
+        StoreError: If the folder cannot be written.
+    """
+    path, taken = project.folder / FOLDER / TRASH / f"{kept}.toml", list_sweeps(project)
+    if not path.is_file():
+        raise DesignError(f"the trash has no sweep {kept!r}", hint=f"look in {path.parent}")
+    name = kept if kept not in taken else numbered(kept, taken)
+    move_file(path, project.folder / FOLDER / f"{name}.toml")
+    return name
 
 
 def load_sweep(project: Project, name: str) -> Sweep:

@@ -76,10 +76,11 @@ def next_name(taken: Sequence[str]) -> str:
     """The first free name of variant A, B, ... Z, else one with a number."""
     letters = (f"variant {letter}" for letter in "ABCDEFGHIJKLMNOPQRSTUVWXYZ")
     free = next((name for name in letters if name not in taken), "")
-    return free or _numbered("variant", taken)
+    return free or numbered("variant", taken)
 
 
-def _numbered(name: str, taken: Sequence[str]) -> str:
+def numbered(name: str, taken: Sequence[str]) -> str:
+    """The first free name of `name 2`, `name 3` and so on."""
     number = 2
     while f"{name} {number}" in taken:
         number += 1
@@ -98,7 +99,7 @@ def rename_variant(project: Project, old: str, new: str) -> None:
         return
     refuse_taken(target)
     _write_as(project, old, new)
-    _move(path.with_suffix(".png"), target.with_suffix(".png"))
+    move_file(path.with_suffix(".png"), target.with_suffix(".png"))
     path.unlink(missing_ok=True)
 
 
@@ -109,7 +110,7 @@ def duplicate_variant(project: Project, name: str) -> str:
         DesignError: If the variant cannot be read.
         StoreError: If the folder cannot be written.
     """
-    copy = _numbered(name[:70].strip(), list_variants(project))
+    copy = numbered(name[:70].strip(), list_variants(project))
     _write_as(project, name, copy)
     picture = variant_path(project, name).with_suffix(".png")
     if picture.is_file():
@@ -136,9 +137,9 @@ def delete_variant(project: Project, name: str) -> str:
         raise DesignError(f"there is no variant {name!r}", hint="it is gone already", at="variant")
     trash = folder(project) / TRASH
     taken = [kept.stem for kept in trash.glob("*.toml")]
-    kept = name if name not in taken else _numbered(name, taken)
+    kept = name if name not in taken else numbered(name, taken)
     for ending in (".toml", ".png"):
-        _move(path.with_name(path.stem + ending), trash / f"{kept}{ending}")
+        move_file(path.with_name(path.stem + ending), trash / f"{kept}{ending}")
     return kept
 
 
@@ -154,14 +155,18 @@ def restore_variant(project: Project, kept: str) -> str:
         raise DesignError(
             f"the trash has no variant {kept!r}", hint=f"look in {trash}", at="variant"
         )
-    name = kept if kept not in taken else _numbered(kept, taken)
+    name = kept if kept not in taken else numbered(kept, taken)
     for ending in (".toml", ".png"):
-        _move(trash / f"{kept}{ending}", folder(project) / f"{name}{ending}")
+        move_file(trash / f"{kept}{ending}", folder(project) / f"{name}{ending}")
     return name
 
 
-def _move(source: Path, target: Path) -> None:
-    """Move a file, if it is there."""
+def move_file(source: Path, target: Path) -> None:
+    """Move a file, if it is there; its folder is made.
+
+    Raises:
+        StoreError: If a folder cannot be written.
+    """
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
         if source.is_file():

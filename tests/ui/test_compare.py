@@ -72,6 +72,7 @@ def test_two_variants_are_compared_and_the_report_opens_by_itself(
     open_page(page, server.url)
     pressed(page)
     tab(page, "Compare").click()
+    page.get_by_text("Tags and note").click()
     page.locator("textarea:visible").first.fill(HOSTILE)
     save(page, "<script>alert(1)</script>")
     wait_until(lambda: page.get_by_text("cannot be what a variant").count(), 20, "it is refused")
@@ -177,3 +178,51 @@ def test_a_sweep_of_three_walls_is_plotted_and_kept(
     press(page, "Keep point as variant")
     wait_until(lambda: names(project) == ["elastomer_mm 1 at 1.5"], 20, "the point is kept")
     assert (project / "sweeps" / "elastomer_mm 1.toml").exists()
+
+
+def test_a_sweep_is_cancelled_resumed_after_a_restart_and_deleted(
+    tmp_path: Path, page: Any, start_server: Start
+) -> None:
+    """What was computed before the stop stays; the rest comes later; deleting can be undone."""
+    project = coarse_project(tmp_path)
+    server = start_server(project)
+    open_page(page, server.url)
+    wait_until(lambda: page.get_by_text("Shape ✓").count(), 60, "the shape is built")
+    button(page, "Cancel").click()
+    sweep_depths(page)
+    button(page, "Cancel sweep").wait_for()
+    wait_until(lambda: page.get_by_text("2 of 3").count(), 120, "the first point is done")
+    press(page, "Cancel sweep")
+    page.get_by_text("Stopped;").wait_for()
+    server.stop()
+
+    again = start_server(project)
+    open_page(page, again.url)
+    button(page, "Cancel").click()
+    tab(page, "Compare").click()
+    choose(page, "Sweep", SWEPT)
+    press(page, "Resume sweep")
+    wait_until(lambda: page.get_by_text("Finished: 3 points.").count(), 120, "it is finished")
+    assert not button(page, "Resume sweep").count()
+    kept = project / "sweeps" / f"{SWEPT}.toml"
+    assert kept.read_text().count('status = "done"') == 3
+    press(page, "Delete sweep")
+    wait_until(lambda: not kept.exists(), 20, "it is deleted")
+    press(page, "Undo delete of sweep")
+    wait_until(kept.exists, 20, "it is back")
+    wait_until(lambda: button(page, "Delete sweep").count(), 20, "it is on show again")
+
+
+SWEPT = "depth_mm 1"
+
+
+def sweep_depths(page: Any) -> None:
+    """Begin a sweep of the press's depth in three steps."""
+    tab(page, "Compare").click()
+    choose(page, "Parameter", "Press: depth [mm]")
+    for label, value in (("From", "0.4"), ("To", "1.2")):
+        box = boxes(page, label).first
+        box.fill(value)
+        box.press("Tab")
+    set_number(page, "Steps", 3)
+    press(page, "Run sweep")

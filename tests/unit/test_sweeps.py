@@ -14,7 +14,14 @@ from workbench.pipeline import plan
 from workbench.project import Project, load_design
 from workbench.state import State, fresh_state
 from workbench.sweep_fields import field_value, find_field, sweep_fields, with_value
-from workbench.sweep_files import list_sweeps, load_sweep, next_sweep_name, save_sweep
+from workbench.sweep_files import (
+    delete_sweep,
+    list_sweeps,
+    load_sweep,
+    next_sweep_name,
+    restore_sweep,
+    save_sweep,
+)
 from workbench.sweeps import (
     Status,
     Sweep,
@@ -180,3 +187,17 @@ def test_broken_sweep_files_are_refused_with_a_reason(project: Project) -> None:
         path.write_text(nonsense)
         with pytest.raises(DesignError):
             load_sweep(project, "elastomer_mm 1")
+
+
+def test_a_deleted_sweep_comes_back_beside_one_that_took_its_name(project: Project) -> None:
+    """The second is called `elastomer_mm 1 2`; a sweep that cannot be read is deleted too."""
+    path = save_sweep(project, walls(project))
+    kept = delete_sweep(project, path.stem)
+    assert list_sweeps(project) == []
+    path.write_text("not [toml")
+    assert restore_sweep(project, kept) == "elastomer_mm 1 2"
+    assert load_sweep(project, "elastomer_mm 1 2").path == walls(project).path
+    delete_sweep(project, path.stem)
+    assert list_sweeps(project) == ["elastomer_mm 1 2"]
+    with pytest.raises(DesignError):
+        delete_sweep(project, path.stem)

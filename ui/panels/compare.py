@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from pathlib import Path
 from typing import Any
 
 from ui.desk import Desk
@@ -32,7 +33,7 @@ class ComparePanel:
         self._timer: threading.Timer | None = None
         self.variants = VariantsFolder(desk, self._listed)
         self.score = ScoreFolder(desk)
-        self.versus = VersusFolder(desk, self._side)
+        self.versus = VersusFolder(desk, self._side, self._picture)
         self.variants.on_save = self.versus.fill
         self.sweep = SweepFolder(desk, self._kept)
         self.report = ReportFolder(desk, self._reported)
@@ -63,6 +64,11 @@ class ComparePanel:
 
     def _score(self) -> None:
         self.score.load([(NOW_SHORT, self._as_it_stands().figures), *self._variants()])
+
+    def _picture(self, name: str) -> Path | None:
+        """File of the thumbnail of a variant, if it has one."""
+        found = (entry.picture for entry in self.variants.shelf.entries() if entry.name == name)
+        return next(found, None)
 
     def _side(self, name: str) -> Side | None:
         if name == NOW:

@@ -128,6 +128,8 @@ class ImageTab:
                 rest = looked(what, images, 0, frames, beside=number)
                 self.rest.image = self._crossed(rest.rgb)
             self.legend.content = scale + words if found.words else ""
+            # Once is enough.
+            self.change.visible = self.change_text.visible = what is not View.DIFFERENCE
             self.change_text.content = f"Difference to the background, × {gain}"
             self.change.image = change
 

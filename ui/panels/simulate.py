@@ -24,9 +24,6 @@ class SimulatePanel:
         self.objects = ObjectFolder(desk)
         with gui.add_folder("Press"):
             self._press_widgets()
-        self.motion = MotionFolder(desk)
-        with gui.add_folder("Solver", expand_by_default=False):
-            self._solver_widgets()
         button = gui.add_button("Run press", icon=viser.Icon.PLAYER_PLAY, hint="Contact, image (R)")
         button.on_click(desk.guarded(self._run))
         hint = "Presses the object, closes the driven parts on it, opens them, lifts it off"
@@ -36,6 +33,9 @@ class SimulatePanel:
         command = gui.add_command("Run press", hotkey="R")
         command.on_trigger(desk.guarded(self._run))
         self.numbers = gui.add_markdown("")
+        self.motion = MotionFolder(desk)
+        with gui.add_folder("Solver", expand_by_default=False):
+            self._solver_widgets()
         self.found = ""
         self.refresh()
 

@@ -18,7 +18,14 @@ from workbench.conductor import Finished
 from workbench.core.errors import Cancelled, DesignError, WorkbenchError
 from workbench.core.units import human_seconds
 from workbench.sweep_fields import SweepField, field_value, sweep_fields
-from workbench.sweep_files import list_sweeps, load_sweep, next_sweep_name, save_sweep
+from workbench.sweep_files import (
+    delete_sweep,
+    list_sweeps,
+    load_sweep,
+    next_sweep_name,
+    restore_sweep,
+    save_sweep,
+)
 from workbench.sweeps import (
     FEWEST,
     MOST,
@@ -54,6 +61,8 @@ class SweepFolder:
         self.left: list[int] = []
         """Points to compute, the running one first."""
         self.began = 0.0
+        self.trashed = ""
+        """Name in the trash of what was deleted last."""
         self.fields: dict[str, SweepField] = {}
         self.family = ""
         gui = desk.server.gui
@@ -93,6 +102,16 @@ class SweepFolder:
         hint = "Computes what is missing; what is stored costs nothing"
         self.resume = gui.add_button("Resume sweep", hint=hint, visible=False)
         self.resume.on_click(guarded(self._resume))
+        hint = "Moves its file to the trash; computed results stay stored"
+        self.delete = gui.add_button(
+            "Delete sweep", icon=viser.Icon.TRASH, hint=hint, visible=False
+        )
+        self.delete.on_click(guarded(self._delete))
+        hint = "Brings back the sweep that was deleted last"
+        self.restore = gui.add_button(
+            "Undo delete of sweep", icon=viser.Icon.ARROW_BACK_UP, hint=hint, visible=False
+        )
+        self.restore.on_click(guarded(self._restore))
         self.results = SweepResults(self.desk)
         self.point = gui.add_dropdown(
             "Point", (NONE,), visible=False, hint="What Keep point as variant keeps"
@@ -154,8 +173,35 @@ class SweepFolder:
             # The one that runs stays on show: its points come one by one.
             self._offer()
             return
-        self.sweep = None if name == NONE else load_sweep(self.project, name)
+        self.sweep, self.progress.content = None, ""
+        try:
+            if name != NONE:
+                self.sweep = load_sweep(self.project, name)
+        finally:
+            # One that cannot be read can be deleted all the same.
+            self._follow()
+
+    def _delete(self, event: Any) -> None:
+        self._refuse_two()
+        name = self.choice.value
+        self.trashed = delete_sweep(self.project, name)
+        self.desk.log(f"sweep {name} moved to the trash")
+        self.restore.visible = True
+        self._close()
+
+    def _restore(self, event: Any) -> None:
+        self._refuse_two()
+        self.restore.visible = False
+        name = restore_sweep(self.project, self.trashed)
+        self._offer()
+        self.choice.value = name
+
+    def _close(self) -> None:
+        """Show no sweep, and offer those that there are."""
+        self.sweep = None
         self.progress.content = ""
+        self._offer()
+        self.choice.value = NONE
         self._follow()
 
     def _resume(self, event: Any) -> None:
@@ -243,6 +289,7 @@ class SweepFolder:
         values = [] if sweep is None else [f"{p.value:.6g}" for p in sweep.points if p.figures]
         self.cancel.visible = busy
         self.resume.visible = bool(open_points) and not busy
+        self.delete.visible = self.choice.value != NONE and not busy
         for handle in (self.point, self.keep):
             handle.visible = bool(values)
         offer(self.point, tuple(values) or (NONE,))

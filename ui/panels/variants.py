@@ -6,6 +6,7 @@ import base64
 import dataclasses
 import html
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any
 
 import viser
@@ -66,8 +67,9 @@ class VariantsFolder:
         gui, desk = self.desk.server.gui, self.desk
         name = next_name(list_variants(self.project))
         self.name = gui.add_text("Variant name", name, hint="Also the name of its file")
-        self.tags = gui.add_text("Tags", "", hint="Words to find it by, with commas between")
-        self.note = gui.add_text("Note", "", multiline=True, hint="Why you keep it")
+        with gui.add_folder("Tags and note", expand_by_default=False):
+            self.tags = gui.add_text("Tags", "", hint="Words to find it by, with commas between")
+            self.note = gui.add_text("Note", "", multiline=True, hint="Why you keep it")
         hint = "Keeps design, press, images and all figures that are there"
         save = gui.add_button("Save variant", icon=viser.Icon.DEVICE_FLOPPY, hint=hint)
         save.on_click(desk.guarded(self._save))
@@ -135,7 +137,9 @@ class VariantsFolder:
             self._card(entry, pictured=number < MOST_PICTURES)
             for number, entry in enumerate(self.entries)
         )
-        return f"<div style='margin:4px 8px;font-size:12px'>{shown}</div>"
+        # Two or three stand in the list at once: what comes below must not be out of reach.
+        box = "margin:4px 8px;font-size:12px;max-height:330px;overflow-y:auto"
+        return f"<div style='{box}'>{shown}</div>"
 
     def _card(self, entry: Entry, *, pictured: bool) -> str:
         """One variant as HTML: all that it holds was typed by somebody, and is escaped."""
@@ -146,11 +150,7 @@ class VariantsFolder:
             return f"{box}<b>{name}</b> <span style='color:{RED}'>broken: {reason}</span></div>"
         picture = ""
         if pictured and entry.picture is not None:
-            data = base64.b64encode(entry.picture.read_bytes()).decode()
-            picture = (
-                f"<img src='data:image/png;base64,{data}' alt='{name}: at rest, pressed, image' "
-                "style='width:100%;border-radius:4px;margin-top:4px;display:block'>"
-            )
+            picture = picture_html(entry.picture, entry.name)
         pill = "background:#8884;border-radius:8px;padding:0 6px"
         tags = "".join(f" <span style='{pill}'>{html.escape(t)}</span>" for t in variant.tags)
         keys = result_keys(self.project, variant)
@@ -254,6 +254,19 @@ class VariantsFolder:
     def _restore(self, event: Any) -> None:
         self.restore.visible = False
         self._listed(restore_variant(self.project, self.trashed))
+
+
+def picture_html(path: Path, name: str) -> str:
+    """The thumbnail of a variant as HTML; nothing where its file is gone."""
+    try:
+        data = base64.b64encode(path.read_bytes()).decode()
+    except OSError:
+        return ""
+    words = html.escape(f"{name}: at rest, pressed, image", quote=True)
+    return (
+        f"<img src='data:image/png;base64,{data}' alt='{words}' title='{words}' "
+        "style='width:100%;min-width:0;border-radius:4px;margin-top:4px;display:block'>"
+    )
 
 
 def offer(handle: Any, names: Sequence[str], *, preferred: str = "") -> None:

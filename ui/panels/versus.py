@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import viser
@@ -12,7 +13,7 @@ from ui.blink import Blink
 from ui.desk import Desk
 from ui.ghost import COLOURS, Ghost, GhostView
 from ui.imaging import placeholder
-from ui.panels.variants import offer
+from ui.panels.variants import offer, picture_html
 from workbench.comparison import changes, parameter_differences, press_notice, tally
 from workbench.comparison_images import Moment, Pair, pair, side_by_side
 from workbench.comparison_tables import change_table, parameter_table, scrolled
@@ -28,10 +29,17 @@ STANDS_BESIDE, OVERLAID = "beside A", "over A"
 class VersusFolder:
     """Widgets of the folder."""
 
-    def __init__(self, desk: Desk, side: Callable[[str], Side | None]) -> None:
+    def __init__(
+        self,
+        desk: Desk,
+        side: Callable[[str], Side | None],
+        picture: Callable[[str], Path | None],
+    ) -> None:
         self.desk = desk
         self.side = side
         """Finds a side by its name; None of one that cannot be read."""
+        self.picture = picture
+        """Finds the file of a thumbnail by the name of its variant."""
         self.a: Side | None = None
         self.b: Side | None = None
         self.both: Pair | None = None
@@ -55,6 +63,7 @@ class VersusFolder:
         hint = "A in place of B and B in place of A"
         swap = gui.add_button("Swap A and B", icon=viser.Icon.ARROWS_EXCHANGE, hint=hint)
         swap.on_click(desk.guarded(self._swap))
+        self.portraits = gui.add_html("")
         self.words = gui.add_markdown("Choose A and B.")
 
     def _images(self, gui: Any) -> None:
@@ -110,6 +119,7 @@ class VersusFolder:
             None if handle.value == NONE else self.side(handle.value)
             for handle in (self.choice_a, self.choice_b)
         )
+        self.portraits.content = self._portraits()
         if self.a is None or self.b is None:
             self.both = None
             self.tables.content, self.words.content = "", "Choose A and B."
@@ -118,6 +128,18 @@ class VersusFolder:
             self._pair(self.a, self.b)
         self._show_images()
         self.draw()
+
+    def _portraits(self) -> str:
+        """Thumbnails of those chosen, each below its letter, as HTML."""
+        tiles = []
+        for letter, side in (("A", self.a), ("B", self.b)):
+            path = None if side is None else self.picture(side.name)
+            if side is not None and path is not None:
+                tiles.append(
+                    f"<div style='display:flex;align-items:center;gap:6px'><b>{letter}</b>"
+                    f"{picture_html(path, short(side))}</div>"
+                )
+        return f"<div style='margin:4px 8px;font-size:12px'>{''.join(tiles)}</div>"
 
     def _tell(self, a: Side, b: Side) -> None:
         rows = changes(a.figures, b.figures)
