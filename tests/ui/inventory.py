@@ -93,10 +93,9 @@ def names(tab: Tab) -> set[str]:
     """All that a person reads on tabs, folders, controls and buttons, and every key."""
     found = {"Ctrl + K"}
     for control in controls(tab):
-        found |= {control.page, *control.folders, control.label, *control.options}
+        found |= set(control.options)
     for props in list(tab.widgets.values()):
-        if props["kind"] == "GuiFolderMessage":
-            found.add(props.get("label") or "")
+        found |= {props.get("label") or "", *(props.get("_tab_labels") or ())}
     for props in list(tab.commands.values()):
         found |= {props["label"], in_words(props["hotkey"], props["modifier"])}
     return found - {""}
