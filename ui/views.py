@@ -18,6 +18,9 @@ FILLED = 0.9
 """Share of the view that the diagonal of a framed box takes."""
 USUAL_ASPECT = 0.78
 """Width over height of the view between the docks, for tabs that have not told theirs."""
+RAISED = 0.04
+"""How far a framed box stands above the middle of the view, over the eye's distance: the timeline
+lies along the lower edge."""
 MARK_SHARE = 0.012
 """Radius of a mark over the eye's distance from it."""
 POINTER_SHARE = 0.12
@@ -65,8 +68,10 @@ class Views:
         """Look at a box from the front, in tabs that are open and those that come."""
         centre = (low_mm + high_mm) / 2
         size_mm = float(np.linalg.norm(high_mm - low_mm))
-        self.server.initial_camera.position = tuple(centre + _distance_mm(size_mm) * AWAY)
-        self.server.initial_camera.look_at = tuple(centre)
+        distance_mm = _distance_mm(size_mm)
+        aim = _below(centre, distance_mm, AWAY)
+        self.server.initial_camera.position = tuple(aim + distance_mm * AWAY)
+        self.server.initial_camera.look_at = tuple(aim)
         self._before.clear()
         self.close = False
         self._fit(centre, size_mm, AWAY)
@@ -81,9 +86,10 @@ class Views:
             length = float(np.linalg.norm(away))
             side = away / length if length > 0 else AWAY
             distance_mm = _distance_mm(size_mm, client.camera.aspect)
+            aim = _below(centre, distance_mm, side)
             with client.atomic():
-                client.camera.position = centre + distance_mm * side
-                client.camera.look_at = centre
+                client.camera.position = aim + distance_mm * side
+                client.camera.look_at = aim
 
     def look_from(
         self,
@@ -196,9 +202,16 @@ class Views:
         """Look at a ball from the side `away`, as near as it fits each tab's view."""
         for client in self.server.get_clients().values():
             distance_mm = _distance_mm(size_mm, client.camera.aspect)
+            aim = _below(centre, distance_mm, away)
             with client.atomic():
-                client.camera.position = centre + distance_mm * away
-                client.camera.look_at = centre
+                client.camera.position = aim + distance_mm * away
+                client.camera.look_at = aim
+
+
+def _below(centre: np.ndarray, distance_mm: float, away: np.ndarray) -> np.ndarray:
+    """What to look at, so that a place stands raised in a view from the unit direction `away`."""
+    upright = np.array([0.0, 0.0, 1.0])
+    return centre - RAISED * distance_mm * (upright - away[2] * away)
 
 
 def _distance_mm(size_mm: float, aspect: float = USUAL_ASPECT) -> float:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ui.views import Views
+from ui.views import RAISED, Views
 
 LOW, HIGH = np.array([-10.0, -10.0, 0.0]), np.array([10.0, 10.0, 40.0])
 MIDDLE = (LOW + HIGH) / 2
@@ -64,11 +64,13 @@ def test_a_tab_opened_among_parts_sees_the_sensor_when_they_go(page: Page) -> No
 
 
 def test_fit_keeps_the_side_one_looks_from(page: Page) -> None:
-    """An eye on +X stays on +X of the middle, farther than half the diagonal."""
+    """An eye on +X stays on +X, farther than half the diagonal, and looks below the middle."""
     views = Views(page)
     views.fit(LOW, HIGH)
     camera = page.clients[0].camera
-    assert camera.look_at == pytest.approx(MIDDLE)
-    away = np.asarray(camera.position) - MIDDLE
+    away = np.asarray(camera.position) - np.asarray(camera.look_at)
+    assert camera.look_at[:2] == pytest.approx(MIDDLE[:2])
+    # The timeline lies along the lower edge of the view.
+    assert camera.look_at[2] == pytest.approx(MIDDLE[2] - RAISED * away[0])
     assert away[1:] == pytest.approx([0.0, 0.0])
     assert away[0] > np.linalg.norm(HIGH - LOW) / 2
