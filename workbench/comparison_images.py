@@ -42,6 +42,9 @@ class Pair:
     difference: np.ndarray | None
     """None where pixels do not correspond."""
     words: str
+    """What `a` and `b` are."""
+    change_words: str
+    """What the difference is."""
 
 
 def pair(a: Shot, b: Shot, moment: Moment) -> Pair:
@@ -59,12 +62,12 @@ def pair(a: Shot, b: Shot, moment: Moment) -> Pair:
         shown_a, shown_b, _ = alike(*strong)
         words = f"{words}, both × {gain}"
     source = Moment.REST if moment is Moment.REST else Moment.LAST
-    difference = None
+    difference, of = None, ""
     if same_proportions(image_a, image_b):
         difference, gain = visible_change(raw_b, raw_a)
-        words = f"{words}; difference B − A ({source}) about mid grey, × {gain}"
-    words = f"{words}; {note}" if note else words
-    return Pair(a=shown_a, b=shown_b, difference=difference, words=words)
+        of = f"B − A ({source}) about mid grey, × {gain}"
+    words, of = ("; ".join(part for part in (told, note) if part) for told in (words, of))
+    return Pair(a=shown_a, b=shown_b, difference=difference, words=words, change_words=of)
 
 
 def _image(shot: Shot, moment: Moment) -> np.ndarray:

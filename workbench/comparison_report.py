@@ -120,7 +120,7 @@ def _images(store: Store, a: Side, b: Side) -> str:
         ]
     last = pair(shot_a, shot_b, Moment.LAST)
     if last.difference is not None:
-        parts.append(photograph(last.difference, last.words, width=IMAGE_PX))
+        parts.append(photograph(last.difference, f"difference {last.change_words}", width=IMAGE_PX))
     else:
         parts.append(f"<p>{html.escape(last.words)}</p>")
     return f"<div class='images'>{''.join(parts)}</div>"

@@ -193,7 +193,7 @@ def test_a_sweep_is_cancelled_resumed_after_a_restart_and_deleted(
     button(page, "Cancel sweep").wait_for()
     wait_until(lambda: page.get_by_text("2 of 3").count(), 120, "the first point is done")
     press(page, "Cancel sweep")
-    page.get_by_text("Stopped;").wait_for()
+    page.get_by_text("goes on where it was").wait_for()
     server.stop()
 
     again = start_server(project)

@@ -26,6 +26,8 @@ Start = Callable[..., Server]
 SAID = r"pixel (\d+), (\d+) sees (\S+), (\S+), (\S+) mm\s+(\S+) × (\S+) mm per pixel"
 SIZE_PX = (320, 240)
 """Of the camera of the coarse project."""
+FEW = 20
+"""Pixels of the mark's colour that do not make a mark."""
 MIDDLE = (640, 420)
 """A place of the page where the finger is."""
 
@@ -70,14 +72,14 @@ def near(page: Any, column: int, row: int) -> bool:
 
 
 def marks(page: Any) -> int:
-    """Pixels of the 3D view in the colour of the mark."""
+    """Pixels of the 3D view in the colour of the mark; the object is more yellow."""
     import cv2
 
     clip = {"x": 400, "y": 100, "width": 520, "height": 700}
     data = np.frombuffer(page.screenshot(clip=clip), dtype=np.uint8)
     picture = np.asarray(cv2.imdecode(data, cv2.IMREAD_COLOR), dtype=np.int16)
     blue, green, red = picture[..., 0], picture[..., 1], picture[..., 2]
-    return int(((red > 150) & (red - green > 90) & (red - blue > 60)).sum())
+    return int(((red > 120) & (red - green > 80) & (blue - green > 8)).sum())
 
 
 def test_a_click_on_the_picture_finds_what_a_click_on_the_skin_had_there(
@@ -103,12 +105,9 @@ def test_a_click_on_the_picture_finds_what_a_click_on_the_skin_had_there(
     wait_until(lambda: told(page), 20, "the skin's place has a pixel")
     there = told(page)
     assert there is not None
-    page.wait_for_timeout(1500)
-    marked = marks(page)
+    wait_until(lambda: marks(page) > FEW, 20, "the place is marked in the view")
     button(page, "Clear probe").click()
-    wait_until(lambda: told(page) is None and marks(page) < 0.9 * marked, 20, "gone")
-    # Red LEDs stay.
-    bare = marks(page)
+    wait_until(lambda: told(page) is None and marks(page) < FEW, 20, "all is cleared")
 
     column, row = there.column, there.row
     click_pixel(page, column, row)
@@ -119,7 +118,7 @@ def test_a_click_on_the_picture_finds_what_a_click_on_the_skin_had_there(
     # A mouse knows whole points, and a pixel is not as large: it may be the next one.
     assert back is not None
     assert np.linalg.norm(np.subtract(back.place_mm, there.place_mm)) < 2.0 * there.size_mm
-    wait_until(lambda: marks(page) > 1.05 * bare, 20, "the place is marked in the view")
+    wait_until(lambda: marks(page) > FEW, 20, "the place is marked in the view")
 
     click_pixel(page, 130, 140, number=1)
     wait_until(lambda: near(page, 130, 140), 20, "the picture of the change takes clicks too")

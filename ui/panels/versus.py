@@ -136,7 +136,8 @@ class VersusFolder:
             path = None if side is None else self.picture(side.name)
             if side is not None and path is not None:
                 tiles.append(
-                    f"<div style='display:flex;align-items:center;gap:6px'><b>{letter}</b>"
+                    "<div style='display:flex;align-items:center;gap:6px;max-width:250px'>"
+                    f"<b>{letter}</b>"
                     f"{picture_html(path, short(side))}</div>"
                 )
         return f"<div style='margin:4px 8px;font-size:12px'>{''.join(tiles)}</div>"
@@ -183,7 +184,9 @@ class VersusFolder:
                 if self.a is None or self.b is None:
                     self.caption.content = ""
                 return
-            self.caption.content = f"<small>{html.escape(both.words)}</small>"
+            told = both.change_words if mode == DIFFERENCE else both.words
+            sides = "A left, B right: " if mode == BESIDE else ""
+            self.caption.content = f"<small>{html.escape(sides + told)}</small>"
             if mode == BESIDE:
                 self.image.image = side_by_side(both)
             elif mode == DIFFERENCE and both.difference is not None:
