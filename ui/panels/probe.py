@@ -19,7 +19,7 @@ from workbench.pixel_link import PixelLink, SkinPoint, frame_link
 from workbench.previews import first_hit
 
 COLOUR = (255, 45, 85)
-BALL_MM = 0.3
+BALL_MM = 0.6
 """Radius of the ball at the place."""
 KILO = 1000.0
 
