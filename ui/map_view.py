@@ -33,7 +33,7 @@ class MapView:
     def load(self, skin: Skin, colours: np.ndarray) -> None:
         """Show a map in place of the one before; colours of shape (V, 3), uint8."""
         self.forget_value()
-        before, self._series = self._node, self._series + 1
+        before, self._series = self._node, 1 - self._series
         self._drawn = skin, colours
         points = np.asarray(skin.points_mm, np.float32)
         glb = coloured_glb(points, np.asarray(skin.faces), colours, self.plane)

@@ -8,6 +8,7 @@ has had time to read it, or the skin would flicker: `turn` removes what was repl
 
 from __future__ import annotations
 
+import itertools
 import time
 from collections.abc import Callable
 from typing import Any
@@ -133,7 +134,16 @@ class PressedView:
         self.backstage.forget(FRAMES)
         self._nodes.clear()
         self._prepare_at_s = None
-        self._series += 1
+        self._series = self._free_series()
+
+    def _free_series(self) -> int:
+        """The first number that no frame on show has, nor had a moment ago.
+
+        Names are used again: viser keeps a few messages of every name for ever, and a new tab is
+        sent all of them.
+        """
+        lingering = {int(node.name.split("/")[2]) for _, node in self._lingering}
+        return next(k for k in itertools.count() if k not in (*lingering, self._series))
 
     def turn(self) -> None:
         """Remove replaced frames whose time is over; begin with frames once the cut rests."""
