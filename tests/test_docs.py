@@ -131,3 +131,26 @@ def test_presets_open_with_their_purpose() -> None:
 def test_every_package_has_its_design_note(package: str) -> None:
     """One short DESIGN.md per package."""
     assert len((ROOT / package / "DESIGN.md").read_text().splitlines()) < 60
+
+
+def test_every_file_of_the_front_is_in_its_design_note() -> None:
+    """`ui/DESIGN.md` names each file with its idea."""
+    note = (ROOT / "ui" / "DESIGN.md").read_text()
+    files = [*(ROOT / "ui").glob("*.py"), *(ROOT / "ui" / "panels").glob("*.py")]
+    unnamed = {f.name for f in files if f"`{f.name}`" not in note} - {"__init__.py"}
+    assert unnamed == set()
+
+
+def test_every_relative_link_of_the_docs_leads_somewhere() -> None:
+    """Pictures too."""
+    for text in (ROOT / "docs").glob("*.md"):
+        for target in re.findall(r"\]\(([^)#:]+)\)", text.read_text()):
+            assert (text.parent / target).exists(), (text.name, target)
+
+
+def test_the_screenshots_stay_small() -> None:
+    """Each below 200 KB, all together below 2 MB."""
+    sizes = [picture.stat().st_size for picture in (ROOT / "docs" / "screens").iterdir()]
+    assert sizes
+    assert max(sizes) < 200_000
+    assert sum(sizes) < 2_000_000
