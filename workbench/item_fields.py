@@ -15,7 +15,9 @@ from typing import Any
 from workbench.core.design import SensorDesign
 from workbench.core.errors import DesignError
 from workbench.core.mapping import name_item, suggest
+from workbench.led_table import with_count
 
+COUNT = "optics.ring.count"
 ITEM = re.compile(r"([\w.]+)\[(\d+)\](?:\.([\w.]+))?")
 
 
@@ -36,6 +38,9 @@ def with_field(design: SensorDesign, path: str, value: Any) -> SensorDesign:
     Raises:
         DesignError: If there is no such field or item, or the value is refused.
     """
+    if path == COUNT:
+        # The factors on single LEDs follow the number of LEDs.
+        return design.replace("optics.ring", with_count(design.optics.ring, value))
     found = ITEM.fullmatch(path)
     if found is None:
         return design.replace(path, value)

@@ -36,7 +36,7 @@ DIMENSIONLESS = set(
     "LEDs,Frames,Vents,Steps,Frame,Samples,Photons,Light nodes,Light seed,Noise seed,Stroke frames,"
     # Ratios, shares and coefficients.
     "Tip ratio,Poisson,Friction,Albedo,Gloss,Roughness,Phong diffuse,Phong specular,"
-    "Phong exponent,Ink,Vignetting,Gamma,Region error,Explode,LED power,Lamp power,Exposure,"
+    "Phong exponent,Ink,Vignetting,Gamma,Region error,Explode,LED power,LED factor,Lamp power,Exposure,"
     # Directions of any length.
     "Shines along,Lies along,"
     # A scale of its own, and numbers in the unit of the parameter that is chosen above them.

@@ -11,6 +11,7 @@ from ui.handles import RING, Handle
 from ui.panels.appearance import AppearanceFolders
 from ui.panels.cameras import CameraFolders
 from ui.panels.lamps import LampsFolder
+from ui.panels.led_table import LedTable
 from workbench.core.lighting import TABULATED, TRACED, LedMount, LightModel
 from workbench.light_edit import MODEL_HINTS, colour_words, read_colours
 
@@ -33,6 +34,7 @@ class OpticsPanel:
             self._light_model()
         with gui.add_folder("LED ring"):
             self._ring()
+        self.leds = LedTable(desk)
         self.lamps = LampsFolder(desk)
         self.cameras = CameraFolders(desk)
         self.appearance = AppearanceFolders(desk)
@@ -110,6 +112,7 @@ class OpticsPanel:
         fields.reveal(f"{BAKING}.seed", model in TRACED)
         fields.reveal(f"{BAKING}.nodes", model in TABULATED)
         self.handle.follow()
+        self.leds.refresh()
         self.lamps.refresh()
         self.cameras.refresh()
         self.appearance.refresh()
