@@ -59,6 +59,7 @@ class ViewPanel:
         if side is Side.CONTACT:
             toward = scene.body.normal_near(press.target_mm)
         scene.views.look_from(side, *scene.bounds_mm, client=event.client, toward=toward)
+        self._face(event.client)
 
     def _section(self) -> None:
         gui, guarded = self.desk.server.gui, self.desk.guarded
@@ -75,20 +76,33 @@ class ViewPanel:
         )
         hint = "Keep the other side"
         self.flip = gui.add_checkbox("Flip section", False, hint=hint)
-        self.on.on_update(guarded(lambda event: self._cut()))
-        self.axis.on_update(guarded(lambda event: self._other_axis()))
+        self.on.on_update(guarded(self._switch))
+        self.axis.on_update(guarded(self._other_axis))
         self.place.on_update(guarded(lambda event: self._cut()))
         self.flip.on_update(guarded(lambda event: self._cut()))
         command = gui.add_command("Section on or off", hotkey="C")
-        command.on_trigger(guarded(lambda event: self._toggle()))
+        command.on_trigger(guarded(self._toggle))
 
-    def _toggle(self) -> None:
+    def _toggle(self, event: Any) -> None:
         self.on.value = not self.on.value
+        self._switch(event)
 
-    def _other_axis(self) -> None:
+    def _switch(self, event: Any) -> None:
+        """Cut, or make whole again; the cut faces the tab that asked for it."""
+        self._face(event.client)
+        self._cut()
+
+    def _face(self, client: Any) -> None:
+        """Take away the half that hides the cut from a tab's eye."""
+        if client is not None:
+            along_mm = float(client.camera.position[Axis(self.axis.value).number])
+            self.flip.value = along_mm < float(self.place.value)
+
+    def _other_axis(self, event: Any) -> None:
         low, high = self._range()
         self._fit_range()
         self.place.value = round((low + high) / 2, 1)
+        self._face(event.client)
         self._cut()
 
     def _range(self) -> tuple[float, float]:
