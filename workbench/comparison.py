@@ -12,6 +12,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from workbench.aim import default_target_mm
 from workbench.core.digest import digest
 from workbench.core.errors import DesignError
 from workbench.core.indenter import Indenter
@@ -203,7 +204,9 @@ def press_notice(a: State, b: State) -> str:
     rows = parameter_differences(
         State(design=a.design, case=a.case), State(design=a.design, case=b.case)
     )
-    where = [row for row in rows if row.label != "target"]
+    aimed = all(s.case.press.target_mm == default_target_mm(s.design) for s in (a, b))
+    # Where the family itself aims, another place belongs to another shape.
+    where = [row for row in rows if row.label != "target" or not aimed]
     if not where:
         return ""
     words = "; ".join(f"{row.group.lower()} {row.label} {row.a} and {row.b}" for row in where[:3])

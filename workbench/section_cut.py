@@ -163,17 +163,32 @@ def cap(clipped: Clipped, plane: Plane) -> Cap:
 
 
 def closed_loops(segments: np.ndarray) -> list[np.ndarray]:
-    """Segments (S, 2) of corners chained into closed loops of corners; open chains are left out."""
-    after = dict(segments.tolist())
+    """Segments (S, 2) of corners chained into closed loops of corners; open chains are left out.
+
+    Bodies that touch along an edge share a corner: a way that comes back to a corner it has passed
+    is cut off there as a loop of its own.
+    """
+    after: dict[int, list[int]] = {}
+    for start, stop in segments.tolist():
+        after.setdefault(start, []).append(stop)
     loops = []
     while after:
-        start, corner = after.popitem()
-        loop = [start]
-        while corner in after:
-            loop.append(corner)
-            corner = after.pop(corner)
-        if corner == start and len(loop) > 2:
-            loops.append(np.array(loop))
+        way = [next(iter(after))]
+        passed = {way[0]: 0}
+        while way[-1] in after:
+            corner = after[way[-1]].pop()
+            if not after[way[-1]]:
+                del after[way[-1]]
+            if corner not in passed:
+                passed[corner] = len(way)
+                way.append(corner)
+                continue
+            first = passed[corner]
+            if len(way) - first > 2:
+                loops.append(np.array(way[first:]))
+            for left in way[first + 1 :]:
+                del passed[left]
+            del way[first + 1 :]
     return loops
 
 

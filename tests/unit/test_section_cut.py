@@ -139,3 +139,12 @@ def test_a_pressed_membrane_follows_its_skin(finger: Solid, finger_mesh: Membran
     # The skin's weights add up to one.
     assert np.unique(np.round(moved[:, 0], 9)).tolist() == [0.0, 0.4]
     assert not moved[:, 1:].any()
+
+
+def test_bodies_that_touch_along_an_edge_have_a_loop_each() -> None:
+    """Two squares that share corner 0, chained as one way: two loops, of areas 1 and 1."""
+    segments = np.array([(0, 1), (1, 2), (2, 3), (3, 0), (0, 4), (4, 5), (5, 6), (6, 0)])
+    loops = closed_loops(segments)
+    assert sorted(sorted(loop.tolist()) for loop in loops) == [[0, 1, 2, 3], [0, 4, 5, 6]]
+    open_chain = np.array([(0, 1), (1, 2), (2, 0), (7, 8), (8, 9)])
+    assert [sorted(loop.tolist()) for loop in closed_loops(open_chain)] == [[0, 1, 2]]

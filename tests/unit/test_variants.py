@@ -209,6 +209,15 @@ def test_only_what_differs_is_listed_by_group_with_units() -> None:
     assert press_notice(a, finger(3.0)) == ""
 
 
+def test_presses_at_two_places_are_told() -> None:
+    """The target counts, unless both stand where their family aims."""
+    a = finger(2.0)
+    aside = dataclasses.replace(a.case.press, target_mm=(0.0, 14.0, 20.0))
+    b = State(design=a.design, case=dataclasses.replace(a.case, press=aside))
+    assert "target" in press_notice(a, b)
+    assert press_notice(a, fresh_state(load_design("thumb"))) == ""
+
+
 def test_a_family_with_other_parameters_compares() -> None:
     """Parameters that one has not are a dash."""
     rows = parameter_differences(finger(), fresh_state(load_design("trunk")))

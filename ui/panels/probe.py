@@ -40,6 +40,9 @@ class Probe:
         self.on_moved: Callable[[], None] = lambda: None
         """Set by the image's tab: draws the cross anew."""
         self._mesh: MembraneMesh | None = None
+        self._plain: tuple[Any, ...] = ()
+        self._big: tuple[Any, Any] = (None, None)
+        """What was last looked through: camera and frame; press and mesh."""
         self._nodes: list[Any] = []
         desk.takers.append(self.takes)
         gui, guarded = desk.server.gui, desk.guarded
@@ -71,10 +74,16 @@ class Probe:
 
     def follow(self, camera: int, frame: int) -> None:
         """Look through another camera, or at another frame, by the same pixel."""
-        if (camera, frame) == (self.camera, self.frame) and self.column.max > 1:
-            return
-        self.camera, self.frame = camera, frame
         cameras = self.desk.session.design.optics.all_cameras
+        eye = cameras[camera] if camera < len(cameras) else None
+        index = self.desk.session.design.optics.refractive_index
+        # Of presses and meshes, which are large, it counts whether they are the same ones.
+        big = (self.desk.scene.pressed.contact, self._mesh)
+        plain = (camera, frame, eye, index)
+        if plain == self._plain and all(a is b for a, b in zip(big, self._big, strict=True)):
+            return
+        self._plain, self._big = plain, big
+        self.camera, self.frame = camera, frame
         if camera < len(cameras):
             size = cameras[camera].width_px - 1, cameras[camera].height_px - 1
             for slider, most in zip((self.column, self.row), size, strict=True):

@@ -20,6 +20,7 @@ from workbench.phases import phase
 LOG_ROWS = 60
 LIVE_NOTE = "**live**: one frame, not stored; *Run press* computes the path"
 GLIMPSE_NOTE = "**preview**: {model} light, dent by geometry; *Run press* computes the image"
+EARLIER_NOTE = "**preview of an earlier design**: this one cannot be sketched, see the log"
 
 
 class ResultsPanel:
@@ -30,6 +31,8 @@ class ResultsPanel:
         self.contact: Contact | None = None
         self.press: Press = desk.session.case.press
         """The press that `contact` is of."""
+        self.key = ""
+        """Key of that press; empty for a live one."""
         self.note = ""
         """What is said of frames that are not a whole press: a live one, or what settled."""
         self.sketch = ""
@@ -136,7 +139,7 @@ class ResultsPanel:
         self.timeline.player.stop()
         self.sketch = ""
         self.contact, self.press = preview.contact, live_press(self.desk.session.case.press)
-        self.note = LIVE_NOTE
+        self.note, self.key = LIVE_NOTE, ""
         self.image.load_live(preview.images)
         self.timeline.show_legend()
         self.timeline.follow(1)
@@ -144,8 +147,15 @@ class ResultsPanel:
         self.forces.load(self.press, preview.contact)
         self._show_forces(1)
 
-    def _show_glimpse(self, glimpse: Glimpse) -> None:
-        """Show the small picture of a state without images, in place of a stale one."""
+    def _show_glimpse(self, glimpse: Glimpse | None) -> None:
+        """Show the small picture of a state without images, in place of a stale one.
+
+        None is that of a state for which there is none: what is on show is an earlier one's.
+        """
+        if glimpse is None:
+            self.sketch = self.sketch and EARLIER_NOTE
+            self._caption(self.timeline.number)
+            return
         self.timeline.player.stop()
         self.sketch = GLIMPSE_NOTE.format(model=glimpse.model.value)
         self.image.load_live(glimpse.images)
@@ -171,10 +181,16 @@ class ResultsPanel:
         mesh = self.desk.session.result("mesh")
         self.desk.scene.load_frames(mesh.outer, contact)
         self.contact, self.press, self.note = contact, press, note
+        self.key = self.desk.session.calls()["press"].key
         self.forces.load(press, contact)
         self.timeline.follow(len(contact.reaction_N))
         self._show_forces(self.timeline.number)
         self.desk.scene.show_frame(self.timeline.number)
+
+    @property
+    def _of_now(self) -> bool:
+        """Whether the press on show, whole or as far as it settled, is that of the state."""
+        return self.key == self.desk.session.calls()["press"].key
 
     def _show_forces(self, number: int) -> None:
         """The force of the frame on show; of the last one at frame 0."""
@@ -185,7 +201,8 @@ class ResultsPanel:
         if k >= count:
             return
         note = self.note
-        if not note and not self.desk.current("press"):
+        followed = note == LIVE_NOTE and self.desk.live.on
+        if not followed and not self._of_now:
             note = "**stale**: run the press again"
         self.forces.mark(number)
         self.forces.show(self.contact, k, what=self._phase(k + 1), note=note)
