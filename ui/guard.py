@@ -41,6 +41,13 @@ class Gate:
 
     def decide(self, path: str, headers: Any) -> tuple[int, dict[str, str], bytes] | None:
         """Status, headers and body of a refusal or own page; None lets viser answer."""
+        try:
+            return self._decide(path, headers)
+        except ValueError:
+            # A path that is no address, or bytes that are no text.
+            return 400, {}, b"this request cannot be read\n"
+
+    def _decide(self, path: str, headers: Any) -> tuple[int, dict[str, str], bytes] | None:
         if not self._known(headers.get("Host")):
             return 403, {}, b"this address is not one of the workbench's own (Host)\n"
         origin = headers.get("Origin")
@@ -76,7 +83,10 @@ class Gate:
 
 def _same_site(origin: str, host: str) -> bool:
     """Whether a page of this origin is one of ours: same name and same port."""
-    return urllib.parse.urlsplit(origin).netloc.lower() == host.lower()
+    try:
+        return urllib.parse.urlsplit(origin).netloc.lower() == host.lower()
+    except ValueError:
+        return False
 
 
 def _is_address(text: str) -> bool:

@@ -7,6 +7,7 @@ each file once, by its hash, so that designs and variants stay small and find it
 from __future__ import annotations
 
 import dataclasses
+import functools
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ from workbench.core.design import SensorDesign
 from workbench.core.errors import DesignError
 from workbench.core.imported import BodyFile, ImportedBody, LengthUnit, Pick, body_file
 from workbench.core.mapping import from_table, to_table
+from workbench.named_files import BRING_IT, find_file
 
 IMPORTED = "imported"
 """Name of the family whose body comes from a file."""
@@ -61,12 +63,13 @@ def body_table(body: ImportedBody) -> dict[str, Any]:
     return table
 
 
-def read_body_table(table: Any, *, roots: Sequence[Path]) -> ImportedBody:
+def read_body_table(table: Any, *, roots: Sequence[Path], enclosed: bool = False) -> ImportedBody:
     """The body that a `[body]` table names.
 
     Args:
         table: `outer`, and optionally `inner`, their names for people, `unit` and `picks`.
         roots: Folders in which the files are looked for, in order.
+        enclosed: Whether the files must lie inside these folders.
 
     Raises:
         DesignError: For an unknown field, a missing file, or one that is too large.
@@ -85,9 +88,10 @@ def read_body_table(table: Any, *, roots: Sequence[Path]) -> ImportedBody:
                 hint=f"known: {', '.join(sorted(known))}",
                 at=f"body.{name}",
             )
+    read = functools.partial(_read, roots=roots, enclosed=enclosed)
     inner = None
     if "inner" in table:
-        inner = _read(table["inner"], table.get("inner_name"), roots, at="body.inner")
+        inner = read(table["inner"], table.get("inner_name"), at="body.inner")
     units = {unit.value: unit for unit in LengthUnit}
     unit, picks = table.get("unit", "auto"), table.get("picks", ())
     if not isinstance(unit, str) or unit not in units:
@@ -101,7 +105,7 @@ def read_body_table(table: Any, *, roots: Sequence[Path]) -> ImportedBody:
             at="body.picks",
         )
     return ImportedBody(
-        outer=_read(table["outer"], table.get("outer_name"), roots, at="body.outer"),
+        outer=read(table["outer"], table.get("outer_name"), at="body.outer"),
         inner=inner,
         unit=units[unit],
         picks=tuple(from_table(Pick, pick, at="body.picks") for pick in picks),
@@ -124,18 +128,18 @@ def without_body(design: SensorDesign) -> SensorDesign:
     return dataclasses.replace(design, body=None)
 
 
-def _read(name: Any, label: Any, roots: Sequence[Path], *, at: str) -> BodyFile:
+def _read(name: Any, label: Any, *, roots: Sequence[Path], enclosed: bool, at: str) -> BodyFile:
     if not isinstance(name, str) or not name:
         raise DesignError(
             f"{at} is {name!r}, expected the path of a file", hint="write 'file.step'", at=at
         )
-    paths = [root / name for root in roots]
     try:
-        path = next((path for path in paths if path.is_file()), None)
+        path = find_file([(root, name) for root in roots], enclosed=enclosed)
         if path is None:
+            looked = " and ".join(str(root / name) for root in roots)
             raise DesignError(
                 f"there is no file {str(label or name)!r} for the body of this design",
-                hint=f"looked for {' and '.join(str(p) for p in paths)}; load the file again",
+                hint=BRING_IT if enclosed else f"looked for {looked}; load the file again",
                 at=at,
             )
         size_mb = path.stat().st_size / 1e6

@@ -57,11 +57,11 @@ def unbundle(name: str, content: bytes, project: Project) -> State:
         StoreError: If the project cannot be written.
     """
     if not content.startswith(ZIP_START):
-        return read_state(_text(name, content), project, source=name)
+        return read_state(_text(name, content), project, source=name, enclosed=True)
     with tempfile.TemporaryDirectory() as folder:
         text = _unpacked(name, content, Path(folder))
         # Read once where only its own files are, so that a broken zip leaves nothing behind.
-        state = read_state(text, Project(folder), source=name)
+        state = read_state(text, Project(folder), source=name, enclosed=True)
     project.keep_files(state.design)
     case_table(state.case, project)
     return state

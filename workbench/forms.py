@@ -7,7 +7,10 @@ from __future__ import annotations
 
 from designs.family import Slider, families, family, resolve_shape, sliders
 from workbench.bodies import IMPORTED
-from workbench.project import load_design, presets
+from workbench.core.design import SensorDesign
+from workbench.core.errors import DesignError
+from workbench.project import load_design as any_design
+from workbench.project import presets
 
 __all__ = [
     "Slider",
@@ -31,6 +34,17 @@ def choices() -> tuple[str, ...]:
     shipped = presets()
     others = (name for name in families() if name not in shipped and name != IMPORTED)
     return (*shipped, *others)
+
+
+def load_design(name: str) -> SensorDesign:
+    """The design of one of the `choices`.
+
+    Raises:
+        DesignError: If it is none: what a page sends must not become the path of a file.
+    """
+    if name not in choices():
+        raise DesignError(f"one cannot start from {name!r}", hint="choose from the list")
+    return any_design(name)
 
 
 def purpose(name: str) -> str:

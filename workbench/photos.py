@@ -19,6 +19,7 @@ from workbench.core.design import SensorDesign
 from workbench.core.errors import DesignError
 from workbench.core.mapping import suggest
 from workbench.core.photo import MOST_BYTES, Photo, photo
+from workbench.named_files import BRING_IT, find_file
 from workbench.uploads import own_name
 
 FOLDER = "pictures"
@@ -41,12 +42,15 @@ def shipped_photos() -> Mapping[str, Photo]:
     }
 
 
-def read_photo(name: Any, *, roots: Sequence[Path] = (Path(),), at: str) -> Photo:
+def read_photo(
+    name: Any, *, roots: Sequence[Path] = (Path(),), enclosed: bool = False, at: str
+) -> Photo:
     """The picture that a design file names.
 
     Args:
         name: Path, or `builtin:` and the name of a shipped one.
         roots: Folders in which the file is looked for, in order, and in their `pictures`.
+        enclosed: Whether the file must lie inside one of these.
         at: Field of the design, for messages.
 
     Raises:
@@ -65,14 +69,15 @@ def read_photo(name: Any, *, roots: Sequence[Path] = (Path(),), at: str) -> Phot
                 f"there is no shipped picture {short!r}", hint=suggest(short, known), at=at
             )
         return known[short]
-    paths = [path for root in roots for path in (root / name, root / FOLDER / name)]
+    folders = [folder for root in roots for folder in (root, root / FOLDER)]
     try:
-        path = next((path for path in paths if path.is_file()), None)
+        path = find_file([(folder, name) for folder in folders], enclosed=enclosed)
         if path is None:
-            places = " and ".join(str(path) for path in paths) or "shipped pictures only"
+            places = " and ".join(str(f / name) for f in folders) or "shipped pictures only"
+            looked = f"looked for {places}; put it there, or write builtin:NAME"
             raise DesignError(
                 f"there is no picture file {name!r}",
-                hint=f"looked for {places}; put it there, or write builtin:NAME",
+                hint=BRING_IT if enclosed else looked,
                 at=at,
             )
         size = path.stat().st_size
@@ -141,7 +146,7 @@ def take_photos(table: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Any
 
 
 def with_photos(
-    design: SensorDesign, named: Mapping[str, Any], *, roots: Sequence[Path]
+    design: SensorDesign, named: Mapping[str, Any], *, roots: Sequence[Path], enclosed: bool = False
 ) -> SensorDesign:
     """The design with the pictures that `take_photos` found named.
 
@@ -149,7 +154,7 @@ def with_photos(
         DesignError: As `read_photo`.
     """
     for field, name in named.items():
-        design = design.replace(field, read_photo(name, roots=roots, at=field))
+        design = design.replace(field, read_photo(name, roots=roots, enclosed=enclosed, at=field))
     return design
 
 

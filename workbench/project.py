@@ -221,7 +221,7 @@ def _read(path: Path) -> str:
 
 
 def design_from_toml(
-    text: str, *, source: str = "the file", roots: Sequence[Path] = ()
+    text: str, *, source: str = "the file", roots: Sequence[Path] = (), enclosed: bool = False
 ) -> SensorDesign:
     """Parse and check a design; tables that belong to a session or variant are left out.
 
@@ -229,6 +229,7 @@ def design_from_toml(
         text: The file.
         source: Its name, for messages.
         roots: Folders in which the files of an imported body and of pictures are looked for.
+        enclosed: Whether they must lie inside these: for a design that somebody else may have made.
 
     Raises:
         DesignError: For broken TOML, a newer schema, unknown fields or refused values.
@@ -239,9 +240,11 @@ def design_from_toml(
     if "material" in own:
         own["material"] = with_moduli(own["material"])
     own, pictures = take_photos(own)
-    design = with_photos(from_table(SensorDesign, own), pictures, roots=roots)
+    design = from_table(SensorDesign, own)
+    design = with_photos(design, pictures, roots=roots, enclosed=enclosed)
     if body is not None:
-        design = dataclasses.replace(design, body=read_body_table(body, roots=roots))
+        read = read_body_table(body, roots=roots, enclosed=enclosed)
+        design = dataclasses.replace(design, body=read)
     check_design(design)
     return design
 

@@ -50,8 +50,14 @@ def case_table(case: PressCase, project: Project) -> dict[str, Any]:
     return table
 
 
-def read_state(text: str, project: Project, *, source: str) -> State:
+def read_state(text: str, project: Project, *, source: str, enclosed: bool = False) -> State:
     """A design and its press from a design file; a file without a press gets the default one.
+
+    Args:
+        text: The file.
+        project: Where the files that it names are kept.
+        source: Its name, for messages.
+        enclosed: Whether it may name only files inside the project.
 
     Raises:
         DesignError: If the text is not valid, or names an STL indenter this project does not have.
@@ -68,5 +74,6 @@ def read_state(text: str, project: Project, *, source: str) -> State:
     }
     if "indenter" in table:
         known["indenter"] = read_indenter(table["indenter"], project)
-    design = design_from_toml(text, source=source, roots=(project.folder,))
+    roots = (project.folder,)
+    design = design_from_toml(text, source=source, roots=roots, enclosed=enclosed)
     return State(design=design, case=PressCase(**known))

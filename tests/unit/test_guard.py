@@ -74,3 +74,18 @@ def test_addresses_pass_behind_a_token_but_foreign_names_do_not() -> None:
     refused = gate.decide("/", {"Host": "evil.example", **cookie})
     assert refused is not None
     assert refused[0] == 403
+
+
+@pytest.mark.parametrize("path", ["//[", "/?token=\udc80"])
+def test_a_path_that_is_no_address_is_answered(path: str) -> None:
+    """Status 400 instead of a traceback."""
+    answer = Gate(token="secret").decide(path, OWN)
+    assert answer is not None
+    assert answer[0] == 400
+
+
+def test_an_origin_that_is_no_address_is_foreign() -> None:
+    """Status 403: a bracket that is never closed names no page."""
+    answer = Gate().decide("/", {**OWN, "Origin": "http://["})
+    assert answer is not None
+    assert answer[0] == 403
