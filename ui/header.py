@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import html
 from collections.abc import Callable, Mapping
 from typing import Any
 
 import viser
 
+from ui.plain import plain
 from workbench.conductor import FOLLOWING, LIVE, Progress
 from workbench.core.design import SensorDesign
 from workbench.core.units import human_seconds
@@ -66,7 +66,7 @@ class Header:
 
     def show_design(self, design: SensorDesign) -> None:
         """Name and family."""
-        text = f"**{html.escape(design.name)}** · {html.escape(design.family)}"
+        text = f"**{plain(design.name)}** · {plain(design.family)}"
         if self.title.content != text:
             self.title.content = text
 
@@ -94,12 +94,12 @@ class Header:
             self.progress.value = 100.0 * now.fraction
             left = f"about {human_seconds(now.eta_s)} left" if now.eta_s is not None else ""
             name = NAMES.get(now.stage, now.stage)
-            parts = (f"{name} {100 * now.fraction:.0f} %", left, now.note)
+            parts = (f"{name} {100 * now.fraction:.0f} %", left, plain(now.note))
             self.progress_text.content = " · ".join(part for part in parts if part)
 
     def show_notice(self, notices: Mapping[str, str]) -> None:
         """What builder and mesher had to change; nothing when they had to change nothing."""
-        text = "<br>".join(html.escape(notice) for notice in notices.values() if notice)
+        text = "<br>".join(plain(notice) for notice in notices.values() if notice)
         self.notice.visible = bool(text)
         self.notice.content = f"<span style='color:{AMBER}'>**Note:** {text}</span>"
 

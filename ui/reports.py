@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import html
 import sys
 import time
 import traceback
@@ -11,6 +10,7 @@ from collections.abc import Callable
 from typing import Any
 
 from ui.panels.fields import Fields
+from ui.plain import plain
 from ui.session import Session
 from workbench.core.errors import WorkbenchError
 
@@ -81,7 +81,7 @@ class Reports:
         if error.hint and "\n" not in error.hint:
             hint = self.fields.in_words(f" {error.hint[0].upper()}{error.hint[1:]}.", error.at)
         self.log(f"{type(error).__name__}: {words} {error.hint}")
-        text = html.escape(f"{words}.{hint}")
+        text = plain(f"{words}.{hint}")
         if not (at_field and at_field == edited):
             self._show_banner(text)
         if topic in self.places:
@@ -97,7 +97,7 @@ class Reports:
 
     def remark(self, words: str) -> None:
         """Show words on top until the next edit, for example what became of the last session."""
-        self._show_banner(html.escape(f"{words[0].upper()}{words[1:]}"))
+        self._show_banner(plain(f"{words[0].upper()}{words[1:]}"))
 
     def _show_banner(self, text: str) -> None:
         self.banner.content = f"<span style='color:{RED}'>**{text}**</span>"

@@ -7,12 +7,12 @@ until the disk takes it. The file on disk is the last one that could be written 
 
 from __future__ import annotations
 
-import html
 import time
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any
 
+from ui.plain import plain
 from ui.reports import RED, Reports
 from ui.session import Session
 from workbench.core.errors import WorkbenchError
@@ -65,7 +65,7 @@ class Saving:
             if not self.failed:
                 self.failed = True
                 self.reports.report(error)
-            words = html.escape(f"{error.message}. The workbench goes on and tries again.")
+            words = plain(f"{error.message}. The workbench goes on and tries again.")
             self.mark.content = f"<span style='color:{RED}'>**Not saved:** {words}</span>"
             self.mark.visible = True
         else:

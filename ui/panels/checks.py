@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 import re
 from collections.abc import Callable
 from typing import Any
@@ -11,6 +10,7 @@ import numpy as np
 
 from ui.desk import Desk
 from ui.panels.parts import PartsTree
+from ui.plain import plain
 from workbench.core.fabrication import FabricationCheck, Severity
 from workbench.previews import clear_view
 
@@ -79,7 +79,7 @@ class ChecksList:
             place, toward, distance_mm, f"{check.name.replace('_', ' ')}: {amount(check)}"
         )
         x, y, z = check.place_mm
-        self.detail.content = f"{html.escape(said(check))} At {x:.1f}, {y:.1f}, {z:.1f} mm."
+        self.detail.content = f"{plain(said(check))} At {x:.1f}, {y:.1f}, {z:.1f} mm."
         self.desk.log(f"{check.part}: looking at {check.name}, {x:.1f}, {y:.1f}, {z:.1f} mm")
 
 

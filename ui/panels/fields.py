@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import html
 import re
 import threading
 import time
@@ -11,6 +10,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from ui.plain import plain
 from workbench.core.errors import WorkbenchError
 
 TYPED_S = 0.8
@@ -242,7 +242,7 @@ class Fields:
             kept = self._kept(field)
             if isinstance(kept, (int, float)) and kept != field.handle.value:
                 parts.append(f"still using {kept:g}")
-        words = html.escape("; ".join(part for part in parts if part))
+        words = plain("; ".join(part for part in parts if part))
         text = f"<span style='color:#e5484d'>{words}</span>"
         field.complaint.content = text
         field.complaint.visible = True

@@ -14,6 +14,7 @@ from typing import Any
 import viser
 
 from ui.desk import Desk
+from ui.plain import plain
 from workbench.bodies import IMPORTED
 from workbench.conductor import Finished
 from workbench.core.design import SensorDesign
@@ -117,7 +118,7 @@ class IntakeFolder:
         else:
             candidate = SensorDesign(name=name, family=IMPORTED, body=body)
         self.desk.reports.settle()
-        self.said.content = f"reading {body.outer.name} ..."
+        self.said.content = f"reading {plain(body.outer.name)} ..."
         self.desk.trial("import", candidate, "intake", self._read)
 
     def _read(self, event: Finished) -> None:
@@ -174,6 +175,6 @@ def _name(body: ImportedBody) -> str:
 
 
 def _summary(body: ImportedBody) -> str:
-    inner = "even wall" if body.inner is None else f"inner {body.inner.name}"
-    picks = ", ".join(f"face {pick.patch} {pick.region}" for pick in body.picks)
-    return " · ".join(part for part in (f"outer {body.outer.name}", inner, picks) if part)
+    inner = "even wall" if body.inner is None else f"inner {plain(body.inner.name)}"
+    picks = ", ".join(f"face {pick.patch} {plain(pick.region)}" for pick in body.picks)
+    return " · ".join(part for part in (f"outer {plain(body.outer.name)}", inner, picks) if part)

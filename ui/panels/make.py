@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 from typing import Any
 
 import viser
@@ -12,6 +11,7 @@ from ui.panels.checks import ChecksList, verdict
 from ui.panels.downloads import Downloads
 from ui.panels.parts import PartsTree
 from ui.panels.recipe import recipe_html
+from ui.plain import plain
 from workbench.core.fabrication import FabricationCheck, FabricationPart
 from workbench.forms import silicones
 
@@ -146,7 +146,8 @@ class MakePanel:
             notices = [made.notice for made in judged if made.notice]
             self.status.content = summary(parts, checks) if parts else NOTHING
             self.notes_folder.visible = bool(notices)
-            self.notes.content = html.escape("\n\n".join(notices).replace("; ", "\n\n"))
+            remarks = [remark for notice in notices for remark in notice.split("; ")]
+            self.notes.content = "\n\n".join(plain(remark) for remark in remarks)
             self.tree.offer(parts)
             self.checks.offer(checks)
             recipe = found["recipe"]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 from typing import Any
 
 import numpy as np
@@ -10,6 +9,7 @@ import viser
 
 from ui.desk import Desk
 from ui.imaging import scale_bar, swatch, table
+from ui.plain import plain
 from workbench.colour_scale import NOTHING_GREY, YES
 from workbench.core.errors import DesignError
 from workbench.core.maps import DesignerMaps, SkinMap
@@ -91,7 +91,7 @@ class MapsPanel:
         look = map_look(found)
         with self.desk.server.atomic():
             self.legend.content = map_legend(found, look)
-            self.meaning.content = f"*{html.escape(found.meaning)}*"
+            self.meaning.content = f"*{plain(found.meaning)}*"
             if self.wanted.value:
                 scene.show_map(self.skin, look.colours)
         self._cover(bool(self.wanted.value))

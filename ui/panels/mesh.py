@@ -9,6 +9,7 @@ import viser
 from viser import uplot
 
 from ui.desk import Desk
+from ui.plain import plain
 from workbench.core.results import MeshQuality, QualityReport
 from workbench.core.units import volume_ml
 from workbench.previews import clear_view, judged, mesh_edges
@@ -208,7 +209,7 @@ def numbers(quality: MeshQuality, notice: str) -> str:
     if np.isfinite(quality.volume_ratio):
         lines.append(f"volume: {100 * quality.volume_ratio:.2f} % of the CAD body's")
     if notice and kind == "triangles":
-        lines.append(notice)
+        lines.append(plain(notice))
     return "\n\n".join(lines)
 
 

@@ -12,6 +12,7 @@ from typing import Any
 import viser
 
 from ui.desk import Desk
+from ui.plain import plain
 from ui.portraits import Portraits
 from workbench.core.errors import Cancelled, DesignError
 from workbench.variant_files import (
@@ -237,7 +238,7 @@ class VariantsFolder:
         )
 
     def _ask(self, event: Any) -> None:
-        self.asked.content = f"Delete **{html.escape(self._name())}**?"
+        self.asked.content = f"Delete **{plain(self._name())}**?"
         self.question.visible = True
 
     def _keep(self, event: Any) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -14,6 +13,7 @@ from ui.desk import Desk
 from ui.ghost import COLOURS, Ghost, GhostView
 from ui.imaging import placeholder
 from ui.panels.variants import offer, picture_html
+from ui.plain import plain
 from workbench.comparison import changes, parameter_differences, press_notice, tally
 from workbench.comparison_images import Moment, Pair, pair, side_by_side
 from workbench.comparison_tables import change_table, parameter_table, scrolled
@@ -146,7 +146,7 @@ class VersusFolder:
         rows = changes(a.figures, b.figures)
         better, worse = tally(rows)
         notice = press_notice(a.state, b.state)
-        words = f"**B is better in {better} figures, worse in {worse}.** {html.escape(notice)}"
+        words = f"**B is better in {better} figures, worse in {worse}.** {plain(notice)}"
         self.words.content = words
         differing = parameter_differences(a.state, b.state)
         self.tables.content = (
@@ -162,7 +162,7 @@ class VersusFolder:
         self.both = None
         without = [s.name for s, shot in zip((a, b), shots, strict=True) if shot is None]
         if without:
-            names = html.escape(" and ".join(without))
+            names = plain(" and ".join(without))
             self.caption.content = (
                 f"No image of {names} is stored: press *Run press* or *Run what is missing*."
             )
@@ -186,7 +186,7 @@ class VersusFolder:
                 return
             told = both.change_words if mode == DIFFERENCE else both.words
             sides = "A left, B right: " if mode == BESIDE else ""
-            self.caption.content = f"<small>{html.escape(sides + told)}</small>"
+            self.caption.content = f"<small>{plain(sides + told)}</small>"
             if mode == BESIDE:
                 self.image.image = side_by_side(both)
             elif mode == DIFFERENCE and both.difference is not None:
@@ -236,7 +236,7 @@ class VersusFolder:
 
     def _drawn(self, missing: str) -> None:
         """Tell what could not be drawn, and step back until all stands in the view."""
-        self.view_words.content = html.escape(missing)
+        self.view_words.content = plain(missing)
         self.view_words.visible = bool(missing)
         bounds = self.ghosts.bounds_mm
         if bounds is not None and self.ghosts.on:
