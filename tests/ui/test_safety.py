@@ -212,3 +212,49 @@ def test_markup_in_a_name_stays_text(tmp_path: Path, page: Any, start_server: St
     page.get_by_text("onerror").nth(1).wait_for()
     assert page.evaluate("window.pwned") is None
     assert page.evaluate("document.querySelectorAll('img[src=x]').length") == 0
+
+
+MARKUP = '<iframe srcdoc="&lt;b">[x](javascript:alert(1))'
+"""A frame and a link; a name of a file has no slash."""
+
+
+def test_no_text_of_others_becomes_markup(tmp_path: Path, start_server: Start) -> None:
+    """Names of design, body and picture, tags and notes: no Markdown holds a frame or a link."""
+    import trimesh
+
+    project = coarse_project(tmp_path)
+    (project / "bodies").mkdir()
+    box = trimesh.creation.box((20.0, 20.0, 20.0)).export(file_type="stl")
+    (project / "bodies" / "box.stl").write_bytes(bytes(box))
+    named = json.dumps(MARKUP)
+    body = f'[body]\nouter = "bodies/box.stl"\nouter_name = {json.dumps(MARKUP + ".stl")}\n'
+    head = f'name = {named}\nfamily = "imported"\n'
+    (project / "designs" / "autosave.toml").write_text(head + body)
+    (project / "variants").mkdir()
+    about = f"[variant]\ntags = [{named}]\nnote = {named}\n"
+    about += "metrics = {}\nkeys = {}\n"
+    (project / "variants" / "a.toml").write_text(head + body + about)
+    server = start_server(project)
+    with Tab(server.url) as tab:
+        # The file's name, the design's name and a refusal that quotes both.
+        tab.wait(lambda: tab.told("outer &lt;iframe"), 20, "the body is named")
+        send_file(
+            tab,
+            size=len(text := f"family = {named}".encode()),
+            parts=1,
+            content=text,
+            name=f"{MARKUP}.toml",
+        )
+        tab.wait(lambda: tab.told("there is no sensor family"), 20, "the family is refused")
+        shown = [
+            (key, str(text))
+            for _, message in list(tab.seen)
+            for props in (message.get("props"), message.get("updates"))
+            if isinstance(props, dict)
+            for key, text in props.items()
+            if key in ("_markdown", "content")
+        ]
+    assert sum("iframe" in text for _, text in shown) >= 4
+    for key, text in shown:
+        assert "<iframe" not in text
+        assert key == "content" or "](javascript" not in text
