@@ -89,6 +89,12 @@ class Aiming:
             )
 
     def _amended(self, words: str) -> None:
-        self.desk.saving.edited()
-        self.desk.fields.refresh()
-        self.desk.log(words)
+        """Let all follow who follow an edit: what runs was asked for at the old place."""
+        desk = self.desk
+        desk.saving.edited()
+        desk.upkeep.edited()
+        desk.fields.refresh()
+        desk.log(words)
+        if desk.live.on:
+            desk.live.follow()
+        desk.glimpse.follow()

@@ -97,7 +97,7 @@ def build_desk(
     incoming = Incoming(server, editor)
     with server.atomic():
         guide = Help(server, incoming)
-        desk = Desk(server, session, conductor, fast=fast)
+        desk = Desk(server, session, conductor, editor, fast=fast)
         tabs = gui.add_tab_group()
         # Six labels without icons fit on one row.
         pages = {
@@ -119,7 +119,7 @@ def build_desk(
             guide.button("View")
     if tour:
         guide.begin()
-    editor.on_change = incoming.on_refused = desk.log
+    editor.on_change = incoming.on_refused = desk.reports.log_soon
     first_look(desk)
     threading.Thread(target=desk.jobs.pump_forever, name="pump", daemon=True).start()
     return desk

@@ -12,6 +12,8 @@ import numpy as np
 
 from ui.aiming import Aiming
 from ui.backstage import Backstage
+from ui.editor import Editor
+from ui.gallery import Galleries
 from ui.gizmo import Gizmo
 from ui.glimpse import GlimpseFollower
 from ui.header import Header
@@ -24,7 +26,7 @@ from ui.scene import Scene
 from ui.session import Session
 from ui.showing import Showing
 from ui.upkeep import Upkeep
-from workbench.conductor import LIVE, SHAPE, Conductor, Finished, Request
+from workbench.conductor import GLIMPSE, LIVE, SHAPE, Conductor, Finished, Request
 from workbench.core.design import SensorDesign
 from workbench.core.errors import SolveError, WorkbenchError
 from workbench.core.sensing import Contact
@@ -49,8 +51,17 @@ class Panel(Protocol):
 class Desk:
     """One server's front; all tabs of it show the same desk."""
 
-    def __init__(self, server: Any, session: Session, conductor: Conductor, *, fast: bool) -> None:
+    def __init__(
+        self,
+        server: Any,
+        session: Session,
+        conductor: Conductor,
+        editor: Editor,
+        *,
+        fast: bool,
+    ) -> None:
         self.server = server
+        self.editor = editor
         self.session = session
         self.conductor = conductor
         self.fields = Fields(server, self.read, self.edit)
@@ -58,6 +69,7 @@ class Desk:
         self.reports.on_log = lambda lines: self.tell("log", lines)
         self.guarded = self.reports.guarded
         self.log = self.reports.log
+        self.galleries = Galleries(server, editor)
         self.aiming = Aiming(self)
         self.backstage = Backstage(on_error=self.reports.tell)
         on_click = self.guarded(self.aiming.clicked)
@@ -217,6 +229,8 @@ class Desk:
         """Show the frames that settled before a press failed."""
         if topic == LIVE:
             self.live.failed()
+        elif topic == GLIMPSE:
+            self.glimpse.failed()
         kept = error.kept if isinstance(error, SolveError) else ""
         if kept and topic != LIVE and kept == self.session.calls()["press"].key:
             if self.session.store.has(PARTIAL, kept):
@@ -227,14 +241,21 @@ class Desk:
             self.tell("partial", (contact, error))
 
     def _idle(self) -> None:
-        """Read what was typed, follow the handle, drop old frames, keep what has settled."""
-        self.fields.read_typed()
-        for gizmo in self.gizmos:
-            gizmo.turn()
-        self.backstage.turn()
-        self.scene.pressed.turn()
-        self.upkeep.turn()
-        self.saving.turn()
+        """Keep what has settled, read what was typed, follow the handles, drop old frames.
+
+        Each on its own, the keeping first: one that fails at each turn must not stop the others.
+        """
+        steps = (
+            self.saving.turn,
+            self.reports.turn,
+            self.fields.read_typed,
+            *(gizmo.turn for gizmo in self.gizmos),
+            self.backstage.turn,
+            self.scene.pressed.turn,
+            self.upkeep.turn,
+        )
+        for step in steps:
+            self.guarded(lambda event, step=step: step())(None)
 
     def refresh_header(self) -> None:
         """Show which stages are done and which are stale."""

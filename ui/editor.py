@@ -33,7 +33,9 @@ class Editor:
         self.tab: int | None = None
         """Number of the tab that edits; None while there is none."""
         self.on_change: Callable[[str], None] = lambda text: None
-        """Told when the editor changes, in words."""
+        """Told when the editor changes, in words; without a lock of this object."""
+        self.on_lost: list[Callable[[int], None]] = []
+        """Told the number of a tab that is there still and edits no more."""
         self._notes: dict[int, list[Any]] = {}
         self._lock = threading.RLock()
         server.on_client_connect(self._came)
@@ -46,13 +48,27 @@ class Editor:
     def take_over(self, client: Any) -> None:
         """Make a tab the editor; the one before follows, and both are told."""
         with self._lock:
-            before = self.server.get_clients().get(self.tab)
-            self.tab = client.client_id
-            self._unnote(client.client_id)
-            if before is not None and before is not client:
-                self._note(before)
-                _tell(before, "This tab follows now", "Another tab took over the editing.")
-            _tell(client, "This tab edits now", "The others follow.")
+            before = self._hand_over(client)
+        self._tell_change(before)
+
+    def _hand_over(self, client: Any) -> Any:
+        """Make a tab the editor; returns the tab before, None where it is the same or gone."""
+        before = self.server.get_clients().get(self.tab)
+        self.tab = client.client_id
+        self._unnote(client.client_id)
+        if before is client:
+            before = None
+        if before is not None:
+            self._note(before)
+            _tell(before, "This tab follows now", "Another tab took over the editing.")
+        _tell(client, "This tab edits now", "The others follow.")
+        return before
+
+    def _tell_change(self, before: Any) -> None:
+        """Tell the others; the event loop waits for this object's lock, so never under that."""
+        if before is not None:
+            for lost in self.on_lost:
+                lost(before.client_id)
         self.on_change("another tab edits now")
 
     def remind(self, tab: int) -> None:
@@ -84,8 +100,10 @@ class Editor:
         """Let the tab that has followed longest edit, where none has come back."""
         with self._lock:
             clients = self.server.get_clients()
-            if self.tab is None and clients:
-                self.take_over(clients[min(clients)])
+            if self.tab is not None or not clients:
+                return
+            self._hand_over(clients[min(clients)])
+        self._tell_change(None)
 
     def _note(self, client: Any) -> None:
         gui = client.gui

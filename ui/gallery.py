@@ -12,6 +12,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from ui.editor import Editor
+
 PRESS = (
     "const wanted=this.dataset.name;"
     "for(const b of document.querySelectorAll('.mantine-Modal-content button'))"
@@ -41,31 +43,62 @@ class Card:
     """Heading under which it stands."""
 
 
-def open_gallery(
-    gui: Any, title: str, cards: Sequence[Card], choose: Callable[[str], None]
-) -> None:
-    """Open a window with cards in one tab; it closes with the choice.
+class Galleries:
+    """At most one gallery per tab, and only in the tab that edits.
 
-    Args:
-        gui: The tab's own GUI.
-        title: Of the window.
-        cards: In their order; cards of a group stand together.
-        choose: Called with the name of the chosen card.
+    What stands in a tab's own GUI passes `ui.incoming`, so that a choice is asked about here.
     """
-    window = gui.add_modal(title)
 
-    def chosen(event: Any) -> None:
-        window.close()
-        choose(event.target.value)
+    def __init__(self, server: Any, editor: Editor) -> None:
+        self.editor = editor
+        self._open: dict[int, Any] = {}
+        editor.on_lost.append(self.close)
+        server.on_client_disconnect(self._left)
 
-    with window:
-        gui.add_html(cards_html(cards))
-        names = [card.name for card in cards]
-        for start in range(0, len(names), IN_A_ROW):
-            label = "Choose" if start == 0 else ""
-            row = gui.add_button_group(label, tuple(names[start : start + IN_A_ROW]))
-            row.on_click(chosen)
-        gui.add_button("Close", color="gray").on_click(lambda event: window.close())
+    def show(
+        self, client: Any, title: str, cards: Sequence[Card], choose: Callable[[str], None]
+    ) -> None:
+        """Open a window with cards in a tab, in place of the one there.
+
+        It closes with the choice, or when another tab takes the editing over.
+
+        Args:
+            client: The tab.
+            title: Of the window.
+            cards: In their order; cards of a group stand together.
+            choose: Called with the name of the chosen card.
+        """
+        tab, gui = client.client_id, client.gui
+        self.close(tab)
+
+        def chosen(event: Any) -> None:
+            self.close(tab)
+            if self.editor.edits(tab):
+                choose(event.target.value)
+            else:
+                self.editor.remind(tab)
+
+        with gui.add_modal(title) as window:
+            gui.add_html(cards_html(cards))
+            names = [card.name for card in cards]
+            for start in range(0, len(names), IN_A_ROW):
+                label = "Choose" if start == 0 else ""
+                row = gui.add_button_group(label, tuple(names[start : start + IN_A_ROW]))
+                row.on_click(chosen)
+            gui.add_button("Close", color="gray").on_click(lambda event: self.close(tab))
+        self._open[tab] = window
+        if not self.editor.edits(tab):
+            # Another tab took over while the cards were being laid out.
+            self.close(tab)
+
+    def close(self, tab: int) -> None:
+        """Close the gallery of a tab, if there is one."""
+        window = self._open.pop(tab, None)
+        if window is not None:
+            window.close()
+
+    async def _left(self, client: Any) -> None:
+        self._open.pop(client.client_id, None)
 
 
 def cards_html(cards: Sequence[Card]) -> str:

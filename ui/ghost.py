@@ -47,9 +47,11 @@ class Ghost:
 class GhostView:
     """Nodes of the ghosts and the label of the sensor that they stand beside."""
 
-    def __init__(self, server: Any, store: Store) -> None:
+    def __init__(self, server: Any, store: Store, *, on_error: Callable[[Exception], None]) -> None:
         self.server = server
         self.store = store
+        self.on_error = on_error
+        """Told by the thread what went wrong in it."""
         self._nodes: list[Any] = []
         self._wish = 0
         self._guard = threading.Lock()
@@ -81,7 +83,7 @@ class GhostView:
             self._wish += 1
             wish = self._wish
         work = (wish, tuple(ghosts), own, bounds_mm, then)
-        threading.Thread(target=self._make, args=work, name="ghosts", daemon=True).start()
+        threading.Thread(target=self._try, args=work, name="ghosts", daemon=True).start()
 
     def clear(self) -> None:
         """Take all away, and what is still being made."""
@@ -94,6 +96,13 @@ class GhostView:
             node.remove()
         self._nodes.clear()
         self.bounds_mm = None
+
+    def _try(self, *work: Any) -> None:
+        try:
+            self._make(*work)
+        except Exception as error:
+            # A thread that ends in silence would leave the old ghosts without a word.
+            self.on_error(error)
 
     def _make(
         self,

@@ -28,14 +28,18 @@ class Gizmo:
         api: Any,
         moved: Callable[[np.ndarray, np.ndarray], None],
         *,
+        edits: Callable[[int], bool],
         name: str = "/drag",
         scale_mm: float = SCALE_MM,
         turns: bool = False,
         axes: tuple[bool, bool, bool] = (True, True, True),
     ) -> None:
         self.moved = moved
+        self.edits = edits
+        """Whether what a tab sends is taken; the end of a drag may never come of one that left."""
         self._newest: tuple[np.ndarray, np.ndarray] | None = None
-        self._held = False
+        self._holder: int | None = None
+        """Number of the tab that drags."""
         self.handle = api.add_transform_controls(
             name,
             scale=scale_mm,
@@ -50,21 +54,29 @@ class Gizmo:
         @self.handle.on_update
         async def _(event: Any) -> None:
             # On the event loop, so that the poses come in order; nothing is computed here.
-            self._held = event.phase != "end"
+            self._holder = None if event.phase == "end" else event.client_id
             self._newest = (
                 np.array(self.handle.position, dtype=float),
                 np.array(self.handle.wxyz, dtype=float),
             )
 
     def turn(self) -> None:
-        """Hand over the newest pose, if one has come."""
+        """Hand over the newest pose, if one has come; let go where the holder has gone."""
+        if not self.held:
+            self._holder = None
         newest, self._newest = self._newest, None
         if newest is not None:
             self.moved(*newest)
 
+    @property
+    def held(self) -> bool:
+        """Whether a tab that edits drags it."""
+        holder = self._holder
+        return holder is not None and self.edits(holder)
+
     def place(self, position: np.ndarray, wxyz: np.ndarray | None = None) -> None:
         """Stand at a place, unless the designer holds it."""
-        if self._held:
+        if self.held:
             return
         if not np.allclose(self.handle.position, position, atol=1e-4):
             self.handle.position = tuple(float(x) for x in position)
@@ -73,6 +85,8 @@ class Gizmo:
             self.handle.wxyz = turned
 
     def show(self, visible: bool) -> None:
-        """Show or hide it."""
+        """Show or hide it; a hidden one is held by nobody."""
+        if not visible:
+            self._holder = self._newest = None
         if self.handle.visible != visible:
             self.handle.visible = visible

@@ -44,3 +44,9 @@ class GlimpseFollower:
         # A step back to a state that has images shows them again.
         desk.showing.forget("shoot")
         desk.tell("glimpse", glimpse)
+
+    def failed(self) -> None:
+        """Take the sketch of an earlier state away: it would pass for one of this state."""
+        self._asked = None
+        if not self.desk.live.on and not self.desk.current("shoot"):
+            self.desk.tell("glimpse", None)

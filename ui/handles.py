@@ -47,7 +47,13 @@ class Handle:
         self.box.on_update(desk.guarded(lambda event: self.follow()))
         name = "/handles/" + label.split(maxsplit=1)[0].lower()
         self.gizmo = Gizmo(
-            desk.scene.api, self._moved, name=name, scale_mm=SMALL_MM, turns=turns, axes=axes
+            desk.scene.api,
+            self._moved,
+            edits=desk.editor.edits,
+            name=name,
+            scale_mm=SMALL_MM,
+            turns=turns,
+            axes=axes,
         )
         desk.gizmos.append(self.gizmo)
 

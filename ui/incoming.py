@@ -48,6 +48,8 @@ class _Transfer:
 
     tab: int
     left_bytes: int
+    start: Any
+    """Its first message, by which its end is told."""
 
 
 class Incoming:
@@ -96,6 +98,10 @@ class Incoming:
             self._put_handle_back(tab, message.name)
         elif isinstance(message, messages.FileTransferStartUpload):
             self._end_upload(tab, message)
+        elif isinstance(message, messages.FileTransferPart):
+            transfer = self._transfers.get(message.transfer_uuid)
+            if transfer is not None and transfer.tab == tab:
+                self._drop(message.transfer_uuid)
         if self._escapes(message):
             # The key also closes what is the tab's own.
             return
@@ -132,6 +138,9 @@ class Incoming:
 
     def _begins(self, tab: int, message: Any) -> bool:
         """Whether a file may come; the first message of it tells its size."""
+        for uuid in [u for u, t in self._transfers.items() if not self.roles.edits(t.tab)]:
+            # Of a tab that lost the editing: it must not keep its slot.
+            self._drop(uuid)
         name, size = own_name(message.filename), message.size_bytes
         slots = -(-size // PART_BYTES)
         if not (0 <= size <= MOST_BYTES and slots <= message.part_count <= slots + 1):
@@ -143,7 +152,9 @@ class Incoming:
             why = f"{name} has to wait: {TRANSFERS} files are on their way"
         else:
             if size > 0:
-                self._transfers[message.transfer_uuid] = _Transfer(tab=tab, left_bytes=size)
+                self._transfers[message.transfer_uuid] = _Transfer(
+                    tab=tab, left_bytes=size, start=message
+                )
             return True
         self._end_upload(tab, message)
         client = self.server.get_clients().get(tab)
@@ -165,6 +176,12 @@ class Incoming:
         if transfer.left_bytes == 0:
             del self._transfers[message.transfer_uuid]
         return True
+
+    def _drop(self, uuid: str) -> None:
+        """Forget a file on its way, and free the button of its page."""
+        transfer = self._transfers.pop(uuid)
+        self.server.gui._current_file_upload_states.pop(uuid, None)
+        self._end_upload(transfer.tab, transfer.start)
 
     def _end_upload(self, tab: int, message: Any) -> None:
         """Free the page's button, which waits for the file, and take its progress away."""

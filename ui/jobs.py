@@ -57,7 +57,8 @@ class Jobs:
         """Who shows the previews of a topic; filled by the desk and the panels."""
         self.on_failed: Callable[[WorkbenchError, str], None] = lambda error, topic: None
         """Set by the desk: shows what an error leaves to look at."""
-        self._then: dict[str, Then] = {}
+        self._then: dict[int, tuple[Request, Then]] = {}
+        """Who waits for a request, by the identity of that: two of a topic may be equal."""
 
     def submit(
         self,
@@ -68,20 +69,24 @@ class Jobs:
         then: Then | None = None,
     ) -> None:
         """Ask for stages; `then` takes the place of reporting how it ended."""
-        if then is not None:
-            self._then[topic] = then
         if topic not in QUIET:
             self.reports.log(f"{topic}: started")
-        self.conductor.submit(topic, design, case, wanted)
+        # Under the pump's lock, so that its end is not handled before it is known who waits.
+        with self.reports.lock:
+            self._wait(self.conductor.submit(topic, design, case, wanted), then)
 
     def ask(self, topic: str, call: PreviewCall, state: State, then: Then) -> None:
         """Ask for a preview that the designer waits for; `then` is told how it ended.
 
         The answer itself goes to `on_preview`, before.
         """
-        self._then[topic] = then
         self.reports.log(f"{topic}: started")
-        self.conductor.ask(topic, state.design, state.case, call)
+        with self.reports.lock:
+            self._wait(self.conductor.ask(topic, state.design, state.case, call), then)
+
+    def _wait(self, request: Request, then: Then | None) -> None:
+        if then is not None:
+            self._then[id(request)] = (request, then)
 
     def pump_forever(self) -> None:
         """Drain events into widgets until the process ends."""
@@ -118,15 +123,14 @@ class Jobs:
 
     def _finish(self, event: Finished) -> None:
         self.running.pop(event.topic, None)
-        error, then = event.error, self._then.pop(event.topic, None)
+        error = event.error
+        _, then = self._then.pop(id(event.request), (None, None))
         log = self.reports.log
         quiet = event.topic in QUIET
         if event.superseded:
             if not quiet:
+                # Who waited for it is not told: the newer request has its own.
                 log(f"{event.topic}: replaced by a newer request")
-            if then is not None:
-                # It waits for the newer request's end.
-                self._then[event.topic] = then
         elif isinstance(error, Cancelled):
             if not quiet:
                 log(f"{event.topic}: cancelled")
@@ -139,6 +143,7 @@ class Jobs:
         elif error is not None and event.topic in (GLIMPSE, CUT):
             # What was wrong with the design itself is told by the topic of its shape.
             log(f"{event.topic}: {error.message}")
+            self.on_failed(error, event.topic)
         elif error is not None and event.topic == LIVE:
             self.reports.report(error)
             self.on_failed(error, event.topic)

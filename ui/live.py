@@ -27,7 +27,7 @@ class LivePress:
         self.on = False
         self.told: Callable[[str], None] = lambda text: None
         """Set by the panel with the check box: shows how it goes."""
-        self.gizmo = Gizmo(desk.scene.api, self._dragged)
+        self.gizmo = Gizmo(desk.scene.api, self._dragged, edits=desk.editor.edits)
         self._asked: LiveCall | None = None
 
     def switch(self, on: bool) -> None:

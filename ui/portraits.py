@@ -50,7 +50,7 @@ class Portraits:
             except Exception as bug:
                 # The thread must outlive a bug, and the designer must hear of it.
                 self.reports.crash(bug)
-            self.on_drawn()
+            self.reports.guarded(lambda event: self.on_drawn())(None)
 
     def _draw(self, name: str) -> None:
         keys = result_keys(self.project, load_variant(self.project, name))

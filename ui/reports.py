@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import contextlib
+import queue
 import sys
 import time
 import traceback
+from collections import Counter
 from collections.abc import Callable
 from typing import Any
 
@@ -36,6 +38,10 @@ class Reports:
         self.notices: list[Any] = []
         """Notifications of errors; they go with what they tell of."""
         self.lock = fields.lock
+        self._crashes: Counter[str] = Counter()
+        """How often each bug has come, by its traceback."""
+        self._soon: queue.SimpleQueue[str] = queue.SimpleQueue()
+        """Lines of threads that may not wait for the lock."""
 
     def beside(self, *topics: str) -> None:
         """Make a place under the button just made, for what became of these topics' requests."""
@@ -52,7 +58,8 @@ class Reports:
                 with self.lock:
                     handler(event)
             except WorkbenchError as error:
-                self.report(error)
+                with self.lock:
+                    self.report(error)
             except Exception as bug:
                 self.crash(bug)
 
@@ -90,7 +97,8 @@ class Reports:
         if topic or not at_field:
             title = f"{topic.capitalize()} failed" if topic else "Not possible"
             self.notices += self.notify(title, f"{words}.{hint}", color="red")
-        if "\n" in error.hint:
+        self._crashes[error.hint] += 1
+        if "\n" in error.hint and self._crashes[error.hint] == 1:
             # A traceback from a worker; a full disk must not hide the message itself.
             with contextlib.suppress(WorkbenchError):
                 self.session.project.write_crash(error.hint)
@@ -118,8 +126,18 @@ class Reports:
         self.notices.clear()
 
     def crash(self, bug: Exception) -> None:
-        """Keep the traceback of a bug and tell the designer where it is."""
+        """Keep the traceback of a bug and tell the designer where it is; the same one once."""
         text = "".join(traceback.format_exception(bug))
+        with self.lock:
+            self._crashes[text] += 1
+            count = self._crashes[text]
+            if count == 1:
+                self._keep_crash(bug, text)
+            elif str(count).strip("0") == "1":
+                # 10, 100, 1000: one that comes at each turn of the pump must not fill the log.
+                self.log(f"internal error: {bug!r}, {count} times by now")
+
+    def _keep_crash(self, bug: Exception, text: str) -> None:
         print(text, file=sys.stderr, flush=True)
         try:
             where = str(self.session.project.write_crash(text))
@@ -136,6 +154,16 @@ class Reports:
         ]
 
     def log(self, text: str) -> None:
-        """Add a line to the log."""
-        self.lines = [*self.lines[1 - LOG_LINES :], f"{time.strftime('%H:%M:%S')} {text}"]
-        self.on_log(self.lines)
+        """Add a line to the log, from any thread that may wait for the desk's lock."""
+        with self.lock:
+            self.lines = [*self.lines[1 - LOG_LINES :], f"{time.strftime('%H:%M:%S')} {text}"]
+            self.on_log(self.lines)
+
+    def log_soon(self, text: str) -> None:
+        """Add a line when the pump turns: the event loop must not wait, or all tabs would."""
+        self._soon.put(text)
+
+    def turn(self) -> None:
+        """Add the lines that wait; called by the pump."""
+        while not self._soon.empty():
+            self.log(self._soon.get())

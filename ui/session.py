@@ -119,10 +119,11 @@ class Session:
 
     def amend(self, dotted: str, value: Any) -> None:
         """Change a press field as part of the last edit: undo takes both back together."""
-        state, past, future = self.state, self._past, list(self._future)
+        state, past, future, last = self.state, self._past, list(self._future), self._last_edit
         self.change(dotted, value)
         if self.state is not state:
-            self._past, self._future = past, future
+            # The edit before stays the last one, or a drag amended on its way would fall apart.
+            self._past, self._future, self._last_edit = past, future, last
 
     def replace_indenter(self, indenter: Indenter) -> None:
         """Take another object."""

@@ -126,22 +126,22 @@ class Conductor:
 
     def submit(
         self, topic: str, design: SensorDesign, case: PressCase, wanted: Sequence[str]
-    ) -> None:
+    ) -> Request:
         """Ask for stages; a request of the same topic that has not begun is replaced.
 
         One that runs is stopped, except in topics that follow the hand: it is done before a person
         could wait for it, and a slider that moves on would otherwise never see a body.
         """
-        self._submit(topic, Request(design=design, case=case, wanted=tuple(wanted)))
+        return self._submit(topic, Request(design=design, case=case, wanted=tuple(wanted)))
 
     def press_live(self, design: SensorDesign, case: PressCase) -> None:
         """Ask for a live press; the one that runs is stopped, and none ever waits in line."""
         self.ask(LIVE, live_design(design), case, live_call(design, case))
 
-    def ask(self, topic: str, design: SensorDesign, case: PressCase, call: PreviewCall) -> None:
+    def ask(self, topic: str, design: SensorDesign, case: PressCase, call: PreviewCall) -> Request:
         """Ask for a preview and what it needs; a request of the same topic is replaced."""
         request = Request(design=design, case=case, wanted=call.needs, preview=call)
-        self._submit(topic, request)
+        return self._submit(topic, request)
 
     def stop_live(self) -> None:
         """Stop the live press that runs, if any."""
@@ -153,11 +153,12 @@ class Conductor:
             if topic in self._topics:
                 self._topics[topic].cancel()
 
-    def _submit(self, topic: str, request: Request) -> None:
+    def _submit(self, topic: str, request: Request) -> Request:
         with self._guard:
             if topic not in self._topics:
                 self._topics[topic] = _Topic(topic, self)
             self._topics[topic].submit(request)
+        return request
 
     def wait(self, seconds: float) -> list[Event]:
         """All events that have come, after at most that time without any [s]."""
@@ -214,7 +215,11 @@ class _Topic:
 
     def submit(self, request: Request) -> None:
         with self._wake:
-            self._next = request
+            replaced, self._next = self._next, request
+            if replaced is not None and self.name not in QUIET:
+                # Whoever waits for it must not wait for ever; nobody waits for the hand's.
+                error = Cancelled("superseded before it began")
+                self._finished(replaced, error, seconds=0.0, superseded=True)
             if self._stop is not None and not self._stop.asked and self.name not in FOLLOWING:
                 self._stop.superseded = True
                 self._stop.asked = True

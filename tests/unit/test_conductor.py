@@ -89,6 +89,23 @@ def test_newer_press_stops_the_running_one(conductor: Conductor, slow: Slow) -> 
     assert not conductor.busy
 
 
+def test_a_request_replaced_before_it_began_ends_too(conductor: Conductor, slow: Slow) -> None:
+    """Of three the second never begins; whoever waits for it hears that a newer one came."""
+    submit(conductor, "press", "first")
+    slow.begun.get(timeout=WAIT_S)
+    with conductor._topics["press"]._wake:  # pyright: ignore[reportPrivateUsage]
+        # The first cannot end meanwhile, so that the second has to wait.
+        submit(conductor, "press", "second")
+        submit(conductor, "press", "third")
+    ends = [finished(conductor), finished(conductor)]
+    assert {(e.request.design.name, e.superseded) for e in ends} == {
+        ("first", True),
+        ("second", True),
+    }
+    slow.release.set()
+    assert finished(conductor).request.design.name == "third"
+
+
 def test_the_stage_that_failed_is_named(tmp_path: Path) -> None:
     """The body is built and its mesh fails: the end names `mesh`, the second of the two."""
 

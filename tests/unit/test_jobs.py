@@ -11,9 +11,9 @@ import pytest
 
 from ui.header import NAMES
 from ui.jobs import Jobs
-from workbench.conductor import SHAPE, Finished, Request
+from workbench.conductor import GLIMPSE, SHAPE, Finished, Request
 from workbench.core.design import SensorDesign
-from workbench.core.errors import DesignError
+from workbench.core.errors import Cancelled, DesignError
 from workbench.pipeline import PressCase
 from workbench.stages import STAGES
 
@@ -46,10 +46,14 @@ def told() -> Told:
     return Told()
 
 
+def asked(design: SensorDesign, case: PressCase, wanted: tuple[str, ...]) -> Request:
+    return Request(design=design, case=case, wanted=wanted)
+
+
 @pytest.fixture
 def jobs(told: Told) -> Jobs:
     reports: Any = told
-    conductor: Any = None
+    conductor: Any = SimpleNamespace(submit=lambda topic, *words: asked(*words))
     header: Any = SimpleNamespace(show_progress=lambda running: None)
     return Jobs(conductor, reports, header)
 
@@ -76,6 +80,47 @@ def test_an_error_of_another_design_is_only_logged(jobs: Jobs, told: Told) -> No
     assert told.errors == []
     assert asked == ["build"]
     assert told.lines == ["press, of an earlier design: no face is sensing"]
+
+
+def test_whoever_waits_is_told_of_their_own_request(jobs: Jobs) -> None:
+    """The first ends as the second, an equal one, is asked for: each is told of its own end."""
+    design, sent, ends = SensorDesign(name="any"), [], []
+    conductor: Any = jobs.conductor
+    conductor.submit = lambda *words: sent.append(asked(*words[1:])) or sent[-1]
+    for name in ("first", "second"):
+        then = lambda event, name=name: ends.append((name, event.request))  # noqa: E731
+        jobs.submit("variant", design, PressCase(), ("shoot",), then)
+    for request in sent:
+        jobs.pump([Finished(topic="variant", request=request, error=None, seconds=1.0)])
+    assert [name for name, _ in ends] == ["first", "second"]
+    assert all(told is request for (_, told), request in zip(ends, sent, strict=True))
+
+
+def test_nobody_is_told_of_a_request_that_was_replaced(jobs: Jobs) -> None:
+    """The end of the older one, which was stopped for the newer, reaches no one."""
+    design, sent, ends = SensorDesign(name="any"), [], []
+    conductor: Any = jobs.conductor
+    conductor.submit = lambda *words: sent.append(asked(*words[1:])) or sent[-1]
+    for name in ("first", "second"):
+        then = lambda event, name=name: ends.append(name)  # noqa: E731
+        jobs.submit("import", design, PressCase(), ("intake",), then)
+    stopped = Finished(
+        topic="import", request=sent[0], error=Cancelled("newer"), seconds=1.0, superseded=True
+    )
+    jobs.pump([stopped])
+    assert ends == []
+    jobs.pump([Finished(topic="import", request=sent[1], error=None, seconds=1.0)])
+    assert ends == ["second"]
+
+
+def test_a_failed_glimpse_takes_the_one_before_away(jobs: Jobs, told: Told) -> None:
+    """The desk is told, the designer reads one line in the log."""
+    shown = []
+    jobs.on_failed = lambda error, topic: shown.append(topic)
+    jobs.pump([failed(GLIMPSE)])
+    assert shown == [GLIMPSE]
+    assert told.errors == []
+    assert told.lines == ["glimpse: no face is sensing"]
 
 
 def test_every_stage_has_a_name_for_people() -> None:

@@ -72,6 +72,29 @@ def test_an_amendment_is_undone_with_the_edit_it_follows(session: Session, clock
     assert session.design.shape["outer_radius_mm"] == 10.0
 
 
+def test_a_drag_that_is_amended_on_its_way_is_one_step(session: Session, clock: Clock) -> None:
+    """Six ticks, the target following each, undo together."""
+    start = session.state
+    for step in range(6):
+        clock.now += 0.2
+        session.change("design.shape.outer_radius_mm", 10.0 + 0.5 * step)
+        session.amend("case.press.target_mm", (0.0, 7.0, 33.0 + 0.5 * step))
+    assert session.undo()
+    assert session.state == start
+    assert not session.undo()
+
+
+def test_an_edit_after_an_amendment_is_a_step_of_its_own(session: Session, clock: Clock) -> None:
+    """The target is set by hand .1 s after it followed the shape: undo gives the followed one."""
+    session.change("design.shape.outer_radius_mm", 10.0)
+    session.amend("case.press.target_mm", (0.0, 7.0, 33.0))
+    followed = session.state
+    clock.now += 0.1
+    session.change("case.press.target_mm", (0.0, 6.0, 33.0))
+    assert session.undo()
+    assert session.state == followed
+
+
 def test_random_edits_undo_to_the_start_byte_for_byte(session: Session, clock: Clock) -> None:
     """50 random edits and 50 undos give the starting TOML."""
     start = design_to_toml(session.design)

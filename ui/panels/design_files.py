@@ -13,7 +13,7 @@ from typing import Any
 import viser
 
 from ui.desk import Desk
-from ui.gallery import Card, open_gallery
+from ui.gallery import Card
 from workbench.core.errors import WorkbenchError
 from workbench.core.monitor import silent
 from workbench.design_bundle import bundle, unbundle
@@ -181,7 +181,8 @@ class DesignFiles:
             else:
                 self._start(name)
 
-        open_gallery(event.client.gui, "Start from", (*shipped, *own), self.desk.guarded(choose))
+        desk, cards = self.desk, (*shipped, *own)
+        desk.galleries.show(event.client, "Start from", cards, desk.guarded(choose))
 
     def _own_card(self, label: str, found: SavedDesign) -> Card:
         words = found.reason or found.family

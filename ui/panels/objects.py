@@ -9,7 +9,7 @@ from typing import Any
 import viser
 
 from ui.desk import Desk
-from ui.gallery import Card, open_gallery
+from ui.gallery import Card
 from workbench.conductor import Finished
 from workbench.core.errors import Cancelled, DesignError
 from workbench.core.indenter import Indenter, IndenterKind
@@ -133,7 +133,8 @@ class ObjectFolder:
         def choose(words: str) -> None:
             self._start(labels[words])
 
-        open_gallery(event.client.gui, "Object to press", cards, self.desk.guarded(choose))
+        desk = self.desk
+        desk.galleries.show(event.client, "Object to press", cards, desk.guarded(choose))
 
     def _size(self) -> float:
         return float(self.size.value)

@@ -43,7 +43,7 @@ class VersusFolder:
         self.a: Side | None = None
         self.b: Side | None = None
         self.both: Pair | None = None
-        self.ghosts = GhostView(desk.server, desk.session.store)
+        self.ghosts = GhostView(desk.server, desk.session.store, on_error=desk.reports.tell)
         self.hidden = False
         """Whether parts are looked at, so that no ghost stands among them."""
         gui = desk.server.gui
@@ -211,7 +211,8 @@ class VersusFolder:
             return
         wanted, own = self._wanted(self.a, self.b)
         bounds = self.desk.scene.body.bounds_mm
-        self.ghosts.show(wanted, own=own, bounds_mm=bounds, then=self._drawn)
+        then = self.desk.guarded(self._drawn)
+        self.ghosts.show(wanted, own=own, bounds_mm=bounds, then=then)
 
     def _wanted(self, a: Side, b: Side) -> tuple[list[Ghost], str]:
         """What is drawn, and the label of the sensor: A where it is that, else what it is."""
