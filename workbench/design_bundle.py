@@ -1,8 +1,8 @@
 """A design as one file: readable TOML alone, or a zip of it with the files that it names.
 
 A zip holds one TOML at its top and beside it `bodies/`, `pictures/` and `indenters/`, as the
-project's folder does. What a zip holds is checked by name, size and number before it is unpacked,
-into a folder of its own; the readers check the contents.
+project's folder does. What a zip holds is checked by name, size and number and unpacked into a
+folder of its own; the readers check the contents.
 """
 
 from __future__ import annotations
@@ -11,7 +11,6 @@ import io
 import re
 import tempfile
 import zipfile
-import zlib
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -20,6 +19,7 @@ from workbench.kept_indenters import kept_arrays
 from workbench.project import MAX_TOML_BYTES, Project, design_files, design_to_toml
 from workbench.state import State, case_table, read_state
 from workbench.uploads import own_name
+from workbench.zip_files import zip_members
 
 MOST_FILES = 50
 MOST_BYTES = 200_000_000
@@ -93,39 +93,21 @@ def _text(name: str, content: bytes) -> str:
 
 def _unpacked(name: str, content: bytes, folder: Path) -> str:
     """Write a zip's files into a folder; returns its TOML."""
-    try:
-        with zipfile.ZipFile(io.BytesIO(content)) as archive:
-            members = archive.infolist()
-            _check(name, members)
-            for member in members:
-                if MEMBER.fullmatch(member.filename):
-                    path = folder / member.filename
-                    path.parent.mkdir(exist_ok=True)
-                    path.write_bytes(archive.read(member))
-            return _text(name, archive.read(_tomls(members)[0]))
-    except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError) as error:
+    files = zip_members(name, content, wanted=_wanted, most_files=MOST_FILES, most_bytes=MOST_BYTES)
+    texts = [path for path in files if not MEMBER.fullmatch(path)]
+    if len(texts) != 1:
         raise DesignError(
-            f"{name} is not a zip that can be read: {error}", hint="save it again", at="design"
-        ) from error
-
-
-def _tomls(members: list[zipfile.ZipInfo]) -> list[str]:
-    names = (member.filename for member in members)
-    return [name for name in names if "/" not in name and name.lower().endswith(".toml")]
-
-
-def _check(name: str, members: list[zipfile.ZipInfo]) -> None:
-    total = sum(member.file_size for member in members)
-    if len(members) > MOST_FILES or total > MOST_BYTES:
-        raise DesignError(
-            f"{name} unpacks to {len(members)} files of {total / 1e6:.0f} MB, a design has at most "
-            f"{MOST_FILES} and {MOST_BYTES / 1e6:.0f} MB",
-            hint="is this a design saved by the workbench?",
-            at="design",
-        )
-    if len(_tomls(members)) != 1:
-        raise DesignError(
-            f"{name} holds {len(_tomls(members))} TOML files at its top, expected 1",
+            f"{name} holds {len(texts)} TOML files at its top, expected 1",
             hint="choose a zip that Download design has written",
             at="design",
         )
+    for path in files.keys() - texts:
+        target = folder / path
+        target.parent.mkdir(exist_ok=True)
+        target.write_bytes(files[path])
+    return _text(name, files[texts[0]])
+
+
+def _wanted(path: str) -> bool:
+    """Whether a member is the design itself, or a file that it may name."""
+    return bool(MEMBER.fullmatch(path)) or ("/" not in path and path.lower().endswith(".toml"))

@@ -8,14 +8,13 @@ from __future__ import annotations
 
 import dataclasses
 import io
-import zipfile
-import zlib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from workbench.array_files import read_arrays
 from workbench.core.digest import digest
 from workbench.core.errors import DesignError
 from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
@@ -117,14 +116,28 @@ def _kept(project: Project, key: Any, kind: type[Any]) -> Any:
     """A mesh or a picture of the project; a file that was cut short is as good as none."""
     path = _path(project, str(key))
     try:
-        with np.load(path) as arrays:
-            return kind(**arrays)
-    except (OSError, EOFError, TypeError, ValueError, zipfile.BadZipFile, zlib.error) as error:
+        arrays = read_arrays(path.name, path.read_bytes())
+        if kind is IndenterMesh:
+            _check_faces(**arrays)
+        return kind(**arrays)
+    except (OSError, TypeError, ValueError) as error:
         raise DesignError(
             f"the mesh or picture of this press's indenter is not in the project: {error}",
             hint="load the file again",
             at=AT,
         ) from error
+
+
+def _check_faces(*, points_mm: np.ndarray, faces: np.ndarray) -> None:
+    """Refuse triangles between points that there are not.
+
+    Raises:
+        ValueError: If the numbers are not whole, or a corner is none of the points.
+    """
+    if faces.dtype.kind not in "iu" or not np.isfinite(points_mm).all():
+        raise ValueError("its triangles are not made of points")
+    if faces.size and not (0 <= faces.min() and faces.max() < len(points_mm)):
+        raise ValueError("a triangle has a corner that is none of its points")
 
 
 def _path(project: Project, key: str) -> Path:
