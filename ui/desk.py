@@ -145,6 +145,9 @@ class Desk:
         if not session.store.has("build", session.calls()["build"].key):
             # First of all: the worker builds while the widgets follow.
             self.jobs.submit(SHAPE, session.design, session.case, ("build",))
+        else:
+            # An edit taken back: what was being built for it must not hold up the rest.
+            self.conductor.give_up(SHAPE)
         self.scene.rig.show_optics(session.design.optics)
         self.showing.show_stored()
         if self.current("build"):

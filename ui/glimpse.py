@@ -29,6 +29,7 @@ class GlimpseFollower:
         desk, session = self.desk, self.desk.session
         if desk.live.on or desk.current("shoot"):
             self._asked = None
+            desk.conductor.give_up(GLIMPSE)
             return
         call = glimpse_call(session.design, session.case)
         if call != self._asked:

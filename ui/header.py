@@ -8,7 +8,7 @@ from typing import Any
 import viser
 
 from ui.plain import plain
-from workbench.conductor import FOLLOWING, LIVE, Progress
+from workbench.conductor import FOLLOWING, LIVE, PATIENCE_S, SHAPE, Progress
 from workbench.core.design import SensorDesign
 from workbench.core.units import human_seconds
 
@@ -107,4 +107,4 @@ class Header:
 def _worth_a_bar(topic: str, progress: Progress) -> bool:
     if topic == LIVE:
         return progress.eta_s is not None and progress.eta_s > WAIT_S
-    return topic not in FOLLOWING
+    return topic not in FOLLOWING or (topic == SHAPE and progress.seconds > PATIENCE_S)

@@ -36,7 +36,9 @@ GLIMPSE = "glimpse"
 CUT = "cut"
 """The topic of the section view."""
 FOLLOWING = (SHAPE, GLIMPSE, CUT)
-"""Topics that are too quick for a bar and that Cancel is not meant for."""
+"""Topics too quick for a bar or a Cancel, unless one takes longer than `PATIENCE_S`."""
+PATIENCE_S = 4.0
+"""What follows the hand and still runs after this gives way to a newer request [s]."""
 QUIET = (*FOLLOWING, LIVE)
 """Topics that follow the designer's hand: nothing is logged of them."""
 
@@ -77,6 +79,8 @@ class Progress:
     fraction: float
     note: str
     eta_s: float | None
+    seconds: float = 0.0
+    """Since the request began [s]."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -170,11 +174,18 @@ class Conductor:
         return found
 
     def cancel(self, *, following: bool = False) -> None:
-        """Stop what runs and forget what waits; what follows the hand only when asked to."""
+        """Stop what runs and forget what waits; what follows the hand only when it takes long."""
         with self._guard:
             for topic in self._topics.values():
-                if following or topic.name not in FOLLOWING:
+                if following or topic.name not in FOLLOWING or topic.seconds > PATIENCE_S:
                     topic.cancel()
+
+    def give_up(self, *topics: str) -> None:
+        """Nobody waits for these any more: what waits is forgotten, what takes long is stopped."""
+        with self._guard:
+            for name in topics:
+                if name in self._topics:
+                    self._topics[name].give_up()
 
     @property
     def busy(self) -> bool:
@@ -192,8 +203,14 @@ class _Stop:
     """Asks one running request to end."""
 
     def __init__(self) -> None:
+        self.began = time.monotonic()
         self.asked = False
         self.superseded = False
+
+    @property
+    def seconds(self) -> float:
+        """How long the request has run [s]."""
+        return time.monotonic() - self.began
 
 
 class _Topic:
@@ -204,6 +221,8 @@ class _Topic:
         self.conductor = conductor
         self._next: Request | None = None
         self._stop: _Stop | None = None
+        self._wanted = True
+        """Whether anybody waits for what runs."""
         self._wake = threading.Condition()
         threading.Thread(target=self._loop, name=f"topic-{name}", daemon=True).start()
 
@@ -213,8 +232,25 @@ class _Topic:
         with self._wake:
             return self._next is not None or self._stop is not None
 
+    @property
+    def seconds(self) -> float:
+        """How long the running request has taken so far [s]; 0 when none runs."""
+        with self._wake:
+            return 0.0 if self._stop is None else self._stop.seconds
+
+    def outdated(self, stop: _Stop) -> bool:
+        """Whether what runs has taken long and something newer is wanted in its place."""
+        with self._wake:
+            unwanted = self._next is not None or not self._wanted
+            return self.name in FOLLOWING and unwanted and stop.seconds > PATIENCE_S
+
+    def give_up(self) -> None:
+        with self._wake:
+            self._next, self._wanted = None, False
+
     def submit(self, request: Request) -> None:
         with self._wake:
+            self._wanted = True
             replaced, self._next = self._next, request
             if replaced is not None and self.name not in QUIET:
                 # Whoever waits for it must not wait for ever; nobody waits for the hand's.
@@ -264,11 +300,10 @@ class _Topic:
         )
 
     def _work(self, request: Request, stop: _Stop) -> None:
-        started = time.monotonic()
         error: WorkbenchError | None = None
         events = self.conductor.events
         waiting: list[str] = []
-        reporter = _Reporter(self.name, events, stop)
+        reporter = _Reporter(self, events, stop)
         try:
             waiting = needed(plan(request.design, request.case), request.wanted)
             for outcome in evaluate(
@@ -290,7 +325,7 @@ class _Topic:
             # The thread must outlive a bug, and the designer must hear of it.
             error = WorkbenchError(f"internal error: {bug!r}", hint=traceback.format_exc())
         superseded = stop.superseded and isinstance(error, Cancelled)
-        seconds = time.monotonic() - started
+        seconds = stop.seconds
         with self._wake:
             # Together, so that whoever reads the event finds the topic free.
             self._stop = None
@@ -306,7 +341,7 @@ class _Topic:
 class _Reporter:
     """Turns a stage's progress into events with an estimate of the time left."""
 
-    def __init__(self, topic: str, events: queue.Queue[Event], stop: _Stop) -> None:
+    def __init__(self, topic: _Topic, events: queue.Queue[Event], stop: _Stop) -> None:
         self.topic = topic
         self.events = events
         self.stop = stop
@@ -315,6 +350,8 @@ class _Reporter:
         self.sent = 0.0
 
     def __call__(self, stage: str, fraction: float, note: str) -> None:
+        if not self.stop.asked and self.topic.outdated(self.stop):
+            self.stop.asked = self.stop.superseded = True
         if self.stop.asked:
             newer = "superseded by a newer request"
             raise Cancelled(newer if self.stop.superseded else "cancelled by the user")
@@ -326,5 +363,12 @@ class _Reporter:
         self.sent = now
         left = seconds_left(now - self.began, fraction)
         self.events.put(
-            Progress(topic=self.topic, stage=stage, fraction=fraction, note=note, eta_s=left)
+            Progress(
+                topic=self.topic.name,
+                stage=stage,
+                fraction=fraction,
+                note=note,
+                eta_s=left,
+                seconds=self.stop.seconds,
+            )
         )

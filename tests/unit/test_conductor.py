@@ -217,3 +217,36 @@ def test_of_many_drags_the_first_is_stopped_and_only_the_last_is_pressed(tmp_pat
     assert shown.request.case.press.depth_mm == pytest.approx(1.2)
     assert finished(conductor).error is None
     assert runner.depths_mm.empty()
+
+
+def test_what_follows_the_hand_gives_way_once_it_takes_long(
+    conductor: Conductor, slow: Slow, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A shape under the patience goes on beside a newer request; beyond it, it is stopped."""
+    monkeypatch.setattr("workbench.conductor.PATIENCE_S", 0.8)
+    conductor.submit(SHAPE, design("first"), PressCase(), ("build",))
+    slow.begun.get(timeout=WAIT_S)
+    began = time.monotonic()
+    conductor.submit(
+        SHAPE, design("first").replace("shape.cylinder_mm", 20.0), PressCase(), ("build",)
+    )
+    ended = finished(conductor)
+    assert ended.superseded and ended.request.design.name == "first"
+    assert time.monotonic() - began > 0.5
+    slow.begun.get(timeout=WAIT_S)
+    conductor.cancel()
+    time.sleep(1.0)
+    assert conductor.busy, "Cancel is not meant for a shape that has just begun"
+    conductor.cancel()
+    assert isinstance(finished(conductor).error, Cancelled)
+
+
+def test_a_shape_that_nobody_waits_for_is_stopped(
+    conductor: Conductor, slow: Slow, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """An edit taken back: its long build ends without a newer request."""
+    monkeypatch.setattr("workbench.conductor.PATIENCE_S", 0.1)
+    conductor.submit(SHAPE, design("first"), PressCase(), ("build",))
+    slow.begun.get(timeout=WAIT_S)
+    conductor.give_up(SHAPE)
+    assert finished(conductor).superseded
