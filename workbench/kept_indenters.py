@@ -116,7 +116,7 @@ def _kept(project: Project, key: Any, kind: type[Any]) -> Any:
     """A mesh or a picture of the project; a file that was cut short is as good as none."""
     path = _path(project, str(key))
     try:
-        arrays = read_arrays(path.name, path.read_bytes())
+        arrays: dict[str, Any] = {**read_arrays(path.name, path.read_bytes())}
         if kind is IndenterMesh:
             _check_faces(**arrays)
         return kind(**arrays)

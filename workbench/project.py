@@ -54,6 +54,10 @@ VARIABLE = "WORKBENCH_PROJECT"
 DEFAULT_FOLDER = ".workbench"
 AUTOSAVE = "autosave"
 MAX_TOML_BYTES = 1_000_000
+MOST_NAME_BYTES = 240
+"""Of a file's name; a file system takes 255, and some go to its ending."""
+RESERVED = ("-",)
+"""Names that mean none in the lists of the front."""
 GUEST_TABLES = ("press_case", "variant", "sweep")
 """Tables of a design file that the design itself does not read."""
 
@@ -69,9 +73,9 @@ class Project:
         """File of a saved design.
 
         Raises:
-            DesignError: If the name could leave the folder.
+            DesignError: If the name cannot be one of a file, or could leave the folder.
         """
-        if not name or name[0] in ". " or any(c in name for c in '/\\:*?"<>|\0') or len(name) > 80:
+        if not _fits(name):
             raise DesignError(
                 f"{name!r} cannot be a design name",
                 hint="use letters, digits, spaces and dashes, at most 80",
@@ -122,6 +126,17 @@ class Project:
         path = _free(self.folder / "crash" / name)
         write_atomically(path, text.encode())
         return path
+
+
+def _fits(name: str) -> bool:
+    """Whether every file system takes a name, and no other file has it."""
+    if not name or name != name.strip() or name[0] == "." or not name.isprintable():
+        return False
+    if len(name) > 80 or len(name.encode()) > MOST_NAME_BYTES or name in RESERVED:
+        return False
+    # Some disks do not tell capital letters from small ones.
+    own = name.lower() == AUTOSAVE and name != AUTOSAVE
+    return not own and not any(letter in name for letter in '/\\:*?"<>|')
 
 
 def _free(path: Path) -> Path:

@@ -1,20 +1,27 @@
 """Designs that a designer has named and kept: one readable TOML each, with the press beside it.
 
-They stand in the project's folder `designs/`; the version before the last save is kept in
-`designs/previous/`, a deleted one in `designs/trash/`. A file that was edited into nonsense is
-listed with its reason and never overwritten without being kept.
+They stand in the project's folder `designs/`. What a save replaces is kept as a numbered version
+in `designs/previous/NAME/`, a deleted one in `designs/trash/`. A file that was edited into nonsense
+is listed with its reason and never overwritten without being kept.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import contextlib
+from dataclasses import dataclass, field
 from pathlib import Path
 
-from workbench.core.errors import DesignError, StoreError, WorkbenchError
-from workbench.project import AUTOSAVE, Project, design_to_toml, write_atomically
+from workbench.core.errors import DesignError, WorkbenchError
+from workbench.pipeline import plan
+from workbench.project import AUTOSAVE, MAX_TOML_BYTES, Project, design_to_toml, write_atomically
 from workbench.state import State, case_table, read_state
+from workbench.trash import file_names, numbered, restore_file, trash_file
 
-PREVIOUS, TRASH = "previous", "trash"
+PREVIOUS = "previous"
+MOST_VERSIONS = 20
+"""Versions kept of each design; the oldest go."""
+Stamp = tuple[int, int]
+"""Time of the last change [ns] and size [bytes] of a file."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -24,31 +31,59 @@ class SavedDesign:
     name: str
     family: str
     """Empty where the file cannot be read."""
+    build: str = ""
+    """Key of its body's result."""
     reason: str = ""
     """Why it cannot be read."""
 
 
+@dataclass
+class SavedShelf:
+    """The kept designs of a project; files that did not change are read once."""
+
+    project: Project
+    _read: dict[str, tuple[Stamp, SavedDesign]] = field(default_factory=dict)
+
+    def entries(self) -> tuple[SavedDesign, ...]:
+        """All kept designs, those that cannot be read with the reason."""
+        return tuple(self._entry(name) for name in saved_names(self.project))
+
+    def _entry(self, name: str) -> SavedDesign:
+        stamp = file_stamp(self.project, name)
+        known = self._read.get(name)
+        if stamp is None or known is None or known[0] != stamp:
+            found = _listed(self.project, name)
+            if stamp is not None:
+                self._read[name] = (stamp, found)
+            return found
+        return known[1]
+
+
 def saved_names(project: Project) -> tuple[str, ...]:
     """Names of all kept designs, readable or not."""
-    found = (path.stem for path in _folder(project).glob("*.toml"))
-    return tuple(sorted(name for name in found if name != AUTOSAVE))
+    return tuple(name for name in file_names(_folder(project)) if name != AUTOSAVE)
 
 
-def saved_designs(project: Project) -> tuple[SavedDesign, ...]:
-    """All kept designs, those that cannot be read with the reason."""
-    return tuple(_listed(project, name) for name in saved_names(project))
+def file_stamp(project: Project, name: str) -> Stamp | None:
+    """What tells one version of a kept design from another; None where there is none."""
+    try:
+        about = (_folder(project) / f"{name}.toml").stat()
+    except (OSError, ValueError):
+        return None
+    return about.st_mtime_ns, about.st_size
 
 
 def _listed(project: Project, name: str) -> SavedDesign:
     try:
         state = open_design(project, name)
+        build = plan(state.design, state.case)["build"].key
     except WorkbenchError as error:
         return SavedDesign(name=name, family="", reason=error.message)
-    return SavedDesign(name=name, family=state.design.family)
+    return SavedDesign(name=name, family=state.design.family, build=build)
 
 
 def save_named(project: Project, state: State) -> Path:
-    """Keep a design and its press under the design's name; the version before is kept too.
+    """Keep a design and its press under the design's name; what this replaces is kept too.
 
     Raises:
         DesignError: If the name cannot be one of a file.
@@ -60,53 +95,78 @@ def save_named(project: Project, state: State) -> Path:
         raise DesignError(
             f"{name!r} is what the workbench calls its own copy", hint="choose another", at="name"
         )
-    if path.exists():
-        write_atomically(path.parent / PREVIOUS / path.name, _bytes(path))
     project.keep_files(state.design)
-    text = design_to_toml(state.design, press_case=case_table(state.case, project))
-    write_atomically(path, text.encode())
+    press = case_table(state.case, project)
+    content = design_to_toml(state.design, press_case=press).encode()
+    if path.exists():
+        _keep_version(path, content)
+    write_atomically(path, content)
     return path
+
+
+def versions(project: Project, name: str) -> list[Path]:
+    """Files of a design's earlier versions, the oldest first."""
+    files = (_folder(project) / PREVIOUS / name).glob("*.toml")
+    return sorted((file for file in files if file.stem.isdecimal()), key=lambda f: int(f.stem))
+
+
+def _keep_version(path: Path, content: bytes) -> None:
+    """Keep a file that is about to be replaced by another content, and forget the oldest."""
+    old = _bytes(path)
+    if old == content:
+        return
+    folder = path.parent / PREVIOUS / path.stem
+    kept = sorted(int(file.stem) for file in folder.glob("*.toml") if file.stem.isdecimal())
+    write_atomically(folder / f"{kept[-1] + 1 if kept else 1}.toml", old)
+    for number in kept[: max(len(kept) + 1 - MOST_VERSIONS, 0)]:
+        # A version too many does no harm.
+        with contextlib.suppress(OSError):
+            (folder / f"{number}.toml").unlink()
 
 
 def open_design(project: Project, name: str) -> State:
     """A kept design and its press.
 
     Raises:
-        DesignError: If it is gone or was edited into nonsense.
+        DesignError: If it is gone, too large, or was edited into nonsense.
     """
     path = project.design_path(name)
     try:
+        if path.stat().st_size > MAX_TOML_BYTES:
+            raise ValueError(f"it is larger than {MAX_TOML_BYTES} bytes")
         text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
+    except (OSError, ValueError) as error:
         raise DesignError(f"{path.name} cannot be read: {error}", hint=f"see {path}") from error
     return read_state(text, project, source=path.name)
 
 
-def delete_design(project: Project, name: str) -> Path:
-    """Move a kept design to the trash; returns where it is.
+def delete_design(project: Project, name: str) -> str:
+    """Move a kept design to the trash, readable or not; returns its name there.
 
     Raises:
         DesignError: If there is none of that name.
         StoreError: If the folder cannot be written.
     """
-    path = project.design_path(name)
-    kept = path.parent / TRASH / path.name
-    write_atomically(kept, _bytes(path))
-    try:
-        path.unlink()
-    except OSError as error:
-        raise StoreError(f"cannot remove {path}: {error}", hint="is it read-only?") from error
-    return kept
+    if name == AUTOSAVE:
+        raise DesignError("the autosave is not deleted", hint="choose another", at="design")
+    return trash_file(_folder(project), name, what="design")
+
+
+def restore_design(project: Project, kept: str) -> str:
+    """Bring a design back from the trash; returns its name, which may have got a number.
+
+    Raises:
+        DesignError: If the trash does not hold it.
+        StoreError: If the folder cannot be written.
+    """
+    return restore_file(_folder(project), kept, what="design")
 
 
 def free_name(project: Project, name: str) -> str:
     """A name like this one that no kept design has: `finger 2` after `finger`."""
     stem, _, last = name.rpartition(" ")
     stem = stem if last.isdigit() and stem else name
-    taken, number = set(saved_names(project)), 2
-    while f"{stem} {number}" in taken:
-        number += 1
-    return f"{stem} {number}"
+    return numbered(stem[:70].rstrip(), saved_names(project))
 
 
 def _bytes(path: Path) -> bytes:

@@ -15,7 +15,7 @@ from workbench.project import MAX_TOML_BYTES, Project, design_to_toml, write_ato
 from workbench.score_card import finite_figures
 from workbench.state import case_table, read_state
 from workbench.sweeps import MOST, Point, Status, Sweep
-from workbench.variant_files import TRASH, move_file, numbered
+from workbench.trash import restore_file, trash_file
 
 FOLDER = "sweeps"
 
@@ -66,13 +66,7 @@ def delete_sweep(project: Project, name: str) -> str:
         DesignError: If there is none of that name.
         StoreError: If the folder cannot be written.
     """
-    if name not in list_sweeps(project):
-        raise DesignError(f"there is no sweep {name!r}", hint="it is gone already", at="sweep")
-    trash = project.folder / FOLDER / TRASH
-    taken = [path.stem for path in trash.glob("*.toml")]
-    kept = name if name not in taken else numbered(name, taken)
-    move_file(project.folder / FOLDER / f"{name}.toml", trash / f"{kept}.toml")
-    return kept
+    return trash_file(project.folder / FOLDER, name, what="sweep")
 
 
 def restore_sweep(project: Project, kept: str) -> str:
@@ -82,12 +76,7 @@ def restore_sweep(project: Project, kept: str) -> str:
         DesignError: If the trash does not hold it.
         StoreError: If the folder cannot be written.
     """
-    path, taken = project.folder / FOLDER / TRASH / f"{kept}.toml", list_sweeps(project)
-    if not path.is_file():
-        raise DesignError(f"the trash has no sweep {kept!r}", hint=f"look in {path.parent}")
-    name = kept if kept not in taken else numbered(kept, taken)
-    move_file(path, project.folder / FOLDER / f"{name}.toml")
-    return name
+    return restore_file(project.folder / FOLDER, kept, what="sweep")
 
 
 def load_sweep(project: Project, name: str) -> Sweep:

@@ -11,8 +11,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from workbench.core.errors import DesignError, StoreError, WorkbenchError
+from workbench.core.errors import WorkbenchError
 from workbench.project import Project, write_atomically
+from workbench.trash import file_names, move_file, numbered, restore_file, trash_file
 from workbench.variants import (
     Variant,
     folder,
@@ -21,8 +22,6 @@ from workbench.variants import (
     variant_path,
     write_variant,
 )
-
-TRASH = "trash"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -69,7 +68,7 @@ def _entry(project: Project, name: str) -> Entry:
 
 def list_variants(project: Project) -> list[str]:
     """Names of all files of variants, readable or not."""
-    return sorted(path.stem for path in folder(project).glob("*.toml"))
+    return file_names(folder(project))
 
 
 def next_name(taken: Sequence[str]) -> str:
@@ -77,14 +76,6 @@ def next_name(taken: Sequence[str]) -> str:
     letters = (f"variant {letter}" for letter in "ABCDEFGHIJKLMNOPQRSTUVWXYZ")
     free = next((name for name in letters if name not in taken), "")
     return free or numbered("variant", taken)
-
-
-def numbered(name: str, taken: Sequence[str]) -> str:
-    """The first free name of `name 2`, `name 3` and so on."""
-    number = 2
-    while f"{name} {number}" in taken:
-        number += 1
-    return f"{name} {number}"
 
 
 def rename_variant(project: Project, old: str, new: str) -> None:
@@ -132,15 +123,7 @@ def delete_variant(project: Project, name: str) -> str:
         DesignError: If there is none of that name.
         StoreError: If the folder cannot be written.
     """
-    path = folder(project) / f"{name}.toml"
-    if name not in list_variants(project):
-        raise DesignError(f"there is no variant {name!r}", hint="it is gone already", at="variant")
-    trash = folder(project) / TRASH
-    taken = [kept.stem for kept in trash.glob("*.toml")]
-    kept = name if name not in taken else numbered(name, taken)
-    for ending in (".toml", ".png"):
-        move_file(path.with_name(path.stem + ending), trash / f"{kept}{ending}")
-    return kept
+    return trash_file(folder(project), name, what="variant")
 
 
 def restore_variant(project: Project, kept: str) -> str:
@@ -150,30 +133,4 @@ def restore_variant(project: Project, kept: str) -> str:
         DesignError: If the trash does not hold it.
         StoreError: If the folder cannot be written.
     """
-    trash, taken = folder(project) / TRASH, list_variants(project)
-    if kept not in [path.stem for path in trash.glob("*.toml")]:
-        raise DesignError(
-            f"the trash has no variant {kept!r}", hint=f"look in {trash}", at="variant"
-        )
-    name = kept if kept not in taken else numbered(kept, taken)
-    for ending in (".toml", ".png"):
-        move_file(trash / f"{kept}{ending}", folder(project) / f"{name}{ending}")
-    return name
-
-
-def move_file(source: Path, target: Path) -> None:
-    """Move a file, if it is there; its folder is made.
-
-    Raises:
-        StoreError: If a folder cannot be written.
-    """
-    try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        if source.is_file():
-            source.replace(target)
-    except OSError as error:
-        raise StoreError(
-            f"cannot move {source} to {target}: {error.strerror or error}",
-            hint="make the project folder writable; the file is where it was",
-            at=str(source),
-        ) from error
+    return restore_file(folder(project), kept, what="variant")

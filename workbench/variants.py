@@ -26,8 +26,6 @@ FOLDER = "variants"
 KEPT = ("build", "mesh", "press", "shoot", "maps", "mould", "housing", "recipe")
 """Stages whose keys a variant keeps."""
 LONGEST_NOTE = 2000
-RESERVED = ("-",)
-"""Names that mean none in the lists of the front."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -59,11 +57,8 @@ def variant_path(project: Project, name: str) -> Path:
     Raises:
         DesignError: If the name cannot be one.
     """
-    fits = name == name.strip() and name.isprintable() and name not in RESERVED
     with contextlib.suppress(DesignError):
-        path = folder(project) / project.design_path(name).name
-        if fits:
-            return path
+        return folder(project) / project.design_path(name).name
     # The design's own name is another field: the message must not land there.
     raise DesignError(
         f"{name!r} cannot be what a variant is called",

@@ -24,6 +24,7 @@ from tests.ui.widgets import (
     type_text,
     wait_until,
 )
+from workbench.benchmarks.tab import Tab
 
 pytestmark = [pytest.mark.ui, pytest.mark.slow]
 
@@ -108,3 +109,38 @@ def test_objects_are_chosen_from_pictures(tmp_path: Path, page: Any, start_serve
     button(page, "Gallery of objects").click()
     page.locator('[data-name="cube"] img').click()
     wait_until(lambda: "cube" in control(page, "Object shape").input_value(), 20, "the cube")
+
+
+def test_saving_over_another_design_asks(tmp_path: Path, start_server: Start) -> None:
+    """A file that this session neither opened nor saved stays; its own is saved over silently."""
+    project = coarse_project(tmp_path)
+    other = (project / "designs" / "autosave.toml").read_text().replace("0.8", "0.7")
+    (project / "designs" / "coarse.toml").write_text(other)
+    server = start_server(project)
+    with Tab(server.url) as page:
+        page.uuid("Saved design")
+        page.trigger("Save design")
+        page.click("Keep both")
+        copy = project / "designs" / "coarse 2.toml"
+        wait_until(copy.exists, 20, "the copy is written")
+        page.wait(lambda: page.value("Name") == "coarse 2", 20, "one goes on with the copy")
+        assert (project / "designs" / "coarse.toml").read_text() == other
+        page.set("Elastomer mm", 2.6)
+        wait_until(lambda: _saved_again(page, copy), 20, "its own file is replaced without asking")
+        page.set("Saved design", "coarse")
+        delete_and_bring_back(page, project / "designs" / "coarse.toml")
+
+
+def _saved_again(page: Tab, file: Path) -> bool:
+    page.trigger("Save design")
+    return "elastomer_mm = 2.6" in file.read_text()
+
+
+def delete_and_bring_back(page: Tab, file: Path) -> None:
+    """Delete the chosen design, then undo that."""
+    text = file.read_text()
+    page.set("With it", "Delete")
+    wait_until(lambda: not file.exists(), 20, "it is in the trash")
+    page.click("Bring deleted design back")
+    wait_until(file.exists, 20, "it is back")
+    assert file.read_text() == text

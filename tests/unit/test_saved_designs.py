@@ -4,24 +4,29 @@ from __future__ import annotations
 
 import dataclasses
 import io
+import tomllib
 import zipfile
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from workbench import saved_designs as saved_module
 from workbench.core.digest import digest
 from workbench.core.errors import DesignError
 from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
 from workbench.design_bundle import MOST_FILES, bundle, unbundle, zipped
 from workbench.project import Project, load_design
 from workbench.saved_designs import (
+    MOST_VERSIONS,
+    SavedShelf,
     delete_design,
     free_name,
     open_design,
+    restore_design,
     save_named,
-    saved_designs,
     saved_names,
+    versions,
 )
 from workbench.state import State, fresh_state
 
@@ -51,15 +56,70 @@ def test_a_saved_design_opens_as_it_was(tmp_path: Path) -> None:
 
 
 def test_saving_again_keeps_the_version_before(tmp_path: Path) -> None:
-    """designs/previous holds what the last save replaced."""
+    """designs/previous holds what the last save replaced; the same once more adds nothing."""
     project = Project(tmp_path)
     first = named("a")
     save_named(project, first)
     text = (tmp_path / "designs" / "a.toml").read_text()
     thicker = dataclasses.replace(first, design=first.design.replace("layers.elastomer_mm", 3.0))
     save_named(project, thicker)
-    assert (tmp_path / "designs" / "previous" / "a.toml").read_text() == text
+    save_named(project, thicker)
+    assert [file.read_text() for file in versions(project, "a")] == [text]
     assert open_design(project, "a") == thicker
+
+
+def test_the_newest_versions_are_kept(tmp_path: Path) -> None:
+    """After 23 saves the 20 before the last stand there in their order."""
+    project, state = Project(tmp_path), named("a")
+    walls_mm = [2.0 + 0.1 * k for k in range(MOST_VERSIONS + 3)]
+    for wall_mm in walls_mm:
+        design = state.design.replace("layers.elastomer_mm", wall_mm)
+        save_named(project, dataclasses.replace(state, design=design))
+    kept = [tomllib.loads(file.read_text()) for file in versions(project, "a")]
+    assert [table["layers"]["elastomer_mm"] for table in kept] == walls_mm[2:-1]
+
+
+def test_two_deleted_designs_of_one_name_both_come_back(tmp_path: Path) -> None:
+    """The trash overwrites nothing, and what comes back gets a number where its name is taken."""
+    project, first = Project(tmp_path), named("a")
+    second = dataclasses.replace(first, design=first.design.replace("layers.elastomer_mm", 3.0))
+    kept = []
+    for state in (first, second):
+        save_named(project, state)
+        kept.append(delete_design(project, "a"))
+    assert kept == ["a", "a 2"] and saved_names(project) == ()
+    assert restore_design(project, kept[0]) == "a"
+    assert open_design(project, "a") == first
+    save_named(project, first)
+    assert restore_design(project, kept[1]) == "a 2"
+    assert open_design(project, "a 2").design.layers.elastomer_mm == 3.0
+
+
+def test_an_unchanged_design_is_read_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The second list reads no file; one that changed is read again."""
+    project = Project(tmp_path)
+    for name in ("a", "b"):
+        save_named(project, named(name))
+    shelf, read = SavedShelf(project), []
+    real = saved_module.open_design
+    monkeypatch.setattr(
+        saved_module, "open_design", lambda where, name: read.append(name) or real(where, name)
+    )
+    first = shelf.entries()
+    assert shelf.entries() == first and all(entry.build for entry in first)
+    assert read == ["a", "b"]
+    thick = named("a").design.replace("layers.elastomer_mm", 3.25)
+    save_named(project, fresh_state(thick))
+    assert shelf.entries()[0].build != first[0].build
+    assert read == ["a", "b", "a"]
+
+
+def test_a_huge_file_is_not_read(tmp_path: Path) -> None:
+    """2 MB of comment are no design."""
+    (tmp_path / "designs").mkdir()
+    (tmp_path / "designs" / "big.toml").write_bytes(b"#" * 2_000_000)
+    with pytest.raises(DesignError, match="larger than 1000000"):
+        open_design(Project(tmp_path), "big")
 
 
 def test_a_file_edited_into_nonsense_is_listed_with_its_reason(tmp_path: Path) -> None:
@@ -68,15 +128,17 @@ def test_a_file_edited_into_nonsense_is_listed_with_its_reason(tmp_path: Path) -
     save_named(project, named("good"))
     (tmp_path / "designs" / "bad.toml").write_text("name = = 3")
     (tmp_path / "designs" / "binary.toml").write_bytes(b"\xff\xfe\x00")
-    bad, binary, good = saved_designs(project)
+    bad, binary, good = SavedShelf(project).entries()
     assert "not valid TOML" in bad.reason and "cannot be read" in binary.reason
     assert good.family == "finger" and not good.reason
     kept = delete_design(project, "bad")
-    assert kept.read_text() == "name = = 3"
+    assert (tmp_path / "designs" / "trash" / f"{kept}.toml").read_text() == "name = = 3"
     assert saved_names(project) == ("binary", "good")
 
 
-@pytest.mark.parametrize("name", ["../evil", "autosave", "a/b", "", "<b>"])
+@pytest.mark.parametrize(
+    "name", ["../evil", "autosave", "Autosave", "a/b", "", "<b>", "a\nb", "a ", "-", "漢" * 81]
+)
 def test_a_name_that_leaves_the_folder_is_refused(tmp_path: Path, name: str) -> None:
     """Nothing is written outside designs/, nor over the workbench's own copy."""
     project = Project(tmp_path)

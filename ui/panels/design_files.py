@@ -14,6 +14,7 @@ import viser
 
 from ui.desk import Desk
 from ui.gallery import Card
+from ui.question import ask
 from workbench.core.errors import WorkbenchError
 from workbench.core.monitor import silent
 from workbench.design_bundle import bundle, unbundle
@@ -22,11 +23,13 @@ from workbench.pipeline import plan
 from workbench.portraits import portrait_calls
 from workbench.saved_designs import (
     SavedDesign,
+    SavedShelf,
     delete_design,
+    file_stamp,
     free_name,
     open_design,
+    restore_design,
     save_named,
-    saved_designs,
     saved_names,
 )
 from workbench.state import State
@@ -47,6 +50,12 @@ class DesignFiles:
     def __init__(self, desk: Desk) -> None:
         self.desk = desk
         self.project = desk.session.project
+        self.shelf = SavedShelf(self.project)
+        self.known: dict[str, tuple[int, int] | None] = {}
+        """Stamps of the files that were opened or saved here, by name: no others are replaced
+        without asking."""
+        self.trashed = ""
+        """Name in the trash of what was deleted last."""
 
     def gallery_button(self) -> None:
         """Make the button that opens the gallery."""
@@ -69,9 +78,9 @@ class DesignFiles:
         self.name.on_update(desk.guarded(self._rename))
         hint = "Save keeps it under its name (Ctrl+S); Duplicate goes on with a copy"
         keep = gui.add_button_group("Design", (SAVE, COPY), hint=hint)
-        keep.on_click(desk.guarded(lambda event: self._keep(keep.value)))
+        keep.on_click(desk.guarded(lambda event: self._keep(keep.value, event)))
         command = gui.add_command(SAVE, hotkey="S", modifier="cmd/ctrl")
-        command.on_trigger(desk.guarded(lambda event: self._keep(SAVE)))
+        command.on_trigger(desk.guarded(lambda event: self._keep(SAVE, event)))
         desk.fields.anchor("Name", "design.name")
 
     def file_widgets(self) -> None:
@@ -80,9 +89,16 @@ class DesignFiles:
         with gui.add_folder("Design files", expand_by_default=False):
             hint = "Of your own; the gallery shows them as pictures"
             self.kept = gui.add_dropdown("Saved design", (NOTHING,), hint=hint)
-            hint = "Delete moves the file to the project's designs/trash"
+            hint = "Delete moves the file to the project's designs/trash, and can be undone"
             acts = gui.add_button_group("With it", ("Open", "Delete"), hint=hint)
             acts.on_click(desk.guarded(lambda event: self._with_kept(acts.value)))
+            self.restore = gui.add_button(
+                "Bring deleted design back",
+                icon=viser.Icon.ARROW_BACK_UP,
+                visible=False,
+                hint="The design deleted last stands in the list again",
+            )
+            self.restore.on_click(desk.guarded(self._restore))
             hint = "Readable TOML; a zip where it needs files of its own"
             button = gui.add_button("Download design", icon=viser.Icon.DOWNLOAD, hint=hint)
             button.on_click(desk.guarded(self._download))
@@ -93,6 +109,8 @@ class DesignFiles:
             )
             self.upload.on_upload(desk.guarded(self._load))
         self._list()
+        # Reading many takes a second, which the first gallery need not wait for.
+        threading.Thread(target=self.shelf.entries, name="designs", daemon=True).start()
 
     def refresh(self) -> None:
         """Show the name as it stands."""
@@ -110,16 +128,34 @@ class DesignFiles:
         if event.client is not None and self.name.value.strip():
             self.desk.edit("design.name", self.name.value.strip()[:80])
 
-    def _keep(self, what: str) -> None:
+    def _keep(self, what: str, event: Any) -> None:
         desk = self.desk
         desk.fields.read_typed(now=True)
+        name = desk.session.design.name
+        stamp = file_stamp(self.project, name)
         if what == COPY:
-            design = desk.session.design
-            copy = dataclasses.replace(design, name=free_name(self.project, design.name))
-            desk.session.replace_state(dataclasses.replace(desk.session.state, design=copy))
-            desk.replaced()
+            self._save_copy()
+        elif stamp is None or self.known.get(name) == stamp:
+            self._save()
+        else:
+            words = f"The file {name} was neither opened nor saved here. Replace keeps the file "
+            words += "as a version in designs/previous; Keep both saves yours under another name."
+            answers = {"Replace": self._save, "Keep both": self._save_copy}
+            ask(desk, event.client, "There is another design of this name", words, answers)
+
+    def _save_copy(self) -> None:
+        session = self.desk.session
+        name = free_name(self.project, session.design.name)
+        copy = dataclasses.replace(session.design, name=name)
+        session.replace_state(dataclasses.replace(session.state, design=copy))
+        self.desk.replaced()
+        self._save()
+
+    def _save(self) -> None:
+        desk = self.desk
         state = desk.session.state
         save_named(self.project, state)
+        self._know(state.design.name)
         self._list()
         desk.log(f"design {state.design.name} saved")
         desk.reports.notify("Saved", f"{state.design.name}: design and press", color="green")
@@ -145,11 +181,30 @@ class DesignFiles:
         if name == NOTHING:
             return
         if what == "Open":
-            self._open(open_design(self.project, name))
+            self._open_kept(name)
             return
-        kept = delete_design(self.project, name)
+        self.trashed = delete_design(self.project, name)
+        self.restore.visible = True
         self._list()
-        self.desk.reports.notify("Deleted", f"{name}: kept as {kept.parent.name}/{kept.name}")
+        self.desk.reports.notify("Deleted", f"{name}: kept as trash/{self.trashed}.toml")
+
+    def _restore(self, event: Any) -> None:
+        self.restore.visible = False
+        name = restore_design(self.project, self.trashed)
+        self._list()
+        self.kept.value = name
+
+    def _know(self, name: str) -> None:
+        """The file of this name is the design on show: Save may replace it."""
+        self.known[name] = file_stamp(self.project, name)
+
+    def forget(self) -> None:
+        """The design on show comes from elsewhere: a kept one of its name is another."""
+        self.known.pop(self.desk.session.design.name, None)
+
+    def _open_kept(self, name: str) -> None:
+        self._open(open_design(self.project, name))
+        self._know(name)
 
     def _open(self, state: State) -> None:
         self.desk.session.replace_state(state)
@@ -157,6 +212,7 @@ class DesignFiles:
 
     def _start(self, name: str) -> None:
         self.desk.session.replace_design(load_design(name))
+        self.forget()
         self.desk.replaced()
 
     def _download(self, event: Any) -> None:
@@ -166,9 +222,10 @@ class DesignFiles:
     def _load(self, event: Any) -> None:
         file = self.upload.value
         self._open(unbundle(file.name, file.content, self.project))
+        self.forget()
 
     def _open_gallery(self, event: Any) -> None:
-        kept = {f"{found.name}{MARK}": found for found in saved_designs(self.project)}
+        kept = {f"{found.name}{MARK}": found for found in self.shelf.entries()}
         shipped = [
             Card(name=name, words=_short(purpose(name)), png=thumbnail_png(f"start-{name}"))
             for name in choices()
@@ -177,7 +234,7 @@ class DesignFiles:
 
         def choose(name: str) -> None:
             if name in kept:
-                self._open(open_design(self.project, kept[name].name))
+                self._open_kept(kept[name].name)
             else:
                 self._start(name)
 
@@ -192,9 +249,8 @@ class DesignFiles:
         """What was drawn of a kept design, else its family's picture."""
         if found.reason:
             return None
-        state, store = open_design(self.project, found.name), self.project.store
-        keys = {"build": plan(state.design, state.case)["build"].key}
-        for call in portrait_calls(store, keys):
+        store = self.project.store
+        for call in portrait_calls(store, {"build": found.build}):
             if store.has(call.stage, call.key):
                 return bytes(store.load(call.stage, call.key).png)
         return thumbnail_png(f"start-{found.family}")

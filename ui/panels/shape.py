@@ -82,6 +82,7 @@ class ShapePanel:
     def _start_from(self, event: Any) -> None:
         if event.client is not None and self.start.value != OWN:
             self.desk.session.replace_design(load_design(self.start.value))
+            self.files.forget()
             self.desk.replaced()
 
     def _tell_about(self) -> None:
