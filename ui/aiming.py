@@ -43,7 +43,10 @@ class Aiming:
         x, y, z = (round(float(c), 2) for c in hit[1])
         desk.edit("case.press.target_mm", (x, y, z))
         desk.fields.refresh()
-        desk.log(f"target {x:.1f}, {y:.1f}, {z:.1f} mm")
+        place = f"{x:.1f}, {y:.1f}, {z:.1f} mm"
+        desk.log(f"target {place}")
+        # A click may have been meant for something else; on most tabs nothing else would tell.
+        desk.reports.notify("The press aims elsewhere", f"target {place}; Ctrl+Z takes it back")
 
     def follow_indenter(self) -> None:
         """Show the object that is pressed, once there is a body for it to stand on."""

@@ -35,6 +35,9 @@ from workbench.item_fields import read_field
 from workbench.pipeline import plan
 from workbench.stages import PARTIAL
 
+OF_A_SENSOR = ("press", "image", "maps")
+"""Topics that nobody waits for once another sensor has been chosen."""
+
 
 class Panel(Protocol):
     """A part of the front that follows state and results."""
@@ -181,6 +184,9 @@ class Desk:
         sensor = self.origin()
         if self._sensor not in (None, sensor):
             self.showing.forget_all()
+            for topic in OF_A_SENSOR:
+                # What was asked of the sensor before must not hold up this one.
+                self.conductor.stop(topic)
             self.scene.rig.forget_image()
             self.tell("sensor", None)
         self._sensor = sensor

@@ -87,7 +87,7 @@ class Reports:
         hint = ""
         if error.hint and "\n" not in error.hint:
             hint = self.fields.in_words(f" {error.hint[0].upper()}{error.hint[1:]}.", error.at)
-        self.log(f"{type(error).__name__}: {words} {error.hint}")
+        self.log(f"{words}.{hint}")
         text = plain(f"{words}.{hint}")
         if not (at_field and at_field == edited):
             self._show_banner(text)

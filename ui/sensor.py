@@ -17,8 +17,8 @@ from workbench.previews import corner_normals, first_hit, outer_faces, skin_part
 from workbench.section_cut import Plane, clip
 
 SKIN_COLOUR = (196, 206, 220)
-ACTUATOR_COLOURS = ((240, 150, 70), (90, 175, 240), (170, 120, 230), (120, 200, 110))
-ACTUATOR_NAMES = ("orange", "blue", "purple", "green")
+ACTUATOR_COLOURS = ((225, 105, 165), (90, 175, 240), (170, 120, 230), (120, 200, 110))
+ACTUATOR_NAMES = ("pink", "blue", "purple", "green")
 """What those colours are called."""
 SKIN = {"color": SKIN_COLOUR, "opacity": 0.55}
 UNSENSED = {"color": (90, 90, 96), "opacity": 0.8}

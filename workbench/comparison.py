@@ -199,6 +199,30 @@ def tally(found: list[Change]) -> tuple[int, int]:
     return verdicts.count("better"), verdicts.count("worse")
 
 
+def summary(found: list[Change], notice: str) -> str:
+    """What a comparison comes to in words: what stands in the way of it first.
+
+    Args:
+        found: All figures.
+        notice: Why figures do not compare (`press_notice`), "" where they do.
+    """
+    better, worse = tally(found)
+    counts = f"B is better in {better} figures, worse in {worse}."
+    missing = [
+        f"{letter} lacks {lacking} figures that {other} has."
+        for letter, other, lacking in (
+            ("A", "B", sum(c.a is None and c.b is not None for c in found)),
+            ("B", "A", sum(c.b is None and c.a is not None for c in found)),
+        )
+        if lacking
+    ]
+    if not notice and not missing:
+        return counts
+    return " ".join(("Compare with care.", notice, *missing, "Of what both have:", counts)).replace(
+        "  ", " "
+    )
+
+
 def press_notice(a: State, b: State) -> str:
     """Why figures do not compare, "" where both were pressed alike."""
     rows = parameter_differences(

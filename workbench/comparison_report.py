@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from workbench import __version__
-from workbench.comparison import changes, number_text, parameter_differences, press_notice, tally
+from workbench.comparison import changes, number_text, parameter_differences, press_notice, summary
 from workbench.comparison_images import Moment, pair
 from workbench.comparison_tables import card_table, change_table, parameter_table, remedies
 from workbench.core.errors import DesignError
@@ -58,16 +58,13 @@ def comparison_page(store: Store, a: Side, b: Side, more: Reported | None = None
     more = Reported() if more is None else more
     title = f"{called(a)} against {called(b)}"
     rows = changes(a.figures, b.figures)
-    better, worse = tally(rows)
-    summary = (
-        f"{_now()}. B ({html.escape(called(b))}) is better in <b>{better}</b> figures and worse in "
-        f"<b>{worse}</b>. {html.escape(press_notice(a.state, b.state))}"
-    )
+    found = summary(rows, press_notice(a.state, b.state))
+    words = f"{_now()}. B is {html.escape(called(b))}. <b>{html.escape(found)}</b>"
     names = (f"A: {called(a)}", f"B: {called(b)}")
     designs = [(names[0], a.figures), (names[1], b.figures), *more.others]
     full = card(designs)
     sections = [
-        f"<h1>{html.escape(title)}</h1><p>{summary}</p>",
+        f"<h1>{html.escape(title)}</h1><p>{words}</p>",
         f"<div class='images'>{_who(store, a, 'A')}{_who(store, b, 'B')}</div>",
         "<h2>Parameters that differ</h2>"
         + parameter_table(parameter_differences(a.state, b.state), *names),

@@ -15,6 +15,8 @@ from workbench.image_files import png_bytes
 from workbench.store import Store
 
 TILE_PX = 160
+TILES = ("portrait", "portrait_pressed", "shoot")
+"""What stands in a thumbnail, from the left."""
 GROUND = (244, 243, 241)
 """Behind the membrane: the same in the dark front and in printed reports."""
 
@@ -38,14 +40,19 @@ def thumbnail_png(store: Store, keys: Mapping[str, str]) -> bytes | None:
     Raises:
         StoreError: If a result is damaged.
     """
-    tiles = [
-        _drawn(store.load(call.stage, call.key).png)
+    tiles: dict[str, np.ndarray] = {
+        call.stage: _drawn(store.load(call.stage, call.key).png)
         for call in portrait_calls(store, keys)
         if store.has(call.stage, call.key)
-    ]
+    }
     if "shoot" in keys and store.has("shoot", keys["shoot"]):
-        tiles.append(_fitted(np.asarray(store.load("shoot", keys["shoot"]).frames.rgb[-1])))
-    return png_bytes(np.concatenate(tiles, axis=1)) if tiles else None
+        shown = np.asarray(store.load("shoot", keys["shoot"]).frames.rgb[-1])
+        tiles["shoot"] = _fitted(shown)
+    if not tiles:
+        return None
+    # All of one width, so that a list of them is even: what has not been made stays blank.
+    blank = np.full((TILE_PX, TILE_PX, 3), GROUND, dtype=np.uint8)
+    return png_bytes(np.concatenate([tiles.get(stage, blank) for stage in TILES], axis=1))
 
 
 def _drawn(png: np.ndarray) -> np.ndarray:

@@ -16,6 +16,7 @@ from ui.panels.probe import Probe
 from workbench.core.sensing import Shot, TactileFrames
 from workbench.image_views import View, crossed, looked, views, visible_change
 from workbench.map_display import scores
+from workbench.metric_rules import rule
 
 BLINK_S = 0.5
 """How long each of the two blinking pictures is shown [s]."""
@@ -159,6 +160,6 @@ class ImageTab:
         values = {} if shot is None else dict(shot.metrics.values)
         if maps is not None:
             values |= scores(maps)
-        rows = [(name.replace("_", " "), f"{value:.4g}") for name, value in values.items()]
+        rows = [(rule(name).label, f"{v:.4g} {rule(name).unit}") for name, v in values.items()]
         self.numbers.content = table(("measure", "value"), rows)
         self.measures.visible = bool(rows)

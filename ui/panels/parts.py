@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import viser
+
 from ui.desk import Desk
 from workbench.core.fabrication import FabricationPart, PartGroup
 
@@ -23,6 +25,12 @@ class PartsTree:
         self.spread = gui.add_slider("Explode", 0.0, 1.0, 0.05, 1.0, visible=False, hint=hint)
         self.spread.on_update(desk.guarded(self._moved))
         self.folder = gui.add_folder("Parts", visible=False)
+        self.back = gui.add_panel(visible=False)
+        with self.back.add_tab("Parts on show"):
+            hint = "Put the parts away: they stand in place of the sensor"
+            button = gui.add_button("Back to the sensor", icon=viser.Icon.ARROW_BACK_UP, hint=hint)
+            button.on_click(desk.guarded(lambda event: self.put_away()))
+        self.back.float(x=405, y=-15, width=220)
         self.boxes: dict[str, Any] = {}
         self.groups: dict[PartGroup, Any] = {}
         self.parts: tuple[FabricationPart, ...] = ()
@@ -123,7 +131,9 @@ class PartsTree:
             scene.parts.show(set(), self.spread.value)
             scene.show_sensor(True)
             scene.views.step_forward(*scene.body.bounds_mm)
-        self.desk.cover("parts", bool(self.view.value and self.parts))
+        shown = bool(self.view.value and self.parts)
+        self.back.visible = shown
+        self.desk.cover("parts", shown)
 
     def _show(self) -> None:
         if self.view.value:

@@ -14,7 +14,7 @@ from ui.ghost import COLOURS, Ghost, GhostView
 from ui.imaging import placeholder
 from ui.panels.variants import offer, picture_html
 from ui.plain import plain
-from workbench.comparison import changes, parameter_differences, press_notice, tally
+from workbench.comparison import changes, parameter_differences, press_notice, summary
 from workbench.comparison_images import Moment, Pair, pair, side_by_side
 from workbench.comparison_tables import change_table, parameter_table, scrolled
 from workbench.core.errors import DesignError
@@ -144,10 +144,8 @@ class VersusFolder:
 
     def _tell(self, a: Side, b: Side) -> None:
         rows = changes(a.figures, b.figures)
-        better, worse = tally(rows)
-        notice = press_notice(a.state, b.state)
-        words = f"**B is better in {better} figures, worse in {worse}.** {plain(notice)}"
-        self.words.content = words
+        words = summary(rows, press_notice(a.state, b.state))
+        self.words.content = f"**{plain(words)}**"
         differing = parameter_differences(a.state, b.state)
         self.tables.content = (
             "<div style='font-size:12px;margin:8px 8px 0'><b>Parameters that differ</b></div>"
