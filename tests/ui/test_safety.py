@@ -208,6 +208,7 @@ def test_markup_in_a_name_stays_text(tmp_path: Path, page: Any, start_server: St
     # The name of a refused file passes the log and a notification.
     file = tmp_path / "<img src=x onerror='window.pwned = 1'>.toml"
     file.write_text(f"name = {json.dumps(EVIL)}\nfamily = {json.dumps(EVIL)}")
+    page.get_by_text("Design files", exact=True).first.click()
     upload(page, "Load design (TOML)", file)
     page.get_by_text("onerror").nth(1).wait_for()
     assert page.evaluate("window.pwned") is None
