@@ -24,6 +24,10 @@ class FakeDesk:
         )
         calls = {"press": SimpleNamespace(key="asked")}
         self.session = SimpleNamespace(store=store, calls=lambda: calls)
+        self.showing = SimpleNamespace(fetch=lambda stage, key, then: then(store.load(stage, key)))
+
+    def _settled(self, contact: Any, error: Any) -> None:
+        Desk._settled(self, contact, error)  # pyright: ignore
 
     def tell(self, stage: str, result: Any) -> None:
         self.told.append((stage, result))
