@@ -147,6 +147,18 @@ def _free(path: Path) -> Path:
     return next(free for free in itertools.chain((path,), numbered) if not free.exists())
 
 
+def kept_text(path: Path) -> str:
+    """The text of a file of the project that people may have edited.
+
+    Raises:
+        OSError: If it cannot be read.
+        ValueError: If it is larger than a design may be, or not UTF-8.
+    """
+    if path.stat().st_size > MAX_TOML_BYTES:
+        raise ValueError(f"it is larger than {MAX_TOML_BYTES} bytes")
+    return path.read_text(encoding="utf-8")
+
+
 def write_atomically(path: Path, content: bytes) -> None:
     """Replace a file so that a reader sees the old or the new one, never a part.
 

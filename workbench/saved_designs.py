@@ -13,7 +13,7 @@ from pathlib import Path
 
 from workbench.core.errors import DesignError, WorkbenchError
 from workbench.pipeline import plan
-from workbench.project import AUTOSAVE, MAX_TOML_BYTES, Project, design_to_toml, write_atomically
+from workbench.project import AUTOSAVE, Project, design_to_toml, kept_text, write_atomically
 from workbench.state import State, case_table, read_state
 from workbench.trash import file_names, numbered, restore_file, trash_file
 
@@ -132,9 +132,7 @@ def open_design(project: Project, name: str) -> State:
     """
     path = project.design_path(name)
     try:
-        if path.stat().st_size > MAX_TOML_BYTES:
-            raise ValueError(f"it is larger than {MAX_TOML_BYTES} bytes")
-        text = path.read_text(encoding="utf-8")
+        text = kept_text(path)
     except (OSError, ValueError) as error:
         raise DesignError(f"{path.name} cannot be read: {error}", hint=f"see {path}") from error
     return read_state(text, project, source=path.name)

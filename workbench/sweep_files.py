@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from workbench.core.errors import DesignError
-from workbench.project import MAX_TOML_BYTES, Project, design_to_toml, write_atomically
+from workbench.project import Project, design_to_toml, kept_text, write_atomically
 from workbench.score_card import finite_figures
 from workbench.state import case_table, read_state
 from workbench.sweeps import MOST, Point, Status, Sweep
@@ -87,9 +87,7 @@ def load_sweep(project: Project, name: str) -> Sweep:
     """
     path = sweep_path(project, name)
     try:
-        if path.stat().st_size > MAX_TOML_BYTES:
-            raise ValueError(f"it is larger than {MAX_TOML_BYTES} bytes")
-        text = path.read_text(encoding="utf-8")
+        text = kept_text(path)
         table: dict[str, Any] = tomllib.loads(text)["sweep"]
         points = tuple(_point(row) for row in table["points"])
         if not 1 <= len(points) <= MOST:

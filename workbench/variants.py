@@ -18,7 +18,7 @@ from typing import Any
 from workbench import __version__
 from workbench.core.errors import DesignError
 from workbench.pipeline import plan
-from workbench.project import MAX_TOML_BYTES, Project, design_to_toml, write_atomically
+from workbench.project import Project, design_to_toml, kept_text, write_atomically
 from workbench.score_card import figures, finite_figures
 from workbench.state import State, case_table, read_state
 
@@ -138,9 +138,7 @@ def load_variant(project: Project, name: str) -> Variant:
     """
     path = variant_path(project, name)
     try:
-        if path.stat().st_size > MAX_TOML_BYTES:
-            raise ValueError(f"it is larger than {MAX_TOML_BYTES} bytes")
-        text = path.read_text(encoding="utf-8")
+        text = kept_text(path)
         table: dict[str, Any] = tomllib.loads(text)["variant"]
         fields = _fields(table)
     except (OSError, ValueError, KeyError, AttributeError, TypeError) as error:

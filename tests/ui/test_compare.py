@@ -18,6 +18,7 @@ from tests.ui.widgets import (
     coarse_project,
     control,
     open_page,
+    press,
     set_number,
     tab,
     type_text,
@@ -31,12 +32,6 @@ Start = Callable[..., Server]
 HOSTILE = "<script>window.hit=1</script><img src=x onerror='window.hit=1'>"
 SEEN = 0.01
 """Share of the view that a second sensor changes at least."""
-
-
-def press(page: Any, name: str) -> None:
-    """Click a button that may have to be scrolled to."""
-    button(page, name).scroll_into_view_if_needed()
-    button(page, name).click()
 
 
 def save(page: Any, name: str) -> None:

@@ -19,6 +19,7 @@ from tests.ui.widgets import (
     choose,
     coarse_project,
     open_page,
+    press,
     set_number,
     slider_value,
     stop_first_press,
@@ -48,12 +49,6 @@ WALK = {
     "Simulate": {"Depth mm": (0.2, 2.0), "Frames": (1, 9), "Twist deg": (-30.0, 30.0)},
 }
 """Sliders of the walk by tab, and the span of their values: most edits hold, some are refused."""
-
-
-def press(page: Any, name: str) -> None:
-    """Click a button that may have to be scrolled to."""
-    button(page, name).scroll_into_view_if_needed()
-    button(page, name).click()
 
 
 def fresh(page: Any, stage: str) -> None:

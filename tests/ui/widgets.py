@@ -64,6 +64,12 @@ def button(page: Any, name: str) -> Any:
     return page.get_by_role("button", name=name, exact=True)
 
 
+def press(page: Any, name: str) -> None:
+    """Click a button that may have to be scrolled to."""
+    button(page, name).scroll_into_view_if_needed()
+    button(page, name).click()
+
+
 def control(page: Any, label: str) -> Any:
     """The element that a label names."""
     pattern = re.compile(rf"^\s*{re.escape(label)}\s*$")
