@@ -37,7 +37,8 @@ def coloured_glb(
         plane: What the mesh is cut by, if it is.
         topology: That of the whole mesh, where it is known.
     """
-    if plane is not None:
+    cut = plane is not None
+    if cut:
         kept = clip(points, faces, plane)
         points, faces, used = packed(kept.points_mm, kept.faces)
         colours = kept.carry(colours)[used]
@@ -46,7 +47,9 @@ def coloured_glb(
             points, faces = np.zeros((3, 3)), np.array([[0, 1, 2]])
             colours = np.zeros((3, 3), np.uint8)
         topology = None
-    return write_glb(points, colours, topology or Topology.of(faces, len(points)))
+    # Of a closed skin the back is seen only where it is cut.
+    known = topology or Topology.of(faces, len(points))
+    return write_glb(points, colours, known, both_sides=cut)
 
 
 def placeholder(width_px: int = 320, height_px: int = 240) -> np.ndarray:

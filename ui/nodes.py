@@ -43,7 +43,7 @@ class Meshes:
             name: Its name below the prefix.
             points: Vertices [mm], shape (N, 3).
             faces: Triangles, shape (M, 3).
-            looks: Colour, opacity and shading, as viser calls them.
+            looks: Colour, opacity, shading and, unless both, the side to draw, as viser calls them.
         """
         self.whole[name] = np.asarray(points), np.asarray(faces)
         vertices, triangles = self._cut(name)
@@ -52,7 +52,7 @@ class Meshes:
             return self.nodes[name]
         opacity = {} if self.opacity is None else {"opacity": self.opacity}
         node = self.api.add_mesh_simple(
-            f"{self.prefix}/{name}", vertices, triangles, side="double", **{**looks, **opacity}
+            f"{self.prefix}/{name}", vertices, triangles, **{"side": "double", **looks, **opacity}
         )
         node.visible = self._shown and self.allowed
         if self.on_click is not None:

@@ -23,8 +23,9 @@ ACTUATOR_NAMES = ("pink", "blue", "purple", "green")
 SKIN = {"color": SKIN_COLOUR, "opacity": 0.55}
 UNSENSED = {"color": (90, 90, 96), "opacity": 0.8}
 PINS = {"color": (60, 64, 72), "flat_shading": False}
-SUPPORT = {"color": (150, 205, 235), "opacity": 0.12, "cast_shadow": False}
-FOOT = {"color": (92, 98, 108), "flat_shading": True}
+SUPPORT = {"color": (150, 205, 235), "opacity": 0.12, "cast_shadow": False, "side": "front"}
+FOOT = {"color": (92, 98, 108), "flat_shading": True, "side": "front"}
+"""Closed bodies, filled where they are cut: the back is never seen, and takes time to draw."""
 TIP_COLOUR = (245, 245, 245)
 
 

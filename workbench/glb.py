@@ -1,7 +1,7 @@
 """Writes a coloured mesh as a GLB file: the frames of a press are many, alike, and wanted at once.
 
 One mesh of triangles with positions, smooth normals and a colour at each vertex, under one matt
-material that is seen from both sides. What frames share, the triangles and who is beside whom, is
+material. What frames share, the triangles and who is beside whom, is
 worked out once (`Topology`). Left out: textures, several meshes, a tree of nodes, compression.
 
 The layout is the binary one of glTF 2.0: a header of 12 bytes, then the chunks `JSON` and `BIN`,
@@ -25,10 +25,7 @@ FLOAT, UINT32, UINT16, UINT8 = 5126, 5125, 5123, 5121
 """Component types."""
 ARRAY, ELEMENTS = 34962, 34963
 """What a buffer view is bound to: attributes of vertices, indices."""
-MATT = {
-    "pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 0.7},
-    "doubleSided": True,
-}
+MATT = {"pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 0.7}}
 """Without a material glTF means polished metal, which is black without an environment."""
 MOST_SHORT = 65_535
 """Vertices that 16 bits can name; the last number is kept free by the standard."""
@@ -73,13 +70,16 @@ class Topology:
         return summed / np.maximum(length, np.float32(1e-30))[:, None]
 
 
-def write_glb(points_mm: np.ndarray, colours: np.ndarray, topology: Topology) -> bytes:
+def write_glb(
+    points_mm: np.ndarray, colours: np.ndarray, topology: Topology, *, both_sides: bool
+) -> bytes:
     """A mesh as the bytes of a GLB file.
 
     Args:
         points_mm: Vertices [mm], shape (N, 3), finite, at least one.
         colours: sRGB of the vertices, shape (N, 3), uint8.
         topology: Its triangles, at least one.
+        both_sides: Whether the back of a triangle is drawn too, which takes longer.
     """
     points = np.ascontiguousarray(points_mm, dtype="<f4")
     # Attributes begin at multiples of four bytes, so a colour has four.
@@ -95,6 +95,7 @@ def write_glb(points_mm: np.ndarray, colours: np.ndarray, topology: Topology) ->
         kind=UINT16 if short else UINT32,
         low=[float(low) for low in points.min(axis=0)],
         high=[float(high) for high in points.max(axis=0)],
+        both_sides=both_sides,
     )
     return _packed(text, b"".join(parts))
 
@@ -107,6 +108,7 @@ def _description(
     kind: int,
     low: list[float],
     high: list[float],
+    both_sides: bool,
 ) -> bytes:
     """The chunk of JSON: what stands where in the chunk of bytes."""
     starts = [sum(sizes[:k]) for k in range(len(sizes))]
@@ -125,7 +127,7 @@ def _description(
         "scenes": [{"nodes": [0]}],
         "nodes": [{"mesh": 0}],
         "meshes": [{"primitives": [{"attributes": attributes, "indices": 3, "material": 0}]}],
-        "materials": [MATT],
+        "materials": [{**MATT, "doubleSided": both_sides}],
         "buffers": [{"byteLength": sum(sizes)}],
         "bufferViews": views,
         "accessors": [{"bufferView": k, **each} for k, each in enumerate(accessors)],

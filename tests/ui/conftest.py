@@ -87,9 +87,9 @@ def start_server() -> Iterator[Callable[..., Server]]:
         server.stop()
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def browser() -> Iterator[Any]:
-    """Headless Chromium with software rendering."""
+    """Headless Chromium with software rendering; its event loop must not outlive these tests."""
     sync_api = pytest.importorskip("playwright.sync_api")
     program = os.environ.get("CHROMIUM") or shutil.which("chromium")
     if program is None:

@@ -45,7 +45,7 @@ def test_the_mesh_comes_back(torus: Any) -> None:
     grey = np.tile(np.arange(256, dtype=np.uint8), 79)[: len(torus.vertices)]
     colours = np.stack([grey, grey[::-1], np.full_like(grey, 128)], axis=1)
     topology = Topology.of(torus.faces, len(torus.vertices))
-    glb = write_glb(torus.vertices, colours, topology)
+    glb = write_glb(torus.vertices, colours, topology, both_sides=False)
     mesh = read(glb)
     np.testing.assert_array_equal(mesh.vertices, torus.vertices.astype(np.float32))
     np.testing.assert_array_equal(mesh.faces, torus.faces)
@@ -92,7 +92,7 @@ def test_long_meshes_have_long_indices(vertices: int, bytes_each: int) -> None:
     """Up to 65 535 vertices are named by 16 bits; the file says which, and how long it is."""
     topology = Topology.of(np.array([[0, 1, vertices - 1]]), vertices)
     points = np.zeros((vertices, 3))
-    glb = write_glb(points, np.zeros((vertices, 3), np.uint8), topology)
+    glb = write_glb(points, np.zeros((vertices, 3), np.uint8), topology, both_sides=False)
     magic, version, length, size = struct.unpack("<4sIII", glb[:16])
     assert (magic, version, length) == (b"glTF", 2, len(glb))
     tree = json.loads(glb[20 : 20 + size])
@@ -106,3 +106,11 @@ def test_a_mesh_that_is_cut_away_is_still_a_file(torus: Any) -> None:
     plane = Plane(axis=Axis.X, position_mm=-100.0)
     colours = np.zeros(torus.vertices.shape, np.uint8)
     assert read(coloured_glb(torus.vertices, torus.faces, colours, plane)).area == 0.0
+
+
+@pytest.mark.parametrize("plane", [None, Plane(axis=Axis.X, position_mm=0.0)])
+def test_the_back_is_drawn_where_a_skin_is_cut(torus: Any, plane: Plane | None) -> None:
+    """A closed skin shows its front alone, and costs half as much to draw."""
+    glb = coloured_glb(torus.vertices, torus.faces, np.zeros(torus.vertices.shape, np.uint8), plane)
+    tree = json.loads(glb[20 : 20 + struct.unpack("<I", glb[12:16])[0]])
+    assert tree["materials"][0]["doubleSided"] is (plane is not None)

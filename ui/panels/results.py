@@ -55,9 +55,11 @@ class ResultsPanel:
         self.timeline = Timeline(desk, self._show_frame)
 
     def _show_frame(self, number: int) -> None:
-        self.desk.scene.show_frame(number)
-        self._show_image(number)
-        self._show_forces(number)
+        # Or the page draws the view once for the skin and once for the picture.
+        with self.desk.server.atomic():
+            self.desk.scene.show_frame(number)
+            self._show_image(number)
+            self._show_forces(number)
 
     def _show_image(self, number: int) -> None:
         self._caption(number)

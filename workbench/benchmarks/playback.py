@@ -1,7 +1,7 @@
 """Playing the frames of a press in the browser: time from one skin drawn to the next.
 
-Each frame is a mesh with buffers of its own, so a large draw call from other buffers than the one
-before is a frame that was applied.
+Each frame is a mesh with buffers of its own, and the skin at rest is a smaller mesh: a picture with
+another large mesh than the picture before, or without one, is a frame that was applied.
 """
 
 from __future__ import annotations
@@ -9,22 +9,28 @@ from __future__ import annotations
 from typing import Any
 
 WATCH_DRAWS = """
-window.applied = []; window.bound = null; window.skin = null;
+window.applied = []; window.bound = null; window.skin = null; window.drawn = [null, 0];
 const bind = WebGL2RenderingContext.prototype.bindVertexArray;
 WebGL2RenderingContext.prototype.bindVertexArray = function (given) {
   window.bound = given;
   return bind.call(this, given);
 };
+const clear = WebGL2RenderingContext.prototype.clear;
+WebGL2RenderingContext.prototype.clear = function (...given) {
+  if (window.drawn[0] !== window.skin) {
+    window.skin = window.drawn[0];
+    window.applied.push([performance.now(), window.drawn[1]]);
+  }
+  window.drawn = [null, 0];
+  return clear.apply(this, given);
+};
 const draw = WebGL2RenderingContext.prototype.drawElements;
 WebGL2RenderingContext.prototype.drawElements = function (...given) {
-  if (given[1] > 30000 && window.bound !== window.skin) {
-    window.skin = window.bound;
-    window.applied.push([performance.now(), given[1]]);
-  }
+  if (given[1] > 30000) window.drawn = [window.bound, given[1]];
   return draw.apply(this, given);
 };
 """
-"""Notes when another large mesh is drawn [ms], and its corners."""
+"""Notes when the large mesh of a picture was another than before [ms], and its corners."""
 WARM_MS, SPAN_MS = 6_000, 8_000
 
 
