@@ -22,8 +22,9 @@ from workbench.aim import default_target_mm
 from workbench.core.design import SensorDesign
 from workbench.core.indenter import Indenter
 from workbench.core.press import Press
+from workbench.named_designs import load_design
 from workbench.pipeline import InlineRunner, PressCase, evaluate, plan, results
-from workbench.project import Project, load_design
+from workbench.project import Project
 
 PICTURE = Path(__file__).with_name("gallery.png")
 PRESETS = ("geltip", "trunk", "paw", "thumb", "tentacle", "pad", "digitac")

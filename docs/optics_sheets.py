@@ -31,8 +31,9 @@ from workbench.core.results import Skin
 from workbench.core.sensing import TactileFrames
 from workbench.image_views import View, looked
 from workbench.map_display import is_flag, map_look
+from workbench.named_designs import load_design
 from workbench.pipeline import InlineRunner, PressCase, evaluate, plan, results
-from workbench.project import Project, load_design
+from workbench.project import Project
 
 FOLDER = Path(__file__).parent
 PRESETS = ("geltip", "trunk", "paw", "thumb", "tentacle", "pad", "digitac")

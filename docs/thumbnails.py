@@ -19,10 +19,10 @@ from workbench import stages
 from workbench.core.indenter import Indenter
 from workbench.core.monitor import silent
 from workbench.forms import choices
+from workbench.indenter_display import display_mesh
 from workbench.indenter_edit import another, gallery
+from workbench.named_designs import load_design
 from workbench.pipeline import PressCase, plan
-from workbench.previews import indenter_shape
-from workbench.project import load_design
 from workbench.thumbnails import FOLDER, KEYS, object_key, start_key
 
 SIZE_PX, FINER = 144, 3
@@ -38,7 +38,7 @@ def pictures() -> Iterator[tuple[str, str, np.ndarray]]:
         solid = stages.build(*plan(load_design(name), PressCase())["build"].inputs, monitor=silent)
         yield f"start-{name}", start_key(name), thumbnail(solid, size)
     for name in gallery().values():
-        points, faces = indenter_shape(another(name, Indenter()))
+        points, faces = display_mesh(another(name, Indenter()))
         plotter = canvas(size)
         draw(plotter, points, faces, OBJECT_COLOUR)
         look(plotter, FROM_BELOW, points)

@@ -17,8 +17,9 @@ from workbench.cli import parser
 from workbench.core.camera import Camera, ImageSensor, LensModel
 from workbench.core.lighting import Baking, Lamp, LampKind, LedMount, LedRing, LightModel
 from workbench.core.optics import Coating, MarkerPattern, Markers, Optics
+from workbench.design_toml import design_from_toml
+from workbench.named_designs import presets
 from workbench.photos import shipped_photos
-from workbench.project import design_from_toml, presets
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text()

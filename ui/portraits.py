@@ -17,8 +17,9 @@ from workbench.conductor import Runner
 from workbench.core.errors import Cancelled, WorkbenchError
 from workbench.core.monitor import silent
 from workbench.portraits import portrait_calls, thumbnail_png
-from workbench.project import Project, write_atomically
+from workbench.project import Project
 from workbench.variants import load_variant, result_keys, variant_path
+from workbench.whole_files import write_atomically
 
 
 class Portraits:

@@ -16,9 +16,12 @@ from typing import Any
 from workbench.core.design import SensorDesign
 from workbench.core.errors import WorkbenchError
 from workbench.core.indenter import Indenter
+from workbench.design_toml import check_design, design_from_toml
 from workbench.item_fields import with_field
+from workbench.named_designs import load_design
+from workbench.names import AUTOSAVE
 from workbench.pipeline import EVERYTHING, PressCase, plan
-from workbench.project import AUTOSAVE, Project, check_design, design_from_toml, load_design
+from workbench.project import Project
 from workbench.stages import Call
 from workbench.state import State, case_table, fresh_state, read_state
 

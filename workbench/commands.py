@@ -60,10 +60,10 @@ def run(options: argparse.Namespace, project: Project) -> int:
     """Press a design and write images, forces and moulds."""
     from workbench.aim import default_target_mm
     from workbench.folder import RUN_FILES, prepare
+    from workbench.named_designs import load_design
     from workbench.outputs import write_all
     from workbench.partial import keeping_partial
     from workbench.pipeline import InlineRunner, evaluate, plan
-    from workbench.project import load_design
 
     design = load_design(options.design, unit=options.unit, project=project)
     if options.light_model:
@@ -123,7 +123,7 @@ def run(options: argparse.Namespace, project: Project) -> int:
 def export(options: argparse.Namespace, project: Project) -> int:
     """Write a design's bodies, mould and meshes."""
     from workbench.exports import export_design, scene_notice
-    from workbench.project import load_design
+    from workbench.named_designs import load_design
 
     printer = Progress(as_json=options.json)
     design = load_design(options.design, unit=options.unit, project=project)
@@ -140,7 +140,7 @@ def export(options: argparse.Namespace, project: Project) -> int:
 def presets(options: argparse.Namespace, project: Project) -> int:
     """List the shipped designs and the families."""
     from designs.family import families
-    from workbench.project import presets
+    from workbench.named_designs import presets
 
     rows = [{"name": n, "kind": "preset", "purpose": p} for n, p in presets().items()]
     rows += [{"name": n, "kind": "family", "purpose": f.title} for n, f in families().items()]
@@ -157,7 +157,7 @@ def compare(options: argparse.Namespace, project: Project) -> int:
     """Score the images of one run, or set of runs, against another's."""
     from workbench.folder import prepare
     from workbench.image_sets import compare_sets, page, table
-    from workbench.project import write_atomically
+    from workbench.whole_files import write_atomically
 
     if options.out is not None:
         prepare(options.out, clear=())

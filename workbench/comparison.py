@@ -19,10 +19,10 @@ from workbench.core.indenter import Indenter
 from workbench.core.mapping import to_table
 from workbench.core.press import Press
 from workbench.core.units import split_unit
+from workbench.design_toml import design_table
 from workbench.forms import resolve_shape, sliders
 from workbench.metric_rules import RULES, Better, Rule, rule
 from workbench.phases import MISSING
-from workbench.project import design_table
 from workbench.score_card import Figures, equal
 from workbench.state import State
 

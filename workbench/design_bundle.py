@@ -15,10 +15,12 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from workbench.core.errors import DesignError
+from workbench.design_toml import design_files, design_to_toml
 from workbench.kept_indenters import kept_arrays
-from workbench.project import MAX_TOML_BYTES, Project, design_files, design_to_toml
+from workbench.project import Project
 from workbench.state import State, case_table, read_state
 from workbench.uploads import own_name
+from workbench.whole_files import MAX_TOML_BYTES
 from workbench.zip_files import zip_members
 
 MOST_FILES = 50

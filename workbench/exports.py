@@ -13,12 +13,13 @@ from workbench.core.design import SensorDesign
 from workbench.core.errors import DeviceError
 from workbench.core.optics import Transport
 from workbench.core.results import MembraneMesh, VolumeMesh
+from workbench.design_toml import design_files, design_to_toml
 from workbench.folder import prepare, remove_stale
 from workbench.outputs import write_package
 from workbench.pipeline import InlineRunner, PressCase, StageMonitor, evaluate, plan, results
-from workbench.project import design_files, design_to_toml, write_atomically
 from workbench.store import Store
 from workbench.vtkfiles import write_vtk
+from workbench.whole_files import write_atomically
 
 OPTIONAL = ("mesh.npz", "tets.npz", "exploded.png", "bodies/*", "mitsuba/*")
 """Files that not every export writes."""

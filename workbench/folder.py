@@ -7,7 +7,7 @@ from collections.abc import Container, Iterable
 from pathlib import Path
 
 from workbench.core.errors import DesignError, StoreError
-from workbench.project import write_atomically
+from workbench.whole_files import write_atomically
 
 NUMBER = "[0-9][0-9][0-9]"
 IMAGE_FILES = (

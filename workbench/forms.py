@@ -9,8 +9,8 @@ from designs.family import Slider, families, family, resolve_shape, sliders
 from workbench.bodies import IMPORTED
 from workbench.core.design import SensorDesign
 from workbench.core.errors import DesignError
-from workbench.project import load_design as any_design
-from workbench.project import presets
+from workbench.named_designs import load_design as any_design
+from workbench.named_designs import presets
 
 __all__ = [
     "Slider",

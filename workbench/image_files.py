@@ -10,7 +10,7 @@ import numpy as np
 
 from workbench.core.sensing import Shot, TactileFrames
 from workbench.folder import CAMERA_FILES, IMAGE_FILES, remove_stale
-from workbench.project import write_atomically
+from workbench.whole_files import write_atomically
 
 FIELDS = "frames.npz"
 DIFFERENCE_GAIN = 2.0

@@ -21,7 +21,8 @@ from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
 from workbench.core.mapping import from_table, to_table
 from workbench.core.soft_body import SoftBody
 from workbench.core.texture import HeightImage, Pattern, Texture
-from workbench.project import Project, write_atomically
+from workbench.project import Project
+from workbench.whole_files import write_atomically
 
 AT = "press_case.indenter"
 

@@ -11,7 +11,7 @@ import numpy as np
 from workbench.core.maps import PERCENTILES, DesignerMaps
 from workbench.core.results import MembraneMesh
 from workbench.folder import remove_stale
-from workbench.project import write_atomically
+from workbench.whole_files import write_atomically
 
 FILE = "maps.npz"
 

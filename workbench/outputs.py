@@ -28,11 +28,11 @@ from workbench.forces import check_finite, csv_bytes, force_columns, slip_column
 from workbench.image_files import write_images
 from workbench.map_files import write_maps
 from workbench.pipeline import PressCase, results
-from workbench.project import write_atomically
 from workbench.stages import Call, Outcome
 from workbench.store import Store
 from workbench.trajectories import pose_csv, press_poses
 from workbench.vtkfiles import write_vtk
+from workbench.whole_files import write_atomically
 
 SUMMARY_SCHEMA = 1
 

@@ -19,9 +19,9 @@ from workbench.core.monitor import Monitor
 from workbench.image_files import write_images
 from workbench.outputs import plain_numbers, summary_table, write_press
 from workbench.pipeline import PressCase, StageMonitor, plan, results, stage_monitor
-from workbench.project import write_atomically
 from workbench.stages import PARTIAL, Call, Outcome, Ref, run
 from workbench.store import Store
+from workbench.whole_files import write_atomically
 
 
 @contextlib.contextmanager

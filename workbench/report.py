@@ -15,11 +15,11 @@ from workbench.core.mapping import to_table
 from workbench.core.press import Press
 from workbench.core.results import MembraneMesh, Picture, Skin, Solid
 from workbench.core.sensing import Contact, Shot
+from workbench.design_toml import design_table
 from workbench.forces import slip_columns
 from workbench.html_page import figure, page, table
 from workbench.image_files import png_bytes
 from workbench.outputs import frame_depths_mm
-from workbench.project import design_table
 
 NO_RENDERER = "<p>No picture: this machine has no off-screen renderer (libegl1).</p>"
 EXPLODED = (

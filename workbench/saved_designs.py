@@ -12,10 +12,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from workbench.core.errors import DesignError, WorkbenchError
+from workbench.design_toml import design_to_toml
+from workbench.names import AUTOSAVE
 from workbench.pipeline import plan
-from workbench.project import AUTOSAVE, Project, design_to_toml, kept_text, write_atomically
+from workbench.project import Project
 from workbench.state import State, case_table, read_state
-from workbench.trash import file_names, numbered, restore_file, trash_file
+from workbench.trash import file_names, restore_file, trash_file
+from workbench.whole_files import kept_text, write_atomically
 
 PREVIOUS = "previous"
 MOST_VERSIONS = 20
@@ -158,13 +161,6 @@ def restore_design(project: Project, kept: str) -> str:
         StoreError: If the folder cannot be written.
     """
     return restore_file(_folder(project), kept, what="design")
-
-
-def free_name(project: Project, name: str) -> str:
-    """A name like this one that no kept design has: `finger 2` after `finger`."""
-    stem, _, last = name.rpartition(" ")
-    stem = stem if last.isdigit() and stem else name
-    return numbered(stem[:70].rstrip(), saved_names(project))
 
 
 def _bytes(path: Path) -> bytes:

@@ -17,9 +17,10 @@ from workbench.core.errors import DesignError
 from workbench.core.indenter import Indenter
 from workbench.core.mapping import from_table, to_table
 from workbench.core.press import ContactSettings, Press
+from workbench.design_toml import design_from_toml, parse_toml
 from workbench.kept_indenters import indenter_table, read_indenter
 from workbench.pipeline import PressCase
-from workbench.project import Project, design_from_toml, parse_toml
+from workbench.project import Project
 
 PARTS = {"indenter": Indenter, "press": Press, "settings": ContactSettings}
 

@@ -20,11 +20,14 @@ from workbench.aim import default_target_mm, with_fitting_ring
 from workbench.core.errors import Cancelled, DesignError, WorkbenchError
 from workbench.core.mapping import suggest
 from workbench.core.units import human_seconds
+from workbench.design_toml import parse_toml
+from workbench.named_designs import load_design
 from workbench.pipeline import InlineRunner, evaluate, plan
-from workbench.project import Project, load_design, parse_toml, write_atomically
+from workbench.project import Project
 from workbench.state import State, fresh_state, read_state
 from workbench.sweeps import Status, Sweep, done, failed, make_sweep, metrics_of, state_at
 from workbench.terminal import Progress, complain, say
+from workbench.whole_files import write_atomically
 
 FILES = ("sweep.json", "sweep.csv", "sweep.html")
 

@@ -14,10 +14,10 @@ from typing import Any
 from workbench.aim import default_target_mm
 from workbench.core.errors import DesignError
 from workbench.core.mapping import suggest
+from workbench.design_toml import check_design
 from workbench.forms import resolve_shape, sliders
 from workbench.item_fields import read_field, with_field
 from workbench.pipeline import PressCase
-from workbench.project import check_design
 from workbench.state import State
 
 

@@ -11,11 +11,13 @@ from pathlib import Path
 from typing import Any
 
 from workbench.core.errors import DesignError
-from workbench.project import Project, design_to_toml, kept_text, write_atomically
+from workbench.design_toml import design_to_toml
+from workbench.project import Project
 from workbench.score_card import finite_figures
 from workbench.state import case_table, read_state
 from workbench.sweeps import MOST, Point, Status, Sweep
 from workbench.trash import restore_file, trash_file
+from workbench.whole_files import kept_text, write_atomically
 
 FOLDER = "sweeps"
 
@@ -33,15 +35,6 @@ def list_sweeps(project: Project) -> list[str]:
     """Names of all files of sweeps, the newest first."""
     files = (project.folder / FOLDER).glob("*.toml")
     return [path.stem for path in sorted(files, key=lambda p: -p.stat().st_mtime)]
-
-
-def next_sweep_name(project: Project, path: str) -> str:
-    """A free name for a sweep of this field, for example `elastomer_mm 2`."""
-    stem = path.rsplit(".", 1)[-1].replace("[", " ").replace("]", "")
-    taken, number = set(list_sweeps(project)), 1
-    while f"{stem} {number}" in taken:
-        number += 1
-    return f"{stem} {number}"
 
 
 def save_sweep(project: Project, sweep: Sweep) -> Path:

@@ -12,8 +12,8 @@ from pathlib import Path
 from workbench.core.digest import digest
 from workbench.core.indenter import Indenter
 from workbench.indenter_edit import another
+from workbench.named_designs import load_design
 from workbench.pipeline import PressCase, plan
-from workbench.project import load_design
 
 FOLDER = Path("designs") / "thumbnails"
 KEYS = "keys.toml"

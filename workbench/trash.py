@@ -6,10 +6,10 @@ one that comes back to where another has its name by now. A file may have a pict
 
 from __future__ import annotations
 
-from collections.abc import Collection
 from pathlib import Path
 
 from workbench.core.errors import DesignError, StoreError
+from workbench.names import numbered
 
 TRASH = "trash"
 ENDINGS = (".toml", ".png")
@@ -49,14 +49,6 @@ def restore_file(folder: Path, kept: str, *, what: str) -> str:
 def file_names(folder: Path) -> list[str]:
     """Names of the files of a folder, without their ending, sorted."""
     return sorted(path.stem for path in folder.glob("*.toml"))
-
-
-def numbered(name: str, taken: Collection[str]) -> str:
-    """The first free name of `name 2`, `name 3` and so on."""
-    number = 2
-    while f"{name} {number}" in taken:
-        number += 1
-    return f"{name} {number}"
 
 
 def move_file(source: Path, target: Path) -> None:

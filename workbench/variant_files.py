@@ -12,8 +12,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from workbench.core.errors import WorkbenchError
-from workbench.project import Project, write_atomically
-from workbench.trash import file_names, move_file, numbered, restore_file, trash_file
+from workbench.names import numbered
+from workbench.project import Project
+from workbench.trash import file_names, move_file, restore_file, trash_file
 from workbench.variants import (
     Variant,
     folder,
@@ -22,6 +23,7 @@ from workbench.variants import (
     variant_path,
     write_variant,
 )
+from workbench.whole_files import write_atomically
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -101,7 +103,7 @@ def duplicate_variant(project: Project, name: str) -> str:
         DesignError: If the variant cannot be read.
         StoreError: If the folder cannot be written.
     """
-    copy = numbered(name[:70].strip(), list_variants(project))
+    copy = numbered(name, list_variants(project))
     _write_as(project, name, copy)
     picture = variant_path(project, name).with_suffix(".png")
     if picture.is_file():

@@ -17,10 +17,12 @@ from typing import Any
 
 from workbench import __version__
 from workbench.core.errors import DesignError
+from workbench.design_toml import design_to_toml
 from workbench.pipeline import plan
-from workbench.project import Project, design_to_toml, kept_text, write_atomically
+from workbench.project import Project
 from workbench.score_card import figures, finite_figures
 from workbench.state import State, case_table, read_state
+from workbench.whole_files import kept_text, write_atomically
 
 FOLDER = "variants"
 KEPT = ("build", "mesh", "press", "shoot", "maps", "mould", "housing", "recipe")

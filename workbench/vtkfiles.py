@@ -8,7 +8,7 @@ from pathlib import Path
 from workbench.core.results import MembraneMesh, Solid, VolumeMesh
 from workbench.core.sensing import Contact
 from workbench.folder import remove_stale
-from workbench.project import write_atomically
+from workbench.whole_files import write_atomically
 
 PATTERNS = ("mesh.vtu", "membrane.vtp", "contact_*.vtp", "contact.pvd")
 

@@ -15,7 +15,7 @@ from geometry.housing_checks import LEAST_WALL_MM
 from workbench.core.fabrication import Severity
 from workbench.core.monitor import silent
 from workbench.core.press import ContactSettings
-from workbench.project import load_design, presets
+from workbench.named_designs import load_design, presets
 from workbench.stages import build, housing
 
 pytestmark = pytest.mark.slow

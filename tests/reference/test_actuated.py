@@ -16,8 +16,8 @@ from workbench.core.monitor import silent
 from workbench.core.press import ContactSettings, Extent, Press
 from workbench.core.results import Label, MembraneMesh
 from workbench.core.sensing import Contact
+from workbench.named_designs import load_design
 from workbench.pipeline import plan
-from workbench.project import load_design
 from workbench.sequences import LIFT_FRAMES, sequence
 from workbench.stages import build, lattice, mesh
 

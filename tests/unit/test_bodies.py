@@ -15,8 +15,10 @@ from workbench.building import build_solid
 from workbench.core.design import Layers, SensorDesign
 from workbench.core.errors import DesignError
 from workbench.core.imported import FileKind, LengthUnit, Pick
+from workbench.design_toml import design_from_toml, design_to_toml
+from workbench.named_designs import load_design
 from workbench.pipeline import PressCase, plan
-from workbench.project import Project, design_from_toml, design_to_toml, load_design
+from workbench.project import Project
 
 DATA = stl_bytes(
     np.array([[0.0, 0, 0], [9, 0, 0], [0, 9, 0], [0, 0, 9]]),

@@ -25,9 +25,9 @@ from workbench.core.design import Law, SensorDesign
 from workbench.core.errors import SolveError
 from workbench.core.press import ContactSettings, Extent, Method, Press
 from workbench.core.trajectory import unit_pose
+from workbench.named_designs import load_design
 from workbench.pipeline import PressCase
 from workbench.press_options import press_case
-from workbench.project import load_design
 from workbench.rows import Row, as_json, as_text, bounded, compared, failed
 
 
@@ -183,7 +183,7 @@ def test_bug_leaves_a_crash_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     def broken() -> None:
         raise ZeroDivisionError("bug")
 
-    monkeypatch.setattr("workbench.project.presets", broken)
+    monkeypatch.setattr("workbench.named_designs.presets", broken)
     assert run(tmp_path, "presets") == 1
     (crash,) = (tmp_path / "p" / "crash").iterdir()
     assert "ZeroDivisionError: bug" in crash.read_text()
@@ -195,7 +195,7 @@ def test_ctrl_c_exits_130(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     def interrupted() -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("workbench.project.presets", interrupted)
+    monkeypatch.setattr("workbench.named_designs.presets", interrupted)
     assert run(tmp_path, "presets") == 130
     assert not (tmp_path / "p" / "crash").exists()
 
@@ -209,7 +209,7 @@ def test_crash_file_that_cannot_be_written_keeps_the_traceback(
         raise ZeroDivisionError("bug")
 
     (tmp_path / "p").write_text("a file")
-    monkeypatch.setattr("workbench.project.presets", broken)
+    monkeypatch.setattr("workbench.named_designs.presets", broken)
     assert run(tmp_path, "presets") == 1
     assert "ZeroDivisionError: bug" in capsys.readouterr().err
 
@@ -228,7 +228,7 @@ def test_full_memory_and_disk_exit_3(
     def exhausted() -> None:
         raise problem
 
-    monkeypatch.setattr("workbench.project.presets", exhausted)
+    monkeypatch.setattr("workbench.named_designs.presets", exhausted)
     assert run(tmp_path, "presets") == 3
     assert capsys.readouterr().err.startswith("error: ")
     assert not (tmp_path / "p" / "crash").exists()
@@ -237,7 +237,9 @@ def test_full_memory_and_disk_exit_3(
 def test_termination_exits_130(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """SIGTERM is Ctrl-C, and the handler of before is back afterwards."""
     before = signal.getsignal(signal.SIGTERM)
-    monkeypatch.setattr("workbench.project.presets", lambda: signal.raise_signal(signal.SIGTERM))
+    monkeypatch.setattr(
+        "workbench.named_designs.presets", lambda: signal.raise_signal(signal.SIGTERM)
+    )
     assert run(tmp_path, "presets") == 130
     assert signal.getsignal(signal.SIGTERM) is before
 

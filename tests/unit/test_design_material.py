@@ -9,7 +9,7 @@ import pytest
 from workbench.core.design import Elastomer, Law, SensorDesign
 from workbench.core.errors import DesignError
 from workbench.core.inclusion import Inclusion, Where
-from workbench.project import design_from_toml, design_to_toml
+from workbench.design_toml import design_from_toml, design_to_toml
 from workbench.store import Store
 
 HEAD = 'schema = 1\nname = "soft"\nfamily = "finger"\n[material]\n'

@@ -16,8 +16,8 @@ import pytest
 from workbench.core.errors import DesignError
 from workbench.design_bundle import unbundle, zipped
 from workbench.forms import load_design
+from workbench.named_designs import load_design as any_design
 from workbench.project import Project
-from workbench.project import load_design as any_design
 
 BODY = 'name = "x"\nfamily = "imported"\n[body]\nouter = "{}"\nouter_name = "x.stl"\n'
 PICTURE = 'name = "x"\nfamily = "finger"\n[optics]\nbackground = "{}"\n'

@@ -20,8 +20,8 @@ from workbench.core.lighting import LightModel
 from workbench.core.monitor import silent
 from workbench.core.results import Skin
 from workbench.glimpse import Glimpse, glimpse_call
+from workbench.named_designs import load_design
 from workbench.pipeline import plan
-from workbench.project import load_design
 from workbench.state import fresh_state
 from workbench.store import Store
 

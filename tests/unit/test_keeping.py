@@ -17,7 +17,8 @@ from ui.saving import QUIET_S, RETRY_S, Saving
 from ui.session import Session
 from workbench.core.errors import StoreError, WorkbenchError
 from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
-from workbench.project import Project, write_atomically
+from workbench.project import Project
+from workbench.whole_files import write_atomically
 
 
 class Desk:
@@ -109,7 +110,7 @@ def test_nonsense_is_kept_aside_and_never_written_over(session: Session) -> None
         path.write_bytes(text.encode("utf-8", "surrogateescape"))
         again = Session(Project(session.project.folder))
         again.open(None)
-        name = f"autosave-broken{f'-{number + 1}' if number else ''}.toml"
+        name = f"autosave-broken{f' {number + 1}' if number else ''}.toml"
         assert name in again.notice
         again.autosave()
         kept = path.with_name(name)

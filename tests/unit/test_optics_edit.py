@@ -17,6 +17,7 @@ from workbench.core.errors import DesignError
 from workbench.core.leds import lamp_points
 from workbench.core.lighting import Lamp, LampKind, LedRing, LightModel
 from workbench.core.optics import Optics
+from workbench.design_toml import design_from_toml
 from workbench.item_fields import read_field, with_field, without_item
 from workbench.light_edit import (
     MODEL_HINTS,
@@ -27,7 +28,7 @@ from workbench.light_edit import (
     read_colours,
     read_numbers,
 )
-from workbench.project import Project, design_from_toml
+from workbench.project import Project
 
 LAMPS = (Lamp(), Lamp(kind=LampKind.LINE, power=2.0))
 

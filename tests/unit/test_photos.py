@@ -12,15 +12,10 @@ from sim.optics.photo_file import read_rgb
 from workbench import photos
 from workbench.core.digest import digest
 from workbench.core.errors import DesignError
+from workbench.design_toml import check_design, design_from_toml, design_table, design_to_toml
+from workbench.named_designs import load_design
 from workbench.photos import design_photos, shipped_photos
-from workbench.project import (
-    Project,
-    check_design,
-    design_from_toml,
-    design_table,
-    design_to_toml,
-    load_design,
-)
+from workbench.project import Project
 
 HEAD = 'schema = 1\nname = "w"\nfamily = "finger"\n'
 GELTIP = "geltip_idle_640x480.png"

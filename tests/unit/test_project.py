@@ -7,14 +7,10 @@ from pathlib import Path
 import pytest
 
 from workbench.core.errors import DesignError, StoreError
-from workbench.project import (
-    Project,
-    design_from_toml,
-    design_to_toml,
-    load_design,
-    presets,
-    write_atomically,
-)
+from workbench.design_toml import design_from_toml, design_to_toml
+from workbench.named_designs import load_design, presets
+from workbench.project import Project
+from workbench.whole_files import write_atomically
 
 
 @pytest.mark.parametrize("name", [*presets(), "finger"])

@@ -16,12 +16,12 @@ from workbench.core.digest import digest
 from workbench.core.errors import DesignError
 from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
 from workbench.design_bundle import MOST_FILES, bundle, unbundle, zipped
-from workbench.project import Project, load_design
+from workbench.named_designs import load_design
+from workbench.project import Project
 from workbench.saved_designs import (
     MOST_VERSIONS,
     SavedShelf,
     delete_design,
-    free_name,
     open_design,
     restore_design,
     save_named,
@@ -145,15 +145,6 @@ def test_a_name_that_leaves_the_folder_is_refused(tmp_path: Path, name: str) -> 
     with pytest.raises(DesignError):
         save_named(project, named(name))
     assert not list(tmp_path.rglob("*.toml"))
-
-
-def test_copies_get_free_names(tmp_path: Path) -> None:
-    """finger, finger 2, finger 3; a copy of finger 2 is finger 3 too."""
-    project = Project(tmp_path)
-    save_named(project, named("finger"))
-    assert free_name(project, "finger") == "finger 2"
-    save_named(project, named("finger 2"))
-    assert free_name(project, "finger 2") == "finger 3"
 
 
 def test_a_plain_design_travels_as_readable_toml(tmp_path: Path) -> None:

@@ -13,7 +13,7 @@ from workbench.core.indenter import Indenter
 from workbench.core.mapping import from_table, to_table
 from workbench.core.motion import StrokeKind
 from workbench.core.press import Press
-from workbench.project import load_design
+from workbench.named_designs import load_design
 from workbench.sequences import sequence, titles
 
 

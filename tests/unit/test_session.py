@@ -11,7 +11,8 @@ from geometry.primitives import rounded_box
 from ui.session import Session
 from workbench.core.errors import DesignError
 from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
-from workbench.project import Project, design_to_toml
+from workbench.design_toml import design_to_toml
+from workbench.project import Project
 
 
 class Clock:

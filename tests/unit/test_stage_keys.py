@@ -16,8 +16,8 @@ from workbench.core.press import ContactSettings, Method, Press
 from workbench.core.soft_body import SoftBody
 from workbench.core.texture import Pattern, Texture
 from workbench.live_press import live_design
+from workbench.named_designs import load_design
 from workbench.pipeline import PressCase, needed, plan
-from workbench.project import load_design
 
 FILES = {"recipe", "package"}
 SEEN = {"bake", "table", "shoot", "maps"}

@@ -11,8 +11,9 @@ import pytest
 
 from tests.unit.test_sweeps import shot
 from workbench.cli import main
+from workbench.named_designs import load_design
 from workbench.pipeline import plan
-from workbench.project import Project, load_design
+from workbench.project import Project
 from workbench.state import fresh_state
 from workbench.sweep_fields import find_field, with_value
 

@@ -10,15 +10,16 @@ import pytest
 
 from workbench.core.errors import DesignError, SolveError
 from workbench.core.sensing import Metrics, Shot, TactileFrames
+from workbench.named_designs import load_design
+from workbench.names import numbered
 from workbench.pipeline import plan
-from workbench.project import Project, load_design
+from workbench.project import Project
 from workbench.state import State, fresh_state
 from workbench.sweep_fields import field_value, find_field, sweep_fields, with_value
 from workbench.sweep_files import (
     delete_sweep,
     list_sweeps,
     load_sweep,
-    next_sweep_name,
     restore_sweep,
     save_sweep,
 )
@@ -49,7 +50,7 @@ def finger() -> State:
 
 
 def walls(project: Project, start: float = 1.0, stop: float = 3.0) -> Sweep:
-    name = next_sweep_name(project, WALL)
+    name = numbered("elastomer_mm", list_sweeps(project), first=1)
     return make_sweep(name, finger(), WALL, start=start, stop=stop, steps=3)
 
 
@@ -190,14 +191,14 @@ def test_broken_sweep_files_are_refused_with_a_reason(project: Project) -> None:
 
 
 def test_a_deleted_sweep_comes_back_beside_one_that_took_its_name(project: Project) -> None:
-    """The second is called `elastomer_mm 1 2`; a sweep that cannot be read is deleted too."""
+    """The second is called `elastomer_mm 2`; a sweep that cannot be read is deleted too."""
     path = save_sweep(project, walls(project))
     kept = delete_sweep(project, path.stem)
     assert list_sweeps(project) == []
     path.write_text("not [toml")
-    assert restore_sweep(project, kept) == "elastomer_mm 1 2"
-    assert load_sweep(project, "elastomer_mm 1 2").path == walls(project).path
+    assert restore_sweep(project, kept) == "elastomer_mm 2"
+    assert load_sweep(project, "elastomer_mm 2").path == walls(project).path
     delete_sweep(project, path.stem)
-    assert list_sweeps(project) == ["elastomer_mm 1 2"]
+    assert list_sweeps(project) == ["elastomer_mm 2"]
     with pytest.raises(DesignError):
         delete_sweep(project, path.stem)

@@ -12,7 +12,8 @@ from workbench.comparison import changes, parameter_differences, press_notice, t
 from workbench.comparison_tables import card_table, change_table, parameter_table, remedies
 from workbench.core.errors import DesignError
 from workbench.metric_rules import RULES, Better
-from workbench.project import Project, load_design
+from workbench.named_designs import load_design
+from workbench.project import Project
 from workbench.score_card import card, figures, sorted_by
 from workbench.state import State, fresh_state
 from workbench.variant_files import (

@@ -19,6 +19,7 @@ from workbench.core.errors import WorkbenchError
 from workbench.core.monitor import silent
 from workbench.design_bundle import bundle, unbundle
 from workbench.forms import choices, load_design, purpose
+from workbench.names import numbered
 from workbench.pipeline import plan
 from workbench.portraits import portrait_calls
 from workbench.saved_designs import (
@@ -26,7 +27,6 @@ from workbench.saved_designs import (
     SavedShelf,
     delete_design,
     file_stamp,
-    free_name,
     open_design,
     restore_design,
     save_named,
@@ -145,7 +145,7 @@ class DesignFiles:
 
     def _save_copy(self) -> None:
         session = self.desk.session
-        name = free_name(self.project, session.design.name)
+        name = numbered(session.design.name, saved_names(self.project))
         copy = dataclasses.replace(session.design, name=name)
         session.replace_state(dataclasses.replace(session.state, design=copy))
         self.desk.replaced()

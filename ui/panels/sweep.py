@@ -17,12 +17,12 @@ from workbench.comparison_report import point_state
 from workbench.conductor import Finished
 from workbench.core.errors import Cancelled, DesignError, WorkbenchError
 from workbench.core.units import human_seconds
+from workbench.names import numbered
 from workbench.sweep_fields import SweepField, field_value, sweep_fields
 from workbench.sweep_files import (
     delete_sweep,
     list_sweeps,
     load_sweep,
-    next_sweep_name,
     restore_sweep,
     save_sweep,
 )
@@ -150,8 +150,9 @@ class SweepFolder:
         field = self.fields.get(self.field.value)
         if field is None:
             raise DesignError("no parameter is chosen", hint="choose one, then run the sweep")
+        name = numbered(field.path.rpartition(".")[2], list_sweeps(self.project), first=1)
         self.sweep = make_sweep(
-            next_sweep_name(self.project, field.path),
+            name,
             self.desk.session.state,
             field.path,
             start=float(self.start.value),

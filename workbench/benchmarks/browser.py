@@ -23,7 +23,8 @@ import numpy as np
 
 from workbench.benchmarks.playback import WATCH_DRAWS, frame_s
 from workbench.benchmarks.tabs import blocked_s, key_to_server_s
-from workbench.project import design_to_toml, load_design
+from workbench.design_toml import design_to_toml
+from workbench.named_designs import load_design
 from workbench.rows import Row, bounded, failed
 
 FLAGS = (

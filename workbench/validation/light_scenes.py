@@ -56,7 +56,7 @@ SCENES = tuple(
 def mesh_of(body: str) -> MembraneMesh:
     """The body at 0.4 mm, built by the workbench's own stages."""
     from designs.family import resolve_shape
-    from workbench.project import load_design
+    from workbench.named_designs import load_design
     from workbench.stages import build, mesh
 
     design = SensorDesign() if body == "finger" else load_design(body)
