@@ -11,7 +11,6 @@ import numpy as np
 
 from workbench.aim import default_target_mm, with_fitting_ring
 from workbench.bodies import IMPORTED
-from workbench.core.indenter import Indenter
 from workbench.core.results import Solid
 
 if TYPE_CHECKING:
@@ -26,8 +25,6 @@ class Aiming:
 
     def __init__(self, desk: Desk) -> None:
         self.desk = desk
-        self._indenter: Indenter | None = None
-        """The object on show."""
         self._framed: tuple[str, str] | None = None
         """The kind of sensor that the eye was last set for."""
 
@@ -48,13 +45,6 @@ class Aiming:
         # A click may have been meant for something else; on most tabs nothing else would tell.
         desk.reports.notify("The press aims elsewhere", f"target {place}; Ctrl+Z takes it back")
 
-    def follow_indenter(self) -> None:
-        """Show the object that is pressed, once there is a body for it to stand on."""
-        case, scene = self.desk.session.case, self.desk.scene
-        if self._indenter is not case.indenter and scene.body.solid is not None:
-            self._indenter = case.indenter
-            scene.object.show(case.indenter, case.press)
-
     def show_body(self, solid: Solid) -> None:
         """Show another body, with the object on it."""
         desk, origin = self.desk, self.desk.origin()
@@ -65,8 +55,8 @@ class Aiming:
             desk.scene.frame_body()
             self._fit_ring(solid)
         self.keep_aim()
-        self._indenter = None
-        self.follow_indenter()
+        desk.scene.object.place(desk.session.case.press)
+        desk.object.follow()
 
     def _fit_ring(self, solid: Solid) -> None:
         """Bring the LEDs of a body that has just come from a file inside it, and say so."""

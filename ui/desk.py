@@ -19,6 +19,7 @@ from ui.glimpse import GlimpseFollower
 from ui.header import Header
 from ui.jobs import Jobs
 from ui.live import LivePress
+from ui.object_follower import ObjectFollower
 from ui.panels.fields import Fields, whole_shape
 from ui.reports import Reports
 from ui.saving import Saving
@@ -26,7 +27,7 @@ from ui.scene import Scene
 from ui.session import Session
 from ui.showing import Showing
 from ui.upkeep import Upkeep
-from workbench.conductor import GLIMPSE, LIVE, SHAPE, Conductor, Finished, Request
+from workbench.conductor import DRAWN, GLIMPSE, LIVE, SHAPE, Conductor, Finished, Request
 from workbench.core.design import SensorDesign
 from workbench.core.errors import SolveError, WorkbenchError
 from workbench.core.sensing import Contact
@@ -109,6 +110,7 @@ class Desk:
         self.gizmos.append(self.live.gizmo)
         self.jobs.on_preview[LIVE] = self.live.show
         self.glimpse = GlimpseFollower(self)
+        self.object = ObjectFollower(self)
         self.saving = Saving(session, self.reports, self.header.unsaved)
         self._sensor: tuple[str, str] | None = None
         self._covering: set[str] = set()
@@ -155,7 +157,7 @@ class Desk:
         self.showing.show_stored()
         if self.current("build"):
             self.aiming.keep_aim()
-        self.aiming.follow_indenter()
+        self.object.follow()
         if not self.current("press"):
             # What was pressed was another press: the skin is at rest again, or follows live.
             self.showing.forget("press")
@@ -229,6 +231,8 @@ class Desk:
 
     def _asked_now(self, request: Request, failed: str) -> bool:
         """Whether the stage of a request that failed is a stage of the state as it stands."""
+        if request.preview is not None and request.case.indenter != self.session.case.indenter:
+            return False
         if not failed:
             return request.design == self.session.design
         now = self.session.calls().get(failed)
@@ -240,6 +244,8 @@ class Desk:
             self.live.failed()
         elif topic == GLIMPSE:
             self.glimpse.failed()
+        elif topic == DRAWN:
+            self.object.failed()
         kept = error.kept if isinstance(error, SolveError) else ""
         if kept and topic != LIVE and kept == self.session.calls()["press"].key:
             if self.session.store.has(PARTIAL, kept):

@@ -13,6 +13,7 @@ from ui.header import NAMES, Header
 from ui.reports import Reports
 from workbench.conductor import (
     CUT,
+    DRAWN,
     GLIMPSE,
     LIVE,
     QUIET,
@@ -151,7 +152,7 @@ class Jobs:
             # Its message would stand above a design that it does not tell of.
             log(f"{event.topic}, of an earlier design: {error.message}")
         elif error is not None:
-            self.reports.report(error, topic="" if event.topic == SHAPE else event.topic)
+            self.reports.report(error, topic="" if event.topic in (SHAPE, DRAWN) else event.topic)
             self.on_failed(error, event.topic)
         elif not quiet:
             log(f"{event.topic}: finished in {human_seconds(event.seconds)}")

@@ -8,10 +8,10 @@ import numpy as np
 
 from ui.nodes import replace
 from ui.sensor import SensorView
-from workbench.core.indenter import Indenter
 from workbench.core.press import Press
 from workbench.core.sensing import Contact
-from workbench.previews import indenter_shape, standing_pose
+from workbench.object_drawing import Drawing
+from workbench.previews import standing_pose
 from workbench.soft_shape import deformed_mm, is_soft
 
 OBJECT_COLOUR = (232, 124, 44)
@@ -41,14 +41,21 @@ class ObjectView:
         """Undeformed vertices [mm] and triangles."""
         self._bent = False
         """Whether the object is drawn deformed."""
+        self._pressed: tuple[Contact, int] | None = None
+        """The frame that has the object, counted from 0; None while it stands on the skin."""
 
-    def show(self, indenter: Indenter, path: Press) -> None:
-        """Show the object standing on the skin at the target."""
-        points, faces = indenter_shape(indenter)
-        vertices, triangles = points.astype(np.float32), faces.astype(np.uint32)
-        self._rest = points, triangles
+    def show(self, drawing: Drawing, path: Press) -> None:
+        """Show an object where the frame on show has it, else on the skin at the target."""
+        self._rest = drawing.points_mm, drawing.faces
         self._bent = False
-        self._lowest_mm = -float(points[:, 2].min())
+        self._lowest_mm = drawing.lowest_mm
+        self._draw(drawing.points_mm.astype(np.float32), drawing.faces)
+        if self._pressed is None:
+            self.place(path)
+        else:
+            self.press(*self._pressed)
+
+    def _draw(self, vertices: np.ndarray, triangles: np.ndarray) -> None:
         if self.node is None:
             self.node = self.server.scene.add_mesh_simple(
                 "/indenter", vertices, triangles, color=OBJECT_COLOUR, flat_shading=False
@@ -58,19 +65,20 @@ class ObjectView:
         else:
             with self.server.atomic():
                 replace(self.node, vertices, triangles)
-        self.place(path)
 
     def place(self, path: Press) -> None:
         """Stand the object on the skin near the target of a press."""
         body = self.body
-        if self.node is not None and len(body.points):
+        self._pressed = None
+        if len(body.points):
             self._pose(standing_pose(body.points, body.normals, path.target_mm, self._lowest_mm))
 
     def press(self, contact: Contact, frame: int) -> None:
         """Put it where a frame, counted from 0, has it, in the shape that it has there."""
+        self._pressed = contact, frame
+        self._pose(contact.indenter_pose[frame])
         if self.node is None:
             return
-        self._pose(contact.indenter_pose[frame])
         if is_soft(contact) or self._bent:
             points, triangles = self._rest
             self._bent = is_soft(contact)
@@ -79,6 +87,8 @@ class ObjectView:
 
     def _pose(self, pose: np.ndarray) -> None:
         self.standing = np.asarray(pose)
+        if self.node is None:
+            return
         with self.server.atomic():
             self.node.position = tuple(pose[:3])
             self.node.wxyz = tuple(pose[3:])

@@ -1,8 +1,8 @@
 """Runs the pipeline behind the browser: one thread per topic, newest request wins.
 
 A topic is what the designer waits for: `shape` (the body that follows the sliders), `press`,
-`image`, `maps`, `mesh`, `tetrahedra`, `parts`, `import`, `object`, and `live` (a press that
-follows a drag).
+`image`, `maps`, `mesh`, `tetrahedra`, `parts`, `import`, `object`, and what follows the hand:
+those below.
 Widget callbacks call `submit` and return; the browser's pump reads `events`. Nothing here touches
 a widget, and nothing heavy runs in these threads: they wait for the lanes.
 """
@@ -35,7 +35,9 @@ GLIMPSE = "glimpse"
 """The topic of the small picture that follows the sliders."""
 CUT = "cut"
 """The topic of the section view."""
-FOLLOWING = (SHAPE, GLIMPSE, CUT)
+DRAWN = "drawn object"
+"""The topic of the object's shape in the 3D view."""
+FOLLOWING = (SHAPE, GLIMPSE, CUT, DRAWN)
 """Topics too quick for a bar or a Cancel, unless one takes longer than `PATIENCE_S`."""
 PATIENCE_S = 4.0
 """What follows the hand and still runs after this gives way to a newer request [s]."""

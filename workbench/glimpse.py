@@ -22,6 +22,7 @@ from workbench.core.lighting import LightModel
 from workbench.core.monitor import Monitor, silent
 from workbench.core.optics import Optics
 from workbench.live_press import small
+from workbench.object_drawing import Shapes, shapes_of
 from workbench.pipeline import PressCase, plan
 from workbench.stages import Ref
 from workbench.store import Store
@@ -78,7 +79,7 @@ class GlimpseCall:
 
     def answer(self, store: Store, kept: dict[str, Any], monitor: Monitor) -> Glimpse:
         """Mesh, light and look; raises as those do."""
-        glimpser: Glimpser = kept.setdefault(self.stage, Glimpser())
+        glimpser: Glimpser = kept.setdefault(self.stage, Glimpser(shapes_of(kept)))
         return glimpser.answer(store, self)
 
 
@@ -103,10 +104,10 @@ def glimpse_call(design: SensorDesign, case: PressCase) -> GlimpseCall:
 class Glimpser:
     """Answers glimpses in one process, and keeps what the next one may need."""
 
-    def __init__(self) -> None:
+    def __init__(self, shapes: Shapes) -> None:
+        self.shapes = shapes
         self._mesh: tuple[Ref, MembraneMesh] | None = None
         self._studio: tuple[str, Studio] | None = None
-        self._object: tuple[Indenter, tuple[np.ndarray, np.ndarray]] | None = None
 
     def answer(self, store: Store, call: GlimpseCall) -> Glimpse:
         """What the camera sees at rest and dented."""
@@ -118,7 +119,7 @@ class Glimpser:
         mesh = self._coarse(store, call.solid)
         studio = self._open_studio(call, mesh)
         target_mm = np.asarray(call.target_mm)
-        points_mm, faces = self._shape(call.indenter)
+        points_mm, faces = self.shapes.shape(call.indenter)
         moved = sketched(mesh.seen, points_mm, faces, target_mm=target_mm, depth_mm=call.depth_mm)
         images = enlarged(studio.images(np.stack([np.zeros_like(moved), moved])))
         return Glimpse(
@@ -150,13 +151,6 @@ class Glimpser:
             )
             self._studio = (key, Studio(mesh, light, optics))
         return self._studio[1]
-
-    def _shape(self, indenter: Indenter) -> tuple[np.ndarray, np.ndarray]:
-        from workbench.indenter_display import display_mesh
-
-        if self._object is None or self._object[0] != indenter:
-            self._object = (indenter, display_mesh(indenter))
-        return self._object[1]
 
 
 def enlarged(images: np.ndarray) -> np.ndarray:

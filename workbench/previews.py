@@ -1,4 +1,4 @@
-"""Cheap shapes for the live view: regions of a body, the indenter, clicks, cells of a mesh.
+"""Cheap shapes for the live view: regions of a body, a standing object, clicks, cells of a mesh.
 
 Everything here takes milliseconds on the largest body; what takes longer is a stage.
 """
@@ -11,7 +11,6 @@ import numpy as np
 
 from geometry.quality import CELL_EDGES, volume_quality
 from workbench.core.frames import quaternion, tangent
-from workbench.core.indenter import Indenter
 from workbench.core.results import (
     Label,
     LabelledSurface,
@@ -36,13 +35,6 @@ CELL_SIDES = {
 """Corners of the faces of a cell in VTK order, by its number of corners."""
 PLANE_MM = 1e-3
 """Faces nearer to the base plane than this lie on it [mm]."""
-
-
-def indenter_shape(indenter: Indenter) -> tuple[np.ndarray, np.ndarray]:
-    """Vertices [mm] (N, 3) in the body frame and triangles (M, 3) of an indenter."""
-    from workbench.indenter_display import display_mesh
-
-    return display_mesh(indenter)
 
 
 def outer_faces(surface: LabelledSurface) -> tuple[np.ndarray, np.ndarray]:

@@ -1,0 +1,46 @@
+"""Keeps the object in the 3D view that of the state: asks a lane for its shape, draws what came.
+
+Until the new shape is there the old one stays; while one is made only the newest request waits.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from workbench.conductor import DRAWN, Request
+from workbench.core.indenter import Indenter
+from workbench.object_drawing import Drawing, DrawingCall
+
+if TYPE_CHECKING:
+    from ui.desk import Desk
+
+
+class ObjectFollower:
+    """The drawn object of one desk."""
+
+    def __init__(self, desk: Desk) -> None:
+        self.desk = desk
+        self._asked: Indenter | None = None
+        desk.jobs.on_preview[DRAWN] = self._show
+
+    def follow(self) -> None:
+        """Ask for the object of the state, once it has a body to stand on, unless asked last."""
+        desk, session = self.desk, self.desk.session
+        indenter = session.case.indenter
+        if indenter is not self._asked and desk.scene.body.solid is not None:
+            self._asked = indenter
+            call = DrawingCall(indenter=indenter)
+            desk.conductor.ask(DRAWN, session.design, session.case, call)
+
+    def _show(self, drawing: Drawing, request: Request) -> None:
+        """Draw what came: along a slider all that is made on the way, else what is wanted now."""
+        case = self.desk.session.case
+        if request.case.indenter.kind is case.indenter.kind:
+            shown = self.desk.scene.object
+            shown.show(drawing, case.press)
+            if self.desk.live.on:
+                self.desk.live.gizmo.place(shown.standing[:3])
+
+    def failed(self) -> None:
+        """Ask again at the next change: the worker may have been lost."""
+        self._asked = None
