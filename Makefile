@@ -5,6 +5,8 @@ PYTHON ?= $(shell for p in python3.12 python3.11 python3; do \
 	&& echo $$p && break; done)
 BIN := .venv/bin
 PORT ?= 8080
+# Tests of one file share bodies and meshes, so they stay together.
+PARALLEL := -n auto --maxprocesses 4 --dist loadfile
 
 .DEFAULT_GOAL := help
 .PHONY: help setup run test check demo bench format lock browser clean
@@ -36,13 +38,15 @@ demo: setup ## The whole chain without a browser, into out/demo
 		--frames 10 --out out/demo
 
 test: .venv/dev.stamp browser ## Install what tests need and pass every test
-	CHROMIUM="$$(bash .ci/chromium)" $(BIN)/python -m pytest
+	@# A browser draws in software and wants all cores: those tests run after the others, one by one.
+	$(BIN)/python -m pytest $(PARALLEL) -m "not ui"; others=$$?; \
+	CHROMIUM="$$(bash .ci/chromium)" $(BIN)/python -m pytest -m ui --durations=15 && exit $$others
 
 check: .venv/dev.stamp ## Lint, format, types, fast tests
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/pyright
-	$(BIN)/python -m pytest -q -m "not slow and not ui and not gpu"
+	$(BIN)/python -m pytest -q $(PARALLEL) -m "not slow and not ui and not gpu"
 
 bench: .venv/dev.stamp browser ## Print the benchmark table
 	@CHROMIUM="$$(bash .ci/chromium)" $(BIN)/workbench bench all
