@@ -27,13 +27,14 @@ from ui.scene import Scene
 from ui.session import Session
 from ui.showing import Showing
 from ui.upkeep import Upkeep
-from workbench.conductor import DRAWN, GLIMPSE, LIVE, SHAPE, Conductor, Finished, Request
+from workbench.conductor import Conductor
 from workbench.core.design import SensorDesign
 from workbench.core.errors import SolveError, WorkbenchError
 from workbench.core.sensing import Contact
 from workbench.forms import resolve_shape
 from workbench.item_fields import read_field
 from workbench.pipeline import plan
+from workbench.requests import DRAWN, GLIMPSE, LIVE, SHAPE, Finished, Request
 from workbench.stages import PARTIAL
 
 OF_A_SENSOR = ("press", "image", "maps")

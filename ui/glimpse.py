@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from workbench.conductor import GLIMPSE, Request
 from workbench.glimpse import Glimpse, GlimpseCall, glimpse_call
+from workbench.requests import GLIMPSE, Request
 
 if TYPE_CHECKING:
     from ui.desk import Desk

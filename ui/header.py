@@ -8,9 +8,9 @@ from typing import Any
 import viser
 
 from ui.plain import plain
-from workbench.conductor import FOLLOWING, LIVE, PATIENCE_S, SHAPE, Progress
 from workbench.core.design import SensorDesign
 from workbench.core.units import human_seconds
+from workbench.requests import FOLLOWING, LIVE, PATIENCE_S, SHAPE, Progress
 
 STRIP = {
     "build": "Shape",

@@ -11,14 +11,19 @@ from typing import Any
 
 from ui.header import NAMES, Header
 from ui.reports import Reports
-from workbench.conductor import (
+from workbench.conductor import Conductor
+from workbench.core.design import SensorDesign
+from workbench.core.errors import Cancelled, WorkbenchError
+from workbench.core.units import human_seconds
+from workbench.pipeline import PressCase
+from workbench.preview_call import PreviewCall
+from workbench.requests import (
     CUT,
     DRAWN,
     GLIMPSE,
     LIVE,
     QUIET,
     SHAPE,
-    Conductor,
     Event,
     Finished,
     PreviewDone,
@@ -26,11 +31,6 @@ from workbench.conductor import (
     Request,
     StageDone,
 )
-from workbench.core.design import SensorDesign
-from workbench.core.errors import Cancelled, WorkbenchError
-from workbench.core.units import human_seconds
-from workbench.pipeline import PressCase
-from workbench.preview_call import PreviewCall
 from workbench.stages import Outcome
 from workbench.state import State
 

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ui.gizmo import Gizmo
-from workbench.conductor import Request
 from workbench.live_press import LiveCall, Preview, aimed_mm, live_call
+from workbench.requests import Request
 
 if TYPE_CHECKING:
     from ui.desk import Desk

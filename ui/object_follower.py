@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from workbench.conductor import DRAWN, Request
 from workbench.core.indenter import Indenter
 from workbench.object_drawing import Drawing, DrawingCall
+from workbench.requests import DRAWN, Request
 
 if TYPE_CHECKING:
     from ui.desk import Desk

@@ -13,11 +13,11 @@ from collections.abc import Callable
 from typing import Any
 
 from ui.reports import Reports
-from workbench.conductor import Runner
 from workbench.core.errors import Cancelled, WorkbenchError
 from workbench.core.monitor import silent
 from workbench.portraits import portrait_calls, thumbnail_png
 from workbench.project import Project
+from workbench.topic import Runner
 from workbench.variants import load_variant, result_keys, variant_path
 from workbench.whole_files import write_atomically
 

@@ -11,7 +11,7 @@ from typing import cast
 import numpy as np
 import pytest
 
-from workbench.conductor import LIVE, SHAPE, Conductor, Finished, PreviewDone
+from workbench.conductor import Conductor
 from workbench.core.design import SensorDesign
 from workbench.core.errors import Cancelled, MeshingError
 from workbench.core.monitor import Monitor
@@ -19,6 +19,8 @@ from workbench.core.press import Press
 from workbench.core.sensing import Contact
 from workbench.live_press import LiveCall, Preview
 from workbench.pipeline import PressCase
+from workbench.preview_call import PreviewCall
+from workbench.requests import LIVE, SHAPE, Finished, PreviewDone
 from workbench.stages import Call, Outcome
 from workbench.store import Store
 
@@ -39,7 +41,7 @@ class Slow:
             monitor(0.1)
         return Outcome(stage=call.stage, key=call.key, cached=False, seconds=0.0)
 
-    def preview(self, call: LiveCall, monitor: Monitor) -> Preview:
+    def preview(self, call: PreviewCall, monitor: Monitor) -> Preview:
         raise AssertionError("no live press was asked for")
 
     def close(self) -> None:
@@ -181,7 +183,8 @@ class Previewing(Slow):
     def run(self, call: Call, monitor: Monitor) -> Outcome:
         return Outcome(stage=call.stage, key=call.key, cached=True, seconds=0.0)
 
-    def preview(self, call: LiveCall, monitor: Monitor) -> Preview:
+    def preview(self, call: PreviewCall, monitor: Monitor) -> Preview:
+        assert isinstance(call, LiveCall)
         self.depths_mm.put(call.press.depth_mm)
         while not self.release.wait(0.005):
             monitor(0.1)
@@ -224,7 +227,7 @@ def test_what_follows_the_hand_gives_way_once_it_takes_long(
     conductor: Conductor, slow: Slow, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A shape under the patience goes on beside a newer request; beyond it, it is stopped."""
-    monkeypatch.setattr("workbench.conductor.PATIENCE_S", 0.8)
+    monkeypatch.setattr("workbench.topic.PATIENCE_S", 0.8)
     conductor.submit(SHAPE, design("first"), PressCase(), ("build",))
     slow.begun.get(timeout=WAIT_S)
     began = time.monotonic()
@@ -246,8 +249,20 @@ def test_a_shape_that_nobody_waits_for_is_stopped(
     conductor: Conductor, slow: Slow, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """An edit taken back: its long build ends without a newer request."""
-    monkeypatch.setattr("workbench.conductor.PATIENCE_S", 0.1)
+    monkeypatch.setattr("workbench.topic.PATIENCE_S", 0.1)
     conductor.submit(SHAPE, design("first"), PressCase(), ("build",))
     slow.begun.get(timeout=WAIT_S)
     conductor.give_up(SHAPE)
     assert finished(conductor).superseded
+
+
+def test_cancels_are_counted_between_two_requests_too(conductor: Conductor, slow: Slow) -> None:
+    """One while a request runs, one while none does; a topic never asked for has none."""
+    assert conductor.cancels("press") == 0
+    submit(conductor, "press", "first")
+    slow.begun.get(timeout=WAIT_S)
+    conductor.cancel()
+    finished(conductor)
+    assert not conductor.busy
+    conductor.stop("press")
+    assert conductor.cancels("press") == 2

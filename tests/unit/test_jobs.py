@@ -11,10 +11,10 @@ import pytest
 
 from ui.header import NAMES
 from ui.jobs import Jobs
-from workbench.conductor import GLIMPSE, SHAPE, Finished, Request
 from workbench.core.design import SensorDesign
 from workbench.core.errors import Cancelled, DesignError
 from workbench.pipeline import PressCase
+from workbench.requests import GLIMPSE, SHAPE, Finished, Request
 from workbench.stages import STAGES
 
 

@@ -15,7 +15,6 @@ import pytest
 import workbench.indenter_display as display
 from ui.object_follower import ObjectFollower
 from ui.object_view import ObjectView
-from workbench.conductor import DRAWN, FOLLOWING, Request
 from workbench.core.design import SensorDesign
 from workbench.core.indenter import Indenter, IndenterKind
 from workbench.core.monitor import silent
@@ -23,6 +22,7 @@ from workbench.core.press import Press
 from workbench.core.soft_body import SoftBody
 from workbench.object_drawing import Drawing, DrawingCall, shapes_of
 from workbench.pipeline import PressCase
+from workbench.requests import DRAWN, FOLLOWING, Request
 from workbench.store import Store
 
 CROSS = Indenter(kind=IndenterKind.CROSS)

@@ -13,7 +13,6 @@ import pytest
 
 from geometry.primitives import rounded_box
 from ui.panels.objects import ObjectFolder
-from workbench.conductor import Finished, Request
 from workbench.core.errors import DesignError
 from workbench.core.imported import ReadBody, ReadSurface
 from workbench.core.indenter import Indenter
@@ -21,6 +20,7 @@ from workbench.indenter_choice import MOST_PIXELS, load_heights
 from workbench.indenter_edit import cad_object, cad_trial, needs_cad, pictured, uploaded
 from workbench.picture_size import picture_size
 from workbench.pipeline import PressCase, plan
+from workbench.requests import Finished, Request
 from workbench.store import Store
 from workbench.trajectories import uploaded_trajectory
 from workbench.uploads import own_name, uploaded_file

@@ -16,10 +16,10 @@ import viser
 from ui.desk import Desk
 from ui.plain import plain
 from workbench.bodies import IMPORTED
-from workbench.conductor import Finished
 from workbench.core.design import SensorDesign
 from workbench.core.errors import Cancelled, DesignError
 from workbench.core.imported import BodyFile, ImportedBody, LengthUnit, Pick, body_file
+from workbench.requests import Finished
 from workbench.uploads import MOST_BYTES, check_upload, own_name
 
 AIM = "nothing: a click aims"

@@ -10,7 +10,6 @@ import viser
 
 from ui.desk import Desk
 from ui.gallery import Card
-from workbench.conductor import Finished
 from workbench.core.errors import Cancelled, DesignError
 from workbench.core.indenter import Indenter, IndenterKind
 from workbench.core.soft_body import SoftBody
@@ -29,6 +28,7 @@ from workbench.indenter_edit import (
     textured,
 )
 from workbench.object_file import ObjectFile
+from workbench.requests import Finished
 from workbench.thumbnails import thumbnail_png
 
 TOPIC = "object"

@@ -14,10 +14,10 @@ from ui.header import NAMES
 from ui.panels.sweep_results import SweepResults
 from ui.panels.variants import offer
 from workbench.comparison_report import point_state
-from workbench.conductor import Finished
 from workbench.core.errors import Cancelled, DesignError, WorkbenchError
 from workbench.core.units import human_seconds
 from workbench.names import numbered
+from workbench.requests import Finished
 from workbench.sweep_fields import SweepField, field_value, sweep_fields
 from workbench.sweep_files import (
     delete_sweep,
