@@ -10,14 +10,12 @@ from typing import Any
 import viser
 
 from ui.desk import Desk
-from ui.header import NAMES
 from ui.panels.sweep_results import SweepResults
 from ui.panels.variants import offer
+from ui.sweep_run import SweepRun
 from workbench.comparison_report import point_state
-from workbench.core.errors import Cancelled, DesignError, WorkbenchError
-from workbench.core.units import human_seconds
+from workbench.core.errors import DesignError
 from workbench.names import numbered
-from workbench.requests import Finished
 from workbench.sweep_fields import SweepField, field_value, sweep_fields
 from workbench.sweep_files import (
     delete_sweep,
@@ -26,23 +24,10 @@ from workbench.sweep_files import (
     restore_sweep,
     save_sweep,
 )
-from workbench.sweeps import (
-    FEWEST,
-    MOST,
-    Status,
-    Sweep,
-    done,
-    failed,
-    make_sweep,
-    refusal,
-    seconds_left,
-    state_at,
-    todo,
-)
+from workbench.sweeps import FEWEST, MOST, Sweep, make_sweep, todo
 from workbench.variants import save_variant
 
 NONE = "-"
-TOPIC = "sweep"
 TELL_S = 0.5
 """Between two looks at how far a sweep is [s]."""
 
@@ -55,12 +40,7 @@ class SweepFolder:
         self.project = desk.session.project
         self.on_keep = on_keep
         """Told the name of a variant that a point was kept as."""
-        self.sweep: Sweep | None = None
-        self.running: int | None = None
-        """Number of the point that is computed."""
-        self.left: list[int] = []
-        """Points to compute, the running one first."""
-        self.began = 0.0
+        self.run = SweepRun(self.project, desk.jobs, self._follow)
         self.trashed = ""
         """Name in the trash of what was deleted last."""
         self.fields: dict[str, SweepField] = {}
@@ -93,7 +73,7 @@ class SweepFolder:
         self.cancel = gui.add_button(
             "Cancel sweep", color="red", visible=False, hint="Points that are done are kept"
         )
-        self.cancel.on_click(guarded(lambda event: self.desk.conductor.stop(TOPIC)))
+        self.cancel.on_click(guarded(lambda event: self.run.stop()))
 
     def _results(self, gui: Any) -> None:
         guarded = self.desk.guarded
@@ -143,7 +123,7 @@ class SweepFolder:
 
     def _offer(self) -> None:
         names = (NONE, *list_sweeps(self.project))
-        offer(self.choice, names, preferred=self.sweep.name if self.sweep else "")
+        offer(self.choice, names, preferred=self.run.sweep.name if self.run.sweep else "")
 
     def _begin(self, event: Any) -> None:
         self._refuse_two()
@@ -151,7 +131,7 @@ class SweepFolder:
         if field is None:
             raise DesignError("no parameter is chosen", hint="choose one, then run the sweep")
         name = numbered(field.path.rpartition(".")[2], list_sweeps(self.project), first=1)
-        self.sweep = make_sweep(
+        sweep = make_sweep(
             name,
             self.desk.session.state,
             field.path,
@@ -160,24 +140,26 @@ class SweepFolder:
             steps=int(self.steps.value),
             parts=bool(self.parts.value),
         )
-        save_sweep(self.project, self.sweep)
+        save_sweep(self.project, sweep)
+        self.run.open(sweep)
         self._offer()
         self._go()
 
     def _refuse_two(self) -> None:
-        if self.running is not None:
+        if self.run.busy:
             raise DesignError("a sweep runs already", hint="wait for it, or press Cancel sweep")
 
     def _open(self, event: Any) -> None:
         name = self.choice.value
-        if self.running is not None or (self.sweep is not None and self.sweep.name == name):
+        if self.run.busy or (self.run.sweep is not None and self.run.sweep.name == name):
             # The one that runs stays on show: its points come one by one.
             self._offer()
             return
-        self.sweep, self.progress.content = None, ""
+        self.run.open(None)
+        self.progress.content = ""
         try:
             if name != NONE:
-                self.sweep = load_sweep(self.project, name)
+                self.run.open(load_sweep(self.project, name))
         finally:
             # One that cannot be read can be deleted all the same.
             self._follow()
@@ -199,7 +181,7 @@ class SweepFolder:
 
     def _close(self) -> None:
         """Show no sweep, and offer those that there are."""
-        self.sweep = None
+        self.run.open(None)
         self.progress.content = ""
         self._offer()
         self.choice.value = NONE
@@ -210,82 +192,22 @@ class SweepFolder:
         self._go()
 
     def _go(self) -> None:
-        if self.sweep is None:
-            return
-        self.left = todo(self.sweep, self.desk.session.store)
-        if self.left:
+        self.run.start()
+        if self.run.left:
             threading.Thread(target=self._tell, name="sweep", daemon=True).start()
-        self._next()
-
-    def _next(self) -> None:
-        """Ask for the next point; values that the design refuses fail at once."""
-        while self.sweep is not None and self.left:
-            number = self.left[0]
-            error = refusal(self.sweep, number)
-            if error is None:
-                self.running, self.began = number, time.monotonic()
-                state, wanted = state_at(self.sweep, number), self.sweep.wanted
-                self._follow()
-                self.desk.jobs.submit(TOPIC, state.design, state.case, wanted, self._ended)
-                return
-            self._take(failed(self.sweep, number, error))
-        self.running = None
-        self._follow()
-        if self.sweep is not None:
-            fails = sum(point.status is Status.FAILED for point in self.sweep.points)
-            words = f", {fails} failed" if fails else ""
-            self.progress.content = f"Finished: {len(self.sweep.points)} points{words}."
-
-    def _ended(self, finished: Finished) -> None:
-        """Take a point in and go on; a cancelled sweep keeps what it has."""
-        number, self.running = self.running, None
-        if self.sweep is None or number is None:
-            return
-        error = finished.error
-        if isinstance(error, Cancelled):
-            self.left = []
-            self._follow()
-            self.progress.content = "Stopped; *Resume sweep* goes on where it was."
-            return
-        try:
-            if error is None:
-                store = self.desk.session.store
-                self._take(done(self.sweep, number, store, finished.seconds))
-            else:
-                self._take(failed(self.sweep, number, error))
-        except WorkbenchError as broken:
-            self._take(failed(self.sweep, number, broken))
-        self._next()
-
-    def _take(self, sweep: Sweep) -> None:
-        self.sweep, self.left = sweep, self.left[1:]
-        save_sweep(self.project, sweep)
 
     def _tell(self) -> None:
         """Say how far the sweep is until it ends."""
-        while self.left:
+        while self.run.left:
             with self.desk.reports.lock:
-                words = self._words()
+                words = self.run.words()
                 if words:
                     self.progress.content = words
             time.sleep(TELL_S)
 
-    def _words(self) -> str:
-        """How far the sweep is, and how long it still takes; "" between two points."""
-        if self.sweep is None or self.running is None:
-            return ""
-        eta_s = seconds_left(self.sweep, len(self.left), time.monotonic() - self.began)
-        ends = f", about {human_seconds(eta_s)} left" if eta_s is not None else ""
-        now = self.desk.jobs.running.get(TOPIC)
-        name = "" if now is None else NAMES.get(now.stage, now.stage)
-        stage = "" if now is None else f" · {name} {100.0 * now.fraction:.0f} %"
-        count = len(self.sweep.points)
-        return f"**{count - len(self.left) + 1} of {count}**{ends}{stage}"
-
     def _follow(self) -> None:
         """Show the sweep as it stands."""
-        sweep, store = self.sweep, self.desk.session.store
-        busy = self.running is not None
+        sweep, store, busy = self.run.sweep, self.desk.session.store, self.run.busy
         open_points = [] if sweep is None else todo(sweep, store)
         values = [] if sweep is None else [f"{p.value:.6g}" for p in sweep.points if p.figures]
         self.cancel.visible = busy
@@ -295,16 +217,19 @@ class SweepFolder:
             handle.visible = bool(values)
         offer(self.point, tuple(values) or (NONE,))
         self.results.load(sweep)
+        if self.run.ending:
+            self.progress.content = self.run.ending
 
     def shown(self) -> tuple[Sweep | None, str]:
         """The sweep on show and the figure that it is plotted by."""
-        return self.sweep, self.results.chosen()
+        return self.run.sweep, self.results.chosen()
 
     def _keep(self, event: Any) -> None:
-        if self.sweep is None or self.point.value == NONE:
+        sweep = self.run.sweep
+        if sweep is None or self.point.value == NONE:
             raise DesignError("no point is chosen", hint="run a sweep, then choose a point")
-        name = f"{self.sweep.name} at {self.point.value}"
-        state = point_state(self.sweep, self.point.value)
-        save_variant(self.project, name, state, tags=(self.sweep.name,))
+        name = f"{sweep.name} at {self.point.value}"
+        state = point_state(sweep, self.point.value)
+        save_variant(self.project, name, state, tags=(sweep.name,))
         self.desk.log(f"variant {name} saved")
         self.on_keep(name)
