@@ -20,6 +20,7 @@ from workbench.phases import phase
 LOG_ROWS = 60
 LIVE_NOTE = "**live**: one frame, not stored; *Run press* computes the path"
 GLIMPSE_NOTE = "**preview**: {model} light, dent by geometry; *Run press* computes the image"
+BEFORE_NOTE = "**outdated preview, of the shape before**: the new shape is being built"
 EARLIER_NOTE = "**preview of an earlier design**: this one cannot be sketched, see the log"
 
 
@@ -37,6 +38,8 @@ class ResultsPanel:
         """What is said of frames that are not a whole press: a live one, or what settled."""
         self.sketch = ""
         """What is said of a picture that follows the sliders; empty while images are shown."""
+        self.sketch_note = ""
+        """The same of a sketch that has the shape of the state."""
         self.play_next = False
         """Whether the next images are played as soon as they are there."""
         gui = desk.server.gui
@@ -103,6 +106,8 @@ class ResultsPanel:
             self._show_live(result)
         elif stage == "glimpse":
             self._show_glimpse(result)
+        elif stage == "glimpse_of_shape":
+            self._date_glimpse(of_now=result)
         elif stage == "partial":
             self._show_partial(*result)
         elif stage == "shoot":
@@ -159,9 +164,15 @@ class ResultsPanel:
             self._caption(self.timeline.number)
             return
         self.timeline.player.stop()
-        self.sketch = GLIMPSE_NOTE.format(model=glimpse.model.value)
+        self.sketch = self.sketch_note = GLIMPSE_NOTE.format(model=glimpse.model.value)
         self.image.load_live(glimpse.images)
         self._show_image(1)
+
+    def _date_glimpse(self, *, of_now: bool) -> None:
+        """Say of the sketch on show, if there is one, whether it has the shape of the state."""
+        if self.sketch:
+            self.sketch = self.sketch_note if of_now else BEFORE_NOTE
+            self._caption(self.timeline.number)
 
     def _show_partial(self, contact: Contact, error: SolveError) -> None:
         """Show the frames that settled before a press failed."""
