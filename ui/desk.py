@@ -20,7 +20,7 @@ from ui.header import Header
 from ui.jobs import Jobs
 from ui.live import LivePress
 from ui.object_follower import ObjectFollower
-from ui.panels.fields import Fields, whole_shape
+from ui.panels.fields import Fields
 from ui.reports import Reports
 from ui.saving import Saving
 from ui.scene import Scene
@@ -122,7 +122,7 @@ class Desk:
         if path.startswith("design.shape."):
             design = self.session.design
             shape = resolve_shape(design.family, design.shape)
-            return whole_shape(shape)[path.rsplit(".", 1)[1]]
+            return getattr(shape, path.rsplit(".", 1)[1])
         return read_field(self.session.state, path)
 
     def edit(self, path: str, value: Any) -> None:

@@ -2,35 +2,16 @@
 
 from __future__ import annotations
 
-import dataclasses
-import re
 import threading
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
-from ui.plain import plain
+from ui.panels.field_words import Field, find_field, in_words, refused_html
 from workbench.core.errors import WorkbenchError
 
 TYPED_S = 0.8
 """Quiet time after which a text is read: viser tells of every letter [s]."""
-NUMBER = re.compile(r"\[\d+\]$")
-
-
-@dataclass(kw_only=True)
-class Field:
-    """One widget and the field it edits."""
-
-    path: str
-    """Dotted field of the session's state, for example `design.layers.elastomer_mm`."""
-    label: str
-    handle: Any
-    """None where another widget than a bound one gives the value, for example an upload."""
-    to_field: Callable[[Any], Any]
-    to_widget: Callable[[Any], Any]
-    complaint: Any
-    """Hidden markdown under the widget, shown when a value is refused."""
 
 
 class Fields:
@@ -140,14 +121,7 @@ class Fields:
 
     def anchor(self, label: str, path: str) -> None:
         """A place for messages about a field that another widget gives."""
-        self._fields[path] = Field(
-            path=path,
-            label=label,
-            handle=None,
-            to_field=lambda value: value,
-            to_widget=lambda value: value,
-            complaint=self.gui.add_markdown("", visible=False),
-        )
+        self._field(path, None, lambda value: value, lambda value: value, label=label)
 
     def _bind(
         self,
@@ -181,10 +155,12 @@ class Fields:
         handle: Any,
         to_field: Callable[[Any], Any],
         to_widget: Callable[[Any], Any],
+        *,
+        label: str = "",
     ) -> Field:
         field = Field(
             path=path,
-            label=handle.label,
+            label=label or handle.label,
             handle=handle,
             to_field=to_field,
             to_widget=to_widget,
@@ -234,44 +210,17 @@ class Fields:
 
     def complain(self, error: WorkbenchError) -> str:
         """Show an error under the widget it names; returns its path, "" without such a widget."""
-        field = self._named(error.at)
+        field = find_field(self._fields, error.at)
         if field is None:
             return ""
-        parts = [self.in_words(error.message, error.at), self.in_words(error.hint, error.at)]
-        if field.handle is not None:
-            kept = self._kept(field)
-            if isinstance(kept, (int, float)) and kept != field.handle.value:
-                parts.append(f"still using {kept:g}")
-        words = plain("; ".join(part for part in parts if part))
-        text = f"<span style='color:#e5484d'>{words}</span>"
-        field.complaint.content = text
+        kept = None if field.handle is None else self._kept(field)
+        field.complaint.content = refused_html(self._fields, field, error, kept)
         field.complaint.visible = True
         return field.path
 
     def in_words(self, text: str, at: str = "") -> str:
-        """A message with the labels of widgets in place of the names of fields.
-
-        Args:
-            text: The message.
-            at: The field it is about: a name without its path is taken from the same part of the
-                design, for example `radius_mm` from the ring.
-        """
-        labels = {
-            path: f"\N{LEFT DOUBLE QUOTATION MARK}{field.label}\N{RIGHT DOUBLE QUOTATION MARK}"
-            for path, field in self._fields.items()
-        }
-        for path in sorted(labels, key=lambda path: -len(path)):
-            short = path.split(".", 1)[1].replace("settings.", "contact.", 1)
-            text = text.replace(short, labels[path])
-        about = self._named(at)
-        part = about.path.rpartition(".")[0] if about is not None else ""
-        for path, label in labels.items():
-            parent, _, name = path.rpartition(".")
-            if part and parent == part:
-                # A name that is a common word counts only where a value follows.
-                ends = r"(?![\w.])" if "_" in name else r"(?= = )"
-                text = re.sub(rf"(?<![\w.]){re.escape(name)}{ends}", label, text)
-        return text
+        """A message about the field `at` with labels in place of the names of fields."""
+        return in_words(self._fields, text, at)
 
     def settle(self, path: str = "") -> None:
         """Hide all messages; widgets with a refused value, but `path`, show the design's again."""
@@ -298,19 +247,3 @@ class Fields:
             # The item goes first; its widgets are bound anew or removed when the panel follows.
             return None
         return field.to_widget(value)
-
-    def _named(self, at: str) -> Field | None:
-        """The field of that name, else the place for messages about all of its table."""
-        while at:
-            names = (f"design.{at}", f"case.{at}", at.replace("contact.", "case.settings.", 1))
-            found = next((self._fields[n] for n in names if n in self._fields), None)
-            if found is not None:
-                return found
-            # A lamp or camera that is not on show has its messages at the list of all.
-            at = NUMBER.sub("", at) if NUMBER.search(at) else at.rpartition(".")[0]
-        return None
-
-
-def whole_shape(shape: Any) -> dict[str, Any]:
-    """All parameters of a resolved shape by name."""
-    return {f.name: getattr(shape, f.name) for f in dataclasses.fields(shape)}
