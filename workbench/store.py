@@ -217,7 +217,8 @@ def _rename(part: Path, final: Path) -> None:
 
 
 def _disk_error(error: OSError, root: Path) -> StoreError:
-    if error.errno in (errno.ENOSPC, errno.EDQUOT):
+    # NumPy tells of an array that was written in part without a number.
+    if error.errno in (errno.ENOSPC, errno.EDQUOT, None):
         with contextlib.suppress(OSError):
             free_mb = shutil.disk_usage(root).free / 2**20
             return StoreError(

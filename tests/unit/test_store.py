@@ -137,6 +137,20 @@ def test_failed_write_leaves_nothing(
     assert store.load("s", "old").png.size == 8
 
 
+def test_an_array_written_in_part_is_a_full_disk(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """NumPy's error has no number; the designer is told of the space, not of permissions."""
+
+    def short(*args: object, **keywords: object) -> None:
+        raise OSError("8640 requested and 3040 written")
+
+    monkeypatch.setattr(np, "save", short)
+    with pytest.raises(StoreError, match="is full") as caught:
+        Store(tmp_path).save("s", "new", picture(), seconds=0.0, version=1)
+    assert "free some space" in str(caught.value.hint)
+
+
 def test_really_full_disk(tmp_path: Path) -> None:
     """A 1 MB file system of its own runs full: one clear StoreError, the old result intact."""
     import subprocess
