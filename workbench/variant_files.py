@@ -7,7 +7,7 @@ can be deleted like any other.
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -19,6 +19,7 @@ from workbench.variants import (
     Variant,
     folder,
     load_variant,
+    planned_keys,
     refuse_taken,
     variant_path,
     write_variant,
@@ -33,13 +34,15 @@ class Entry:
     name: str
     variant: Variant | None
     reason: str = ""
+    planned: Mapping[str, str] = field(default_factory=dict[str, str])
+    """Keys that its results have now, by stage."""
     picture: Path | None = None
     """PNG file of its thumbnail, if there is one."""
 
 
 @dataclass
 class Shelf:
-    """The variants of a project; files that did not change are read once."""
+    """The variants of a project; files that did not change are read and planned once."""
 
     project: Project
     _read: dict[str, tuple[tuple[int, int], Entry]] = field(default_factory=dict)
@@ -63,9 +66,12 @@ class Shelf:
 
 def _entry(project: Project, name: str) -> Entry:
     try:
-        return Entry(name=name, variant=load_variant(project, name))
+        variant = load_variant(project, name)
+        return Entry(name=name, variant=variant, planned=planned_keys(variant.state))
     except WorkbenchError as error:
-        return Entry(name=name, variant=None, reason=error.message)
+        # The list has the name before the reason.
+        reason = error.message.removeprefix(f"variant {name!r} cannot be read: ")
+        return Entry(name=name, variant=None, reason=reason)
 
 
 def list_variants(project: Project) -> list[str]:

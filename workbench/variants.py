@@ -22,6 +22,7 @@ from workbench.pipeline import plan
 from workbench.project import Project
 from workbench.score_card import figures, finite_figures
 from workbench.state import State, case_table, read_state
+from workbench.store import Store
 from workbench.whole_files import kept_text, write_atomically
 
 FOLDER = "variants"
@@ -101,8 +102,7 @@ def save_variant(
             hint="shorten it",
             at="note",
         )
-    calls = plan(state.design, state.case)
-    keys = {s: calls[s].key for s in KEPT if s in calls and project.store.has(s, calls[s].key)}
+    keys = stored_keys(project.store, {}, planned_keys(state))
     variant = Variant(
         name=name,
         state=State(design=dataclasses.replace(state.design, name=name), case=state.case),
@@ -186,13 +186,31 @@ def read_tags(text: str) -> tuple[str, ...]:
 def result_keys(project: Project, variant: Variant) -> dict[str, str]:
     """Keys of the variant's results that are still stored, by stage.
 
+    Raises:
+        DesignError: If the design is refused.
+    """
+    return stored_keys(project.store, variant.keys, planned_keys(variant.state))
+
+
+def planned_keys(state: State) -> dict[str, str]:
+    """Keys that the results of a design and its press have, by stage; milliseconds of digests.
+
+    Raises:
+        DesignError: If the design is refused.
+    """
+    calls = plan(state.design, state.case)
+    return {stage: calls[stage].key for stage in KEPT if stage in calls}
+
+
+def stored_keys(
+    store: Store, kept: Mapping[str, str], planned: Mapping[str, str]
+) -> dict[str, str]:
+    """Those of a variant's keys that are still stored, by stage.
+
     Of a stage that a newer version computed again the kept result goes first: the figures are its.
     """
-    store = project.store
-    kept = {stage: key for stage, key in variant.keys.items() if store.has(stage, key)}
-    planned = plan(variant.state.design, variant.state.case)
-    found = {s: planned[s].key for s in KEPT if s in planned and store.has(s, planned[s].key)}
-    return found | kept
+    both = (*planned.items(), *kept.items())
+    return {stage: key for stage, key in both if store.has(stage, key)}
 
 
 def refuse_taken(path: Path) -> None:

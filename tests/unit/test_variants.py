@@ -25,7 +25,7 @@ from workbench.variant_files import (
     rename_variant,
     restore_variant,
 )
-from workbench.variants import load_variant, save_variant
+from workbench.variants import load_variant, planned_keys, save_variant
 
 
 @pytest.fixture
@@ -131,6 +131,26 @@ def test_a_shelf_follows_a_file_that_changed(project: Project) -> None:
     assert shelf.entries()[0].variant is None
     path.write_text(text)
     assert shelf.entries()[0].variant is not None
+
+
+def test_a_list_plans_what_changed_alone(project: Project, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Three variants: planned once each; then, one of them written anew, that one alone."""
+    for number in range(3):
+        save_variant(project, f"wall {number}", finger(1.0 + number))
+    planned: list[float] = []
+
+    def counted(state: State) -> dict[str, str]:
+        planned.append(state.design.layers.elastomer_mm)
+        return planned_keys(state)
+
+    monkeypatch.setattr("workbench.variant_files.planned_keys", counted)
+    shelf = Shelf(project)
+    first = shelf.entries()
+    assert shelf.entries() == first
+    assert planned == [1.0, 2.0, 3.0]
+    save_variant(project, "wall 1", finger(2.5), replace=True)
+    assert shelf.entries()[1].planned == planned_keys(finger(2.5))
+    assert planned == [1.0, 2.0, 3.0, 2.5]
 
 
 def test_next_name_is_free() -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import html
 
 from ui.desk import Desk
-from ui.panels.variants import offer
+from ui.panels.offer import offer
 from workbench.comparison_tables import card_table, remedies, scrolled
 from workbench.metric_rules import RULES
 from workbench.score_card import Figures, card, sorted_by

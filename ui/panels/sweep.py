@@ -10,12 +10,12 @@ from typing import Any
 import viser
 
 from ui.desk import Desk
+from ui.panels.offer import offer
 from ui.panels.sweep_results import SweepResults
-from ui.panels.variants import offer
 from ui.sweep_run import SweepRun
 from workbench.comparison_report import point_state
 from workbench.core.errors import DesignError
-from workbench.names import numbered
+from workbench.names import NONE, numbered
 from workbench.sweep_fields import SweepField, field_value, sweep_fields
 from workbench.sweep_files import (
     delete_sweep,
@@ -27,7 +27,6 @@ from workbench.sweep_files import (
 from workbench.sweeps import FEWEST, MOST, Sweep, make_sweep, todo
 from workbench.variants import save_variant
 
-NONE = "-"
 TELL_S = 0.5
 """Between two looks at how far a sweep is [s]."""
 

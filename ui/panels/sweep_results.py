@@ -8,17 +8,17 @@ import html
 import numpy as np
 from viser import uplot
 
+from ui.colours import BLUE, RED
 from ui.desk import Desk
-from ui.panels.variants import offer
+from ui.panels.offer import offer
 from workbench.comparison_report import default_metric, strip
 from workbench.html_page import jpeg_bytes
 from workbench.metric_rules import rule
+from workbench.names import NONE
 from workbench.portraits import framed
 from workbench.sweeps import Status, Sweep, curve, lost, metrics_of
 
-NONE = "-"
 TILE_PX = (104, 78)
-BLUE, RED = "#3b82f6", "#e5484d"
 
 
 class SweepResults:

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-import base64
 import dataclasses
-import html
-from collections.abc import Callable, Sequence
-from pathlib import Path
+from collections.abc import Callable
 from typing import Any
 
 import viser
 
 from ui.desk import Desk
+from ui.panels.offer import offer
+from ui.panels.variant_cards import cards_html
 from ui.plain import plain
 from ui.portraits import Portraits
 from workbench.core.errors import Cancelled, DesignError
+from workbench.names import NONE
 from workbench.variant_files import (
     Entry,
     Shelf,
@@ -28,16 +28,11 @@ from workbench.variant_files import (
 from workbench.variants import (
     load_variant,
     read_tags,
-    result_keys,
     save_variant,
     write_variant,
 )
 
-NONE = "-"
 ALL = "all variants"
-MOST_PICTURES = 40
-"""Thumbnails in the list; each is some 30 KB of the page."""
-RED, AMBER = "#e5484d", "#f5a623"
 
 
 class VariantsFolder:
@@ -124,46 +119,12 @@ class VariantsFolder:
         offer(self.tag, (ALL, *tags))
         self.entries = [entry for entry in every if self._wanted(entry)]
         offer(self.chosen, (NONE, *(entry.name for entry in every)))
-        self.cards.content = self._cards()
+        self.cards.content = cards_html(self.entries, self.project.store)
         self.on_change()
 
     def _wanted(self, entry: Entry) -> bool:
         tag = self.tag.value
         return tag == ALL or (entry.variant is not None and tag in entry.variant.tags)
-
-    def _cards(self) -> str:
-        if not self.entries:
-            return "<p style='margin:8px'>No variant yet: press a design, then save it.</p>"
-        shown = "".join(
-            self._card(entry, pictured=number < MOST_PICTURES)
-            for number, entry in enumerate(self.entries)
-        )
-        # Two or three stand in the list at once: what comes below must not be out of reach.
-        box = "margin:4px 8px;font-size:12px;max-height:330px;overflow-y:auto"
-        return f"<div style='{box}'>{shown}</div>"
-
-    def _card(self, entry: Entry, *, pictured: bool) -> str:
-        """One variant as HTML: all that it holds was typed by somebody, and is escaped."""
-        name, variant = html.escape(entry.name), entry.variant
-        box = "<div style='border-top:1px solid #8885;padding:6px 0;overflow-wrap:anywhere'>"
-        if variant is None:
-            reason = html.escape(entry.reason)
-            return f"{box}<b>{name}</b> <span style='color:{RED}'>broken: {reason}</span></div>"
-        picture = ""
-        if pictured and entry.picture is not None:
-            picture = picture_html(entry.picture, entry.name)
-        pill = "background:#8884;border-radius:8px;padding:0 6px"
-        tags = "".join(f" <span style='{pill}'>{html.escape(t)}</span>" for t in variant.tags)
-        keys = result_keys(self.project, variant)
-        lost = [stage for stage in variant.keys if stage not in keys]
-        gone = ""
-        if "shoot" not in keys:
-            why = "its results were cleared from the store" if lost else "it was never pressed"
-            gone = f"<div style='color:{AMBER}'>No image: {why}. Run what is missing.</div>"
-        note = f"<div style='white-space:pre-wrap'>{html.escape(variant.note)}</div>"
-        when = html.escape(f"{variant.state.design.family} · {variant.saved}".rstrip(" ·"))
-        head = f"<b>{name}</b> <span style='opacity:.65'>{when}</span>{tags}"
-        return f"{box}{head}{note if variant.note else ''}{gone}{picture}</div>"
 
     def _save(self, event: Any) -> None:
         session, desk = self.desk.session, self.desk
@@ -255,26 +216,3 @@ class VariantsFolder:
     def _restore(self, event: Any) -> None:
         self.restore.visible = False
         self._listed(restore_variant(self.project, self.trashed))
-
-
-def picture_html(path: Path, name: str) -> str:
-    """The thumbnail of a variant as HTML; nothing where its file is gone."""
-    try:
-        data = base64.b64encode(path.read_bytes()).decode()
-    except OSError:
-        return ""
-    words = html.escape(f"{name}: at rest, pressed, image", quote=True)
-    return (
-        f"<img src='data:image/png;base64,{data}' alt='{words}' title='{words}' "
-        "style='width:100%;min-width:0;border-radius:4px;margin-top:4px;display:block'>"
-    )
-
-
-def offer(handle: Any, names: Sequence[str], *, preferred: str = "") -> None:
-    """Offer names in a drop-down; the one chosen stays where it still is among them."""
-    now = preferred or handle.value
-    if tuple(handle.options) != tuple(names):
-        handle.options = tuple(names)
-    wanted = now if now in names else names[0]
-    if handle.value != wanted:
-        handle.value = wanted

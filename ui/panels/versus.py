@@ -12,15 +12,16 @@ from ui.blink import Blink
 from ui.desk import Desk
 from ui.ghost import COLOURS, Ghost, GhostView
 from ui.imaging import placeholder
-from ui.panels.variants import offer, picture_html
+from ui.panels.offer import offer
+from ui.panels.variant_cards import picture_html
 from ui.plain import plain
 from workbench.comparison import changes, parameter_differences, press_notice, summary
 from workbench.comparison_images import Moment, Pair, pair, side_by_side
 from workbench.comparison_tables import change_table, parameter_table, scrolled
 from workbench.core.errors import DesignError
+from workbench.names import NONE
 from workbench.sides import NOW, Side
 
-NONE = "-"
 BESIDE, BLINK, DIFFERENCE = "side by side", "blink", "difference"
 BLINK_S = 0.6
 STANDS_BESIDE, OVERLAID = "beside A", "over A"
