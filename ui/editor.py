@@ -15,12 +15,13 @@ import threading
 from collections.abc import Callable
 from typing import Any
 
+from ui.colours import AMBER
+
 RELOAD_S = 4.0
 """Time that the place of a tab that left is kept for its reload [s]."""
 REMIND_S = 8.0
 FIRST = -1000.0
 """Order of the note: above all else in the left dock."""
-AMBER = "#f5a623"
 FOLLOWS = f"<span style='color:{AMBER}'>**This tab follows:** another tab edits.</span>"
 
 

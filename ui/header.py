@@ -7,6 +7,7 @@ from typing import Any
 
 import viser
 
+from ui.colours import AMBER
 from ui.plain import plain
 from workbench.core.design import SensorDesign
 from workbench.core.units import human_seconds
@@ -38,7 +39,6 @@ NAMES = {
     "portrait": "Thumbnail",
     "portrait_pressed": "Thumbnail of the press",
 }
-AMBER = "#f5a623"
 WIDTH_PX = 200
 """Width of the panel of the running job."""
 WAIT_S = 3.0

@@ -12,8 +12,9 @@ from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any
 
+from ui.colours import RED
 from ui.plain import plain
-from ui.reports import RED, Reports
+from ui.reports import Reports
 from ui.session import Session
 from workbench.core.errors import WorkbenchError
 

@@ -19,7 +19,7 @@ from workbench.core.errors import WorkbenchError
 from workbench.core.monitor import silent
 from workbench.design_bundle import bundle, unbundle
 from workbench.forms import choices, load_design, purpose
-from workbench.names import numbered
+from workbench.names import NONE, numbered
 from workbench.pipeline import plan
 from workbench.portraits import portrait_calls
 from workbench.saved_designs import (
@@ -39,7 +39,6 @@ SAVE, COPY = "Save design", "Duplicate"
 YOURS = "Your designs"
 MARK = " (yours)"
 """Ends the card of a kept design."""
-NOTHING = "-"
 LONGEST = 60
 """Letters of the line below a card."""
 
@@ -88,7 +87,7 @@ class DesignFiles:
         desk, gui = self.desk, self.desk.server.gui
         with gui.add_folder("Design files", expand_by_default=False):
             hint = "Of your own; the gallery shows them as pictures"
-            self.kept = gui.add_dropdown("Saved design", (NOTHING,), hint=hint)
+            self.kept = gui.add_dropdown("Saved design", (NONE,), hint=hint)
             hint = "Delete moves the file to the project's designs/trash, and can be undone"
             acts = gui.add_button_group("With it", ("Open", "Delete"), hint=hint)
             acts.on_click(desk.guarded(lambda event: self._with_kept(acts.value)))
@@ -118,7 +117,7 @@ class DesignFiles:
             self.name.value = self.desk.session.design.name
 
     def _list(self) -> None:
-        names = saved_names(self.project) or (NOTHING,)
+        names = saved_names(self.project) or (NONE,)
         if tuple(self.kept.options) != names:
             now = self.kept.value
             self.kept.options = names
@@ -178,7 +177,7 @@ class DesignFiles:
 
     def _with_kept(self, what: str) -> None:
         name = self.kept.value
-        if name == NOTHING:
+        if name == NONE:
             return
         if what == "Open":
             self._open_kept(name)

@@ -12,6 +12,7 @@ from workbench.core.errors import WorkbenchError
 from workbench.core.fabrication import FabricationPart
 from workbench.core.results import Bundle
 from workbench.design_bundle import zipped
+from workbench.names import NONE
 
 FORMATS = {
     "stl": "Triangles in mm, for slicers",
@@ -19,7 +20,6 @@ FORMATS = {
     "3mf": "Triangles with their unit, for slicers",
 }
 """Endings of files, and what each is for."""
-NO_PART = "-"
 
 
 class Downloads:
@@ -33,7 +33,7 @@ class Downloads:
 
     def _fill(self) -> None:
         gui, desk = self.desk.server.gui, self.desk
-        self.part = gui.add_dropdown("Part", (NO_PART,), hint="Whose file is downloaded")
+        self.part = gui.add_dropdown("Part", (NONE,), hint="Whose file is downloaded")
         for name, hint in FORMATS.items():
             label = f"Download part {name.upper()}"
             button = gui.add_button(label, icon=viser.Icon.DOWNLOAD, hint=hint)
@@ -45,7 +45,7 @@ class Downloads:
     def offer(self, parts: tuple[FabricationPart, ...]) -> None:
         """Offer the files of these parts."""
         self.folder.visible = bool(parts)
-        self.part.options = tuple(part.name for part in parts) or (NO_PART,)
+        self.part.options = tuple(part.name for part in parts) or (NONE,)
 
     def _bundle(self) -> Bundle:
         bundle = self.desk.session.result("package")

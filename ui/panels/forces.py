@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from viser import uplot
 
+from ui.colours import AMBER, BLUE, GREEN, WHITE
 from workbench.core.press import Press
 from workbench.core.sensing import Contact
 from workbench.forces import slip_curve
@@ -16,7 +17,6 @@ from workbench.phases import finite, number, of_frame, phase
 NO_PRESS = "No press of this sensor yet."
 MOST_ROWS = 400
 """Frames of the table."""
-BLUE, ORANGE, GREEN, WHITE = "#3b82f6", "#f5a623", "#46a758", "#ffffff"
 
 
 class ForcesTab:
@@ -32,7 +32,7 @@ class ForcesTab:
             (
                 uplot.Series(label="depth mm"),
                 uplot.Series(label="normal force N", stroke=BLUE, width=2),
-                uplot.Series(label="tangential force N", stroke=ORANGE, width=2),
+                uplot.Series(label="tangential force N", stroke=AMBER, width=2),
                 uplot.Series(label="frame on show", stroke=WHITE, width=1),
             ),
             scales={"x": uplot.Scale(time=False)},
@@ -43,7 +43,7 @@ class ForcesTab:
             empty,
             (
                 uplot.Series(label="frame"),
-                uplot.Series(label="friction / pressing", stroke=ORANGE, width=2),
+                uplot.Series(label="friction / pressing", stroke=AMBER, width=2),
                 uplot.Series(label="share sliding", stroke=GREEN, width=2),
             ),
             scales={"x": uplot.Scale(time=False)},

@@ -11,9 +11,9 @@ from ui.handles import Handle
 from workbench.core.lighting import Lamp, LampKind, LedMount
 from workbench.item_fields import without_item
 from workbench.light_edit import colour_words, new_lamp, read_colour
+from workbench.names import NONE
 
 LAMPS = "design.optics.lamps"
-NONE = "-"
 
 
 class LampsFolder:

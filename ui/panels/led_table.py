@@ -12,8 +12,8 @@ from workbench.core.lighting import LedRing
 from workbench.led_colours import shown_colour
 from workbench.led_table import Led, leds_of, with_colour, with_factor
 from workbench.light_edit import colour_words, read_colour
+from workbench.names import NONE
 
-NONE = "-"
 CELL = "padding:1px 6px;text-align:right"
 MOST_FACTOR = 3.0
 

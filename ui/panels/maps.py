@@ -23,6 +23,7 @@ from workbench.map_display import (
     value_at,
     value_words,
 )
+from workbench.names import NONE
 
 NO_MAPS = "Where on the skin this design sees, and how well. Not measured yet."
 STALE = "**stale**: the design has changed, measure again"
@@ -46,7 +47,7 @@ class MapsPanel:
         desk.reports.beside(TOPIC)
         self.about = gui.add_markdown(NO_MAPS)
         self.choice = gui.add_dropdown(
-            "Map", ("-",), visible=False, hint="What is measured; its meaning stands below"
+            "Map", (NONE,), visible=False, hint="What is measured; its meaning stands below"
         )
         self.choice.on_update(guarded(lambda event: self._draw()))
         hint = "Click on the skin to read its value; off, a click aims the press again"

@@ -8,10 +8,12 @@ import numpy as np
 import viser
 from viser import uplot
 
+from ui.colours import BLUE, GREEN
 from ui.desk import Desk
 from ui.plain import plain
 from workbench.core.results import MeshQuality, QualityReport
 from workbench.core.units import volume_ml
+from workbench.names import NONE
 from workbench.previews import clear_view, judged, mesh_edges
 
 NOTHING = "No numbers yet: press *Check mesh*."
@@ -45,7 +47,7 @@ class MeshPanel:
         self.found: dict[str, MeshQuality] = {}
         self.notice = ""
         self.choice = gui.add_dropdown(
-            "Mesh shown", ("-",), visible=False, hint="Whose cells are judged and drawn"
+            "Mesh shown", (NONE,), visible=False, hint="Whose cells are judged and drawn"
         )
         self.choice.on_update(desk.guarded(lambda event: self._tell()))
         hint = "Of the mesh shown, on the body at rest"
@@ -54,8 +56,8 @@ class MeshPanel:
         self.drawn = ""
         """Name and key of the mesh whose edges are drawn."""
         self.numbers = gui.add_markdown(NOTHING)
-        self.measure = self._plot("% of cells", "#3b82f6")
-        self.lengths = self._plot("% of edges", "#30a46c")
+        self.measure = self._plot("% of cells", BLUE)
+        self.lengths = self._plot("% of edges", GREEN)
         self.worst = gui.add_button(
             "Show worst cell",
             icon=viser.Icon.ZOOM_IN,
@@ -81,7 +83,7 @@ class MeshPanel:
         )
 
     def _offer(self) -> None:
-        names = tuple(self.found) or ("-",)
+        names = tuple(self.found) or (NONE,)
         if tuple(self.choice.options) != names:
             self.choice.options = names
         for handle in (self.choice, self.edges, self.measure, self.lengths, self.worst):
