@@ -10,7 +10,7 @@ import re
 import numpy as np
 
 from workbench.core.errors import DesignError
-from workbench.core.lighting import Lamp, LampKind, LedRing, LightModel
+from workbench.core.lighting import HEX, SPECTRUM, TEMPERATURE, Lamp, LampKind, LedRing, LightModel
 
 NAMED = {
     "red": "#ff0000",
@@ -22,6 +22,11 @@ NAMED = {
     "magenta": "#ff00ff",
 }
 """Names that stand for a colour of the primaries of the display."""
+ALLOWED = (
+    "write #rrggbb (red, green and blue from 00 to ff, for example #ff8000), a wavelength as 525nm "
+    f"or 525nm/35nm, a temperature as 5600K, or one of {', '.join(NAMED)}"
+)
+"""What a colour may be."""
 MODEL_HINTS = {
     LightModel.LINEAR: "straight rays of even strength; the paper's linear field",
     LightModel.PLANE_TARGET: "along the skin, in the plane of the target's normal; the paper's",
@@ -41,14 +46,22 @@ def read_colours(text: str, *, at: str) -> tuple[str, ...]:
     """Colours that a designer writes with commas or spaces between them.
 
     Raises:
-        DesignError: If there is none; what does not name a colour the design refuses.
+        DesignError: If there is none, or a word names none.
     """
     words = [word for word in re.split(r"[,;\s]+", text) if word]
     if not words:
         raise DesignError(
             "no colour is given", hint="for example: red green blue, or 525nm, or 5600K", at=at
         )
-    return tuple(NAMED.get(word.lower(), word) for word in words)
+    return tuple(_code(word, at=at) for word in words)
+
+
+def _code(word: str, *, at: str) -> str:
+    """A colour as the design writes it; numbers out of their range the design refuses."""
+    colour = NAMED.get(word.lower(), word)
+    if not any(form.fullmatch(colour) for form in (HEX, SPECTRUM, TEMPERATURE)):
+        raise DesignError(f"{word!r} is not a colour", hint=ALLOWED, at=at)
+    return colour
 
 
 def read_colour(text: str, *, at: str) -> str:

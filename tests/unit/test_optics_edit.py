@@ -21,6 +21,7 @@ from workbench.design_toml import design_from_toml
 from workbench.item_fields import read_field, with_field, without_item
 from workbench.light_edit import (
     MODEL_HINTS,
+    NAMED,
     colour_words,
     lamp_corners_mm,
     new_lamp,
@@ -90,6 +91,21 @@ def test_colours_are_read_as_designers_write_them() -> None:
     assert caught.value.at == "optics.ring.colours"
     with pytest.raises(DesignError, match="2 colours"):
         read_colour("red, blue", at="optics.lamps[1].colour")
+
+
+@pytest.mark.parametrize("text", ["orange", "#ff80", "12", "525 nm"])
+def test_what_is_no_colour_is_told_what_is(text: str) -> None:
+    """The refusal has the word, every form, and the names."""
+    with pytest.raises(DesignError, match="is not a colour") as caught:
+        read_colours(f"red, {text}", at="optics.ring.colours")
+    for form in ("#rrggbb", "525nm/35nm", "5600K", *NAMED):
+        assert form in caught.value.hint
+
+
+def test_a_wavelength_out_of_range_is_told_its_range() -> None:
+    """It is a colour in form: the design says which are taken."""
+    with pytest.raises(DesignError, match="outside 380 to 780 nm"):
+        LedRing(colours=read_colours("900nm", at="optics.ring.colours"))
 
 
 def test_numbers_are_read_or_refused() -> None:
