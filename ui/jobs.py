@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from ui.header import NAMES, Header
-from ui.reports import Reports
+from ui.reports import Reports, in_full
 from workbench.conductor import Conductor
 from workbench.core.design import SensorDesign
 from workbench.core.errors import Cancelled, WorkbenchError
@@ -142,15 +142,16 @@ class Jobs:
         elif then is not None:
             then(event)
         elif error is not None and event.topic in (GLIMPSE, CUT):
-            # What was wrong with the design itself is told by the topic of its shape.
-            log(f"{event.topic}: {error.message}")
+            # What was wrong with the design itself is told, once, by the topic of its shape.
+            if not event.failed:
+                log(f"{event.topic}: {in_full(error.message, error.hint)}")
             self.on_failed(error, event.topic)
         elif error is not None and event.topic == LIVE:
             self.reports.report(error)
             self.on_failed(error, event.topic)
         elif error is not None and not self.asked_now(event.request, event.failed):
             # Its message would stand above a design that it does not tell of.
-            log(f"{event.topic}, of an earlier design: {error.message}")
+            log(f"{event.topic}, of an earlier design: {in_full(error.message, error.hint)}")
         elif error is not None:
             self.reports.report(error, topic="" if event.topic in (SHAPE, DRAWN) else event.topic)
             self.on_failed(error, event.topic)

@@ -11,6 +11,7 @@ from collections import Counter
 from collections.abc import Callable
 from typing import Any
 
+from ui.colours import RED
 from ui.panels.fields import Fields
 from ui.plain import plain
 from ui.session import Session
@@ -18,7 +19,16 @@ from workbench.core.errors import WorkbenchError
 
 NOTICE_S = 15.0
 LOG_LINES = 200
-RED = "#e5484d"
+TRACEBACK = "Traceback"
+"""How a hint begins that is for the crash file."""
+
+
+def in_full(message: str, hint: str) -> str:
+    """A message with its remedy as sentences; of a hint with a traceback what stands before it."""
+    remedy = "" if hint.startswith(TRACEBACK) else hint.split("\n", 1)[0].strip()
+    sentences = (f"{part[0].upper() if k else part[0]}{part[1:].rstrip('.')}."
+                 for k, part in enumerate((message, remedy)) if part)  # fmt: skip
+    return " ".join(sentences)
 
 
 class Reports:
@@ -35,6 +45,8 @@ class Reports:
         """Set by the header: stays until the next edit."""
         self.places: dict[str, Any] = {}
         """Hidden markdown beside the button of each topic."""
+        self._last = ""
+        """What the last line is about, where a newer one about it takes its place."""
         self.notices: list[Any] = []
         """Notifications of errors; they go with what they tell of."""
         self.lock = fields.lock
@@ -83,20 +95,21 @@ class Reports:
                 the field may be on another page.
         """
         at_field = self.fields.complain(error)
-        words = self.fields.in_words(error.message, error.at)
-        hint = ""
-        if error.hint and "\n" not in error.hint:
-            hint = self.fields.in_words(f" {error.hint[0].upper()}{error.hint[1:]}.", error.at)
-        self.log(f"{words}.{hint}")
-        text = plain(f"{words}.{hint}")
-        if not (at_field and at_field == edited):
+        parts = (error.message, error.hint)
+        # Before the remedy gets its capital: it may begin with the name of a field.
+        words = in_full(*(self.fields.in_words(part, error.at) for part in parts))
+        noted = bool(at_field) and at_field == edited
+        # The last good value stays: nothing has failed, and a drag has many such values.
+        self.log(f"note: {words}" if noted else words, once=at_field if noted else "")
+        text = plain(words)
+        if not noted:
             self._show_banner(text)
         if topic in self.places:
             self.places[topic].content = f"<span style='color:{RED}'>{text}</span>"
             self.places[topic].visible = True
         if topic or not at_field:
             title = f"{topic.capitalize()} failed" if topic else "Not possible"
-            self.notices += self.notify(title, f"{words}.{hint}", color="red")
+            self.notices += self.notify(title, words, color="red")
         self._crashes[error.hint] += 1
         if "\n" in error.hint and self._crashes[error.hint] == 1:
             # A traceback from a worker; a full disk must not hide the message itself.
@@ -153,10 +166,17 @@ class Reports:
             for client in self.server.get_clients().values()
         ]
 
-    def log(self, text: str) -> None:
-        """Add a line to the log, from any thread that may wait for the desk's lock."""
+    def log(self, text: str, *, once: str = "") -> None:
+        """Add a line to the log, from any thread that may wait for the desk's lock.
+
+        Args:
+            text: The line.
+            once: What it is about, where it takes the place of a last line about the same.
+        """
         with self.lock:
-            self.lines = [*self.lines[1 - LOG_LINES :], f"{time.strftime('%H:%M:%S')} {text}"]
+            kept = self.lines[:-1] if once and once == self._last else self.lines
+            self.lines = [*kept[1 - LOG_LINES :], f"{time.strftime('%H:%M:%S')} {text}"]
+            self._last = once
             self.on_log(self.lines)
 
     def log_soon(self, text: str) -> None:

@@ -71,6 +71,7 @@ def _entry(project: Project, name: str) -> Entry:
     except WorkbenchError as error:
         # The list has the name before the reason.
         reason = error.message.removeprefix(f"variant {name!r} cannot be read: ")
+        reason = reason.replace(repr(name), "its name", 1)
         return Entry(name=name, variant=None, reason=reason)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import dataclasses
 import threading
 from types import SimpleNamespace
 from typing import Any
@@ -37,7 +38,7 @@ class Told:
 def failed(topic: str) -> Finished:
     """A request whose body could not be built."""
     request = Request(design=SensorDesign(name="any"), case=PressCase(), wanted=("press",))
-    error = DesignError("no face is sensing")
+    error = DesignError("no face is sensing", hint="name one")
     return Finished(topic=topic, request=request, error=error, seconds=1.0, failed="build")
 
 
@@ -79,7 +80,7 @@ def test_an_error_of_another_design_is_only_logged(jobs: Jobs, told: Told) -> No
     jobs.pump([failed("press")])
     assert told.errors == []
     assert asked == ["build"]
-    assert told.lines == ["press, of an earlier design: no face is sensing"]
+    assert told.lines == ["press, of an earlier design: no face is sensing. Name one."]
 
 
 def test_whoever_waits_is_told_of_their_own_request(jobs: Jobs) -> None:
@@ -114,13 +115,15 @@ def test_nobody_is_told_of_a_request_that_was_replaced(jobs: Jobs) -> None:
 
 
 def test_a_failed_glimpse_takes_the_one_before_away(jobs: Jobs, told: Told) -> None:
-    """The desk is told, the designer reads one line in the log."""
+    """The designer reads one line in the log; none where the shape fails, which tells itself."""
     shown = []
     jobs.on_failed = lambda error, topic: shown.append(topic)
     jobs.pump([failed(GLIMPSE)])
-    assert shown == [GLIMPSE]
+    assert told.lines == []
+    jobs.pump([dataclasses.replace(failed(GLIMPSE), failed="")])
+    assert shown == [GLIMPSE, GLIMPSE]
     assert told.errors == []
-    assert told.lines == ["glimpse: no face is sensing"]
+    assert told.lines == ["glimpse: no face is sensing. Name one."]
 
 
 def test_every_stage_has_a_name_for_people() -> None:
