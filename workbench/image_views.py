@@ -14,6 +14,9 @@ import numpy as np
 from workbench.colour_scale import NOTHING_GREY, scale_colours
 from workbench.core.sensing import TactileFrames
 
+NO_CHANGE = "no change seen: no camera pixel sees a contact in this frame"
+ROUNDING_GREY = 1
+"""Change of the grey level that rounding alone can make."""
 MOST_GAIN = 8
 """A change is strengthened so much at most."""
 ARROW_SHARE = 0.08
@@ -91,7 +94,9 @@ def looked(
     image = np.asarray(images[number])
     if view is View.DIFFERENCE:
         change, gain = visible_change(image, np.asarray(images[0]))
-        return Looked(rgb=change, words=f"change of grey level about mid grey, × {gain}")
+        unseen = unseen_words(image, np.asarray(images[0])) if number else ""
+        words = f"change of grey level about mid grey, × {gain}"
+        return Looked(rgb=change, words="; ".join(part for part in (words, unseen) if part))
     if frames is None or view is View.IMAGE:
         return Looked(rgb=image, words="")
     if view is View.NORMALS:
@@ -114,6 +119,12 @@ def visible_change(image: np.ndarray, background: np.ndarray) -> tuple[np.ndarra
     size = np.abs(change[change != 0])
     gain = max(1, min(MOST_GAIN, int(127 // np.percentile(size, 95)))) if size.size else 1
     return np.clip(128 + gain * change, 0, 255).astype(np.uint8), gain
+
+
+def unseen_words(image: np.ndarray, background: np.ndarray) -> str:
+    """What is said beside a difference that is plain grey; "" of one that shows something."""
+    change = np.abs(image.astype(np.int16) - background.astype(np.int16))
+    return NO_CHANGE if change.max(initial=0) <= ROUNDING_GREY else ""
 
 
 def _normals(normal: np.ndarray) -> Looked:

@@ -10,7 +10,7 @@ from ui.imaging import scale_bar, table
 from workbench.colour_scale import NOTHING_GREY, YES, scale_colours, viridis
 from workbench.core.maps import DesignerMaps, SkinMap
 from workbench.core.sensing import TactileFrames
-from workbench.image_views import OF_IMAGES, View, looked, views, visible_change
+from workbench.image_views import NO_CHANGE, OF_IMAGES, View, looked, views, visible_change
 from workbench.map_display import map_look, score_rows, scores, value_at, value_words
 
 HIGH, WIDE = 8, 12
@@ -63,6 +63,16 @@ def test_difference_is_about_mid_grey() -> None:
     assert gain == 8
     assert tuple(change[4, 6]) == (208, 128, 48)
     assert (change[0] == 128).all()
+
+
+def test_a_plain_grey_difference_says_so() -> None:
+    """Of a frame that changes nothing beyond rounding; not of the background, nor of a real one."""
+    given = frames()
+    rgb = np.stack([given.rgb[0], given.rgb[0], given.rgb[1]])
+    rgb[1, 0, 0] += 1
+    words = [looked(View.DIFFERENCE, rgb, number).words for number in range(3)]
+    assert [NO_CHANGE in found for found in words] == [False, True, False]
+    assert all("× " in found for found in words)
 
 
 def test_normals_are_coloured_by_axis() -> None:

@@ -14,7 +14,7 @@ from ui.desk import Desk
 from ui.imaging import placeholder, scale_bar, table
 from ui.panels.probe import Probe
 from workbench.core.sensing import Shot, TactileFrames
-from workbench.image_views import View, crossed, looked, views, visible_change
+from workbench.image_views import View, crossed, looked, unseen_words, views, visible_change
 from workbench.map_display import scores
 from workbench.metric_rules import rule
 
@@ -120,6 +120,8 @@ class ImageTab:
         what = View(self.view.value)
         found = looked(what, images, number, frames)
         change, gain = visible_change(np.asarray(images[number]), np.asarray(images[0]))
+        nothing = unseen_words(np.asarray(images[number]), np.asarray(images[0])) if number else ""
+        unseen = f" · **{nothing}**" if nothing else ""
         bar = found.bar
         words = f"<div style='font-size:12px;margin:2px 12px'>{found.words}</div>"
         scale = "" if bar is None else scale_bar(bar.low, bar.high, bar.unit)
@@ -131,7 +133,7 @@ class ImageTab:
             self.legend.content = scale + words if found.words else ""
             # Once is enough.
             self.change.visible = self.change_text.visible = what is not View.DIFFERENCE
-            self.change_text.content = f"Difference to the background, × {gain}"
+            self.change_text.content = f"Difference to the background, × {gain}{unseen}"
             self.change.image = change
 
     def _crossed(self, image: np.ndarray) -> np.ndarray:
