@@ -18,6 +18,7 @@ from workbench import __version__
 from workbench.comparison import changes, number_text, parameter_differences, press_notice, summary
 from workbench.comparison_images import Moment, pair
 from workbench.comparison_tables import card_table, change_table, parameter_table, remedies
+from workbench.comparison_words import told
 from workbench.core.errors import DesignError
 from workbench.html_page import figure, page, photograph, table
 from workbench.metric_rules import rule
@@ -65,6 +66,7 @@ def comparison_page(store: Store, a: Side, b: Side, more: Reported | None = None
     full = card(designs)
     sections = [
         f"<h1>{html.escape(title)}</h1><p>{words}</p>",
+        *(f"<p>{html.escape(line)}</p>" for line in told(rows)),
         f"<div class='images'>{_who(store, a, 'A')}{_who(store, b, 'B')}</div>",
         "<h2>Parameters that differ</h2>"
         + parameter_table(parameter_differences(a.state, b.state), *names),

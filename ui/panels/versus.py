@@ -18,6 +18,7 @@ from ui.plain import plain
 from workbench.comparison import changes, parameter_differences, press_notice, summary
 from workbench.comparison_images import Moment, Pair, pair, side_by_side
 from workbench.comparison_tables import change_table, parameter_table, scrolled
+from workbench.comparison_words import told
 from workbench.core.errors import DesignError
 from workbench.names import NONE
 from workbench.sides import NOW, Side
@@ -146,7 +147,7 @@ class VersusFolder:
     def _tell(self, a: Side, b: Side) -> None:
         rows = changes(a.figures, b.figures)
         words = summary(rows, press_notice(a.state, b.state))
-        self.words.content = f"**{plain(words)}**"
+        self.words.content = "\n\n".join([f"**{plain(words)}**", *map(plain, told(rows))])
         differing = parameter_differences(a.state, b.state)
         self.tables.content = (
             "<div style='font-size:12px;margin:8px 8px 0'><b>Parameters that differ</b></div>"
