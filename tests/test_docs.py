@@ -55,8 +55,8 @@ def section(title: str) -> str:
 
 @pytest.mark.parametrize("name", commands())
 def test_every_option_of_every_command_is_documented(name: str) -> None:
-    """Each long option stands in the command's row, those of `run` in its own table."""
-    text = section("`workbench run`") if name == "run" else command_row(name)
+    """Each long option stands in the command's row, those of the press in the table of `run`."""
+    text = command_row(name) + (section("`workbench run`") if name in ("run", "sweep") else "")
     documented = set(re.findall(r"(?<![\w-])--[a-z-]+", text)) | {"--help", "--project"}
     options = {o for a in commands()[name]._actions for o in a.option_strings if o[:2] == "--"}
     assert options <= documented, options - documented

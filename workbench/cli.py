@@ -20,12 +20,8 @@ from pathlib import Path
 from typing import Any
 
 from workbench import __version__, commands, sweep_command
-from workbench.core.design import Law
 from workbench.core.errors import Cancelled, StoreError, WorkbenchError
-from workbench.core.imported import LengthUnit
-from workbench.core.lighting import LightModel
-from workbench.core.motion import Mover
-from workbench.core.press import Extent, Method
+from workbench.press_arguments import add_press_options, add_unit_option
 from workbench.project import Project
 from workbench.terminal import complain, say
 
@@ -40,15 +36,6 @@ NUMBERS = (
     "--to",
 )
 """Options whose value may begin with a minus sign."""
-INDENTERS = (
-    "sphere, cylinder_end, cylinder_side, cube, cone, cross, triangle, pacman, hexagon, ellipsoid, "
-    "double_cylinder, diamond, flower, ring, rhombus, torus; mug, screwdriver, banana; or the path "
-    "of an STL, OBJ or STEP file"
-)
-TEXTURES = (
-    "raised on the object: grid, dots or waves, letters=TEXT, or a picture's path; "
-    "PATTERN:HEIGHT:PITCH in mm"
-)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -148,7 +135,7 @@ def parser() -> argparse.ArgumentParser:
     _run_options(command(commands.run))
     export = command(commands.export)
     export.add_argument("design", metavar="NAME|FILE")
-    _unit_option(export)
+    add_unit_option(export)
     export.add_argument("--out", required=True, type=Path, metavar="DIR")
     export.add_argument("--tets", action="store_true", help="also tetrahedra: about a minute")
     text = "also mitsuba/scene.xml, the sensor at rest for the renderer Mitsuba 3"
@@ -173,8 +160,8 @@ def parser() -> argparse.ArgumentParser:
 
 
 def _sweep_options(sub: argparse.ArgumentParser) -> None:
-    sub.add_argument("design", metavar="NAME|FILE", help="a variant's file brings its press")
-    _unit_option(sub)
+    sub.add_argument("design", metavar="NAME|FILE", help="a file brings its press")
+    add_unit_option(sub)
     text = "for example design.shape.length_mm or case.press.depth_mm"
     sub.add_argument("--field", required=True, metavar="FIELD", help=text)
     sub.add_argument("--from", dest="start", required=True, type=float, metavar="VALUE")
@@ -182,25 +169,14 @@ def _sweep_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--steps", type=int, default=5, help="2 to 15, both ends included (default 5)")
     sub.add_argument("--metric", metavar="NAME", help="figure of the plot (default: mean change)")
     sub.add_argument("--parts", action="store_true", help="also mould and housing, for checks")
-    sub.add_argument("--depth-mm", type=float, help="of the press (default: the design's, else 1)")
-    sub.add_argument("--frames", type=int, help="of the press")
-    sub.add_argument("--grid-mm", type=float, help="grid cell of the contact solver")
+    add_press_options(sub)
     sub.add_argument("--out", required=True, type=Path, metavar="DIR")
     sub.add_argument("--json", action="store_true", help="progress as one JSON object per line")
 
 
-def _unit_option(sub: argparse.ArgumentParser) -> None:
-    sub.add_argument(
-        "--unit",
-        default="auto",
-        choices=[unit.value for unit in LengthUnit],
-        help="unit of an STL design (default: inferred from its size)",
-    )
-
-
 def _serve_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("design", nargs="?", metavar="NAME|FILE", help="default: where you left")
-    _unit_option(sub)
+    add_unit_option(sub)
     sub.add_argument("--host", default="127.0.0.1", help="default 127.0.0.1; others need a token")
     sub.add_argument("--port", type=int, default=8080)
     sub.add_argument("--open", action="store_true", help="open the system's browser")
@@ -210,40 +186,8 @@ def _serve_options(sub: argparse.ArgumentParser) -> None:
 
 def _run_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("design", metavar="NAME|FILE")
-    _unit_option(sub)
-    sub.add_argument("--indenter", help=f"{INDENTERS} (default sphere)")
-    sub.add_argument("--size-mm", type=float, help="diameter, else the largest width (default 6)")
-    sub.add_argument(
-        "--edge-radius-mm", type=float, help="rounding of edges (default 0.45; of a file 0)"
-    )
-    sub.add_argument("--texture", metavar="PATTERN", help=TEXTURES)
-    sub.add_argument("--soft-mpa", type=float, help="Young's modulus of a soft object [MPa]")
-    sub.add_argument("--target", help="x,y,z near the skin [mm]; default: where the family says")
-    sub.add_argument("--depth-mm", type=float, help="default 1, or that of the sequence")
-    sub.add_argument("--shear-mm", metavar="U,V")
-    sub.add_argument("--twist-deg", type=float, help="about the normal at full depth (default 0)")
-    sub.add_argument("--frames", type=int, help="default 10; of a sequence 5 to each phase")
-    sub.add_argument("--sequence", metavar="NAME", help="what driven parts do: grip of the trunk")
-    sub.add_argument(
-        "--stroke",
-        action="append",
-        default=[],
-        metavar="KIND:AMOUNT[:FRAMES]",
-        help="a move after the approach; may be given several times (see the README)",
-    )
-    sub.add_argument("--trajectory", type=Path, metavar="FILE.csv", help="timed poses instead")
-    sub.add_argument("--every-s", type=float, help="time between frames (default: rows)")
-    sub.add_argument("--mover", choices=[m.value for m in Mover], help="default object")
-    sub.add_argument("--object-pose", metavar="X,Y,Z,QW,QX,QY,QZ", help="of --mover sensor")
-    sub.add_argument("--grid-mm", type=float, help="grid cell of the contact solver (default 0.5)")
-    sub.add_argument("--extent", choices=[e.value for e in Extent], help="default active")
-    sub.add_argument("--region-error", type=float, help="of the force (default 0.003)")
-    sub.add_argument("--method", choices=[m.value for m in Method], help="default lattice")
-    sub.add_argument("--max-substeps", type=int, help="to a frame (default 6000)")
-    sub.add_argument("--tolerance", type=float, help="residual that has settled (default 0.001)")
-    sub.add_argument("--penalty", type=float, help="contact stiffness, E / grid (default 200)")
-    sub.add_argument("--material-law", choices=[law.value for law in Law], help="of the design")
-    sub.add_argument("--light-model", choices=[m.value for m in LightModel])
+    add_unit_option(sub)
+    add_press_options(sub)
     text = "write depth, normals and masks of every pixel: frames.npz, some 4 MB an image"
     sub.add_argument("--image-fields", action="store_true", help=text)
     sub.add_argument("--out", required=True, type=Path, metavar="DIR")

@@ -11,11 +11,11 @@ import json
 import time
 from typing import Any
 
-from workbench.core.design import Law, SensorDesign
+from workbench.core.design import SensorDesign
 from workbench.core.errors import DesignError, DeviceError
-from workbench.core.lighting import LightModel
 from workbench.core.results import Solid
 from workbench.core.units import human_seconds
+from workbench.press_arguments import changed_design
 from workbench.press_options import press_case
 from workbench.project import Project
 from workbench.stages import Outcome
@@ -66,10 +66,7 @@ def run(options: argparse.Namespace, project: Project) -> int:
     from workbench.pipeline import InlineRunner, evaluate, plan
 
     design = load_design(options.design, unit=options.unit, project=project)
-    if options.light_model:
-        design = design.replace("optics.light_model", LightModel(options.light_model))
-    if options.material_law:
-        design = design.replace("material.law", Law(options.material_law))
+    design = changed_design(options, design)
     # What is wrong with the design or the options is said before anything is written or built.
     first = press_case(options, design, default_target_mm(design))
     plan(design, first)

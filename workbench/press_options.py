@@ -1,4 +1,4 @@
-"""The press that the options of `workbench run` describe.
+"""The press that the options of `workbench run` and `workbench sweep` describe.
 
 A sequence of the family brings its own target, path and drives; object, depth, frames and solver
 are its own unless the options name them.
@@ -9,15 +9,19 @@ from __future__ import annotations
 import argparse
 import dataclasses
 from collections.abc import Iterable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from workbench.core.design import SensorDesign
 from workbench.core.errors import DesignError
 from workbench.core.indenter import Indenter, IndenterKind
 from workbench.core.motion import Mover
-from workbench.core.press import ContactSettings, Extent, Method, Press
+from workbench.core.press import Extent, Method, Press
 from workbench.core.soft_body import SoftBody
+from workbench.core.texture import Texture
 from workbench.core.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from workbench.pipeline import PressCase
 
 SETTINGS = ("grid_mm", "region_error", "max_substeps", "tolerance", "penalty")
 """Options that are fields of `ContactSettings` as they stand."""
@@ -34,25 +38,35 @@ EXAMPLES = {
 
 
 def press_case(
-    options: argparse.Namespace, design: SensorDesign, target_mm: tuple[float, float, float]
-) -> Any:
-    """What is pressed, where, and how it is computed; `target_mm` where the options name none.
+    options: argparse.Namespace,
+    design: SensorDesign,
+    target_mm: tuple[float, float, float],
+    held: PressCase | None = None,
+) -> PressCase:
+    """What is pressed, where, and how it is computed.
+
+    Args:
+        options: Those of `press_arguments`.
+        design: What is pressed on.
+        target_mm: Where to, if the options do not say.
+        held: What stands where the options name nothing; without it the defaults.
 
     Raises:
         DesignError: If a value is refused, or object or sequence are unknown.
     """
     from workbench.pipeline import PressCase
 
+    base = PressCase() if held is None else held
     if options.sequence is not None:
         return _sequence(options, design)
     return PressCase(
-        indenter=_indenter(options),
-        press=_press(options, target_mm),
-        settings=ContactSettings(**_settings(options)),
+        indenter=_indenter(options, None if held is None else held.indenter),
+        press=_press(options, target_mm, base.press),
+        settings=dataclasses.replace(base.settings, **_settings(options)),
     )
 
 
-def _sequence(options: argparse.Namespace, design: SensorDesign) -> Any:
+def _sequence(options: argparse.Namespace, design: SensorDesign) -> PressCase:
     from workbench.sequences import sequence
 
     _refuse(options, NOT_WITH_SEQUENCE, "sequence")
@@ -69,53 +83,79 @@ def _sequence(options: argparse.Namespace, design: SensorDesign) -> Any:
 
 
 def _refuse(options: argparse.Namespace, names: Iterable[str], path: str) -> None:
-    """Refuse options that the option `path` has no use for."""
+    """Refuse options that the option `path`, or what the design file has of it, has no use for."""
+    given = getattr(options, path)
+    what = f"the {path} of the design file" if given is None else f"--{path} {given}"
     for name in names:
         if getattr(options, name) not in (None, []):
             option = f"--{name.replace('_', '-')}"
             raise DesignError(
-                f"{option} is given with --{path} {getattr(options, path)}, which has its own path",
-                hint=f"leave {option} or --{path} out",
+                f"{option} is given with {what}, which has its own path",
+                hint=f"leave {option} out" if given is None else f"leave {option} or --{path} out",
                 at=option,
             )
 
 
-def _indenter(options: argparse.Namespace) -> Indenter:
+def _indenter(options: argparse.Namespace, held: Indenter | None = None) -> Indenter:
+    """The object that the options name; of the one that is held, what they change."""
     from workbench.indenter_choice import choose_indenter, choose_texture
 
-    found = choose_indenter(
-        IndenterKind.SPHERE.value if options.indenter is None else options.indenter,
-        size_mm=options.size_mm,
-        edge_radius_mm=options.edge_radius_mm,
-        texture=choose_texture(options.texture) if options.texture else None,
-    )
+    texture = choose_texture(options.texture) if options.texture else None
+    if options.indenter is None and held is not None:
+        found = _changed(options, held, texture)
+    else:
+        found = choose_indenter(
+            IndenterKind.SPHERE.value if options.indenter is None else options.indenter,
+            size_mm=options.size_mm,
+            edge_radius_mm=options.edge_radius_mm,
+            texture=texture,
+        )
     if options.soft_mpa is None:
         return found
     return dataclasses.replace(found, soft=SoftBody(young_MPa=options.soft_mpa))
 
 
-def _press(options: argparse.Namespace, target_mm: tuple[float, float, float]) -> Press:
+def _changed(options: argparse.Namespace, held: Indenter, texture: Texture | None) -> Indenter:
+    """An object with the size, edges and texture that the options name."""
+    from workbench.indenter_edit import resized, rounded, textured
+
+    if options.size_mm is not None:
+        held = resized(held, options.size_mm)
+    if options.edge_radius_mm is not None:
+        held = rounded(held, options.edge_radius_mm)
+    return held if texture is None else textured(held, texture)
+
+
+def _press(
+    options: argparse.Namespace, target_mm: tuple[float, float, float], held: Press
+) -> Press:
     from workbench.strokes import read_stroke
 
-    standard = Press()
-    frames = standard.frames if options.frames is None else options.frames
     shear, standing = options.shear_mm, options.object_pose
-    mover = standard.mover if options.mover is None else Mover(options.mover)
-    if options.trajectory is not None:
+    timed = options.trajectory is not None or held.trajectory is not None
+    if timed:
         _refuse(options, NOT_WITH_TRAJECTORY, "trajectory")
-        if mover is Mover.OBJECT or standing is not None:
-            # Otherwise the object stands where it touches the target.
-            _refuse(options, ("target",), "trajectory")
-    return Press(
+    if options.trajectory is not None:
+        # It takes the place of the whole path.
+        held = Press()
+    frames = held.frames if options.frames is None else options.frames
+    mover = held.mover if options.mover is None else Mover(options.mover)
+    pose = held.object_pose if standing is None else _numbers(standing, at="--object-pose")
+    strokes = tuple(read_stroke(text, frames=frames) for text in options.stroke)
+    if timed and (mover is Mover.OBJECT or pose is not None):
+        # Otherwise the object stands where it touches the target.
+        _refuse(options, ("target",), "trajectory")
+    return dataclasses.replace(
+        held,
         target_mm=_numbers(options.target, at="--target") if options.target else target_mm,
-        depth_mm=standard.depth_mm if options.depth_mm is None else options.depth_mm,
-        shear_mm=standard.shear_mm if shear is None else _numbers(shear, at="--shear-mm"),
-        twist_deg=standard.twist_deg if options.twist_deg is None else options.twist_deg,
+        depth_mm=held.depth_mm if options.depth_mm is None else options.depth_mm,
+        shear_mm=held.shear_mm if shear is None else _numbers(shear, at="--shear-mm"),
+        twist_deg=held.twist_deg if options.twist_deg is None else options.twist_deg,
         frames=frames,
-        strokes=tuple(read_stroke(text, frames=frames) for text in options.stroke),
-        trajectory=_trajectory(options),
+        strokes=strokes or held.strokes,
+        trajectory=_trajectory(options) or held.trajectory,
         mover=mover,
-        object_pose=None if standing is None else _numbers(standing, at="--object-pose"),
+        object_pose=pose,
     )
 
 

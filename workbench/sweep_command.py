@@ -22,7 +22,9 @@ from workbench.core.mapping import suggest
 from workbench.core.units import human_seconds
 from workbench.design_toml import parse_toml
 from workbench.named_designs import load_design
-from workbench.pipeline import InlineRunner, evaluate, plan
+from workbench.pipeline import InlineRunner, PressCase, evaluate, plan
+from workbench.press_arguments import changed_design
+from workbench.press_options import press_case
 from workbench.project import Project
 from workbench.state import State, fresh_state, read_state
 from workbench.sweeps import Status, Sweep, done, failed, make_sweep, metrics_of, state_at
@@ -75,22 +77,29 @@ def base_state(options: argparse.Namespace, project: Project, printer: Progress)
         DesignError: If there is no such design or a value is refused.
     """
     design = load_design(options.design, unit=options.unit, project=project)
-    if options.design.endswith(".toml"):
-        text = Path(options.design).read_text(encoding="utf-8")
-        held = read_state(text, project, source=options.design).case
-        pressed = "press_case" in parse_toml(text, source=options.design)
-        state = State(design=design, case=held) if pressed else fresh_state(design)
-    else:
-        state = fresh_state(design)
-    if design.body is not None:
+    design = changed_design(options, design)
+    held = _held_case(options, project)
+    state = fresh_state(design) if held is None else State(design=design, case=held)
+    # What is wrong with the options is said before anything is built.
+    case = press_case(options, design, state.case.press.target_mm, held)
+    if design.body is not None and held is None:
         state = _aimed(state, project, printer)
-    press = {name: getattr(options, name) for name in ("depth_mm", "frames")}
-    named = {name: value for name, value in press.items() if value is not None}
-    case = dataclasses.replace(state.case, press=dataclasses.replace(state.case.press, **named))
-    if options.grid_mm is not None:
-        settings = dataclasses.replace(case.settings, grid_mm=options.grid_mm)
-        case = dataclasses.replace(case, settings=settings)
+        case = press_case(options, state.design, state.case.press.target_mm, held)
     return State(design=state.design, case=case)
+
+
+def _held_case(options: argparse.Namespace, project: Project) -> PressCase | None:
+    """The press that a design file holds, None without one.
+
+    Raises:
+        DesignError: If it is not valid.
+    """
+    if not options.design.endswith(".toml"):
+        return None
+    text = Path(options.design).read_text(encoding="utf-8")
+    if "press_case" not in parse_toml(text, source=options.design):
+        return None
+    return read_state(text, project, source=options.design).case
 
 
 def _aimed(state: State, project: Project, printer: Progress) -> State:

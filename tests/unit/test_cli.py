@@ -105,7 +105,7 @@ def test_a_moving_sensor_needs_a_target(tmp_path: Path) -> None:
     options = parser().parse_args([*words, "--target", "0,0,45", "--out", "x"])
     press = press_case(options, load_design("geltip"), (0.0, 0.0, 0.0)).press
     assert (press.target_mm, press.mover) == ((0.0, 0.0, 45.0), "sensor")
-    assert press.trajectory.every_s == 0.0
+    assert press.trajectory is not None and press.trajectory.every_s == 0.0
 
 
 def test_the_example_of_a_message_is_valid(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import dataclasses
 import json
 from pathlib import Path
 from typing import Any
@@ -10,12 +11,19 @@ from typing import Any
 import pytest
 
 from tests.unit.test_sweeps import shot
-from workbench.cli import main
+from workbench.cli import main, parser
+from workbench.core.errors import DesignError
+from workbench.core.indenter import Indenter, IndenterKind
+from workbench.core.press import ContactSettings, Press
 from workbench.named_designs import load_design
-from workbench.pipeline import plan
+from workbench.pipeline import PressCase, plan
 from workbench.project import Project
-from workbench.state import fresh_state
+from workbench.state import State, fresh_state
+from workbench.strokes import read_stroke
+from workbench.sweep_command import base_state
 from workbench.sweep_fields import find_field, with_value
+from workbench.terminal import Progress
+from workbench.variants import save_variant
 
 WALL = "design.layers.elastomer_mm"
 
@@ -68,3 +76,55 @@ def test_bad_sweeps_are_refused_before_anything_is_written(
     line = ["sweep", "finger", *words, "--out", str(out), "--project", str(tmp_path / "p")]
     assert main(line) == 2
     assert not out.exists()
+
+
+def case_of(project: Project, *words: str) -> PressCase:
+    """The press of a sweep with these options, before anything is computed."""
+    line = [*words, "--field", WALL, "--from", "1", "--to", "2", "--out", "x"]
+    options = parser().parse_args(["sweep", *line])
+    return base_state(options, project, Progress(as_json=True)).case
+
+
+def test_a_sweep_takes_the_press_of_run(tmp_path: Path) -> None:
+    """Object, place, path and solver as typed; what is left out as in `run`."""
+    words = "--indenter cube --size-mm 4 --target 0,9,36 --depth-mm 0.7 --shear-mm 0.5,0"
+    case = case_of(
+        Project(tmp_path), "finger", *words.split(), "--twist-deg", "5", "--penalty", "60"
+    )
+    assert (case.indenter.kind, case.indenter.size_mm) == (IndenterKind.CUBE, 4.0)
+    assert case.press == Press(
+        target_mm=(0.0, 9.0, 36.0), depth_mm=0.7, shear_mm=(0.5, 0.0), twist_deg=5.0
+    )
+    assert case.settings == ContactSettings(penalty=60.0)
+
+
+def test_options_change_what_a_variant_holds_and_leave_the_rest(tmp_path: Path) -> None:
+    """A cube of 4 mm at (0, 9, 36) with a stroke: larger and deeper, all else as it was kept."""
+    project = Project(tmp_path)
+    strokes = (read_stroke("hold:2", frames=3),)
+    press = Press(target_mm=(0.0, 9.0, 36.0), frames=3, strokes=strokes)
+    cube = Indenter(kind=IndenterKind.CUBE, size_mm=4.0, edge_radius_mm=0.3)
+    settings = ContactSettings(grid_mm=0.8)
+    held = PressCase(indenter=cube, press=press, settings=settings)
+    save_variant(project, "kept", State(design=load_design("finger"), case=held))
+    path = str(project.folder / "variants" / "kept.toml")
+    assert case_of(project, path) == held
+    case = case_of(project, path, "--size-mm", "5", "--depth-mm", "0.5")
+    assert case.indenter == dataclasses.replace(cube, size_mm=5.0)
+    assert case.press == dataclasses.replace(press, depth_mm=0.5)
+    assert case.settings == settings
+
+
+def test_a_kept_trajectory_takes_no_depth(tmp_path: Path) -> None:
+    """`--depth-mm` would change nothing of timed poses: it is refused, with the way out."""
+    project = Project(tmp_path / "project")
+    rows = tmp_path / "path.csv"
+    rows.write_text("t_s,x_mm,y_mm,z_mm,qw,qx,qy,qz\n0,0,0,60,1,0,0,0\n1,0,0,58,1,0,0,0\n")
+    timed = case_of(project, "finger", "--trajectory", str(rows))
+    save_variant(project, "timed", State(design=load_design("finger"), case=timed))
+    path = str(project.folder / "variants" / "timed.toml")
+    assert case_of(project, path) == timed
+    with pytest.raises(DesignError, match="the trajectory of the design file") as caught:
+        case_of(project, path, "--depth-mm", "0.5")
+    assert caught.value.at == "--depth-mm"
+    assert caught.value.hint == "leave --depth-mm out"
