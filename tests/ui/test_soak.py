@@ -93,20 +93,24 @@ def test_a_long_day(tmp_path: Path, page: Any, start_server: Start) -> None:
     rng = random.Random(SEED)
     for _ in range(WARM_ROUNDS):
         one_round(page, rng)
-    before, members = resident_mb(server.process.pid), set(family_of(server.process.pid))
+    before = resident_mb(server.process.pid)
     end, rounds = time.monotonic() + SOAK_S, 0
     while time.monotonic() < end:
         one_round(page, rng)
         rounds += 1
     after = resident_mb(server.process.pid)
     print(f"{rounds} rounds in {SOAK_S:.0f} s; before {before}; after {after}")
-    assert set(after) == set(before), "a lane was lost or started anew"
+    assert len(after) == len(before), "a lane was lost"
+    # A lane that did not notice a Cancel in time was killed, and another took its place.
+    replaced = [size_mb for name, size_mb in before.items() if name not in after]
     for name, size_mb in after.items():
-        assert size_mb < GROWTH * before[name] + SPARE_MB, (name, before, after)
+        limit_mb = GROWTH * before.get(name, max(replaced, default=0.0)) + SPARE_MB
+        assert size_mb < limit_mb, (name, before, after)
     tab(page, "Shape").click()
     set_number(page, "Straight length mm", 30)
     wait_until(lambda: page.get_by_text("Shape ✓").count(), 30, "a new shape is built")
     assert slider_value(page, "Straight length mm") == 30
+    members = set(family_of(server.process.pid))
     server.stop()
     gone = time.monotonic() + 10
     while time.monotonic() < gone and any(Path(f"/proc/{m}").exists() for m in members):
