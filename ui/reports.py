@@ -77,6 +77,24 @@ class Reports:
 
         return call
 
+    def received(
+        self, read: Callable[[], Any], take: Callable[[Any], None]
+    ) -> Callable[[Any], None]:
+        """An upload's callback: `read` what came without the desk's lock, `take` it under it.
+
+        Of a large file even the digest takes longer than other tabs should wait.
+        """
+
+        def call(event: Any) -> None:
+            try:
+                found = read()
+            except Exception as error:
+                self.tell(error)
+                return
+            self.guarded(lambda event: take(found))(event)
+
+        return call
+
     def tell(self, error: Exception) -> None:
         """Show what went wrong in another thread than a widget's."""
 

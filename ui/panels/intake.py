@@ -44,7 +44,7 @@ class IntakeFolder:
         self.outer = gui.add_upload_button(
             "Load outer body", mime_type=".stl,.step,.stp", icon=viser.Icon.UPLOAD, hint=hint
         )
-        self.outer.on_upload(desk.guarded(self._load_outer))
+        self.outer.on_upload(desk.reports.received(self._sent_outer, self._load_outer))
         fields.anchor("Load outer body", f"{BODY}.outer")
         self.more = gui.add_folder("Inner body and labels", visible=False)
         with self.more:
@@ -58,7 +58,7 @@ class IntakeFolder:
         self.inner = gui.add_upload_button(
             "Load inner body", mime_type=".stl,.step,.stp", hint=hint
         )
-        self.inner.on_upload(desk.guarded(self._load_inner))
+        self.inner.on_upload(desk.reports.received(self._sent_inner, self._load_inner))
         fields.anchor("Load inner body", f"{BODY}.inner")
         self.drop = gui.add_button(
             "Remove inner body", visible=False, hint="The wall is even again"
@@ -73,14 +73,18 @@ class IntakeFolder:
         """The body of the design, if it has one of its own."""
         return self.desk.session.design.body
 
-    def _load_outer(self, event: Any) -> None:
-        file = self._received(self.outer, at="body.outer")
+    def _sent_outer(self) -> BodyFile:
+        return self._received(self.outer, at="body.outer")
+
+    def _load_outer(self, file: BodyFile) -> None:
         unit = LengthUnit(self.unit.value)
         self._try(ImportedBody(outer=file, unit=unit))
 
-    def _load_inner(self, event: Any) -> None:
+    def _sent_inner(self) -> BodyFile:
+        return self._received(self.inner, at="body.inner")
+
+    def _load_inner(self, file: BodyFile) -> None:
         if self.body is not None:
-            file = self._received(self.inner, at="body.inner")
             self._try(dataclasses.replace(self.body, inner=file))
 
     def _drop_inner(self, event: Any) -> None:
@@ -93,13 +97,14 @@ class IntakeFolder:
             self._try(dataclasses.replace(body, unit=LengthUnit(self.unit.value)))
 
     def _received(self, button: Any, *, at: str) -> BodyFile:
-        """The uploaded file.
+        """The uploaded file; its digest is made without the desk's lock.
 
         Raises:
             DesignError: If it is too large, or neither STL nor STEP.
         """
         name, content = button.value.name, button.value.content
-        self.desk.reports.settle()
+        with self.desk.reports.lock:
+            self.desk.reports.settle()
         hint = "reduce the mesh, or use workbench serve FILE"
         check_upload(name, content, limit_bytes=MOST_BYTES, hint=hint, at=at)
         try:

@@ -10,6 +10,7 @@ import viser
 
 from ui.desk import Desk
 from ui.gallery import Card
+from workbench.core.design import SensorDesign
 from workbench.core.errors import Cancelled, DesignError
 from workbench.core.indenter import Indenter, IndenterKind
 from workbench.core.soft_body import SoftBody
@@ -72,7 +73,7 @@ class ObjectFolder:
             hint = "STL or OBJ in mm, or STEP"
             self.file = gui.add_upload_button("Load object", mime_type=".stl,.obj,.step,.stp",
                                               icon=viser.Icon.UPLOAD, hint=hint)  # fmt: skip
-            self.file.on_upload(guarded(self._load_file))
+            self.file.on_upload(desk.reports.received(self._sent, self._load_file))
             hint = "Its own elastomer and grid; takes several times as long"
             self.soft = gui.add_checkbox("Soft object", now.soft is not None, hint=hint)
             soft = now.soft or SoftBody()
@@ -192,16 +193,20 @@ class ObjectFolder:
         file = self.picture.value
         self._take(pictured(self.desk.session.case.indenter, file.name, file.content))
 
-    def _load_file(self, event: Any) -> None:
-        file, desk = self.file.value, self.desk
+    def _sent(self) -> ObjectFile | SensorDesign:
+        """What the worker is asked for, to read the uploaded file."""
+        file = self.file.value
         if needs_cad(file.name):
-            trial = cad_trial(file.name, file.content)
-            desk.reports.settle()
-            desk.trial(TOPIC, trial, "intake", self._read)
-            return
-        call = ObjectFile(name=file.name, content=file.content)
+            return cad_trial(file.name, file.content)
+        return ObjectFile(name=file.name, content=file.content)
+
+    def _load_file(self, sent: ObjectFile | SensorDesign) -> None:
+        desk = self.desk
         desk.reports.settle()
-        desk.jobs.ask(TOPIC, call, desk.session.state, self._read)
+        if isinstance(sent, SensorDesign):
+            desk.trial(TOPIC, sent, "intake", self._read)
+        else:
+            desk.jobs.ask(TOPIC, sent, desk.session.state, self._read)
 
     def _read(self, event: Finished) -> None:
         """Take the object that the worker has read."""
