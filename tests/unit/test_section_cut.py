@@ -9,7 +9,15 @@ import pytest
 
 from workbench.core.results import MembraneMesh, Solid
 from workbench.core.sensing import Contact
-from workbench.section_cut import Axis, Plane, PressedBody, cap, clip, closed_loops, packed
+from workbench.section_cut import (
+    Axis,
+    Plane,
+    PressedBody,
+    cap,
+    clip,
+    closed_loops,
+    packed,
+)
 
 
 def cube(edge_mm: float = 2.0) -> tuple[np.ndarray, np.ndarray]:
@@ -44,11 +52,23 @@ def test_half_a_cube(axis: Axis, flip: bool) -> None:
     assert (along.min() > 0.5 - 1e-9) if flip else (along.max() < 0.5 + 1e-9)
 
 
-def test_a_plane_through_vertices_has_its_cap() -> None:
-    """Two cubes' common height: the cut at the top face of the cube still closes."""
+@pytest.mark.parametrize(("position_mm", "cap_mm2"), [(1.0, 0.0), (-1.0, 4.0)])
+@pytest.mark.parametrize("flip", [False, True])
+def test_what_lies_in_the_plane_is_kept(position_mm: float, cap_mm2: float, flip: bool) -> None:
+    """In the face beyond the cube: all of it, closed as it was, without a cap. In the face on this
+    side: that face alone, closed by a cap of its 4 mm2."""
+    plane = Plane(axis=Axis.Z, position_mm=-position_mm if flip else position_mm, flip=flip)
+    clipped = clip(*cube(), plane)
+    filled = cap(clipped, plane)
+    assert filled.area_mm2 == pytest.approx(cap_mm2)
+    left_mm2 = area_mm2(clipped.points_mm, clipped.faces)
+    # Walls as high as what counts as touching stand between face and cap: nothing to a part in 1e6.
+    assert left_mm2 == pytest.approx(4.0 if cap_mm2 else 24.0)
+
+
+def test_a_plane_through_vertices_of_two_bodies_caps_both() -> None:
+    """Two cubes one above the other, cut through the middles of their faces: 4 mm2 each."""
     points, faces = cube()
-    plane = Plane(axis=Axis.Z, position_mm=1.0)
-    assert cap(clip(points, faces, plane), plane).area_mm2 in (0.0, pytest.approx(4.0))
     plane = Plane(axis=Axis.X, position_mm=0.0)
     stacked = np.concatenate([points, points + np.array([0.0, 0.0, 4.0])])
     both = np.concatenate([faces, faces + len(points)])
