@@ -53,12 +53,12 @@ def test_parts_checks_recipe_and_files(tmp_path: Path, page: Any, start_server: 
     wait_until(lambda: not button(page, "Cancel").is_visible(), 60, "nothing runs")
 
     whole = view(page)
-    control(page, "core").click()
+    control(page, "Mould core").click()
     wait_until(lambda: changed_share(whole, view(page)) > 0.01, 20, "the core is hidden")
     checks = page.get_by_role("button").filter(has_text=CHECKED)
     assert checks.count() >= 10
     before = view(page)
-    checks.filter(has_text="minimum wall, half a").click()
+    checks.filter(has_text="minimum wall, mould half A").click()
     wait_until(lambda: changed_share(before, view(page)) > MOVED, 20, "the eye moved")
     page.get_by_text(re.compile(r"minimum wall .* At -?\d+\.\d, ")).first.wait_for()
 

@@ -95,7 +95,7 @@ def test_check_says_value_unit_and_limit() -> None:
         place_mm=(0.0, 0.0, 0.0),
         message="",
     )
-    assert line(check) == "✓ minimum wall, half a: 2.8 mm (≥ 2)"
+    assert line(check) == "✓ minimum wall, mould half A: 2.8 mm (≥ 2)"
     values = {"value": -5e-15, "unit": "degree", "limit": -0.5}
     fields = {name: getattr(check, name) for name in check.__dataclass_fields__}
     assert amount(FabricationCheck(**{**fields, **values})) == "0 degree (≥ -0.5)"

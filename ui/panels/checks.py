@@ -12,6 +12,7 @@ from ui.desk import Desk
 from ui.panels.parts import PartsTree
 from ui.plain import plain
 from workbench.core.fabrication import FabricationCheck, Severity
+from workbench.part_words import part_words
 from workbench.previews import clear_view
 
 LOOKS = {
@@ -115,5 +116,4 @@ def said(check: FabricationCheck) -> str:
 def line(check: FabricationCheck) -> str:
     """One check as a button says it."""
     sign, _ = LOOKS[check.severity]
-    what, part = (text.replace("_", " ") for text in (check.name, check.part))
-    return f"{sign} {what}, {part}: {amount(check)}"
+    return f"{sign} {check.name.replace('_', ' ')}, {part_words(check.part)}: {amount(check)}"

@@ -8,6 +8,7 @@ import viser
 
 from ui.desk import Desk
 from workbench.core.fabrication import FabricationPart, PartGroup
+from workbench.part_words import part_label
 
 TITLES = {PartGroup.MOULD: "Mould parts", PartGroup.SENSOR: "Sensor parts"}
 
@@ -65,7 +66,8 @@ class PartsTree:
             every.on_update(self.desk.guarded(lambda event: self._tick_group(group, event)))
             self.groups[group] = every
             for part in members:
-                box = gui.add_checkbox(part.name, ticked, hint=part.process)
+                hint = f"{part.process}; its files are named {part.name}"
+                box = gui.add_checkbox(part_label(part.name), ticked, hint=hint)
                 box.on_update(self.desk.guarded(self._ticked))
                 self.boxes[part.name] = box
 
