@@ -101,6 +101,6 @@ def test_a_look_casts_few_rays(dented: PixelLink, monkeypatch: pytest.MonkeyPatc
     dented.mm_per_px(np.array([30.0, 20.0]))
     assert rays == 2 + 4 * 2
     dented.pixel_of(place.place_mm)
-    # Four steps of Newton's method are usual, each of one ray and four for its slopes; then two rays
-    # to see that it has arrived, and three for what may hide the place.
+    # Four steps of Newton's method are usual, each of one ray and four for its slopes; then two
+    # rays to see that it has arrived, and three for what may hide the place.
     assert rays <= 10 + 4 * 5 + 2 + 3
