@@ -12,6 +12,7 @@ import numpy as np
 
 from workbench.colour_scale import scale_colours
 from workbench.core.maps import PERCENTILES, DesignerMaps, SkinMap
+from workbench.metric_rules import rule
 from workbench.previews import first_hit
 
 BETTER = {"more": "high", "less": "low"}
@@ -117,13 +118,17 @@ def scores(maps: DesignerMaps) -> dict[str, float]:
 
 
 def score_rows(maps: DesignerMaps) -> list[tuple[str, str, str, str]]:
-    """Label, name of the score, value, and which way is better, of each map in order."""
+    """Label of the map, of its score, value with its unit, and which way is better, in order."""
     return [
         (
             found.label,
-            found.score_name.replace("_", " "),
-            f"{found.score:.3g}" if np.isfinite(found.score) else "-",
+            rule(found.score_name).label,
+            _amount(found.score, rule(found.score_name).unit),
             BETTER.get(found.better, found.better),
         )
         for found in ordered(maps)
     ]
+
+
+def _amount(score: float, unit: str) -> str:
+    return f"{score:.3g} {unit}".rstrip() if np.isfinite(score) else "-"

@@ -164,10 +164,10 @@ def test_a_click_tells_the_value_of_the_nearest_vertex() -> None:
 
 
 def test_scores_say_which_way_is_better_and_lights_come_last() -> None:
-    """A row per map; those of single LEDs stand below all others."""
+    """A row per map, its score named as on the score card, with its unit; single LEDs come last."""
     maps = DesignerMaps(maps=(skin_map([1.0], "led_01"), skin_map([1.0])))
     rows = score_rows(maps)
-    assert rows[0] == ("incidence", "incidence median deg", "30", "low")
+    assert rows[0] == ("incidence", "angle of sight", "30 °", "low")
     assert rows[1][0] == "led_01"
     assert scores(maps) == {"incidence_median_deg": 30.0}
 

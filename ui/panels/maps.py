@@ -154,7 +154,7 @@ class MapsPanel:
             self.choice.options = names
             self.choice.value = now if now in names else names[0]
         self.choice.visible = self.wanted.visible = True
-        self.scores.content = table(("map", "score", "", "good"), score_rows(maps))
+        self.scores.content = table(("map", "score", "value", "good"), score_rows(maps))
         if self.asked:
             self.asked = False
             self.desk.put_parts_away()
