@@ -112,6 +112,14 @@ def cards_html(cards: Sequence[Card]) -> str:
     return "".join(parts)
 
 
+def shortened(words: str, longest: int) -> str:
+    """A text of at most so many letters, cut behind a whole word, with an ellipsis."""
+    if len(words) <= longest:
+        return words
+    kept = words[:longest].rpartition(" ")[0] or words[: longest - 1]
+    return kept.rstrip(" ,;:-") + "\N{HORIZONTAL ELLIPSIS}"
+
+
 def _card(card: Card) -> str:
     name = html.escape(card.name, quote=True)
     picture = ""

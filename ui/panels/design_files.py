@@ -13,7 +13,7 @@ from typing import Any
 import viser
 
 from ui.desk import Desk
-from ui.gallery import Card
+from ui.gallery import Card, shortened
 from ui.question import ask
 from workbench.core.errors import WorkbenchError
 from workbench.core.monitor import silent
@@ -256,10 +256,6 @@ class DesignFiles:
 
 
 def _short(words: str) -> str:
-    """The first sentence, cut to what a card holds."""
+    """The first sentence, cut at a word to what a card holds."""
     first = words.split(": ", 1)[-1].split(". ", 1)[0].rstrip(".")
-    return (
-        first
-        if len(first) <= LONGEST
-        else f"{first[: LONGEST - 1].rstrip()}\N{HORIZONTAL ELLIPSIS}"
-    )
+    return shortened(first, LONGEST)
