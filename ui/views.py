@@ -68,13 +68,17 @@ class Views:
         """Look at a box from the front, in tabs that are open and those that come."""
         centre = (low_mm + high_mm) / 2
         size_mm = float(np.linalg.norm(high_mm - low_mm))
-        distance_mm = _distance_mm(size_mm)
-        aim = _below(centre, distance_mm, AWAY)
-        self.server.initial_camera.position = tuple(aim + distance_mm * AWAY)
-        self.server.initial_camera.look_at = tuple(aim)
+        self._welcome(centre, size_mm, AWAY)
         self._before.clear()
         self.close = False
         self._fit(centre, size_mm, AWAY)
+
+    def _welcome(self, centre: np.ndarray, size_mm: float, away: np.ndarray) -> None:
+        """Let tabs that open from now on look at a ball from the side `away`."""
+        distance_mm = _distance_mm(size_mm)
+        aim = _below(centre, distance_mm, away)
+        camera = self.server.initial_camera
+        camera.position, camera.look_at = tuple(aim + distance_mm * away), tuple(aim)
 
     def fit(self, low_mm: np.ndarray, high_mm: np.ndarray) -> None:
         """Look at a box from the side each tab looks from."""
@@ -130,13 +134,16 @@ class Views:
                 self._before.setdefault(number, (client.camera.position, client.camera.look_at))
         self.close = False
         centre = (low_mm + high_mm) / 2
-        self._fit(centre, float(np.linalg.norm(high_mm - low_mm)), USUAL_VIEW)
+        size_mm = float(np.linalg.norm(high_mm - low_mm))
+        self._welcome(centre, size_mm, USUAL_VIEW)
+        self._fit(centre, size_mm, USUAL_VIEW)
 
     def step_forward(self, low_mm: np.ndarray, high_mm: np.ndarray) -> None:
         """Give every tab its place before `step_back` again; one that came since sees the box."""
         self.close = False
         centre = (low_mm + high_mm) / 2
         size_mm = float(np.linalg.norm(high_mm - low_mm))
+        self._welcome(centre, size_mm, AWAY)
         for number, client in self.server.get_clients().items():
             away = _distance_mm(size_mm, client.camera.aspect) * AWAY
             position, look_at = self._before.pop(number, (centre + away, centre))

@@ -74,3 +74,16 @@ def test_fit_keeps_the_side_one_looks_from(page: Page) -> None:
     assert camera.look_at[2] == pytest.approx(MIDDLE[2] - RAISED * away[0])
     assert away[1:] == pytest.approx([0.0, 0.0])
     assert away[0] > np.linalg.norm(HIGH - LOW) / 2
+
+
+def test_a_tab_that_opens_among_parts_sees_them_whole(page: Page) -> None:
+    """It starts outside the ball around the parts; once they are gone, as after `frame`."""
+    views = Views(page)
+    views.frame(LOW, HIGH)
+    before = page.initial_camera.position, page.initial_camera.look_at
+    low, high = 3.0 * LOW, 3.0 * HIGH
+    views.step_back(low, high)
+    away = np.asarray(page.initial_camera.position) - (low + high) / 2
+    assert np.linalg.norm(away) > np.linalg.norm(high - low) / 2
+    views.step_forward(LOW, HIGH)
+    assert (page.initial_camera.position, page.initial_camera.look_at) == before
