@@ -24,10 +24,13 @@ class ObjectFollower:
         desk.jobs.on_preview[DRAWN] = self._show
 
     def follow(self) -> None:
-        """Ask for the object of the state, once it has a body to stand on, unless asked last."""
+        """Ask for the object of the state, unless it was asked last.
+
+        Before there is a body, too: the first sketch of the image keeps the lane busy for seconds.
+        """
         desk, session = self.desk, self.desk.session
         indenter = session.case.indenter
-        if indenter is not self._asked and desk.scene.body.solid is not None:
+        if indenter is not self._asked:
             self._asked = indenter
             call = DrawingCall(indenter=indenter)
             desk.conductor.ask(DRAWN, session.design, session.case, call)

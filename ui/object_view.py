@@ -41,6 +41,8 @@ class ObjectView:
         """Undeformed vertices [mm] and triangles."""
         self._bent = False
         """Whether the object is drawn deformed."""
+        self._stale = False
+        """Whether the shape at rest waits for a body to stand on."""
         self._pressed: tuple[Contact, int] | None = None
         """The frame that has the object, counted from 0; None while it stands on the skin."""
 
@@ -49,13 +51,16 @@ class ObjectView:
         self._rest = drawing.points_mm, drawing.faces
         self._bent = False
         self._lowest_mm = drawing.lowest_mm
-        self._draw(drawing.points_mm.astype(np.float32), drawing.faces)
         if self._pressed is None:
+            self._stale = True
             self.place(path)
         else:
+            self._draw()
             self.press(*self._pressed)
 
-    def _draw(self, vertices: np.ndarray, triangles: np.ndarray) -> None:
+    def _draw(self) -> None:
+        points, triangles = self._rest
+        vertices, self._stale = points.astype(np.float32), False
         if self.node is None:
             self.node = self.server.scene.add_mesh_simple(
                 "/indenter", vertices, triangles, color=OBJECT_COLOUR, flat_shading=False
@@ -71,6 +76,8 @@ class ObjectView:
         body = self.body
         self._pressed = None
         if len(body.points):
+            if self._stale:
+                self._draw()
             self._pose(standing_pose(body.points, body.normals, path.target_mm, self._lowest_mm))
 
     def press(self, contact: Contact, frame: int) -> None:

@@ -47,7 +47,6 @@ def object_view() -> ObjectView:
     skin = SimpleNamespace(
         points=np.array([[0.0, 0, 10], [5, 0, 10]]), normals=np.tile([0.0, 0, 1], (2, 1))
     )
-    skin.solid = skin
     body: Any = skin
     return ObjectView(server, body)
 
@@ -92,6 +91,24 @@ def test_the_desk_computes_no_shape_and_keeps_the_old_one(monkeypatch: pytest.Mo
     desk.answer(CROSS, tetrahedron(3.0))
     assert desk.scene.object.node.vertices[0, 2] == -3.0
     assert desk.scene.object.standing[2] == pytest.approx(13.0)
+
+
+def test_it_is_asked_for_before_there_is_a_body_and_drawn_on_it() -> None:
+    """At the first start the shape comes before the body: nothing is drawn in the air."""
+    desk: Any = FakeDesk()
+    body = desk.scene.body
+    points, body.points = body.points, np.zeros((0, 3))
+    follower = ObjectFollower(desk)
+    follower.follow()
+    assert len(desk.asked) == 1
+    desk.answer(desk.session.case.indenter, tetrahedron(2.0))
+    assert desk.scene.object.node is None
+    body.points = points
+    desk.scene.object.place(Press())
+    follower.follow()
+    assert len(desk.asked) == 1
+    drawn: Any = desk.scene.object.node
+    assert drawn.position[2] == pytest.approx(12.0)
 
 
 def test_the_last_choice_wins_but_a_slider_shows_what_is_made_on_the_way() -> None:
