@@ -47,7 +47,9 @@ class Scene:
         """Set by the timeline: called once the colours of a press are there."""
         self.map = MapView(self.api, on_click)
         self.section = Section(self)
-        self.parts.on_moved = self.section.follow
+        self.parts.on_moved = self._parts_moved
+        self.on_extent: Callable[[], None] = lambda: None
+        """Set by the view's panel: called once what is on show reaches elsewhere."""
         self.hidden = False
         """Whether parts are looked at in place of the sensor."""
         self.shown_frame = 0
@@ -100,6 +102,10 @@ class Scene:
         """Lowest and highest corner of what is on show: the parts, else the body [mm]."""
         shown = self.hidden and self.parts.shown
         return self.parts.bounds_mm() if shown else self.body.bounds_mm
+
+    def _parts_moved(self) -> None:
+        self.section.follow()
+        self.on_extent()
 
     def load_frames(self, skin: Skin, contact: Contact) -> None:
         """Take a press; its skin shows once its colours are there."""

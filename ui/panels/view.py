@@ -14,6 +14,7 @@ from ui.desk import Desk
 from ui.look import OPACITY, Look, Seen
 from ui.measure import Measure
 from ui.panels.hand_out import save_scene
+from ui.reach import Reach
 from ui.views import Side
 from workbench.section_cut import Axis, Plane
 
@@ -76,6 +77,8 @@ class ViewPanel:
         )
         hint = "Keep the other side"
         self.flip = gui.add_checkbox("Flip section", False, hint=hint)
+        self.reach = Reach(self.place)
+        self.desk.scene.on_extent = self._fit_range
         self.on.on_update(guarded(self._switch))
         self.axis.on_update(guarded(self._other_axis))
         self.place.on_update(guarded(lambda event: self._cut()))
@@ -113,13 +116,10 @@ class ViewPanel:
 
     def _fit_range(self) -> None:
         """Give the slider the range of what is on show; its value stays where it can."""
-        low, high = (round(side, 1) for side in self._range())
-        if high > low and (self.place.min, self.place.max) != (low, high):
-            value = min(max(float(self.place.value), low), high)
-            # A value is never outside the range, whichever of the three is set first.
-            self.place.min, self.place.max = min(low, value), max(high, value)
-            self.place.value = value
-            self.place.min, self.place.max = low, high
+        low, high = self._range()
+        scene = self.desk.scene
+        parts = scene.hidden and bool(scene.parts.shown)
+        self.reach.fit(low, high, axis=Axis(self.axis.value), parts=parts)
 
     def _cut(self) -> None:
         plane = None
