@@ -41,8 +41,16 @@ from workbench.lanes import LaneRunner
 from workbench.project import Project
 
 BRAND = (37, 99, 235)
-DRAWING = ("cv2", "scipy.sparse", "scipy.spatial", "trimesh")
-"""Heavy packages with which this process draws."""
+DRAWING = (
+    "cv2",
+    "scipy.sparse",
+    "scipy.spatial",
+    "trimesh",
+    "manifold3d",
+    "geometry.everyday",
+    "geometry.indenters",
+)
+"""What this process draws and chooses objects with, and is slow to import."""
 
 
 def serve(options: argparse.Namespace, project: Project) -> int:
