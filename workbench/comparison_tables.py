@@ -106,7 +106,7 @@ def change_table(rows: Sequence[Change], a: str, b: str) -> str:
         for row in rows
     )
     head = f"<th style='{HEAD}'>figure</th>{name_cell(a)}{name_cell(b)}"
-    return f"{TABLE}<tr>{head}<th style='{NUMBER}'>B to A</th></tr>{lines}</table>"
+    return f"{TABLE}<tr>{head}<th style='{NUMBER}'>B against A</th></tr>{lines}</table>"
 
 
 def _change_cell(row: Change) -> str:

@@ -147,7 +147,9 @@ class VersusFolder:
     def _tell(self, a: Side, b: Side) -> None:
         rows = changes(a.figures, b.figures)
         words = summary(rows, press_notice(a.state, b.state))
-        self.words.content = "\n\n".join([f"**{plain(words)}**", *map(plain, told(rows))])
+        heads = (line.partition(": ") for line in told(rows))
+        items = [f"- **{plain(head)}**: {plain(figures)}" for head, _, figures in heads]
+        self.words.content = "\n".join([f"**{plain(words)}**", "", *items])
         differing = parameter_differences(a.state, b.state)
         self.tables.content = (
             "<div style='font-size:12px;margin:8px 8px 0'><b>Parameters that differ</b></div>"
