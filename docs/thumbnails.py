@@ -51,6 +51,7 @@ def main() -> None:
     keys = {}
     for name, key, data in pictures():
         large = cv2.imdecode(data, cv2.IMREAD_UNCHANGED)
+        assert large is not None
         small = cv2.resize(large, (SIZE_PX, SIZE_PX), interpolation=cv2.INTER_AREA)
         cv2.imwrite(str(folder / f"{name}.png"), small, [cv2.IMWRITE_PNG_COMPRESSION, 9])
         keys[name] = key
