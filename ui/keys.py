@@ -11,6 +11,15 @@ from dataclasses import dataclass
 from typing import Any
 
 PALETTE = "Ctrl + K"
+TASKS = (
+    *("Gallery", "Save design", "Undo", "Redo"),
+    *("Run press", "Live press", "Render image", "Update results", "Cancel what runs"),
+    *("Play or pause", "Previous frame", "Next frame"),
+    *("Fit view", "Look from", "Section", "Measure distance", "End measuring"),
+    *("Keyboard map", "Tour", "Help on"),
+)
+"""Beginnings of names in the order of the work: the design, the press, its frames, the view, help.
+Commands of one beginning stand by their keys."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -47,9 +56,21 @@ def clashes(commands: list[Command]) -> list[str]:
     return [name for name, count in (keys + labels).items() if count > 1]
 
 
+def by_task(commands: list[Command]) -> list[Command]:
+    """Commands in the order of the work; what belongs to no task comes last, by name."""
+
+    def place(command: Command) -> tuple[int, str, str]:
+        found = (k for k, start in enumerate(TASKS) if command.label.startswith(start))
+        return next(found, len(TASKS)), command.keys, command.label
+
+    return sorted(commands, key=place)
+
+
 def keyboard_map(commands: list[Command]) -> str:
-    """A table of all commands as Markdown, those with a key first."""
-    ordered = sorted(commands, key=lambda command: (not command.keys, command.label))
-    rows = [f"| {command.label} | {command.keys} |" for command in ordered]
-    head = ["| Command | Key |", "|:--|:--|", f"| Find a command | {PALETTE} |"]
-    return "\n".join([*head, *rows])
+    """A table of all commands as Markdown, in two columns, each read downward."""
+    cells = [f" {c.label} | {c.keys} " for c in by_task(commands)]
+    cells.insert(0, f" Find a command | {PALETTE} ")
+    half = (len(cells) + 1) // 2
+    right = [*cells[half:], *([" | "] * (2 * half - len(cells)))]
+    rows = [f"|{a}|{b}|" for a, b in zip(cells[:half], right, strict=True)]
+    return "\n".join(["| Command | Key | Command | Key |", "|:--|:--|:--|:--|", *rows])
