@@ -13,7 +13,6 @@ from designs.family import family, resolve_shape
 from workbench.core.design import Layers, Meshing
 from workbench.core.results import MembraneMesh, Solid
 
-
 # Other work on the machine must not fail an example that is merely slow.
 settings.register_profile("patient", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("patient")
