@@ -1,7 +1,7 @@
 """Help in the page: a sheet for each panel, the keyboard map, and a tour of three steps.
 
-The texts are Markdown files beside this module. The tour is shown once per browser, which remembers
-it (`localStorage`), and again on request.
+The texts of the panels are Markdown files beside this module, those of the tour are in `tour.py`.
+The tour is shown once per browser, which remembers it (`localStorage`), and again on request.
 """
 
 from __future__ import annotations
@@ -12,29 +12,10 @@ from typing import Any
 from ui.incoming import Incoming
 from ui.keys import keyboard_map, registered
 from ui.sheet import Sheets
+from ui.tour import Tour
 
 PANELS = ("Shape", "Mesh", "Optics", "Simulate", "Make", "Compare", "Results", "View")
 SEEN = "workbench-tour-seen"
-STEPS = (
-    (
-        "1 of 3: shape the sensor",
-        "The left dock is the design. On **Shape** choose where to start from and drag a slider: "
-        "the body in the middle follows. Every number has a unit and a hint; what cannot be made "
-        "is refused with the limit, and **Undo** (Ctrl + Z) takes anything back.",
-    ),
-    (
-        "2 of 3: press it",
-        "On **Simulate** choose an object, click the skin where it shall press, and *Run press* "
-        "(R). A running job shows its progress and can be cancelled. The right dock shows the "
-        "tactile image and the forces; the timeline plays the frames (P).",
-    ),
-    (
-        "3 of 3: compare and make",
-        "The line of stages on top says what is up to date (✓) and what is stale (○). **Compare** "
-        "keeps variants and puts two side by side; **Make** checks the walls and writes moulds "
-        "and parts. Everything is saved as you go. Ctrl + K finds every command, H shows the keys.",
-    ),
-)
 
 
 def page(panel: str) -> str:
@@ -50,6 +31,7 @@ class Help:
         self.server = server
         self.incoming = incoming
         self.sheets = Sheets(server)
+        self.steps = Tour(server)
         self._command("Tour", self.tour)
         self._command("Keyboard map", self.show_keys, hotkey="H")
         for panel in PANELS:
@@ -71,18 +53,9 @@ class Help:
         """Show all commands and their keys."""
         self.sheets.show(client, "Keyboard map", keyboard_map(registered(self.server.gui)))
 
-    def tour(self, client: Any, step: int = 0) -> None:
-        """Show a step of the tour; the browser remembers once it was ended or skipped."""
-        title, text = STEPS[step]
-        last = step == len(STEPS) - 1
-        further = {} if last else {"Next": lambda: self.tour(client, step + 1)}
-
-        def seen() -> None:
-            client.local_storage.set_item(SEEN, "1")
-
-        if last:
-            seen()
-        self.sheets.show(client, title, text, further, on_close=seen)
+    def tour(self, client: Any) -> None:
+        """Begin the tour; the browser remembers once it was ended or skipped."""
+        self.steps.show(client, 0, lambda: client.local_storage.set_item(SEEN, "1"))
 
     def begin(self) -> None:
         """Show the tour in every browser that has not seen it."""

@@ -9,10 +9,11 @@ from typing import Any
 import pytest
 
 from tests.ui.conftest import Server
-from tests.ui.widgets import button, coarse_project, open_page, tab
-from ui.help import PANELS, STEPS
+from tests.ui.widgets import button, coarse_project, open_page, tab, wait_until
+from ui.help import PANELS
 from ui.help import page as help_page
 from ui.keys import Command, clashes, in_words
+from ui.tour import STEPS
 from workbench.benchmarks.tab import Tab
 
 pytestmark = [pytest.mark.ui, pytest.mark.slow]
@@ -23,11 +24,15 @@ Start = Callable[..., Server]
 def test_the_tour_is_shown_once_and_again_on_request(
     tmp_path: Path, page: Any, start_server: Start
 ) -> None:
-    """Three steps in a new browser; none after a reload; the palette's command opens it again."""
+    """Three steps, each with its tab open; none after a reload; the palette opens it again."""
     server = start_server(coarse_project(tmp_path), tour=True)
     open_page(page, server.url)
-    for number, (title, _) in enumerate(STEPS):
-        page.get_by_text(title).first.wait_for()
+    for number, step in enumerate(STEPS):
+        page.get_by_text(step.title).first.wait_for()
+        spoken_of = tab(page, step.tabs[0])
+        wait_until(lambda t=spoken_of: t.get_attribute("aria-selected") == "true", 10, "it is open")
+        dock, words = spoken_of.bounding_box(), page.get_by_text(step.title).first.bounding_box()
+        assert words["x"] > dock["x"] + dock["width"]
         button(page, "Next" if number < len(STEPS) - 1 else "Close").click()
     page.get_by_text(STEPS[-1][0]).first.wait_for(state="hidden")
     page.reload()

@@ -14,8 +14,9 @@ import pytest
 from tests.ui.conftest import Server
 from tests.ui.inventory import HEADER, Control, controls, laid_out, names
 from tests.ui.widgets import coarse_project
-from ui.help import PANELS, STEPS
+from ui.help import PANELS
 from ui.help import page as help_page
+from ui.tour import STEPS
 from workbench.benchmarks.tab import Tab
 
 pytestmark = [pytest.mark.ui, pytest.mark.slow]
@@ -47,7 +48,7 @@ def test_words_in_bold_are_names_and_all_names_are_helped(
     with Tab(server.url) as looking:
         there, found = names(laid_out(looking)), controls(looking)
     texts = {panel: help_page(panel) for panel in PANELS}
-    texts |= dict(STEPS)
+    texts |= {step.title: step.text for step in STEPS}
     texts["tutorial"] = TUTORIAL.read_text(encoding="utf-8")
     wrong = {name: bold(text) - there for name, text in texts.items()}
     assert {name: words for name, words in wrong.items() if words} == {}
