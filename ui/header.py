@@ -39,8 +39,10 @@ NAMES = {
     "portrait": "Thumbnail",
     "portrait_pressed": "Thumbnail of the press",
 }
-WIDTH_PX = 200
-"""Width of the panel of the running job."""
+WIDTH_PX = 220
+"""Width of the panel of the running job; viser cuts the widgets of a narrower one at the right."""
+MARGIN_PX = 4
+"""From the panel to the dock on the right; notifications end 225 px from it at 1280 px."""
 WAIT_S = 3.0
 """A live press that takes longer than this is worth a bar and a Cancel."""
 
@@ -62,7 +64,7 @@ class Header:
             gui.add_button("Cancel", color="red", hint="Stop what runs (X)").on_click(on_cancel)
         gui.add_command("Cancel what runs", hotkey="X").on_trigger(on_cancel)
         # Notifications come in at the left; on a narrow page both find place side by side.
-        self.job.float(x=-15, y=15, width=WIDTH_PX)
+        self.job.float(x=-MARGIN_PX, y=15, width=WIDTH_PX)
 
     def show_design(self, design: SensorDesign) -> None:
         """Name and family."""
