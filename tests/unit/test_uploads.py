@@ -149,7 +149,8 @@ def test_a_step_file_is_left_to_the_worker(tmp_path: Path) -> None:
         _read=lambda event: ObjectFolder._read(folder, event),  # pyright: ignore[reportPrivateUsage]
         _take=taken.append,
     )
-    ObjectFolder._load_file(folder, None)  # pyright: ignore[reportPrivateUsage]
+    sent = ObjectFolder._sent(folder)  # pyright: ignore[reportPrivateUsage]
+    ObjectFolder._load_file(folder, sent)  # pyright: ignore[reportPrivateUsage]
     ((topic, trial, wanted, then),) = asked
     assert (topic, wanted, taken) == ("object", "intake", [])
     assert trial.body.outer.name == "box.STEP"
