@@ -20,6 +20,7 @@ from typing import Any
 
 import viser
 
+from ui.callbacks import run_in_order
 from ui.desk import Desk
 from ui.editor import Editor
 from ui.guard import LOOPBACK, Gate, guarded
@@ -97,6 +98,7 @@ def build_desk(
     server: Any, session: Session, conductor: Conductor, *, fast: bool, tour: bool
 ) -> Desk:
     """Lay out all panels and show what is stored for the design."""
+    run_in_order(server)
     gui = server.gui
     gui.configure_theme(dark_mode=True, show_logo=False, show_share_button=False, brand_color=BRAND)
     gui.main_panel.dock_left()

@@ -115,6 +115,17 @@ def test_racing_edits_end_in_one_good_state(server: Server, two: tuple[Tab, Tab]
     assert "Traceback" not in server.log.read_text()
 
 
+def test_no_click_overtakes_the_edit_before_it(two: tuple[Tab, Tab]) -> None:
+    """Value and Undo in quick turns, while bodies are built: each Undo takes its own edit back."""
+    editor, follower = two
+    for step in range(40):
+        editor.set(LENGTH, 20.0 + 0.1 * step)
+        editor.trigger("Undo")
+    editor.set(RADIUS, 14.0)
+    follower.wait(lambda: follower.value(RADIUS) == 14.0, 30, "the last edit arrived")
+    follower.wait(lambda: follower.value(LENGTH) == 27.0, 30, "every edit was undone")
+
+
 def test_an_edit_of_the_last_moment_survives_a_stop_in_mid_job(
     tmp_path: Path, start_server: Start
 ) -> None:
