@@ -5,13 +5,12 @@ Blinking between the frame and the rest shows small changes better than two pict
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from ui.blink import Blink
 from ui.desk import Desk
 from ui.imaging import placeholder, scale_bar, table
+from ui.panels.offer import offer
 from ui.panels.probe import Probe
 from workbench.core.sensing import Shot, TactileFrames
 from workbench.image_views import View, crossed, looked, unseen_words, views, visible_change
@@ -94,17 +93,10 @@ class ImageTab:
     def _offer(self) -> None:
         """Offer the cameras and views that there are."""
         names = tuple(f"camera {k}" for k in range(1, len(self.cameras) + 1))
-        self._choices(self.camera, names)
-        self._choices(self.view, tuple(view.value for view in views(self.cameras[0][1])))
+        offer(self.camera, names)
+        offer(self.view, tuple(view.value for view in views(self.cameras[0][1])))
         self.camera.visible, self.view.visible = len(names) > 1, True
         self.blink.visible = True
-
-    @staticmethod
-    def _choices(handle: Any, names: tuple[str, ...]) -> None:
-        if tuple(handle.options) != names:
-            now = handle.value
-            handle.options = names
-            handle.value = now if now in names else names[0]
 
     def chosen(self) -> tuple[np.ndarray, TactileFrames | None]:
         """Images and fields of the chosen camera."""
