@@ -7,7 +7,7 @@ from functools import partial
 from types import SimpleNamespace
 from typing import Any
 
-from ui.callbacks import run_in_order
+from ui.callbacks import put, run_in_order
 
 CLICKS = 40
 
@@ -37,3 +37,31 @@ def test_a_callback_that_fails_leaves_the_next_ones_alive() -> None:
     failed = server.gui._thread_executor.submit(lambda: 1 / 0)
     assert isinstance(failed.exception(timeout=10), ZeroDivisionError)
     assert server.gui._thread_executor.submit(lambda: "alive").result(timeout=10) == "alive"
+
+
+def test_a_value_that_waits_to_be_taken_is_not_overwritten() -> None:
+    """An Undo that shows the design anew while a number typed after it waits for its callback."""
+    server: Any = SimpleNamespace(gui=SimpleNamespace(), scene=SimpleNamespace())
+    run_in_order(server)
+    executor = server.gui._thread_executor
+    number: Any = SimpleNamespace(value=13.0, _impl=SimpleNamespace(gui_api=server.gui))
+    taken: list[float] = []
+    sent, shown = threading.Event(), threading.Event()
+
+    def undo(event: Any) -> None:
+        sent.wait(10)
+        put(number, 13.0)
+        shown.set()
+
+    executor.submit(undo, SimpleNamespace(target=None))
+    number.value = 14.0
+    edit = executor.submit(
+        lambda event: taken.append(event.target.value), SimpleNamespace(target=number)
+    )
+    sent.set()
+    assert shown.wait(10)
+    edit.result(timeout=10)
+    assert taken == [14.0]
+    # Taken, it is the design's to say again: of a refused value for example.
+    put(number, 13.0)
+    assert number.value == 13.0

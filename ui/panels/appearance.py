@@ -6,6 +6,7 @@ from typing import Any
 
 import viser
 
+from ui.callbacks import put
 from ui.desk import Desk
 from workbench.core.lighting import PAPER
 from workbench.core.optics import Composition, MarkerPattern
@@ -135,5 +136,4 @@ class AppearanceFolders:
         names = names if now in names else (*names, now)
         if tuple(self.background.options) != names:
             self.background.options = names
-        if self.background.value != now:
-            self.background.value = now
+        put(self.background, now)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from ui.callbacks import put
 from ui.desk import Desk
 from ui.handles import Handle
 from workbench.camera_edit import LENSES, angles_of, further_camera, with_lens, wxyz_of
@@ -148,8 +149,7 @@ class CameraFolders:
         names = tuple(f"camera {k}" for k in range(1, count + 1))
         if tuple(self.choice.options) != names:
             self.choice.options = names
-        if self.choice.value != names[self.number - 1]:
-            self.choice.value = names[self.number - 1]
+        put(self.choice, names[self.number - 1])
         if self.choice.visible != (count > 1):
             self.choice.visible = count > 1
         path = FIRST if self.number == 1 else f"{FURTHER}[{self.number - 1}]"
@@ -171,5 +171,4 @@ class CameraFolders:
         if wxyz_of((tilt, pan, roll)) == wxyz:
             return
         for handle, value in zip((self.tilt, self.pan, self.roll), angles_of(wxyz), strict=True):
-            if handle.value != value:
-                handle.value = value
+            put(handle, value)

@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
+from ui.callbacks import put
 from ui.panels.field_words import Field, find_field, in_words, refused_html
 from workbench.core.errors import WorkbenchError
 
@@ -236,8 +237,8 @@ class Fields:
             if field is None or field.handle is None:
                 continue
             value = self._kept(field)
-            if value is not None and field.handle.value != value:
-                field.handle.value = value
+            if value is not None:
+                put(field.handle, value)
 
     def _kept(self, field: Field) -> Any:
         """The design's value as the widget shows it; None of a lamp or camera that is gone."""

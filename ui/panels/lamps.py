@@ -6,6 +6,7 @@ from typing import Any
 
 import viser
 
+from ui.callbacks import put
 from ui.desk import Desk
 from ui.handles import Handle
 from workbench.core.lighting import Lamp, LampKind, LedMount
@@ -77,8 +78,7 @@ class LampsFolder:
         names = tuple(f"lamp {k}: {lamp.kind.value}" for k, lamp in enumerate(lamps, 1)) or (NONE,)
         if tuple(self.choice.options) != names:
             self.choice.options = names
-        if self.choice.value != names[self.number - 1]:
-            self.choice.value = names[self.number - 1]
+        put(self.choice, names[self.number - 1])
         for handle in (self.choice, self.body, self.drop):
             if handle.visible != bool(lamps):
                 handle.visible = bool(lamps)

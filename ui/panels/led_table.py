@@ -5,6 +5,7 @@ from __future__ import annotations
 import html
 from typing import Any
 
+from ui.callbacks import put
 from ui.desk import Desk
 from ui.handles import RING
 from workbench.core.errors import WorkbenchError
@@ -80,9 +81,8 @@ class LedTable:
         self.table.content = table_html(leds, self.number)
         if leds:
             led = leds[self.number - 1]
-            if self.factor.value != min(led.factor, MOST_FACTOR):
-                self.factor.value = min(led.factor, MOST_FACTOR)
-            self.colour.value = colour_words((led.colour,))
+            put(self.factor, min(led.factor, MOST_FACTOR))
+            put(self.colour, colour_words((led.colour,)))
 
 
 def table_html(leds: tuple[Led, ...], chosen: int) -> str:

@@ -8,6 +8,7 @@ from typing import Any
 
 import viser
 
+from ui.callbacks import put
 from ui.desk import Desk
 from ui.gallery import Card
 from workbench.core.design import SensorDesign
@@ -230,15 +231,15 @@ class ObjectFolder:
     def refresh(self) -> None:
         """Show the object as it stands."""
         now = self.desk.session.case.indenter
-        self._set(self.kind, self._label(now))
-        self._set(self.size, min(max(now.size_mm, 0.5), MESH_SPAN_MM))
-        self._set(self.edge, min(edge_mm(now), 3.0))
-        self._set(self.pattern, now.texture.pattern.value)
-        self._set(self.height, min(now.texture.height_mm, 2.0))
-        self._set(self.pitch, min(max(now.texture.pitch_mm, 0.2), 20.0))
-        self._set(self.soft, now.soft is not None)
+        put(self.kind, self._label(now))
+        put(self.size, min(max(now.size_mm, 0.5), MESH_SPAN_MM))
+        put(self.edge, min(edge_mm(now), 3.0))
+        put(self.pattern, now.texture.pattern.value)
+        put(self.height, min(now.texture.height_mm, 2.0))
+        put(self.pitch, min(max(now.texture.pitch_mm, 0.2), 20.0))
+        put(self.soft, now.soft is not None)
         if now.soft is not None:
-            self._set(self.young, now.soft.young_MPa)
+            put(self.young, now.soft.young_MPa)
         if self.young.visible != (now.soft is not None):
             self.young.visible = now.soft is not None
         meshed = now.kind is IndenterKind.MESH
@@ -248,8 +249,3 @@ class ObjectFolder:
         lettered = now.texture.pattern is Pattern.LETTERS
         if self.text.visible != lettered:
             self.text.visible = lettered
-
-    @staticmethod
-    def _set(widget: Any, value: Any) -> None:
-        if widget.value != value:
-            widget.value = value

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from ui.callbacks import put
+
 
 def offer(handle: Any, names: Sequence[str], *, preferred: str = "") -> None:
     """Offer names in a drop-down; the one chosen stays where it still is among them."""
@@ -12,5 +14,4 @@ def offer(handle: Any, names: Sequence[str], *, preferred: str = "") -> None:
     if tuple(handle.options) != tuple(names):
         handle.options = tuple(names)
     wanted = now if now in names else names[0]
-    if handle.value != wanted:
-        handle.value = wanted
+    put(handle, wanted)

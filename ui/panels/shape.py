@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from ui.callbacks import put
 from ui.desk import Desk
 from ui.panels.design_files import DesignFiles
 from ui.panels.history import History
@@ -99,8 +100,7 @@ class ShapePanel:
         origin, offered = self._origin(), self._offered()
         if origin not in self.start.options:
             self.start.options = offered
-        if self.start.value != origin:
-            self.start.value = origin
+        put(self.start, origin)
         if tuple(self.start.options) != offered:
             self.start.options = offered
         self._tell_about()

@@ -6,6 +6,7 @@ from typing import Any
 
 import viser
 
+from ui.callbacks import put
 from ui.desk import Desk
 from ui.panels.objects import ObjectFolder
 from ui.panels.strokes import MotionFolder
@@ -132,8 +133,7 @@ class SimulatePanel:
         case = self.desk.session.case
         self.objects.refresh()
         self.motion.refresh()
-        if tuple(self.shear.value) != case.press.shear_mm:
-            self.shear.value = case.press.shear_mm
+        put(self.shear, case.press.shear_mm)
         named = titles(self.desk.session.design)
         if self.grip.visible != bool(named):
             self.grip.visible = bool(named)
