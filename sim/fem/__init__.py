@@ -1,0 +1,1 @@
+"""Finite elements: the quasi-static ground truth that the fast solvers are judged by."""

@@ -1,0 +1,262 @@
+"""Eight-node hexahedra with mean dilatation (Q1P0): energy, nodal forces and tangent.
+
+The volume ratio is averaged over an element, so nearly incompressible elastomers do not lock:
+
+    W_e = sum_q w_q (mu / 2) (J_q^(-2/3) tr(F_q^T F_q) - 3) + V (K / 2) (v / V - 1)^2,
+
+V and v the volumes of the element at rest and deformed, q the 2x2x2 Gauss points. The pressure
+p = K (v / V - 1) follows from v, and the tangent is the exact derivative of the forces. Sources:
+Nagtegaal, Parks and Rice (1974) for mean dilatation; the law is that of `sim.material`, and of
+SimTac's Supplementary with C10 = mu / 2, D1 = 2 / K.
+Hooke's law (`linear`) drops all products of displacements, which makes it B-bar.
+All is plain NumPy over chunks of elements that fit the cache.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from workbench.core.errors import MeshingError
+
+CORNERS = np.array(
+    [[x, y, z] for z in (-1, 1) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))], dtype=np.float64
+)
+"""Corners of the parent cube in VTK order."""
+GAUSS = CORNERS / 3.0**0.5
+"""2x2x2 Gauss points, of weight 1."""
+LEAST_RATIO = 1e-3
+"""J at a Gauss point below which an element counts as inverted."""
+CHUNK = 256
+"""Elements at once: 256 x 24 x 24 tangents are 1.2 MB."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Elements:
+    """Hexahedra at rest."""
+
+    cells: np.ndarray
+    """Node numbers, shape (M, 8), int64, VTK order."""
+    slopes: np.ndarray
+    """dN_a / dX_J at the Gauss points [1/mm], shape (M, 8 nodes, 8 points, 3)."""
+    weights_mm3: np.ndarray
+    """Volume of each Gauss point, shape (M, 8)."""
+    shear_MPa: np.ndarray
+    """mu of each element, shape (M,)."""
+    bulk_MPa: np.ndarray
+    """K of each element, shape (M,)."""
+    linear: bool = False
+    """Hooke's law instead of the neo-Hookean one."""
+
+    @property
+    def volume_mm3(self) -> np.ndarray:
+        """Volume of each element at rest, shape (M,)."""
+        return self.weights_mm3.sum(axis=1)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ElementState:
+    """What elements say about a displacement."""
+
+    energy_Nmm: float
+    """Strain energy; inf where an element is inverted."""
+    force_N: np.ndarray
+    """Internal nodal forces of each element, shape (M, 24)."""
+    tangent_N_mm: np.ndarray | None
+    """Their derivative by the nodal displacements, shape (M, 24, 24), symmetric."""
+
+
+def make_elements(
+    points_mm: np.ndarray,
+    cells: np.ndarray,
+    *,
+    shear_MPa: np.ndarray | float,
+    bulk_MPa: np.ndarray | float,
+    linear: bool = False,
+) -> Elements:
+    """Hexahedra of a mesh.
+
+    Args:
+        points_mm: Nodes, shape (N, 3).
+        cells: Node numbers, shape (M, 8), VTK order.
+        shear_MPa: mu, one or one per element.
+        bulk_MPa: K, one or one per element.
+        linear: Whether Hooke's law is meant.
+
+    Raises:
+        MeshingError: If an element is inverted at rest.
+    """
+    cells = np.ascontiguousarray(cells, dtype=np.int64)
+    parent = np.stack([_parent_slopes(place) for place in GAUSS])
+    jacobian = np.einsum("mai,qaj->mqij", points_mm[cells], parent)
+    weights_mm3 = np.linalg.det(jacobian)
+    if len(cells) and weights_mm3.min() <= 0.0:
+        bad = int(np.argmin(weights_mm3.min(axis=1)))
+        raise MeshingError(
+            f"hexahedron {bad} of {len(cells)} is inverted",
+            hint="lower meshing.hex_mm",
+            at="meshing.hex_mm",
+        )
+    slopes = np.einsum("qaj,mqji->maqi", parent, np.linalg.inv(jacobian))
+    count = len(cells)
+    return Elements(
+        cells=cells,
+        slopes=np.ascontiguousarray(slopes),
+        weights_mm3=weights_mm3,
+        shear_MPa=np.broadcast_to(np.asarray(shear_MPa, np.float64), count).copy(),
+        bulk_MPa=np.broadcast_to(np.asarray(bulk_MPa, np.float64), count).copy(),
+        linear=linear,
+    )
+
+
+def _parent_slopes(place: np.ndarray) -> np.ndarray:
+    """dN_a / dxi_j of the eight shape functions at a place of the parent cube, shape (8, 3)."""
+    factors = 1.0 + CORNERS * place
+    return np.stack(
+        [CORNERS[:, j] * factors[:, j - 2] * factors[:, j - 1] / 8.0 for j in range(3)], axis=1
+    )
+
+
+def evaluate(
+    elements: Elements, displacement_mm: np.ndarray, *, tangent: bool = False
+) -> ElementState:
+    """Energy, forces and with `tangent` stiffness at nodal displacements, shape (N, 3)."""
+    count = len(elements.cells)
+    forces = np.zeros((count, 24))
+    tangents = np.zeros((count, 24, 24)) if tangent else None
+    energy = 0.0
+    law = _linear_chunk if elements.linear else _neo_hookean_chunk
+    for begin in range(0, count, CHUNK):
+        part = slice(begin, begin + CHUNK)
+        block = None if tangents is None else tangents[part]
+        energy += law(elements, displacement_mm, part, forces[part], block)
+        if not np.isfinite(energy):
+            break
+    return ElementState(energy_Nmm=energy, force_N=forces, tangent_N_mm=tangents)
+
+
+def displacement_gradient(
+    elements: Elements, displacement_mm: np.ndarray, part: slice = slice(None)
+) -> np.ndarray:
+    """H = du/dX at the Gauss points, shape (M, 8, 3, 3)."""
+    nodal = displacement_mm[elements.cells[part]]
+    slopes = elements.slopes[part]
+    flat = np.swapaxes(nodal, 1, 2) @ slopes.reshape(len(slopes), 8, 24)
+    return np.ascontiguousarray(flat.reshape(-1, 3, 8, 3).transpose(0, 2, 1, 3))
+
+
+def _neo_hookean_chunk(
+    elements: Elements,
+    displacement_mm: np.ndarray,
+    part: slice,
+    force: np.ndarray,
+    tangent: np.ndarray | None,
+) -> float:
+    weight = elements.weights_mm3[part]
+    mu, bulk = elements.shear_MPa[part, None], elements.bulk_MPa[part]
+    deformation = displacement_gradient(elements, displacement_mm, part)
+    deformation[..., range(3), range(3)] += 1.0
+    cofactor = _cofactors(deformation)
+    ratio = np.einsum("mqj,mqj->mq", deformation[:, :, 0], cofactor[:, :, 0])
+    if ratio.min(initial=1.0) <= LEAST_RATIO:
+        return np.inf
+    square = np.einsum("mqij,mqij->mq", deformation, deformation)
+    volume = weight.sum(axis=1)
+    dilation = (weight * ratio).sum(axis=1) / volume - 1.0
+    pressure = bulk * dilation
+    power = ratio ** (-2.0 / 3.0)
+    scale = mu * power * weight
+    inverse = cofactor / ratio[..., None, None]
+    stress = scale[..., None, None] * (deformation - (square / 3.0)[..., None, None] * inverse)
+    swelling = weight[..., None, None] * cofactor
+    growth = _to_nodes(elements, part, swelling)
+    force[:] = _to_nodes(elements, part, stress) + pressure[:, None] * growth
+    if tangent is not None:
+        closing = pressure[:, None] * weight * ratio
+        moduli = _isochoric_moduli(deformation, inverse, scale, square, closing)
+        tangent[:] = _stiffness(elements, part, moduli)
+        tangent += (bulk / volume)[:, None, None] * growth[:, :, None] * growth[:, None, :]
+    isochoric = 0.5 * mu * (square * power - 3.0) * weight
+    return float(isochoric.sum() + (0.5 * bulk * volume * dilation**2).sum())
+
+
+def _isochoric_moduli(
+    deformation: np.ndarray,
+    inverse: np.ndarray,
+    scale: np.ndarray,
+    square: np.ndarray,
+    closing: np.ndarray,
+) -> np.ndarray:
+    """dP_iJ / dF_kL times the weight, at constant pressure, shape (M, 8, 3, 3, 3, 3).
+
+    With h = F^-T, c = mu J^(-2/3): c [d_ik d_JL - (2/3)(F_iJ h_kL + h_iJ F_kL) + (2/9) I1 h_iJ h_kL
+    + (I1 / 3) h_iL h_kJ], and p J (h_iJ h_kL - h_iL h_kJ) of the deformed volume.
+    """
+    one = scale[..., None, None]
+    middle = (2.0 / 9.0) * square * scale + closing
+    left = -(2.0 / 3.0) * one * deformation + 0.5 * middle[..., None, None] * inverse
+    pairs = left[..., :, :, None, None] * inverse[..., None, None, :, :]
+    moduli = pairs + np.moveaxis(pairs, (-4, -3), (-2, -1))
+    crossed = (scale * square / 3.0 - closing)[..., None, None] * inverse
+    # h_iL h_kJ in the order i, J, k, L.
+    moduli += crossed[..., :, None, None, :] * np.swapaxes(inverse, -1, -2)[..., None, :, :, None]
+    for i in range(3):
+        for j in range(3):
+            moduli[..., i, j, i, j] += scale
+    return moduli
+
+
+def _linear_chunk(
+    elements: Elements,
+    displacement_mm: np.ndarray,
+    part: slice,
+    force: np.ndarray,
+    tangent: np.ndarray | None,
+) -> float:
+    weight = elements.weights_mm3[part]
+    mu, bulk = elements.shear_MPa[part, None], elements.bulk_MPa[part]
+    gradient = displacement_gradient(elements, displacement_mm, part)
+    strain = 0.5 * (gradient + np.swapaxes(gradient, -1, -2))
+    trace = np.trace(strain, axis1=-2, axis2=-1)
+    volume = weight.sum(axis=1)
+    dilation = (weight * trace).sum(axis=1) / volume
+    deviator = strain - (trace / 3.0)[..., None, None] * np.eye(3)
+    unit = np.broadcast_to(weight[..., None, None] * np.eye(3), strain.shape)
+    growth = _to_nodes(elements, part, np.ascontiguousarray(unit))
+    stress = (2.0 * mu * weight)[..., None, None] * deviator
+    force[:] = _to_nodes(elements, part, stress) + (bulk * dilation)[:, None] * growth
+    if tangent is not None:
+        eye = np.eye(3)
+        shape = np.einsum("ik,jl->ijkl", eye, eye) + np.einsum("il,jk->ijkl", eye, eye)
+        shape -= (2.0 / 3.0) * np.einsum("ij,kl->ijkl", eye, eye)
+        moduli = (mu * weight)[..., None, None, None, None] * shape
+        tangent[:] = _stiffness(elements, part, moduli)
+        tangent += (bulk / volume)[:, None, None] * growth[:, :, None] * growth[:, None, :]
+    sheared = (mu * weight) * np.einsum("mqij,mqij->mq", deviator, deviator)
+    return float(sheared.sum() + (0.5 * bulk * volume * dilation**2).sum())
+
+
+def _cofactors(matrix: np.ndarray) -> np.ndarray:
+    """J F^-T of matrices (..., 3, 3): the derivative of the determinant."""
+    rows = [np.cross(matrix[..., k - 2, :], matrix[..., k - 1, :]) for k in range(3)]
+    return np.stack(rows, axis=-2)
+
+
+def _to_nodes(elements: Elements, part: slice, stress: np.ndarray) -> np.ndarray:
+    """Nodal forces sum_q dN_a/dX_J P_iJ of weighted stresses (M, 8, 3, 3), shape (M, 24)."""
+    slopes = elements.slopes[part]
+    by_slope = np.swapaxes(stress, -1, -2).reshape(len(slopes), 24, 3)
+    return (slopes.reshape(len(slopes), 8, 24) @ by_slope).reshape(-1, 24)
+
+
+def _stiffness(elements: Elements, part: slice, moduli: np.ndarray) -> np.ndarray:
+    """sum_q dN_a/dX_J A_iJkL dN_b/dX_L, shape (M, 24, 24), rows (a, i) and columns (b, k)."""
+    slopes = elements.slopes[part]
+    count = len(slopes)
+    by_node = np.ascontiguousarray(slopes.transpose(0, 2, 3, 1))
+    half = moduli.reshape(count, 8, 27, 3) @ by_node
+    # From (q, i, J, k, b) to (q, J) times (i, k, b).
+    half = half.reshape(count, 8, 3, 3, 3, 8).transpose(0, 1, 3, 2, 4, 5).reshape(count, 24, 72)
+    full = slopes.reshape(count, 8, 24) @ half
+    return full.reshape(count, 8, 3, 3, 8).transpose(0, 1, 2, 4, 3).reshape(count, 24, 24)

@@ -1,0 +1,196 @@
+"""One increment of a path: predict, solve, remember; or divide it and try the halves.
+
+Nothing is remembered of an increment that did not converge.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from sim.contact.objects.collider import Collider
+from sim.fem.balance import Balance, Load, balance, tangent_matrix
+from sim.fem.body import Body
+from sim.fem.contact_law import Law
+from sim.fem.lagged import lagged
+from sim.fem.newton import Effort, Solution, Solvers, newton
+from sim.fem.obstacle import RigidPose
+from workbench.core.errors import SolveError
+
+MOST_NEWTON = 10
+MOST_HALVINGS = 4
+LONGEST_GUESS = 2.0
+"""The predictor moves no node farther than this multiple of the object's way."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Pairing:
+    """What does not change along a path."""
+
+    body: Body
+    law: Law
+    collider: Collider
+    pose_at: Callable[[float], RigidPose]
+    """The object's pose after a number of frames."""
+    held_mm: Callable[[float], np.ndarray]
+    """Displacement of held nodes after a number of frames, shape (N, 3), zero elsewhere."""
+    tolerance: float
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class State:
+    """A body in equilibrium with the object, and what friction remembers."""
+
+    progress: float
+    """Frames that are done."""
+    displacement_mm: np.ndarray
+    """Shape (N, 3)."""
+    places_mm: np.ndarray
+    """Contact points, shape (P, 3)."""
+    elastic_mm: np.ndarray
+    """Elastic slip, shape (P, 3)."""
+    slid_mm: np.ndarray
+    """Way that each point has slid since it last touched, shape (P,)."""
+    balance: Balance | None = None
+    """Forces; None before the first increment."""
+
+
+def at_rest(pairing: Pairing) -> State:
+    """The body before anything moves."""
+    zero = np.zeros_like(pairing.body.points_mm)
+    places_mm = pairing.body.faces.places(pairing.body.points_mm)
+    return State(
+        progress=0.0,
+        displacement_mm=zero,
+        places_mm=places_mm,
+        elastic_mm=np.zeros_like(places_mm),
+        slid_mm=np.zeros(len(places_mm)),
+    )
+
+
+def advance(
+    pairing: Pairing,
+    state: State,
+    progress: float,
+    solvers: Solvers,
+    effort: Effort,
+    *,
+    halvings: int = 0,
+    watch: Callable[[float], None] = lambda progress: None,
+) -> State:
+    """The state after `progress` frames, by one increment or, if that fails, by several.
+
+    Args:
+        pairing: Body, object and path.
+        state: Where it stands.
+        progress: Where it goes.
+        solvers: Linear solvers.
+        effort: Counts what it took.
+        halvings: How often this piece of the path has been halved.
+        watch: Told the progress reached; raises to stop.
+
+    Raises:
+        SolveError: If a sixteenth of the increment does not converge either.
+    """
+    found = increment(pairing, state, progress, solvers, effort)
+    if found is not None:
+        watch(progress)
+        return found
+    if halvings >= MOST_HALVINGS:
+        raise SolveError(
+            f"the increment from frame {state.progress:.3f} to {progress:.3f} did not converge, "
+            f"divided into {2**MOST_HALVINGS}",
+            hint="lower press.depth_mm or the shear, or round the object's edges",
+            at="press.depth_mm",
+        )
+    effort.halved += 1
+    middle = 0.5 * (state.progress + progress)
+    for goal in (middle, progress):
+        state = advance(pairing, state, goal, solvers, effort, halvings=halvings + 1, watch=watch)
+    return state
+
+
+def increment(
+    pairing: Pairing, state: State, progress: float, solvers: Solvers, effort: Effort
+) -> State | None:
+    """The state after `progress` frames; None if neither method converges."""
+    old, load = _load(pairing, state, state.progress), _load(pairing, state, progress)
+    start_mm = _predicted(pairing, state, progress, old, load, solvers)
+    found = newton(
+        pairing.body,
+        load,
+        start_mm,
+        solvers,
+        effort,
+        tolerance=pairing.tolerance,
+        most=MOST_NEWTON,
+    )
+    if found is None or not found.converged:
+        found = lagged(pairing.body, load, start_mm, solvers, effort, tolerance=pairing.tolerance)
+    if found is None or not found.converged:
+        return None
+    effort.increments += 1
+    return _remembered(state, progress, found)
+
+
+def _load(pairing: Pairing, state: State, progress: float) -> Load:
+    """The object after `progress` frames, with the memory of `state` carried there."""
+    before, pose = pairing.pose_at(state.progress), pairing.pose_at(progress)
+    return Load(
+        law=pairing.law,
+        collider=pairing.collider,
+        pose=pose,
+        anchor_mm=pose.carried(state.places_mm, before),
+        elastic_mm=state.elastic_mm @ pose.turn(before).T,
+    )
+
+
+def _predicted(
+    pairing: Pairing, state: State, progress: float, old: Load, new: Load, solvers: Solvers
+) -> np.ndarray:
+    """First guess (N, 3): held nodes moved, the others by the tangent about the old state."""
+    body = pairing.body
+    held_mm = pairing.held_mm(progress) - pairing.held_mm(state.progress)
+    moved_mm = state.displacement_mm + held_mm
+    known = balance(body, old, state.displacement_mm)
+    assert known is not None and known.face_N_mm is not None
+    nodes = body.faces.nodes[known.rows]
+    corners_mm = (body.points_mm + state.displacement_mm)[nodes]
+    way_mm = new.pose.carried(corners_mm, old.pose) - corners_mm
+    pushed = known.face_N_mm @ (way_mm - held_mm[nodes]).reshape(-1, 12, 1)
+    right_N = body.system.gather(nodes, pushed[..., 0])
+    if held_mm.any():
+        assert known.elements.tangent_N_mm is not None
+        pulled = known.elements.tangent_N_mm @ held_mm[body.elements.cells].reshape(-1, 24, 1)
+        right_N = right_N - body.system.gather(body.elements.cells, pulled[..., 0])
+        gel_N, _ = body.spring_forces(held_mm)
+        right_N = right_N + gel_N
+    right = body.system.reduced(right_N)
+    if not right.any():
+        return moved_mm
+    solvers.unsymmetric.factorise(tangent_matrix(body, known))
+    step_mm = body.system.expanded(solvers.unsymmetric.solve(right))
+    farthest_mm = LONGEST_GUESS * max(
+        float(np.abs(way_mm).max(initial=0.0)), float(np.abs(held_mm).max(initial=0.0))
+    )
+    step_mm *= min(1.0, farthest_mm / max(float(np.abs(step_mm).max(initial=0.0)), 1e-12))
+    guess = balance(body, new, moved_mm + step_mm, tangent=False)
+    return moved_mm if guess is None else moved_mm + step_mm
+
+
+def _remembered(state: State, progress: float, found: Solution) -> State:
+    """The state with the friction's memory of a converged increment."""
+    forces = found.balance
+    elastic_mm, slid_mm = np.zeros_like(state.elastic_mm), np.zeros_like(state.slid_mm)
+    elastic_mm[forces.members] = forces.traction.elastic_mm
+    slid_mm[forces.members] = state.slid_mm[forces.members] + forces.traction.slid_mm
+    return State(
+        progress=progress,
+        displacement_mm=found.displacement_mm,
+        places_mm=forces.places_mm,
+        elastic_mm=elastic_mm,
+        slid_mm=slid_mm,
+        balance=forces,
+    )

@@ -1,0 +1,223 @@
+"""A press solved by finite elements: the ground truth that faster ways are judged by.
+
+Every frame is divided into increments in which no point of the object moves farther than
+`increment_mm`. An increment that does not converge is divided; if that fails too the press ends
+with an error and the frames before it: what has not converged is never passed on.
+Left out: soft objects, self-contact.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import fields
+from typing import Any
+
+import numpy as np
+
+from sim.contact.motion.approach import Approach
+from sim.contact.objects.collider import Collider
+from sim.contact.objects.sampling import SAMPLES_PER_CELL
+from sim.contact.readout.verdict import check_depth
+from sim.contact.region.backing import decay_mm, support_points_mm
+from sim.contact.region.placing import place_object
+from sim.fem.contact_law import PENALTY, Law
+from sim.fem.increment import Pairing, advance, at_rest
+from sim.fem.newton import Effort, Solvers
+from sim.fem.obstacle import RigidPose
+from sim.fem.readout import FemFrame, read_frame
+from sim.fem.submodel import Submodel, cut_out
+from workbench.core.design import Elastomer
+from workbench.core.errors import DesignError, SolveError
+from workbench.core.fem import FemSettings
+from workbench.core.force_field import ForceField, Source
+from workbench.core.indenter import Indenter
+from workbench.core.monitor import Monitor, silent
+from workbench.core.press import Press
+from workbench.core.results import MembraneMesh
+from workbench.core.sampled import SampledDistance
+
+OnFrame = Callable[[int, FemFrame], None]
+
+
+def sampling_grid_mm(settings: FemSettings) -> float:
+    """Edge of the contact grid whose sampled distances are as fine as the settings ask for [mm]."""
+    return SAMPLES_PER_CELL * settings.sampling_mm
+
+
+def solve_press(
+    mesh: MembraneMesh,
+    material: Elastomer,
+    indenter: Indenter,
+    press: Press,
+    settings: FemSettings,
+    *,
+    sampled: SampledDistance | None = None,
+    monitor: Monitor = silent,
+    on_frame: OnFrame = lambda frame, outcome: None,
+) -> ForceField:
+    """Solve a press frame by frame.
+
+    Args:
+        mesh: The membrane, meshed at `settings.hex_mm`.
+        material: The elastomer, with its friction against the object.
+        indenter: The object, rigid.
+        press: Its path, and the regions that are driven meanwhile.
+        settings: Region, increments, tolerance.
+        sampled: The object's distance on `sampling_grid_mm` where a store has it.
+        monitor: Told frame and progress; raises `Cancelled` to stop.
+        on_frame: Given each frame as soon as it has converged.
+
+    Raises:
+        DesignError: If the target is off the skin, the object cannot be made, is soft or would
+            reach the support, or a driven region does not exist.
+        MeshingError: If the membrane has no hexahedra.
+        SolveError: If an increment does not converge; carries the frames before it.
+    """
+    if indenter.soft is not None:
+        raise DesignError(
+            "finite elements take rigid objects only, and this one is soft",
+            hint="make the object rigid, or use the forces of the contact solver (source mpm)",
+            at="indenter.soft",
+        )
+    monitor(0.0, "placing the object")
+    collider, approach = place_object(
+        mesh.outer, indenter, press, grid_mm=sampling_grid_mm(settings), sampled=sampled
+    )
+    check_depth(support_points_mm(mesh), approach, collider)
+    radius_mm = _radius_mm(mesh, material, approach, settings)
+    submodel = cut_out(mesh, material, press, approach.target_mm, radius_mm)
+    course = _Course(mesh, material, collider, approach, settings, submodel)
+    try:
+        course.run(monitor, on_frame)
+    except SolveError as error:
+        error.frame, error.last_good = course.frame, course.frame - 1
+        error.message = f"frame {course.frame + 1} of {approach.frame_count}: {error.message}"
+        error.partial = course.result() if course.outcomes else None
+        raise
+    finally:
+        course.solvers.close()
+    return course.result()
+
+
+def _radius_mm(
+    mesh: MembraneMesh, material: Elastomer, approach: Approach, settings: FemSettings
+) -> float:
+    """Radius of the part that takes part; inf for all of it.
+
+    A driven membrane moves as a whole, and a skin over gel or air bends farther than a bonded one.
+    """
+    wall_mm = float(np.linalg.norm(mesh.inner.points_mm - approach.target_mm, axis=1).min())
+    decays_mm = decay_mm(mesh, material, wall_mm)
+    if settings.radius_mm == 0.0 or approach.press.actuations or math.isinf(decays_mm):
+        return math.inf
+    return settings.radius_mm + approach.aside_mm + decays_mm
+
+
+class _Course:
+    """A press under way."""
+
+    def __init__(
+        self,
+        mesh: MembraneMesh,
+        material: Elastomer,
+        collider: Collider,
+        approach: Approach,
+        settings: FemSettings,
+        submodel: Submodel,
+    ) -> None:
+        self.mesh = mesh
+        self.approach = approach
+        self.settings = settings
+        self.submodel = submodel
+        self.pairing = Pairing(
+            body=submodel.body,
+            law=Law(
+                penalty_MPa_mm=PENALTY * material.young_MPa,
+                friction=material.friction,
+            ),
+            collider=collider,
+            pose_at=self._pose,
+            held_mm=self._held_mm,
+            tolerance=settings.tolerance,
+        )
+        self.solvers = Solvers()
+        self.frame = 0
+        self.outcomes: list[FemFrame] = []
+
+    def run(self, monitor: Monitor, on_frame: OnFrame) -> None:
+        """Solve all frames."""
+        count, state = self.approach.frame_count, at_rest(self.pairing)
+        for frame in range(count):
+            self.frame = frame
+            begun, effort = time.perf_counter(), Effort()
+            label = f"frame {frame + 1} of {count}"
+
+            def watch(progress: float, label: str = label) -> None:
+                monitor(min(progress / count, 1.0), label)
+
+            effort.watch = lambda now=state.progress, watch=watch: watch(now)
+            before = state
+            for goal in self._goals(frame):
+                state = advance(self.pairing, state, goal, self.solvers, effort, watch=watch)
+            outcome = read_frame(
+                self.mesh,
+                self.submodel,
+                self.pairing,
+                state,
+                before,
+                drives=len(self.approach.press.actuations),
+                increments=effort.increments,
+                steps=effort.newton + effort.lagged,
+                seconds=time.perf_counter() - begun,
+            )
+            self.outcomes.append(outcome)
+            on_frame(frame, outcome)
+        monitor(1.0, "converged")
+
+    def result(self) -> ForceField:
+        """All converged frames."""
+        stacked: dict[str, Any] = {
+            field.name: np.stack([np.asarray(getattr(o, field.name)) for o in self.outcomes])
+            for field in fields(FemFrame)
+        }
+        body = self.submodel.body
+        return ForceField(
+            source=Source.FEM,
+            **stacked,
+            target_mm=self.approach.target_mm,
+            normal=self.approach.normal,
+            tangent_u=self.approach.tangent_u,
+            radius_mm=self.submodel.radius_mm,
+            spacing_mm=self.settings.hex_mm,
+            solver=f"{len(body.elements.cells)} hexahedra, {len(body.system.free)} equations, "
+            f"{self.solvers.unsymmetric.name}",
+        )
+
+    def _pose(self, progress: float) -> RigidPose:
+        origin_mm, rotation = self.approach.pose(progress)
+        return RigidPose(origin_mm=origin_mm, rotation=rotation)
+
+    def _held_mm(self, progress: float) -> np.ndarray:
+        body, drive = self.submodel.body, self.submodel.drive
+        found = np.zeros_like(body.points_mm)
+        for number, actuation in enumerate(self.approach.press.actuations):
+            members = drive == number
+            found[members] = actuation.displacement_mm(body.points_mm[members], progress)
+        return found
+
+    def _goals(self, frame: int) -> list[float]:
+        """Progress at the end of each increment of a frame."""
+        way_mm = self.approach.travel_mm(frame, self.pairing.collider.reach_mm)
+        way_mm = max(way_mm, self._driven_mm(frame))
+        # A way that misses the limit by rounding is one increment, not two.
+        pieces = max(1, math.ceil(way_mm / self.settings.increment_mm - 1e-6))
+        return [frame + (piece + 1.0) / pieces for piece in range(pieces)]
+
+    def _driven_mm(self, frame: int) -> float:
+        """Farthest way of a driven node in a frame [mm]."""
+        if not self.approach.press.actuations:
+            return 0.0
+        way_mm = self._held_mm(frame + 1.0) - self._held_mm(float(frame))
+        return float(np.linalg.norm(way_mm, axis=1).max(initial=0.0))
