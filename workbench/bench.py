@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from workbench.benchmarks import browser, contact, geometry, optics, pipeline
+from workbench.benchmarks import browser, contact, forces, geometry, optics, pipeline
 from workbench.rows import Row, gathered
 
 PARTS: dict[str, Callable[[], list[Row]]] = {
     "geometry": geometry.rows,
     "contact": contact.rows,
     "optics": optics.rows,
+    "forces": forces.rows,
     "pipeline": pipeline.rows,
     "browser": browser.rows,
 }

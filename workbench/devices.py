@@ -83,3 +83,26 @@ def torch_build() -> str:
 
     kind = f"CUDA {torch.version.cuda}" if torch.version.cuda else "CPU only"
     return f"{torch.__version__} ({kind})"
+
+
+def torch_device() -> str:
+    """Where PyTorch shall compute: `cuda` where the driver and this build of it allow, else `cpu`.
+
+    Imports torch. A CPU-only build beside a GPU is common, so only an explicit wish fails.
+
+    Raises:
+        DeviceError: If the environment asks for CUDA and there is none for PyTorch.
+    """
+    if chosen_device() == "cpu":
+        return "cpu"
+    import torch
+
+    if torch.cuda.is_available():
+        return "cuda"
+    if os.environ.get(VARIABLE) == "cuda":
+        raise DeviceError(
+            f"{VARIABLE}=cuda, but PyTorch {torch_build()} finds no CUDA device",
+            hint="install a CUDA build of PyTorch that this driver supports, or unset it",
+            at="device",
+        )
+    return "cpu"

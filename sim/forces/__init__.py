@@ -1,0 +1,1 @@
+"""Force fields of a membrane from the displacement of its skin."""

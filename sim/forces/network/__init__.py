@@ -1,0 +1,13 @@
+"""The sparse tensor network: from the displacement of a skin to forces, displacements or stress.
+
+A membrane's points fall into voxels once (`voxels`); where each voxel's neighbours lie is found
+once (`levels`, `kernel_maps`) and cached by the caller. A frame is then gathers and matrix products
+(`convolution`, `strided`) in the layers of a U-Net (`layers`, `minkunet`), on any device of
+PyTorch. `reference` is the dense twin, `predictor` runs a trained network, `weights` keeps one.
+
+`spec` and `weights` do without PyTorch; the other modules import it at their top, so nothing
+outside this package may import them at module level. Training, data sets and scores are not here.
+
+Source: C. Choy, J. Gwak, S. Savarese, "4D Spatio-Temporal ConvNets: Minkowski Convolutional Neural
+Networks", CVPR 2019, for the network and the meaning of a sparse convolution.
+"""

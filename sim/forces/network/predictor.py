@@ -1,0 +1,211 @@
+"""A trained network in use: displacement of a skin in, field at the same points out, every frame.
+
+Voxels and kernel maps of the membrane are found once. Normalisation is folded into the
+convolutions. How the products are computed follows rules that were measured (`kernel_maps`,
+`products`):
+
+| device | type | products |
+|---|---|---|
+| CPU with bfloat16 instructions | bfloat16 | pairs at levels of 2,000 voxels, else gathered |
+| other CPU, or `Precision.SINGLE` | float32 | pairs |
+| CUDA | float16, or float32 if asked | gathered, compiled and recorded |
+
+In bfloat16 outputs differ from float32 by 0.5 % of the largest, in float16 by a tenth of that: for
+the screen, not for the tables of an evaluation, which ask for `Precision.SINGLE`.
+
+Left out: whether the membrane is one that the weights know; that is for the caller, from the data
+card.
+"""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator
+from enum import StrEnum
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from sim.forces.network.acceleration import Acceleration, Computation, accelerated
+from sim.forces.network.folding import folded
+from sim.forces.network.kernel_maps import BLOCK_VOXELS, Kernel, KernelMaps, kernel_maps
+from sim.forces.network.minkunet import network_of
+from sim.forces.network.voxels import Voxels, spacing_mm, voxelise
+from sim.forces.network.weights import NetworkWeights
+from workbench.core.check import expect
+from workbench.core.errors import DeviceError, SolveError
+
+HALF_PAIRS_FROM = 2000
+"""Voxels of a level from which pairs pay in bfloat16 on a CPU."""
+HALF_BLOCK_VOXELS = 8192
+"""Voxels of a block there: rows are half as long, and each product costs a fixed 10 us."""
+MOST_RECORDED = 4
+"""Batch sizes that are recorded; further ones run kernel by kernel."""
+
+
+class Precision(StrEnum):
+    """Type of the features between input and output."""
+
+    AUTO = "auto"
+    """`HALF` where the device has instructions for it."""
+    SINGLE = "single"
+    HALF = "half"
+    """bfloat16 on a CPU, float16 on a CUDA device."""
+
+
+class Predictor:
+    """A network on one membrane; keep it as long as the membrane.
+
+    Attributes:
+        voxels: Of the membrane.
+        dtype: Type of the features.
+        acceleration: How the kernels of the last new batch size are launched.
+        notes: What the user should know about how it runs; empty when all is well.
+    """
+
+    def __init__(
+        self,
+        weights: NetworkWeights,
+        points_mm: np.ndarray,
+        *,
+        faces: np.ndarray | None = None,
+        device: str = "cpu",
+        precision: Precision = Precision.AUTO,
+        acceleration: Acceleration = Acceleration.AUTO,
+    ) -> None:
+        """Prepare the network for a membrane.
+
+        Args:
+            weights: Of the trained network.
+            points_mm: Points of the skin at rest [mm], shape (V, 3).
+            faces: Triangles between them, shape (F, 3); they tell the spacing best.
+            device: `cpu` or `cuda`.
+            precision: Type of the features.
+            acceleration: On a CUDA device: what may be compiled and recorded.
+
+        Raises:
+            DesignError: If the points make no membrane.
+            DeviceError: If the device has no room for the network.
+            StoreError: If the weights do not fit their own description.
+        """
+        self.weights = weights
+        self.notes: tuple[str, ...] = ()
+        self.acceleration = Acceleration.EAGER
+        self.dtype = working_type(device, precision)
+        self._device = device
+        self._wanted = acceleration
+        self._by_samples: dict[int, Computation] = {}
+        voxel_mm = weights.voxel_per_spacing * spacing_mm(points_mm, faces)
+        with _room(device):
+            self.voxels = voxelise(points_mm, voxel_mm=voxel_mm).to(device)
+            self._maps = maps_for_use(self.voxels, self.dtype, weights.spec.stem_edge)
+            self._network = folded(network_of(weights)).to(device=device, dtype=self.dtype)
+            self._scale = torch.tensor(weights.output_scale, device=device)
+
+    def predict(self, displacement_mm: np.ndarray) -> np.ndarray:
+        """The field at the points, in the unit of the weights' target.
+
+        Args:
+            displacement_mm: Displacement of the points [mm], shape (V, 3), or (B, V, 3) for several
+                samples at once.
+
+        Returns:
+            Shape (V, C) or (B, V, C), float32.
+
+        Raises:
+            SolveError: If a displacement is not finite, or the field is not.
+            DeviceError: If the device runs out of memory.
+        """
+        several = displacement_mm.ndim == 3
+        batch = displacement_mm if several else displacement_mm[None]
+        points, channels = len(self.voxels.voxel_of_point), self.weights.spec.input_channels
+        expect(batch, f"B {points} {channels}", name="displacement_mm")
+        if not np.isfinite(batch).all():
+            bad = np.count_nonzero(~np.isfinite(batch))
+            raise SolveError(
+                f"{bad} of {batch.size} numbers of the displacement are not finite",
+                hint="compute the press again",
+                at="displacement_mm",
+            )
+        with _room(self._device), torch.no_grad():
+            field = self._field(np.ascontiguousarray(batch.swapaxes(0, 1), dtype=np.float32))
+        if not np.isfinite(field).all():
+            raise SolveError(
+                f"the network's field is not finite in {str(self.dtype).removeprefix('torch.')}",
+                hint="use precision=single, or other weights",
+                at="precision",
+            )
+        result = np.ascontiguousarray(field.swapaxes(0, 1))
+        return result if several else result[0]
+
+    def _field(self, displacement_mm: np.ndarray) -> np.ndarray:
+        """Field of all samples, shape (V, B, C) from (V, B, 3)."""
+        at_points = torch.from_numpy(displacement_mm).to(self._device)
+        features = self.voxels.mean(at_points / self.weights.input_scale_mm)
+        features = features.to(self.dtype)
+        return self._computation(features)(features).cpu().numpy()
+
+    def _computation(self, features: Tensor) -> Computation:
+        """The network for so many samples, from voxels to points."""
+        samples = features.shape[1]
+        if samples not in self._by_samples:
+            full = len(self._by_samples) >= MOST_RECORDED
+            wanted = Acceleration.EAGER if full else self._wanted
+            run, self.acceleration, note = accelerated(
+                self._at_points, features, acceleration=wanted
+            )
+            if note and note not in self.notes:
+                self.notes += (note,)
+            if full:
+                return run
+            self._by_samples[samples] = run
+        return self._by_samples[samples]
+
+    def _at_points(self, features: Tensor) -> Tensor:
+        values = self._network(features, self._maps).float() * self._scale
+        return self.voxels.to_points(values)
+
+
+def working_type(device: str, precision: Precision) -> torch.dtype:
+    """The type of features on a device, by the table above."""
+    if precision is Precision.SINGLE:
+        return torch.float32
+    if device != "cpu":
+        return torch.float16
+    if precision is Precision.HALF or _multiplies_bfloat16():
+        return torch.bfloat16
+    return torch.float32
+
+
+def _multiplies_bfloat16() -> bool:
+    """Whether the CPU has instructions for it; without, it is slower than float32."""
+    able = torch.cpu.get_capabilities()
+    return any(able.get(name, False) for name in ("avx512_bf16", "amx_bf16", "bf16"))
+
+
+def maps_for_use(voxels: Voxels, dtype: torch.dtype, stem_edge: int) -> KernelMaps:
+    """Kernel maps for a frame after the other, by the table above."""
+    if voxels.coordinates.device.type != "cpu":
+        return kernel_maps(voxels, stem_edge=stem_edge, kernel=Kernel.GATHER)
+    half = dtype is torch.bfloat16
+    return kernel_maps(
+        voxels,
+        stem_edge=stem_edge,
+        block_voxels=HALF_BLOCK_VOXELS if half else BLOCK_VOXELS,
+        pairs_from=HALF_PAIRS_FROM if half else 0,
+    )
+
+
+@contextlib.contextmanager
+def _room(device: str) -> Iterator[None]:
+    """Names the remedy when the device runs out of memory."""
+    try:
+        yield
+    except torch.OutOfMemoryError as error:
+        raise DeviceError(
+            f"the {device} device has no memory left for the network",
+            hint="predict fewer samples at once, close what else uses the device, "
+            "or set WORKBENCH_DEVICE=cpu",
+            at="device",
+        ) from error

@@ -1,0 +1,143 @@
+"""Forces: frames per second of the network on membranes of 1,000, 5,000 and 25,000 points.
+
+Weights are untrained, which takes the same time. A frame is one displacement field in and one force
+field out, as the browser asks for it, the copies to and from the device included.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from workbench.benchmarks.timing import RUNS, median_s
+from workbench.rows import Row, bounded, stated
+
+if TYPE_CHECKING:
+    from sim.forces.network.predictor import Predictor
+    from sim.forces.network.weights import NetworkWeights
+
+SIZES = (
+    ("1k", 1_000, {"cpu": 75.0, "cuda": 1500.0}),
+    ("5k", 5_000, {"cpu": 25.0, "cuda": 1000.0}),
+    ("25k", 25_000, {"cpu": 5.0, "cuda": 500.0}),
+)
+"""Name, points, and frames per second asked of two CPU cores and of a data-centre GPU."""
+NETWORKS = ("paper", "small")
+CPU_THREADS = 2
+WARMING = 3
+RUN_S = 0.3
+"""A run counts frames for about this long, so that a clock's grain does not matter."""
+
+
+def rows() -> list[Row]:
+    """All rows of the room: as the browser uses the network, and in float32 for comparison."""
+    import torch
+
+    from workbench.devices import torch_device
+
+    device = torch_device()
+    threads = torch.get_num_threads()
+    torch.set_num_threads(min(CPU_THREADS, threads))
+    try:
+        return [
+            row(name, points, network, device, fps[device])
+            for network in NETWORKS
+            for name, points, fps in SIZES
+            for row in (_live_row, _single_row)
+        ]
+    finally:
+        torch.set_num_threads(threads)
+
+
+def _live_row(name: str, points: int, network: str, device: str, limit_fps: float) -> Row:
+    """Frames per second as the browser uses the network."""
+    predictor = _predictor(points, network, device, single=False)
+    fps = _fps(predictor, points)
+    case = _case("live", predictor, points, network, device)
+    return bounded(f"inference_{name}", case, fps, unit="1/s", limit=limit_fps, sense="min")
+
+
+def _single_row(name: str, points: int, network: str, device: str, limit_fps: float) -> Row:
+    """The same in float32, as an evaluation uses it; nothing is asked of it."""
+    predictor = _predictor(points, network, device, single=True)
+    fps = _fps(predictor, points)
+    case = _case("evaluation", predictor, points, network, device)
+    return stated(f"inference_{name}", case, fps, unit="1/s")
+
+
+def _predictor(points: int, network: str, device: str, *, single: bool) -> Predictor:
+    """A network on the shell; only the live one is worth a minute of compiling."""
+    from sim.forces.network.acceleration import Acceleration
+    from sim.forces.network.predictor import Precision, Predictor
+
+    return Predictor(
+        untrained(network),
+        shell(points),
+        device=device,
+        precision=Precision.SINGLE if single else Precision.AUTO,
+        acceleration=Acceleration.GRAPH if single else Acceleration.AUTO,
+    )
+
+
+def _case(use: str, predictor: Predictor, points: int, network: str, device: str) -> str:
+    kind = str(predictor.dtype).removeprefix("torch.")
+    where = device if device == "cpu" else f"{device}, {predictor.acceleration}"
+    case = f"{network} network, {use}: {points} points, {kind}, {where}"
+    return "; ".join((case, *predictor.notes))
+
+
+def shell(points: int) -> np.ndarray:
+    """A finger-like skin: half a sphere on a tube.
+
+    Points lie along a golden spiral, each with the same area. R = 10 mm, tube 25 mm.
+
+    Returns:
+        Points [mm], shape (points, 3), float32.
+    """
+    radius_mm, tube_mm = 10.0, 25.0
+    cap_mm2, tube_mm2 = 2 * math.pi * radius_mm**2, 2 * math.pi * radius_mm * tube_mm
+    number = np.arange(points) + 0.5
+    area_mm2 = number / points * (cap_mm2 + tube_mm2)
+    z_mm = np.where(area_mm2 < cap_mm2, radius_mm, 0.0) - np.where(
+        area_mm2 < cap_mm2, area_mm2, area_mm2 - cap_mm2
+    ) / (2 * math.pi * radius_mm)
+    ring_mm = np.sqrt(radius_mm**2 - np.clip(z_mm, 0.0, None) ** 2)
+    turn = number * math.pi * (3.0 - math.sqrt(5.0))
+    places = np.stack([ring_mm * np.cos(turn), ring_mm * np.sin(turn), z_mm], axis=1)
+    return places.astype(np.float32)
+
+
+def untrained(network: str) -> NetworkWeights:
+    """Weights that were never trained."""
+    from sim.forces.network.minkunet import arrays_of, new_network
+    from sim.forces.network.spec import SPECS, Target
+    from sim.forces.network.voxels import VOXEL_PER_SPACING
+    from sim.forces.network.weights import NetworkWeights
+
+    spec = SPECS[network]
+    return NetworkWeights(
+        spec=spec,
+        arrays=arrays_of(new_network(spec)),
+        target=Target.FORCE,
+        input_scale_mm=1.0,
+        output_scale=(1.0,) * spec.output_channels,
+        voxel_per_spacing=VOXEL_PER_SPACING,
+        spacing_mm=1.0,
+        card={},
+    )
+
+
+def _fps(predictor: Predictor, points: int) -> float:
+    """Frames per second, median of some runs."""
+    displacement_mm = np.random.default_rng(0).normal(size=(points, 3)).astype(np.float32)
+    for _ in range(WARMING):
+        predictor.predict(displacement_mm)
+    frames = max(1, round(RUN_S / median_s(lambda: predictor.predict(displacement_mm), runs=1)))
+
+    def run() -> None:
+        for _ in range(frames):
+            predictor.predict(displacement_mm)
+
+    return frames / median_s(run, runs=RUNS)
