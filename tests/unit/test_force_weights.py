@@ -28,6 +28,7 @@ from sim.forces.network.weights import (
 )
 from workbench.benchmarks.forces import shell
 from workbench.core.errors import StoreError
+from workbench.weight_files import save_weights
 
 SPEC = NetworkSpec(
     name="tiny", planes=(4, 6, 8, 8, 8, 6, 6, 4), stem_planes=4, output_channels=6, norm=Norm.ALL
@@ -96,11 +97,11 @@ def test_stored_half_twice_is_the_same_file() -> None:
     assert weights_to_bytes(again, storage=Storage.HALF) == (name, content)
 
 
-def test_files_on_disk_are_loaded(tmp_path: Path) -> None:
-    """The file's own name is checked, wherever the folder."""
-    name, content = weights_to_bytes(make_weights())
-    (tmp_path / name).write_bytes(content)
-    assert load_weights(tmp_path / name).card["samples"] == 3
+def test_saved_files_are_loaded(tmp_path: Path) -> None:
+    """A folder that was not there holds one file, under the name of its content."""
+    path = save_weights(tmp_path / "weights", make_weights(), storage=Storage.SINGLE)
+    assert [file.name for file in path.parent.iterdir()] == [weights_to_bytes(make_weights())[0]]
+    assert load_weights(path).card["samples"] == 3
     with pytest.raises(StoreError, match="cannot read"):
         load_weights(tmp_path / "none.weights")
 

@@ -141,19 +141,17 @@ class Predictor:
 
     def _field(self, displacement_mm: np.ndarray) -> np.ndarray:
         """Field of all samples, shape (V, B, C) from (V, B, 3)."""
-        at_points = torch.from_numpy(displacement_mm).to(self._device)
-        features = self.voxels.mean(at_points / self.weights.input_scale_mm)
-        features = features.to(self.dtype)
-        return self._computation(features)(features).cpu().numpy()
+        there = torch.from_numpy(displacement_mm).to(self._device)
+        return self._computation(there)(there).cpu().numpy()
 
-    def _computation(self, features: Tensor) -> Computation:
-        """The network for so many samples, from voxels to points."""
-        samples = features.shape[1]
+    def _computation(self, displacement_mm: Tensor) -> Computation:
+        """Everything that happens on the device, for so many samples."""
+        samples = displacement_mm.shape[1]
         if samples not in self._by_samples:
             full = len(self._by_samples) >= MOST_RECORDED
             wanted = Acceleration.EAGER if full else self._wanted
             run, self.acceleration, note = accelerated(
-                self._at_points, features, acceleration=wanted
+                self._on_device, displacement_mm, acceleration=wanted
             )
             if note and note not in self.notes:
                 self.notes += (note,)
@@ -162,9 +160,11 @@ class Predictor:
             self._by_samples[samples] = run
         return self._by_samples[samples]
 
-    def _at_points(self, features: Tensor) -> Tensor:
-        values = self._network(features, self._maps).float() * self._scale
-        return self.voxels.to_points(values)
+    def _on_device(self, displacement_mm: Tensor) -> Tensor:
+        """From points to points, shape (V, B, C) from (V, B, 3)."""
+        features = self.voxels.mean(displacement_mm / self.weights.input_scale_mm)
+        values = self._network(features.to(self.dtype), self._maps)
+        return self.voxels.to_points(values.float() * self._scale)
 
 
 def working_type(device: str, precision: Precision) -> torch.dtype:
