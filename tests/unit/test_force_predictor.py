@@ -12,8 +12,8 @@ from sim.forces.network import acceleration
 from sim.forces.network.acceleration import Acceleration, accelerated
 from sim.forces.network.kernel_maps import kernel_maps
 from sim.forces.network.minkunet import arrays_of, network_of, new_network
-from sim.forces.network.predictor import Precision, Predictor, working_type
-from sim.forces.network.spec import SMALL, NetworkSpec, Target
+from sim.forces.network.predictor import Precision, Predictor, maps_for_use, working_type
+from sim.forces.network.spec import PAPER, SMALL, NetworkSpec, Target
 from sim.forces.network.voxels import voxel_edge_mm, voxelise
 from sim.forces.network.weights import NetworkWeights
 from workbench import devices
@@ -188,6 +188,35 @@ def test_failed_recording_gives_way_to_plain_kernels(monkeypatch: pytest.MonkeyP
     fails(torch.OutOfMemoryError("full"))
     with pytest.raises(torch.OutOfMemoryError):
         accelerated(abs, OnCuda(), acceleration=Acceleration.GRAPH)  # type: ignore[arg-type]
+
+
+def test_every_membrane_is_compiled_not_the_first_eight(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Twelve functions with the same code: PyTorch alone would compile eight."""
+    compiled: list[int] = []
+
+    def count(graph: torch.fx.GraphModule, _: object) -> torch.fx.GraphModule:
+        compiled.append(1)
+        return graph
+
+    compile_with = torch.compile
+    monkeypatch.setattr(torch, "compile", lambda f, **rest: compile_with(f, backend=count, **rest))
+    torch.compiler.reset()
+    for size in range(12):
+        values = torch.ones(size + 1)
+        acceleration._compiled(lambda x, values=values: x + values.sum(), torch.ones(size + 1))
+    torch.compiler.reset()
+    assert len(compiled) == 12
+
+
+def test_rule_of_pairs_looks_at_voxels_and_width() -> None:
+    """In bfloat16: pairs at the two finest levels of the published network at 5,000 points, nowhere
+    at 1,000 points or in the small network; in float32 everywhere."""
+    for points, spec, expected in ((5000, PAPER, 2), (1000, PAPER, 0), (5000, SMALL, 0)):
+        points_mm = shell(points)
+        voxels = voxelise(points_mm, voxel_mm=voxel_edge_mm(points_mm))
+        maps = maps_for_use(voxels, torch.bfloat16, spec)
+        assert [bool(level.blocks) for level in maps.levels] == [n < expected for n in range(5)]
+        assert all(level.blocks for level in maps_for_use(voxels, torch.float32, spec).levels)
 
 
 @pytest.mark.gpu

@@ -91,8 +91,9 @@ def test_padded_lengths_are_few_and_near() -> None:
 def test_levels_with_few_voxels_may_gather() -> None:
     """`pairs_from` decides level by level; `GATHER` makes no pairs at all."""
     voxels = as_voxels(some_voxels(300, seed=4))
-    maps = kernel_maps(voxels, pairs_from=100)
+    fewest = (301, 1, 10**9, 1, 0)
+    maps = kernel_maps(voxels, pairs_from=fewest)
     assert maps.counts[0] == 300
-    assert [bool(level.blocks) for level in maps.levels] == [n >= 100 for n in maps.counts]
+    assert [bool(level.blocks) for level in maps.levels] == [False, True, False, True, True]
     assert not any(level.blocks for level in kernel_maps(voxels, kernel=Kernel.GATHER).levels)
     assert not maps.stem.blocks

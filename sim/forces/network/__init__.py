@@ -5,9 +5,9 @@ once (`levels`, `kernel_maps`) and cached by the caller. A frame is then gathers
 (`convolution`, `strided`) in the layers of a U-Net (`layers`, `minkunet`), on any device of
 PyTorch. `reference` is the dense twin, `predictor` runs a trained network, `weights` keeps one.
 
-A skin fills a thousandth of its box and has 6 to 13 of 27 neighbours: `products` multiplies the
-pairs that exist (CPU) or copies neighbours side by side (GPU). Tables are symmetric, so gradients
-gather as well, nothing scatters, and runs repeat bit by bit.
+A skin fills a fiftieth of its box and a voxel has 6 to 13 of 27 neighbours: `products` multiplies
+the pairs that exist (CPU) or copies neighbours side by side (GPU). Tables are symmetric, so
+gradients gather as well, nothing scatters, and runs repeat bit by bit.
 
 `spec` and `weights` do without PyTorch; the other modules import it at their top, so nothing
 outside this package may import them at module level. Training, data sets and scores are not here.

@@ -16,6 +16,8 @@ import torch
 from torch import Tensor
 
 Computation = Callable[[Tensor], Tensor]
+MOST_COMPILED = 10_000
+"""Membranes and batch sizes of a process: no limit in practice."""
 WARMING = 3
 """Runs before the recording: libraries choose their algorithms and take their memory."""
 
@@ -58,7 +60,7 @@ def accelerated(
     note = ""
     if acceleration is Acceleration.COMPILED:
         try:
-            return _recorded(torch.compile(function, dynamic=False), example), acceleration, ""
+            return _recorded(_compiled(function, example), example), acceleration, ""
         except torch.OutOfMemoryError:
             raise
         except RuntimeError as error:
@@ -70,6 +72,18 @@ def accelerated(
     except RuntimeError as error:
         note = f"the network runs kernel by kernel: {_first_line(error)}"
     return function, Acceleration.EAGER, note
+
+
+def _compiled(function: Computation, example: Tensor) -> Computation:
+    """The function with its kernels merged, for the shape of the example."""
+    from torch._dynamo import config
+
+    result = torch.compile(function, dynamic=False)
+    # All membranes and batch sizes of a process share the function's code; after eight of them
+    # PyTorch would go on uncompiled and tell nobody but its log.
+    with config.patch(recompile_limit=MOST_COMPILED, accumulated_recompile_limit=MOST_COMPILED):
+        result(example)
+    return result
 
 
 def _first_line(error: Exception) -> str:

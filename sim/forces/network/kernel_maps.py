@@ -14,6 +14,7 @@ against 4.5): levels with few voxels may gather.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -116,7 +117,7 @@ def kernel_maps(
     stem_edge: int = 5,
     kernel: Kernel = Kernel.PAIRS,
     block_voxels: int = BLOCK_VOXELS,
-    pairs_from: int = 0,
+    pairs_from: Sequence[int] = (0,) * (DEPTH + 1),
 ) -> KernelMaps:
     """The maps of these voxels, on the device where they are.
 
@@ -126,22 +127,23 @@ def kernel_maps(
         kernel: How convolutions inside the network are computed. The stem has few channels and many
             offsets: it always gathers.
         block_voxels: Voxels of a block of pairs; a GPU wants all in one.
-        pairs_from: Levels with fewer voxels than this gather, whatever `kernel` says.
+        pairs_from: Fewest voxels of each level, finest first, with which it uses pairs; with fewer
+            it gathers, whatever `kernel` says.
     """
 
-    def table(coordinates: Tensor) -> Table:
+    def table(coordinates: Tensor, fewest: int) -> Table:
         found = neighbours(coordinates, BLOCK_EDGE)
-        if kernel is Kernel.GATHER or len(found) < pairs_from:
+        if kernel is Kernel.GATHER or len(found) < fewest:
             return Table(neighbours=found)
         return Table(neighbours=found, blocks=pair_blocks(found, block_voxels=block_voxels))
 
     coordinates = voxels.coordinates
     stem = Table(neighbours=neighbours(coordinates, stem_edge))
-    levels, steps = [table(coordinates)], []
-    for _ in range(DEPTH):
+    levels, steps = [table(coordinates, pairs_from[0])], []
+    for fewest in pairs_from[1:]:
         coordinates, step = coarser(coordinates)
         steps.append(step)
-        levels.append(table(coordinates))
+        levels.append(table(coordinates, fewest))
     return KernelMaps(stem=stem, levels=tuple(levels), steps=tuple(steps))
 
 

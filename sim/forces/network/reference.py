@@ -1,7 +1,7 @@
 """Dense twins of the sparse operations: the whole box of voxels, zeros where there is nothing.
 
 They share no code with the sparse ones but the coordinates, and PyTorch differentiates them. For
-tests: a membrane of 25,000 points would fill a thousandth of its box.
+tests: a skin of 25,000 points fills a fiftieth of its box.
 """
 
 from __future__ import annotations
