@@ -100,7 +100,8 @@ def _recorded(function: Computation, example: Tensor) -> Computation:
             function(given)
     torch.cuda.current_stream().wait_stream(stream)
     graph = torch.cuda.CUDAGraph()
-    with torch.cuda.graph(graph):
+    # Other threads of the process may use the device meanwhile, as the contact solver does.
+    with torch.cuda.graph(graph, capture_error_mode="thread_local"):
         result = function(given)
 
     def replay(argument: Tensor) -> Tensor:
