@@ -116,7 +116,7 @@ def kernel_maps(
     *,
     stem_edge: int = 5,
     kernel: Kernel = Kernel.PAIRS,
-    block_voxels: int = BLOCK_VOXELS,
+    block_voxels: int | None = None,
     pairs_from: Sequence[int] = (0,) * (DEPTH + 1),
 ) -> KernelMaps:
     """The maps of these voxels, on the device where they are.
@@ -126,10 +126,13 @@ def kernel_maps(
         stem_edge: Edge of the stem's kernel, as `NetworkSpec` says.
         kernel: How convolutions inside the network are computed. The stem has few channels and many
             offsets: it always gathers.
-        block_voxels: Voxels of a block of pairs; a GPU wants all in one.
+        block_voxels: Voxels of a block of pairs; None: `BLOCK_VOXELS` on a CPU, all of them on a
+            GPU, where few launches matter more than a cache.
         pairs_from: Fewest voxels of each level, finest first, with which it uses pairs; with fewer
             it gathers, whatever `kernel` says.
     """
+    if block_voxels is None:
+        block_voxels = BLOCK_VOXELS if voxels.coordinates.device.type == "cpu" else voxels.count
 
     def table(coordinates: Tensor, fewest: int) -> Table:
         found = neighbours(coordinates, BLOCK_EDGE)
