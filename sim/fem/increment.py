@@ -13,12 +13,15 @@ import numpy as np
 from sim.contact.objects.collider import Collider
 from sim.fem.balance import Balance, Load, balance, tangent_matrix
 from sim.fem.body import Body
-from sim.fem.contact_law import Law
-from sim.fem.lagged import lagged
+from sim.fem.contact_law import Lag, Law
+from sim.fem.lagged import lagged, minimise
 from sim.fem.newton import Effort, Solution, Solvers, newton
 from sim.fem.obstacle import RigidPose
 from workbench.core.errors import SolveError
 
+START_TOLERANCE = 0.1
+"""Relative residual, with the friction of the last increment, at which exact steps begin."""
+MOST_STARTING = 12
 MOST_NEWTON = 10
 MOST_HALVINGS = 4
 LONGEST_GUESS = 2.0
@@ -118,6 +121,16 @@ def increment(
     """The state after `progress` frames; None if neither method converges."""
     old, load = _load(pairing, state, state.progress), _load(pairing, state, progress)
     start_mm = _predicted(pairing, state, progress, old, load, solvers)
+    start_mm = minimise(
+        pairing.body,
+        load,
+        start_mm,
+        _lag(state),
+        solvers,
+        effort,
+        tolerance=START_TOLERANCE,
+        most=MOST_STARTING,
+    )
     found = newton(
         pairing.body,
         load,
@@ -145,6 +158,14 @@ def _load(pairing: Pairing, state: State, progress: float) -> Load:
         anchor_mm=pose.carried(state.places_mm, before),
         elastic_mm=state.elastic_mm @ pose.turn(before).T,
     )
+
+
+def _lag(state: State) -> Lag:
+    """Pressure and normal of friction as the last increment left them."""
+    if state.balance is not None:
+        return state.balance.lag()
+    count = len(state.slid_mm)
+    return Lag(pressure_MPa=np.zeros(count), normal=np.zeros((count, 3)))
 
 
 def _predicted(

@@ -1,12 +1,15 @@
-"""The way round when Newton's method fails: minimise with friction held, then let friction follow.
+"""Minimising with friction held: the start of an increment, and the way round if Newton fails.
 
 With pressure and normal of the friction held, the equations are those of a minimum, which a
-projected Newton method with Armijo's rule always approaches (Kane, Marsden, Ortiz and West, 2000,
-for friction as an incremental potential). Held values are then renewed, and as soon as the exact
-residual is small the exact method takes over.
+projected Newton method with an exact line search always approaches (Kane, Marsden, Ortiz and West,
+2000, for friction as an incremental potential). A few such steps begin every increment: a pressure
+that is still far off would else drag points along by its friction. Where the exact method fails all
+the same, held values are renewed again and again, until its residual is small enough to retry.
 """
 
 from __future__ import annotations
+
+from collections.abc import Callable
 
 import numpy as np
 
@@ -22,10 +25,12 @@ NEAR = 3e-2
 """Exact relative residual from which the exact method is tried again."""
 LOOSEST, SHARE = 1e-3, 0.05
 """Held equations are solved to this, or this share of the exact residual if that is smaller."""
-ARMIJO = 1e-4
-HALVINGS = 12
-ROUNDING = 1e-11
-"""Relative change of the energy below which it says nothing and the residual decides."""
+HALVINGS = 6
+FLAT = 0.1
+"""Share of the slope at the start that counts as none."""
+MOST_LOOKS = 8
+AWAY = 0.1
+"""Share of a bracket that a guess keeps from its ends."""
 
 
 def lagged(
@@ -77,9 +82,10 @@ def minimise(
     effort: Effort,
     *,
     tolerance: float,
+    most: int = MOST_STEPS,
 ) -> np.ndarray:
     """Displacement (N, 3) of least potential with friction held, as near as it comes."""
-    for _ in range(MOST_STEPS):
+    for _ in range(most):
         state = balance(body, load, displacement_mm, lag=lag)
         if state is None or state.relative < tolerance:
             break
@@ -133,19 +139,53 @@ def _search(
     state: Balance,
     lag: Lag,
 ) -> np.ndarray | None:
-    """Where the potential has fallen enough, shape (N, 3); None if nowhere."""
-    slope_Nmm = float(state.residual_N @ body.system.reduced(step_mm))
-    size_N = float(np.linalg.norm(state.residual_N))
-    share = first_share(step_mm)
+    """Where along a step the potential is nearly least, shape (N, 3); None if nowhere lower.
+
+    The slope along the step is minus the residual times it. Stiff contact makes the potential one
+    of kinks, which a search that only asks for some decrease follows in twice as many steps.
+    """
+    way = body.system.reduced(step_mm)
+    start = float(state.residual_N @ way)
+    if start <= 0.0:
+        return None
+
+    def slope(share: float) -> float | None:
+        tried = balance(body, load, displacement_mm + share * step_mm, tangent=False, lag=lag)
+        return None if tried is None else float(tried.residual_N @ way)
+
+    high = first_share(step_mm)
+    at_high = slope(high)
     for _ in range(HALVINGS):
-        moved_mm = displacement_mm + share * step_mm
-        tried = balance(body, load, moved_mm, tangent=False, lag=lag)
-        if tried is not None:
-            fallen_Nmm = state.energy_Nmm - tried.energy_Nmm
-            if fallen_Nmm >= ARMIJO * share * slope_Nmm:
-                return moved_mm
-            blind = abs(fallen_Nmm) < ROUNDING * max(abs(state.energy_Nmm), 1e-6)
-            if blind and np.linalg.norm(tried.residual_N) < size_N:
-                return moved_mm
-        share *= 0.5
-    return None
+        if at_high is not None:
+            break
+        high *= 0.5
+        at_high = slope(high)
+    if at_high is None:
+        return None
+    share = _root(slope, start, high, at_high)
+    return displacement_mm + share * step_mm
+
+
+def _root(
+    slope: Callable[[float], float | None], start: float, high: float, at_high: float
+) -> float:
+    """Share at which a falling slope, `start` at 0 and `at_high` at `high`, is nearly zero.
+
+    Regula falsi that keeps away from both ends of its bracket.
+    """
+    low, at_low, share, value = 0.0, start, high, at_high
+    for _ in range(MOST_LOOKS):
+        if value >= -FLAT * start and (share == high or value <= FLAT * start):
+            break
+        share = low + (high - low) * at_low / (at_low - at_high)
+        margin = AWAY * (high - low)
+        share = min(max(share, low + margin), high - margin)
+        found = slope(share)
+        if found is None:
+            break
+        value = found
+        if value > 0.0:
+            low, at_low = share, value
+        else:
+            high, at_high = share, value
+    return share
