@@ -75,19 +75,10 @@ def solve_press(
         MeshingError: If the membrane has no hexahedra.
         SolveError: If an increment does not converge; carries the frames before it.
     """
-    if indenter.soft is not None:
-        raise DesignError(
-            "finite elements take rigid objects only, and this one is soft",
-            hint="make the object rigid, or use the forces of the contact solver (source mpm)",
-            at="indenter.soft",
-        )
     monitor(0.0, "placing the object")
-    collider, approach = place_object(
-        mesh.outer, indenter, press, grid_mm=sampling_grid_mm(settings), sampled=sampled
+    collider, approach, submodel = set_up(
+        mesh, material, indenter, press, settings, sampled=sampled
     )
-    check_depth(support_points_mm(mesh), approach, collider)
-    radius_mm = _radius_mm(mesh, material, approach, settings)
-    submodel = cut_out(mesh, material, press, approach.target_mm, radius_mm)
     course = _Course(mesh, material, collider, approach, settings, submodel)
     try:
         course.run(monitor, on_frame)
@@ -99,6 +90,35 @@ def solve_press(
     finally:
         course.solvers.close()
     return course.result()
+
+
+def set_up(
+    mesh: MembraneMesh,
+    material: Elastomer,
+    indenter: Indenter,
+    press: Press,
+    settings: FemSettings,
+    *,
+    sampled: SampledDistance | None = None,
+) -> tuple[Collider, Approach, Submodel]:
+    """The object, its path and the part of the membrane of a press, before anything is solved.
+
+    Raises:
+        DesignError: As `solve_press`.
+        MeshingError: As `solve_press`.
+    """
+    if indenter.soft is not None:
+        raise DesignError(
+            "finite elements take rigid objects only, and this one is soft",
+            hint="make the object rigid, or use the forces of the contact solver (source mpm)",
+            at="indenter.soft",
+        )
+    collider, approach = place_object(
+        mesh.outer, indenter, press, grid_mm=sampling_grid_mm(settings), sampled=sampled
+    )
+    check_depth(support_points_mm(mesh), approach, collider)
+    radius_mm = _radius_mm(mesh, material, approach, settings)
+    return collider, approach, cut_out(mesh, material, press, approach.target_mm, radius_mm)
 
 
 def _radius_mm(
