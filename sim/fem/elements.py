@@ -156,7 +156,8 @@ def _neo_hookean_chunk(
     weight = elements.weights_mm3[part]
     mu, bulk = elements.shear_MPa[part, None], elements.bulk_MPa[part]
     deformation = displacement_gradient(elements, displacement_mm, part)
-    deformation[..., range(3), range(3)] += 1.0
+    for axis in range(3):
+        deformation[..., axis, axis] += 1.0
     cofactor = _cofactors(deformation)
     ratio = np.einsum("mqj,mqj->mq", deformation[:, :, 0], cofactor[:, :, 0])
     if ratio.min(initial=1.0) <= LEAST_RATIO:
@@ -169,42 +170,53 @@ def _neo_hookean_chunk(
     scale = mu * power * weight
     inverse = cofactor / ratio[..., None, None]
     stress = scale[..., None, None] * (deformation - (square / 3.0)[..., None, None] * inverse)
-    swelling = weight[..., None, None] * cofactor
-    growth = _to_nodes(elements, part, swelling)
+    growth = _to_nodes(elements, part, weight[..., None, None] * cofactor)
     force[:] = _to_nodes(elements, part, stress) + pressure[:, None] * growth
     if tangent is not None:
         closing = pressure[:, None] * weight * ratio
-        moduli = _isochoric_moduli(deformation, inverse, scale, square, closing)
-        tangent[:] = _stiffness(elements, part, moduli)
+        tangent[:] = _stiffness(elements, part, deformation, inverse, scale, square, closing)
         tangent += (bulk / volume)[:, None, None] * growth[:, :, None] * growth[:, None, :]
     isochoric = 0.5 * mu * (square * power - 3.0) * weight
     return float(isochoric.sum() + (0.5 * bulk * volume * dilation**2).sum())
 
 
-def _isochoric_moduli(
+def _stiffness(
+    elements: Elements,
+    part: slice,
     deformation: np.ndarray,
     inverse: np.ndarray,
     scale: np.ndarray,
     square: np.ndarray,
     closing: np.ndarray,
 ) -> np.ndarray:
-    """dP_iJ / dF_kL times the weight, at constant pressure, shape (M, 8, 3, 3, 3, 3).
+    """Stiffness at constant pressure, shape (M, 24, 24), rows (a, i) and columns (b, k).
 
-    With h = F^-T, c = mu J^(-2/3): c [d_ik d_JL - (2/3)(F_iJ h_kL + h_iJ F_kL) + (2/9) I1 h_iJ h_kL
-    + (I1 / 3) h_iL h_kJ], and p J (h_iJ h_kL - h_iL h_kJ) of the deformed volume.
+    With h = F^-T, c = mu J^(-2/3) w and s = p J w, dP_iJ / dF_kL is c [d_ik d_JL - (2/3)(F_iJ h_kL
+    + h_iJ F_kL) + (2/9) I1 h_iJ h_kL + (I1 / 3) h_iL h_kJ] + s (h_iJ h_kL - h_iL h_kJ). Between the
+    slopes of the nodes every product becomes one of vectors over (a, i): m = F dN_a, g = h dN_a.
     """
-    one = scale[..., None, None]
-    middle = (2.0 / 9.0) * square * scale + closing
-    left = -(2.0 / 3.0) * one * deformation + 0.5 * middle[..., None, None] * inverse
-    pairs = left[..., :, :, None, None] * inverse[..., None, None, :, :]
-    moduli = pairs + np.moveaxis(pairs, (-4, -3), (-2, -1))
-    crossed = (scale * square / 3.0 - closing)[..., None, None] * inverse
-    # h_iL h_kJ in the order i, J, k, L.
-    moduli += crossed[..., :, None, None, :] * np.swapaxes(inverse, -1, -2)[..., None, :, :, None]
-    for i in range(3):
-        for j in range(3):
-            moduli[..., i, j, i, j] += scale
-    return moduli
+    slopes = elements.slopes[part]
+    count = len(slopes)
+    by_point = slopes.transpose(0, 2, 1, 3)
+
+    def vectors(matrix: np.ndarray) -> np.ndarray:
+        found = by_point @ np.swapaxes(matrix, -1, -2)
+        return found.reshape(count, 8, 24)
+
+    m, g = vectors(deformation), vectors(inverse)
+    middle = (1.0 / 9.0) * square * scale + 0.5 * closing
+    left = middle[..., None] * g - (2.0 / 3.0) * scale[..., None] * m
+    half = np.swapaxes(left, 1, 2) @ g
+    found = half + np.swapaxes(half, 1, 2)
+    crossed = np.swapaxes((scale * square / 3.0 - closing)[..., None] * g, 1, 2) @ g
+    # Its rows are (a, k) and its columns (b, i).
+    crossed = crossed.reshape(count, 8, 3, 8, 3).transpose(0, 1, 4, 3, 2)
+    found += crossed.reshape(count, 24, 24)
+    spread = (slopes * scale[:, None, :, None]).reshape(count, 8, 24)
+    nodes = spread @ np.swapaxes(slopes.reshape(count, 8, 24), 1, 2)
+    for axis in range(3):
+        found[:, axis::3, axis::3] += nodes
+    return found
 
 
 def _linear_chunk(
@@ -227,11 +239,10 @@ def _linear_chunk(
     stress = (2.0 * mu * weight)[..., None, None] * deviator
     force[:] = _to_nodes(elements, part, stress) + (bulk * dilation)[:, None] * growth
     if tangent is not None:
-        eye = np.eye(3)
-        shape = np.einsum("ik,jl->ijkl", eye, eye) + np.einsum("il,jk->ijkl", eye, eye)
-        shape -= (2.0 / 3.0) * np.einsum("ij,kl->ijkl", eye, eye)
-        moduli = (mu * weight)[..., None, None, None, None] * shape
-        tangent[:] = _stiffness(elements, part, moduli)
+        # At rest the neo-Hookean stiffness is Hooke's.
+        rest = np.broadcast_to(np.eye(3), gradient.shape)
+        three, none = np.full(weight.shape, 3.0), np.zeros(weight.shape)
+        tangent[:] = _stiffness(elements, part, rest, rest, mu * weight, three, none)
         tangent += (bulk / volume)[:, None, None] * growth[:, :, None] * growth[:, None, :]
     sheared = (mu * weight) * np.einsum("mqij,mqij->mq", deviator, deviator)
     return float(sheared.sum() + (0.5 * bulk * volume * dilation**2).sum())
@@ -239,8 +250,14 @@ def _linear_chunk(
 
 def _cofactors(matrix: np.ndarray) -> np.ndarray:
     """J F^-T of matrices (..., 3, 3): the derivative of the determinant."""
-    rows = [np.cross(matrix[..., k - 2, :], matrix[..., k - 1, :]) for k in range(3)]
-    return np.stack(rows, axis=-2)
+    found = np.empty_like(matrix)
+    for i in range(3):
+        for j in range(3):
+            r, t, c, d = i - 2, i - 1, j - 2, j - 1
+            found[..., i, j] = (
+                matrix[..., r, c] * matrix[..., t, d] - matrix[..., r, d] * matrix[..., t, c]
+            )
+    return found
 
 
 def _to_nodes(elements: Elements, part: slice, stress: np.ndarray) -> np.ndarray:
@@ -248,15 +265,3 @@ def _to_nodes(elements: Elements, part: slice, stress: np.ndarray) -> np.ndarray
     slopes = elements.slopes[part]
     by_slope = np.swapaxes(stress, -1, -2).reshape(len(slopes), 24, 3)
     return (slopes.reshape(len(slopes), 8, 24) @ by_slope).reshape(-1, 24)
-
-
-def _stiffness(elements: Elements, part: slice, moduli: np.ndarray) -> np.ndarray:
-    """sum_q dN_a/dX_J A_iJkL dN_b/dX_L, shape (M, 24, 24), rows (a, i) and columns (b, k)."""
-    slopes = elements.slopes[part]
-    count = len(slopes)
-    by_node = np.ascontiguousarray(slopes.transpose(0, 2, 3, 1))
-    half = moduli.reshape(count, 8, 27, 3) @ by_node
-    # From (q, i, J, k, b) to (q, J) times (i, k, b).
-    half = half.reshape(count, 8, 3, 3, 3, 8).transpose(0, 1, 3, 2, 4, 5).reshape(count, 24, 72)
-    full = slopes.reshape(count, 8, 24) @ half
-    return full.reshape(count, 8, 3, 3, 8).transpose(0, 1, 2, 4, 3).reshape(count, 24, 24)
