@@ -25,20 +25,29 @@ def resolved(requirements: list[str]) -> dict[str, str]:
     return {p["name"].lower().replace("_", "-"): p["version"].split("+")[0] for p in packages}
 
 
-def lines(packages: dict[str, str]) -> str:
-    """Pins, one per line."""
-    return "".join(f"{name}=={version}\n" for name, version in sorted(packages.items()))
+def lines(packages: dict[str, str], markers: dict[str, str] | None = None) -> str:
+    """Pins, one per line, with the platforms that some are for."""
+    known = markers or {}
+    return "".join(
+        f"{name}=={version}{known.get(name, '')}\n" for name, version in sorted(packages.items())
+    )
 
 
 def main() -> None:
     """Write both files."""
     table = tomllib.loads((ROOT / "pyproject.toml").read_text())
-    wanted = table["project"]["dependencies"]
+    wanted, dev = table["project"]["dependencies"], table["dependency-groups"]["dev"]
     runtime = resolved(wanted)
-    everything = resolved([*wanted, *table["dependency-groups"]["dev"]])
+    everything = resolved([*wanted, *dev])
     (ROOT / "requirements.lock").write_text(HEAD + lines(runtime))
     extra = {n: v for n, v in everything.items() if n not in runtime}
-    pins = HEAD + "--requirement requirements.lock\n" + lines(extra)
+    markers: dict[str, str] = {}
+    for requirement in (r for r in dev if ";" in r):
+        # What only this requirement pulls in is for its platforms only.
+        others = resolved([*wanted, *(r for r in dev if r != requirement)])
+        marker = f"; {requirement.partition(';')[2].strip()}"
+        markers |= {name: marker for name in everything if name not in others}
+    pins = HEAD + "--requirement requirements.lock\n" + lines(extra, markers)
     (ROOT / "requirements-dev.lock").write_text(pins)
 
 
