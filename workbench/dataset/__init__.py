@@ -1,0 +1,1 @@
+"""Data sets of presses: planned, computed by many processes, and read again for learning."""

@@ -1,0 +1,100 @@
+"""One process at a time makes a data set: a lock file that names it.
+
+A lock whose process has ended is taken over. Left out: processes of other machines, whose end
+cannot be seen from here; their lock stands until somebody deletes it.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import secrets
+import socket
+from collections.abc import Iterator
+from pathlib import Path
+
+from workbench.core.errors import StoreError
+
+LOCK = "lock"
+
+
+@contextlib.contextmanager
+def held(folder: Path) -> Iterator[None]:
+    """Hold the lock of a folder.
+
+    Raises:
+        StoreError: If another process holds it, or the folder cannot be written.
+    """
+    path = folder / LOCK
+    own = json.dumps({"pid": os.getpid(), "host": socket.gethostname()}).encode()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        while not _taken(path, own):
+            _clear_dead(path)
+    except OSError as error:
+        raise StoreError(
+            f"cannot write to {folder}: {error.strerror or error}",
+            hint="choose a folder that can be written",
+            at=str(folder),
+        ) from error
+    try:
+        yield
+    finally:
+        with contextlib.suppress(OSError):
+            path.unlink()
+
+
+def _taken(path: Path, own: bytes) -> bool:
+    """Create the lock whole: a file with its content is linked to the name, unless it exists."""
+    part = path.with_name(f".part-{os.getpid()}-{secrets.token_hex(6)}")
+    part.write_bytes(own)
+    try:
+        os.link(part, path)
+    except FileExistsError:
+        return False
+    finally:
+        part.unlink()
+    return True
+
+
+def _clear_dead(path: Path) -> None:
+    """Remove the lock of a process that has ended; another's is put back where it was."""
+    aside = path.with_name(f".part-{os.getpid()}-{secrets.token_hex(6)}")
+    with contextlib.suppress(FileNotFoundError):
+        _refuse_living(path)
+        path.rename(aside)
+        # Between reading and renaming, somebody else may have taken over the dead lock.
+        try:
+            _refuse_living(aside)
+        except StoreError:
+            aside.rename(path)
+            raise
+        aside.unlink()
+
+
+def _refuse_living(path: Path) -> None:
+    try:
+        holder = json.loads(path.read_bytes())
+        pid, host = int(holder["pid"]), str(holder["host"])
+    except (ValueError, KeyError, TypeError):
+        return
+    here = host == socket.gethostname()
+    if here and not _alive(pid):
+        return
+    where = "" if here else f" on {host}"
+    raise StoreError(
+        f"process {pid}{where} is making the data set {path.parent}",
+        hint=f"wait for it or stop it; if there is no such process, delete {path.parent / LOCK}",
+        at=str(path.parent),
+    )
+
+
+def _alive(pid: int) -> bool:
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    except PermissionError:
+        return True
+    return True
