@@ -38,8 +38,18 @@ CODE = " ".join(re.findall(r"`([^`]+)`", PROSE))
 
 
 def commands() -> dict[str, argparse.ArgumentParser]:
-    (action,) = [a for a in parser()._actions if isinstance(a, argparse._SubParsersAction)]
-    return dict(action.choices)
+    return {name: found for name, found in below(parser()).items() if not below(found)}
+
+
+def below(top: argparse.ArgumentParser) -> dict[str, argparse.ArgumentParser]:
+    """Every command of a parser, those of a group by both words, and the groups themselves."""
+    found: dict[str, argparse.ArgumentParser] = {}
+    for action in top._actions:
+        if isinstance(action, argparse._SubParsersAction):
+            for name, sub in action.choices.items():
+                inner = {f"{name} {word}": command for word, command in below(sub).items()}
+                found |= {name: sub, **inner}
+    return found
 
 
 def command_row(name: str) -> str:
@@ -56,7 +66,8 @@ def section(title: str) -> str:
 @pytest.mark.parametrize("name", commands())
 def test_every_option_of_every_command_is_documented(name: str) -> None:
     """Each long option stands in the command's row, those of the press in the table of `run`."""
-    text = command_row(name) + (section("`workbench run`") if name in ("run", "sweep") else "")
+    pressing = ("run", "sweep", "fem solve", "fem export")
+    text = command_row(name) + (section("`workbench run`") if name in pressing else "")
     documented = set(re.findall(r"(?<![\w-])--[a-z-]+", text)) | {"--help", "--project"}
     options = {o for a in commands()[name]._actions for o in a.option_strings if o[:2] == "--"}
     assert options <= documented, options - documented

@@ -20,6 +20,7 @@ from workbench.core.fabrication import (
     PartGroup,
     Recipe,
 )
+from workbench.core.force_field import ForceField
 from workbench.core.press import Press
 from workbench.core.results import Bundle, MembraneMesh, Solid
 from workbench.core.sensing import Contact, Shot
@@ -194,7 +195,7 @@ def press_summary(case: PressCase, contact: Contact) -> dict[str, Any]:
     }
 
 
-def frame_depths_mm(path: Press, contact: Contact) -> list[float]:
+def frame_depths_mm(path: Press, contact: Contact | ForceField) -> list[float]:
     """Depth of each frame from first touch along the inward normal [mm], negative when lifted off.
 
     The object of a trajectory touches anywhere: its depth is how far the skin was pushed inward.
