@@ -32,6 +32,8 @@ NAMES = {
     "table": "Light table",
     "photons": "Photons",
     "object": "Object",
+    "fem": "Finite elements",
+    "forces": "Forces",
     "housing": "Housing",
     "recipe": "Recipe",
     "package": "Files",

@@ -41,6 +41,7 @@ GROUPS = {
     "press": "Press",
     "object": "Object",
     "solver": "Contact solver",
+    "fem": "Finite elements",
 }
 """Tables of a design and its press in the order of the comparison."""
 
@@ -110,6 +111,7 @@ def parameters(state: State) -> dict[str, str]:
         "press": _press_table(case.press),
         "object": _object_table(case.indenter),
         "solver": to_table(case.settings),
+        "fem": to_table(case.fem),
     }
     return dict(_flat({**table, **pressed}))
 

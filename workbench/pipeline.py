@@ -13,10 +13,12 @@ from typing import Any, Protocol, TypeVar
 
 from workbench.bodies import IMPORTED, check_body
 from workbench.core.design import Elastomer, SensorDesign
+from workbench.core.fem import FemSettings
 from workbench.core.indenter import EDGELESS, Indenter
 from workbench.core.lighting import LedRing
 from workbench.core.monitor import Monitor, silent
 from workbench.core.press import ContactSettings, Press
+from workbench.force_calls import fem_calls
 from workbench.light_calls import bake_call, maps_calls, seen_optics, table_calls
 from workbench.stages import STAGES, Call, Outcome, run
 from workbench.store import Store
@@ -48,6 +50,7 @@ class PressCase:
     indenter: Indenter = field(default_factory=Indenter)
     press: Press = field(default_factory=Press)
     settings: ContactSettings = field(default_factory=ContactSettings)
+    fem: FemSettings = field(default_factory=FemSettings)
 
 
 class Runner(Protocol):
@@ -112,6 +115,7 @@ def plan(design: SensorDesign, case: PressCase) -> dict[str, Call]:
     )
     pressed = (mesh.ref, lattice.ref, elastic, case.indenter, case.press, case.settings)
     press = Call("press", (*pressed, *(call.ref for call in objects)))
+    fem = fem_calls(build.ref, mesh.ref, elastic, case.indenter, case.press, case.fem)
     bake, seen = bake_call(optics, mesh.ref), seen_optics(optics)
     tables = table_calls(seen, mesh.ref, bake.ref)
     shown = detailed(optics, case.indenter, case.settings)
@@ -138,6 +142,7 @@ def plan(design: SensorDesign, case: PressCase) -> dict[str, Call]:
         *tables,
         *objects,
         press,
+        *fem,
         shoot,
         *maps,
         mould,

@@ -14,6 +14,8 @@ from workbench.core.camera import Camera
 from workbench.core.design import Elastomer, Layers, Meshing, MouldOptions
 from workbench.core.errors import SolveError, StoreError
 from workbench.core.fabrication import HousingSet, MouldSet, Recipe, SheetHead
+from workbench.core.fem import FemSettings
+from workbench.core.force_field import ForceField
 from workbench.core.imported import ImportedBody, Pick, ReadBody
 from workbench.core.indenter import Indenter
 from workbench.core.lighting import LedRing
@@ -31,6 +33,7 @@ from workbench.core.results import (
 )
 from workbench.core.sampled import SampledDistance
 from workbench.core.sensing import Contact
+from workbench.force_calls import fem_parts, shown_parts
 from workbench.light_calls import shoot_parts
 from workbench.optical_stages import bake, maps, photons, shoot, start_device, table
 from workbench.store import Store, timed
@@ -171,6 +174,39 @@ def press(
     )
 
 
+def fem(
+    solid: Solid,
+    material: Elastomer,
+    indenter: Indenter,
+    path: Press,
+    settings: FemSettings,
+    mesh: MembraneMesh,
+    sampled: SampledDistance | None = None,
+    *,
+    monitor: Monitor,
+) -> ForceField:
+    """The same press by finite elements, on a mesh of their own: minutes, and the truth."""
+    start_device(monitor)
+    from sim.fem.press import solve_press
+
+    return solve_press(mesh, material, indenter, path, settings, sampled=sampled, monitor=monitor)
+
+
+def forces(
+    mesh: MembraneMesh,
+    solid: Solid,
+    hex_mm: float,
+    found: ForceField,
+    source: MembraneMesh,
+    *,
+    monitor: Monitor,
+) -> ForceField:
+    """The result of finite elements, found on the mesh `source`, on the skin of the design."""
+    from sim.forces.transfer import transferred
+
+    return transferred(found, source, mesh)
+
+
 def mould(solid: Solid, options: MouldOptions, *, monitor: Monitor) -> MouldSet:
     """Printable mould of the body."""
     from geometry.moulds import make_mould
@@ -274,6 +310,8 @@ STAGES = {
         Stage(name="table", version=2, lane="sim", function=table),
         Stage(name="object", version=1, lane="sim", function=object_distance),
         Stage(name="press", version=7, lane="sim", function=press),
+        Stage(name="fem", version=1, lane="sim", function=fem, parts=fem_parts),
+        Stage(name="forces", version=1, lane="sim", function=forces, parts=shown_parts),
         Stage(name="photons", version=1, lane="sim", function=photons),
         Stage(name="shoot", version=4, lane="sim", function=shoot, parts=shoot_parts),
         Stage(name="maps", version=2, lane="sim", function=maps),

@@ -14,6 +14,7 @@ from typing import Any
 from workbench.aim import default_target_mm
 from workbench.core.design import SensorDesign
 from workbench.core.errors import DesignError
+from workbench.core.fem import FemSettings
 from workbench.core.indenter import Indenter
 from workbench.core.mapping import from_table, to_table
 from workbench.core.press import ContactSettings, Press
@@ -22,7 +23,7 @@ from workbench.kept_indenters import indenter_table, read_indenter
 from workbench.pipeline import PressCase
 from workbench.project import Project
 
-PARTS = {"indenter": Indenter, "press": Press, "settings": ContactSettings}
+PARTS = {"indenter": Indenter, "press": Press, "settings": ContactSettings, "fem": FemSettings}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -9,6 +9,7 @@ import pytest
 
 from geometry.primitives import rounded_box
 from workbench.core.errors import DesignError
+from workbench.core.fem import DRAFT_MM, FemSettings
 from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
 from workbench.core.lighting import LightModel
 from workbench.core.motion import Mover
@@ -22,7 +23,8 @@ from workbench.pipeline import PressCase, needed, plan
 FILES = {"recipe", "package"}
 SEEN = {"bake", "table", "shoot", "maps"}
 LOOKED = {"table", "shoot", "maps"}
-DEFORMED = {"press", "shoot"}
+SOLVED = {"fem", "forces"}
+DEFORMED = {"press", "shoot", *SOLVED}
 RINGED = {"housing", "picture", *FILES}
 
 
@@ -44,9 +46,9 @@ def rerun(field: str, value: object) -> set[str]:
         ("optics.ring.emission_exponent", 2.0, SEEN),
         ("optics.ring.radius_mm", 8.5, {*SEEN, *RINGED}),
         ("optics.coating.albedo", 0.5, SEEN),
-        ("material.friction", 0.5, {"press", "shoot"}),
+        ("material.friction", 0.5, DEFORMED),
         ("material.density_g_cm3", 1.1, FILES),
-        ("material.young_MPa", 0.2, {"press", "shoot", "maps", *FILES}),
+        ("material.young_MPa", 0.2, {"maps", *DEFORMED, *FILES}),
         ("casting.silicone", "Solaris", FILES),
         ("casting.waste_percent", 30.0, FILES),
         ("mould.draft_deg", 1.0, {"mould", "picture", *FILES}),
@@ -57,6 +59,17 @@ def rerun(field: str, value: object) -> set[str]:
 def test_a_change_reruns_what_reads_it(field: str, value: object, stages: set[str]) -> None:
     """The stages named beside the field, by their keys."""
     assert rerun(field, value) == stages
+
+
+def test_finite_elements_have_a_mesh_of_their_own() -> None:
+    """The design's mesh says only where forces are shown; a finer FEM mesh leaves the press."""
+    design = load_design("finger")
+    before = plan(design, PressCase())
+    coarser = plan(design.replace("meshing.hex_mm", 0.8), PressCase())
+    assert coarser["fem"].key == before["fem"].key
+    assert coarser["forces"].key != before["forces"].key
+    draft = plan(design, PressCase(fem=FemSettings(hex_mm=DRAFT_MM)))
+    assert {name for name, call in before.items() if draft[name].key != call.key} == SOLVED
 
 
 def box(**fields: Any) -> Indenter:

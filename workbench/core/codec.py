@@ -34,6 +34,8 @@ _MODULES = (
     "workbench.core.motion",
     "workbench.core.trajectory",
     "workbench.core.sampled",
+    "workbench.core.fem",
+    "workbench.core.force_field",
 )
 
 Arrays = dict[str, np.ndarray]
