@@ -176,7 +176,7 @@ def spread_positions(
 
 def inside_margin(skin: Skin, margin_mm: float) -> np.ndarray:
     """Vertices at least so far from the rim of the skin [mm], shape (V,), bool."""
-    from scipy.spatial import cKDTree
+    from scipy.spatial import KDTree
 
     edges = np.sort(np.stack([skin.faces, np.roll(skin.faces, -1, axis=1)], axis=2), axis=2)
     pairs, uses = np.unique(edges.reshape(-1, 2), axis=0, return_counts=True)
@@ -185,5 +185,5 @@ def inside_margin(skin: Skin, margin_mm: float) -> np.ndarray:
     used[skin.faces] = True
     if not len(rim):
         return used
-    away_mm, _ = cKDTree(skin.points_mm[rim]).query(skin.points_mm)
+    away_mm, _ = KDTree(skin.points_mm[rim]).query(skin.points_mm)
     return used & (away_mm >= margin_mm)

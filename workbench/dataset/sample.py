@@ -180,9 +180,16 @@ def from_bytes(content: bytes, vertices: int) -> Sample:
             for name in SOURCES
         }
         return Sample(
-            **{name: head[name] for name in ("case", "frame", "recipe", "indenter", "depth_mm")},
-            shear_mm=tuple(head["shear_mm"]),
-            **{name: np.array(head[name]) for name in ("pose", "target_mm", "normal", "tangent_u")},
+            case=str(head["case"]),
+            frame=int(head["frame"]),
+            recipe=str(head["recipe"]),
+            indenter=str(head["indenter"]),
+            depth_mm=float(head["depth_mm"]),
+            shear_mm=(float(head["shear_mm"][0]), float(head["shear_mm"][1])),
+            pose=np.array(head["pose"]),
+            target_mm=np.array(head["target_mm"]),
+            normal=np.array(head["normal"]),
+            tangent_u=np.array(head["tangent_u"]),
             mpm=solved["mpm"],
             fem=solved["fem"],
             png=arrays.get("png", _none(0)).tobytes(),

@@ -1,0 +1,86 @@
+"""Start a data set in an empty folder, or go on with the one that is there. It only ever grows."""
+
+from __future__ import annotations
+
+import dataclasses
+import io
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from workbench import __version__
+from workbench.core.errors import StoreError
+from workbench.core.mapping import to_table
+from workbench.core.results import Skin
+from workbench.dataset.cases import Case
+from workbench.dataset.folder import (
+    CASES,
+    FORMAT,
+    MANIFEST,
+    SKIN,
+    DataSet,
+    mesh_key,
+    skin_data,
+)
+from workbench.dataset.recipe import table_key
+from workbench.whole_files import write_atomically
+
+
+def begin(
+    folder: Path, recipe_table: Mapping[str, Any], skin: Skin, cases: Sequence[Case]
+) -> DataSet:
+    """Start a data set, or go on with the one that is there.
+
+    Raises:
+        StoreError: If the folder holds something else, or cannot be written.
+    """
+    data, key = skin_data(skin), table_key(recipe_table)
+    if (folder / MANIFEST).exists():
+        found = DataSet.open(folder)
+        if found.key != key:
+            raise StoreError(
+                f"{folder} holds a data set of another recipe",
+                hint="choose another folder, or give the options that it was begun with",
+                at=str(folder),
+            )
+        if found.manifest["mesh"] != mesh_key(data):
+            raise StoreError(
+                f"the mesh of the data set {folder} is not the one that this program makes",
+                hint=f"choose another folder; it was begun by version {found.manifest['program']}",
+                at=str(folder),
+            )
+        if len(found.all_cases) > len(cases):
+            cases = found.all_cases
+    elif folder.exists() and any(path.name[:1] != "." for path in _besides_lock(folder)):
+        raise StoreError(
+            f"{folder} is not empty and holds no data set",
+            hint="choose a new or an empty folder",
+            at=str(folder),
+        )
+    buffer = io.BytesIO()
+    np.savez(buffer, **{f.name: getattr(data, f.name) for f in dataclasses.fields(data)})
+    write_atomically(folder / SKIN, buffer.getvalue())
+    rows = "".join(json.dumps(to_table(case)) + "\n" for case in cases)
+    write_atomically(folder / CASES, rows.encode())
+    manifest = {
+        "format": FORMAT,
+        "program": __version__,
+        "key": key,
+        "recipe": dict(recipe_table),
+        "mesh": mesh_key(data),
+        "vertices": len(data.points_mm),
+    }
+    write_manifest(folder, {**manifest, "counts": {"cases": len(cases)}})
+    return DataSet.open(folder)
+
+
+def _besides_lock(folder: Path) -> list[Path]:
+    return [path for path in folder.iterdir() if path.name != "lock"]
+
+
+def write_manifest(folder: Path, manifest: Mapping[str, Any]) -> None:
+    """Write the manifest, whole or not at all."""
+    write_atomically(folder / MANIFEST, json.dumps(manifest, indent=1, allow_nan=False).encode())
