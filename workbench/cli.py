@@ -19,7 +19,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from workbench import __version__, commands, sweep_command
+from workbench import __version__, commands, dataset_command, sweep_command
 from workbench.core.errors import Cancelled, StoreError, WorkbenchError
 from workbench.fem_arguments import add_fem_commands
 from workbench.press_arguments import add_press_options, add_unit_option
@@ -156,6 +156,9 @@ def parser() -> argparse.ArgumentParser:
     compare.add_argument("--out", type=Path, metavar="DIR", help="also comparison.html and .json")
     compare.add_argument("--json", action="store_true")
     _sweep_options(command(sweep_command.sweep))
+    text = "Make, check and show data sets of presses for learning."
+    sets = subparsers.add_parser("dataset", help=text, description=text)
+    dataset_command.add_dataset_commands(sets, common)
     text = "Solve presses by finite elements, or have another program check them."
     fem = subparsers.add_parser("fem", help=text, description=text)
     add_fem_commands(fem, common)

@@ -25,8 +25,34 @@ from workbench.dataset.folder import (
     mesh_key,
     skin_data,
 )
+from workbench.dataset.lock import LOCK
 from workbench.dataset.recipe import table_key
 from workbench.whole_files import write_atomically
+
+
+def check_place(folder: Path, key: str) -> DataSet | None:
+    """The data set of this recipe that is there, None where the folder is free.
+
+    Raises:
+        StoreError: If the folder holds something else.
+    """
+    if (folder / MANIFEST).exists():
+        found = DataSet.open(folder)
+        if found.key != key:
+            raise StoreError(
+                f"{folder} holds a data set of another recipe",
+                hint="choose another folder, or give the options that it was begun with",
+                at=str(folder),
+            )
+        return found
+    ours = (LOCK, SKIN, CASES)
+    if folder.exists() and any(p.name not in ours and p.name[0] != "." for p in folder.iterdir()):
+        raise StoreError(
+            f"{folder} is not empty and holds no data set",
+            hint="choose a new or an empty folder",
+            at=str(folder),
+        )
+    return None
 
 
 def begin(
@@ -38,14 +64,8 @@ def begin(
         StoreError: If the folder holds something else, or cannot be written.
     """
     data, key = skin_data(skin), table_key(recipe_table)
-    if (folder / MANIFEST).exists():
-        found = DataSet.open(folder)
-        if found.key != key:
-            raise StoreError(
-                f"{folder} holds a data set of another recipe",
-                hint="choose another folder, or give the options that it was begun with",
-                at=str(folder),
-            )
+    found = check_place(folder, key)
+    if found is not None:
         if found.manifest["mesh"] != mesh_key(data):
             raise StoreError(
                 f"the mesh of the data set {folder} is not the one that this program makes",
@@ -54,12 +74,6 @@ def begin(
             )
         if len(found.all_cases) > len(cases):
             cases = found.all_cases
-    elif folder.exists() and any(path.name[:1] != "." for path in _besides_lock(folder)):
-        raise StoreError(
-            f"{folder} is not empty and holds no data set",
-            hint="choose a new or an empty folder",
-            at=str(folder),
-        )
     buffer = io.BytesIO()
     np.savez(buffer, **{f.name: getattr(data, f.name) for f in dataclasses.fields(data)})
     write_atomically(folder / SKIN, buffer.getvalue())
@@ -75,10 +89,6 @@ def begin(
     }
     write_manifest(folder, {**manifest, "counts": {"cases": len(cases)}})
     return DataSet.open(folder)
-
-
-def _besides_lock(folder: Path) -> list[Path]:
-    return [path for path in folder.iterdir() if path.name != "lock"]
 
 
 def write_manifest(folder: Path, manifest: Mapping[str, Any]) -> None:

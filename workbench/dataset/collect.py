@@ -19,7 +19,7 @@ from typing import Any
 from workbench.core.errors import LaneError, MeshingError
 from workbench.core.press import ContactSettings
 from workbench.core.results import MembraneMesh
-from workbench.dataset.begin import begin, write_manifest
+from workbench.dataset.begin import begin, check_place, write_manifest
 from workbench.dataset.card import card_text
 from workbench.dataset.cases import Case, cases_of
 from workbench.dataset.folder import BACKGROUND, BACKGROUND_MARKERS, DataSet
@@ -75,6 +75,8 @@ def make(
         LaneError: If a process ended by itself; what is done stays.
     """
     with held(folder):
+        # What is wrong with the folder is said before anything is built.
+        check_place(folder, recipe.key)
         calls = prepare(recipe, project, monitor)
         mesh = project.store.load("mesh", calls["mesh"].key)
         _check_hexes(recipe, mesh)
