@@ -14,7 +14,7 @@ its size never exceeds the Coulomb cone, its stiffness at rest is 2 mu lam / gam
 is what the point keeps when an increment has converged. The tangent includes the turning of n.
 With `lag` pressure and normal of the friction are held, and then it has a potential too:
 mu lam gamma (y^2 - y^3 / 3 for y < 1, else y - 1/3).
-Source of the numbers: `CONTACT_MPa_mm` and the lengths below were chosen so that force and contact
+Source of the numbers: `PENALTY` and the lengths below were chosen so that force and contact
 radius of a Hertz contact no longer depend on them.
 """
 

@@ -229,7 +229,9 @@ def _point_stress(
         scale = (shear * ratio ** (-5.0 / 3.0))[..., None, None]
         shifted = scale * (left - (trace / 3.0)[..., None, None] * eye)
     cauchy = shifted + (bulk * dilation)[..., None, None] * eye
-    energy = energy_density_MPa(gradient, shear, bulk, linear=elements.linear)
+    # Energy of changes of volume is that of the element's mean, as in its forces.
+    energy = energy_density_MPa(gradient, shear, 0.0, linear=elements.linear)
+    energy = energy + 0.5 * bulk * dilation**2
     return np.stack([cauchy[..., r, c] for r, c in VOIGT], axis=-1), energy, ratio
 
 

@@ -1,0 +1,1 @@
+"""Specimens with known answers, for the finite-element solver."""
