@@ -101,7 +101,7 @@ class Case:
     def shear_at(self, frame: int) -> tuple[float, float]:
         """Way along U and V of a frame [mm]."""
         done = max(0, frame + 1 - self.press_frames) / max(1, self.shear_frames)
-        return done * self.shear_mm[0], done * self.shear_mm[1]
+        return done * self.shear_mm[0] + 0.0, done * self.shear_mm[1] + 0.0
 
 
 def positions_of(recipe: Recipe, skin: Skin | None = None) -> list[Position]:
