@@ -46,6 +46,9 @@ def read_dat(text: str, case: DeckCase) -> OtherResult:
             hint="name the .dat that CalculiX wrote beside the deck, or comma-separated values",
         )
     expect_frames(len({frame for _, frame in blocks}), count)
+    if not text.endswith("\n"):
+        # Half a number may still read as a number.
+        raise StoreError("the file is cut short in its last line", hint="run the program again")
     body = case.submodel.body
     mesh = deck_mesh(body.points_mm, body.elements.cells, case.element)
     rows, size = skin_cells(case.submodel), len(mesh.points_mm)
