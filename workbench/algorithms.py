@@ -128,7 +128,7 @@ def finger_algorithm(
         yield _straight(point, target_mm, depths, deepest_mm)
         for depth, direction in itertools.product(range(1, depths + 1), range(directions)):
             shears = _steps(shear_mm, step_mm, at="shear_mm")
-            u_mm, v_mm = _shear(direction, directions, shear_mm)
+            u_mm, v_mm = shear_way_mm(direction, directions, shear_mm)
             press = Press(
                 target_mm=target_mm,
                 depth_mm=deepest_mm * depth / depths,
@@ -180,7 +180,7 @@ def _steps(way_mm: float, step_mm: float, *, at: str) -> int:
     return count
 
 
-def _shear(direction: int, directions: int, shear_mm: float) -> tuple[float, float]:
+def shear_way_mm(direction: int, directions: int, shear_mm: float) -> tuple[float, float]:
     """Shear along U and V [mm]: the larger of the two is `shear_mm`, so diagonals are longer."""
     angle = 2.0 * math.pi * direction / directions
     u, v = math.cos(angle), math.sin(angle)

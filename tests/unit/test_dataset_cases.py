@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from workbench.algorithms import finger_algorithm
 from workbench.core.errors import DesignError
 from workbench.core.indenter import SEEN, UNSEEN, IndenterKind
 from workbench.core.results import Skin
@@ -72,6 +73,15 @@ def test_the_whole_of_algorithm_1_has_the_papers_states() -> None:
     assert len(cases) == 85 * pair_cases
     new_states = sum(case.frames - case.first_new for case in cases)
     assert new_states * 14 == 11_900 + 476_000
+
+
+def test_cases_are_the_presses_of_algorithm_1() -> None:
+    """The sheared presses of `workbench.algorithms`, each once for an object, in another order."""
+    recipe = dataclasses.replace(load_recipe("paper_finger"), indenters=(IndenterKind.SPHERE,))
+    mine = [dataclasses.astuple(case.press) for case in cases_of(recipe)]
+    theirs = [dataclasses.astuple(v.press) for v in finger_algorithm() if v.direction is not None]
+    assert len(mine) == len(theirs)
+    assert set(map(repr, mine)) == set(map(repr, theirs))
 
 
 def test_algorithm_2_has_4200_samples_of_350_cases() -> None:

@@ -24,6 +24,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from workbench.algorithms import shear_way_mm
 from workbench.core.indenter import UNSEEN, IndenterKind
 from workbench.core.motion import slide
 from workbench.core.press import Press
@@ -200,16 +201,9 @@ def _case(
         depth_mm=depth_mm,
         press_frames=steps,
         shear=way,
-        shear_mm=_shear_mm(recipe, way),
+        shear_mm=(0.0, 0.0)
+        if way < 0
+        else shear_way_mm(way, recipe.shear_directions, recipe.shear_mm),
         shear_frames=recipe.shear_steps if way >= 0 else 0,
         first_new=min(steps, pressed),
     )
-
-
-def _shear_mm(recipe: Recipe, way: int) -> tuple[float, float]:
-    """Way along U and V [mm]: -1, 0 or 1 times the shear each, as the paper moves."""
-    if way < 0:
-        return 0.0, 0.0
-    angle = 2.0 * math.pi * way / recipe.shear_directions
-    u, v = (float(np.sign(round(value, 6))) for value in (math.cos(angle), math.sin(angle)))
-    return u * recipe.shear_mm + 0.0, v * recipe.shear_mm + 0.0

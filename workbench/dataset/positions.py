@@ -4,7 +4,8 @@ The finger (Algorithm 1): four paths from the tip to the base, 90 degrees apart.
 *surface normal* stands at 0 to 90 degrees to the axis, by 10; the base is met 0 to 12 mm below the
 tip, by 1. The paper writes the normal as p / |p|, which holds on a hemisphere about the origin
 only; here the skin's own normal decides. The apex belongs to all paths, and 90 degrees is 0 mm:
-1 + 4 x 9 + 4 x 12 = 85 positions.
+1 + 4 x 9 + 4 x 12 = 85 positions. `workbench.algorithms` has the same as presses, without labels
+and for a hemisphere only.
 The pad (Algorithm 2): a grid from -3 to 3 mm by 1.5, 25 positions.
 Anything else: vertices of the skin that lie as far apart as they can (farthest-point sampling, by
 straight distance), away from the rim.
@@ -22,15 +23,13 @@ from typing import Any
 
 import numpy as np
 
+from workbench.algorithms import BASE_MM, GRID_MM, PATHS, TIP_DEG
 from workbench.core.design import SensorDesign
 from workbench.core.errors import DesignError
 from workbench.core.results import Skin
 from workbench.core.units import radians
 
-POLAR_DEG = tuple(range(0, 91, 10))
-HEIGHT_MM = tuple(range(13))
-AZIMUTH_DEG = (0, 90, 180, 270)
-GRID_MM = (-3.0, -1.5, 0.0, 1.5, 3.0)
+AZIMUTH_DEG = tuple(range(0, 360, 360 // PATHS))
 MARGIN_MM = 3.0
 """Distance of spread points from the rim of the skin: half the default object [mm]."""
 
@@ -68,28 +67,28 @@ def finger_positions(design: SensorDesign) -> list[Position]:
         DesignError: If the design is no finger, or its straight part is shorter than 12 mm.
     """
     shape = _shape(design, Pattern.FINGER)
-    if shape.cylinder_mm <= HEIGHT_MM[-1]:
+    if shape.cylinder_mm <= BASE_MM[-1]:
         raise DesignError(
             f"the straight part is {shape.cylinder_mm:g} mm long; the paper's paths go "
-            f"{HEIGHT_MM[-1]} mm down it",
+            f"{BASE_MM[-1]:g} mm down it",
             hint="use pattern spread, or raise shape.cylinder_mm",
             at="recipe.pattern",
         )
     radius, tip = shape.outer_radius_mm, shape.tip_mm
     found = []
     for azimuth in AZIMUTH_DEG:
-        for polar in POLAR_DEG:
-            if polar == 0 and azimuth:
+        for polar in TIP_DEG:
+            if not polar and azimuth:
                 continue
             across, along = radius * math.sin(radians(polar)), tip * math.cos(radians(polar))
             size = math.hypot(across, along)
             place = (radius * across / size, shape.cylinder_mm + tip * along / size)
             labels = {"polar_deg": polar, "azimuth_deg": azimuth, "height_mm": 0.0}
-            found.append(_around(f"tip{polar:02d}", azimuth, *place, labels))
-        for height in HEIGHT_MM[1:]:
-            labels = {"polar_deg": 90, "azimuth_deg": azimuth, "height_mm": float(height)}
+            found.append(_around(f"tip{polar:02.0f}", azimuth, *place, labels))
+        for height in BASE_MM[1:]:
+            labels = {"polar_deg": 90.0, "azimuth_deg": azimuth, "height_mm": height}
             place = (radius, shape.cylinder_mm - height)
-            found.append(_around(f"base{height:02d}", azimuth, *place, labels))
+            found.append(_around(f"base{height:02.0f}", azimuth, *place, labels))
     return found
 
 
