@@ -7,6 +7,7 @@ reads that program's results and prints its forces beside ours, frame by frame.
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import json
 from pathlib import Path
 from typing import Any
@@ -14,14 +15,15 @@ from typing import Any
 import numpy as np
 
 from workbench.core.errors import DesignError, StoreError
-from workbench.core.fem import DRAFT_MM, FIELD_RADIUS_MM, QUALITY_MM, FemSettings
+from workbench.core.fem import DRAFT_MM
 from workbench.core.force_field import ForceField
-from workbench.fem_case import FemCase, carried, deck_case, read_carried, solved
+from workbench.fem_case import carried, deck_case, read_carried, solved
 from workbench.fem_tables import beside, columns, frame_rows, npz_bytes
 from workbench.forces import csv_bytes
 from workbench.outputs import frame_depths_mm, plain_numbers
 from workbench.press_options import SETTINGS
 from workbench.project import Project
+from workbench.state import State
 from workbench.sweep_command import base_state
 from workbench.terminal import Progress, say
 from workbench.whole_files import write_atomically
@@ -36,10 +38,10 @@ def solve(options: argparse.Namespace, project: Project) -> int:
     from workbench.folder import prepare
 
     printer = Progress(as_json=options.json)
-    case = fem_case(options, project, printer)
+    state = fem_state(options, project, printer)
     prepare(options.out, clear=FILES)
-    found = solved(case, project, printer)
-    depths_mm = frame_depths_mm(case.press.press, found)
+    found = solved(state, project, printer)
+    depths_mm = frame_depths_mm(state.case.press, found)
     write_atomically(options.out / "forces.npz", npz_bytes(found))
     write_atomically(options.out / "forces.csv", csv_bytes(columns(found, depths_mm)))
     if options.json:
@@ -69,9 +71,9 @@ def export(options: argparse.Namespace, project: Project) -> int:
             f"{options.out} is not the name of a deck", hint="for example case.inp", at="--out"
         )
     printer = Progress(as_json=False)
-    case, element = fem_case(options, project, printer), Element(options.element)
-    ready, _ = deck_case(case, element, project, printer)
-    text = write_deck(ready, carried(case, element, project))
+    state, element = fem_state(options, project, printer), Element(options.element)
+    ready, _ = deck_case(state, element, project, printer)
+    text = write_deck(ready, carried(state, element, project))
     write_atomically(options.out, text.encode())
     name = options.out.with_suffix("")
     say(f"{options.out}: {ready.approach.frame_count} steps; solve it with `ccx -i {name}`,")
@@ -84,10 +86,10 @@ def import_results(options: argparse.Namespace, project: Project) -> int:
     from sim.fem.deck_text import carried_text
 
     deck = _text(options.deck)
-    case, element = read_carried(carried_text(deck), project, source=str(options.deck))
+    state, element = read_carried(carried_text(deck), project, source=str(options.deck))
     printer = Progress(as_json=False)
-    theirs = read_theirs(deck, options.result, case, element, project)
-    ours = solved(case, project, printer)
+    theirs = read_theirs(deck, options.result, state, element, project)
+    ours = solved(state, project, printer)
     found = beside(ours, theirs)
     if options.json:
         say(json.dumps(plain_numbers(found)))
@@ -103,8 +105,8 @@ def import_results(options: argparse.Namespace, project: Project) -> int:
     return 0
 
 
-def fem_case(options: argparse.Namespace, project: Project, printer: Progress) -> FemCase:
-    """What the options name.
+def fem_state(options: argparse.Namespace, project: Project, printer: Progress) -> State:
+    """Design, press and settings that the options name.
 
     Raises:
         DesignError: If there is no such design, a value is refused, or an option belongs to the
@@ -119,14 +121,14 @@ def fem_case(options: argparse.Namespace, project: Project, printer: Progress) -
                 at=option,
             )
     state = base_state(options, project, printer)
-    radius_mm = FIELD_RADIUS_MM if options.radius_mm is None else options.radius_mm
-    settings = FemSettings(
-        hex_mm=DRAFT_MM if options.draft else QUALITY_MM, radius_mm=float(radius_mm)
-    )
-    return FemCase(design=state.design, press=state.case, settings=settings)
+    named: dict[str, float] = {"hex_mm": DRAFT_MM} if options.draft else {}
+    if options.radius_mm is not None:
+        named["radius_mm"] = options.radius_mm
+    settings = dataclasses.replace(state.case.fem, **named)
+    return State(design=state.design, case=dataclasses.replace(state.case, fem=settings))
 
 
-def read_theirs(deck: str, path: Path, case: FemCase, element: Any, project: Project) -> ForceField:
+def read_theirs(deck: str, path: Path, state: State, element: Any, project: Project) -> ForceField:
     """Another program's result of a deck.
 
     Raises:
@@ -138,7 +140,7 @@ def read_theirs(deck: str, path: Path, case: FemCase, element: Any, project: Pro
     from sim.fem.deck_results import force_field, read_table
     from sim.fem.deck_text import read_deck
 
-    ready, mesh = deck_case(case, element, project)
+    ready, mesh = deck_case(state, element, project)
     points_mm = ready.submodel.body.points_mm
     known = read_deck(deck).nodes.get("NPART", np.zeros((0, 4)))[: len(points_mm), 1:]
     if known.shape != points_mm.shape or not np.allclose(known, points_mm, rtol=0.0, atol=1e-6):
@@ -148,7 +150,7 @@ def read_theirs(deck: str, path: Path, case: FemCase, element: Any, project: Pro
         )
     text = _text(path)
     result = read_table(text, ready) if path.suffix == ".csv" else read_dat(text, ready)
-    return force_field(result, ready, len(mesh.outer.points_mm), case.settings.hex_mm)
+    return force_field(result, ready, len(mesh.outer.points_mm), state.case.fem.hex_mm)
 
 
 def _text(path: Path) -> str:

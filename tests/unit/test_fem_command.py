@@ -25,34 +25,35 @@ from workbench.core.errors import StoreError
 from workbench.core.fem import DRAFT_MM, FemSettings
 from workbench.core.indenter import Indenter
 from workbench.core.press import Press
-from workbench.fem_case import FemCase, carried, read_carried
+from workbench.fem_case import carried, read_carried
 from workbench.fem_tables import beside
 from workbench.named_designs import load_design
 from workbench.pipeline import PressCase
 from workbench.project import Project
+from workbench.state import State
 from workbench.validation import calculix
 
-PRESS = PressCase(press=Press(target_mm=(0.0, 10.0, 37.0), depth_mm=0.3, frames=2))
 SHORT = ["--draft", "--radius-mm", "5", "--depth-mm", "0.2", "--frames", "2"]
 
 
-def finger_case() -> FemCase:
+def finger_state() -> State:
+    press = Press(target_mm=(0.0, 10.0, 37.0), depth_mm=0.3, frames=2)
     settings = FemSettings(hex_mm=DRAFT_MM, radius_mm=5.0)
-    return FemCase(design=load_design("finger"), press=PRESS, settings=settings)
+    return State(design=load_design("finger"), case=PressCase(press=press, fem=settings))
 
 
 def test_a_case_is_carried_as_it_is(tmp_path: Path) -> None:
     """Design, press, settings and element come back equal, so that ours is found in the store."""
-    project, case = Project(tmp_path), finger_case()
-    text = carried(case, Element.C3D20R, project)
-    assert read_carried(text, project, source="case.inp") == (case, Element.C3D20R)
+    project, state = Project(tmp_path), finger_state()
+    text = carried(state, Element.C3D20R, project)
+    assert read_carried(text, project, source="case.inp") == (state, Element.C3D20R)
 
 
 @pytest.mark.parametrize("change", [('"schema": 1', '"schema": 2'), ("C3D8I", "C3D4"), ("{", "")])
 def test_a_case_of_another_version_is_refused(tmp_path: Path, change: tuple[str, str]) -> None:
     """Another schema, an unknown element, no table at all."""
     project = Project(tmp_path)
-    text = carried(finger_case(), Element.C3D8I, project).replace(*change, 1)
+    text = carried(finger_state(), Element.C3D8I, project).replace(*change, 1)
     with pytest.raises(StoreError, match="another version, or edited"):
         read_carried(text, project, source="case.inp")
 
@@ -118,8 +119,8 @@ def their_table(deck: Path, found: Any, project: Project) -> str:
     """Our fields as the table of another program."""
     from workbench.fem_case import deck_case
 
-    case, element = read_carried(carried_text(deck.read_text()), project, source="case.inp")
-    skin = deck_case(case, element, project)[0].submodel.skin
+    state, element = read_carried(carried_text(deck.read_text()), project, source="case.inp")
+    skin = deck_case(state, element, project)[0].submodel.skin
     rows = ["step,node,ux,uy,uz,fx,fy,fz"]
     for frame in range(2):
         for node in np.flatnonzero(skin >= 0):
@@ -143,14 +144,14 @@ def test_calculix_is_measured_only_where_it_is_installed(monkeypatch: pytest.Mon
 def test_calculix_agrees_where_nothing_locks() -> None:
     """A pad of nu .3 under a ball, without friction: C3D8I on the same mesh within 3 %."""
     press = Press(target_mm=(0.0, 0.0, 2.0), depth_mm=0.4, frames=1)
-    case = FemCase(
+    settings = FemSettings(hex_mm=0.5, radius_mm=5.0)
+    state = State(
         design=SensorDesign(material=Elastomer(poisson=0.3, friction=0.0)),
-        press=PressCase(press=press),
-        settings=FemSettings(hex_mm=0.5, radius_mm=5.0),
+        case=PressCase(press=press, fem=settings),
     )
     mesh = flat_membrane(edge_mm=0.5, layers=4)
-    theirs = calculix.run_calculix(mesh, case, Element.C3D8I)
-    mine = solve_press(mesh, case.design.material, Indenter(), press, case.settings)
+    theirs = calculix.run_calculix(mesh, state, Element.C3D8I)
+    mine = solve_press(mesh, state.design.material, Indenter(), press, settings)
     assert mine.normal_N[0] == pytest.approx(theirs.normal_N[0], rel=0.03)
     # Forces found from printed stresses leave out the incompatible modes: some per cent.
     assert theirs.balance[0] < 0.05

@@ -20,8 +20,9 @@ from workbench.core.fem import FemSettings
 from workbench.core.inclusion import Inclusion
 from workbench.core.indenter import Indenter, IndenterKind
 from workbench.core.press import Press
-from workbench.fem_case import FemCase, make_deck_case
+from workbench.fem_case import make_deck_case
 from workbench.pipeline import PressCase
+from workbench.state import State
 
 PRESS = Press(target_mm=(0.0, 0.0, 2.0), depth_mm=0.4, frames=2)
 
@@ -36,12 +37,15 @@ def pad_case(
     gap_mm: float = 0.0,
 ) -> DeckCase:
     """A ball of 6 mm on a pad of 8 x 8 x 2 mm."""
-    case = FemCase(
+    state = State(
         design=SensorDesign(material=material or Elastomer()),
-        press=PressCase(indenter=indenter or Indenter(), press=press),
-        settings=FemSettings(hex_mm=1.0, radius_mm=5.0),
+        case=PressCase(
+            indenter=indenter or Indenter(),
+            press=press,
+            fem=FemSettings(hex_mm=1.0, radius_mm=5.0),
+        ),
     )
-    return make_deck_case(flat_membrane(gap_mm=gap_mm), case, element)
+    return make_deck_case(flat_membrane(gap_mm=gap_mm), state, element)
 
 
 def corners_of(deck: DeckText, name: str) -> tuple[np.ndarray, np.ndarray]:

@@ -24,10 +24,11 @@ from workbench.core.indenter import Indenter
 from workbench.core.monitor import silent
 from workbench.core.press import Press
 from workbench.core.results import MembraneMesh
-from workbench.fem_case import FemCase, make_deck_case
+from workbench.fem_case import make_deck_case
 from workbench.pipeline import PressCase
 from workbench.rows import Row, compared, failed, stated
 from workbench.specimens import finger_solid
+from workbench.state import State
 from workbench.validation.presses import tip_target
 
 PROGRAM = "ccx"
@@ -59,14 +60,15 @@ def rows() -> list[Row]:
     ]
 
 
-def finger_case(hex_mm: float) -> FemCase:
+def finger_state(hex_mm: float) -> State:
     """The press of this room."""
-    return FemCase(
+    return State(
         design=SensorDesign(material=Elastomer(friction=0.0)),
-        press=PressCase(
-            indenter=Indenter(size_mm=6.0), press=Press(target_mm=tip_target(45.0, 0.0), frames=2)
+        case=PressCase(
+            indenter=Indenter(size_mm=6.0),
+            press=Press(target_mm=tip_target(45.0, 0.0), frames=2),
+            fem=FemSettings(hex_mm=hex_mm, radius_mm=7.0),
         ),
-        settings=FemSettings(hex_mm=hex_mm, radius_mm=7.0),
     )
 
 
@@ -82,11 +84,9 @@ def ours(hex_mm: float) -> ForceField:
     """Our result on a mesh."""
     from sim.fem.press import solve_press
 
-    case = finger_case(hex_mm)
-    press = case.press
-    return solve_press(
-        _mesh(hex_mm), case.design.material, press.indenter, press.press, case.settings
-    )
+    state = finger_state(hex_mm)
+    case = state.case
+    return solve_press(_mesh(hex_mm), state.design.material, case.indenter, case.press, case.fem)
 
 
 @functools.cache
@@ -97,10 +97,10 @@ def theirs(hex_mm: float, element: Element) -> ForceField:
         SolveError: If it does not converge or takes too long.
         DeviceError: If it cannot be started.
     """
-    return run_calculix(_mesh(hex_mm), finger_case(hex_mm), element)
+    return run_calculix(_mesh(hex_mm), finger_state(hex_mm), element)
 
 
-def run_calculix(mesh: MembraneMesh, case: FemCase, element: Element) -> ForceField:
+def run_calculix(mesh: MembraneMesh, state: State, element: Element) -> ForceField:
     """Solve a case by CalculiX, in a folder that is removed afterwards.
 
     Raises:
@@ -111,7 +111,7 @@ def run_calculix(mesh: MembraneMesh, case: FemCase, element: Element) -> ForceFi
     from sim.fem.deck_dat import read_dat
     from sim.fem.deck_results import force_field
 
-    ready = make_deck_case(mesh, case, element)
+    ready = make_deck_case(mesh, state, element)
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "case.inp").write_text(write_deck(ready))
         try:
@@ -131,7 +131,7 @@ def run_calculix(mesh: MembraneMesh, case: FemCase, element: Element) -> ForceFi
         # A run that fails at once leaves no file; its absence reads as no results.
         text = dat.read_text() if dat.exists() else ""
         result = read_dat(text, ready)
-    return force_field(result, ready, len(mesh.outer.points_mm), case.settings.hex_mm)
+    return force_field(result, ready, len(mesh.outer.points_mm), state.case.fem.hex_mm)
 
 
 def _normal_N(found: ForceField) -> float:
