@@ -123,7 +123,7 @@ def placed(family: str, mesh: MembraneMesh, points: MaterialPoints) -> Sensor:
     from geometry.surface import closest_point
 
     own_mm = np.array(find_family(family).target(resolve_shape(family, {}), Layers()))
-    rim_mm = mesh.outer.points_mm[_rim(mesh.outer)]
+    rim_mm = mesh.outer.points_mm[rim(mesh.outer)]
     order = np.argsort(np.linalg.norm(mesh.outer.points_mm - own_mm, axis=1), kind="stable")
     ordered = mesh.outer.points_mm[order]
     inside = [p for p in ordered if np.linalg.norm(rim_mm - p, axis=1).min(initial=99.0) > RIM_MM]
@@ -133,7 +133,7 @@ def placed(family: str, mesh: MembraneMesh, points: MaterialPoints) -> Sensor:
     return Sensor(mesh=mesh, points=points, targets_mm=targets_mm, walls_mm=walls_mm)
 
 
-def _rim(skin: Skin) -> np.ndarray:
+def rim(skin: Skin) -> np.ndarray:
     """Vertices of edges that belong to one triangle."""
     edges = np.sort(np.concatenate([skin.faces[:, [a, b]] for a, b in ((0, 1), (1, 2), (2, 0))]))
     unique, counts = np.unique(edges, axis=0, return_counts=True)
