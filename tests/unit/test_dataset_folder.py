@@ -231,6 +231,13 @@ def test_a_data_set_only_grows(tmp_path: Path) -> None:
         begin(tmp_path, other.table, SKIN, cases_of(other))
     with pytest.raises(StoreError, match="the mesh of the data set"):
         begin(tmp_path, recipe().table, flat_skin(5.0, 0.25), cases_of(recipe()))
+    path = tmp_path / "manifest.json"
+    manifest = json.loads(path.read_text())
+    manifest["stages"]["press"] -= 1
+    path.write_text(json.dumps(manifest))
+    with pytest.raises(StoreError, match=r"press \d+ then, \d+ now"):
+        started(tmp_path)
+    assert DataSet.open(tmp_path).counts()["samples_done"] == 1
     (tmp_path / "full").mkdir()
     (tmp_path / "full" / "letter.txt").write_text("keep me")
     with pytest.raises(StoreError, match="is not empty and holds no data set"):

@@ -165,3 +165,28 @@ def test_a_failing_case_does_not_stop_the_rest(
     assert (out / "failed.jsonl").read_text() == rows
     assert main(["dataset", "repair", str(out)]) == 0
     assert not (out / "failed.jsonl").exists()
+
+
+def test_what_is_not_the_cases_fault_stops_all(
+    project: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A folder that cannot be written and a device that is not there: told, no case blamed."""
+    out = tmp_path / "set"
+    with monkeypatch.context() as patch:
+        patch.setenv("WORKBENCH_DEVICE", "toaster")
+        assert main(words(project, out, "--solver", "mpm")) == 3
+    assert "WORKBENCH_DEVICE is 'toaster'" in capsys.readouterr().err
+    data = DataSet.open(out)
+    (out / "cases").mkdir()
+    for case in data.cases():
+        (out / "cases" / case.id).write_text("in the way")
+    assert main(words(project, out, "--solver", "mpm")) == 3
+    assert "cannot write" in capsys.readouterr().err
+    assert not (out / "failed.jsonl").exists() and not (out / "lock").exists()
+    for case in data.cases():
+        (out / "cases" / case.id).unlink()
+    assert main(words(project, out, "--solver", "mpm", "--jobs", "2")) == 0
+    assert len(list(data.samples())) == 4

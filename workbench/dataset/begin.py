@@ -26,7 +26,8 @@ from workbench.dataset.folder import (
     skin_data,
 )
 from workbench.dataset.lock import LOCK
-from workbench.dataset.recipe import table_key
+from workbench.dataset.recipe import Solvers, table_key
+from workbench.stages import STAGES
 from workbench.whole_files import write_atomically
 
 
@@ -61,7 +62,8 @@ def begin(
     """Start a data set, or go on with the one that is there.
 
     Raises:
-        StoreError: If the folder holds something else, or cannot be written.
+        StoreError: If the folder holds something else or what other versions of the solvers made,
+            or cannot be written.
     """
     data, key = skin_data(skin), table_key(recipe_table)
     found = check_place(folder, key)
@@ -72,6 +74,7 @@ def begin(
                 hint=f"choose another folder; it was begun by version {found.manifest['program']}",
                 at=str(folder),
             )
+        _check_stages(found)
         if len(found.all_cases) > len(cases):
             cases = found.all_cases
     buffer = io.BytesIO()
@@ -84,11 +87,39 @@ def begin(
         "program": __version__,
         "key": key,
         "recipe": dict(recipe_table),
+        "stages": stage_versions(recipe_table),
         "mesh": mesh_key(data),
         "vertices": len(data.points_mm),
     }
     write_manifest(folder, {**manifest, "counts": {"cases": len(cases)}})
     return DataSet.open(folder)
+
+
+def stage_versions(recipe_table: Mapping[str, Any]) -> dict[str, int]:
+    """Version of each stage that a sample comes from: what they compute changed when one rises."""
+    solvers = Solvers(recipe_table["solvers"])
+    names = ["build", "mesh"]
+    names += ["lattice", "press"] if solvers is not Solvers.FEM else []
+    names += ["fem"] if solvers is not Solvers.MPM else []
+    names += ["bake", "table", "shoot"] if recipe_table["images"] else []
+    return {name: STAGES[name].version for name in names}
+
+
+def _check_stages(found: DataSet) -> None:
+    """Refuse to mix samples of two versions of a solver in one data set."""
+    now, then = stage_versions(found.manifest["recipe"]), found.manifest["stages"]
+    changed = [
+        f"{name} {then.get(name)} then, {version} now"
+        for name, version in now.items()
+        if then.get(name) != version
+    ]
+    if changed:
+        raise StoreError(
+            f"the data set {found.folder} was begun with other versions of what computes it: "
+            f"{', '.join(changed)}",
+            hint="go on with the program that began it, or make it anew in another folder",
+            at=str(found.folder),
+        )
 
 
 def write_manifest(folder: Path, manifest: Mapping[str, Any]) -> None:

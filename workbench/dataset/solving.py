@@ -22,7 +22,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from workbench.calls import Call
-from workbench.core.errors import Cancelled, WorkbenchError
+from workbench.core.errors import (
+    Cancelled,
+    DeviceError,
+    LaneError,
+    StoreError,
+    WorkbenchError,
+)
 from workbench.core.fem import FemSettings
 from workbench.core.force_field import ForceField, Source, from_contact
 from workbench.core.press import ContactSettings
@@ -103,6 +109,9 @@ class Bench:
 
         Raises:
             Cancelled: If this data set is to stop.
+            StoreError: If a sample cannot be written: the disk is full, not the case at fault.
+            DeviceError: If the device gave out, likewise.
+            LaneError: If memory did.
         """
         report = Report(id=case.id)
         begun, cpu = time.perf_counter(), time.process_time()
@@ -114,11 +123,17 @@ class Bench:
                     self._write(case, frame, contact, None, report)
             else:
                 self._converge(case, contact, report)
-        except Cancelled:
+        except (Cancelled, StoreError, DeviceError):
             raise
+        except MemoryError as error:
+            raise LaneError(
+                f"{case.id} ran out of memory",
+                hint="finished samples are kept; make it again with fewer --jobs",
+                at="dataset",
+            ) from error
         except WorkbenchError as error:
             report.error = {**error.as_dict(), "frame": getattr(error, "frame", -1)}
-        except (MemoryError, RuntimeError, ArithmeticError, ValueError, LookupError) as error:
+        except (RuntimeError, ArithmeticError, ValueError, LookupError) as error:
             # A bug in one case must not cost the others; it is kept with its name.
             report.error = {"error": type(error).__name__, "message": str(error), "frame": -1}
         report.seconds, report.cpu_s = time.perf_counter() - begun, time.process_time() - cpu
@@ -256,21 +271,30 @@ def _solved(field: ForceField, frame: int, *, stress: bool) -> Solved:
     )
 
 
-_bench: Bench | None = None
-"""Of this worker process; a pool has no other place for what its processes keep."""
+_bench: Bench | WorkbenchError | None = None
+"""Of this worker process, or why it has none; a pool has no other place to keep it."""
 
 
 def open_bench(setup: Setup, stop: Any) -> None:
-    """Make this process a worker: called once, by the pool."""
+    """Make this process a worker: called once, by the pool, which loses what is raised here."""
     global _bench  # noqa: PLW0603
     # Ctrl-C in a terminal reaches the whole group; the parent decides when workers stop.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     _follow_parent()
-    _bench = Bench(setup, stop)
+    try:
+        _bench = Bench(setup, stop)
+    except WorkbenchError as error:
+        _bench = error
 
 
 def solve_case(case: Case) -> Report:
-    """Make the samples of a case in this worker."""
+    """Make the samples of a case in this worker.
+
+    Raises:
+        WorkbenchError: As `Bench.solve`, or why the worker could not be opened.
+    """
+    if isinstance(_bench, WorkbenchError):
+        raise _bench
     assert _bench is not None
     return _bench.solve(case)
 
