@@ -19,6 +19,7 @@ from ui.backstage import Backstage
 from ui.pressed_frames import PressedFrames, pressed_frames
 from workbench.core.results import Skin
 from workbench.core.sensing import Contact
+from workbench.force_sources import Forces
 from workbench.quantities import Quantity, Shown
 from workbench.section_cut import Plane
 
@@ -54,6 +55,10 @@ class PressedView:
         self.on_painted: Callable[[], None] = lambda: None
         """Set by the scene: called once a press has its colours, and so its frames."""
         self.contact: Contact | None = None
+        self.field: Forces | None = None
+        """What the skin shows of the press: the contact, or another source of its forces."""
+        self.against: Forces | None = None
+        """Another source, where the difference from it is on show."""
         self.quantity = Quantity.DISPLACEMENT
         self._skin: Skin | None = None
         self._frames: PressedFrames | None = None
@@ -91,6 +96,7 @@ class PressedView:
         """Take a press; nothing of it is on show until it has been measured backstage."""
         self.clear()
         self._skin, self.contact = skin, contact
+        self.field, self.against = contact, None
         self._measure()
 
     def load_live(self, skin: Skin, contact: Contact) -> None:
@@ -98,6 +104,7 @@ class PressedView:
         self.backstage.forget(MEASURE)
         self._let_linger(LINGER_S)
         self._skin, self.contact = skin, contact
+        self.field, self.against = contact, None
         self._frames = pressed_frames(skin, contact, self.quantity)
         self.show(1)
 
@@ -106,10 +113,16 @@ class PressedView:
         self.quantity = quantity
         self._measure()
 
+    def show_source(self, field: Forces, against: Forces | None = None) -> None:
+        """Show the press as another source has it, or how far that is from `against`."""
+        self.field, self.against = field, against
+        self._measure()
+
     def _measure(self) -> None:
-        skin, contact, quantity, before = self._skin, self.contact, self.quantity, self._frames
-        if skin is not None and contact is not None:
-            work = (pressed_frames(skin, contact, quantity, before) for _ in range(1))
+        skin, field, quantity, before = self._skin, self.field, self.quantity, self._frames
+        against = self.against
+        if skin is not None and field is not None:
+            work = (pressed_frames(skin, field, quantity, before, against) for _ in range(1))
             self.backstage.ask(MEASURE, work, self._painted)
 
     def _painted(self, frames: PressedFrames) -> None:
@@ -183,10 +196,10 @@ class PressedView:
 
     def surface(self) -> tuple[np.ndarray, np.ndarray] | None:
         """Vertices [mm] and triangles of the frame on show, not cut; None where none is."""
-        if not self._number or self._skin is None or self.contact is None or not self.allowed:
+        if not self._number or self._skin is None or self.field is None or not self.allowed:
             return None
         number = min(self._number, self.count)
-        moved = np.asarray(self.contact.displacement_mm[number - 1])
+        moved = np.asarray(self.field.displacement_mm[number - 1])
         return np.asarray(self._skin.points_mm) + moved, np.asarray(self._skin.faces)
 
     def draw_arrows(self, wanted: bool) -> None:
@@ -212,7 +225,7 @@ class PressedView:
             node.remove()
         self._lingering.clear()
         self._forget_frames()
-        self.contact = self._skin = self._frames = None
+        self.contact = self.field = self.against = self._skin = self._frames = None
         self._number = 0
         self._follow_arrows()
 

@@ -14,7 +14,7 @@ import numpy as np
 from ui.imaging import coloured_glb, heat_colours
 from ui.sensor import SKIN_COLOUR
 from workbench.core.results import Skin
-from workbench.core.sensing import Contact
+from workbench.force_sources import Forces
 from workbench.glb import Topology
 from workbench.quantities import Quantity, Shown, force_arrows, largest_arrow_N, shown
 from workbench.section_cut import Plane
@@ -25,7 +25,9 @@ class PressedFrames:
     """A press in the colours of one quantity."""
 
     skin: Skin
-    contact: Contact
+    contact: Forces
+    against: Forces | None
+    """Another source, where the difference from it is on show."""
     shown: Shown
     topology: Topology
     arrow_top_N: float
@@ -49,16 +51,24 @@ class PressedFrames:
 
 
 def pressed_frames(
-    skin: Skin, contact: Contact, quantity: Quantity, before: PressedFrames | None = None
+    skin: Skin,
+    contact: Forces,
+    quantity: Quantity,
+    before: PressedFrames | None = None,
+    against: Forces | None = None,
 ) -> PressedFrames:
-    """Measure a press in a quantity; `before` may be the same press in another one."""
+    """Measure a press in a quantity; `before` may be the same press in another one.
+
+    With `against` the colours are those of the difference from that source.
+    """
     same = before is not None and before.contact is contact and before.skin is skin
     known = before if same else None
     faces = np.asarray(skin.faces)
     return PressedFrames(
         skin=skin,
         contact=contact,
-        shown=shown(skin, contact, quantity),
+        against=against,
+        shown=shown(skin, contact, quantity, against),
         topology=known.topology if known else Topology.of(faces, len(skin.points_mm)),
         arrow_top_N=known.arrow_top_N if known else largest_arrow_N(skin, contact),
     )

@@ -11,11 +11,11 @@ if TYPE_CHECKING:
     from ui.desk import Desk
 
 SHOWN = (
-    *("build", "mesh", "press", "shoot", "maps", "quality", "tets"),
+    *("build", "mesh", "press", "forces", "shoot", "maps", "quality", "tets"),
     *("mould", "housing", "recipe", "package"),
 )
 """Stages whose stored results are shown without asking."""
-HEAVY = ("press",)
+HEAVY = ("press", "forces")
 """Stages whose results are read backstage: unpacking one would hold all tabs up."""
 
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from geometry.stress import von_mises_MPa
 from workbench.core.results import Skin
-from workbench.core.sensing import Contact
+from workbench.force_sources import Forces
 
 LONGEST_ARROW_MM = 6.0
 """Length of the arrow of the largest force of a press."""
@@ -61,6 +61,8 @@ class Shown:
     """Finite values, shape (K, V), float32."""
     top: float
     """Largest of all frames; 1 where all are zero."""
+    difference: bool = False
+    """Whether it is how far two sources are apart."""
 
     @property
     def empty(self) -> bool:
@@ -78,19 +80,34 @@ class Shown:
         return self.values / self.top
 
 
-def shown(skin: Skin, contact: Contact, quantity: Quantity) -> Shown:
-    """A quantity on the outer skin in every frame; zero where the result has no such field."""
+def shown(skin: Skin, contact: Forces, quantity: Quantity, against: Forces | None = None) -> Shown:
+    """A quantity on the outer skin in every frame; zero where the result has no such field.
+
+    With `against`, another source of the same press, how far the two are apart: the length of the
+    difference of displacements, else the size of the difference.
+    """
+    values = _filled(skin, contact, quantity)
+    if against is not None:
+        values = np.abs(values - _filled(skin, against, quantity))
+        if quantity is Quantity.DISPLACEMENT:
+            apart = np.asarray(contact.displacement_mm) - np.asarray(against.displacement_mm)
+            values = np.linalg.norm(apart, axis=2)
+    values = np.maximum(values, 0.0)
+    flag = quantity is Quantity.SLIDING or not values.any()
+    top = 1.0 if flag else float(values.max())
+    return Shown(quantity=quantity, values=values, top=top, difference=against is not None)
+
+
+def _filled(skin: Skin, contact: Forces, quantity: Quantity) -> np.ndarray:
+    """Finite values of all frames and vertices, (K, V), float32."""
     frames, vertices = contact.displacement_mm.shape[:2]
     values = _values(skin, contact, quantity)
     if values.shape != (frames, vertices):
         values = np.zeros((frames, vertices))
-    values = np.nan_to_num(np.asarray(values, np.float32), nan=0.0, posinf=0.0, neginf=0.0)
-    values = np.maximum(values, 0.0)
-    flag = quantity is Quantity.SLIDING or not values.any()
-    return Shown(quantity=quantity, values=values, top=1.0 if flag else float(values.max()))
+    return np.nan_to_num(np.asarray(values, np.float32), nan=0.0, posinf=0.0, neginf=0.0)
 
 
-def _values(skin: Skin, contact: Contact, quantity: Quantity) -> np.ndarray:
+def _values(skin: Skin, contact: Forces, quantity: Quantity) -> np.ndarray:
     match quantity:
         case Quantity.DISPLACEMENT:
             return np.linalg.norm(contact.displacement_mm, axis=2)
@@ -108,7 +125,7 @@ def _values(skin: Skin, contact: Contact, quantity: Quantity) -> np.ndarray:
             return np.asarray(contact.slip_mm)
 
 
-def shear_MPa(skin: Skin, contact: Contact) -> np.ndarray:
+def shear_MPa(skin: Skin, contact: Forces) -> np.ndarray:
     """Tangential contact force per undeformed area of the vertices [MPa], shape (K, V)."""
     forces, pressure = np.asarray(contact.contact_force_N), np.asarray(contact.pressure_MPa)
     if not len(forces) == len(pressure) == len(contact.displacement_mm):
@@ -126,7 +143,7 @@ def vertex_areas_mm2(skin: Skin) -> np.ndarray:
     return np.maximum(area, LEAST_TOP)
 
 
-def largest_arrow_N(skin: Skin, contact: Contact) -> float:
+def largest_arrow_N(skin: Skin, contact: Forces) -> float:
     """Largest summed force of a cube in any frame [N]: the scale of `force_arrows`."""
     if len(contact.contact_force_N) != len(contact.displacement_mm):
         return 0.0
@@ -136,7 +153,7 @@ def largest_arrow_N(skin: Skin, contact: Contact) -> float:
     )
 
 
-def force_arrows(skin: Skin, contact: Contact, frame: int, *, top_N: float) -> np.ndarray:
+def force_arrows(skin: Skin, contact: Forces, frame: int, *, top_N: float) -> np.ndarray:
     """Contact forces on the skin as arrows that end on it [mm], shape (N, 2, 3), thinned.
 
     Forces within a cube of `ARROW_CELL_MM` are added up and stand at their weighted middle.
@@ -156,7 +173,7 @@ def force_arrows(skin: Skin, contact: Contact, frame: int, *, top_N: float) -> n
     return np.stack([tips - LONGEST_ARROW_MM / top_N * sums[kept], tips], axis=1)
 
 
-def _binned(skin: Skin, contact: Contact, frame: int) -> tuple[np.ndarray, np.ndarray]:
+def _binned(skin: Skin, contact: Forces, frame: int) -> tuple[np.ndarray, np.ndarray]:
     """Places [mm] and summed forces [N] of the cubes that carry any, each (N, 3)."""
     force = np.asarray(contact.contact_force_N[frame], dtype=np.float64)
     size = np.linalg.norm(force, axis=1)

@@ -155,3 +155,15 @@ def test_template_of_a_press_goes_straight_down() -> None:
     lines = template_csv(Press(depth_mm=1.0, frames=2), None, standing).splitlines()
     assert lines[0] == "t_s,x_mm,y_mm,z_mm,qw,qx,qy,qz"
     assert [float(line.split(",")[3]) for line in lines[1:]] == [11.0, 9.5, 9.0]
+
+
+def test_a_difference_is_the_length_of_that_of_displacements_and_the_size_of_others() -> None:
+    """0.5 mm inward against 0.5 mm aside are sqrt(1/2) mm apart, not 0; pressures subtract."""
+    aside = np.full((1, 4, 3), [0.5, 0.0, 0.0], np.float32)
+    other = contact(displacement_mm=aside, pressure_MPa=np.full((1, 4), 0.1, np.float32))
+    apart = shown(SQUARE, contact(), Quantity.DISPLACEMENT, other)
+    assert apart.difference
+    assert apart.values == pytest.approx(np.full((1, 4), 0.5**0.5), rel=1e-6)
+    pressure = shown(SQUARE, contact(), Quantity.PRESSURE, other)
+    assert pressure.values[0] == pytest.approx([100.0, 350.0, 100.0, 100.0], rel=1e-5)
+    assert not shown(SQUARE, contact(), Quantity.PRESSURE).difference

@@ -9,6 +9,7 @@ from ui.desk import Desk
 from ui.panels.forces import ForcesTab
 from ui.panels.image import ImageTab
 from ui.panels.maps import MapsPanel
+from ui.panels.sources import SourcesFolder
 from ui.panels.timeline import Timeline
 from workbench.core.errors import SolveError
 from workbench.core.press import Press
@@ -49,6 +50,7 @@ class ResultsPanel:
             self.image = ImageTab(desk)
         with self.dock.add_tab("Forces"):
             self.forces = ForcesTab(gui)
+            self.sources = SourcesFolder(desk)
         with self.dock.add_tab("Maps"):
             self.maps = MapsPanel(desk)
         with self.dock.add_tab("Log"):
@@ -102,6 +104,8 @@ class ResultsPanel:
             self.image.probe.take_mesh(result if stage == "mesh" else None)
         elif stage == "press":
             self._show_contact(self.desk.session.case.press, result, note="")
+        elif stage == "forces":
+            self.sources.take(result)
         elif stage == "live":
             self._show_live(result)
         elif stage == "glimpse":
@@ -152,6 +156,7 @@ class ResultsPanel:
         self.timeline.follow(1)
         self._show_image(1)
         self.forces.load(self.press, preview.contact)
+        self.sources.take_contact(None)
         self._show_forces(1)
 
     def _show_glimpse(self, glimpse: Glimpse | None) -> None:
@@ -189,6 +194,7 @@ class ResultsPanel:
         with self.desk.server.atomic():
             self.image.clear()
             self.forces.clear()
+            self.sources.take_contact(None)
 
     def _show_contact(self, press: Press, contact: Contact, *, note: str) -> None:
         mesh = self.desk.session.result("mesh")
@@ -196,6 +202,7 @@ class ResultsPanel:
         self.contact, self.press, self.note = contact, press, note
         self.key = self.desk.session.calls()["press"].key
         self.forces.load(press, contact)
+        self.sources.take_contact(contact)
         self.timeline.follow(len(contact.reaction_N))
         self._show_forces(self.timeline.number)
         self.desk.scene.show_frame(self.timeline.number)
@@ -219,6 +226,7 @@ class ResultsPanel:
             note = "**stale**: run the press again"
         self.forces.mark(number)
         self.forces.show(self.contact, k, what=self._phase(k + 1), note=note)
+        self.sources.tell(k)
 
 
 def settled_note(failed: int, settled: int) -> str:

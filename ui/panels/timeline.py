@@ -114,7 +114,8 @@ class Timeline:
         shown = self.desk.scene.pressed.shown
         if shown is not None:
             where = "zero everywhere" if shown.empty else "scale of all frames"
-            title = f"{shown.quantity.value.capitalize()} of the skin, {where}"
+            what = "difference of two sources" if shown.difference else "of the skin"
+            title = f"{shown.quantity.value.capitalize()} {what}, {where}"
             self.legend.content = legend(title, shown.top, shown.unit, SKIN_COLOUR)
 
     def _draw_arrows(self) -> None:
