@@ -31,7 +31,7 @@ sync_api = pytest.importorskip("playwright.sync_api")
 pytestmark = [pytest.mark.ui, pytest.mark.slow]
 
 Start = Callable[..., Server]
-SOAK_S = float(os.environ.get("WORKBENCH_SOAK_S", "60"))
+SOAK_S = float(os.environ.get("WORKBENCH_SOAK_S", "20"))
 WARM_ROUNDS = 6
 """Rounds until every kernel is loaded and every cache is as large as it gets."""
 GROWTH = 1.10
