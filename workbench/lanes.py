@@ -203,7 +203,7 @@ def _serve(name: str, modules: Sequence[str], root: Path, pipe: Connection, canc
     # Ctrl-C in a terminal reaches the whole group; the parent decides when a lane stops.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     os.environ.setdefault("ENABLE_TAICHI_HEADER_PRINT", "0")
-    _follow_parent()
+    follow_parent()
     unready = _warm_up(name, modules)
     store, kept = Store(root), {}
     if name == "sim" and unready is None and not pipe.poll(IDLE_S):
@@ -281,7 +281,7 @@ def _reporter(pipe: Connection, cancelled: Any, number: int) -> Callable[..., No
     return monitor
 
 
-def _follow_parent() -> None:
+def follow_parent() -> None:
     """Leave no orphan: end this process when the server dies, whatever it is doing."""
     parent = multiprocessing.parent_process()
 

@@ -5,11 +5,13 @@ from __future__ import annotations
 import dataclasses
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -23,7 +25,7 @@ from workbench.dataset.collect import finish
 from workbench.dataset.estimate import estimate, estimate_text
 from workbench.dataset.folder import DataSet
 from workbench.dataset.lock import LOCK, held
-from workbench.dataset.recipe import Recipe, load_recipe
+from workbench.dataset.recipe import Recipe, load_recipe, recipe_from_toml
 from workbench.dataset.repair import repair
 from workbench.dataset.rows import append_row, read_rows
 from workbench.dataset.sample import Sample, Solved, from_bytes, to_bytes
@@ -357,3 +359,23 @@ def test_rows_survive_a_line_cut_off(tmp_path: Path) -> None:
     path.write_text("nonsense\n")
     with pytest.raises(StoreError, match="a line that is not JSON"):
         read_rows(path)
+
+
+def test_example_of_the_readme_reads_a_data_set(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its loop comes to the sample of training, and its recipe is one."""
+    text = (Path(__file__).parents[2] / "README.md").read_text()
+    (code,) = re.findall(r"^```python\n(from workbench\.dataset.*?)^```$", text, re.M | re.S)
+    data = started(tmp_path / "sets" / "finger", 20)
+    for number, case in enumerate(data.all_cases):
+        if case.split is Split.TRAIN:
+            write(data, number, 3)
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, Any] = {}
+    exec(code, names)
+    assert names["case"].split is Split.TRAIN
+    assert [field.shape for field in names["fields"]] == [(VERTICES, 3)] * 3
+    assert names["labels"][1] > 0.0
+    (recipe_text,) = re.findall(r'^```toml\n(design = "trunk".*?)^```$', text, re.M | re.S)
+    assert recipe_from_toml(recipe_text).points == 40

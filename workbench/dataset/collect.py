@@ -28,8 +28,9 @@ from workbench.dataset.lock import held
 from workbench.dataset.preview import write_preview
 from workbench.dataset.recipe import Recipe, Solvers
 from workbench.dataset.repair import clear_parts
-from workbench.dataset.solving import Report, Setup, open_bench, solve_case
+from workbench.dataset.solving import Report, Setup
 from workbench.dataset.watch import Tell, Watch
+from workbench.dataset.worker import open_bench, solve_case
 from workbench.light_calls import seen_optics
 from workbench.pipeline import InlineRunner, PressCase, StageMonitor, needed, plan, stage_monitor
 from workbench.project import Project

@@ -10,10 +10,6 @@ paper, or of the finite elements where they are alone.
 from __future__ import annotations
 
 import dataclasses
-import multiprocessing
-import os
-import signal
-import threading
 import time
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -269,43 +265,3 @@ def _solved(field: ForceField, frame: int, *, stress: bool) -> Solved:
         seconds=float(field.frame_seconds[frame]),
         **cauchy,
     )
-
-
-_bench: Bench | WorkbenchError | None = None
-"""Of this worker process, or why it has none; a pool has no other place to keep it."""
-
-
-def open_bench(setup: Setup, stop: Any) -> None:
-    """Make this process a worker: called once, by the pool, which loses what is raised here."""
-    global _bench  # noqa: PLW0603
-    # Ctrl-C in a terminal reaches the whole group; the parent decides when workers stop.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    _follow_parent()
-    try:
-        _bench = Bench(setup, stop)
-    except WorkbenchError as error:
-        _bench = error
-
-
-def solve_case(case: Case) -> Report:
-    """Make the samples of a case in this worker.
-
-    Raises:
-        WorkbenchError: As `Bench.solve`, or why the worker could not be opened.
-    """
-    if isinstance(_bench, WorkbenchError):
-        raise _bench
-    assert _bench is not None
-    return _bench.solve(case)
-
-
-def _follow_parent() -> None:
-    """Leave no orphan: end this process when the parent dies, whatever it is doing."""
-    parent = multiprocessing.parent_process()
-
-    def watch() -> None:
-        if parent is not None:
-            parent.join()
-            os._exit(1)
-
-    threading.Thread(target=watch, daemon=True).start()
