@@ -27,7 +27,7 @@ def add_fem_commands(top: argparse.ArgumentParser, common: argparse.ArgumentPars
     export = command("export", fem_command.export)
     _case_options(export)
     elements = ("C3D8", "C3D8I", "C3D20R")
-    export.add_argument("--element", choices=elements, default="C3D8I", help="default C3D8I")
+    export.add_argument("--element", choices=elements, default="C3D20R", help="default C3D20R")
     export.add_argument("--out", required=True, type=Path, metavar="CASE.inp")
     reading = command("import", fem_command.import_results)
     reading.add_argument("deck", type=Path, metavar="CASE.inp", help="what export wrote")

@@ -30,9 +30,10 @@ class Element(enum.StrEnum):
     C3D8 = "C3D8"
     """Eight nodes, full integration: too stiff where the elastomer is nearly incompressible."""
     C3D8I = "C3D8I"
-    """Eight nodes with incompatible modes: nearest to ours that decks have."""
+    """Eight nodes with incompatible modes: like ours in small presses. In deep ones on fine meshes
+    CalculiX gives up: at 0.9 mm under a ball of 6 mm, elements of 0.45 mm."""
     C3D20R = "C3D20R"
-    """Twenty nodes, reduced integration: does not lock."""
+    """Twenty nodes, reduced integration: at 0.9 mm as good as ours at 0.45 mm."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
