@@ -24,6 +24,7 @@ ROOMS: dict[str, Callable[[], list[Row]]] = {
     "contact": contact.rows,
     "optics": optics.rows,
     "fem": fem.rows,
+    "fem_fine": fem.fine_rows,
     "forces": forces.rows,
     "robustness": robustness.rows,
     "robustness_sample": robustness.sample_rows,

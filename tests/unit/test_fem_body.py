@@ -18,8 +18,10 @@ from workbench.core.results import MembraneMesh
 TOP_MM = np.array([0.0, 0.0, 2.0])
 
 
-def cut(mesh: MembraneMesh, radius_mm: float = 3.0, **material: float) -> Submodel:
-    return cut_out(mesh, Elastomer(**material), Press(target_mm=(0, 0, 2)), TOP_MM, radius_mm)
+def cut(mesh: MembraneMesh, radius_mm: float = 3.0, *, backing_MPa: float = 0.02) -> Submodel:
+    return cut_out(
+        mesh, Elastomer(backing_MPa=backing_MPa), Press(target_mm=(0, 0, 2)), TOP_MM, radius_mm
+    )
 
 
 def test_weights_of_a_face_sum_to_one() -> None:

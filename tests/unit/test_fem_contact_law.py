@@ -88,6 +88,8 @@ def test_pressure_is_continuous_where_the_penalty_sets_in() -> None:
     """eps p^2 / (2 delta) meets eps (p - delta / 2) at delta with the same value and slope."""
     below, above = (on_plane(SOFT_MM * (1 + s * 1e-9), (0.0, 0.0)) for s in (-1, 1))
     np.testing.assert_allclose(below.normal_MPa, above.normal_MPa, rtol=1e-8)
+    assert below.stiffness_MPa_mm is not None
+    assert above.stiffness_MPa_mm is not None
     np.testing.assert_allclose(below.stiffness_MPa_mm, above.stiffness_MPa_mm, rtol=1e-8)
     np.testing.assert_allclose(below.energy_N_mm, above.energy_N_mm, rtol=1e-8)
     np.testing.assert_allclose(above.normal_MPa, [[0.0, 0.0, 0.5 * 200.0 * SOFT_MM]], rtol=1e-8)

@@ -1,13 +1,16 @@
-"""FEM: the contact solver beside finite-element figures recorded for the same case.
+"""FEM: our finite elements beside exact answers, themselves, and recorded figures of others.
 
-The figures are constants of an independent quasi-static solver (mean-dilatation hexahedra, hard
-contact, Coulomb 0.3) and of CalculiX (C3D8I) on the finger at 45 degrees; the solver itself comes
-to this program later. The null is the frictionless force: a solver without friction would score it.
+`rows` takes some minutes; `fine_rows` has what takes longer, the finest mesh and cases of the
+robustness matrix solved anew. The contact solver is compared with figures of an independent
+quasi-static solver (mean-dilatation hexahedra, hard contact, Coulomb 0.3) and of CalculiX (C3D8I)
+on the finger at 45 degrees; the null there is the frictionless force: a solver without friction
+would score it.
 """
 
 from __future__ import annotations
 
 from workbench.rows import Row, compared
+from workbench.validation import fem_exact, fem_matrix, fem_meshes, fem_paths
 from workbench.validation.presses import NAME, finger_press
 
 FEM_NORMAL_N = {"0.30 mm hexahedra": 1.291, "CalculiX C3D8I": 1.276}
@@ -17,7 +20,23 @@ LIMIT = 0.07
 
 
 def rows() -> list[Row]:
-    """All rows of the room."""
+    """All rows that take seconds to a minute each."""
+    return [
+        *fem_exact.rows(),
+        *fem_paths.rows(),
+        *fem_meshes.rows(),
+        *fem_matrix.recorded_rows(),
+        *_recorded(),
+    ]
+
+
+def fine_rows() -> list[Row]:
+    """Rows that take minutes each."""
+    return [*fem_meshes.fine_rows(), *fem_matrix.repeated_rows()]
+
+
+def _recorded() -> list[Row]:
+    """The contact solver beside figures of other programs."""
     return [
         compared(
             "finger_45_normal_force",

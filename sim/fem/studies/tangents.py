@@ -69,6 +69,8 @@ class TangentErrors:
     """`friction` without the object's curvature: the null."""
     cone: float
     """Largest tangential over normal traction, over mu."""
+    sticking: float
+    """`cone` of friction that only sticks, with its stiffness at rest: the null."""
     points: int
 
 
@@ -111,6 +113,8 @@ def tangent_errors(indenter: Indenter) -> TangentErrors:
     )
     normal = np.linalg.norm(state.normal_MPa, axis=1)
     tangential = np.linalg.norm(state.friction_MPa, axis=1)
+    along = np.einsum("qi,qi->q", state.lag.normal, rubbed.slip_mm)
+    aside_mm = np.sqrt(np.square(rubbed.slip_mm).sum(axis=1) - along**2)
     return TangentErrors(
         contact=_tangent_error(smooth, None, smooth.at(0.0, tangent=True)),
         friction=_tangent_error(rubbed, None, state),
@@ -118,6 +122,7 @@ def tangent_errors(indenter: Indenter) -> TangentErrors:
         energy=_energy_error(rubbed, state.lag),
         uncurved=_tangent_error(rubbed, None, traction(rubbed.law, flat)),
         cone=float((tangential / normal).max()) / rubbed.law.friction,
+        sticking=2.0 * float(aside_mm.max()) / rubbed.law.slip_mm,
         points=len(rubbed.places_mm),
     )
 
