@@ -216,6 +216,11 @@ def test_foreign_folders_are_refused(tmp_path: Path) -> None:
     with pytest.raises(StoreError, match="damaged"):
         DataSet.open(tmp_path)
     path.write_text(json.dumps(good))
+    cases = (tmp_path / "cases.jsonl").read_text()
+    (tmp_path / "cases.jsonl").write_text(cases.replace("train", "holiday"))
+    with pytest.raises(StoreError, match=r"cases\.jsonl cannot be read: .*holiday"):
+        DataSet.open(tmp_path)
+    (tmp_path / "cases.jsonl").write_text(cases)
     (tmp_path / "skin.npz").write_bytes((tmp_path / "skin.npz").read_bytes()[:500])
     with pytest.raises(StoreError, match=r"skin\.npz cannot be read"):
         DataSet.open(tmp_path)

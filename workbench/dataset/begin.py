@@ -13,9 +13,8 @@ import numpy as np
 
 from workbench import __version__
 from workbench.core.errors import StoreError
-from workbench.core.mapping import to_table
 from workbench.core.results import Skin
-from workbench.dataset.cases import Case
+from workbench.dataset.cases import Case, case_row
 from workbench.dataset.folder import (
     CASES,
     FORMAT,
@@ -80,7 +79,7 @@ def begin(
     buffer = io.BytesIO()
     np.savez(buffer, **{f.name: getattr(data, f.name) for f in dataclasses.fields(data)})
     write_atomically(folder / SKIN, buffer.getvalue())
-    rows = "".join(json.dumps(to_table(case)) + "\n" for case in cases)
+    rows = "".join(json.dumps(case_row(case)) + "\n" for case in cases)
     write_atomically(folder / CASES, rows.encode())
     manifest = {
         "format": FORMAT,

@@ -19,13 +19,15 @@ from __future__ import annotations
 
 import enum
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from workbench.algorithms import shear_way_mm
 from workbench.core.indenter import UNSEEN, IndenterKind
+from workbench.core.mapping import to_table
 from workbench.core.motion import slide
 from workbench.core.press import Press
 from workbench.core.results import Skin
@@ -103,6 +105,33 @@ class Case:
         """Way along U and V of a frame [mm]."""
         done = max(0, frame + 1 - self.press_frames) / max(1, self.shear_frames)
         return done * self.shear_mm[0] + 0.0, done * self.shear_mm[1] + 0.0
+
+
+def case_row(case: Case) -> dict[str, Any]:
+    """A case as a plain table."""
+    return to_table(case)
+
+
+def case_of_row(row: Mapping[str, Any]) -> Case:
+    """The case that a table holds; by hand, as there may be a hundred thousand of them.
+
+    Raises:
+        KeyError, TypeError, ValueError: If it is none.
+    """
+    place = row["position"]
+    x, y, z = place["target_mm"]
+    u, v = row["shear_mm"]
+    position = Position(
+        name=str(place["name"]), target_mm=(float(x), float(y), float(z)), labels=place["labels"]
+    )
+    given = {"split", "indenter", "position", "shear_mm"}
+    return Case(
+        **{name: value for name, value in row.items() if name not in given},
+        split=Split(row["split"]),
+        indenter=IndenterKind(row["indenter"]),
+        position=position,
+        shear_mm=(float(u), float(v)),
+    )
 
 
 def positions_of(recipe: Recipe, skin: Skin | None = None) -> list[Position]:

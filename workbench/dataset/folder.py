@@ -19,6 +19,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import os
 import zipfile
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
@@ -29,10 +30,9 @@ from typing import Any
 import numpy as np
 
 from workbench.core.digest import digest
-from workbench.core.errors import DesignError, StoreError
-from workbench.core.mapping import from_table
+from workbench.core.errors import StoreError
 from workbench.core.results import Skin
-from workbench.dataset.cases import Case, Split
+from workbench.dataset.cases import Case, Split, case_of_row
 from workbench.dataset.recipe import table_key
 from workbench.dataset.rows import read_rows
 from workbench.dataset.sample import Sample, from_bytes
@@ -73,6 +73,11 @@ def skin_data(skin: Skin) -> SkinData:
 def mesh_key(skin: SkinData) -> str:
     """Digest of vertices and triangles."""
     return digest([np.asarray(skin.points_mm), np.asarray(skin.faces)])
+
+
+def sample_name(frame: int) -> str:
+    """Name of the file of a frame."""
+    return f"{frame:03d}.npz"
 
 
 class DataSet:
@@ -118,11 +123,15 @@ class DataSet:
 
     def path(self, case: Case, frame: int) -> Path:
         """File of a sample, whether it exists or not."""
-        return self.folder / SAMPLES / case.id / f"{frame:03d}.npz"
+        return self.folder / SAMPLES / case.id / sample_name(frame)
 
     def frames(self, case: Case) -> list[int]:
         """Frames of a case that are done, in order."""
-        return [frame for frame in range(case.frames) if self.path(case, frame).exists()]
+        try:
+            there = set(os.listdir(self.folder / SAMPLES / case.id))
+        except (FileNotFoundError, NotADirectoryError):
+            return []
+        return [frame for frame in range(case.frames) if sample_name(frame) in there]
 
     def sample(self, case: Case, frame: int) -> Sample:
         """Read a sample.
@@ -226,9 +235,9 @@ def _skin(folder: Path) -> SkinData:
 
 def _cases(folder: Path) -> list[Case]:
     try:
-        return [from_table(Case, row, at=CASES) for row in read_rows(folder / CASES)]
-    except DesignError as error:
-        raise _changed(folder, f"{CASES} cannot be read: {error.message}") from error
+        return [case_of_row(row) for row in read_rows(folder / CASES)]
+    except (KeyError, TypeError, ValueError) as error:
+        raise _changed(folder, f"{CASES} cannot be read: {error!r}") from error
 
 
 def _changed(folder: Path, what: str) -> StoreError:

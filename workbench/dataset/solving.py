@@ -30,7 +30,7 @@ from workbench.core.force_field import ForceField, Source, from_contact
 from workbench.core.press import ContactSettings
 from workbench.core.results import MembraneMesh
 from workbench.dataset.cases import Case
-from workbench.dataset.folder import SAMPLES
+from workbench.dataset.folder import SAMPLES, sample_name
 from workbench.dataset.images import Cameras
 from workbench.dataset.recipe import Recipe, Solvers
 from workbench.dataset.sample import Sample, Solved, to_bytes
@@ -206,7 +206,7 @@ class Bench:
             solved: This frame alone by the finite elements.
             report: Told the time of images, and that it was written.
         """
-        path = self.setup.folder / SAMPLES / case.id / f"{frame:03d}.npz"
+        path = self.setup.folder / SAMPLES / case.id / sample_name(frame)
         if path.exists():
             return
         found = [
