@@ -42,6 +42,8 @@ def near_box_mm(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Lower and upper corner [mm], object's frame, of the skin that comes near it on the path.
 
+    Where regions are driven the skin may come from as far as it is driven.
+
     Args:
         points_mm: Skin of the part that takes part, shape (N, 3).
         approach: The path.
@@ -51,18 +53,30 @@ def near_box_mm(
         SolveError: If the object stays clear of the skin.
     """
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
+    near_mm = NEAR_MM + _driven_mm(points_mm, approach)
     for progress in path_samples(approach):
         origin_mm, rotation = approach.pose(float(progress))
         places = (points_mm - origin_mm) @ rotation
-        places = places[collider.distance(places)[0] < NEAR_MM]
+        places = places[collider.distance(places)[0] < near_mm]
         if len(places):
             low, high = np.minimum(low, places.min(axis=0)), np.maximum(high, places.max(axis=0))
     if not np.isfinite(low).all():
         raise SolveError(
-            f"the object stays more than {NEAR_MM:g} mm from the skin on the whole path",
+            f"the object stays more than {near_mm:g} mm from the skin on the whole path",
             hint="there is nothing to compare: press it in",
         )
-    return low - NEAR_MM, high + NEAR_MM
+    whole_mm = collider.reach_mm + NEAR_MM
+    return np.maximum(low - near_mm, -whole_mm), np.minimum(high + near_mm, whole_mm)
+
+
+def _driven_mm(points_mm: np.ndarray, approach: Approach) -> float:
+    """Farthest way that the drives could take any of the points (N, 3) [mm]."""
+    ways_mm = [
+        float(np.linalg.norm(drive.displacement_mm(points_mm, frame + 1.0), axis=1).max())
+        for drive in approach.press.actuations
+        for frame in range(approach.frame_count)
+    ]
+    return max(ways_mm, default=0.0)
 
 
 def make_shell(points_mm: np.ndarray, faces: np.ndarray, collider: Collider) -> Shell:

@@ -12,14 +12,17 @@ from geometry.surface import face_areas
 from sim.contact.objects.collider import make_collider
 from sim.fem.deck import DeckCase, write_deck
 from sim.fem.deck_mesh import EDGES, FACE_CORNERS, Element
+from sim.fem.deck_object import NEAR_MM, near_box_mm
 from sim.fem.deck_text import DeckText, carried_text, read_deck
 from sim.fem.studies.blocks import flat_membrane
+from workbench.core.actuation import Actuation
 from workbench.core.design import Elastomer, SensorDesign
 from workbench.core.errors import DesignError, SolveError, StoreError
 from workbench.core.fem import FemSettings
 from workbench.core.inclusion import Inclusion
 from workbench.core.indenter import Indenter, IndenterKind
 from workbench.core.press import Press
+from workbench.core.results import Label
 from workbench.fem_case import make_deck_case
 from workbench.pipeline import PressCase
 from workbench.state import State
@@ -45,7 +48,9 @@ def pad_case(
             fem=FemSettings(hex_mm=1.0, radius_mm=5.0),
         ),
     )
-    return make_deck_case(flat_membrane(gap_mm=gap_mm), state, element)
+    mesh = flat_membrane(gap_mm=gap_mm)
+    inner = dataclasses.replace(mesh.inner, labels=mesh.inner.labels | np.uint8(Label.INNER))
+    return make_deck_case(dataclasses.replace(mesh, inner=inner), state, element)
 
 
 def corners_of(deck: DeckText, name: str) -> tuple[np.ndarray, np.ndarray]:
@@ -165,12 +170,38 @@ def test_a_skin_on_gel_is_refused() -> None:
 
 def test_an_object_that_stays_off_the_skin_is_refused() -> None:
     """A trajectory would have to touch; a driven press need not."""
-    from sim.fem.deck_object import near_box_mm
-
     case = pad_case()
     far_mm = case.submodel.body.points_mm - np.array([0.0, 0.0, 10.0])
     with pytest.raises(SolveError, match="stays more than"):
         near_box_mm(far_mm, case.approach, make_collider(Indenter(), grid_mm=0.25))
+
+
+def lifted_case() -> DeckCase:
+    """The pad, whose inner face is lifted by 3 mm in two frames."""
+    lift = Actuation(region="inner", move_mm=(0.0, 0.0, 3.0), keys=((0.0, 0.0), (2.0, 1.0)))
+    return pad_case(press=dataclasses.replace(PRESS, actuations=(lift,)))
+
+
+def test_driven_skin_may_meet_more_of_the_object() -> None:
+    """Skin 4 mm below the ball, which a drive could lift by 3 mm, may meet all of it."""
+    case = lifted_case()
+    collider = make_collider(Indenter(), grid_mm=0.25)
+    low_mm = case.submodel.body.points_mm - np.array([0.0, 0.0, 4.0])
+    low, high = near_box_mm(low_mm, case.approach, collider)
+    assert low[2] == -(3.0 + NEAR_MM)
+    assert high[2] > -3.0
+
+
+def test_driven_nodes_are_moved_by_prescription() -> None:
+    """1.5 mm after the first frame, 3 mm after the second, and none of them is held."""
+    text = write_deck(lifted_case())
+    deck = read_deck(text)
+    driven = deck.sets["NDRIVEN"]
+    assert not set(driven) & set(deck.sets["NHELD"])
+    height = deck.nodes["NPART"][driven - 1, 3]
+    assert len(driven) == 81 and not height.any()
+    for step, way_mm in zip(text.split("*STEP")[1:], (1.5, 3.0), strict=True):
+        assert f"\n{driven[0]}, 3, 3, {way_mm:g}\n" in step
 
 
 def test_what_a_deck_carries_comes_back() -> None:
