@@ -67,8 +67,12 @@ def make_deck_case(
     from sim.fem.deck import DeckCase
     from sim.fem.deck_object import make_shell, near_box_mm
     from sim.fem.press import set_up
+    from workbench.devices import open_device
     from workbench.fem_surface import near_surface
 
+    if sampled is not None:
+        # A large object is sampled once more where it meets the skin.
+        open_device()
     material, case = state.design.material, state.case
     collider, approach, submodel = set_up(
         mesh, material, case.indenter, case.press, case.fem, sampled=sampled

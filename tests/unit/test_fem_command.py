@@ -6,6 +6,8 @@ import dataclasses
 import json
 import re
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +16,7 @@ import pytest
 
 from sim.fem.deck_mesh import Element
 from sim.fem.deck_results import force_field, read_table
-from sim.fem.deck_text import carried_text
+from sim.fem.deck_text import carried_text, read_deck
 from sim.fem.press import solve_press
 from sim.fem.studies.blocks import flat_membrane
 from tests.unit.test_fem_deck import pad_case
@@ -113,6 +115,22 @@ def test_a_finger_is_solved_exported_and_compared(tmp_path: Path, capsys: Any) -
     deck.write_text(re.sub(r"\n1, [^,]+", "\n1, 9.0", deck.read_text(), count=1))
     assert main(words) == 3
     assert "other nodes than this version" in capsys.readouterr().err
+
+
+@pytest.mark.slow
+def test_a_large_object_is_written_where_it_meets_the_skin(tmp_path: Path) -> None:
+    """A screwdriver 215 mm long, in a process that has not opened a device yet."""
+    deck = tmp_path / "case.inp"
+    words = ["fem", "export", "finger", *SHORT, "--indenter", "screwdriver", "--out", str(deck)]
+    done = subprocess.run(
+        [sys.executable, "-m", "workbench.cli", *words, "--project", str(tmp_path / "p")],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    object_mm = read_deck(deck.read_text()).nodes["NOBJ"][:, 1:]
+    assert 2.0 < np.ptp(object_mm, axis=0).max() < 60.0
 
 
 def their_table(deck: Path, found: Any, project: Project) -> str:
