@@ -43,8 +43,8 @@ def read_dat(text: str, case: DeckCase) -> OtherResult:
     if not blocks:
         raise StoreError(
             "the file holds no results of a deck: no forces and no displacements",
-            hint="name the .dat that CalculiX wrote beside the deck, or a .csv; it is empty too where "
-            "the program ended before the first frame",
+            hint="name the .dat that CalculiX wrote beside the deck, or a .csv; the .dat is empty "
+            "where the program ended before the first frame",
         )
     expect_frames(len({frame for _, frame in blocks}), count)
     if not text.endswith("\n"):
