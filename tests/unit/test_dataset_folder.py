@@ -18,6 +18,7 @@ import pytest
 
 from tests.unit.test_dataset_cases import flat_skin
 from workbench.core.errors import SolveError, StoreError
+from workbench.dataset.agreement import agreement
 from workbench.dataset.begin import begin
 from workbench.dataset.card import card_text
 from workbench.dataset.cases import Split, cases_of
@@ -340,6 +341,35 @@ def test_failures_are_counted_and_told(tmp_path: Path) -> None:
     assert "frame 5 did not converge" in text and "1 failed" in text
     assert "Draft mesh" in text
     assert (tmp_path / "preview.png").exists()
+
+
+def test_the_card_measures_how_far_the_solvers_are_apart(tmp_path: Path) -> None:
+    """FEM moves 1 mm with 3 N, MPM .9 mm with 2 N: ratio 1.5, .1 mm apart, 10 % of the largest."""
+    data = started(tmp_path)
+    assert agreement(data) is None
+    sample = a_sample(data)
+    assert sample.mpm is not None and sample.fem is not None
+    inward = np.zeros((VERTICES, 3), np.float32)
+    inward[:20, 2] = -1.0
+    inward[20, 0] = 0.05
+    fem = dataclasses.replace(
+        sample.fem, displacement_mm=inward, reaction_N=np.array([0.5, 0.0, 3.0])
+    )
+    mpm = dataclasses.replace(
+        sample.mpm,
+        displacement_mm=inward * np.float32(0.9),
+        reaction_N=np.array([0.0, 0.0, 2.0]),
+    )
+    content = to_bytes(dataclasses.replace(sample, fem=fem, mpm=mpm))
+    write_atomically(data.path(data.all_cases[0], 0), content)
+    found = agreement(data)
+    assert found is not None
+    assert np.allclose(found.force_ratio, [1.5])
+    # Kept in single precision.
+    assert np.allclose(found.rms_mm, [0.1], atol=1e-6)
+    finish(data)
+    assert "1.50 times" in (tmp_path / "card.md").read_text()
+    assert "10 % of the largest" in (tmp_path / "card.md").read_text()
 
 
 def test_costs_are_measured_or_not_known() -> None:
