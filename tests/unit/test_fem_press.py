@@ -8,7 +8,12 @@ import functools
 import numpy as np
 import pytest
 
+from sim.contact.motion.path import turn
+from sim.contact.objects.collider import make_collider
+from sim.fem.contact_law import Law as ContactLaw
 from sim.fem.elements import displacement_gradient, evaluate, make_elements
+from sim.fem.increment import Pairing, _load, at_rest
+from sim.fem.obstacle import RigidPose
 from sim.fem.press import set_up, solve_press
 from sim.fem.readout import FemFrame, _point_stress
 from sim.fem.studies.blocks import flat_membrane, irregular_block
@@ -17,7 +22,7 @@ from workbench.core.errors import Cancelled, DesignError, MeshingError, SolveErr
 from workbench.core.fem import FemSettings
 from workbench.core.force_field import ForceField, Source
 from workbench.core.indenter import Indenter, IndenterKind
-from workbench.core.motion import release
+from workbench.core.motion import release, slide
 from workbench.core.press import Press
 from workbench.core.soft_body import SoftBody
 
@@ -109,6 +114,58 @@ def test_after_a_release_everything_is_back() -> None:
     assert not found.pressure_MPa[-1].any()
     # What rounding leaves is not out of balance.
     assert (found.balance < 1e-4).all()
+
+
+def test_a_twist_is_resisted() -> None:
+    """A right-handed twist about the normal meets a moment the other way, and no net force."""
+    twisted = dataclasses.replace(PRESS, twist_deg=10.0)
+    found = pressed(twisted, indenter=Indenter(kind=IndenterKind.CYLINDER_END, size_mm=4.0))
+    moment_Nmm, force_N = found.moment_Nmm[-1] @ found.normal, found.normal_N[-1]
+    # All of a flat end sliding resists by mu F times two thirds of its radius; an edge by more.
+    assert -0.3 * force_N * 2.0 < moment_Nmm < -0.1 * force_N
+    assert found.tangential_N[-1] < 1e-3 * force_N
+    # The skin turns the same way: at +x it goes toward +y.
+    moved_mm = found.displacement_mm[-1]
+    place_mm = flat_membrane(width_mm=10.0).outer.points_mm - found.target_mm
+    assert (np.cross(place_mm, moved_mm) @ found.normal).max() > 0.05
+
+
+def test_friction_remembers_across_increments() -> None:
+    """A shear of 4 micrometres, less than the elastic slip, is the same in one step or in four."""
+    at_once, by_and_by = (
+        pressed(dataclasses.replace(PRESS, strokes=(slide(0.004, 0.0, frames=frames),)))
+        for frames in (1, 4)
+    )
+    sheared_N = at_once.tangential_N[-1]
+    assert sheared_N > 0.002 * at_once.normal_N[-1]
+    assert by_and_by.tangential_N[-1] == pytest.approx(sheared_N, rel=0.02)
+
+
+def test_what_friction_remembers_turns_with_the_object() -> None:
+    """Elastic slip turns as a line on the object does."""
+    poses = [
+        RigidPose(origin_mm=np.array([0.0, 0.0, 5.0]), rotation=np.eye(3)),
+        RigidPose(
+            origin_mm=np.array([1.0, 0.0, 5.0]), rotation=turn(np.array([0.0, 0.0, 1.0]), 0.5)
+        ),
+    ]
+    _, _, submodel = set_up(flat_membrane(), Elastomer(), Indenter(), PRESS, SETTINGS)
+    pairing = Pairing(
+        body=submodel.body,
+        law=ContactLaw(penalty_MPa_mm=200.0, friction=0.3),
+        collider=make_collider(Indenter(), grid_mm=0.25),
+        pose_at=lambda progress: poses[round(progress)],
+        held_mm=lambda progress: np.zeros(3),
+        tolerance=1e-6,
+    )
+    state = at_rest(pairing)
+    line_mm = state.places_mm[1] - state.places_mm[0]
+    elastic_mm = np.tile(line_mm, (len(state.places_mm), 1))
+    load = _load(pairing, dataclasses.replace(state, elastic_mm=elastic_mm), 1.0)
+    np.testing.assert_allclose(
+        load.elastic_mm[0], load.anchor_mm[1] - load.anchor_mm[0], atol=1e-14
+    )
+    assert np.linalg.norm(load.elastic_mm[0] - line_mm) > 0.1 * np.linalg.norm(line_mm)
 
 
 def test_linear_solver_makes_no_difference(monkeypatch: pytest.MonkeyPatch) -> None:
