@@ -86,12 +86,12 @@ def bounded(
     unit: str,
     limit: float,
     sense: str = "max",
-    null: float | None = None,
+    null: Measurement | None = None,
     ceiling: float | None = None,
 ) -> Row:
     """A value that must stay on one side of a limit."""
     try:
-        value = _measure(value)
+        value, null = _measure(value), _measure(null)
     except WorkbenchError as problem:
         return failed(name, case, unit=unit, why=problem.message)
     good = value <= limit if sense == "max" else value >= limit
@@ -116,12 +116,12 @@ def stated(
     value: Measurement,
     *,
     unit: str,
-    null: float | None = None,
+    null: Measurement | None = None,
     ceiling: float | None = None,
 ) -> Row:
     """A value that nothing is asked of, for comparison; ok when there is one."""
     try:
-        value = _measure(value)
+        value, null = _measure(value), _measure(null)
     except WorkbenchError as problem:
         return failed(name, case, unit=unit, why=problem.message)
     ok = math.isfinite(value)

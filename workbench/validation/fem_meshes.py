@@ -62,7 +62,7 @@ def _submodels() -> Iterator[Row]:
             lambda cut=cut, whole=whole: _errors(cut, whole, "displacement_mm", MOVED_MM)[0],
             unit="mm",
             limit=DISPLACEMENT_LIMIT_MM,
-            null=_errors(cut, whole, "displacement_mm", MOVED_MM)[1],
+            null=lambda cut=cut, whole=whole: _errors(cut, whole, "displacement_mm", MOVED_MM)[1],
         )
         yield stated(
             "submodel_worst",
@@ -70,7 +70,9 @@ def _submodels() -> Iterator[Row]:
             "largest displacement",
             lambda cut=cut, whole=whole: _worst_mm(cut, whole),
             unit="mm",
-            null=float(np.linalg.norm(solved(whole).displacement_mm[-1], axis=1).max()),
+            null=lambda whole=whole: float(
+                np.linalg.norm(solved(whole).displacement_mm[-1], axis=1).max()
+            ),
         )
         yield bounded(
             "submodel",
