@@ -24,6 +24,8 @@ class Widget:
         self.label, self.value = label, value
         self.content, self.visible = "", False
         self.handler: Any = None
+        # Where viser keeps the thread that runs callbacks.
+        self._impl = SimpleNamespace(gui_api=SimpleNamespace(_thread_executor=None))
 
     def on_update(self, handler: Any) -> None:
         self.handler = handler
