@@ -82,8 +82,10 @@ def _compiled(function: Computation, example: Tensor) -> Computation:
     result = torch.compile(function, dynamic=False)
     # All membranes and batch sizes of a process share the function's code; after eight of them
     # PyTorch would go on uncompiled and tell nobody but its log.
-    limits = {"recompile_limit": MOST_COMPILED, "accumulated_recompile_limit": MOST_COMPILED}
-    with config.patch(**limits), warnings.catch_warnings():
+    with (
+        config.patch(recompile_limit=MOST_COMPILED, accumulated_recompile_limit=MOST_COMPILED),
+        warnings.catch_warnings(),
+    ):
         # Full float32 is asked for on purpose, to evaluate with.
         warnings.filterwarnings("ignore", message="TensorFloat32")
         result(example)
