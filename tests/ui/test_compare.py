@@ -168,7 +168,8 @@ def test_a_sweep_of_three_walls_is_plotted_and_kept(
     set_number(page, "Steps", 3)
     press(page, "Run sweep")
     wait_until(lambda: page.get_by_text("Finished: 3 points").count(), 150, "the sweep ends")
-    assert page.get_by_text(re.compile(r"1\.5 mm: [\d.]+ grey")).count() == 1
+    shown = page.get_by_text(re.compile(r"1\.5 mm: [\d.]+ grey"))
+    wait_until(lambda: shown.count() == 1, 30, "the first point's image is shown")
     assert page.get_by_text(re.compile(r"12\.5 mm failed")).count() == 1
     press(page, "Keep point as variant")
     wait_until(lambda: names(project) == ["elastomer_mm 1 at 1.5"], 20, "the point is kept")
