@@ -25,6 +25,7 @@ import numpy as np
 
 from workbench.core.codec import pack, unpack
 from workbench.core.errors import StoreError
+from workbench.processes import is_alive
 from workbench.sparse import PARTS, mostly_zeros, pack_zeros, unpack_zeros
 
 META = "meta.json"
@@ -145,7 +146,7 @@ class Store:
         removed = 0
         for part in self.root.glob("*/.part-*"):
             pid = part.name.split("-")[1]
-            if not (pid.isdecimal() and _alive(int(pid))):
+            if not (pid.isdecimal() and is_alive(int(pid))):
                 shutil.rmtree(part, ignore_errors=True)
                 removed += 1
         entries: list[tuple[float, int, Path]] = []
@@ -232,13 +233,3 @@ def _disk_error(error: OSError, root: Path) -> StoreError:
         hint="check the folder's permissions, or choose another one with --project",
         at="store",
     )
-
-
-def _alive(pid: int) -> bool:
-    try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return False
-    except PermissionError:
-        return True
-    return True

@@ -15,6 +15,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from workbench.core.errors import StoreError
+from workbench.processes import is_alive
 
 LOCK = "lock"
 
@@ -80,7 +81,7 @@ def _refuse_living(path: Path) -> None:
     except (ValueError, KeyError, TypeError):
         return
     here = host == socket.gethostname()
-    if here and not _alive(pid):
+    if here and not is_alive(pid):
         return
     where = "" if here else f" on {host}"
     raise StoreError(
@@ -88,13 +89,3 @@ def _refuse_living(path: Path) -> None:
         hint=f"wait for it or stop it; if there is no such process, delete {path.parent / LOCK}",
         at=str(path.parent),
     )
-
-
-def _alive(pid: int) -> bool:
-    try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return False
-    except PermissionError:
-        return True
-    return True
