@@ -1,0 +1,201 @@
+"""Scores of a network on held-out samples, each beside what predicting nothing and the contact
+solver score. Everything is predicted in single precision.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sim.forces.network.spec import Target
+from sim.forces.network.weights import NetworkWeights
+from sim.forces.scores import Score, Summary, press_frame, ratio, score, summary
+from workbench.core.errors import DesignError, StoreError
+from workbench.core.monitor import Monitor, silent
+from workbench.dataset.cases import Case
+from workbench.dataset.sample import Sample, Solved
+from workbench.evaluation.sources import Source
+
+if TYPE_CHECKING:
+    from sim.forces.network.predictor import Predictor
+
+FIELDS = {Target.FORCE: "contact_force_N", Target.DISPLACEMENT: "displacement_mm"}
+"""What of a solver's answer each target is."""
+
+
+class Way(StrEnum):
+    """Who says what the field is."""
+
+    LEARNED = "learned"
+    MPM = "mpm"
+    """The contact solver's own field, as it is."""
+    ZERO = "zero"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Scored:
+    """One sample."""
+
+    case: Case
+    frame: int
+    scores: dict[Way, Score]
+
+    @property
+    def sheared(self) -> bool:
+        """Whether it is a frame of a shear, else of a press."""
+        return self.frame >= self.case.press_frames
+
+    @property
+    def depth_mm(self) -> float:
+        """Depth from first touch [mm]."""
+        return self.case.depth_at(self.frame)
+
+    @property
+    def shear_mm(self) -> float:
+        """Way aside [mm], along U or V, the larger."""
+        return max(map(abs, self.case.shear_at(self.frame)))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Compared:
+    """The ways beside each other over many samples."""
+
+    cases: int
+    ways: dict[Way, Summary]
+
+    @property
+    def learned(self) -> Summary:
+        """Of the network."""
+        return self.ways[Way.LEARNED]
+
+    def error_ratio(self, way: Way, over: Way) -> float:
+        """Mean absolute error of one way over that of another; NaN where that makes none."""
+        return ratio(self.ways[way].mae, self.ways[over].mae)
+
+
+Learned = Callable[[np.ndarray], np.ndarray]
+"""From the contact solver's displacement [mm] (V, 3) to a field (V, 3)."""
+
+
+def field_target(weights: NetworkWeights) -> Target:
+    """The target of weights that can be scored.
+
+    Raises:
+        DesignError: If they predict stress, which the contact solver has no raw answer for.
+    """
+    if weights.target not in FIELDS:
+        raise DesignError(
+            f"weights for {weights.target} cannot be evaluated",
+            hint=f"give weights for {' or '.join(FIELDS)}",
+            at="--weights",
+        )
+    return weights.target
+
+
+def predictor_for(weights: NetworkWeights, source: Source) -> Predictor:
+    """The network on the skin of a data set, in single precision, on the device there is."""
+    from sim.forces.network.acceleration import Acceleration
+    from sim.forces.network.predictor import Precision, Predictor
+    from workbench.devices import torch_device
+
+    return Predictor(
+        weights,
+        source.skin.points_mm,
+        faces=source.skin.faces,
+        device=torch_device(),
+        precision=Precision.SINGLE,
+        acceleration=Acceleration.EAGER,
+    )
+
+
+def scored_states(
+    source: Source,
+    chosen: Sequence[tuple[Case, int]],
+    target: Target,
+    learned: Learned,
+    *,
+    monitor: Monitor = silent,
+) -> list[Scored]:
+    """Score states one after the other.
+
+    Args:
+        source: Where the samples are.
+        chosen: Cases and frames.
+        target: Which field.
+        learned: What is scored.
+        monitor: Told after each sample; may raise `Cancelled`.
+
+    Raises:
+        StoreError: If a sample is damaged, or lacks one of the solvers.
+        SolveError: If a prediction is not finite.
+    """
+    found = []
+    for number, (case, frame) in enumerate(chosen):
+        monitor(number / len(chosen), f"{case.id}, frame {frame + 1}")
+        sample = source.sample(case, frame)
+        found.append(Scored(case=case, frame=frame, scores=_ways(sample, target, learned)))
+    return found
+
+
+def both(sample: Sample) -> tuple[Solved, Solved]:
+    """The contact solver's and the finite elements' answer.
+
+    Raises:
+        StoreError: If it lacks one of them.
+    """
+    if sample.mpm is None or sample.fem is None:
+        raise StoreError(
+            f"frame {sample.frame + 1} of {sample.case} has no answer of "
+            f"{'the contact solver' if sample.mpm is None else 'the finite elements'}",
+            hint="make the data set with --solver both",
+            at=sample.case,
+        )
+    return sample.mpm, sample.fem
+
+
+def _ways(sample: Sample, target: Target, learned: Learned) -> dict[Way, Score]:
+    mpm, fem = both(sample)
+    truth = getattr(fem, FIELDS[target])
+    frame = press_frame(sample.normal, sample.tangent_u)
+    fields = {
+        Way.LEARNED: learned(mpm.displacement_mm),
+        Way.MPM: getattr(mpm, FIELDS[target]),
+        Way.ZERO: np.zeros_like(truth),
+    }
+    return {way: score(field, truth, frame) for way, field in fields.items()}
+
+
+def compared(rows: Iterable[Scored]) -> Compared:
+    """Take samples together, way by way.
+
+    Raises:
+        ValueError: If there are none.
+    """
+    rows = list(rows)
+    ways = {way: summary([row.scores[way] for row in rows]) for way in Way}
+    return Compared(cases=len({row.case.id for row in rows}), ways=ways)
+
+
+def grouped(rows: Iterable[Scored], name: Callable[[Scored], str]) -> dict[str, Compared]:
+    """Samples taken together by a name, in the order in which names first come."""
+    groups: dict[str, list[Scored]] = {}
+    for row in rows:
+        groups.setdefault(name(row), []).append(row)
+    return {group: compared(members) for group, members in groups.items()}
+
+
+def as_table(found: Compared) -> dict[str, object]:
+    """Plain numbers for JSON, with the ratios that limits are set on."""
+    return {
+        "cases": found.cases,
+        "samples": found.learned.samples,
+        **{way.value: dataclasses.asdict(one) for way, one in found.ways.items()},
+        "learned_over_mpm": found.error_ratio(Way.LEARNED, Way.MPM),
+        "learned_over_zero": found.error_ratio(Way.LEARNED, Way.ZERO),
+        "mpm_over_zero": found.error_ratio(Way.MPM, Way.ZERO),
+    }
