@@ -19,7 +19,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from workbench import __version__, commands, dataset_command, sweep_command
+from workbench import __version__, commands, dataset_command, sweep_command, train_command
 from workbench.core.errors import Cancelled, StoreError, WorkbenchError
 from workbench.fem_arguments import add_fem_commands
 from workbench.press_arguments import add_press_options, add_unit_option
@@ -159,6 +159,9 @@ def parser() -> argparse.ArgumentParser:
     text = "Make, check and show data sets of presses for learning."
     sets = subparsers.add_parser("dataset", help=text, description=text)
     dataset_command.add_dataset_commands(sets, common)
+    text = "Train networks on data sets of presses."
+    training = subparsers.add_parser("train", help=text, description=text)
+    train_command.add_train_commands(training, common)
     text = "Solve presses by finite elements, or have another program check them."
     fem = subparsers.add_parser("fem", help=text, description=text)
     add_fem_commands(fem, common)

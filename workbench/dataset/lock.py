@@ -1,4 +1,4 @@
-"""One process at a time makes a data set: a lock file that names it.
+"""One process at a time makes a data set, or trains on one: a lock file that names it.
 
 A lock whose process has ended is taken over. Left out: processes of other machines, whose end
 cannot be seen from here; their lock stands until somebody deletes it.
@@ -21,8 +21,12 @@ LOCK = "lock"
 
 
 @contextlib.contextmanager
-def held(folder: Path) -> Iterator[None]:
+def held(folder: Path, *, doing: str = "making the data set") -> Iterator[None]:
     """Hold the lock of a folder.
+
+    Args:
+        folder: Of the data set or the training; it is made if it is not there.
+        doing: What its holder does there, for the message to others.
 
     Raises:
         StoreError: If another process holds it, or the folder cannot be written.
@@ -32,7 +36,7 @@ def held(folder: Path) -> Iterator[None]:
     try:
         folder.mkdir(parents=True, exist_ok=True)
         while not _taken(path, own):
-            _clear_dead(path)
+            _clear_dead(path, doing)
     except OSError as error:
         raise StoreError(
             f"cannot write to {folder}: {error.strerror or error}",
@@ -59,22 +63,22 @@ def _taken(path: Path, own: bytes) -> bool:
     return True
 
 
-def _clear_dead(path: Path) -> None:
+def _clear_dead(path: Path, doing: str) -> None:
     """Remove the lock of a process that has ended; another's is put back where it was."""
     aside = path.with_name(f".part-{os.getpid()}-{secrets.token_hex(6)}")
     with contextlib.suppress(FileNotFoundError):
-        _refuse_living(path)
+        _refuse_living(path, doing)
         path.rename(aside)
         # Between reading and renaming, somebody else may have taken over the dead lock.
         try:
-            _refuse_living(aside)
+            _refuse_living(aside, doing)
         except StoreError:
             aside.rename(path)
             raise
         aside.unlink()
 
 
-def _refuse_living(path: Path) -> None:
+def _refuse_living(path: Path, doing: str) -> None:
     try:
         holder = json.loads(path.read_bytes())
         pid, host = int(holder["pid"]), str(holder["host"])
@@ -85,7 +89,7 @@ def _refuse_living(path: Path) -> None:
         return
     where = "" if here else f" on {host}"
     raise StoreError(
-        f"process {pid}{where} is making the data set {path.parent}",
+        f"process {pid}{where} is {doing} {path.parent}",
         hint=f"wait for it or stop it; if there is no such process, delete {path.parent / LOCK}",
         at=str(path.parent),
     )
