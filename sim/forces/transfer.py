@@ -2,7 +2,8 @@
 
 Values per vertex are interpolated at the nearest point of the other skin. Forces are shared out
 instead: each goes to the corners of the triangle that is nearest to where it acts, in shares that
-keep it there, so that totals are kept exactly and moments to the distance of the two skins.
+keep it there, so that totals are kept exactly and moments to the distance of the two skins. Fields
+that the source does not know have no frames, and keep none.
 """
 
 from __future__ import annotations
@@ -30,12 +31,16 @@ class Shares:
 
     def interpolate(self, values: np.ndarray) -> np.ndarray:
         """Values of the skin's vertices (K, V, ...) at the places, (K, N, ...)."""
+        if not len(values):
+            return values
         shape = (1, *self.weights.shape, *(1,) * (values.ndim - 2))
         found = (values[:, self.corners] * self.weights.reshape(shape)).sum(axis=2)
         return found.astype(values.dtype)
 
     def nearest(self, values: np.ndarray) -> np.ndarray:
         """Values of the nearest vertices, (K, V, ...) to (K, N, ...)."""
+        if not len(values):
+            return values
         rows = np.arange(len(self.corners))
         return values[:, self.corners[rows, self.weights.argmax(axis=1)]]
 

@@ -94,6 +94,8 @@ class ForceField:
     """What solved or predicted it, for people."""
     notice: str = ""
     """Why not to trust it, for people: a design that the weights do not know."""
+    note: str = ""
+    """What was done to it that is no reason for doubt, for people: forces scaled with E."""
 
     @property
     def normal_N(self) -> np.ndarray:

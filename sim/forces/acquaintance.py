@@ -1,0 +1,220 @@
+"""Whether the weights of a network know a press: compared with what their data card says.
+
+A network is to be trusted for what it was trained on: one membrane, one material, objects and
+presses of the kinds it has seen. What differs is said in plain words; nothing is refused.
+
+Young's modulus is the exception. Equilibrium, contact and friction of a rigid object hold for the
+same displacements whatever E is, with all forces and stresses in proportion to it, so forces are
+scaled by E over the E of the training, exactly, and a note says so. That fails where E is not the
+only modulus: with gel behind the skin, and with parts of another elastomer.
+
+Card keys that are missing cannot be compared, which is said as well.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from sim.forces.network.spec import Target
+from workbench.core.design import Elastomer
+from workbench.core.indenter import EDGELESS, Indenter, IndenterKind
+from workbench.core.motion import StrokeKind
+from workbench.core.press import ContactSettings, Method, Press
+
+SAME = 1e-3
+"""Relative difference below which numbers of a card are the same."""
+SAME_MM = 0.02
+"""Corners of two bounding boxes closer than this are the same [mm]."""
+FARTHER = 1.05
+"""Displacements up to this many times the largest of the training are no farther."""
+NEEDED = ("membrane", "young_MPa", "poisson", "friction", "law", "indenters", "size_mm", "depth_mm",
+          "shear_mm", "grid_mm")  # fmt: skip
+"""Keys without which a card leaves something open."""
+KNOWN_STROKES = (StrokeKind.PRESS, StrokeKind.SLIDE, StrokeKind.HOLD)
+"""What data sets are made of: presses, slides, and rest."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Membrane:
+    """What tells one membrane from another."""
+
+    key: str
+    """Of its mesh at the spacing of the training: holds shape, wall and mesher."""
+    points_mm: np.ndarray | None = None
+    """Vertices of its outer skin [mm], shape (V, 3), once it is meshed."""
+    gel: bool = False
+    """Whether its skin rests on gel instead of being bonded."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Acquaintance:
+    """How well weights know a press."""
+
+    reasons: tuple[str, ...] = ()
+    """What they do not know, in words; empty when they know it."""
+    factor: float = 1.0
+    """What the network's forces and stresses are to be multiplied by."""
+    note: str = ""
+    """Why, in words; empty for a factor of 1."""
+
+
+def acquaintance(
+    card: Mapping[str, Any],
+    target: Target,
+    membrane: Membrane,
+    material: Elastomer,
+    indenter: Indenter,
+    press: Press,
+    settings: ContactSettings,
+    *,
+    largest_mm: float = 0.0,
+) -> Acquaintance:
+    """Compare a press with the data card of weights.
+
+    Args:
+        card: Of the weights.
+        target: What they predict; displacements do not change with E.
+        membrane: Of the design.
+        material: Its elastomer.
+        indenter: The object.
+        press: Its path.
+        settings: Of the contact solver, whose displacement the network is given.
+        largest_mm: Largest displacement of the press [mm], once that is known.
+    """
+    factor, note, open_reasons = _stiffness(card, target, membrane, material)
+    reasons = (
+        *_missing(card),
+        *_of_membrane(card, membrane),
+        *open_reasons,
+        *_of_material(card, material),
+        *_of_object(card, indenter),
+        *_of_path(card, press),
+        *_of_solver(card, settings, largest_mm),
+    )
+    return Acquaintance(reasons=reasons, factor=factor, note=note)
+
+
+def _missing(card: Mapping[str, Any]) -> Iterator[str]:
+    missing = [name for name in NEEDED if card.get(name) is None]
+    if missing:
+        yield f"the data card of the weights does not say: {', '.join(missing)}"
+
+
+def _of_membrane(card: Mapping[str, Any], membrane: Membrane) -> Iterator[str]:
+    known = card.get("membrane")
+    if not isinstance(known, Mapping) or known.get("mesh_key") == membrane.key:
+        return
+    if membrane.points_mm is not None:
+        here_mm = np.array([membrane.points_mm.min(axis=0), membrane.points_mm.max(axis=0)])
+        there_mm = np.array(known.get("bounds_mm", here_mm), dtype=float)
+        if np.abs(there_mm - here_mm).max() > SAME_MM:
+            sizes = (" x ".join(f"{side:.1f}" for side in high - low)
+                     for low, high in (here_mm, there_mm))  # fmt: skip
+            yield "the membrane is another: {} mm, trained on one of {} mm".format(*sizes)
+            return
+    yield "the membrane is another: its shape, its wall or its mesh is not that of the training"
+
+
+def _stiffness(
+    card: Mapping[str, Any], target: Target, membrane: Membrane, material: Elastomer
+) -> tuple[float, str, tuple[str, ...]]:
+    """Factor for E, the note on it, and what stands against it."""
+    young_MPa = _number(card, "young_MPa")
+    if not young_MPa or _same(material.young_MPa, young_MPa):
+        return 1.0, "", ()
+    factor = 1.0 if target is Target.DISPLACEMENT else material.young_MPa / young_MPa
+    words = f"E is {material.young_MPa:.4g} MPa, trained at {young_MPa:.4g} MPa"
+    if membrane.gel and material.backing_MPa > 0.0:
+        return factor, "", (f"{words}, and the gel behind the skin does not change with it",)
+    if target is Target.DISPLACEMENT:
+        return factor, "", ()
+    note = f"{words}: forces are scaled by {factor:.4g}, which is exact in statics"
+    return factor, note, ()
+
+
+def _of_material(card: Mapping[str, Any], material: Elastomer) -> Iterator[str]:
+    poisson, friction = (_number(card, name) for name in ("poisson", "friction"))
+    law = card.get("law")
+    if poisson is not None and not _same(material.poisson, poisson):
+        yield f"Poisson's ratio is {material.poisson:g}, trained at {poisson:g}"
+    if friction is not None and not _same(material.friction, friction):
+        yield f"friction is {material.friction:g}, trained at {friction:g}"
+    if law is not None and material.law.value != law:
+        yield f"the material's law is {material.law.value}, trained with {law}"
+    if material.inclusions:
+        yield "the membrane has parts of another elastomer, trained without"
+
+
+def _of_object(card: Mapping[str, Any], indenter: Indenter) -> Iterator[str]:
+    kinds = card.get("indenters")
+    size_mm, edge_mm = (_number(card, name) for name in ("size_mm", "edge_radius_mm"))
+    name = indenter.kind.value.replace("_", " ")
+    if indenter.kind is IndenterKind.MESH:
+        yield "the object comes from a file, trained on none such"
+    elif kinds is not None and indenter.kind.value not in kinds:
+        yield f"the object is of a kind that training never showed: {name}"
+    if size_mm is not None and not _same(indenter.size_mm, size_mm):
+        yield f"the object is {indenter.size_mm:g} mm wide, trained on {size_mm:g} mm"
+    edged = indenter.kind not in EDGELESS
+    if edged and edge_mm is not None and not _same(indenter.edge_radius_mm, edge_mm):
+        yield f"edges are rounded by {indenter.edge_radius_mm:g} mm, trained on {edge_mm:g} mm"
+    if indenter.texture.raised:
+        yield "the object has a texture, trained on smooth ones"
+    if indenter.soft is not None:
+        yield "the object is soft, trained on rigid ones"
+
+
+def _of_path(card: Mapping[str, Any], press: Press) -> Iterator[str]:
+    if press.actuations:
+        yield "regions of the membrane are driven, which training never showed"
+    if press.trajectory is not None:
+        yield "the object follows a trajectory, trained on straight presses and slides"
+        return
+    odd = {s.kind.value for s in press.strokes if s.kind not in KNOWN_STROKES}
+    odd |= {StrokeKind.TWIST.value} if press.twist_deg else set()
+    if odd:
+        yield f"the path has strokes that training never showed: {', '.join(sorted(odd))}"
+    depth_mm, aside_mm = _reach_mm(press)
+    deepest_mm, widest_mm = _number(card, "depth_mm"), _number(card, "shear_mm")
+    if deepest_mm is not None and depth_mm > deepest_mm * (1.0 + SAME):
+        yield f"the press is {depth_mm:.3g} mm deep, trained to {deepest_mm:.3g} mm"
+    if widest_mm is not None and aside_mm > widest_mm * (1.0 + SAME):
+        yield f"the object goes {aside_mm:.3g} mm aside, trained to {widest_mm:.3g} mm"
+
+
+def _reach_mm(press: Press) -> tuple[float, float]:
+    """Largest depth, and largest way along U or V [mm], of a path without trajectory."""
+    deep, aside = press.depth_mm, np.array(press.shear_mm)
+    deepest, widest = deep, float(np.abs(aside).max())
+    for stroke in press.strokes:
+        u_mm, v_mm, out_mm = stroke.shift_mm
+        deep, aside = deep - out_mm, aside + np.array([u_mm, v_mm])
+        deepest, widest = max(deepest, deep), max(widest, float(np.abs(aside).max()))
+    return deepest, widest
+
+
+def _of_solver(
+    card: Mapping[str, Any], settings: ContactSettings, largest_mm: float
+) -> Iterator[str]:
+    grid_mm, farthest_mm = _number(card, "grid_mm"), _number(card, "max_displacement_mm")
+    if settings.method is not Method.LATTICE:
+        yield f"the contact solver's method is {settings.method.value}, trained on lattice"
+    if grid_mm is not None and not _same(settings.grid_mm, grid_mm):
+        yield f"the contact solver's grid is {settings.grid_mm:g} mm, trained on {grid_mm:g} mm"
+    if farthest_mm is not None and largest_mm > FARTHER * farthest_mm:
+        yield f"the skin moves by {largest_mm:.2f} mm, in training by {farthest_mm:.2f} mm at most"
+
+
+def _number(card: Mapping[str, Any], name: str) -> float | None:
+    """A number of the card; None where it has none."""
+    value = card.get(name)
+    return float(value) if isinstance(value, (int, float)) else None
+
+
+def _same(one: float, other: float) -> bool:
+    return math.isclose(one, other, rel_tol=SAME, abs_tol=1e-9)

@@ -1,0 +1,206 @@
+"""Forces of a press as a trained network predicts them from what the contact solver found.
+
+The solver's displacement is carried to a skin with the spacing of the training, where the network
+gives a force per vertex, and a second one, where there is one, the displacement. Both are carried
+back to the skin of the design; forces keep their sum (`transfer`).
+
+    pressure = -f . n / A,  reaction = -sum f,  moment = -sum (x + u - o) x f
+
+with f the force on a vertex, n the outward normal of the deformed skin, A a third of the triangles
+around the vertex at rest, x + u its place and o the object's origin. Networks compute in float32:
+a result that is stored must not depend on what the machine's processor can do faster.
+
+Left out: stress, energy and slip, which these networks do not predict; what nobody solved for has
+no residual.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from geometry.surface import face_areas, vertex_normals
+from sim.forces.acquaintance import Acquaintance
+from sim.forces.network.spec import Target
+from sim.forces.network.weights import NetworkWeights
+from sim.forces.transfer import shares_on, transferred
+from workbench.core.errors import StoreError
+from workbench.core.force_field import ForceField, Source
+from workbench.core.monitor import Monitor, silent
+from workbench.core.results import MembraneMesh, Skin
+from workbench.core.sensing import Contact
+
+if TYPE_CHECKING:
+    from sim.forces.network.predictor import Predictor
+
+REMEDY = "trust the contact solver, which is shown as well"
+SOLVE = ", or solve by finite elements"
+LEAST_MM2 = 1e-12
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Known:
+    """Weights, and how well they know the press."""
+
+    name: str
+    """Of their file, for people."""
+    weights: NetworkWeights
+    acquaintance: Acquaintance
+
+
+def learned_forces(
+    mesh: MembraneMesh,
+    contact: Contact,
+    source: MembraneMesh,
+    force: Known,
+    displacement: Known | None = None,
+    *,
+    solvable: bool = True,
+    device: str = "cpu",
+    monitor: Monitor = silent,
+) -> ForceField:
+    """Predict forces, and displacements where there are weights for them, frame by frame.
+
+    Args:
+        mesh: Of the design, on whose skin the press was solved.
+        contact: What the contact solver found.
+        source: The same membrane at the spacing of the weights.
+        force: Weights of a force network.
+        displacement: Weights of a displacement network; without, the displacement is the solver's.
+        solvable: Whether finite elements take the press, so that they are a remedy.
+        device: Where PyTorch computes.
+        monitor: Told the frames; raises `Cancelled` to stop.
+
+    Raises:
+        StoreError: If weights are not of the kind that they are given for.
+        SolveError: If a displacement, or a prediction, is not finite.
+        DeviceError: If the device has no room for a network.
+    """
+    _expect_target(force, Target.FORCE)
+    if displacement is not None:
+        _expect_target(displacement, Target.DISPLACEMENT)
+    monitor(0.0, "carrying the displacement to the network's points")
+    there = shares_on(mesh.outer, source.outer.points_mm)
+    given_mm = there.interpolate(np.asarray(contact.displacement_mm))
+    used = [force] if displacement is None else [force, displacement]
+    predictors = [_predictor(known.weights, source.outer, device) for known in used]
+    fields, seconds = _predicted(predictors, given_mm, monitor)
+    force_N = fields[0] * np.float32(force.acquaintance.factor)
+    moved_mm = fields[1] if displacement is not None else given_mm
+    found = _force_field(source.outer, contact, force_N, moved_mm, seconds)
+    reasons = dict.fromkeys(r for known in used for r in known.acquaintance.reasons)
+    remedy = f"{REMEDY}{SOLVE if solvable else ''}"
+    found = dataclasses.replace(
+        found,
+        solver=f"{' and '.join(known.name for known in used)} on {device}, "
+        f"{1e3 * np.median(seconds):.0f} ms a frame",
+        notice=f"{'; '.join(reasons)}: {remedy}" if reasons else "",
+        note=force.acquaintance.note,
+    )
+    monitor(1.0, "carrying the forces to the skin")
+    shown = transferred(found, source, mesh)
+    if displacement is None:
+        # Its own numbers, not those that went to the network's points and back.
+        return dataclasses.replace(shown, displacement_mm=contact.displacement_mm)
+    return shown
+
+
+def _expect_target(known: Known, wanted: Target) -> None:
+    if known.weights.target is not wanted:
+        raise StoreError(
+            f"{known.name} predicts {known.weights.target}, not {wanted}",
+            hint=f"choose weights whose name has -{wanted}- in it",
+            at="learned.weights",
+        )
+
+
+def _predictor(weights: NetworkWeights, skin: Skin, device: str) -> Predictor:
+    """The network on a skin; some frames are not worth compiling for."""
+    from sim.forces.network.acceleration import Acceleration
+    from sim.forces.network.predictor import Precision, Predictor
+
+    return Predictor(
+        weights,
+        np.asarray(skin.points_mm),
+        faces=np.asarray(skin.faces),
+        device=device,
+        precision=Precision.SINGLE,
+        acceleration=Acceleration.EAGER,
+    )
+
+
+def _predicted(
+    predictors: Sequence[Predictor], given_mm: np.ndarray, monitor: Monitor
+) -> tuple[list[np.ndarray], np.ndarray]:
+    """Fields of each network, (K, V, 3), and the time of each frame [s], (K,)."""
+    rows: list[list[np.ndarray]] = [[] for _ in predictors]
+    seconds = np.zeros(len(given_mm))
+    with _one_thread():
+        for frame, frame_mm in enumerate(given_mm):
+            monitor(frame / len(given_mm), f"frame {frame + 1} of {len(given_mm)}")
+            begun = time.perf_counter()
+            for row, predictor in zip(rows, predictors, strict=True):
+                row.append(predictor.predict(frame_mm))
+            seconds[frame] = time.perf_counter() - begun
+    return [np.stack(row) for row in rows], seconds
+
+
+@contextlib.contextmanager
+def _one_thread() -> Iterator[None]:
+    """Let PyTorch compute in one thread.
+
+    A frame is a thousand small products, after each of which threads wait for each other: on two
+    cores that other programs use as well, two threads took 2,500 ms a frame where one took 140.
+    """
+    import torch
+
+    before = torch.get_num_threads()
+    torch.set_num_threads(1)
+    try:
+        yield
+    finally:
+        torch.set_num_threads(before)
+
+
+def _force_field(
+    skin: Skin,
+    contact: Contact,
+    force_N: np.ndarray,
+    moved_mm: np.ndarray,
+    seconds: np.ndarray,
+) -> ForceField:
+    """The result on the network's points, (K, V, 3) each."""
+    reaction_N = -force_N.sum(axis=1, dtype=np.float64)
+    place_mm = skin.points_mm + moved_mm.astype(np.float64)
+    arm_mm = place_mm - contact.indenter_pose[:, None, :3]
+    return ForceField(
+        source=Source.LEARNED,
+        displacement_mm=moved_mm,
+        contact_force_N=force_N,
+        reaction_N=reaction_N,
+        target_mm=contact.target_mm,
+        normal=contact.normal,
+        tangent_u=contact.tangent_u,
+        indenter_pose=contact.indenter_pose,
+        residual=np.full(len(force_N), np.nan),
+        balance=np.full(len(force_N), np.nan),
+        converged=np.ones(len(force_N), dtype=bool),
+        moment_Nmm=-np.cross(arm_mm, force_N).sum(axis=1),
+        pressure_MPa=_pressure_MPa(skin, force_N, place_mm),
+        frame_seconds=seconds,
+    )
+
+
+def _pressure_MPa(skin: Skin, force_N: np.ndarray, place_mm: np.ndarray) -> np.ndarray:
+    """Force against the deformed skin's normal per area at rest, (K, V), float32."""
+    third = np.repeat(face_areas(skin.points_mm, skin.faces) / 3.0, 3)
+    area_mm2 = np.bincount(skin.faces.ravel(), third, len(skin.points_mm))
+    inward = -np.stack([vertex_normals(frame_mm, skin.faces) for frame_mm in place_mm])
+    pressing_N = np.einsum("kvi,kvi->kv", force_N, inward)
+    return (pressing_N / np.maximum(area_mm2, LEAST_MM2)).astype(np.float32)
