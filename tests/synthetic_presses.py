@@ -52,7 +52,7 @@ def pad_skin(plan: Recipe, spacing_mm: float = 0.5) -> Skin:
     """A flat sheet at the height of the pad."""
     sheet = flat_skin(6.0, spacing_mm)
     height_mm = cases_of(plan)[0].position.target_mm[2]
-    return dataclasses.replace(sheet, points_mm=sheet.points_mm + [0.0, 0.0, height_mm])
+    return dataclasses.replace(sheet, points_mm=sheet.points_mm + np.array([0.0, 0.0, height_mm]))
 
 
 def made_up(folder: Path, *, young_MPa: float = 0.145, cases: int = 40) -> DataSet:

@@ -19,7 +19,14 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from workbench import __version__, commands, dataset_command, sweep_command, train_command
+from workbench import (
+    __version__,
+    commands,
+    dataset_command,
+    evaluate_command,
+    sweep_command,
+    train_command,
+)
 from workbench.core.errors import Cancelled, StoreError, WorkbenchError
 from workbench.fem_arguments import add_fem_commands
 from workbench.press_arguments import add_press_options, add_unit_option
@@ -150,6 +157,11 @@ def parser() -> argparse.ArgumentParser:
         if handler is commands.validate:
             text = "an independent program to compare with: mitsuba, for optics"
             sub.add_argument("--reference", metavar="NAME", help=text)
+            text = "for forces: a data set to score learned forces on, instead of what ships"
+            sub.add_argument("--data", type=Path, metavar="DATA", help=text)
+        else:
+            text = "also keep the rows with this machine's name and the date"
+            sub.add_argument("--record", type=Path, metavar="FILE", help=text)
     compare = command(commands.compare)
     compare.add_argument("images", type=Path, metavar="DIR")
     compare.add_argument("reference", type=Path, metavar="DIR")
@@ -159,6 +171,7 @@ def parser() -> argparse.ArgumentParser:
     text = "Make, check and show data sets of presses for learning."
     sets = subparsers.add_parser("dataset", help=text, description=text)
     dataset_command.add_dataset_commands(sets, common)
+    evaluate_command.add_evaluate_options(command(evaluate_command.evaluate))
     text = "Train networks on data sets of presses."
     training = subparsers.add_parser("train", help=text, description=text)
     train_command.add_train_commands(training, common)

@@ -9,6 +9,7 @@ import argparse
 import dataclasses
 import json
 import time
+from pathlib import Path
 from typing import Any
 
 from workbench.core.design import SensorDesign
@@ -179,21 +180,24 @@ def compare(options: argparse.Namespace, project: Project) -> int:
 
 def validate(options: argparse.Namespace, project: Project) -> int:
     """Compare with closed forms."""
-    from workbench.validate import ROOMS, room_of
+    from workbench.validate import ROOMS, room_of, with_data
 
     if options.reference:
         options.room = room_of(options.room, options.reference)
-    return _print_rows(options, ROOMS)
+    rooms = ROOMS if options.data is None else with_data(options.room, options.data)
+    return _print_rows(options, rooms)
 
 
 def bench(options: argparse.Namespace, project: Project) -> int:
     """Measure speed."""
     from workbench.bench import ROOMS
 
-    return _print_rows(options, ROOMS)
+    return _print_rows(options, ROOMS, record=options.record)
 
 
-def _print_rows(options: argparse.Namespace, rooms: dict[str, Any]) -> int:
+def _print_rows(
+    options: argparse.Namespace, rooms: dict[str, Any], *, record: Path | None = None
+) -> int:
     from workbench.core.mapping import suggest
     from workbench.rows import Row, as_json, as_text, gathered, listening
 
@@ -209,6 +213,10 @@ def _print_rows(options: argparse.Namespace, rooms: dict[str, Any]) -> int:
         )
     with listening(heard):
         rows = gathered(options.room, rooms[options.room])
+    if record is not None:
+        from workbench.benchmarks.records import write_record
+
+        write_record(record, options.room, rows)
     say(as_json(rows) if options.json else as_text(rows))
     return 0 if all(row.ok for row in rows) else 1
 

@@ -45,6 +45,8 @@ def _make_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--jobs", type=int, default=1, metavar="N", help="processes (default 1)")
     text = f"hexahedra of {DRAFT_MM} mm: about 10 %% too stiff, ten times faster"
     sub.add_argument("--draft", action="store_true", help=text)
+    text = "another Young's modulus than the recipe's; cases and split stay the same"
+    sub.add_argument("--young", type=float, metavar="MPA", help=text)
     sub.add_argument("--solver", choices=[solver.value for solver in Solvers])
     sub.add_argument("--no-images", action="store_true", help="fields and forces only")
     sub.add_argument("--seed", type=int, metavar="S", help="of the order of cases and the split")
@@ -66,7 +68,11 @@ def chosen_recipe(options: argparse.Namespace, project: Project) -> Recipe:
         "images": False if options.no_images else None,
     }
     given = {name: value for name, value in changes.items() if value is not None}
-    return dataclasses.replace(load_recipe(options.recipe, project), **given)
+    recipe = dataclasses.replace(load_recipe(options.recipe, project), **given)
+    if options.young is not None:
+        design = recipe.design.replace("material.young_MPa", options.young)
+        recipe = dataclasses.replace(recipe, design=design)
+    return recipe
 
 
 def make(options: argparse.Namespace, project: Project) -> int:

@@ -116,6 +116,7 @@ def stated(
     value: Measurement,
     *,
     unit: str,
+    reference: float | None = None,
     null: Measurement | None = None,
     ceiling: float | None = None,
 ) -> Row:
@@ -124,9 +125,17 @@ def stated(
         value, null = _measure(value), _measure(null)
     except WorkbenchError as problem:
         return failed(name, case, unit=unit, why=problem.message)
-    ok = math.isfinite(value)
     return _told(
-        Row(name=name, case=case, value=value, unit=unit, null=null, ceiling=ceiling, ok=ok)
+        Row(
+            name=name,
+            case=case,
+            value=value,
+            unit=unit,
+            reference=reference,
+            null=null,
+            ceiling=ceiling,
+            ok=math.isfinite(value),
+        )
     )
 
 

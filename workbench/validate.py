@@ -5,7 +5,9 @@ Every row is measured when it is asked for; a measurement that fails is a row th
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
+from pathlib import Path
 
 from workbench.core.errors import DesignError
 from workbench.rows import Row
@@ -47,3 +49,16 @@ def room_of(room: str, reference: str) -> str:
         hint=f"the room optics has {', '.join(known)}",
         at="--reference",
     )
+
+
+def with_data(room: str, data: Path) -> dict[str, Callable[[], list[Row]]]:
+    """The rooms, one of which measures on a data set of the user's instead of what ships.
+
+    Raises:
+        DesignError: If the room measures on none.
+    """
+    if room != "forces":
+        raise DesignError(
+            f"the room {room!r} measures on no data set", hint="use --data with forces", at="--data"
+        )
+    return {**ROOMS, room: functools.partial(forces.rows, data)}

@@ -67,11 +67,11 @@ def rows() -> list[Row]:
 
 def _substep(name: str, grid_mm: float, cpu_s: float, cuda_s: float, *, device: str) -> Row:
     """Seconds of one substep of the whole finger."""
-    relaxation, particles = _whole_finger(grid_mm)
+    relaxation, particles = whole_finger(grid_mm)
     return bounded(
         "substep",
         f"{name}: {particles} particles, {device}",
-        lambda: _substep_s(relaxation),
+        lambda: substep_s(relaxation),
         unit="s",
         limit=cuda_s if device == "cuda" else cpu_s,
     )
@@ -85,7 +85,8 @@ def _finger(grid_mm: float):
     return finger(grid_mm=grid_mm)
 
 
-def _whole_finger(grid_mm: float):
+def whole_finger(grid_mm: float):
+    """A relaxation of the whole finger in contact, and its particles."""
     from sim.contact.engine.batch import Case
     from sim.contact.engine.relaxation import Relaxation
     from sim.contact.problem import make_problem
@@ -99,7 +100,8 @@ def _whole_finger(grid_mm: float):
     return relaxation, problem.domain.particles
 
 
-def _substep_s(relaxation) -> float:
+def substep_s(relaxation) -> float:
+    """Median time of a substep [s]."""
     import taichi as ti
 
     from sim.contact.engine.relaxation import STEPS

@@ -7,6 +7,8 @@ field out, as the browser asks for it, the copies to and from the device include
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -31,40 +33,62 @@ RUN_S = 0.3
 """A run counts frames for about this long, so that a clock's grain does not matter."""
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Measured:
+    """Frame rate of a network on a membrane."""
+
+    name: str
+    """Of the size."""
+    case: str
+    """Network, points, type and device."""
+    fps: float
+    least_fps: float
+    """What is asked of the device."""
+
+
 def rows() -> list[Row]:
     """All rows of the room: as the browser uses the network, and in float32 for comparison."""
+    found = []
+    for network in NETWORKS:
+        for live, single in zip(paces(network), paces(network, single=True), strict=True):
+            found += [live_row("inference", live), _single_row(single)]
+    return found
+
+
+def live_row(name: str, live: Measured) -> Row:
+    """Frames per second as the browser uses the network."""
+    row, least = f"{name}_{live.name}", live.least_fps
+    return bounded(row, live.case, live.fps, unit="1/s", limit=least, sense="min")
+
+
+def _single_row(single: Measured) -> Row:
+    """The same in float32, as an evaluation uses it; nothing is asked of it."""
+    return stated(f"inference_{single.name}", single.case, single.fps, unit="1/s")
+
+
+def paces(network: str, *, single: bool = False) -> Iterator[Measured]:
+    """Frames per second on the three sizes, on two cores at most or on the GPU.
+
+    Args:
+        network: Name of its size.
+        single: In float32, as an evaluation uses it, else as the browser does.
+    """
     import torch
 
     from workbench.devices import torch_device
 
     device = torch_device()
-    threads = torch.get_num_threads()
-    torch.set_num_threads(min(CPU_THREADS, threads))
-    try:
-        return [
-            row(name, points, network, device, fps[device])
-            for network in NETWORKS
-            for name, points, fps in SIZES
-            for row in (_live_row, _single_row)
-        ]
-    finally:
-        torch.set_num_threads(threads)
-
-
-def _live_row(name: str, points: int, network: str, device: str, limit_fps: float) -> Row:
-    """Frames per second as the browser uses the network."""
-    predictor = _predictor(points, network, device, single=False)
-    fps = _fps(predictor, points)
-    case = _case("live", predictor, points, network, device)
-    return bounded(f"inference_{name}", case, fps, unit="1/s", limit=limit_fps, sense="min")
-
-
-def _single_row(name: str, points: int, network: str, device: str, limit_fps: float) -> Row:
-    """The same in float32, as an evaluation uses it; nothing is asked of it."""
-    predictor = _predictor(points, network, device, single=True)
-    fps = _fps(predictor, points)
-    case = _case("evaluation", predictor, points, network, device)
-    return stated(f"inference_{name}", case, fps, unit="1/s")
+    for name, points, least_fps in SIZES:
+        threads = torch.get_num_threads()
+        torch.set_num_threads(min(CPU_THREADS, threads))
+        try:
+            predictor = _predictor(points, network, device, single=single)
+            fps = _fps(predictor, points)
+        finally:
+            torch.set_num_threads(threads)
+        use = "evaluation" if single else "live"
+        case = _case(use, predictor, points, network, device)
+        yield Measured(name=name, case=case, fps=fps, least_fps=least_fps[device])
 
 
 def _predictor(points: int, network: str, device: str, *, single: bool) -> Predictor:

@@ -8,6 +8,7 @@ from typing import Any
 
 from sim.forces.network.spec import Target
 from sim.forces.network.weights import NetworkWeights
+from workbench.core.errors import SolveError
 from workbench.core.monitor import Monitor, part, silent
 from workbench.dataset.cases import Split
 from workbench.evaluation.groups import by_station, depth_of, shear_of, station_of
@@ -70,7 +71,15 @@ def evaluate_field(
     expect_no_leak(named.weights, source, cases.values(), name=named.name)
     predictor = predictor_for(named.weights, source)
     rows = scored_states(source, chosen, target, predictor.predict, monitor=monitor)
+    if not rows:
+        raise SolveError(
+            f"no held-out sample of {name} was settled by both solvers",
+            hint="make the data set again with smaller depths",
+            at=name,
+        )
     notes = _notes(named.weights, source, predictor.notes)
+    if len(rows) < len(chosen):
+        notes += (f"{len(chosen) - len(rows)} samples that a solver did not settle: left out",)
     return FieldResult(target=target, weights=named.name, rows=tuple(rows), notes=notes)
 
 

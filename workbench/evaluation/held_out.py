@@ -113,9 +113,7 @@ class HeldOut:
         if (case.id, frame) not in self._rows:
             raise _unusable(Path(self.name), f"frame {frame + 1} of {case.id} is not in it")
         number, row = self._rows[case.id, frame]
-        solved = {
-            solver: self._solved(number, row, where) for where, solver in enumerate(SOLVERS)
-        }
+        solved = {solver: self._solved(number, row, where) for where, solver in enumerate(SOLVERS)}
         return Sample(
             case=case.id,
             frame=frame,

@@ -47,36 +47,38 @@ def expect_no_leak(
     mixed = [case.id for case in cases if case.split is Split.TEST]
     if mixed and not same_deal(card, source.manifest["recipe"], source.key):
         raise _refused(
-            f"nothing says that {name} was not trained on {mixed[0]}: its training set is "
-            f"{dataset_key(card)[:12] or 'unknown'}, this one {source.key[:12]}",
+            f"nothing says that {name} was not trained on {mixed[0]}: it was trained on data set "
+            f"{', '.join(key[:12] for key in dataset_keys(card)) or 'unknown'}, this is "
+            f"{source.key[:12]}",
             len(mixed),
         )
 
 
-def dataset_key(card: Mapping[str, Any]) -> str:
-    """Key of the training set, "" where the card has none."""
-    return str(card.get("dataset", {}).get("key", ""))
+def dataset_keys(card: Mapping[str, Any]) -> list[str]:
+    """Keys of the data sets that were trained on; several belong together by the same split."""
+    told = card.get("dataset", {})
+    found = told.get("keys") or [told.get("key", "")]
+    return [str(key) for key in found if key]
 
 
 def same_deal(card: Mapping[str, Any], recipe: Mapping[str, Any], key: str) -> bool:
-    """Whether a recipe deals its cases as that of the training set did."""
-    if dataset_key(card) in ("", key):
-        return dataset_key(card) == key
-    trained = _material(card)
-    if not trained:
+    """Whether a recipe deals its cases as that of a training set did."""
+    trained, material = dataset_keys(card), _material(card)
+    if key in trained:
+        return True
+    if not material:
         return False
-    design = {**recipe["design"], "material": {**recipe["design"]["material"], **trained}}
+    design = {**recipe["design"], "material": {**recipe["design"]["material"], **material}}
     # Images have a part in the key and none in the deal.
     tables = ({**recipe, "design": design, "images": images} for images in (True, False))
-    return dataset_key(card) in [table_key(table) for table in tables]
+    return any(table_key(table) in trained for table in tables)
 
 
 def _material(card: Mapping[str, Any]) -> dict[str, Any]:
     """Numbers of the material of the training set, as far as the card has them."""
     design = card.get("dataset", {}).get("design", {})
-    table = design.get("table", design) if isinstance(design, Mapping) else {}
-    if isinstance(table.get("material"), Mapping):
-        return dict(table["material"])
+    if isinstance(design, Mapping) and isinstance(design.get("material"), Mapping):
+        return dict(design["material"])
     return {name: card[name] for name in ("young_MPa", "poisson", "friction") if name in card}
 
 

@@ -5,7 +5,7 @@ solver score. Everything is predicted in single precision.
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import TYPE_CHECKING
@@ -43,7 +43,8 @@ class Scored:
 
     case: Case
     frame: int
-    scores: dict[Way, Score]
+    scores: Mapping[str, Score]
+    """By `Way`, or by another name where more ways are compared."""
 
     @property
     def sheared(self) -> bool:
@@ -66,14 +67,14 @@ class Compared:
     """The ways beside each other over many samples."""
 
     cases: int
-    ways: dict[Way, Summary]
+    ways: Mapping[str, Summary]
 
     @property
     def learned(self) -> Summary:
         """Of the network."""
         return self.ways[Way.LEARNED]
 
-    def error_ratio(self, way: Way, over: Way) -> float:
+    def error_ratio(self, way: str, over: str) -> float:
         """Mean absolute error of one way over that of another; NaN where that makes none."""
         return ratio(self.ways[way].mae, self.ways[over].mae)
 
@@ -121,7 +122,7 @@ def scored_states(
     *,
     monitor: Monitor = silent,
 ) -> list[Scored]:
-    """Score states one after the other.
+    """Score states one after the other; one that a solver did not settle is no truth: left out.
 
     Args:
         source: Where the samples are.
@@ -138,7 +139,9 @@ def scored_states(
     for number, (case, frame) in enumerate(chosen):
         monitor(number / len(chosen), f"{case.id}, frame {frame + 1}")
         sample = source.sample(case, frame)
-        found.append(Scored(case=case, frame=frame, scores=_ways(sample, target, learned)))
+        if all(solved.converged for solved in both(sample)):
+            fields = fields_of(sample, target, learned)
+            found.append(Scored(case=case, frame=frame, scores=scores_of(sample, target, fields)))
     return found
 
 
@@ -158,26 +161,29 @@ def both(sample: Sample) -> tuple[Solved, Solved]:
     return sample.mpm, sample.fem
 
 
-def _ways(sample: Sample, target: Target, learned: Learned) -> dict[Way, Score]:
-    mpm, fem = both(sample)
-    truth = getattr(fem, FIELDS[target])
-    frame = press_frame(sample.normal, sample.tangent_u)
-    fields = {
+def fields_of(sample: Sample, target: Target, learned: Learned) -> dict[str, np.ndarray]:
+    """What the three ways say, each (V, 3)."""
+    mpm, _ = both(sample)
+    raw = getattr(mpm, FIELDS[target])
+    return {
         Way.LEARNED: learned(mpm.displacement_mm),
-        Way.MPM: getattr(mpm, FIELDS[target]),
-        Way.ZERO: np.zeros_like(truth),
+        Way.MPM: raw,
+        Way.ZERO: np.zeros_like(raw),
     }
+
+
+def scores_of(sample: Sample, target: Target, fields: Mapping[str, np.ndarray]) -> dict[str, Score]:
+    """Fields beside that of the finite elements."""
+    _, fem = both(sample)
+    frame = press_frame(sample.normal, sample.tangent_u)
+    truth = getattr(fem, FIELDS[target])
     return {way: score(field, truth, frame) for way, field in fields.items()}
 
 
 def compared(rows: Iterable[Scored]) -> Compared:
-    """Take samples together, way by way.
-
-    Raises:
-        ValueError: If there are none.
-    """
+    """Take samples together, way by way; at least one."""
     rows = list(rows)
-    ways = {way: summary([row.scores[way] for row in rows]) for way in Way}
+    ways = {way: summary([row.scores[way] for row in rows]) for way in rows[0].scores}
     return Compared(cases=len({row.case.id for row in rows}), ways=ways)
 
 
@@ -194,7 +200,7 @@ def as_table(found: Compared) -> dict[str, object]:
     return {
         "cases": found.cases,
         "samples": found.learned.samples,
-        **{way.value: dataclasses.asdict(one) for way, one in found.ways.items()},
+        **{str(way): dataclasses.asdict(one) for way, one in found.ways.items()},
         "learned_over_mpm": found.error_ratio(Way.LEARNED, Way.MPM),
         "learned_over_zero": found.error_ratio(Way.LEARNED, Way.ZERO),
         "mpm_over_zero": found.error_ratio(Way.MPM, Way.ZERO),

@@ -1,14 +1,17 @@
-"""Forces: invariances that hold exactly for the true solution.
+"""Forces: invariances that hold exactly for the true solution, and learned forces.
 
 Statics is linear in E, does not know the azimuth of an axisymmetric finger, mirrors with it, and a
-frictionless sphere cannot be turned about its centre.
+frictionless sphere cannot be turned about its centre. `learned` has the rows of learned forces.
 """
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 
 from workbench.rows import Row, bounded, compared
+from workbench.validation import learned
 from workbench.validation.presses import finger_press
 
 ROTATION_LIMIT = 0.02
@@ -22,8 +25,17 @@ SHEAR_LIMIT = 0.1
 """A grid of a quarter wall and one frame of shear read up to 7 % low."""
 
 
-def rows() -> list[Row]:
-    """All rows of the room."""
+def rows(data: Path | None = None) -> list[Row]:
+    """All rows of the room: invariances of the contact solver, then learned forces.
+
+    Args:
+        data: Data set to score learned forces on; None: the held-out set that ships.
+    """
+    return [*invariances(), *learned.rows(data)]
+
+
+def invariances() -> list[Row]:
+    """The rows of the contact solver."""
     found = [
         compared(
             "stiffness_tripled",
