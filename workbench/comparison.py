@@ -10,6 +10,7 @@ import dataclasses
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from workbench.aim import default_target_mm
@@ -42,6 +43,7 @@ GROUPS = {
     "object": "Object",
     "solver": "Contact solver",
     "fem": "Finite elements",
+    "learned": "Force network",
 }
 """Tables of a design and its press in the order of the comparison."""
 
@@ -112,6 +114,7 @@ def parameters(state: State) -> dict[str, str]:
         "object": _object_table(case.indenter),
         "solver": to_table(case.settings),
         "fem": to_table(case.fem),
+        "learned": {n: Path(p).name or "shipped" for n, p in to_table(case.learned).items()},
     }
     return dict(_flat({**table, **pressed}))
 

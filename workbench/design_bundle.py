@@ -7,6 +7,7 @@ folder of its own; the readers check the contents.
 
 from __future__ import annotations
 
+import dataclasses
 import io
 import re
 import tempfile
@@ -14,6 +15,7 @@ import zipfile
 from collections.abc import Mapping
 from pathlib import Path
 
+from workbench.chosen_weights import from_project
 from workbench.core.errors import DesignError
 from workbench.design_toml import design_files, design_to_toml
 from workbench.kept_indenters import kept_arrays
@@ -66,7 +68,9 @@ def unbundle(name: str, content: bytes, project: Project) -> State:
         state = read_state(text, Project(folder), source=name, enclosed=True)
     project.keep_files(state.design)
     case_table(state.case, project)
-    return state
+    # A zip brings no weights: those that it names are looked for in the project that it came to.
+    learned = from_project(state.case.learned, project.folder, enclosed=True)
+    return dataclasses.replace(state, case=dataclasses.replace(state.case, learned=learned))
 
 
 def zipped(files: Mapping[str, bytes]) -> bytes:

@@ -1,18 +1,34 @@
-"""The calls of forces by finite elements: the solution, and the same on the skin of the design.
+"""The calls of forces by finite elements, on the skin of the design too, and by a trained network.
 
-Both find the mesh of the finite elements as a part of their own: it is not the design's.
+All find the mesh that they need as a part of their own: it is not the design's.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from typing import Any
 
 from workbench.calls import Call, Ref
-from workbench.core.design import Elastomer, Meshing
+from workbench.chosen_weights import about, weights_files
+from workbench.core.design import Elastomer, Meshing, SensorDesign
+from workbench.core.errors import WorkbenchError
 from workbench.core.fem import FemSettings
 from workbench.core.indenter import Indenter
-from workbench.core.press import Press
+from workbench.core.learned import LearnedSettings, WeightsFile
+from workbench.core.press import ContactSettings, Press
+from workbench.known_membrane import membrane_differences
 from workbench.store import Store
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Trained:
+    """A network, and what its data card says of the membrane; the name of the file is the key."""
+
+    file: WeightsFile
+    hex_mm: float = field(default=0.0, metadata={"cosmetic": True})
+    """Spacing of the mesh that it was trained on [mm]; 0 where the file cannot be read."""
+    differences: tuple[str, ...] | None = field(default=None, metadata={"cosmetic": True})
+    """How the membrane differs from that of the training; None where the card has no design."""
 
 
 def fem_calls(
@@ -35,6 +51,58 @@ def fem_calls(
     """
     solved = Call("fem", (build, material, indenter, press, settings))
     return solved, Call("forces", (mesh, build, settings.hex_mm, solved.ref))
+
+
+def learned_calls(
+    design: SensorDesign,
+    build: Ref,
+    mesh: Ref,
+    pressed: Ref,
+    material: Elastomer,
+    indenter: Indenter,
+    press: Press,
+    settings: ContactSettings,
+    learned: LearnedSettings,
+) -> tuple[Call, ...]:
+    """The call `learned`; none where no force network is chosen and none is shipped.
+
+    Args:
+        design: What the membrane is compared by.
+        build: The body.
+        mesh: Meshes of the design, on whose skin forces are shown.
+        pressed: What the contact solver found.
+        material: The elastomer without what statics do not read.
+        indenter: The object.
+        press: Its path.
+        settings: Of the contact solver.
+        learned: Which networks.
+    """
+    force, displacement = weights_files(learned)
+    if force is None:
+        return ()
+    second = None if displacement is None else _trained(displacement, design)
+    case = (material, indenter, press, settings)
+    return (Call("learned", (mesh, build, pressed, *case, _trained(force, design), second)),)
+
+
+def _trained(file: WeightsFile, design: SensorDesign) -> Trained:
+    try:
+        known = about(file)
+    except WorkbenchError:
+        # Planning goes on; who runs the network is told.
+        return Trained(file=file)
+    differences = membrane_differences(known.card, design)
+    return Trained(file=file, hex_mm=known.hex_mm, differences=differences)
+
+
+def learned_parts(store: Store, inputs: tuple[Any, ...]) -> tuple[Call, ...]:
+    """The mesh of a call `learned`: that of the weights' training.
+
+    Raises:
+        StoreError: If the weights cannot be read.
+    """
+    _, build, *_, force, _ = inputs
+    return (_mesh(build, force.hex_mm or about(force.file).hex_mm),)
 
 
 def fem_parts(store: Store, inputs: tuple[Any, ...]) -> tuple[Call, ...]:

@@ -15,10 +15,11 @@ from workbench.bodies import IMPORTED, check_body
 from workbench.core.design import Elastomer, SensorDesign
 from workbench.core.fem import FemSettings
 from workbench.core.indenter import EDGELESS, Indenter
+from workbench.core.learned import LearnedSettings
 from workbench.core.lighting import LedRing
 from workbench.core.monitor import Monitor, silent
 from workbench.core.press import ContactSettings, Press
-from workbench.force_calls import fem_calls
+from workbench.force_calls import fem_calls, learned_calls
 from workbench.light_calls import bake_call, maps_calls, seen_optics, table_calls
 from workbench.stages import STAGES, Call, Outcome, run
 from workbench.store import Store
@@ -51,6 +52,7 @@ class PressCase:
     press: Press = field(default_factory=Press)
     settings: ContactSettings = field(default_factory=ContactSettings)
     fem: FemSettings = field(default_factory=FemSettings)
+    learned: LearnedSettings = field(default_factory=LearnedSettings)
 
 
 class Runner(Protocol):
@@ -84,7 +86,8 @@ def plan(design: SensorDesign, case: PressCase) -> dict[str, Call]:
     """Every call of the chain by stage name, in the order of `EVERYTHING`.
 
     A design with a body of its own has the call `intake` before them, a press of an object whose
-    signed distance takes long to sample the call `object`.
+    signed distance takes long to sample the call `object`; where there is a trained network, there
+    is the call `learned`.
 
     Raises:
         DesignError: If the family or the silicone is unknown, or the family refuses the shape.
@@ -115,7 +118,10 @@ def plan(design: SensorDesign, case: PressCase) -> dict[str, Call]:
     )
     pressed = (mesh.ref, lattice.ref, elastic, case.indenter, case.press, case.settings)
     press = Call("press", (*pressed, *(call.ref for call in objects)))
-    fem = fem_calls(build.ref, mesh.ref, elastic, case.indenter, case.press, case.fem)
+    path = (case.indenter, case.press)
+    fem = fem_calls(build.ref, mesh.ref, elastic, *path, case.fem)
+    known = (design, build.ref, mesh.ref, press.ref, elastic)
+    learned = learned_calls(*known, *path, case.settings, case.learned)
     bake, seen = bake_call(optics, mesh.ref), seen_optics(optics)
     tables = table_calls(seen, mesh.ref, bake.ref)
     shown = detailed(optics, case.indenter, case.settings)
@@ -143,6 +149,7 @@ def plan(design: SensorDesign, case: PressCase) -> dict[str, Call]:
         *objects,
         press,
         *fem,
+        *learned,
         shoot,
         *maps,
         mould,

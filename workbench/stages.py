@@ -33,7 +33,8 @@ from workbench.core.results import (
 )
 from workbench.core.sampled import SampledDistance
 from workbench.core.sensing import Contact
-from workbench.force_calls import fem_parts, shown_parts
+from workbench.force_calls import fem_parts, learned_parts, shown_parts
+from workbench.learned import learned
 from workbench.light_calls import shoot_parts
 from workbench.optical_stages import bake, maps, photons, shoot, start_device, table
 from workbench.store import Store, timed
@@ -312,6 +313,7 @@ STAGES = {
         Stage(name="press", version=7, lane="sim", function=press),
         Stage(name="fem", version=1, lane="sim", function=fem, parts=fem_parts),
         Stage(name="forces", version=1, lane="sim", function=forces, parts=shown_parts),
+        Stage(name="learned", version=1, lane="sim", function=learned, parts=learned_parts),
         Stage(name="photons", version=1, lane="sim", function=photons),
         Stage(name="shoot", version=4, lane="sim", function=shoot, parts=shoot_parts),
         Stage(name="maps", version=2, lane="sim", function=maps),

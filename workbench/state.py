@@ -12,10 +12,12 @@ from dataclasses import dataclass
 from typing import Any
 
 from workbench.aim import default_target_mm
+from workbench.chosen_weights import from_project, to_project
 from workbench.core.design import SensorDesign
 from workbench.core.errors import DesignError
 from workbench.core.fem import FemSettings
 from workbench.core.indenter import Indenter
+from workbench.core.learned import LearnedSettings
 from workbench.core.mapping import from_table, to_table
 from workbench.core.press import ContactSettings, Press
 from workbench.design_toml import design_from_toml, parse_toml
@@ -23,7 +25,13 @@ from workbench.kept_indenters import indenter_table, read_indenter
 from workbench.pipeline import PressCase
 from workbench.project import Project
 
-PARTS = {"indenter": Indenter, "press": Press, "settings": ContactSettings, "fem": FemSettings}
+PARTS = {
+    "indenter": Indenter,
+    "press": Press,
+    "settings": ContactSettings,
+    "fem": FemSettings,
+    "learned": LearnedSettings,
+}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -49,6 +57,7 @@ def case_table(case: PressCase, project: Project) -> dict[str, Any]:
     """
     table = to_table(dataclasses.replace(case, indenter=Indenter()))
     table["indenter"] = indenter_table(case.indenter, project)
+    table["learned"] = to_project(case.learned, project.folder)
     return table
 
 
@@ -76,6 +85,8 @@ def read_state(text: str, project: Project, *, source: str, enclosed: bool = Fal
     }
     if "indenter" in table:
         known["indenter"] = read_indenter(table["indenter"], project)
+    if "learned" in known:
+        known["learned"] = from_project(known["learned"], project.folder, enclosed=enclosed)
     roots = (project.folder,)
     design = design_from_toml(text, source=source, roots=roots, enclosed=enclosed)
     return State(design=design, case=PressCase(**known))

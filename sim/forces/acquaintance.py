@@ -30,6 +30,8 @@ SAME = 1e-3
 """Relative difference below which numbers of a card are the same."""
 SAME_MM = 0.02
 """Corners of two bounding boxes closer than this are the same [mm]."""
+AS_MANY = 0.02
+"""Share by which the number of points may differ: meshers of two versions are not quite alike."""
 FARTHER = 1.05
 """Displacements up to this many times the largest of the training are no farther."""
 NEEDED = ("membrane", "young_MPa", "poisson", "friction", "law", "indenters", "size_mm", "depth_mm",
@@ -41,12 +43,12 @@ KNOWN_STROKES = (StrokeKind.PRESS, StrokeKind.SLIDE, StrokeKind.HOLD)
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Membrane:
-    """What tells one membrane from another."""
+    """What tells a membrane from that of the training."""
 
-    key: str
-    """Of its mesh at the spacing of the training: holds shape, wall and mesher."""
+    differences: tuple[str, ...] | None
+    """How its design differs, in words; None where the card has no design."""
     points_mm: np.ndarray | None = None
-    """Vertices of its outer skin [mm], shape (V, 3), once it is meshed."""
+    """Vertices of its outer skin at the spacing of the training [mm], (V, 3), once it is meshed."""
     gel: bool = False
     """Whether its skin rests on gel instead of being bonded."""
 
@@ -106,18 +108,19 @@ def _missing(card: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _of_membrane(card: Mapping[str, Any], membrane: Membrane) -> Iterator[str]:
+    yield from membrane.differences or ()
     known = card.get("membrane")
-    if not isinstance(known, Mapping) or known.get("mesh_key") == membrane.key:
+    if membrane.differences or membrane.points_mm is None or not isinstance(known, Mapping):
         return
-    if membrane.points_mm is not None:
-        here_mm = np.array([membrane.points_mm.min(axis=0), membrane.points_mm.max(axis=0)])
-        there_mm = np.array(known.get("bounds_mm", here_mm), dtype=float)
-        if np.abs(there_mm - here_mm).max() > SAME_MM:
-            sizes = (" x ".join(f"{side:.1f}" for side in high - low)
-                     for low, high in (here_mm, there_mm))  # fmt: skip
-            yield "the membrane is another: {} mm, trained on one of {} mm".format(*sizes)
-            return
-    yield "the membrane is another: its shape, its wall or its mesh is not that of the training"
+    here_mm = np.array([membrane.points_mm.min(axis=0), membrane.points_mm.max(axis=0)])
+    there_mm = np.array(known.get("bounds_mm", here_mm), dtype=float)
+    count, vertices = len(membrane.points_mm), known.get("vertices")
+    if np.abs(there_mm - here_mm).max() > SAME_MM:
+        sizes = (" x ".join(f"{side:.1f}" for side in high - low)
+                 for low, high in (here_mm, there_mm))  # fmt: skip
+        yield "the membrane is another: {} mm, trained on one of {} mm".format(*sizes)
+    elif vertices and abs(count / vertices - 1.0) > AS_MANY:
+        yield f"the skin has {count} points, trained on {vertices}"
 
 
 def _stiffness(
@@ -151,15 +154,16 @@ def _of_material(card: Mapping[str, Any], material: Elastomer) -> Iterator[str]:
 
 
 def _of_object(card: Mapping[str, Any], indenter: Indenter) -> Iterator[str]:
-    kinds = card.get("indenters")
-    size_mm, edge_mm = (_number(card, name) for name in ("size_mm", "edge_radius_mm"))
+    kinds, edge_mm = card.get("indenters"), _number(card, "edge_radius_mm")
+    sizes_mm = np.atleast_1d(np.array(card.get("size_mm", ()), dtype=float))
     name = indenter.kind.value.replace("_", " ")
     if indenter.kind is IndenterKind.MESH:
         yield "the object comes from a file, trained on none such"
     elif kinds is not None and indenter.kind.value not in kinds:
         yield f"the object is of a kind that training never showed: {name}"
-    if size_mm is not None and not _same(indenter.size_mm, size_mm):
-        yield f"the object is {indenter.size_mm:g} mm wide, trained on {size_mm:g} mm"
+    if len(sizes_mm) and not any(_same(indenter.size_mm, size) for size in sizes_mm):
+        known = ", ".join(f"{size:g}" for size in sizes_mm)
+        yield f"the object is {indenter.size_mm:g} mm wide, trained on {known} mm"
     edged = indenter.kind not in EDGELESS
     if edged and edge_mm is not None and not _same(indenter.edge_radius_mm, edge_mm):
         yield f"edges are rounded by {indenter.edge_radius_mm:g} mm, trained on {edge_mm:g} mm"

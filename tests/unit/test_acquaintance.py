@@ -20,9 +20,10 @@ from workbench.core.soft_body import SoftBody
 from workbench.core.texture import Pattern, Texture
 from workbench.core.trajectory import Trajectory
 
+DENSE_MM = np.array([[0.0, 0.0, 0.0], [20.0, 20.0, 40.0]] * 2)
 BOX_MM = np.array([[0.0, 0.0, 0.0], [20.0, 20.0, 40.0]])
 CARD: dict[str, Any] = {
-    "membrane": {"mesh_key": "known", "bounds_mm": BOX_MM.tolist()},
+    "membrane": {"vertices": 2, "bounds_mm": BOX_MM.tolist()},
     "young_MPa": 0.145,
     "poisson": 0.45,
     "friction": 0.3,
@@ -38,7 +39,7 @@ CARD: dict[str, Any] = {
 KNOWN: dict[str, Any] = {
     "card": CARD,
     "target": Target.FORCE,
-    "membrane": Membrane(key="known"),
+    "membrane": Membrane(differences=()),
     "material": Elastomer(),
     "indenter": Indenter(),
     "press": Press(),
@@ -69,7 +70,8 @@ TIMED = Trajectory(times_s=(0.0, 1.0), poses=(ROW, ROW))
 @pytest.mark.parametrize(
     ("part", "value", "says"),
     [
-        ("membrane", Membrane(key="new"), "the membrane is another: its shape, its wall"),
+        ("membrane", Membrane(differences=("wall is 1 mm",)), "wall is 1 mm"),
+        ("membrane", Membrane(differences=None, points_mm=DENSE_MM), "has 4 points, trained on 2"),
         ("material", Elastomer(poisson=0.49), "Poisson's ratio is 0.49, trained at 0.45"),
         ("material", Elastomer(friction=0.5), "friction is 0.5, trained at 0.3"),
         ("material", Elastomer(law=Law.LINEAR), "law is linear, trained with neo_hookean"),
@@ -104,14 +106,25 @@ def test_each_thing_that_differs_is_one_sentence(part: str, value: Any, says: st
 
 
 def test_another_box_is_told_by_its_size() -> None:
-    """20 x 20 x 40 mm in training; here a corner is 2 mm farther."""
-    found = judged(membrane=Membrane(key="new", points_mm=BOX_MM * [1.1, 1.0, 1.0]))
-    assert found.reasons == (
-        "the membrane is another: 22.0 x 20.0 x 40.0 mm, trained on one of 20.0 x 20.0 x 40.0 mm",
-    )
-    # The same box around another wall.
-    (reason,) = judged(membrane=Membrane(key="new", points_mm=BOX_MM)).reasons
-    assert "its wall" in reason
+    """20 x 20 x 40 mm in training; here a corner is 2 mm farther, whatever the design says."""
+    for differences in (None, ()):
+        found = judged(membrane=Membrane(differences=differences, points_mm=BOX_MM * [1.1, 1, 1]))
+        assert found.reasons == (
+            "the membrane is another: 22.0 x 20.0 x 40.0 mm, "
+            "trained on one of 20.0 x 20.0 x 40.0 mm",
+        )
+        assert not judged(membrane=Membrane(differences=differences, points_mm=BOX_MM)).reasons
+    # What the design says is plainer than the box.
+    told = Membrane(differences=("wall is 1 mm",), points_mm=BOX_MM * 2.0)
+    assert judged(membrane=told).reasons == ("wall is 1 mm",)
+
+
+def test_one_of_several_sizes_is_known() -> None:
+    """Data sets of 4 and of 6 mm: both are known, 5 mm is not."""
+    card = {**CARD, "size_mm": [4.0, 6.0]}
+    assert not judged(card=card, indenter=Indenter(size_mm=4.0)).reasons
+    (reason,) = judged(card=card, indenter=Indenter(size_mm=5.0)).reasons
+    assert reason == "the object is 5 mm wide, trained on 4, 6 mm"
 
 
 def test_another_stiffness_scales_forces_and_is_no_reason_for_doubt() -> None:
@@ -131,7 +144,7 @@ def test_displacements_do_not_scale_with_stiffness() -> None:
 @pytest.mark.parametrize("target", [Target.FORCE, Target.DISPLACEMENT])
 def test_gel_behind_the_skin_takes_the_exactness(target: Target) -> None:
     """Its modulus stays when E changes; with air behind the skin all is in proportion again."""
-    membrane = Membrane(key="known", gel=True)
+    membrane = Membrane(differences=(), gel=True)
     stiff = Elastomer(young_MPa=0.29)
     (reason,) = judged(material=stiff, membrane=membrane, target=target).reasons
     assert "the gel behind the skin does not change with it" in reason

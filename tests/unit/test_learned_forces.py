@@ -9,16 +9,14 @@ import pytest
 
 from sim.forces.acquaintance import Acquaintance
 from sim.forces.learned import Known, learned_forces
-from sim.forces.network.minkunet import arrays_of, new_network
 from sim.forces.network.predictor import Precision, Predictor
-from sim.forces.network.spec import NetworkSpec, Target
-from sim.forces.network.weights import NetworkWeights
+from sim.forces.network.spec import Target
+from tests.made_weights import tiny_weights
 from workbench.core.errors import Cancelled, StoreError
 from workbench.core.force_field import ForceField, Source
 from workbench.core.results import MembraneMesh, Skin
 from workbench.core.sensing import Contact
 
-SPEC = NetworkSpec(name="tiny", planes=(4,) * 8, stem_planes=4)
 FRAMES = 3
 FORCE_N = np.array([1e-3, -2e-3, -5e-3])
 """What the constant network gives every vertex."""
@@ -69,26 +67,13 @@ def contact(mesh: MembraneMesh) -> Contact:
     )
 
 
-def known(
-    value: np.ndarray | None = FORCE_N, target: Target = Target.FORCE, **fields: Any
-) -> Known:
+def known(value: Any = FORCE_N, target: Target = Target.FORCE, **fields: Any) -> Known:
     """A network that gives `value` everywhere, or with None one that was never trained."""
-    arrays = dict(arrays_of(new_network(SPEC, seed=3)))
-    if value is not None:
-        arrays["last.weight"] = np.zeros_like(arrays["last.weight"])
-        arrays["last.bias"] = value.astype(np.float32)
-    weights = NetworkWeights(
-        spec=SPEC,
-        arrays=arrays,
-        target=target,
-        input_scale_mm=0.5,
-        output_scale=(1.0, 1.0, 1.0),
-        voxel_per_spacing=0.75,
-        spacing_mm=1.0,
-        card={},
+    return Known(
+        name=f"tiny-{target}.weights",
+        weights=tiny_weights(value, target),
+        acquaintance=Acquaintance(**fields),
     )
-    name = f"tiny-{target}.weights"
-    return Known(name=name, weights=weights, acquaintance=Acquaintance(**fields))
 
 
 def found(design: int, source: int, *used: Known, **options: Any) -> ForceField:

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from geometry.primitives import rounded_box
+from tests.made_weights import card_of, tiny_weights, write_tiny
+from workbench import shipped
 from workbench.core.errors import DesignError
 from workbench.core.fem import DRAFT_MM, FemSettings
 from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
@@ -24,8 +27,15 @@ FILES = {"recipe", "package"}
 SEEN = {"bake", "table", "shoot", "maps"}
 LOOKED = {"table", "shoot", "maps"}
 SOLVED = {"fem", "forces"}
-DEFORMED = {"press", "shoot", *SOLVED}
+DEFORMED = {"press", "shoot", "learned", *SOLVED}
 RINGED = {"housing", "picture", *FILES}
+
+
+@pytest.fixture(autouse=True)
+def weights(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A tiny network in place of the shipped ones, so that there is a stage `learned`."""
+    monkeypatch.setattr(shipped, "FOLDER", tmp_path)
+    write_tiny(tmp_path, tiny_weights(card=card_of(load_design("finger"), hex_mm=0.9)))
 
 
 def rerun(field: str, value: object) -> set[str]:
@@ -68,6 +78,7 @@ def test_finite_elements_have_a_mesh_of_their_own() -> None:
     coarser = plan(design.replace("meshing.hex_mm", 0.8), PressCase())
     assert coarser["fem"].key == before["fem"].key
     assert coarser["forces"].key != before["forces"].key
+    assert coarser["learned"].key != before["learned"].key
     draft = plan(design, PressCase(fem=FemSettings(hex_mm=DRAFT_MM)))
     assert {name for name, call in before.items() if draft[name].key != call.key} == SOLVED
 
