@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -87,7 +86,7 @@ def balance(
         lag: Pressure and normal of friction that is held, for all contact points.
         convex: As in `contact_law.traction`.
     """
-    elements = evaluate(body.elements, displacement_mm, tangent=tangent)
+    elements = evaluate(body.elements, displacement_mm, tangent=tangent, leading=body.near)
     if not np.isfinite(elements.energy_Nmm):
         return None
     faces = body.faces
@@ -151,21 +150,3 @@ def _spread(values: np.ndarray, spots: Spots) -> np.ndarray:
     found = np.zeros((*shape, *values.shape[1:]))
     found[row, point] = values
     return found
-
-
-def tangent_matrix(body: Body, state: Balance, elements_N_mm: np.ndarray | None = None) -> Any:
-    """Derivative of minus the residual by the free displacements, CSR, shape (E, E).
-
-    Args:
-        body: The body.
-        state: Forces with tangents.
-        elements_N_mm: Element stiffnesses instead of the state's own, shape (M, 24, 24).
-    """
-    if elements_N_mm is None:
-        elements_N_mm = state.elements.tangent_N_mm
-    assert elements_N_mm is not None and state.face_N_mm is not None
-    return body.system.matrix(
-        (body.cell_slots, elements_N_mm),
-        (body.spring_slots, body.spring_N_mm),
-        (body.face_slots[state.rows], state.face_N_mm),
-    )

@@ -88,6 +88,9 @@ class Body:
     points_mm: np.ndarray
     """Nodes at rest, shape (N, 3)."""
     elements: Elements
+    near: int
+    """So many elements, the first ones, may strain much; the tangent takes the others as they are
+    at rest. All of them are solved for exactly: the tangent only says where to."""
     faces: Faces
     """Where the object may touch."""
     held: np.ndarray
@@ -105,21 +108,6 @@ class Body:
     def system(self) -> System:
         """Numbering of the free equations."""
         return make_system(len(self.points_mm), self.elements.cells, self.held)
-
-    @functools.cached_property
-    def cell_slots(self) -> np.ndarray:
-        """Where element stiffnesses go, shape (M, 24, 24)."""
-        return self.system.slots(self.elements.cells)
-
-    @functools.cached_property
-    def face_slots(self) -> np.ndarray:
-        """Where stiffnesses of contact faces go, shape (Q, 12, 12)."""
-        return self.system.slots(self.faces.nodes)
-
-    @functools.cached_property
-    def spring_slots(self) -> np.ndarray:
-        """Where stiffnesses of springs go, shape (S, 12, 12)."""
-        return self.system.slots(self.springs.nodes)
 
     def spring_forces(self, displacement_mm: np.ndarray) -> tuple[np.ndarray, float]:
         """Forces of the gel on the nodes, (N, 3), and its energy [N mm]."""

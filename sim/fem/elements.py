@@ -14,6 +14,8 @@ All is plain NumPy over chunks of elements that fit the cache.
 
 from __future__ import annotations
 
+import dataclasses
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -49,6 +51,17 @@ class Elements:
     linear: bool = False
     """Hooke's law instead of the neo-Hookean one."""
 
+    def take(self, rows: slice) -> Elements:
+        """Some of the elements."""
+        return dataclasses.replace(
+            self,
+            cells=self.cells[rows],
+            slopes=self.slopes[rows],
+            weights_mm3=self.weights_mm3[rows],
+            shear_MPa=self.shear_MPa[rows],
+            bulk_MPa=self.bulk_MPa[rows],
+        )
+
     @property
     def volume_mm3(self) -> np.ndarray:
         """Volume of each element at rest, shape (M,)."""
@@ -64,7 +77,8 @@ class ElementState:
     force_N: np.ndarray
     """Internal nodal forces of each element, shape (M, 24)."""
     tangent_N_mm: np.ndarray | None
-    """Their derivative by the nodal displacements, shape (M, 24, 24), symmetric."""
+    """Their derivative by the nodal displacements, shape (L, 24, 24), symmetric; of the first L
+    elements, as many as were asked for."""
 
 
 def make_elements(
@@ -119,17 +133,30 @@ def _parent_slopes(place: np.ndarray) -> np.ndarray:
 
 
 def evaluate(
-    elements: Elements, displacement_mm: np.ndarray, *, tangent: bool = False
+    elements: Elements,
+    displacement_mm: np.ndarray,
+    *,
+    tangent: bool = False,
+    leading: int | None = None,
 ) -> ElementState:
-    """Energy, forces and with `tangent` stiffness at nodal displacements, shape (N, 3)."""
+    """Energy and forces at nodal displacements.
+
+    Args:
+        elements: At rest.
+        displacement_mm: Of all nodes, shape (N, 3).
+        tangent: Whether stiffnesses are wanted too.
+        leading: Of the first so many elements only; None: of all.
+    """
     count = len(elements.cells)
+    wanted = (count if leading is None else leading) if tangent else 0
     forces = np.zeros((count, 24))
-    tangents = np.zeros((count, 24, 24)) if tangent else None
+    tangents = np.zeros((wanted, 24, 24)) if tangent else None
     energy = 0.0
     law = _linear_chunk if elements.linear else _neo_hookean_chunk
-    for begin in range(0, count, CHUNK):
-        part = slice(begin, begin + CHUNK)
-        block = None if tangents is None else tangents[part]
+    edges = sorted({*range(0, wanted, CHUNK), *range(wanted, count, CHUNK), count})
+    for begin, end in itertools.pairwise(edges):
+        part = slice(begin, end)
+        block = tangents[part] if tangents is not None and end <= wanted else None
         energy += law(elements, displacement_mm, part, forces[part], block)
         if not np.isfinite(energy):
             break

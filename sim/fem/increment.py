@@ -11,12 +11,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim.contact.objects.collider import Collider
-from sim.fem.balance import Balance, Load, balance, tangent_matrix
+from sim.fem.balance import Balance, Load, balance
 from sim.fem.body import Body
 from sim.fem.contact_law import Lag, Law
 from sim.fem.lagged import lagged, minimise
-from sim.fem.newton import Effort, Solution, Solvers, newton
+from sim.fem.newton import Effort, Solution, newton
 from sim.fem.obstacle import RigidPose
+from sim.fem.tangent import Tangent
 from workbench.core.errors import SolveError
 
 START_TOLERANCE = 0.1
@@ -77,7 +78,7 @@ def advance(
     pairing: Pairing,
     state: State,
     progress: float,
-    solvers: Solvers,
+    tangent: Tangent,
     effort: Effort,
     *,
     halvings: int = 0,
@@ -89,7 +90,7 @@ def advance(
         pairing: Body, object and path.
         state: Where it stands.
         progress: Where it goes.
-        solvers: Linear solvers.
+        tangent: The linearised equations of the body.
         effort: Counts what it took.
         halvings: How often this piece of the path has been halved.
         watch: Told the progress reached; raises to stop.
@@ -97,7 +98,7 @@ def advance(
     Raises:
         SolveError: If a sixteenth of the increment does not converge either.
     """
-    found = increment(pairing, state, progress, solvers, effort)
+    found = increment(pairing, state, progress, tangent, effort)
     if found is not None:
         watch(progress)
         return found
@@ -111,22 +112,22 @@ def advance(
     effort.halved += 1
     middle = 0.5 * (state.progress + progress)
     for goal in (middle, progress):
-        state = advance(pairing, state, goal, solvers, effort, halvings=halvings + 1, watch=watch)
+        state = advance(pairing, state, goal, tangent, effort, halvings=halvings + 1, watch=watch)
     return state
 
 
 def increment(
-    pairing: Pairing, state: State, progress: float, solvers: Solvers, effort: Effort
+    pairing: Pairing, state: State, progress: float, tangent: Tangent, effort: Effort
 ) -> State | None:
     """The state after `progress` frames; None if neither method converges."""
     old, load = _load(pairing, state, state.progress), _load(pairing, state, progress)
-    start_mm = _predicted(pairing, state, progress, old, load, solvers)
+    start_mm = _predicted(pairing, state, progress, old, load, tangent)
     start_mm = minimise(
         pairing.body,
         load,
         start_mm,
         _lag(state),
-        solvers,
+        tangent,
         effort,
         tolerance=START_TOLERANCE,
         most=MOST_STARTING,
@@ -135,13 +136,13 @@ def increment(
         pairing.body,
         load,
         start_mm,
-        solvers,
+        tangent,
         effort,
         tolerance=pairing.tolerance,
         most=MOST_NEWTON,
     )
     if found is None or not found.converged:
-        found = lagged(pairing.body, load, start_mm, solvers, effort, tolerance=pairing.tolerance)
+        found = lagged(pairing.body, load, start_mm, tangent, effort, tolerance=pairing.tolerance)
     if found is None or not found.converged:
         return None
     effort.increments += 1
@@ -169,7 +170,7 @@ def _lag(state: State) -> Lag:
 
 
 def _predicted(
-    pairing: Pairing, state: State, progress: float, old: Load, new: Load, solvers: Solvers
+    pairing: Pairing, state: State, progress: float, old: Load, new: Load, tangent: Tangent
 ) -> np.ndarray:
     """First guess (N, 3): held nodes moved, the others by the tangent about the old state."""
     body = pairing.body
@@ -191,8 +192,8 @@ def _predicted(
     right = body.system.reduced(right_N)
     if not right.any():
         return moved_mm
-    solvers.unsymmetric.factorise(tangent_matrix(body, known))
-    step_mm = body.system.expanded(solvers.unsymmetric.solve(right))
+    tangent.factorise(known)
+    step_mm = tangent.solve(right)
     farthest_mm = LONGEST_GUESS * max(
         float(np.abs(way_mm).max(initial=0.0)), float(np.abs(held_mm).max(initial=0.0))
     )

@@ -13,10 +13,11 @@ from collections.abc import Callable
 
 import numpy as np
 
-from sim.fem.balance import Balance, Load, balance, tangent_matrix
+from sim.fem.balance import Balance, Load, balance
 from sim.fem.body import Body
 from sim.fem.contact_law import Lag
-from sim.fem.newton import Effort, Solution, Solvers, first_share, newton
+from sim.fem.newton import Effort, Solution, first_share, newton
+from sim.fem.tangent import Tangent
 
 MOST_LAGS = 12
 MOST_STEPS = 30
@@ -37,7 +38,7 @@ def lagged(
     body: Body,
     load: Load,
     displacement_mm: np.ndarray,
-    solvers: Solvers,
+    tangent: Tangent,
     effort: Effort,
     *,
     tolerance: float,
@@ -50,7 +51,7 @@ def lagged(
             return None
         goal = max(0.1 * tolerance, min(LOOSEST, SHARE * before))
         displacement_mm = minimise(
-            body, load, displacement_mm, state.lag(), solvers, effort, tolerance=goal
+            body, load, displacement_mm, state.lag(), tangent, effort, tolerance=goal
         )
         state = balance(body, load, displacement_mm, tangent=False)
         if state is None:
@@ -62,7 +63,7 @@ def lagged(
                 body,
                 load,
                 displacement_mm,
-                solvers,
+                tangent,
                 effort,
                 tolerance=tolerance,
                 most=MOST_EXACT,
@@ -78,7 +79,7 @@ def minimise(
     load: Load,
     displacement_mm: np.ndarray,
     lag: Lag,
-    solvers: Solvers,
+    tangent: Tangent,
     effort: Effort,
     *,
     tolerance: float,
@@ -91,8 +92,7 @@ def minimise(
             break
         effort.lagged += 1
         effort.watch()
-        step = _descent(body, load, displacement_mm, state, lag, solvers, effort)
-        step_mm = body.system.expanded(step)
+        step_mm = _descent(body, load, displacement_mm, state, lag, tangent, effort)
         moved_mm = _search(body, load, displacement_mm, step_mm, state, lag)
         if moved_mm is None:
             break
@@ -106,22 +106,21 @@ def _descent(
     displacement_mm: np.ndarray,
     state: Balance,
     lag: Lag,
-    solvers: Solvers,
+    tangent: Tangent,
     effort: Effort,
 ) -> np.ndarray:
-    """A direction of the free displacements, (E,), in which the potential falls."""
-    solver = solvers.symmetric
-    negative = solver.factorise(tangent_matrix(body, state))
+    """A way of the nodes, shape (N, 3), along which the potential falls."""
+    negative = tangent.factorise(state, symmetric=True)
     if not negative:
-        step = solver.solve(state.residual_N)
-        if negative == 0 or state.residual_N @ step > 0.0:
-            return step
+        step_mm = tangent.solve(state.residual_N)
+        if negative == 0 or state.residual_N @ body.system.reduced(step_mm) > 0.0:
+            return step_mm
     effort.projected += 1
     convex = balance(body, load, displacement_mm, lag=lag, convex=True)
     assert convex is not None
     positive = _positive(convex.elements.tangent_N_mm)
-    solver.factorise(tangent_matrix(body, convex, positive))
-    return solver.solve(state.residual_N)
+    tangent.factorise(convex, symmetric=True, elements_N_mm=positive)
+    return tangent.solve(state.residual_N)
 
 
 def _positive(stiffness: np.ndarray | None) -> np.ndarray:

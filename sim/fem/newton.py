@@ -8,13 +8,13 @@ is halved until the residual is below the largest of the last three (Grippo, Lam
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
-from sim.fem.balance import Balance, Load, balance, tangent_matrix
+from sim.fem.balance import Balance, Load, balance
 from sim.fem.body import Body
-from sim.fem.linear_solver import LinearSolver, make_solver
+from sim.fem.tangent import Tangent
 
 FARTHEST_MM = 0.5
 """Longest way of a node in a step [mm]."""
@@ -48,19 +48,6 @@ class Effort:
     """Called at every step; raises to stop."""
 
 
-@dataclass(kw_only=True)
-class Solvers:
-    """Linear solvers of one body, which remember the order of its equations."""
-
-    unsymmetric: LinearSolver = field(default_factory=lambda: make_solver(symmetric=False))
-    symmetric: LinearSolver = field(default_factory=lambda: make_solver(symmetric=True))
-
-    def close(self) -> None:
-        """Give their memory back."""
-        self.unsymmetric.close()
-        self.symmetric.close()
-
-
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Solution:
     """A displacement and its forces."""
@@ -81,7 +68,7 @@ def newton(
     body: Body,
     load: Load,
     displacement_mm: np.ndarray,
-    solvers: Solvers,
+    tangent: Tangent,
     effort: Effort,
     *,
     tolerance: float,
@@ -93,7 +80,7 @@ def newton(
         body: The body.
         load: The object.
         displacement_mm: Start; held nodes are where they belong.
-        solvers: Linear solvers.
+        tangent: The linearised equations of the body.
         effort: Counts the steps.
         tolerance: Relative residual to reach.
         most: Steps at most.
@@ -106,7 +93,7 @@ def newton(
         if state.relative < tolerance:
             break
         history.append(float(np.linalg.norm(state.residual_N)))
-        stepped = _step(body, load, displacement_mm, solvers, max(history[-REMEMBERED:]))
+        stepped = _step(body, load, displacement_mm, tangent, max(history[-REMEMBERED:]))
         effort.newton += 1
         effort.watch()
         if stepped is None or _stalls(history):
@@ -121,15 +108,14 @@ def _step(
     body: Body,
     load: Load,
     displacement_mm: np.ndarray,
-    solvers: Solvers,
+    tangent: Tangent,
     reference_N: float,
 ) -> tuple[np.ndarray, Balance] | None:
     """One step with its line search; None if none of the tried ones will do."""
     state = balance(body, load, displacement_mm)
     assert state is not None
-    solver = solvers.unsymmetric
-    solver.factorise(tangent_matrix(body, state))
-    step_mm = body.system.expanded(solver.solve(state.residual_N))
+    tangent.factorise(state)
+    step_mm = tangent.solve(state.residual_N)
     share = first_share(step_mm)
     best: tuple[float, np.ndarray, Balance] | None = None
     for _ in range(HALVINGS):

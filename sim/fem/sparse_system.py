@@ -83,13 +83,16 @@ def freedoms_of(nodes: np.ndarray) -> np.ndarray:
     return (3 * nodes[:, :, None] + np.arange(3)).reshape(groups, 3 * width)
 
 
-def make_system(node_count: int, cells: np.ndarray, held: np.ndarray) -> System:
+def make_system(
+    node_count: int, cells: np.ndarray, held: np.ndarray, *, joined: np.ndarray | None = None
+) -> System:
     """Pattern of the free equations.
 
     Args:
         node_count: Nodes, each with three degrees of freedom.
         cells: Node numbers of the elements, shape (M, 8).
         held: Nodes whose displacement is prescribed, shape (N,), bool.
+        joined: Nodes that all meet each other besides, shape (B,).
     """
     free_nodes = np.flatnonzero(~held)
     count = len(free_nodes)
@@ -99,6 +102,9 @@ def make_system(node_count: int, cells: np.ndarray, held: np.ndarray) -> System:
     rows, columns = np.repeat(number, 8, axis=1), np.tile(number, (1, 8))
     inside = (rows >= 0) & (columns >= 0)
     pairs = np.unique(rows[inside] * np.int64(count) + columns[inside])
+    if joined is not None:
+        both = numbers[joined][numbers[joined] >= 0]
+        pairs = np.union1d(pairs, (both[:, None] * np.int64(count) + both).ravel())
     row, column = np.divmod(pairs, max(count, 1))
     starts = np.append(0, np.cumsum(np.bincount(row, minlength=count)))
     lengths = 3 * np.diff(starts)

@@ -7,6 +7,7 @@ that is driven, takes part as a whole.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,6 +31,8 @@ SIDES = np.array(
     [(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]
 )
 """Corners of the six faces of a hexahedron, counter-clockwise from outside."""
+MOST_NEAR = 0.5
+"""Share of elements near the contact beyond which it does not pay to condense the others."""
 SAME_MM = 1e-9
 """Skin vertices and nodes of the hexahedra are the same numbers."""
 
@@ -59,6 +62,8 @@ def cut_out(
     press: Press,
     centre_mm: np.ndarray,
     radius_mm: float,
+    *,
+    near_mm: float = math.inf,
 ) -> Submodel:
     """The cells whose centre lies within a radius.
 
@@ -68,6 +73,8 @@ def cut_out(
         press: Its actuations drive regions.
         centre_mm: Middle of the contact, shape (3,).
         radius_mm: Radius, or inf.
+        near_mm: Radius beyond which the tangent takes the wall as it is at rest; a membrane on gel,
+            and one that takes part as a whole, bends too far for that.
 
     Raises:
         MeshingError: If the membrane has no hexahedra, or none lies there.
@@ -83,8 +90,9 @@ def cut_out(
             hint="raise fem.radius_mm",
             at="fem.radius_mm",
         )
-    nodes = np.unique(hexes.cells[kept])
-    cells = np.searchsorted(nodes, hexes.cells[kept])
+    chosen = np.flatnonzero(kept)[np.argsort(away_mm[kept] >= near_mm, kind="stable")]
+    nodes = np.unique(hexes.cells[chosen])
+    cells = np.searchsorted(nodes, hexes.cells[chosen])
     cut = np.isin(nodes, hexes.cells[~kept])
     outer, inner = _skin_vertices(mesh, points_mm[nodes])
     drive = _drives(mesh, press, outer, inner)
@@ -96,6 +104,10 @@ def cut_out(
     sides = boundary(cells)
     sides = sides[(outer[sides] >= 0).all(axis=1) & ~held[sides].all(axis=1)]
     springs, stiffness = _gel(mesh, material, local_mm, boundary(cells), inner)
+    rigid = math.isfinite(radius_mm) and not len(springs.nodes)
+    near = int((away_mm[kept] < near_mm).sum())
+    if not rigid or near > MOST_NEAR * len(cells):
+        near = len(cells)
     body = Body(
         points_mm=local_mm,
         elements=make_elements(
@@ -105,6 +117,7 @@ def cut_out(
             bulk_MPa=moduli[:, 1],
             linear=material.law is Law.LINEAR,
         ),
+        near=near,
         faces=make_faces(local_mm, sides),
         held=held,
         driven=drive >= 0,

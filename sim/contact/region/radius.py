@@ -58,7 +58,7 @@ def region_radius_mm(
     """
     to_support = np.linalg.norm(mesh.inner.points_mm - approach.target_mm, axis=1)
     wall_mm = float(to_support.min())
-    patch_mm = _patch_radius_mm(mesh, approach, collider)
+    patch_mm = patch_radius_mm(mesh, approach, collider)
     chosen_mm = settings.active_radius_mm
     decays_mm = decay_mm(mesh, material, wall_mm)
     from_target = np.linalg.norm(mesh.outer.points_mm - approach.target_mm, axis=1)
@@ -91,7 +91,7 @@ def margin_walls(error: float) -> float:
     return max(LEAST_MARGIN_WALLS, MARGIN_WALLS + math.log(MARGIN_ERROR / error) / DECAY_WALLS)
 
 
-def _patch_radius_mm(mesh: MembraneMesh, approach: Approach, collider: Collider) -> float:
+def patch_radius_mm(mesh: MembraneMesh, approach: Approach, collider: Collider) -> float:
     """Farthest skin vertex from the target that the indenter covers on its path."""
     from_target = np.linalg.norm(mesh.outer.points_mm - approach.target_mm, axis=1)
     patch_mm = 0.0

@@ -23,10 +23,11 @@ from sim.fem.contact_law import PENALTY
 from sim.fem.contact_law import Law as Pair
 from sim.fem.elements import make_elements
 from sim.fem.increment import Pairing, State, advance, at_rest
-from sim.fem.newton import Effort, Solvers
+from sim.fem.newton import Effort
 from sim.fem.obstacle import RigidPose
 from sim.fem.studies.blocks import block, graded
 from sim.fem.submodel import boundary
+from sim.fem.tangent import Tangent
 from sim.material import elastic_solid
 from workbench.core.design import Elastomer, Law
 from workbench.core.indenter import Indenter
@@ -120,6 +121,7 @@ def quarter_block(edge_mm: float, material: Elastomer) -> Body:
             bulk_MPa=solid.bulk_MPa,
             linear=solid.linear,
         ),
+        near=len(cells),
         faces=make_faces(points_mm, quads[on_top & near]),
         held=np.abs(points_mm).max(axis=1) == far_mm,
         driven=np.zeros(len(points_mm), dtype=bool),
@@ -159,11 +161,11 @@ def _pressed(body: Body, material: Elastomer) -> State:
         held_mm=lambda progress: progress**1.5 * far_mm,
         tolerance=TOLERANCE,
     )
-    solvers = Solvers()
+    tangent = Tangent(body)
     try:
-        return advance(pairing, at_rest(pairing), 1.0, solvers, Effort())
+        return advance(pairing, at_rest(pairing), 1.0, tangent, Effort())
     finally:
-        solvers.close()
+        tangent.close()
 
 
 def _read(body: Body, state: State, edge_mm: float) -> HertzPress:
