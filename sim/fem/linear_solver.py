@@ -24,9 +24,11 @@ ORDER, FACTORISE, SUBSTITUTE = 11, 22, 33
 """PARDISO's phases."""
 LIBRARY = "PYPARDISO_MKL_RT"
 """Where the wrapper is told its library."""
-OPTIONS = {1: 1, 2: 2, 10: 13, 11: 0, 13: 0, 21: 1}
-"""PARDISO's `iparm` by place, counted from 1: nested dissection, and no matching or scaling, which
-would order equations anew by their values, and which elastic tangents do not need."""
+OPTIONS = {1: 1, 10: 13, 11: 0, 13: 0, 21: 1}
+"""PARDISO's `iparm` by place, counted from 1: no matching or scaling, which would order equations
+anew by their values, and which elastic tangents do not need."""
+MINIMUM_DEGREE, NESTED_DISSECTION = 0, 2
+ORDERING = 2
 IN_SINGLE = 28
 NEGATIVE_PIVOTS = 23
 """Places in PARDISO's `iparm`, counted from 1."""
@@ -56,7 +58,9 @@ class LinearSolver(Protocol):
         ...
 
 
-def make_solver(*, symmetric: bool, positive: bool = False, single: bool = False) -> LinearSolver:
+def make_solver(
+    *, symmetric: bool, positive: bool = False, single: bool = False, block: bool = False
+) -> LinearSolver:
     """The fastest solver that is installed, for matrices of one pattern.
 
     Args:
@@ -64,9 +68,11 @@ def make_solver(*, symmetric: bool, positive: bool = False, single: bool = False
         positive: Whether they are positive definite too.
         single: Whether factors in float32 will do: solutions to 1e-6 of their size, in 0.6 of the
             time. Newton's method finds the same zero of the same residual by them.
+        block: Whether many equations all meet each other. Minimum degree puts those last, in 0.75
+            of the time that nested dissection takes, which is twice as fast without them.
     """
     if has_pardiso():
-        return Pardiso(symmetric=symmetric, positive=positive, single=single)
+        return Pardiso(symmetric=symmetric, positive=positive, single=single, block=block)
     return SuperLU(single=single)
 
 
@@ -94,7 +100,14 @@ def _name_library() -> None:
 class Pardiso:
     """MKL's direct solver; holds its memory until it is closed."""
 
-    def __init__(self, *, symmetric: bool, positive: bool = False, single: bool = False) -> None:
+    def __init__(
+        self,
+        *,
+        symmetric: bool,
+        positive: bool = False,
+        single: bool = False,
+        block: bool = False,
+    ) -> None:
         _name_library()
         from pypardiso import PyPardisoSolver
 
@@ -104,6 +117,7 @@ class Pardiso:
         self._solver = PyPardisoSolver(mtype=POSITIVE if positive else kind)
         for place, value in OPTIONS.items():
             self._solver.iparm[place - 1] = value
+        self._solver.iparm[ORDERING - 1] = MINIMUM_DEGREE if block else NESTED_DISSECTION
         self._type = np.float32 if single else np.float64
         self._solver.iparm[IN_SINGLE - 1] = int(single)
         self._ordered = False

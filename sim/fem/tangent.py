@@ -26,8 +26,9 @@ class Tangent:
 
     def __init__(self, body: Body) -> None:
         self.body = body
-        self._unsymmetric = make_solver(symmetric=False, single=True)
-        self._symmetric = make_solver(symmetric=True, single=True)
+        far = body.near < len(body.elements.cells)
+        self._unsymmetric = make_solver(symmetric=False, single=True, block=far)
+        self._symmetric = make_solver(symmetric=True, single=True, block=far)
         self._used: LinearSolver = self._unsymmetric
 
     @property

@@ -249,8 +249,8 @@ RECIPES = {
         "Algorithm 2 of the paper: 25 positions, 14 objects, 12 depths: 4,200 samples",
     ),
     "small": (
-        f'design = "geltip"\npattern = "finger"\nhex_mm = {DRAFT_MM}\ncases = 84\n',
-        "a first set for training on the finger: 84 cases, 1,260 samples, draft mesh",
+        'design = "geltip"\npattern = "finger"\ncases = 84\n',
+        "a first set for training on the finger: 84 cases, 1,260 samples",
     ),
     "tiny": (
         f'design = "geltip"\npattern = "finger"\nhex_mm = {DRAFT_MM}\nindenters = ["sphere"]\n'
