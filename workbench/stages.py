@@ -311,7 +311,7 @@ STAGES = {
         Stage(name="table", version=2, lane="sim", function=table),
         Stage(name="object", version=1, lane="sim", function=object_distance),
         Stage(name="press", version=7, lane="sim", function=press),
-        Stage(name="fem", version=1, lane="sim", function=fem, parts=fem_parts),
+        Stage(name="fem", version=2, lane="sim", function=fem, parts=fem_parts),
         Stage(name="forces", version=1, lane="sim", function=forces, parts=shown_parts),
         Stage(name="learned", version=1, lane="sim", function=learned, parts=learned_parts),
         Stage(name="photons", version=1, lane="sim", function=photons),
