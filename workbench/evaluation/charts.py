@@ -10,12 +10,12 @@ import numpy as np
 
 from workbench.plot_axis import FAINT, INK, LINE, Axis, tick_text
 
-WIDTH, HEIGHT = 480, 250
-LEFT, RIGHT, TOP, BOTTOM = 66, 12, 34, 58
+WIDTH, HEIGHT = 480, 270
+LEFT, RIGHT, TOP, BOTTOM = 66, 12, 34, 76
 COLOURS = {"learned": LINE, "mpm": "#b45309", "zero": "#8b93a0"}
 """Of the three ways; told apart in grey as well, as each line has its own dashes."""
 DASHES = {"learned": "", "mpm": "6 3", "zero": "2 3"}
-WORDS = {"learned": "learned", "mpm": "contact solver", "zero": "zero"}
+WORDS = {"mpm": "contact solver"}
 BINS = 12
 SLANTED = 7
 """From so many names on they are written at a slant."""
@@ -108,7 +108,7 @@ def _names(names: Sequence[str], places: Sequence[float]) -> str:
     slanted = len(names) >= SLANTED
     found = []
     for name, x in zip(names, places, strict=True):
-        turn = f" transform='rotate(-40 {x:.1f} {y})'" if slanted else ""
+        turn = f" transform='rotate(-35 {x:.1f} {y})'" if slanted else ""
         anchor = "end" if slanted else "middle"
         found.append(
             f"<text x='{x:.1f}' y='{y}' text-anchor='{anchor}'{turn}>{html.escape(name)}</text>"

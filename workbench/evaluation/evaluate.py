@@ -14,6 +14,7 @@ from workbench.dataset.cases import Split
 from workbench.evaluation.groups import by_station, depth_of, shear_of, station_of
 from workbench.evaluation.leaks import expect_no_leak
 from workbench.evaluation.scoring import (
+    FIELDS,
     Scored,
     as_table,
     compared,
@@ -92,7 +93,7 @@ def evaluate_all(
         step = part(monitor, number / len(weights), (number + 1) / len(weights))
         one = evaluate_field(source, named, name=name, monitor=step)
         found[one.target] = one
-    return found
+    return {target: found[target] for target in FIELDS if target in found}
 
 
 def tables(found: FieldResult) -> dict[str, Any]:

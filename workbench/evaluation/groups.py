@@ -36,7 +36,7 @@ def station_words(case: Case) -> str:
     """What the names of stations mean, for the axis of a plot."""
     labels = case.position.labels
     if "polar_deg" in labels:
-        return "place on the path: angle of the tip's normal from the axis, then mm below the tip"
+        return "place on the path: angle on the tip, then mm below it"
     if "z_mm" in labels:
         return "height above the base [mm]"
     return "distance from the middle [mm]"

@@ -2,7 +2,8 @@
 
 As in the paper's Fig. 6a and 13, in 3D: the skin about the press, moved as finite elements say,
 seen from outside along the normal and a little from above. Blue is negative, red positive, white
-nothing. Both fields of a row share one scale; the difference is drawn `GAIN` times as strong.
+nothing. A row has one scale, the largest by finite elements; the difference is drawn `GAIN` times
+as strong.
 """
 
 from __future__ import annotations
@@ -17,7 +18,12 @@ from workbench.dataset.sample import Sample
 TILE_PX = 250
 GAIN = 4.0
 """By how much differences are drawn stronger."""
-NEAR_MM = 8.0
+LEAST = 0.02
+"""Least scale of a row over the largest number of all three: an axis along which next to nothing
+happens is not blown up."""
+GROUND = (0.87, 0.89, 0.92)
+"""Behind the skin, whose zero is white."""
+NEAR_MM = 6.0
 """Half the width of the skin that fills a tile [mm]."""
 RISE = 0.55
 """How far the eye is above the normal."""
@@ -57,14 +63,16 @@ def heat_map(skin: SkinData, pair: Pair) -> np.ndarray:
         DeviceError: If nothing here can render.
     """
     rows = [np.concatenate([_caption(text) for text in COLUMNS], axis=1)]
+    largest = float(np.abs(pair.truth).max(initial=0.0))
     for axis, name in enumerate(AXES):
         found, truth = pair.found[:, axis], pair.truth[:, axis]
-        scale = max(float(np.abs(truth).max(initial=0.0)), 1e-30)
+        scale = max(float(np.abs(truth).max(initial=0.0)), LEAST * largest, 1e-30)
         shares = (found / scale, truth / scale, GAIN * (found - truth) / scale)
         tiles = [_tile(skin, pair, diverging(share)) for share in shares]
         rows.append(np.concatenate(tiles, axis=1))
-        most = (float(np.abs(values).max()) for values in (found, truth, found - truth))
+        most = [float(np.abs(values).max()) for values in (found, truth, found - truth)]
         words = [f"{name}: largest {_number(value, pair.unit)}" for value in most]
+        words[1] += f", scale {_number(scale, pair.unit)}"
         rows.append(np.concatenate([_caption(text) for text in words], axis=1))
     return np.concatenate([*rows, _scale_bar()])
 
@@ -83,6 +91,7 @@ def _tile(skin: SkinData, pair: Pair, colours: np.ndarray) -> np.ndarray:
     body = surface(skin.points_mm + pair.moved_mm, skin.faces)
     body["colours"] = colours
     plotter = canvas((TILE_PX, TILE_PX))
+    plotter.set_background(GROUND)
     plotter.add_mesh(
         body,
         scalars="colours",
@@ -128,8 +137,7 @@ def _scale_bar() -> np.ndarray:
     bar = np.full((2 * LINE_PX, width, 3), 255, np.uint8)
     share = np.linspace(-1.0, 1.0, TILE_PX)
     bar[6:LINE_PX, TILE_PX : 2 * TILE_PX] = diverging(share)
-    words = ("-1", "0", "+1  (of the row's largest)")
-    for number, text in enumerate(words):
+    for number, text in enumerate(("-1", "0", "+1  of the row's scale")):
         _write(bar, text, (TILE_PX - 8 + number * (TILE_PX // 2), 2 * LINE_PX - 5))
     return bar
 

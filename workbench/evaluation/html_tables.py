@@ -10,19 +10,15 @@ from typing import Any
 import numpy as np
 
 from sim.forces.network.spec import Target
-from workbench.dataset.cases import Split
 from workbench.evaluation import published
 from workbench.evaluation.evaluate import FieldResult
 from workbench.evaluation.scoring import Compared, Scored, Way, compared, grouped
+from workbench.evaluation.sources import HELD_OUT
 from workbench.evaluation.stiffness import StiffnessResult, Tuning
 
 LIMITS = {Way.MPM: 0.5, Way.ZERO: 0.25}
 """Of the learned force's error over that of the other way, on unseen objects."""
 FIELD_WORDS = {Target.FORCE: "force", Target.DISPLACEMENT: "displacement"}
-SPLIT_WORDS = {
-    Split.TEST: "seen objects, places left out",
-    Split.UNSEEN: "objects never seen",
-}
 WAY_WORDS = {
     Tuning.TUNED: "tuned here",
     Tuning.SCALED: "untuned, times the ratio of E",
@@ -43,7 +39,7 @@ def _cell(value: Any) -> str:
     if value is None or (isinstance(value, float) and not math.isfinite(value)):
         return "<td class='n'>–</td>"
     if isinstance(value, (int, float)):
-        return f"<td class='n'>{number(value)}</td>"
+        return f"<td class='n' style='white-space:nowrap'>{number(value)}</td>"
     return f"<td>{html.escape(str(value))}</td>"
 
 
@@ -55,15 +51,14 @@ def number(value: float) -> str:
 def summary_table(results: Iterable[FieldResult], areas_mm2: np.ndarray) -> str:
     """Each field and split: errors of the three ways, ratios, and the error over the peak."""
     heads = ("field", "split", "cases", "samples", "learned", "contact solver", "zero", "unit",
-             "learned / contact solver", "learned / zero", "learned over peak", "zero over peak",
-             "paper over our peak")  # fmt: skip
+             "learned / contact solver", "learned / zero", "peak", "learned over peak [%]",
+             "paper over our peak [%]")  # fmt: skip
     rows = []
     for found in results:
-        for split, words in SPLIT_WORDS.items():
+        for split in HELD_OUT:
             if members := found.of(split):
-                one = compared(members)
-                rows.append((FIELD_WORDS[found.target], f"{split}: {words}", *_numbers(one, found,
-                             areas_mm2)))  # fmt: skip
+                numbers = _numbers(compared(members), found, areas_mm2)
+                rows.append((FIELD_WORDS[found.target], split.value, *numbers))
     return grid(heads, rows)
 
 
@@ -76,16 +71,16 @@ def _numbers(one: Compared, found: FieldResult, areas_mm2: np.ndarray) -> tuple[
         found.target.unit,
         one.error_ratio(Way.LEARNED, Way.MPM),
         one.error_ratio(Way.LEARNED, Way.ZERO),
-        f"{one.learned.over_peak:.2e}",
-        f"{one.ways[Way.ZERO].over_peak:.2e}",
-        f"{paper:.2e}",
+        one.learned.peak,
+        100.0 * one.learned.over_peak,
+        100.0 * paper,
     )
 
 
 def axes_table(found: FieldResult) -> str:
     """Mean absolute error along X, Y and Z of the sensor, by way and split."""
     rows = []
-    for split in SPLIT_WORDS:
+    for split in HELD_OUT:
         if members := found.of(split):
             ways = compared(members).ways
             rows += [(split.value, WAY_WORDS.get(way, way), *ways[way].mae_xyz) for way in Way]
@@ -99,7 +94,7 @@ def totals_table(found: FieldResult) -> str:
     for axis, _, _ in published.TOTALS:
         heads += [f"{axis} [N]", "% of mean", "% of full scale"]
     rows: list[Sequence[Any]] = []
-    for split in SPLIT_WORDS:
+    for split in HELD_OUT:
         if members := found.of(split):
             for way, one in compared(members).ways.items():
                 cells: list[Any] = [split.value, WAY_WORDS.get(way, way)]
@@ -141,7 +136,7 @@ def indenter_table(found: FieldResult) -> str:
 def stiffness_html(results: Sequence[StiffnessResult]) -> str:
     """Each stiffness and field: the ways beside each other, and the paper's worst."""
     heads = ("field", "E [MPa]", "ratio of E", "way", "samples", "mean error", "unit",
-             "over peak", "total force, worst axis [N]")  # fmt: skip
+             "over peak [%]", "total force, worst axis [N]")  # fmt: skip
     rows: list[Sequence[Any]] = []
     for found in results:
         force = found.target is Target.FORCE
@@ -149,7 +144,7 @@ def stiffness_html(results: Sequence[StiffnessResult]) -> str:
             worst = max(one.total_mae) if force else None
             label = (FIELD_WORDS[found.target], found.young_MPa, found.factor)
             rows.append((*label, WAY_WORDS.get(way, way), one.samples, one.mae,
-                         found.target.unit, f"{one.over_peak:.2e}", worst))  # fmt: skip
+                         found.target.unit, 100.0 * one.over_peak, worst))  # fmt: skip
     for target, mae in published.TUNED_MAE.items():
         total = published.TUNED_TOTAL_N if target is Target.FORCE else None
         label = (FIELD_WORDS[target], None, None, "paper, worst of three, tuned", None)

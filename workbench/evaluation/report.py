@@ -8,6 +8,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
+
 from sim.forces.network.spec import Target
 from workbench import __version__
 from workbench.dataset.cases import Split
@@ -44,9 +46,9 @@ DEFINITIONS = """<p>Error: mean of |found &minus; finite elements| over all poin
 three axes and all samples, as in the paper; points at rest are included, so each number stands
 beside what <i>zero</i> (no force, no displacement anywhere) and the raw contact solver score. Peak:
 the largest length at a point of any sample. Every prediction is in single precision.</p>"""
-TEST_WORDS = """<p><i>test</i> presses seen objects at places that training left out. On an
+TEST_WORDS = """<p><i>test</i>: seen objects at places that training left out. On an
 axisymmetric finger such a place may be a trained one turned about the axis, so <i>test</i> is
-easier than it looks; <i>unseen</i> presses objects that no training showed.</p>"""
+easier than it looks. <i>unseen</i>: objects that no training showed.</p>"""
 STIFFNESS_WORDS = """<p>Under prescribed displacements the force is in proportion to E (same
 Poisson ratio and friction, one modulus), so <i>untuned, times the ratio of E</i> needs no training.
 Tuning must be judged beside it. The paper tunes the decoder at half and twice the stiffness; its
@@ -54,7 +56,8 @@ force error there, 1.16e-6 N, is below its untuned one of 8.6e-6 N: 1.16e-5 N is
 meant.</p>"""
 PAPER_WORDS = """<p>The paper reports 2.77e-4 mm and 8.6e-6 N a particle on its test set and no
 peaks. <i>Paper over our peak</i> takes the peaks of this data; its force is first carried from its
-0.4 mm mesh to the area of a point here. Its objects have other sizes: an estimate.</p>"""
+0.4 mm mesh to the area of a point here, as nodal forces grow with it. The sizes of its objects are
+not known: an estimate, no more.</p>"""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -163,7 +166,7 @@ def _field_section(found: FieldResult) -> str:
             + totals_table(found)
         )
     parts.append("<h3>Objects</h3>" + indenter_table(found))
-    parts.append(f"<div class='images'>{''.join(_charts(found))}</div>")
+    parts.append(f"<div class='images' style='margin-top:1em'>{''.join(_charts(found))}</div>")
     return "".join(parts)
 
 
@@ -173,17 +176,19 @@ def _charts(found: FieldResult) -> list[str]:
     pressed = [row for row in found.rows if not row.sheared]
     sheared = [row for row in found.rows if row.sheared]
     places = station_words(found.rows[0].case)
-    drawn = [_bars(found.rows, f"Objects: {what}")]
+    drawn = [_bars(found.rows, f"By object: {what}")]
     for words, rows in (("Presses", pressed), ("Shears", sheared)):
         if rows:
-            drawn.append(_lines(by_station(rows), station_of, f"{words}: {what}", places))
+            title = f"{words} by place: {what}"
+            drawn.append(_lines(by_station(rows), station_of, title, places))
     if pressed:
         by_depth = sorted(pressed, key=lambda row: row.depth_mm)
-        drawn.append(_lines(by_depth, depth_of, f"Presses: {what}", "depth from first touch [mm]"))
+        title = f"Presses by depth: {what}"
+        drawn.append(_lines(by_depth, depth_of, title, "depth from first touch [mm]"))
     if sheared:
         by_way = sorted(sheared, key=lambda row: row.shear_mm)
-        below = "way aside along U or V [mm], at full depth or the depth of the shear"
-        drawn.append(_lines(by_way, shear_of, f"Shears: {what}", below))
+        title = f"Shears by way aside: {what}"
+        drawn.append(_lines(by_way, shear_of, title, "way aside along U or V, the larger [mm]"))
     return drawn
 
 
@@ -202,13 +207,22 @@ def _bars(rows: Sequence[Scored], title: str) -> str:
 
 
 def _spread(found: Spread) -> str:
+    """How many samples press how deep and how hard; depths are steps, so each has its own bar."""
     count = len(found.depths_mm)
+    depths, each = np.unique(found.depths_mm.round(6), return_counts=True)
     drawn = [
-        charts.histogram(f"Depth of {count:,} samples", found.depths_mm.tolist(),
-                         below="depth from first touch [mm]"),
-        charts.histogram(f"Total force of {count:,} samples", found.forces_N.tolist(),
-                         below="length of the total force by finite elements [N]"),
-    ]  # fmt: skip
+        charts.bars(
+            f"Depth of {count:,} samples",
+            [f"{depth:.3g}" for depth in depths],
+            {"samples": each.astype(float).tolist()},
+            below="depth from first touch [mm]; shears stay at theirs",
+        ),
+        charts.histogram(
+            f"Total force of {count:,} samples",
+            found.forces_N.tolist(),
+            below="length of the total force by finite elements [N]",
+        ),
+    ]
     return f"<div class='images'>{''.join(drawn)}</div>"
 
 
@@ -255,6 +269,12 @@ def _provenance(found: Evaluation) -> str:
         rows += [
             (f"{named.name}: trained on", ", ".join(dataset_keys(card))),
             (f"{named.name}: E", f"{card.get('young_MPa', 'unknown')} MPa"),
-            (f"{named.name}: training", str(dict(card.get("training", {})))),
+            (f"{named.name}: training", _listed(card.get("training", {}))),
         ]
     return grid(("", ""), rows)
+
+
+def _listed(table: Mapping[str, Any]) -> str:
+    """Names and values in a line."""
+    told = {name: f"{v:.4g}" if isinstance(v, float) else v for name, v in table.items()}
+    return ", ".join(f"{name} {value}" for name, value in told.items() if value != "")

@@ -98,10 +98,8 @@ def score_rows(target: Target, data: Path | None = None) -> list[Row]:
     try:
         source, found = evaluated(target, data)
     except WorkbenchError as error:
-        return [
-            failed(name, words, unit=unit, why=error.message)
-            for name, words, unit in _names(target)
-        ]
+        why = "; ".join(filter(None, (error.message, error.hint)))
+        return [failed(name, words, unit=unit, why=why) for name, words, unit in _names(target)]
     return [row for split in SPLITS for row in _split_rows(source, found, split)]
 
 

@@ -92,10 +92,11 @@ def _rows(found: StiffnessResult, words: str) -> Iterator[Row]:
             null=scaled / zero if zero else None,
         )
     if found.common:
+        proportion = "times the ratio of E" if found.target is Target.FORCE else "as it is"
         yield stated(
-            "learned_stiffness_truth",
-            f"{case}: finite elements there against nominal ones in proportion to E, {field}, on "
-            f"{found.common} samples of both sets; null: not in proportion",
+            f"learned_stiffness_truth_{field}",
+            f"{case}: {field} by finite elements there against the nominal one {proportion}, on "
+            f"{found.common} samples of both sets; null: as it is",
             found.truth_off,
             unit="1",
             null=abs(1.0 - 1.0 / found.factor) if found.target is Target.FORCE else None,
