@@ -12,6 +12,7 @@ from pathlib import Path
 from workbench.core.errors import DesignError
 from workbench.rows import Row
 from workbench.validation import (
+    calculix,
     contact,
     fem,
     forces,
@@ -27,11 +28,15 @@ ROOMS: dict[str, Callable[[], list[Row]]] = {
     "optics": optics.rows,
     "fem": fem.rows,
     "fem_fine": fem.fine_rows,
+    "fem_calculix": calculix.rows,
     "forces": forces.rows,
     "robustness": robustness.rows,
     "robustness_sample": robustness.sample_rows,
     "optics_mitsuba": mitsuba_witness.rows,
 }
+
+REFERENCES = (("optics", "mitsuba"), ("fem", "calculix"))
+"""Rooms and the independent programs that they are compared with; each pair is a room too."""
 
 
 def room_of(room: str, reference: str) -> str:
@@ -40,13 +45,12 @@ def room_of(room: str, reference: str) -> str:
     Raises:
         DesignError: If there is none, naming those there are.
     """
-    found = f"{room}_{reference}"
-    if found in ROOMS:
-        return found
-    known = sorted(name.removeprefix("optics_") for name in ROOMS if name.startswith("optics_"))
+    if (room, reference) in REFERENCES:
+        return f"{room}_{reference}"
+    known = ", ".join(f"{room} has {name}" for room, name in REFERENCES)
     raise DesignError(
         f"the room {room!r} has no reference {reference!r}",
-        hint=f"the room optics has {', '.join(known)}",
+        hint=f"of the rooms {known}",
         at="--reference",
     )
 

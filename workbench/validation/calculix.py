@@ -40,7 +40,7 @@ FRICTIONS = (0.0, 0.3)
 
 def rows() -> list[Row]:
     """All rows; one that failed where the program is not installed."""
-    if shutil.which(PROGRAM) is None:
+    if not installed():
         why = "CalculiX is not installed: on Debian, apt-get install calculix-ccx"
         return [failed("calculix", "the whole room", unit="N", why=why)]
     draft = f"ratio of our draft to C3D8I on the same mesh, friction 0; {NAME}"
@@ -53,6 +53,11 @@ def rows() -> list[Row]:
             unit="1",
         ),
     ]
+
+
+def installed() -> bool:
+    """Whether the program is there."""
+    return shutil.which(PROGRAM) is not None
 
 
 def _default_row(friction: float) -> Row:

@@ -1,7 +1,8 @@
 """FEM: our finite elements beside exact answers, themselves, and recorded figures of others.
 
 `rows` takes some minutes; `fine_rows` has what takes longer, the finest mesh and cases of the
-robustness matrix solved anew. The contact solver is compared with figures of an independent
+robustness matrix solved anew. CalculiX itself is asked where `ccx` is installed. The contact solver
+is pressed beside our finite elements (`fem_mpm`), and compared with figures of an independent
 quasi-static solver (mean-dilatation hexahedra, hard contact, Coulomb 0.3) and of CalculiX (C3D8I)
 on the finger at 45 degrees; the null there is the frictionless force: a solver without friction
 would score it.
@@ -10,7 +11,7 @@ would score it.
 from __future__ import annotations
 
 from workbench.rows import Row, compared
-from workbench.validation import fem_exact, fem_matrix, fem_meshes, fem_paths
+from workbench.validation import calculix, fem_exact, fem_matrix, fem_meshes, fem_mpm, fem_paths
 from workbench.validation.presses import NAME, finger_press
 
 FEM_NORMAL_N = {"0.30 mm hexahedra": 1.291, "CalculiX C3D8I": 1.276}
@@ -25,14 +26,16 @@ def rows() -> list[Row]:
         *fem_exact.rows(),
         *fem_paths.rows(),
         *fem_meshes.rows(),
+        *fem_mpm.rows(),
         *fem_matrix.recorded_rows(),
         *_recorded(),
+        *(calculix.rows() if calculix.installed() else ()),
     ]
 
 
 def fine_rows() -> list[Row]:
     """Rows that take minutes each."""
-    return [*fem_meshes.fine_rows(), *fem_matrix.repeated_rows()]
+    return [*fem_meshes.fine_rows(), *fem_mpm.fine_rows(), *fem_matrix.repeated_rows()]
 
 
 def _recorded() -> list[Row]:
