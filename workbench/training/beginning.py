@@ -2,8 +2,8 @@
 
 To tune, the encoder stays as it is: it sees the dent, which a prescribed path makes alike for every
 stiffness, and so do the scale of the input and the size of a voxel in spacings. The scale of the
-output is multiplied by the one number that makes the old network's fields fit the new ones best in
-the mean absolute error: where force is proportional to the stiffness, tuning begins at that answer.
+output is multiplied by the one number that fits the old network's fields to the new ones best:
+where force is proportional to the stiffness, tuning begins at that answer.
 """
 
 from __future__ import annotations
@@ -28,9 +28,6 @@ if TYPE_CHECKING:
     from sim.forces.network.minkunet import MinkUNet
     from sim.forces.training.trainer import Scales, Trainer
     from workbench.training.learn import Plan
-
-LEAST_SHARE = 1e-3
-"""Of the largest value: what is smaller has no say in the factor of the output."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -186,15 +183,14 @@ def _tuned(
 
 
 def best_factor(found: np.ndarray, wanted: np.ndarray) -> float:
-    """The number c that makes the mean of |c found - wanted| least; 1 where none above 0 does.
+    """The number c that makes the sum of (wanted - c found)^2 least; 1 where none above 0 does.
 
-    The median of wanted / found, weighted by |found|.
+    Least squares, not the least absolute error: most values are zero, and a poor network's best
+    factor for them is zero.
     """
-    there = np.abs(found) > LEAST_SHARE * np.abs(found).max(initial=0.0)
-    if not there.any():
-        return 1.0
-    ratio, weight = wanted[there] / found[there], np.abs(found[there]).astype(np.float64)
-    order = np.argsort(ratio, kind="stable")
-    along = np.cumsum(weight[order])
-    factor = float(ratio[order][np.searchsorted(along, 0.5 * along[-1])])
-    return factor if factor > 0.0 else 1.0
+    pairs = [
+        (float(np.vdot(ours, theirs)), float(np.vdot(ours, ours)))
+        for ours, theirs in zip(found, wanted, strict=True)
+    ]
+    product, square = np.sum(pairs, axis=0)
+    return float(product / square) if product > 0.0 else 1.0

@@ -57,6 +57,9 @@ class TrainingSettings:
     averaging: float = 0.0
     """What an average of the weights keeps of itself at each step: the network that is kept is the
     average; 0: the last weights are."""
+    foot: float = 0.0
+    """Error, over the scale of the output, below which it counts by its square, at the largest
+    rate; it shrinks as the rate does. 0: the plain mean absolute error, see `trainer`."""
     turns: int = 1
     """Orientations about the sensor's axis in which the membrane is looked at, see `frames`."""
     patience: int = 0
@@ -72,6 +75,7 @@ class TrainingSettings:
         within(self.weight_decay, 0.0, 1.0, what="weight decay", unit="", at="weight_decay")
         within(self.clip, 0.0, 1e6, what="gradient limit", unit="", at="clip")
         within(self.averaging, 0.0, 0.99999, what="averaging", unit="", at="averaging")
+        within(self.foot, 0.0, 100.0, what="foot", unit="scales", at="foot")
         within(self.turns, 1, 64, what="turns", unit="", at="turns")
         within(self.patience, 0, 100_000, what="patience", unit="epochs", at="patience")
 
