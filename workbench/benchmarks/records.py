@@ -44,8 +44,8 @@ class Record:
 
     @property
     def title(self) -> str:
-        """Device and date."""
-        return f"{self.device}, {self.made}"
+        """Device, date, and how busy it was."""
+        return f"{self.device}, {self.made}, load {self.load:.1f}"
 
     def value(self, name: str) -> float | None:
         """Value of the first row of that name, None without one."""

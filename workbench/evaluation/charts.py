@@ -17,6 +17,7 @@ COLOURS = {"learned": LINE, "mpm": "#b45309", "zero": "#8b93a0"}
 DASHES = {"learned": "", "mpm": "6 3", "zero": "2 3"}
 WORDS = {"mpm": "contact solver"}
 BINS = 12
+LETTER_PX = 6.0
 SLANTED = 7
 """From so many names on they are written at a slant."""
 
@@ -49,7 +50,7 @@ def lines(
             f"stroke-dasharray='{dash}'/><g fill='{colour}'>{dots}</g>"
         )
     inner = _names(names, places) + "".join(drawn) + _legend(list(series))
-    return _chart(title, up, inner, below)
+    return _chart(title, up, inner, below, slanted=len(names) >= SLANTED)
 
 
 def bars(
@@ -67,7 +68,7 @@ def bars(
             if math.isfinite(value):
                 drawn.append(_bar(place + shift, width, up, value, COLOURS.get(way, LINE)))
     inner = _names(names, places) + "".join(drawn) + _legend(list(series))
-    return _chart(title, up, inner, below)
+    return _chart(title, up, inner, below, slanted=len(names) >= SLANTED)
 
 
 def histogram(title: str, values: Sequence[float], *, below: str) -> str:
@@ -117,18 +118,20 @@ def _names(names: Sequence[str], places: Sequence[float]) -> str:
 
 
 def _legend(ways: Sequence[str]) -> str:
-    found = []
-    for number, way in enumerate(ways):
-        x = LEFT + 4 + 110 * number
+    found, x = [], float(LEFT + 4)
+    for way in ways:
         colour, dash = COLOURS.get(way, INK), DASHES.get(way, "")
         found.append(
-            f"<path d='M{x},26 h22' stroke='{colour}' stroke-width='3' stroke-dasharray='{dash}'/>"
-            f"<text x='{x + 27}' y='30' font-size='11' fill='{INK}'>{WORDS.get(way, way)}</text>"
+            f"<path d='M{x:g},26 h22' stroke='{colour}' stroke-width='3' "
+            f"stroke-dasharray='{dash}'/><text x='{x + 27:g}' y='30' font-size='11' "
+            f"fill='{INK}'>{WORDS.get(way, way)}</text>"
         )
+        x += 45.0 + LETTER_PX * len(WORDS.get(way, way))
     return "".join(found)
 
 
-def _chart(title: str, up: Axis, inner: str, below: str) -> str:
+def _chart(title: str, up: Axis, inner: str, below: str, *, slanted: bool = False) -> str:
+    foot = HEIGHT - 6 if slanted else HEIGHT - BOTTOM + 36
     safe = html.escape(title)
     grid = "".join(
         f"<path d='M{LEFT},{up(v):.1f} H{WIDTH - RIGHT}' stroke='{FAINT}'/>"
@@ -139,6 +142,6 @@ def _chart(title: str, up: Axis, inner: str, below: str) -> str:
         f"<svg viewBox='0 0 {WIDTH} {HEIGHT}' width='{WIDTH}' style='max-width:100%' role='img' "
         f"aria-label='{safe}'><text x='6' y='14' font-size='13' font-weight='600' fill='{INK}'>"
         f"{safe}</text><g font-size='11' fill='{INK}'>{grid}</g>{inner}"
-        f"<text x='{LEFT}' y='{HEIGHT - 6}' font-size='11' fill='{INK}'>{html.escape(below)}</text>"
+        f"<text x='{LEFT}' y='{foot}' font-size='11' fill='{INK}'>{html.escape(below)}</text>"
         "</svg>"
     )

@@ -23,7 +23,7 @@ LEAST = 0.02
 happens is not blown up."""
 GROUND = (0.87, 0.89, 0.92)
 """Behind the skin, whose zero is white."""
-NEAR_MM = 6.0
+NEAR_MM = 7.0
 """Half the width of the skin that fills a tile [mm]."""
 RISE = 0.55
 """How far the eye is above the normal."""

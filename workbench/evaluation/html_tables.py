@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from sim.forces.network.spec import Target
+from sim.forces.scores import Summary
 from workbench.evaluation import published
 from workbench.evaluation.evaluate import FieldResult
 from workbench.evaluation.scoring import Compared, Scored, Way, compared, grouped
@@ -19,10 +20,12 @@ from workbench.evaluation.stiffness import StiffnessResult, Tuning
 LIMITS = {Way.MPM: 0.5, Way.ZERO: 0.25}
 """Of the learned force's error over that of the other way, on unseen objects."""
 FIELD_WORDS = {Target.FORCE: "force", Target.DISPLACEMENT: "displacement"}
-WAY_WORDS = {
+WORDS: dict[str, str] = {Way.MPM: "contact solver"}
+WAY_WORDS: dict[str, str] = {
     Tuning.TUNED: "tuned here",
     Tuning.SCALED: "untuned, times the ratio of E",
     Tuning.UNTUNED: "untuned",
+    Way.LEARNED: "trained here",
     Way.MPM: "contact solver",
     Way.ZERO: "zero",
 }
@@ -83,7 +86,7 @@ def axes_table(found: FieldResult) -> str:
     for split in HELD_OUT:
         if members := found.of(split):
             ways = compared(members).ways
-            rows += [(split.value, WAY_WORDS.get(way, way), *ways[way].mae_xyz) for way in Way]
+            rows += [(split.value, WORDS.get(way, way), *ways[way].mae_xyz) for way in Way]
     unit = found.target.unit
     return grid(("split", "way", f"X [{unit}]", f"Y [{unit}]", f"Z [{unit}]"), rows)
 
@@ -97,7 +100,7 @@ def totals_table(found: FieldResult) -> str:
     for split in HELD_OUT:
         if members := found.of(split):
             for way, one in compared(members).ways.items():
-                cells: list[Any] = [split.value, WAY_WORDS.get(way, way)]
+                cells: list[Any] = [split.value, WORDS.get(way, way)]
                 triples = zip(one.total_mae, one.total_mean, one.total_largest, strict=True)
                 for error, mean, largest in triples:
                     cells += [error, _percent(error, mean), _percent(error, largest)]
@@ -133,20 +136,48 @@ def indenter_table(found: FieldResult) -> str:
     return grid(heads, rows)
 
 
-def stiffness_html(results: Sequence[StiffnessResult]) -> str:
-    """Each stiffness and field: the ways beside each other, and the paper's worst."""
+def stiffness_html(
+    results: Sequence[StiffnessResult], nominal: Iterable[FieldResult], nominal_MPa: float
+) -> str:
+    """Each stiffness and field: the ways beside each other, and the paper's worst.
+
+    Args:
+        results: Of other stiffnesses.
+        nominal: Of the stiffness that the networks were trained at.
+        nominal_MPa: Young's modulus there [MPa].
+    """
     heads = ("field", "E [MPa]", "ratio of E", "way", "samples", "mean error", "unit",
              "over peak [%]", "total force, worst axis [N]")  # fmt: skip
     rows: list[Sequence[Any]] = []
+    for found in nominal:
+        ways = compared(found.rows).ways
+        rows += _stiffness_rows(found.target, nominal_MPa, 1.0, ways)
     for found in results:
-        force = found.target is Target.FORCE
-        for way, one in found.found.ways.items():
-            worst = max(one.total_mae) if force else None
-            label = (FIELD_WORDS[found.target], found.young_MPa, found.factor)
-            rows.append((*label, WAY_WORDS.get(way, way), one.samples, one.mae,
-                         found.target.unit, 100.0 * one.over_peak, worst))  # fmt: skip
+        rows += _stiffness_rows(found.target, found.young_MPa, found.factor, found.found.ways)
     for target, mae in published.TUNED_MAE.items():
         total = published.TUNED_TOTAL_N if target is Target.FORCE else None
         label = (FIELD_WORDS[target], None, None, "paper, worst of three, tuned", None)
         rows.append((*label, mae, target.unit, None, total))
     return grid(heads, rows)
+
+
+def _stiffness_rows(
+    target: Target, young_MPa: float, factor: float, ways: Mapping[str, Summary]
+) -> list[Sequence[Any]]:
+    force = target is Target.FORCE
+    return [
+        (
+            FIELD_WORDS[target],
+            young_MPa,
+            factor,
+            WAY_WORDS.get(way, way),
+            one.samples,
+            one.mae,
+            target.unit,
+            100.0 * one.over_peak,
+            max(one.total_mae) if force else None,
+        )
+        for way, one in ways.items()
+        # A displacement is not scaled: that would be the untuned one twice.
+        if force or way != Tuning.SCALED
+    ]

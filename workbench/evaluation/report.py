@@ -115,7 +115,7 @@ def report_page(found: Evaluation) -> str:
         *(_field_section(one) for one in found.results.values()),
         "<h2>The data</h2>" + _spread(found.spread),
         "<h2>Predicted, finite elements, difference</h2>" + _sheets(found.sheets),
-        "<h2>Another stiffness</h2>" + STIFFNESS_WORDS + _stiffness(found.stiffness),
+        "<h2>Another stiffness</h2>" + STIFFNESS_WORDS + _stiffness(found),
         "<h2>Efficiency</h2>" + _speed(found.speed),
         "<h2>To make it again</h2>" + _provenance(found),
     ]  # fmt: skip
@@ -238,17 +238,19 @@ def _sheets(sheets: Sequence[Sheet]) -> str:
     return f"<div class='images'>{''.join(shown)}</div>"
 
 
-def _stiffness(results: Sequence[StiffnessResult]) -> str:
-    if not results:
+def _stiffness(found: Evaluation) -> str:
+    if not found.stiffness:
         return "<p>No data set of another stiffness was given (--stiffness).</p>"
     exact = "".join(
-        f"<p>Finite elements at {one.young_MPa:g} MPa against those at the trained stiffness times "
-        f"the ratio, {FIELD_WORDS[one.target]}: {100.0 * one.truth_off:.3g} % apart on the "
-        f"{one.common} samples that both sets hold.</p>"
-        for one in results
+        f"<p>{FIELD_WORDS[one.target].capitalize()} by finite elements at {one.young_MPa:g} MPa "
+        f"against that at {young_MPa(found.source):g} MPa"
+        f"{' times the ratio' if one.target is Target.FORCE else ''}: "
+        f"{100.0 * one.truth_off:.2g} % apart on the {one.common} samples that both sets hold.</p>"
+        for one in found.stiffness
         if one.common
     )
-    return stiffness_html(results) + exact
+    table = stiffness_html(found.stiffness, found.results.values(), young_MPa(found.source))
+    return table + exact
 
 
 def _speed(table: Mapping[str, Any]) -> str:
