@@ -34,10 +34,10 @@ from workbench.core.sensing import Contact
 from workbench.forms import resolve_shape
 from workbench.item_fields import read_field
 from workbench.pipeline import plan
-from workbench.requests import DRAWN, GLIMPSE, LIVE, SHAPE, Finished, Request
+from workbench.requests import DRAWN, GLIMPSE, LIVE, PREDICTION, SHAPE, Finished, Request
 from workbench.stages import PARTIAL
 
-OF_A_SENSOR = ("press", "image", "maps")
+OF_A_SENSOR = ("press", "image", "maps", "forces", "learned", PREDICTION)
 """Topics that nobody waits for once another sensor has been chosen."""
 
 

@@ -34,6 +34,7 @@ NAMES = {
     "object": "Object",
     "fem": "Finite elements",
     "forces": "Forces",
+    "learned": "Learned forces",
     "housing": "Housing",
     "recipe": "Recipe",
     "package": "Files",

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ui.colours import AMBER
 from workbench.colour_scale import viridis
 from workbench.glb import Topology, write_glb
 from workbench.section_cut import Plane, clip, packed
@@ -57,12 +58,20 @@ def placeholder(width_px: int = 320, height_px: int = 240) -> np.ndarray:
     return np.full((height_px, width_px, 3), 70, np.uint8)
 
 
-def legend(title: str, high: float, unit: str, rest: tuple[int, int, int]) -> str:
-    """A colour bar from 0 as HTML, in the colours of `heat_colours`."""
+def legend(
+    title: str, high: float, unit: str, rest: tuple[int, int, int], *, badge: str = ""
+) -> str:
+    """A colour bar from 0 as HTML, in the colours of `heat_colours`; a badge is a warning."""
     stops = heat_colours(np.r_[0.0, 0.025, np.linspace(0.05, 1, 20)], rest)
     colours = ", ".join(f"rgb({r},{g},{b})" for r, g, b in stops)
+    mark = (
+        f" <span style='color:#000;background:{AMBER};border-radius:3px;padding:0 4px'>"
+        f"{html.escape(badge)}</span>"
+        if badge
+        else ""
+    )
     return (
-        f"<div style='font-size:12px;margin:0 12px'>{html.escape(title)}"
+        f"<div style='font-size:12px;margin:0 12px'>{html.escape(title)}{mark}"
         f"<span style='float:right'>0 to {high:.3g} {html.escape(unit)}</span>"
         f"<div style='height:8px;border-radius:3px;background:linear-gradient(90deg,{colours})'>"
         "</div></div>"

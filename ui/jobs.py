@@ -22,6 +22,7 @@ from workbench.requests import (
     DRAWN,
     GLIMPSE,
     LIVE,
+    PREDICTION,
     QUIET,
     SHAPE,
     Event,
@@ -146,6 +147,9 @@ class Jobs:
             if not event.failed:
                 log(f"{event.topic}: {in_full(error.message, error.hint)}")
             self.on_failed(error, event.topic)
+        elif error is not None and event.topic == PREDICTION:
+            # Nobody asked for it; who asks by the button is told.
+            log(f"{event.topic}: {in_full(error.message, error.hint)}")
         elif error is not None and event.topic == LIVE:
             self.reports.report(error)
             self.on_failed(error, event.topic)

@@ -11,11 +11,11 @@ if TYPE_CHECKING:
     from ui.desk import Desk
 
 SHOWN = (
-    *("build", "mesh", "press", "forces", "shoot", "maps", "quality", "tets"),
+    *("build", "mesh", "press", "forces", "learned", "shoot", "maps", "quality", "tets"),
     *("mould", "housing", "recipe", "package"),
 )
 """Stages whose stored results are shown without asking."""
-HEAVY = ("press", "forces")
+HEAVY = ("press", "forces", "learned")
 """Stages whose results are read backstage: unpacking one would hold all tabs up."""
 
 

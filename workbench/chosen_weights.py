@@ -23,8 +23,8 @@ from workbench.shipped import is_shipped, shipped_weights
 FOLDER = "weights"
 """Of a project."""
 AT = "learned.weights"
-FIELDS = {Target.FORCE: "weights", Target.DISPLACEMENT: "displacement"}
-"""Fields of `LearnedSettings` by what the network predicts."""
+TARGETS = {"weights": Target.FORCE, "displacement": Target.DISPLACEMENT}
+"""What the networks predict by the field of `LearnedSettings` that names them."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -39,7 +39,7 @@ class About:
 
 def weights_files(settings: LearnedSettings) -> tuple[WeightsFile | None, WeightsFile | None]:
     """The files of the force and of the displacement network; None where there is none."""
-    force, displacement = (_file(getattr(settings, name), t) for t, name in FIELDS.items())
+    force, displacement = (_file(getattr(settings, name), t) for name, t in TARGETS.items())
     return force, displacement
 
 
@@ -89,20 +89,21 @@ def _about(path: str, stamp: tuple[int, int]) -> About:
     )
 
 
-def offered(folder: Path, settings: LearnedSettings, target: Target) -> dict[str, str]:
-    """What can be chosen for a target, by name for people: values of the field.
+def offered(folder: Path, settings: LearnedSettings, field: str) -> dict[str, str]:
+    """What can be chosen in a field, by name for people.
 
     Args:
         folder: Of the project.
         settings: As they stand; what they name is among the choices, there or not.
-        target: What the network predicts.
+        field: A key of `TARGETS`.
     """
+    target, now = TARGETS[field], getattr(settings, field)
     found = {f"shipped: {shipped_weights(target).name}": SHIPPED} if is_shipped(target) else {}
     if target is Target.DISPLACEMENT:
-        found["contact solver's own"] = NONE
+        # Where none ships, asking for it comes to the same.
+        found["contact solver's own"] = NONE if found or now != SHIPPED else SHIPPED
     for path in sorted((folder / FOLDER).glob(f"*-{target.value}-*{SUFFIX}")):
         found[path.name] = str(path)
-    now = getattr(settings, FIELDS[target])
     if now not in found.values():
         missing = "" if Path(now).is_file() else " (missing)"
         found[f"{Path(now).name}{missing}" if now else "none shipped"] = now
@@ -116,7 +117,7 @@ def to_project(settings: LearnedSettings, folder: Path) -> dict[str, str]:
         path = Path(setting)
         return path.relative_to(folder).as_posix() if path.is_relative_to(folder) else setting
 
-    return {name: relative(getattr(settings, name)) for name in FIELDS.values()}
+    return {name: relative(getattr(settings, name)) for name in TARGETS}
 
 
 def from_project(
@@ -139,7 +140,7 @@ def from_project(
             return str(folder / FOLDER / PureWindowsPath(setting).name)
         return os.path.normpath(folder / setting)
 
-    return LearnedSettings(**{name: whole(getattr(settings, name)) for name in FIELDS.values()})
+    return LearnedSettings(**{name: whole(getattr(settings, name)) for name in TARGETS})
 
 
 def chosen(path: Path, target: Target = Target.FORCE) -> str:

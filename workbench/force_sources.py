@@ -1,8 +1,13 @@
-"""Forces of one press from several sources, side by side: totals, and how far they disagree."""
+"""Forces of one press from several sources, side by side: totals, and how far they disagree.
+
+Finite elements are what others are judged by; without them the network is held against the contact
+solver.
+"""
 
 from __future__ import annotations
 
 import enum
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,8 +29,18 @@ class Shown(enum.StrEnum):
     LEARNED = "learned"
     FEM_DIFFERENCE = "difference: finite elements − contact solver"
     LEARNED_DIFFERENCE = "difference: learned − finite elements"
+    LEARNED_CONTACT = "difference: learned − contact solver"
 
 
+PAIRS = {
+    Shown.MPM: (Source.MPM, None),
+    Shown.FEM: (Source.FEM, None),
+    Shown.LEARNED: (Source.LEARNED, None),
+    Shown.FEM_DIFFERENCE: (Source.FEM, Source.MPM),
+    Shown.LEARNED_DIFFERENCE: (Source.LEARNED, Source.FEM),
+    Shown.LEARNED_CONTACT: (Source.LEARNED, Source.MPM),
+}
+"""What each shows, and what that is held against."""
 WORDS = {Source.MPM: Shown.MPM, Source.FEM: Shown.FEM, Source.LEARNED: Shown.LEARNED}
 
 
@@ -52,6 +67,23 @@ class Disagreement:
     """Largest displacement of the second."""
     normal_share: float
     """Difference of the normal force over that of the second [1]."""
+
+
+def source_of(forces: Forces | None) -> Source:
+    """Where forces come from."""
+    return forces.source if isinstance(forces, ForceField) else Source.MPM
+
+
+def choices(found: Mapping[Source, Forces]) -> list[Shown]:
+    """What can be shown of the sources that there are, one difference for each pair of interest."""
+    possible = [
+        shown
+        for shown, (source, against) in PAIRS.items()
+        if source in found and (against is None or against in found)
+    ]
+    if Shown.LEARNED_DIFFERENCE in possible:
+        possible.remove(Shown.LEARNED_CONTACT)
+    return possible
 
 
 def totals(source: Source, forces: Forces, frame: int) -> Totals:

@@ -63,6 +63,8 @@ class Shown:
     """Largest of all frames; 1 where all are zero."""
     difference: bool = False
     """Whether it is how far two sources are apart."""
+    known: bool = True
+    """Whether the sources have it: a network predicts no stress."""
 
     @property
     def empty(self) -> bool:
@@ -84,27 +86,33 @@ def shown(skin: Skin, contact: Forces, quantity: Quantity, against: Forces | Non
     """A quantity on the outer skin in every frame; zero where the result has no such field.
 
     With `against`, another source of the same press, how far the two are apart: the length of the
-    difference of displacements, else the size of the difference.
+    difference of displacements, else the size of the difference; zero where one of them has no such
+    field.
     """
-    values = _filled(skin, contact, quantity)
+    values, known = _filled(skin, contact, quantity)
     if against is not None:
-        values = np.abs(values - _filled(skin, against, quantity))
+        others, both = _filled(skin, against, quantity)
+        known = known and both
+        values = np.abs(values - others) if known else np.zeros_like(values)
         if quantity is Quantity.DISPLACEMENT:
             apart = np.asarray(contact.displacement_mm) - np.asarray(against.displacement_mm)
             values = np.linalg.norm(apart, axis=2)
     values = np.maximum(values, 0.0)
     flag = quantity is Quantity.SLIDING or not values.any()
     top = 1.0 if flag else float(values.max())
-    return Shown(quantity=quantity, values=values, top=top, difference=against is not None)
+    apart = against is not None
+    return Shown(quantity=quantity, values=values, top=top, difference=apart, known=known)
 
 
-def _filled(skin: Skin, contact: Forces, quantity: Quantity) -> np.ndarray:
-    """Finite values of all frames and vertices, (K, V), float32."""
+def _filled(skin: Skin, contact: Forces, quantity: Quantity) -> tuple[np.ndarray, bool]:
+    """Finite values of all frames and vertices, (K, V), float32, and whether the result has any."""
     frames, vertices = contact.displacement_mm.shape[:2]
     values = _values(skin, contact, quantity)
-    if values.shape != (frames, vertices):
+    known = values.shape == (frames, vertices)
+    if not known:
         values = np.zeros((frames, vertices))
-    return np.nan_to_num(np.asarray(values, np.float32), nan=0.0, posinf=0.0, neginf=0.0)
+    plain = np.nan_to_num(np.asarray(values, np.float32), nan=0.0, posinf=0.0, neginf=0.0)
+    return plain, known
 
 
 def _values(skin: Skin, contact: Forces, quantity: Quantity) -> np.ndarray:

@@ -39,7 +39,7 @@ from workbench.core.sensing import Contact
 if TYPE_CHECKING:
     from sim.forces.network.predictor import Predictor
 
-REMEDY = "trust the contact solver, which is shown as well"
+REMEDY = "Trust the contact solver, which is shown as well"
 SOLVE = ", or solve by finite elements"
 LEAST_MM2 = 1e-12
 
@@ -100,7 +100,7 @@ def learned_forces(
         found,
         solver=f"{' and '.join(known.name for known in used)} on {device}, "
         f"{1e3 * np.median(seconds):.0f} ms a frame",
-        notice=f"{'; '.join(reasons)}: {remedy}" if reasons else "",
+        notice=f"{'; '.join(reasons)}. {remedy}" if reasons else "",
         note=force.acquaintance.note,
     )
     monitor(1.0, "carrying the forces to the skin")

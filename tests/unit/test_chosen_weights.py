@@ -181,20 +181,23 @@ def test_choices_are_those_of_the_project_and_what_stands(
     project: Project, none_shipped: Path
 ) -> None:
     """Nothing shipped; one in the project; one that is gone but chosen stays visible."""
-    assert offered(project.folder, LearnedSettings(), Target.FORCE) == {"none shipped": ""}
+    assert offered(project.folder, LearnedSettings(), "weights") == {"none shipped": ""}
     kept = force_file(project.folder / FOLDER)
     gone = LearnedSettings(weights=str(project.folder / FOLDER / "old.weights"))
-    assert offered(project.folder, gone, Target.FORCE) == {
+    assert offered(project.folder, gone, "weights") == {
         kept.name: str(kept),
         "old.weights (missing)": gone.weights,
     }
     shipped_file = force_file(none_shipped, friction=0.4)
-    assert offered(project.folder, LearnedSettings(), Target.FORCE) == {
+    assert offered(project.folder, LearnedSettings(), "weights") == {
         f"shipped: {shipped_file.name}": "",
         kept.name: str(kept),
     }
-    moved = offered(project.folder, LearnedSettings(displacement=NONE), Target.DISPLACEMENT)
+    moved = offered(project.folder, LearnedSettings(displacement=NONE), "displacement")
     assert moved == {"contact solver's own": NONE}
+    assert offered(project.folder, LearnedSettings(), "displacement") == {
+        "contact solver's own": ""
+    }
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""Two sources of the forces of one press: totals and disagreement in closed form."""
+"""The sources of the forces of one press: totals and disagreement in closed form, and in words."""
 
 from __future__ import annotations
 
@@ -7,8 +7,10 @@ import dataclasses
 import numpy as np
 import pytest
 
+from ui.imaging import legend
+from ui.panels.source_words import doubt_text, sources_text
 from workbench.core.force_field import ForceField, Source
-from workbench.force_sources import disagreement, totals
+from workbench.force_sources import PAIRS, Forces, Shown, choices, disagreement, totals
 
 
 def field(moved_mm: float, force_N: float, source: Source = Source.FEM) -> ForceField:
@@ -60,3 +62,79 @@ def test_the_reaction_of_learned_forces_has_no_residual() -> None:
     """NaN stands for what is not solved for."""
     learned = dataclasses.replace(field(1.0, 2.0, Source.LEARNED), residual=np.array([np.nan]))
     assert np.isnan(totals(Source.LEARNED, learned, 0).residual)
+
+
+MPM = field(1.0, 1.8, Source.MPM)
+FEM = field(1.0, 2.0)
+LEARNED = dataclasses.replace(
+    field(1.1, 2.1, Source.LEARNED), residual=np.array([np.nan]), solver="net on cpu, 7 ms a frame"
+)
+DIFFERENCES = (Shown.FEM_DIFFERENCE, Shown.LEARNED_DIFFERENCE, Shown.LEARNED_CONTACT)
+
+
+@pytest.mark.parametrize(
+    ("others", "offered"),
+    [
+        ((), [Shown.MPM]),
+        ((FEM,), [Shown.MPM, Shown.FEM, Shown.FEM_DIFFERENCE]),
+        ((LEARNED,), [Shown.MPM, Shown.LEARNED, Shown.LEARNED_CONTACT]),
+        (
+            (FEM, LEARNED),
+            [Shown.MPM, Shown.FEM, Shown.LEARNED, Shown.FEM_DIFFERENCE, Shown.LEARNED_DIFFERENCE],
+        ),
+    ],
+)
+def test_sources_and_their_differences_are_offered(
+    others: tuple[ForceField, ...], offered: list[Shown]
+) -> None:
+    """The network is held against finite elements where they are, else the contact solver."""
+    found: dict[Source, Forces] = {one.source: one for one in (MPM, *others)}
+    assert choices(found) == offered
+    for shown in offered:
+        source, against = PAIRS[shown]
+        assert source in found and (against is None or against in found)
+        assert (against is not None) == (shown in DIFFERENCES)
+
+
+def test_all_sources_stand_in_the_table_and_are_held_against_finite_elements() -> None:
+    """1.8 and 2.1 against 2 N: -10 % and +5 %, and the network is named."""
+    text = sources_text({Source.MPM: MPM, Source.FEM: FEM, Source.LEARNED: LEARNED}, 0)
+    rows = [line for line in text.splitlines() if line.startswith("| ")]
+    assert [row.split("|")[1].strip() for row in rows] == [
+        *("source", "contact solver", "finite elements", "learned"),
+    ]
+    assert "| learned | 2.100 | 0.525 |" in text
+    assert "The contact solver's normal force is -10.0 % from that of finite elements" in text
+    assert "The network's normal force is +5.0 % from that of finite elements" in text
+    assert "its displacement 100 µm (rms) of 1000" in text
+    assert "net on cpu, 7 ms a frame" in text and "nan" not in text
+
+
+def test_without_finite_elements_the_network_is_held_against_the_contact_solver() -> None:
+    """2.1 against 1.8 N: +16.7 %; its displacement is the solver's own."""
+    learned = dataclasses.replace(LEARNED, displacement_mm=MPM.displacement_mm, note="E doubled")
+    text = sources_text({Source.MPM: MPM, Source.LEARNED: learned}, 0)
+    assert "+16.7 % from that of the contact solver, its displacement is the contact" in text
+    assert "Note: E doubled" in text
+
+
+def test_what_is_of_an_earlier_press_is_marked() -> None:
+    """Each by what would bring it up to date."""
+    text = sources_text(
+        {Source.MPM: MPM, Source.FEM: FEM, Source.LEARNED: LEARNED},
+        0,
+        stale=(Source.FEM, Source.LEARNED),
+    )
+    assert text.startswith(
+        "**stale**: finite elements are of an earlier design or press; solve again\n\n"
+        "**stale**: learned forces are of an earlier design or press; predict again\n\n|"
+    )
+
+
+def test_a_doubt_is_plain_text_whatever_it_holds() -> None:
+    """The name of a file of weights is somebody else's."""
+    text = doubt_text("<script> is soft")
+    assert "Not known to the network" in text and "<script>" not in text
+    badge = legend("Pressure", 1.0, "kPa", (1, 2, 3), badge="not <known>")
+    assert "not &lt;known&gt;" in badge
+    assert "padding" not in legend("Pressure", 1.0, "kPa", (1, 2, 3))

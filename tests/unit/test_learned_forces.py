@@ -147,7 +147,7 @@ def test_doubts_of_both_networks_are_said_once_with_a_remedy() -> None:
     """A reason that both have stands once; finite elements are named only where they can help."""
     two = (known(reasons=("soft", "deep")), known(FORCE_N, Target.DISPLACEMENT, reasons=("soft",)))
     assert found(8, 8, *two).notice == (
-        "soft; deep: trust the contact solver, which is shown as well, or solve by finite elements"
+        "soft; deep. Trust the contact solver, which is shown as well, or solve by finite elements"
     )
     assert found(8, 8, *two, solvable=False).notice.endswith("which is shown as well")
 

@@ -167,3 +167,14 @@ def test_a_difference_is_the_length_of_that_of_displacements_and_the_size_of_oth
     pressure = shown(SQUARE, contact(), Quantity.PRESSURE, other)
     assert pressure.values[0] == pytest.approx([100.0, 350.0, 100.0, 100.0], rel=1e-5)
     assert not shown(SQUARE, contact(), Quantity.PRESSURE).difference
+
+
+def test_a_field_that_a_source_lacks_is_told_and_makes_no_difference() -> None:
+    """A network predicts no stress: zero, and said to be unknown, not the other's stress."""
+    stressed = contact(cauchy_MPa=np.ones((1, 4, 6), np.float32))
+    without = contact()
+    assert shown(SQUARE, stressed, Quantity.VON_MISES).known
+    assert not shown(SQUARE, without, Quantity.VON_MISES).known
+    apart = shown(SQUARE, without, Quantity.VON_MISES, stressed)
+    assert not apart.known and apart.empty
+    assert shown(SQUARE, without, Quantity.DISPLACEMENT, stressed).known

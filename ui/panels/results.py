@@ -9,7 +9,7 @@ from ui.desk import Desk
 from ui.panels.forces import ForcesTab
 from ui.panels.image import ImageTab
 from ui.panels.maps import MapsPanel
-from ui.panels.sources import SourcesFolder
+from ui.panels.sources import STAGES, SourcesFolder
 from ui.panels.timeline import Timeline
 from workbench.core.errors import SolveError
 from workbench.core.press import Press
@@ -93,6 +93,7 @@ class ResultsPanel:
         """Mark an image and a force that no longer belong to the state."""
         live = self.desk.live.on
         self._caption(self.timeline.number)
+        self.sources.network.refresh()
         self._show_forces(self.timeline.number)
         if not live and not self.desk.current("press"):
             # There are no frames on the skin to step through.
@@ -104,8 +105,9 @@ class ResultsPanel:
             self.image.probe.take_mesh(result if stage == "mesh" else None)
         elif stage == "press":
             self._show_contact(self.desk.session.case.press, result, note="")
-        elif stage == "forces":
-            self.sources.take(result)
+            self.sources.network.follow()
+        elif stage in STAGES:
+            self.sources.take(stage, result)
         elif stage == "live":
             self._show_live(result)
         elif stage == "glimpse":
@@ -116,12 +118,14 @@ class ResultsPanel:
             self._show_partial(*result)
         elif stage == "shoot":
             self._show_shot(result)
+            self.sources.network.follow()
         elif stage == "maps":
             self.image.measure()
         elif stage == "play":
             self.play_next = True
         elif stage == "run":
             self.timeline.player.stop()
+            self.sources.network.give_way()
         elif stage == "sensor":
             self._blank()
         elif stage == "covered":

@@ -11,9 +11,20 @@ from ui.desk import Desk
 from ui.imaging import legend
 from ui.player import SPEEDS, Player
 from ui.sensor import SKIN_COLOUR
+from workbench.core.force_field import Source
+from workbench.force_sources import source_of
 from workbench.quantities import Quantity
 
 BACK, PLAY, ON = "◀ Back", "Play / pause", "On ▶"
+SKIN = {
+    Source.MPM: "of the skin",
+    Source.FEM: "by finite elements",
+    Source.LEARNED: "by the network",
+}
+"""Whose the skin on show is."""
+UNKNOWN = "not given by this source"
+DOUBT = "doubtful"
+"""A badge for forces of a network that does not know the press; the panel says what."""
 WIDTH_PX = 515
 """What is left between the docks on a page of 1280 pixels, less its margins."""
 
@@ -111,12 +122,16 @@ class Timeline:
 
     def show_legend(self) -> None:
         """Show the scale of the colours on the skin."""
-        shown = self.desk.scene.pressed.shown
+        pressed = self.desk.scene.pressed
+        shown = pressed.shown
         if shown is not None:
             where = "zero everywhere" if shown.empty else "scale of all frames"
-            what = "difference of two sources" if shown.difference else "of the skin"
+            whose = SKIN[source_of(pressed.field)]
+            what = "difference of two sources" if shown.difference else whose
+            what, where = (what, where) if shown.known else ("of the skin", UNKNOWN)
             title = f"{shown.quantity.value.capitalize()} {what}, {where}"
-            self.legend.content = legend(title, shown.top, shown.unit, SKIN_COLOUR)
+            doubt = DOUBT if getattr(pressed.field, "notice", "") else ""
+            self.legend.content = legend(title, shown.top, shown.unit, SKIN_COLOUR, badge=doubt)
 
     def _draw_arrows(self) -> None:
         wanted = bool(self.arrows.value)
