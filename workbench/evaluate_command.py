@@ -72,7 +72,7 @@ def evaluate(options: argparse.Namespace, project: Project) -> int:
 
 def _pack(options: argparse.Namespace, printer: Progress) -> int:
     """Write the held-out set of a data set."""
-    from workbench.evaluation.held_out import made_from
+    from workbench.evaluation.packing import made_from
     from workbench.evaluation.sources import open_source
     from workbench.whole_files import write_atomically
 

@@ -16,7 +16,8 @@ from workbench.core.errors import StoreError
 from workbench.dataset.cases import Split
 from workbench.dataset.folder import DataSet
 from workbench.evaluation.evaluate import Named, evaluate_field
-from workbench.evaluation.held_out import PARTS, STEPS, HeldOut, chosen_states, made_from
+from workbench.evaluation.held_out import PARTS, STEPS, HeldOut
+from workbench.evaluation.packing import chosen_states, made_from
 from workbench.evaluation.scoring import Way, compared
 from workbench.evaluation.sources import open_source, states
 
@@ -123,8 +124,11 @@ def test_a_damaged_file_is_refused(packed: Path, tmp_path: Path) -> None:
         HeldOut.open(rewritten(packed, tmp_path / "b.npz", key="0" * 32))
     with np.load(packed) as file:
         points_mm = file["points_mm"] + 1e-9
-    with pytest.raises(StoreError, match="its numbers are not those"):
+    with pytest.raises(StoreError, match="its content is not what"):
         HeldOut.open(rewritten(packed, tmp_path / "c.npz", points_mm=points_mm))
+    cases = [{**row, "split": "unseen"} for row in HeldOut.open(packed).manifest["cases"]]
+    with pytest.raises(StoreError, match="its content is not what"):
+        HeldOut.open(rewritten(packed, tmp_path / "d.npz", cases=cases))
     text = tmp_path / "text.npz"
     text.write_text("no archive")
     with pytest.raises(StoreError, match="cannot be used"):

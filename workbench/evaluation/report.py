@@ -8,20 +8,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-import numpy as np
-
 from sim.forces.network.spec import Target
 from workbench import __version__
 from workbench.dataset.cases import Split
-from workbench.evaluation import charts
 from workbench.evaluation.evaluate import FieldResult, Named, tables
-from workbench.evaluation.groups import (
-    by_station,
-    depth_of,
-    shear_of,
-    station_of,
-    station_words,
-)
+from workbench.evaluation.field_charts import field_charts, spread_charts
 from workbench.evaluation.html_tables import (
     FIELD_WORDS,
     LIMITS,
@@ -34,7 +25,7 @@ from workbench.evaluation.html_tables import (
 )
 from workbench.evaluation.leaks import dataset_keys
 from workbench.evaluation.pictures import Sheet, Spread
-from workbench.evaluation.scoring import Scored, Way, compared, grouped
+from workbench.evaluation.scoring import Way, compared
 from workbench.evaluation.sources import Source, young_MPa
 from workbench.evaluation.speed import efficiency_html
 from workbench.evaluation.stiffness import StiffnessResult, stiffness_table
@@ -113,7 +104,7 @@ def report_page(found: Evaluation) -> str:
         "<h2>Summary</h2>" + DEFINITIONS + summary_table(found.results.values(), areas)
         + TEST_WORDS + PAPER_WORDS + _notes(found.results),
         *(_field_section(one) for one in found.results.values()),
-        "<h2>The data</h2>" + _spread(found.spread),
+        "<h2>The data</h2>" + spread_charts(found.spread),
         "<h2>Predicted, finite elements, difference</h2>" + _sheets(found.sheets),
         "<h2>Another stiffness</h2>" + STIFFNESS_WORDS + _stiffness(found),
         "<h2>Efficiency</h2>" + _speed(found.speed),
@@ -166,64 +157,8 @@ def _field_section(found: FieldResult) -> str:
             + totals_table(found)
         )
     parts.append("<h3>Objects</h3>" + indenter_table(found))
-    parts.append(f"<div class='images' style='margin-top:1em'>{''.join(_charts(found))}</div>")
+    parts.append(f"<div class='images' style='margin-top:1em'>{''.join(field_charts(found))}</div>")
     return "".join(parts)
-
-
-def _charts(found: FieldResult) -> list[str]:
-    """By object, station, depth and way aside; presses and shears apart."""
-    what = f"mean error of {FIELD_WORDS[found.target]} [{found.target.unit}]"
-    pressed = [row for row in found.rows if not row.sheared]
-    sheared = [row for row in found.rows if row.sheared]
-    places = station_words(found.rows[0].case)
-    drawn = [_bars(found.rows, f"By object: {what}")]
-    for words, rows in (("Presses", pressed), ("Shears", sheared)):
-        if rows:
-            title = f"{words} by place: {what}"
-            drawn.append(_lines(by_station(rows), station_of, title, places))
-    if pressed:
-        by_depth = sorted(pressed, key=lambda row: row.depth_mm)
-        title = f"Presses by depth: {what}"
-        drawn.append(_lines(by_depth, depth_of, title, "depth from first touch [mm]"))
-    if sheared:
-        by_way = sorted(sheared, key=lambda row: row.shear_mm)
-        title = f"Shears by way aside: {what}"
-        drawn.append(_lines(by_way, shear_of, title, "way aside along U or V, the larger [mm]"))
-    return drawn
-
-
-def _series(groups: Mapping[str, Any]) -> dict[str, list[float]]:
-    return {way.value: [one.ways[way].mae for one in groups.values()] for way in Way}
-
-
-def _lines(rows: list[Scored], name: Any, title: str, below: str) -> str:
-    groups = grouped(rows, name)
-    return charts.lines(title, list(groups), _series(groups), below=below)
-
-
-def _bars(rows: Sequence[Scored], title: str) -> str:
-    groups = grouped(rows, lambda row: row.case.indenter.value.replace("_", " "))
-    return charts.bars(title, list(groups), _series(groups), below="")
-
-
-def _spread(found: Spread) -> str:
-    """How many samples press how deep and how hard; depths are steps, so each has its own bar."""
-    count = len(found.depths_mm)
-    depths, each = np.unique(found.depths_mm.round(6), return_counts=True)
-    drawn = [
-        charts.bars(
-            f"Depth of {count:,} samples",
-            [f"{depth:.3g}" for depth in depths],
-            {"samples": each.astype(float).tolist()},
-            below="depth from first touch [mm]; shears stay at theirs",
-        ),
-        charts.histogram(
-            f"Total force of {count:,} samples",
-            found.forces_N.tolist(),
-            below="length of the total force by finite elements [N]",
-        ),
-    ]
-    return f"<div class='images'>{''.join(drawn)}</div>"
 
 
 def _sheets(sheets: Sequence[Sheet]) -> str:
