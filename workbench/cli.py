@@ -213,6 +213,10 @@ def _run_options(sub: argparse.ArgumentParser) -> None:
     add_press_options(sub)
     text = "write depth, normals and masks of every pixel: frames.npz, some 4 MB an image"
     sub.add_argument("--image-fields", action="store_true", help=text)
+    text = "totals side by side in sources.csv: mpm, learned (seconds), fem (minutes)"
+    sub.add_argument("--sources", default="", metavar="S,S", help=text)
+    text = "force network of --sources learned (default: what ships)"
+    sub.add_argument("--weights", type=Path, metavar="FILE", help=text)
     sub.add_argument("--out", required=True, type=Path, metavar="DIR")
     sub.add_argument("--json", action="store_true", help="progress as one JSON object per line")
 

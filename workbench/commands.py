@@ -65,11 +65,14 @@ def run(options: argparse.Namespace, project: Project) -> int:
     from workbench.outputs import write_all
     from workbench.partial import keeping_partial
     from workbench.pipeline import InlineRunner, evaluate, plan
+    from workbench.source_files import asked_sources, with_weights, write_sources
 
     design = load_design(options.design, unit=options.unit, project=project)
     design = changed_design(options, design)
     # What is wrong with the design or the options is said before anything is written or built.
+    sources = asked_sources(options.sources)
     first = press_case(options, design, default_target_mm(design))
+    first = with_weights(first, options.weights, sources)
     plan(design, first)
     for notice in (design.material.notice, first.press.notice):
         if notice:
@@ -80,6 +83,7 @@ def run(options: argparse.Namespace, project: Project) -> int:
     start = _start(design, options, project, printer)
     design = start.design
     case = press_case(options, design, default_target_mm(design, start.solid))
+    case = dataclasses.replace(case, learned=first.learned)
     if case.indenter.mesh is not None and case.indenter.mesh.notice:
         complain(case.indenter.mesh.notice)
     calls = plan(design, case)
@@ -115,6 +119,8 @@ def run(options: argparse.Namespace, project: Project) -> int:
             f"residual {force['residual']:.1e}, penetration {1e3 * force['penetration_mm']:.0f} um"
         )
         say(f"open {options.out / 'report.html'}")
+    if sources:
+        write_sources(options.out, sources, design, case, project.store, printer)
     return 0
 
 

@@ -20,7 +20,7 @@ RUN_FILES = (
     *("summary.json", "report.html", "maps.npz"),
     *IMAGE_FILES,
     *CAMERA_FILES,
-    *("contact.npz", "poses.csv", "forces.csv", "slip.csv"),
+    *("contact.npz", "poses.csv", "forces.csv", "slip.csv", "sources.csv"),
     *("mesh.vtu", "membrane.vtp", "contact_*.vtp", "contact.pvd"),
     *(
         f"{folder}/*.{ending}"
