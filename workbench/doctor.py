@@ -10,9 +10,12 @@ import shutil
 import tempfile
 from pathlib import Path
 
+from sim.forces.network.spec import Target
+from sim.forces.network.weights import load_weights
 from workbench import __version__
-from workbench.core.errors import DeviceError
-from workbench.devices import chosen_device, cuda_count, torch_build
+from workbench.core.errors import DeviceError, StoreError
+from workbench.devices import chosen_device, cuda_count, torch_build, torch_device
+from workbench.shipped import is_shipped, shipped_weights
 
 REQUIRED = (
     "viser",
@@ -67,12 +70,47 @@ def report(project: Path) -> tuple[list[str], bool]:
             healthy = False
     for name, purpose in OPTIONAL.items():
         lines.append(f"{name:24}{_version(name) or 'not installed'} - optional: {purpose}")
+    lines.append(f"{'finite elements':24}{_linear_solver()}")
+    found, whole = _learned_forces()
+    lines, healthy = lines + found, healthy and whole
     state = _folder_state(project)
     healthy = healthy and not state.startswith(UNUSABLE)
     lines.append(f"{'project':24}{project} ({state})")
     browser = os.environ.get("CHROMIUM") or shutil.which("chromium") or "none (only tests need one)"
     lines.append(f"{'browser for tests':24}{browser}")
     return lines, healthy
+
+
+def _linear_solver() -> str:
+    """What solves the equations of finite elements."""
+    if _version("scipy") is None:
+        return "nothing to solve with: run make setup"
+    from sim.fem.linear_solver import has_pardiso
+
+    if has_pardiso():
+        return "PARDISO of Intel MKL"
+    return "SuperLU, about 3 times as slow as PARDISO: pip install .[mkl] on an x86 processor"
+
+
+def _learned_forces() -> tuple[list[str], bool]:
+    """Where networks compute and which ship, and whether all that is there is whole."""
+    lines, whole = [], True
+    if _version("torch"):
+        try:
+            lines.append(f"{'learned forces on':24}{torch_device()}")
+        except (ImportError, OSError, DeviceError) as error:
+            lines.append(f"{'learned forces on':24}nothing: {error}")
+            whole = False
+    for target in (Target.FORCE, Target.DISPLACEMENT):
+        name = f"network: {target.value}"
+        try:
+            path = shipped_weights(target)
+            load_weights(path)
+            lines.append(f"{name:24}{path.name} ({path.stat().st_size / 1e6:.1f} MB)")
+        except StoreError as error:
+            lines.append(f"{name:24}{error.message}; {error.hint}")
+            whole = whole and not is_shipped(target)
+    return lines, whole
 
 
 def _folder_state(project: Path) -> str:
