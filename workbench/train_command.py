@@ -20,7 +20,7 @@ from workbench.project import Project
 from workbench.terminal import complain, say
 
 if TYPE_CHECKING:
-    from workbench.training.learn import Told, Trained
+    from workbench.training.plan import Told, Trained
     from workbench.training.presses import Presses
 
 TOLD_S = 10.0
@@ -105,7 +105,8 @@ def tune(options: argparse.Namespace, project: Project) -> int:
 def _train(options: argparse.Namespace, *, base: Path | None) -> int:
     from sim.forces.network.weights import load_weights
     from workbench.devices import torch_device
-    from workbench.training.learn import Plan, train
+    from workbench.training.learn import train
+    from workbench.training.plan import Plan
 
     plan = Plan(
         settings=chosen_settings(options),
@@ -137,8 +138,8 @@ def _train(options: argparse.Namespace, *, base: Path | None) -> int:
 def curve(options: argparse.Namespace, project: Project) -> int:
     """Train on parts of a data set and draw what more cases buy."""
     from workbench.devices import torch_device
-    from workbench.training.learn import Plan
     from workbench.training.learning_curve import learning_curve
+    from workbench.training.plan import Plan
 
     plan = Plan(settings=chosen_settings(options), target=Target(options.target), seed=options.seed)
     if options.cases:

@@ -107,6 +107,7 @@ def made_about(young: float) -> dict[str, object]:
         "hex_mm": 0.9,
         "grid_mm": 0.5,
         "size_mm": 6.0,
+        "edge_radius_mm": 0.45,
         "shear_mm": 0.5,
         "shear_directions": 8,
     }

@@ -14,9 +14,10 @@ from torch import Tensor
 from sim.forces.network.minkunet import MinkUNet, arrays_of, new_network
 from sim.forces.network.spec import Norm, Target
 from sim.forces.training import trainer as trainer_module
+from sim.forces.training.arithmetic import half_type
 from sim.forces.training.averages import Average
 from sim.forces.training.settings import Numbers, TrainingSettings
-from sim.forces.training.trainer import Scales, Trainer, half_type
+from sim.forces.training.trainer import Scales, Trainer
 from tests.unit.made_presses import SETTINGS, SPEC, made_presses
 from workbench.core.errors import DesignError, DeviceError, SolveError
 from workbench.dataset.cases import Split
@@ -201,6 +202,47 @@ def test_the_average_is_the_sum_it_says() -> None:
     average.follow(network, 10_000)
     for name, value in average.network.named_parameters():
         assert torch.allclose(value, old[name] + 0.91, atol=1e-6), name
+
+
+def test_a_foot_pulls_less_at_small_errors_only() -> None:
+    """Below the foot the gradient is the error over the foot, above it is 1; the report is L1."""
+    settings = dataclasses.replace(SETTINGS, foot=0.5, turns=1, averaging=0.0)
+    network = new_network(SPEC, seed=1)
+    torch.nn.init.zeros_(network.last.weight)
+    torch.nn.init.constant_(network.last.bias, 0.1)
+    plain, footed = start(dataclasses.replace(settings, foot=0.0), network), start(settings)
+    footed._network.load_state_dict(network.state_dict())
+    frame, samples = plain._frames[0], torch.arange(12)
+    error, minimised = plain._losses(samples, frame)
+    assert float(error) == float(minimised)
+    same_error, minimised = footed._losses(samples, frame)
+    assert float(same_error) == pytest.approx(float(error))
+    with torch.no_grad():
+        wanted = plain._train[1] / plain.scales.output
+    apart = (0.1 - wanted).abs().double()
+    expected = torch.where(apart < 0.5, apart**2, apart - 0.25).mean() / wanted.abs().mean()
+    assert float(minimised) == pytest.approx(float(expected), rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    "words",
+    ["DefaultCPUAllocator: can't allocate memory", "CUDA error: CUBLAS_STATUS_ALLOC_FAILED"],
+)
+def test_a_full_device_is_known_by_its_words_too(
+    words: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Libraries have no error type of their own for it; any other error stays what it is."""
+
+    def fail(*_: Any, **__: Any) -> Tensor:
+        raise RuntimeError(words)
+
+    running = start()
+    monkeypatch.setattr(trainer_module, "network_output", fail)
+    with pytest.raises(DeviceError):
+        running.run_epoch()
+    words = "mat1 and mat2 shapes cannot be multiplied"
+    with pytest.raises(RuntimeError, match="shapes cannot be multiplied"):
+        running.run_epoch()
 
 
 def test_short_types_are_chosen_by_device(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -27,8 +27,9 @@ from workbench.dataset.cases import Split
 from workbench.training.beginning import begin, best_factor
 from workbench.training.checkpoint import CHECKPOINT, read_checkpoint
 from workbench.training.curves import COLUMNS
-from workbench.training.learn import Plan, Trained, train, training_states
+from workbench.training.learn import train
 from workbench.training.learning_curve import learning_curve
+from workbench.training.plan import Plan, Trained
 from workbench.training.presses import Presses
 
 PRESSES = made_presses(12)
@@ -230,7 +231,7 @@ def test_no_case_to_train_on_is_refused(tmp_path: Path) -> None:
     )
     with pytest.raises(DesignError, match="have 0 cases to train on"):
         run(tmp_path, presses=tests)
-    assert len(training_states(few, 1)) == 2
+    assert len(dataclasses.replace(PLAN, cases=1).states(few)) == 2
 
 
 def test_a_field_that_is_not_finite_stops_before_the_first_step(tmp_path: Path) -> None:

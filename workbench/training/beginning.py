@@ -21,13 +21,13 @@ from sim.forces.training.fields import Fields, rms_of_nonzero
 from sim.forces.training.settings import Numbers
 from workbench.core.errors import DesignError
 from workbench.dataset.cases import Split
+from workbench.training.plan import Plan
 from workbench.training.presses import Presses
 from workbench.training.results import batches, single_predictor
 
 if TYPE_CHECKING:
     from sim.forces.network.minkunet import MinkUNet
     from sim.forces.training.trainer import Scales, Trainer
-    from workbench.training.learn import Plan
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -18,7 +18,11 @@ NAMED = 20
 
 
 def data_card(
-    presses: Presses, states: Sequence[int], target: Target, spacing_mm: float
+    presses: Presses,
+    states: Sequence[int],
+    target: Target,
+    spacing_mm: float,
+    shown: Iterable[str] = (),
 ) -> dict[str, Any]:
     """What the weights were made of.
 
@@ -27,6 +31,7 @@ def data_card(
         states: What was trained on.
         target: What is predicted.
         spacing_mm: Of the skin's vertices.
+        shown: Objects that weights which were tuned had seen before.
     """
     about = presses.about
     recipes = about["recipes"]
@@ -56,8 +61,9 @@ def data_card(
         "poisson": material["poisson"],
         "friction": material["friction"],
         "law": material["law"],
-        "indenters": sorted({presses.states[number].indenter for number in states}),
+        "indenters": sorted({*shown, *(presses.states[number].indenter for number in states)}),
         "size_mm": sorted({float(each["size_mm"]) for each in recipes}),
+        "edge_radius_mm": max(float(each["edge_radius_mm"]) for each in recipes),
         "depth_mm": max(presses.states[number].depth_mm for number in states),
         "shear_mm": max(_shear_mm(each) for each in recipes),
         "membrane": {

@@ -15,18 +15,13 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sim.forces.network.spec import Target
-from sim.forces.network.weights import NetworkWeights, Storage
-from sim.forces.training.settings import Numbers, TrainingSettings
-from workbench.core.digest import digest
-from workbench.core.errors import DesignError
+from sim.forces.network.weights import Storage
+from sim.forces.training.settings import Numbers
 from workbench.core.monitor import Monitor, silent
 from workbench.dataset.cases import Split
 from workbench.dataset.lock import held
@@ -34,6 +29,7 @@ from workbench.training.beginning import Beginning, begin
 from workbench.training.card import data_card, training_card
 from workbench.training.checkpoint import read_checkpoint, write_checkpoint
 from workbench.training.curves import write_curves, write_picture
+from workbench.training.plan import Plan, Tell, Told, Trained
 from workbench.training.presses import Presses
 from workbench.training.results import final_weights
 from workbench.weight_files import save_weights
@@ -42,51 +38,9 @@ from workbench.whole_files import write_atomically
 if TYPE_CHECKING:
     from sim.forces.training.trainer import Trainer
 
-VERSION = 1
-"""Raised whenever the same plan and data give other weights."""
 SUMMARY = "training.json"
 PICTURE_S = 10.0
 """Least time between two pictures of the curves [s]."""
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Plan:
-    """What is trained how; the data are apart."""
-
-    settings: TrainingSettings
-    target: Target
-    seed: int = 0
-    cases: int = 0
-    """The first so many training cases; 0: all."""
-    base: NetworkWeights | None = None
-    """Weights whose decoder is trained further; None: a new network."""
-    base_name: str = ""
-    """Of their file."""
-
-
-@dataclass(kw_only=True, slots=True)
-class Told:
-    """How far a training is, after an epoch."""
-
-    row: dict[str, Any]
-    epochs: int
-    eta_s: float
-    notes: list[str]
-
-
-Tell = Callable[[Told], None]
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Trained:
-    """A training that ended or paused."""
-
-    weights: Path
-    rows: tuple[dict[str, Any], ...]
-    best_epoch: int
-    finished: bool
-    scores: dict[str, Any]
-    notes: tuple[str, ...] = field(default=())
 
 
 def train(
@@ -138,18 +92,8 @@ class _Training:
         self._tell = tell
         self._begun_s = time.monotonic()
         self._drawn_s = 0.0
-        self.key = digest(
-            {
-                "version": VERSION,
-                "settings": plan.settings,
-                "target": plan.target,
-                "seed": plan.seed,
-                "cases": plan.cases,
-                "base": plan.base_name,
-                "data": presses.key,
-            }
-        )
-        self.states = training_states(presses, plan.cases)
+        self.key = plan.key(presses)
+        self.states = plan.states(presses)
         self.validation = presses.of_split(Split.VALIDATION)
         found = read_checkpoint(out, self.key)
         self.begun: Beginning = begin(presses, self.states, plan, device=device, numbers=numbers)
@@ -250,7 +194,8 @@ class _Training:
 
     def _write_results(self) -> Trained:
         plan = self.plan
-        card = data_card(self.presses, self.states, plan.target, self.begun.spacing_mm)
+        shown = plan.base.card.get("indenters", ()) if plan.base else ()
+        card = data_card(self.presses, self.states, plan.target, self.begun.spacing_mm, shown)
         card["training"] = training_card(
             plan.settings,
             seed=plan.seed,
@@ -297,23 +242,6 @@ class _Training:
         }
         write_atomically(self.out / SUMMARY, json.dumps(summary, indent=1).encode())
         return done
-
-
-def training_states(presses: Presses, cases: int) -> list[int]:
-    """Numbers of the samples to train on: all, or those of the first cases of the split.
-
-    Raises:
-        DesignError: If there are none, or fewer cases than asked for.
-    """
-    there = presses.cases(Split.TRAIN)
-    if not there or cases > len(there):
-        raise DesignError(
-            f"the data have {len(there)} cases to train on"
-            + (f", {cases} are asked for" if cases else ""),
-            hint="make more cases with workbench dataset make" + (" --cases N" if cases else ""),
-            at="data",
-        )
-    return presses.of_split(Split.TRAIN, cases=there[:cases] if cases else None)
 
 
 def _or_large(value: float | None) -> float:

@@ -19,7 +19,8 @@ from workbench.core.check import within
 from workbench.core.monitor import Monitor, silent
 from workbench.dataset.cases import Split
 from workbench.training.chart import Series, chart
-from workbench.training.learn import Plan, Tell, train, training_states
+from workbench.training.learn import train
+from workbench.training.plan import Plan, Tell
 from workbench.training.presses import Presses
 from workbench.whole_files import write_atomically
 
@@ -59,9 +60,9 @@ def learning_curve(
     every = len(presses.cases(Split.TRAIN))
     counts = sorted({max(1, round(fraction * every)) for fraction in fractions})
     began_s, rows = time.monotonic(), []
-    whole = len(training_states(presses, 0))
+    whole = len(dataclasses.replace(plan, cases=0).states(presses))
     for number, cases in enumerate(counts):
-        samples = len(training_states(presses, cases))
+        samples = len(dataclasses.replace(plan, cases=cases).states(presses))
         passes = max(1, round(plan.settings.passes * whole / samples))
         settings = dataclasses.replace(plan.settings, passes=passes)
         left = minutes - (time.monotonic() - began_s) / 60.0

@@ -33,12 +33,13 @@ from torch.nn.functional import smooth_l1_loss
 
 from sim.forces.network.minkunet import MinkUNet
 from sim.forces.network.spec import Target
+from sim.forces.training.arithmetic import adam, half_type, is_full, no_room
 from sim.forces.training.averages import Average
 from sim.forces.training.fields import Fields
 from sim.forces.training.frames import Frame, frames_of
 from sim.forces.training.scores import network_output, sample_errors
 from sim.forces.training.settings import Numbers, TrainingSettings, rate_factor
-from workbench.core.errors import DesignError, DeviceError, SolveError
+from workbench.core.errors import DesignError, SolveError
 from workbench.core.monitor import Monitor, silent
 
 _Result = TypeVar("_Result")
@@ -128,9 +129,11 @@ class Trainer:
             self._train = _on(train, device)
             self._validation = _on(validation, device)
             self._average = Average(network, settings.averaging) if settings.averaging else None
-        except torch.OutOfMemoryError as error:
-            raise _no_room(device) from error
-        self._optimiser = _adam(network, settings, fused=device != "cpu")
+        except RuntimeError as error:
+            if not is_full(error):
+                raise
+            raise no_room(device) from error
+        self._optimiser = adam(network, settings, fused=device != "cpu")
         self._scaler = torch.amp.GradScaler(device, enabled=self._half is torch.float16)
         self._device = device
 
@@ -256,9 +259,11 @@ class Trainer:
         while True:
             try:
                 return work()
-            except torch.OutOfMemoryError as error:
+            except RuntimeError as error:
+                if not is_full(error):
+                    raise
                 if self._piece == 1:
-                    raise _no_room(self._device) from error
+                    raise no_room(self._device) from error
             # Out of the handler: the exception holds what filled the device.
             self._optimiser.zero_grad(set_to_none=True)
             torch.cuda.empty_cache()
@@ -278,42 +283,8 @@ class Trainer:
             )
 
 
-def half_type(device: str, numbers: Numbers) -> torch.dtype | None:
-    """The short type of a step, None for float32."""
-    if numbers is Numbers.SINGLE or (numbers is Numbers.AUTO and device == "cpu"):
-        return None
-    if device == "cpu" or torch.cuda.is_bf16_supported(including_emulation=False):
-        return torch.bfloat16
-    return torch.float16
-
-
-def _adam(network: nn.Module, settings: TrainingSettings, *, fused: bool) -> torch.optim.Optimizer:
-    """Adam; the weights of products decay where asked, shifts and scales do not."""
-    trained = [p for p in network.parameters() if p.requires_grad]
-    return torch.optim.AdamW(
-        [
-            {
-                "params": [p for p in trained if p.ndim > 1],
-                "weight_decay": settings.weight_decay,
-            },
-            {"params": [p for p in trained if p.ndim < 2], "weight_decay": 0.0},
-        ],
-        lr=settings.rate,
-        fused=fused,
-    )
-
-
 def _on(fields: Fields, device: str) -> tuple[Tensor, Tensor]:
     return (
         torch.from_numpy(np.ascontiguousarray(fields.inputs_mm, dtype=np.float32)).to(device),
         torch.from_numpy(np.ascontiguousarray(fields.targets, dtype=np.float32)).to(device),
-    )
-
-
-def _no_room(device: str) -> DeviceError:
-    return DeviceError(
-        f"the {device} device has no memory left, even for one sample at a time",
-        hint="the last checkpoint is kept; close what else uses the device and go on with the same "
-        "command, or set WORKBENCH_DEVICE=cpu",
-        at="device",
     )
