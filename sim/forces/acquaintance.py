@@ -154,19 +154,18 @@ def _of_material(card: Mapping[str, Any], material: Elastomer) -> Iterator[str]:
 
 
 def _of_object(card: Mapping[str, Any], indenter: Indenter) -> Iterator[str]:
-    kinds, edge_mm = card.get("indenters"), _number(card, "edge_radius_mm")
-    sizes_mm = np.atleast_1d(np.array(card.get("size_mm", ()), dtype=float))
+    kinds = card.get("indenters")
     name = indenter.kind.value.replace("_", " ")
     if indenter.kind is IndenterKind.MESH:
         yield "the object comes from a file, trained on none such"
     elif kinds is not None and indenter.kind.value not in kinds:
         yield f"the object is of a kind that training never showed: {name}"
-    if len(sizes_mm) and not any(_same(indenter.size_mm, size) for size in sizes_mm):
-        known = ", ".join(f"{size:g}" for size in sizes_mm)
+    known = _unlike(card, "size_mm", indenter.size_mm)
+    if known:
         yield f"the object is {indenter.size_mm:g} mm wide, trained on {known} mm"
-    edged = indenter.kind not in EDGELESS
-    if edged and edge_mm is not None and not _same(indenter.edge_radius_mm, edge_mm):
-        yield f"edges are rounded by {indenter.edge_radius_mm:g} mm, trained on {edge_mm:g} mm"
+    known = _unlike(card, "edge_radius_mm", indenter.edge_radius_mm)
+    if known and indenter.kind not in EDGELESS:
+        yield f"edges are rounded by {indenter.edge_radius_mm:g} mm, trained on {known} mm"
     if indenter.texture.raised:
         yield "the object has a texture, trained on smooth ones"
     if indenter.soft is not None:
@@ -218,6 +217,13 @@ def _number(card: Mapping[str, Any], name: str) -> float | None:
     """A number of the card; None where it has none."""
     value = card.get(name)
     return float(value) if isinstance(value, (int, float)) else None
+
+
+def _unlike(card: Mapping[str, Any], name: str, value: float) -> str:
+    """The numbers of the card in words if it has some, and this is none of them; else ""."""
+    known = np.atleast_1d(np.array(card.get(name, ()), dtype=float))
+    alike = any(_same(value, number) for number in known)
+    return "" if alike else ", ".join(f"{number:g}" for number in known)
 
 
 def _same(one: float, other: float) -> bool:
