@@ -15,7 +15,7 @@ from ui.jobs import Jobs
 from workbench.core.design import SensorDesign
 from workbench.core.errors import Cancelled, DesignError
 from workbench.pipeline import PressCase
-from workbench.requests import GLIMPSE, SHAPE, Finished, Request
+from workbench.requests import GLIMPSE, PREDICTION, SHAPE, Finished, Request
 from workbench.stages import STAGES
 
 
@@ -66,6 +66,13 @@ def test_a_failed_request_is_told_by_its_topic(
     """The message goes to the button of its topic; the live body has none."""
     jobs.pump([failed(topic)])
     assert told.errors == [("no face is sensing", place)]
+
+
+def test_an_error_of_what_nobody_asked_for_is_only_logged(jobs: Jobs, told: Told) -> None:
+    """Learned forces follow a press by themselves: one line in the log, nothing red."""
+    jobs.pump([failed(PREDICTION)])
+    assert told.errors == []
+    assert told.lines == ["prediction: no face is sensing. Name one."]
 
 
 def test_an_error_of_another_design_is_only_logged(jobs: Jobs, told: Told) -> None:

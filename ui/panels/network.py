@@ -75,7 +75,7 @@ class NetworkPart:
             self.about.content = UNTRAINED
 
     def follow(self) -> None:
-        """Predict a press that has come with its image, if the network knows it."""
+        """Predict a press that has come with its image, if the network chosen knows it."""
         desk, session = self.desk, self.desk.session
         call = session.calls().get(TOPIC)
         if call is None or desk.live.on or not (desk.current("press") and desk.current("shoot")):
@@ -98,6 +98,7 @@ class NetworkPart:
             setting = self._offered[field].get(self.choices[field].value)
             if setting is not None:
                 self.desk.edit(f"case.learned.{field}", setting)
+                self.follow()
 
         return choose
 
