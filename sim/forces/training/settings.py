@@ -138,9 +138,9 @@ PRESETS = {
 }
 """By name.
 
-What `small` rests on, measured on 20 training cases of a draft data set, on the half of the skin that
-faces the presses and at three quarters of the widths, as errors over those of zero on validation,
-test and unseen objects (the contact solver alone: 0.23, 0.30, 0.30):
+What `small` rests on, measured on 20 training cases of a draft data set, on the half of the skin
+that faces the presses and at three quarters of the widths, as errors over those of zero on
+validation, test and unseen objects (the contact solver alone: 0.23, 0.30, 0.30):
 
 | | validation | test | unseen |
 |---|---|---|---|
