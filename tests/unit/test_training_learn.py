@@ -17,9 +17,9 @@ import torch
 
 from sim.forces.network.minkunet import arrays_of
 from sim.forces.network.predictor import Precision, Predictor
-from sim.forces.network.spec import Target
+from sim.forces.network.spec import NetworkSpec, Target
 from sim.forces.network.weights import load_weights
-from sim.forces.training.settings import Numbers
+from sim.forces.training.settings import Numbers, TrainingSettings
 from sim.forces.training.trainer import Trainer
 from tests.unit.made_presses import SETTINGS, made_presses
 from workbench.core.errors import DesignError, DeviceError, SolveError, StoreError
@@ -219,6 +219,23 @@ def test_a_killed_training_loses_the_running_epoch_only(tmp_path: Path, whole: T
     assert kept["trainer"]["epoch"] == len(kept["rows"]) >= 1
     done = run(tmp_path)
     assert told(done) == told(whole)
+
+
+@pytest.mark.slow
+def test_what_is_learned_holds_on_other_presses(tmp_path: Path) -> None:
+    """60 made-up cases teach the law for dents elsewhere: far below the error of saying zero.
+
+    Measured, over that error: validation 0.49, test 0.46, unseen 0.47; after 30 epochs test 0.30.
+    """
+    spec = NetworkSpec(name="made", planes=(8, 8, 12, 12, 12, 8, 8, 8), stem_planes=8)
+    settings = TrainingSettings(
+        name="made", spec=spec, rate=5e-3, batch=4, epochs=10, cosine=True, warm_up=0.03, clip=1.0
+    )
+    settings = dataclasses.replace(settings, averaging=0.98, foot=0.1, turns=2)
+    presses = made_presses(120, frames=3, edge=16)
+    done = run(tmp_path, Plan(settings=settings, target=Target.FORCE), presses)
+    shares = {k: found["mae"] / found["zero_mae"] for k, found in done.scores.items()}
+    assert max(shares.values()) < 0.6, shares
 
 
 def test_no_case_to_train_on_is_refused(tmp_path: Path) -> None:
