@@ -206,7 +206,7 @@ def test_the_key_follows_what_a_sample_depends_on() -> None:
     recipe = load_recipe("small")
     renamed = dataclasses.replace(recipe.design, name="other")
     assert dataclasses.replace(recipe, design=renamed).key == recipe.key
-    assert dataclasses.replace(recipe, hex_mm=0.45).key != recipe.key
+    assert dataclasses.replace(recipe, hex_mm=0.9).key != recipe.key
     thicker = recipe.design.replace("layers.elastomer_mm", 2.1)
     assert dataclasses.replace(recipe, design=thicker).key != recipe.key
 

@@ -18,6 +18,7 @@ import pytest
 
 from tests.unit.test_dataset_cases import flat_skin
 from workbench.core.errors import SolveError, StoreError
+from workbench.core.fem import DRAFT_MM
 from workbench.dataset.agreement import agreement
 from workbench.dataset.begin import begin
 from workbench.dataset.card import card_text
@@ -40,8 +41,8 @@ VERTICES = len(SKIN.points_mm)
 
 
 def recipe(cases: int = 6) -> Recipe:
-    """A press and a shear of a few cases."""
-    return dataclasses.replace(load_recipe("small"), cases=cases)
+    """A press and a shear of a few cases, on the draft mesh."""
+    return dataclasses.replace(load_recipe("small"), cases=cases, hex_mm=DRAFT_MM)
 
 
 def started(folder: Path, cases: int = 6) -> DataSet:
