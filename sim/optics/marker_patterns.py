@@ -22,6 +22,9 @@ from workbench.core.optics import MarkerPattern, Markers
 from workbench.core.photo import Photo
 from workbench.core.results import Skin
 
+ON_EDGE = 1e-9
+"""A dot on the edge of two triangles belongs to both, whichever way rounding goes; what is found
+twice is then told apart by distance."""
 LEAST_SHARE = 0.7
 """Of the spacing between two dots of a grid [1]."""
 LEVEL_MM = 1e-3
@@ -77,7 +80,7 @@ def grid_places(skin: Skin, spacing_mm: float) -> np.ndarray:
         for column in range(int(low[face, 0]), int(high[face, 0]) + 1):
             for row in range(int(low[face, 1]), int(high[face, 1]) + 1):
                 second, third = np.linalg.solve(edges, np.array([column, row]) - a)
-                if second >= 0.0 and third >= 0.0 and second + third <= 1.0:
+                if min(second, third, 1.0 - second - third) >= -ON_EDGE:
                     weights = np.array([1.0 - second - third, second, third])
                     found.append(weights @ points[faces[face]])
                     nodes.append((column, row))
