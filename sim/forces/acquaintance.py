@@ -61,8 +61,11 @@ class Acquaintance:
     """What they do not know, in words; empty when they know it."""
     factor: float = 1.0
     """What the network's forces and stresses are to be multiplied by."""
+    young_ratio: float = 1.0
+    """What the contact solver's forces are to be divided by before they enter: E over that of the
+    training."""
     note: str = ""
-    """Why, in words; empty for a factor of 1."""
+    """Why forces are scaled, in words; empty for a factor of 1."""
 
 
 def acquaintance(
@@ -88,7 +91,7 @@ def acquaintance(
         settings: Of the contact solver, whose displacement the network is given.
         largest_mm: Largest displacement of the press [mm], once that is known.
     """
-    factor, note, open_reasons = _stiffness(card, target, membrane, material)
+    ratio, note, open_reasons = _stiffness(card, target, membrane, material)
     reasons = (
         *_missing(card),
         *_of_membrane(card, membrane),
@@ -98,7 +101,8 @@ def acquaintance(
         *_of_path(card, press),
         *_of_solver(card, settings, largest_mm),
     )
-    return Acquaintance(reasons=reasons, factor=factor, note=note)
+    factor = 1.0 if target is Target.DISPLACEMENT else ratio
+    return Acquaintance(reasons=reasons, factor=factor, young_ratio=ratio, note=note)
 
 
 def _missing(card: Mapping[str, Any]) -> Iterator[str]:
@@ -126,18 +130,18 @@ def _of_membrane(card: Mapping[str, Any], membrane: Membrane) -> Iterator[str]:
 def _stiffness(
     card: Mapping[str, Any], target: Target, membrane: Membrane, material: Elastomer
 ) -> tuple[float, str, tuple[str, ...]]:
-    """Factor for E, the note on it, and what stands against it."""
+    """E over that of the training, the note on it, and what stands against it."""
     young_MPa = _number(card, "young_MPa")
     if not young_MPa or _same(material.young_MPa, young_MPa):
         return 1.0, "", ()
-    factor = 1.0 if target is Target.DISPLACEMENT else material.young_MPa / young_MPa
+    ratio = material.young_MPa / young_MPa
     words = f"E is {material.young_MPa:.4g} MPa, trained at {young_MPa:.4g} MPa"
     if membrane.gel and material.backing_MPa > 0.0:
-        return factor, "", (f"{words}, and the gel behind the skin does not change with it",)
+        return ratio, "", (f"{words}, and the gel behind the skin does not change with it",)
     if target is Target.DISPLACEMENT:
-        return factor, "", ()
-    note = f"{words}: forces are scaled by {factor:.4g}, which is exact in statics"
-    return factor, note, ()
+        return ratio, "", ()
+    note = f"{words}: forces are scaled by {ratio:.4g}, which is exact in statics"
+    return ratio, note, ()
 
 
 def _of_material(card: Mapping[str, Any], material: Elastomer) -> Iterator[str]:

@@ -1,8 +1,9 @@
 """Forces of a press as a trained network predicts them from what the contact solver found.
 
-The solver's displacement is carried to a skin with the spacing of the training, where the network
-gives a force per vertex, and a second one, where there is one, the displacement. Both are carried
-back to the skin of the design; forces keep their sum (`transfer`).
+The solver's displacement, and its force where a network asks for it, is carried to a skin with the
+spacing of the training, where the network gives a force per vertex, and a second one, where there
+is one, the displacement. Both are carried back to the skin of the design; forces keep their sum
+(`transfer`).
 
     pressure = -f . n / A,  reaction = -sum f,  moment = -sum (x + u - o) x f
 
@@ -27,6 +28,7 @@ import numpy as np
 
 from geometry.surface import face_areas, vertex_normals
 from sim.forces.acquaintance import Acquaintance
+from sim.forces.network.inputs import given_field
 from sim.forces.network.spec import Target
 from sim.forces.network.weights import NetworkWeights
 from sim.forces.transfer import shares_on, transferred
@@ -86,11 +88,14 @@ def learned_forces(
     if displacement is not None:
         _expect_target(displacement, Target.DISPLACEMENT)
     monitor(0.0, "carrying the displacement to the network's points")
-    there = shares_on(mesh.outer, source.outer.points_mm)
-    given_mm = there.interpolate(np.asarray(contact.displacement_mm))
+    given_mm, given_N = _carried(mesh.outer, source.outer, contact)
     used = [force] if displacement is None else [force, displacement]
     predictors = [_predictor(known.weights, source.outer, device) for known in used]
-    fields, seconds = _predicted(predictors, given_mm, monitor)
+    given = [
+        given_field(known.weights, given_mm, given_N, factor=known.acquaintance.young_ratio)
+        for known in used
+    ]
+    fields, seconds = _predicted(predictors, given, monitor)
     force_N = fields[0] * np.float32(force.acquaintance.factor)
     moved_mm = fields[1] if displacement is not None else given_mm
     found = _force_field(source.outer, contact, force_N, moved_mm, seconds)
@@ -109,6 +114,16 @@ def learned_forces(
         # Its own numbers, not those that went to the network's points and back.
         return dataclasses.replace(shown, displacement_mm=contact.displacement_mm)
     return shown
+
+
+def _carried(skin: Skin, points: Skin, contact: Contact) -> tuple[np.ndarray, np.ndarray]:
+    """Displacement [mm] and force [N] of the contact solver at the network's points, (K, V, 3)."""
+    there = shares_on(skin, points.points_mm)
+    back = shares_on(points, skin.points_mm)
+    return (
+        there.interpolate(np.asarray(contact.displacement_mm)),
+        back.spread(np.asarray(contact.contact_force_N), len(points.points_mm)),
+    )
 
 
 def _expect_target(known: Known, wanted: Target) -> None:
@@ -136,17 +151,18 @@ def _predictor(weights: NetworkWeights, skin: Skin, device: str) -> Predictor:
 
 
 def _predicted(
-    predictors: Sequence[Predictor], given_mm: np.ndarray, monitor: Monitor
+    predictors: Sequence[Predictor], given: Sequence[np.ndarray], monitor: Monitor
 ) -> tuple[list[np.ndarray], np.ndarray]:
-    """Fields of each network, (K, V, 3), and the time of each frame [s], (K,)."""
+    """Fields of each network, (K, V, 3), from what enters each; time of each frame [s], (K,)."""
     rows: list[list[np.ndarray]] = [[] for _ in predictors]
-    seconds = np.zeros(len(given_mm))
+    count = len(given[0])
+    seconds = np.zeros(count)
     with _one_thread():
-        for frame, frame_mm in enumerate(given_mm):
-            monitor(frame / len(given_mm), f"frame {frame + 1} of {len(given_mm)}")
+        for frame in range(count):
+            monitor(frame / count, f"frame {frame + 1} of {count}")
             begun = time.perf_counter()
-            for row, predictor in zip(rows, predictors, strict=True):
-                row.append(predictor.predict(frame_mm))
+            for row, predictor, fields in zip(rows, predictors, given, strict=True):
+                row.append(predictor.predict(fields[frame]))
             seconds[frame] = time.perf_counter() - begun
     return [np.stack(row) for row in rows], seconds
 

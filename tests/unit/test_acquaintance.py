@@ -136,9 +136,12 @@ def test_another_stiffness_scales_forces_and_is_no_reason_for_doubt() -> None:
 
 
 def test_displacements_do_not_scale_with_stiffness() -> None:
-    """The same displacements whatever E is: nothing to multiply, nothing to say."""
+    """The same displacements whatever E is: nothing to multiply, nothing to say; forces that enter
+    are divided all the same."""
     stiff = Elastomer(young_MPa=0.435)
-    assert judged(material=stiff, target=Target.DISPLACEMENT) == Acquaintance()
+    found = judged(material=stiff, target=Target.DISPLACEMENT)
+    assert (found.reasons, found.factor, found.note) == ((), 1.0, "")
+    assert found.young_ratio == pytest.approx(3.0)
 
 
 @pytest.mark.parametrize("target", [Target.FORCE, Target.DISPLACEMENT])

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +22,7 @@ from workbench.evaluation import evaluate, scoring
 from workbench.evaluation.evaluate import Named, evaluate_all, evaluate_field, tables
 from workbench.evaluation.groups import by_station, station_of
 from workbench.evaluation.leaks import expect_no_leak
-from workbench.evaluation.scoring import FIELDS, Way, compared, grouped, scored_states
+from workbench.evaluation.scoring import FIELDS, Learned, Way, compared, grouped, scored_states
 from workbench.evaluation.sources import expect_held_out, states
 from workbench.whole_files import write_atomically
 
@@ -56,14 +55,14 @@ def untrained(data: DataSet, target: Target = Target.FORCE, **card: Any) -> Netw
     )
 
 
-def oracle(data: DataSet, target: Target) -> Callable[[np.ndarray], np.ndarray]:
+def oracle(data: DataSet, target: Target) -> Learned:
     """Answers with the finite elements' own field, found by the displacement that it is given."""
     known = {}
     for case, frame in states(data):
         sample = data.sample(case, frame)
         assert sample.mpm is not None and sample.fem is not None
         known[sample.mpm.displacement_mm.tobytes()] = getattr(sample.fem, FIELDS[target])
-    return lambda displacement_mm: known[displacement_mm.tobytes()]
+    return lambda mpm: known[mpm.displacement_mm.tobytes()]
 
 
 def test_only_test_and_unseen_cases_are_scored(data: DataSet) -> None:
@@ -163,7 +162,7 @@ def test_a_prediction_that_is_not_finite_is_refused(data: DataSet) -> None:
     """NaN stops the evaluation, and is not averaged over."""
     with pytest.raises(SolveError, match="not finite"):
         scored_states(
-            data, states(data), Target.FORCE, lambda moved_mm: np.full_like(moved_mm, np.nan)
+            data, states(data), Target.FORCE, lambda mpm: np.full_like(mpm.displacement_mm, np.nan)
         )
 
 

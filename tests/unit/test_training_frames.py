@@ -51,7 +51,7 @@ def test_turned_vectors_are_what_the_turned_sensor_sees() -> None:
         presses.points_mm, voxel_mm=0.75, spec=SPEC, target=Target.FORCE, turns=6, device="cpu"
     )
     for frame in frames:
-        turned = fields.inputs_mm[0] @ frame.vectors.numpy().T
+        turned = fields.inputs[0] @ frame.vectors.numpy().T
         expected = fields.targets[0] @ frame.values.numpy().T
         assert np.allclose(force_of(turned), expected, atol=1e-6)
 
@@ -87,7 +87,7 @@ def test_a_field_that_is_not_finite_is_refused_by_name(bad: float) -> None:
     targets = good.targets.copy()
     targets[1, 7, 2] = bad
     with pytest.raises(SolveError, match=r"target of dent0 frame 2 has 1 of 432 values"):
-        Fields(inputs_mm=good.inputs_mm, targets=targets, names=good.names)
+        Fields(inputs=good.inputs, targets=targets, names=good.names)
 
 
 def test_rate_warms_up_and_falls_along_a_cosine() -> None:
@@ -126,7 +126,7 @@ def test_sparse_fields_come_back_dense() -> None:
     assert len(field.index) < 0.5 * len(presses.states) * len(points_mm)
     first_mm = dent(points_mm, rng)
     fields = presses.fields(Target.FORCE, [1])
-    assert np.array_equal(fields.inputs_mm[0], first_mm.astype(np.float32))
+    assert np.array_equal(fields.inputs[0], first_mm.astype(np.float32))
     assert np.array_equal(fields.targets[0], force_of(first_mm).astype(np.float32))
     raw = presses.raw_errors(Target.FORCE, [1])
     assert raw is not None and raw[0] == pytest.approx(0.1 * fields.zero_mae, rel=1e-5)

@@ -99,7 +99,7 @@ def test_scores_of_the_card_are_those_of_the_file(whole: Trained) -> None:
     predictor = Predictor(
         weights, PRESSES.points_mm, faces=PRESSES.faces, precision=Precision.SINGLE
     )
-    apart = np.abs(predictor.predict(fields.inputs_mm) - fields.targets).mean()
+    apart = np.abs(predictor.predict(fields.inputs) - fields.targets).mean()
     score = weights.card["scores"]["test"]
     assert set(weights.card["scores"]) == {"validation", "test", "unseen"}
     assert score["mae"] == pytest.approx(apart, rel=1e-5)
@@ -120,7 +120,7 @@ def test_the_card_says_what_readers_ask_for(whole: Trained) -> None:
     assert (training["epochs"], training["seed"], training["samples"]) == (3, 4, 12)
     assert training["parameters"] > 1000 and training["device"] == "cpu"
     states = PRESSES.of_split(Split.TRAIN)
-    largest = np.linalg.norm(PRESSES.fields(Target.FORCE, states).inputs_mm, axis=2).max()
+    largest = np.linalg.norm(PRESSES.fields(Target.FORCE, states).inputs, axis=2).max()
     assert card["max_displacement_mm"] == pytest.approx(largest, rel=1e-6)
     assert 0.0 < card["displacement_p95_mm"] <= card["max_displacement_mm"]
 

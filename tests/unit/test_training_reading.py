@@ -65,7 +65,7 @@ def test_fields_are_those_of_the_samples(tmp_path: Path) -> None:
         (Target.STRESS, sample.fem.cauchy_MPa),
     ):
         fields = found.fields(target, [1])
-        assert np.array_equal(fields.inputs_mm[0], sample.mpm.displacement_mm)
+        assert np.array_equal(fields.inputs[0], sample.mpm.displacement_mm)
         assert np.array_equal(fields.targets[0], truth)
     raw = found.raw_errors(Target.FORCE, [1])
     apart = np.abs(sample.mpm.contact_force_N - sample.fem.contact_force_N).mean()

@@ -20,6 +20,7 @@ from workbench.evaluation.scoring import (
     compared,
     field_target,
     grouped,
+    learned_by,
     predictor_for,
     scored_states,
 )
@@ -71,7 +72,8 @@ def evaluate_field(
     cases = {case.id: case for case, _ in chosen}
     expect_no_leak(named.weights, source, cases.values(), name=named.name)
     predictor = predictor_for(named.weights, source)
-    rows = scored_states(source, chosen, target, predictor.predict, monitor=monitor)
+    learned = learned_by(named.weights, predictor)
+    rows = scored_states(source, chosen, target, learned, monitor=monitor)
     if not rows:
         raise SolveError(
             f"no held-out sample of {name} was settled by both solvers",

@@ -13,7 +13,7 @@ from workbench.core.monitor import Monitor, silent
 from workbench.dataset.cases import Split
 from workbench.evaluation.evaluate import FieldResult, Named
 from workbench.evaluation.heat_maps import Pair, heat_map
-from workbench.evaluation.scoring import FIELDS, Scored, Way, both, predictor_for
+from workbench.evaluation.scoring import FIELDS, Scored, Way, both, learned_by, predictor_for
 from workbench.evaluation.sources import Source, states
 
 
@@ -63,7 +63,7 @@ def _own_error(row: Scored) -> float:
 
 def sheets(source: Source, named: Named, found: FieldResult) -> list[Sheet]:
     """Heat maps of a typical press and a typical shear."""
-    predictor, drawn = predictor_for(named.weights, source), []
+    learned, drawn = learned_by(named.weights, predictor_for(named.weights, source)), []
     for sheared, motion in ((False, "press"), (True, "shear")):
         row = chosen_press(found, sheared=sheared)
         if row is None:
@@ -72,7 +72,7 @@ def sheets(source: Source, named: Named, found: FieldResult) -> list[Sheet]:
         mpm, fem = both(sample)
         pair = Pair(
             sample=sample,
-            found=predictor.predict(mpm.displacement_mm),
+            found=learned(mpm),
             truth=getattr(fem, FIELDS[found.target]),
             moved_mm=fem.displacement_mm,
             unit=found.target.unit,

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sim.forces.network.inputs import given_field
 from sim.forces.network.spec import Target
 from sim.forces.network.weights import NetworkWeights
 from sim.forces.scores import Score, Summary, press_frame, ratio, score, summary
@@ -79,8 +80,8 @@ class Compared:
         return ratio(self.ways[way].mae, self.ways[over].mae)
 
 
-Learned = Callable[[np.ndarray], np.ndarray]
-"""From the contact solver's displacement [mm] (V, 3) to a field (V, 3)."""
+Learned = Callable[[Solved], np.ndarray]
+"""From the contact solver's answer to a field (V, 3)."""
 
 
 def field_target(weights: NetworkWeights) -> Target:
@@ -112,6 +113,22 @@ def predictor_for(weights: NetworkWeights, source: Source) -> Predictor:
         precision=Precision.SINGLE,
         acceleration=Acceleration.EAGER,
     )
+
+
+def learned_by(weights: NetworkWeights, predictor: Predictor, *, factor: float = 1.0) -> Learned:
+    """What a network says of an answer of the contact solver.
+
+    Args:
+        weights: Of the network.
+        predictor: The network on the skin of the answers.
+        factor: Young's modulus of the answers over that of the training.
+    """
+
+    def learned(mpm: Solved) -> np.ndarray:
+        force_N, displacement_mm = mpm.contact_force_N, mpm.displacement_mm
+        return predictor.predict(given_field(weights, displacement_mm, force_N, factor=factor))
+
+    return learned
 
 
 def scored_states(
@@ -166,7 +183,7 @@ def fields_of(sample: Sample, target: Target, learned: Learned) -> dict[str, np.
     mpm, _ = both(sample)
     raw = getattr(mpm, FIELDS[target])
     return {
-        Way.LEARNED: learned(mpm.displacement_mm),
+        Way.LEARNED: learned(mpm),
         Way.MPM: raw,
         Way.ZERO: np.zeros_like(raw),
     }

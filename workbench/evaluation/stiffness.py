@@ -33,6 +33,7 @@ from workbench.evaluation.scoring import (
     both,
     compared,
     field_target,
+    learned_by,
     predictor_for,
     scores_of,
 )
@@ -144,12 +145,16 @@ def _one(
     target = field_target(untuned.weights)
     chosen = expect_held_out(source, name)
     cases = {case.id: case for case, _ in chosen}
-    given = [untuned] if tuned is None else [untuned, tuned]
-    networks: list[Learned] = []
-    for named in given:
-        expect_no_leak(named.weights, source, cases.values(), name=named.name)
-        networks.append(predictor_for(named.weights, source).predict)
     factor = young_MPa(source) / trained_MPa(untuned)
+    networks: dict[Tuning, Learned] = {}
+    for named in [untuned] if tuned is None else [untuned, tuned]:
+        expect_no_leak(named.weights, source, cases.values(), name=named.name)
+        predictor = predictor_for(named.weights, source)
+        if named is tuned:
+            networks[Tuning.TUNED] = learned_by(named.weights, predictor)
+        else:
+            networks[Tuning.SCALED] = learned_by(named.weights, predictor, factor=factor)
+            networks[Tuning.UNTUNED] = learned_by(named.weights, predictor)
     rows = []
     for number, (case, frame) in enumerate(chosen):
         monitor(number / len(chosen), f"{case.id}, frame {frame + 1}")
@@ -157,14 +162,14 @@ def _one(
         if not all(solved.converged for solved in both(sample)):
             continue
         mpm, _ = both(sample)
-        plain, *more = (network(mpm.displacement_mm) for network in networks)
+        raw = getattr(mpm, FIELDS[target])
         fields: dict[str, np.ndarray] = {
-            **({Tuning.TUNED: more[0]} if more else {}),
-            Tuning.SCALED: plain * np.float32(factor if target is Target.FORCE else 1.0),
-            Tuning.UNTUNED: plain,
-            Way.MPM: getattr(mpm, FIELDS[target]),
-            Way.ZERO: np.zeros_like(plain),
+            **{way: networks[way](mpm) for way in Tuning if way in networks},
+            Way.MPM: raw,
+            Way.ZERO: np.zeros_like(raw),
         }
+        if target is Target.FORCE:
+            fields[Tuning.SCALED] = fields[Tuning.SCALED] * np.float32(factor)
         rows.append(Scored(case=case, frame=frame, scores=scores_of(sample, target, fields)))
     off, common = _truth_off(source, base, target)
     return StiffnessResult(

@@ -1,9 +1,10 @@
 """What a training begins with: a new network, or weights whose decoder is to learn another gel.
 
 To tune, the encoder stays as it is: it sees the dent, which a prescribed path makes alike for every
-stiffness, and so do the scale of the input and the size of a voxel in spacings. The scale of the
-output is multiplied by the one number that fits the old network's fields to the new ones best:
-where force is proportional to the stiffness, tuning begins at that answer.
+stiffness, and so do the scale of the displacement and the size of a voxel in spacings. The scale of
+the output is multiplied by the one number that fits the old network's fields to the new ones best:
+where force is proportional to the stiffness, tuning begins at that answer. Where the contact
+solver's force enters, its scale is multiplied by the ratio of the moduli, and that is the number.
 """
 
 from __future__ import annotations
@@ -15,14 +16,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sim.forces.network.spec import NetworkSpec
+from sim.forces.network.inputs import FORCE
+from sim.forces.network.spec import NetworkSpec, Target
 from sim.forces.network.weights import NetworkWeights
 from sim.forces.training.fields import Fields, rms_of_nonzero
 from sim.forces.training.settings import Numbers
 from workbench.core.errors import DesignError
 from workbench.dataset.cases import Split
 from workbench.training.plan import Plan
-from workbench.training.presses import Presses
+from workbench.training.presses import RAW, Presses
 from workbench.training.results import batches, single_predictor
 
 if TYPE_CHECKING:
@@ -39,9 +41,11 @@ class Beginning:
     voxel_per_spacing: float
     spacing_mm: float
     train: Fields
-    zero_mae: float
-    """Of the training samples, in the target's unit."""
+    unit_mae: float
+    """Of a network that says zero, on the training samples, in the target's unit."""
     validation_zero_mae: float
+    """Of fields that are zero, on the validation samples."""
+    corrects: bool
     validation: Fields
     plan: Plan
     points_mm: np.ndarray
@@ -89,6 +93,8 @@ class Beginning:
             output_scale=(self.scales.output,) * self.plan.target.channels,
             voxel_per_spacing=self.voxel_per_spacing,
             spacing_mm=self.spacing_mm,
+            force_scale_N=self.scales.force_N,
+            corrects=self.corrects,
             card=card,
         )
 
@@ -115,27 +121,34 @@ def begin(
     from sim.forces.network.voxels import spacing_mm
     from sim.forces.training.trainer import Scales
 
-    train = presses.fields(plan.target, states)
-    validation = presses.fields(plan.target, presses.of_split(Split.VALIDATION))
+    base = plan.base
+    takes_force = plan.settings.takes_force if base is None else base.takes_force
+    wanted = plan.settings.corrects and plan.target in RAW
+    corrects = wanted if base is None else base.corrects
+    held_back = presses.of_split(Split.VALIDATION)
+    train, validation = (
+        presses.fields(plan.target, chosen, takes_force=takes_force, corrects=corrects)
+        for chosen in (states, held_back)
+    )
     notes = [] if len(validation) else ["there is no validation case: the last epoch is kept"]
     left_out = presses.about["left_out"]
     if left_out:
         notes.append(
             f"{len(left_out)} samples that did not converge are left out: {left_out[0]}, ..."
         )
-    base = plan.base
     if base is None:
         network = new_network(_spec(plan), seed=plan.seed)
         # It begins by saying zero, which is right nearly everywhere, not noise of the field's size.
         nn.init.zeros_(network.last.weight)
         nn.init.zeros_(network.last.bias)
         scales = Scales(
-            input_mm=rms_of_nonzero(train.inputs_mm) or 1.0,
+            input_mm=rms_of_nonzero(train.inputs[..., :3]) or 1.0,
+            force_N=(rms_of_nonzero(train.inputs[..., FORCE]) or 1.0) if takes_force else 0.0,
             output=rms_of_nonzero(train.targets) or 1.0,
         )
         voxel = plan.settings.voxel_per_spacing
     else:
-        network, scales, factor = _tuned(base, plan, train, presses, device)
+        network, scales, factor = _tuned(base, plan, states, presses, device)
         voxel = base.voxel_per_spacing
         notes.append(f"the output scale of {plan.base_name} is multiplied by {factor:.4g}")
     return Beginning(
@@ -144,9 +157,10 @@ def begin(
         voxel_per_spacing=voxel,
         spacing_mm=spacing_mm(presses.points_mm, presses.faces),
         train=train,
-        zero_mae=train.zero_mae,
+        unit_mae=train.zero_mae,
         validation=validation,
-        validation_zero_mae=validation.zero_mae,
+        validation_zero_mae=presses.zero_mae(plan.target, held_back),
+        corrects=corrects,
         plan=plan,
         points_mm=presses.points_mm,
         device=device,
@@ -156,11 +170,15 @@ def begin(
 
 
 def _spec(plan: Plan) -> NetworkSpec:
-    return dataclasses.replace(plan.settings.spec, output_channels=plan.target.channels)
+    return dataclasses.replace(
+        plan.settings.spec,
+        input_channels=6 if plan.settings.takes_force else 3,
+        output_channels=plan.target.channels,
+    )
 
 
 def _tuned(
-    base: NetworkWeights, plan: Plan, train: Fields, presses: Presses, device: str
+    base: NetworkWeights, plan: Plan, states: Sequence[int], presses: Presses, device: str
 ) -> tuple[MinkUNet, Scales, float]:
     """The network with its encoder frozen, its scales, and what the output's was multiplied by."""
     from sim.forces.network.minkunet import network_of
@@ -172,14 +190,37 @@ def _tuned(
             hint=f"give --target {base.target}, or weights for {plan.target}",
             at="--weights",
         )
-    predict = single_predictor(base, presses, device)
-    found = np.concatenate([predict(own) for own in batches(train.inputs_mm, plan.settings.batch)])
-    factor = best_factor(found, train.targets)
     network = network_of(base)
     network.freeze_encoder()
     # One scale for all channels, which turn into each other; ours are alike already.
-    output = float(np.mean(base.output_scale)) * factor
-    return network, Scales(input_mm=base.input_scale_mm, output=output), factor
+    output, force_N = float(np.mean(base.output_scale)), base.force_scale_N
+    if base.takes_force:
+        stiffer = _young_ratio(base, presses)
+        force_N *= stiffer
+        factor = stiffer if plan.target is Target.FORCE else 1.0
+    else:
+        predict = single_predictor(base, presses, device)
+        train = presses.fields(plan.target, states)
+        parts = batches(train.inputs, plan.settings.batch)
+        factor = best_factor(np.concatenate([predict(own) for own in parts]), train.targets)
+    scales = Scales(input_mm=base.input_scale_mm, force_N=force_N, output=output * factor)
+    return network, scales, factor
+
+
+def _young_ratio(base: NetworkWeights, presses: Presses) -> float:
+    """Young's modulus of the data over that of the weights.
+
+    Raises:
+        DesignError: If the weights do not say theirs.
+    """
+    theirs = base.card.get("young_MPa")
+    if not isinstance(theirs, (int, float)) or not theirs > 0.0:
+        raise DesignError(
+            "the data card of the weights does not say at which Young's modulus they were trained",
+            hint="train the weights again with this version",
+            at="--weights",
+        )
+    return presses.about["recipes"][0]["design"]["material"]["young_MPa"] / float(theirs)
 
 
 def best_factor(found: np.ndarray, wanted: np.ndarray) -> float:

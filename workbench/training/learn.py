@@ -143,7 +143,7 @@ class _Training:
                 "epoch": self.trainer.epoch,
                 "rate": self.trainer.rate,
                 "train_loss": loss,
-                "train_mae": loss * self.begun.zero_mae,
+                "train_mae": loss * self.begun.unit_mae,
                 "validation_loss": mae / zero if mae is not None and zero else None,
                 "validation_mae": mae,
                 **self._nulls,

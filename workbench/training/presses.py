@@ -113,19 +113,47 @@ class Presses:
             if state.split is split and (chosen is None or state.case in chosen)
         ]
 
-    def fields(self, target: Target, states: Sequence[int]) -> Fields:
+    def fields(
+        self,
+        target: Target,
+        states: Sequence[int],
+        *,
+        takes_force: bool = False,
+        corrects: bool = False,
+    ) -> Fields:
         """What a network learns from, of some states.
+
+        Args:
+            target: What is predicted.
+            states: Their numbers.
+            takes_force: Whether the contact solver's force enters too.
+            corrects: Whether targets are what is missing in the contact solver's field.
 
         Raises:
             DesignError: If the target is not among the parts.
             SolveError: If a field is not finite.
         """
         vertices = len(self.points_mm)
+        inputs = self._part(INPUT).dense(states, vertices)
+        if takes_force:
+            force_N = self._part(RAW[Target.FORCE]).dense(states, vertices)
+            inputs = np.concatenate([inputs, force_N], axis=2)
+        targets = self._part(TRUTH[target]).dense(states, vertices)
+        if corrects:
+            targets -= self._part(RAW[target]).dense(states, vertices)
         return Fields(
-            inputs_mm=self._part(INPUT).dense(states, vertices),
-            targets=self._part(TRUTH[target]).dense(states, vertices),
+            inputs=inputs,
+            targets=targets,
             names=tuple(self.states[number].name for number in states),
         )
+
+    def zero_mae(self, target: Target, states: Sequence[int]) -> float:
+        """Mean absolute error of always saying zero, in the target's unit; 0 for no state."""
+        truth, vertices = self._part(TRUTH[target]), len(self.points_mm)
+        ends = zip(truth.starts[:-1], truth.starts[1:], strict=True)
+        sums = [float(np.abs(truth.values[a:b]).sum(dtype=np.float64)) for a, b in ends]
+        size = vertices * truth.values.shape[1]
+        return float(np.mean([sums[number] for number in states])) / size if len(states) else 0.0
 
     def raw_errors(self, target: Target, states: Sequence[int]) -> np.ndarray | None:
         """Mean absolute error of the contact solver alone in each state, shape (S,).

@@ -76,7 +76,7 @@ def read_presses(
 
 
 def _parts(targets: Sequence[Target]) -> list[str]:
-    wanted = [INPUT]
+    wanted = [INPUT, RAW[Target.FORCE]]
     for target in targets:
         wanted += [RAW.get(target, INPUT), TRUTH[target]]
     return list(dict.fromkeys(wanted))

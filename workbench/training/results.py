@@ -51,17 +51,16 @@ def score(
         presses: The data.
         weights: What predicts, for its target.
         states: Samples to measure on, at least one.
-        predict: Fields from displacements.
+        predict: Fields from what enters the network.
         batch: Samples at a time.
     """
     target = weights.target
     sums = np.zeros(2)
     for first in range(0, len(states), batch):
         own = states[first : first + batch]
-        fields = presses.fields(target, own)
-        sums[0] += np.abs(predict(fields.inputs_mm) - fields.targets).mean(dtype=np.float64) * len(
-            own
-        )
+        fields = presses.fields(target, own, takes_force=weights.takes_force)
+        away = np.abs(predict(fields.inputs) - fields.targets)
+        sums[0] += away.mean(dtype=np.float64) * len(own)
         sums[1] += fields.zero_mae * len(own)
     raw = presses.raw_errors(target, states)
     return {

@@ -29,6 +29,7 @@ from torch import Tensor
 
 from sim.forces.network.acceleration import Acceleration, Computation, accelerated
 from sim.forces.network.folding import folded
+from sim.forces.network.inputs import corrected_channels
 from sim.forces.network.kernel_maps import Kernel, KernelMaps, kernel_maps
 from sim.forces.network.minkunet import network_of
 from sim.forces.network.spec import DEPTH, NetworkSpec
@@ -107,31 +108,33 @@ class Predictor:
             self._maps = maps_for_use(self.voxels, self.dtype, weights.spec)
             self._network = folded(network_of(weights)).to(device=device, dtype=self.dtype)
             self._scale = torch.tensor(weights.output_scale, device=device)
+            self._input_scale = torch.tensor(weights.input_scale, device=device)
 
-    def predict(self, displacement_mm: np.ndarray) -> np.ndarray:
+    def predict(self, given: np.ndarray) -> np.ndarray:
         """The field at the points, in the unit of the weights' target.
 
         Args:
-            displacement_mm: Displacement of the points [mm], shape (V, 3), or (B, V, 3) for several
-                samples at once.
+            given: Displacement of the points [mm], and the contact solver's force [N] where the
+                network asks for it (`inputs.given_field`), shape (V, I), or (B, V, I) for several
+                samples at once; I is 3 or 6.
 
         Returns:
             Shape (V, C) or (B, V, C), float32.
 
         Raises:
-            SolveError: If a displacement is not finite, or the field is not.
+            SolveError: If a number of what is given is not finite, or the field is not.
             DeviceError: If the device runs out of memory.
         """
-        several = displacement_mm.ndim == 3
-        batch = displacement_mm if several else displacement_mm[None]
-        points, channels = len(self.voxels.voxel_of_point), self.weights.spec.input_channels
-        expect(batch, f"B {points} {channels}", name="displacement_mm")
+        several = given.ndim == 3
+        batch = given if several else given[None]
+        points, channels = len(self.voxels.voxel_of_point), len(self.weights.input_scale)
+        expect(batch, f"B {points} {channels}", name="given")
         if not np.isfinite(batch).all():
             bad = np.count_nonzero(~np.isfinite(batch))
             raise SolveError(
-                f"{bad} of {batch.size} numbers of the displacement are not finite",
+                f"{bad} of {batch.size} numbers given to the network are not finite",
                 hint="compute the press again",
-                at="displacement_mm",
+                at="given",
             )
         with _room(self._device), torch.no_grad():
             field = self._field(np.ascontiguousarray(batch.swapaxes(0, 1), dtype=np.float32))
@@ -144,20 +147,18 @@ class Predictor:
         result = np.ascontiguousarray(field.swapaxes(0, 1))
         return result if several else result[0]
 
-    def _field(self, displacement_mm: np.ndarray) -> np.ndarray:
-        """Field of all samples, shape (V, B, C) from (V, B, 3)."""
-        there = torch.from_numpy(displacement_mm).to(self._device)
+    def _field(self, given: np.ndarray) -> np.ndarray:
+        """Field of all samples, shape (V, B, C) from (V, B, I)."""
+        there = torch.from_numpy(given).to(self._device)
         return self._computation(there)(there).cpu().numpy()
 
-    def _computation(self, displacement_mm: Tensor) -> Computation:
+    def _computation(self, given: Tensor) -> Computation:
         """Everything that happens on the device, for so many samples."""
-        samples = displacement_mm.shape[1]
+        samples = given.shape[1]
         if samples not in self._by_samples:
             full = len(self._by_samples) >= MOST_RECORDED
             wanted = Acceleration.EAGER if full else self._wanted
-            run, self.acceleration, note = accelerated(
-                self._on_device, displacement_mm, acceleration=wanted
-            )
+            run, self.acceleration, note = accelerated(self._on_device, given, acceleration=wanted)
             if note and note not in self.notes:
                 self.notes += (note,)
             if full:
@@ -165,11 +166,14 @@ class Predictor:
             self._by_samples[samples] = run
         return self._by_samples[samples]
 
-    def _on_device(self, displacement_mm: Tensor) -> Tensor:
-        """From points to points, shape (V, B, C) from (V, B, 3)."""
-        features = self.voxels.mean(displacement_mm / self.weights.input_scale_mm)
+    def _on_device(self, given: Tensor) -> Tensor:
+        """From points to points, shape (V, B, C) from (V, B, I)."""
+        features = self.voxels.mean(given / self._input_scale)
         values = self._network(features.to(self.dtype), self._maps)
-        return self.voxels.to_points(values.float() * self._scale)
+        found = self.voxels.to_points(values.float() * self._scale)
+        if not self.weights.corrects:
+            return found
+        return found + given[..., corrected_channels(self.weights.target)]
 
 
 def working_type(device: str, precision: Precision) -> torch.dtype:

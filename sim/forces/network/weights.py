@@ -63,8 +63,24 @@ class NetworkWeights:
     """Edge of a voxel over the spacing of the points."""
     spacing_mm: float
     """Spacing of the points it was trained on: a nodal force grows with the area of a point."""
+    force_scale_N: float = 0.0
+    """The contact solver's forces are divided by it and enter beside its displacements; 0: they do
+    not."""
+    corrects: bool = False
+    """Whether the output is added to the contact solver's own field."""
     card: Mapping[str, Any]
     """The data card: free JSON about the data and the training."""
+
+    @property
+    def takes_force(self) -> bool:
+        """Whether the contact solver's forces enter too."""
+        return self.force_scale_N > 0.0
+
+    @property
+    def input_scale(self) -> tuple[float, ...]:
+        """What each channel that enters is divided by."""
+        force = (self.force_scale_N,) * 3 if self.takes_force else ()
+        return (self.input_scale_mm,) * 3 + force
 
 
 def weights_to_bytes(
@@ -216,6 +232,9 @@ def _from_header(header: Mapping[str, Any], arrays: Mapping[str, np.ndarray]) ->
         output_scale=tuple(float(scale) for scale in header["output_scale"]),
         voxel_per_spacing=float(header["voxel_per_spacing"]),
         spacing_mm=float(header["spacing_mm"]),
+        # Files of before the contact solver's force was asked for have neither.
+        force_scale_N=float(header.get("force_scale_N", 0.0)),
+        corrects=bool(header.get("corrects", False)),
         card=header["card"],
     )
 
@@ -225,6 +244,8 @@ def _expect_finite(arrays: Mapping[str, np.ndarray], weights: NetworkWeights) ->
     scales = (weights.input_scale_mm, *weights.output_scale, weights.spacing_mm)
     if not all(math.isfinite(scale) and scale > 0.0 for scale in scales):
         bad.append("the scales")
+    if not (math.isfinite(weights.force_scale_N) and weights.force_scale_N >= 0.0):
+        bad.append("the scale of the force")
     if bad:
         raise StoreError(
             f"weights that are not finite, or scales that are not positive: {', '.join(bad[:3])}",

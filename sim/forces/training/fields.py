@@ -15,17 +15,19 @@ from workbench.core.errors import SolveError
 class Fields:
     """Samples on the vertices of one skin."""
 
-    inputs_mm: np.ndarray
-    """Displacement by the contact solver [mm], shape (S, V, 3), float32."""
+    inputs: np.ndarray
+    """Vectors by the contact solver, shape (S, V, 3) or (S, V, 6), float32: displacement [mm], and
+    contact force [N] where the network takes it."""
     targets: np.ndarray
-    """What is to be predicted, in its unit, shape (S, V, C), float32."""
+    """What is to be predicted, or added to the contact solver's field, in its unit, shape
+    (S, V, C), float32."""
     names: tuple[str, ...]
     """Of the samples, for messages."""
 
     def __post_init__(self) -> None:
-        expect(self.inputs_mm, f"{len(self.names)} V 3", name="inputs_mm")
-        expect(self.targets, f"{len(self.names)} {self.inputs_mm.shape[1]} C", name="targets")
-        for what, values in (("input", self.inputs_mm), ("target", self.targets)):
+        expect(self.inputs, f"{len(self.names)} V I", name="inputs")
+        expect(self.targets, f"{len(self.names)} {self.inputs.shape[1]} C", name="targets")
+        for what, values in (("input", self.inputs), ("target", self.targets)):
             refuse_not_finite(values, self.names, what)
 
     def __len__(self) -> int:

@@ -15,12 +15,12 @@ from sim.forces.training.frames import Frame
 def network_output(
     network: MinkUNet, frame: Frame, inputs: Tensor, *, half: torch.dtype | None = None
 ) -> Tensor:
-    """What the network says at the points, float32, shape (V, B, C) from (V, B, 3).
+    """What the network says at the points, float32, shape (V, B, C) from (V, B, I).
 
     Args:
         network: In training or in use.
         frame: The orientation that the inputs are in.
-        inputs: Displacements over their scale.
+        inputs: What enters, over its scale.
         half: Type of the arithmetic inside the network; None: float32.
     """
     features = frame.voxels.mean(inputs)
@@ -33,10 +33,10 @@ def network_output(
 def sample_errors(
     network: MinkUNet,
     frame: Frame,
-    inputs_mm: Tensor,
+    inputs: Tensor,
     targets: Tensor,
     *,
-    input_scale_mm: float,
+    input_scale: Tensor,
     output_scale: float,
     batch: int,
     tick: Callable[[], None] = lambda: None,
@@ -46,17 +46,17 @@ def sample_errors(
     Args:
         network: In use.
         frame: The orientation that the fields are in.
-        inputs_mm: Displacements [mm], shape (S, V, 3).
+        inputs: What enters, shape (S, V, I).
         targets: What is right, shape (S, V, C).
-        input_scale_mm: Of the network.
+        input_scale: Of each channel that enters, shape (I,).
         output_scale: Of the network.
         batch: Samples at a time.
         tick: Called between batches; may raise.
     """
     errors = []
-    for first in range(0, len(inputs_mm), batch):
+    for first in range(0, len(inputs), batch):
         tick()
-        given = inputs_mm[first : first + batch].transpose(0, 1) / input_scale_mm
+        given = inputs[first : first + batch].transpose(0, 1) / input_scale
         wanted = targets[first : first + batch].transpose(0, 1)
         with torch.no_grad():
             found = network_output(network, frame, given.contiguous()) * output_scale

@@ -39,6 +39,11 @@ class TrainingSettings:
     spec: NetworkSpec
     voxel_per_spacing: float = OUR_VOXEL
     """Edge of a voxel over the spacing of the points."""
+    takes_force: bool = False
+    """Whether the contact solver's force enters beside its displacement."""
+    corrects: bool = False
+    """Whether the network learns what is missing in the contact solver's own field, where it has
+    one; else the field itself."""
     rate: float = 1e-3
     """Largest learning rate."""
     batch: int = 16
@@ -107,6 +112,8 @@ PRESETS = {
         TrainingSettings(
             name="small",
             spec=SMALL,
+            takes_force=True,
+            corrects=True,
             rate=3e-3,
             batch=8,
             epochs=200,

@@ -53,8 +53,15 @@ class Scales:
     """What fields are divided by before they enter or leave the network."""
 
     input_mm: float
+    force_N: float = 0.0
+    """Of the contact solver's force; 0: it does not enter."""
     output: float
     """In the unit of the target; one for all channels, which turn into each other."""
+
+    @property
+    def inputs(self) -> tuple[float, ...]:
+        """Of each vector that enters."""
+        return (self.input_mm, self.force_N) if self.force_N else (self.input_mm,)
 
 
 class Trainer:
@@ -118,6 +125,7 @@ class Trainer:
         self._steps = math.ceil(len(train) * settings.passes / settings.batch)
         try:
             self._network = network.to(device)
+            self._input_scale = torch.tensor(scales.inputs, device=device).repeat_interleave(3)
             self._frames = frames_of(
                 points_mm,
                 voxel_mm=voxel_mm,
@@ -179,7 +187,7 @@ class Trainer:
                 self.kept.eval(),
                 self._frames[0],
                 *self._validation,
-                input_scale_mm=self.scales.input_mm,
+                input_scale=self._input_scale,
                 output_scale=self.scales.output,
                 batch=self._piece,
                 tick=lambda: monitor(1.0),
@@ -245,7 +253,8 @@ class Trainer:
     def _losses(self, samples: Tensor, frame: Frame) -> tuple[Tensor, Tensor]:
         """The mean absolute error and what is minimised, both over the error of zero."""
         inputs, targets = (fields.index_select(0, samples) for fields in self._train)
-        given = (inputs @ (frame.vectors.t() / self.scales.input_mm)).transpose(0, 1)
+        turned = (inputs.unflatten(2, (-1, 3)) @ frame.vectors.t()).flatten(2)
+        given = (turned / self._input_scale).transpose(0, 1)
         wanted = (targets @ (frame.values.t() / self.scales.output)).transpose(0, 1)
         found = network_output(self._network, frame, given.contiguous(), half=self._half)
         error = (found - wanted).abs().mean() / self._unit
@@ -285,6 +294,6 @@ class Trainer:
 
 def _on(fields: Fields, device: str) -> tuple[Tensor, Tensor]:
     return (
-        torch.from_numpy(np.ascontiguousarray(fields.inputs_mm, dtype=np.float32)).to(device),
+        torch.from_numpy(np.ascontiguousarray(fields.inputs, dtype=np.float32)).to(device),
         torch.from_numpy(np.ascontiguousarray(fields.targets, dtype=np.float32)).to(device),
     )
