@@ -40,6 +40,9 @@ CASE = PressCase(
 STAGES_WITH_NUMBERS = tuple("build mesh lattice bake table press shoot maps mould".split())
 RELATIVE = 2e-3
 """Libraries and compilers move the last digits; a changed method moves more."""
+SETTLED = 5e-3
+"""Of a press: it ends at a residual of 1e-3, and where rounding lets it stop a few steps earlier, as
+on another make of processor, results differ by a few times that: a mean stress by 3e-3."""
 SKIPPED = ("brep", "device", "seconds", "substeps", "residual", "kinetic")
 """Text of the CAD kernel, names, and what depends on when the relaxation stops."""
 
@@ -89,9 +92,10 @@ def test_output_changes_only_with_the_version(computed: dict[str, Any], stage: s
     message = f"output of {stage} changed: bump its version and update the goldens, or fix it"
     assert computed[stage]["version"] == golden["version"], "update the goldens of a new version"
     now, then = computed[stage]["numbers"], golden["numbers"]
+    relative = SETTLED if stage == "press" else RELATIVE
     assert now.keys() == then.keys(), message
     for name, (size, mean, magnitude) in now.items():
         assert size == pytest.approx(then[name][0], rel=RELATIVE), f"{message}: {name}"
         scale = max(abs(then[name][2]), 1e-12)
-        assert abs(mean - then[name][1]) <= RELATIVE * scale, f"{message}: {name}"
-        assert abs(magnitude - then[name][2]) <= RELATIVE * scale, f"{message}: {name}"
+        assert abs(mean - then[name][1]) <= relative * scale, f"{message}: {name}"
+        assert abs(magnitude - then[name][2]) <= relative * scale, f"{message}: {name}"
