@@ -35,16 +35,16 @@ DESIGN = SensorDesign(
 )
 CASE = PressCase(
     press=Press(target_mm=(0.0, 0.0, 16.0), depth_mm=0.5, frames=1),
-    settings=ContactSettings(grid_mm=0.8, active_radius_mm=6.0),
+    # At the default tolerance rounding decides, by the make of the processor, in which step a press
+    # ends: a mean stress then moves by 3e-3, a mean energy by 1e-2.
+    settings=ContactSettings(grid_mm=0.8, active_radius_mm=6.0, tolerance=2e-5),
 )
 STAGES_WITH_NUMBERS = tuple("build mesh lattice bake table press shoot maps mould".split())
 RELATIVE = 2e-3
 """Libraries and compilers move the last digits; a changed method moves more."""
-SETTLED = 5e-3
-"""Of a press: it ends at a residual of 1e-3, and where rounding lets it stop a few steps earlier, as
-on another make of processor, results differ by a few times that: a mean stress by 3e-3."""
-SKIPPED = ("brep", "device", "seconds", "substeps", "residual", "kinetic")
-"""Text of the CAD kernel, names, and what depends on when the relaxation stops."""
+SKIPPED = ("brep", "device", "seconds", "substeps", "residual", "kinetic", "moment")
+"""Text of the CAD kernel, names, what depends on when the relaxation stops, and moments, which are
+zero by symmetry here: of a press on the very tip only rounding is left."""
 
 
 def summary(value: Any) -> dict[str, list[float]]:
@@ -92,10 +92,9 @@ def test_output_changes_only_with_the_version(computed: dict[str, Any], stage: s
     message = f"output of {stage} changed: bump its version and update the goldens, or fix it"
     assert computed[stage]["version"] == golden["version"], "update the goldens of a new version"
     now, then = computed[stage]["numbers"], golden["numbers"]
-    relative = SETTLED if stage == "press" else RELATIVE
     assert now.keys() == then.keys(), message
     for name, (size, mean, magnitude) in now.items():
         assert size == pytest.approx(then[name][0], rel=RELATIVE), f"{message}: {name}"
         scale = max(abs(then[name][2]), 1e-12)
-        assert abs(mean - then[name][1]) <= relative * scale, f"{message}: {name}"
-        assert abs(magnitude - then[name][2]) <= relative * scale, f"{message}: {name}"
+        assert abs(mean - then[name][1]) <= RELATIVE * scale, f"{message}: {name}"
+        assert abs(magnitude - then[name][2]) <= RELATIVE * scale, f"{message}: {name}"
