@@ -38,9 +38,14 @@ class About:
 
 
 def weights_files(settings: LearnedSettings) -> tuple[WeightsFile | None, WeightsFile | None]:
-    """The files of the force and of the displacement network; None where there is none."""
-    force, displacement = (_file(getattr(settings, name), t) for name, t in TARGETS.items())
-    return force, displacement
+    """The files of the force and of the displacement network; None where there is none.
+
+    The shipped displacement network goes with the shipped force network: own weights of forces are
+    of another membrane, which it does not know.
+    """
+    force = _file(settings.weights, Target.FORCE)
+    own = settings.weights != SHIPPED and settings.displacement == SHIPPED
+    return force, None if own else _file(settings.displacement, Target.DISPLACEMENT)
 
 
 def _file(setting: str, target: Target) -> WeightsFile | None:
@@ -98,10 +103,15 @@ def offered(folder: Path, settings: LearnedSettings, field: str) -> dict[str, st
         field: A key of `TARGETS`.
     """
     target, now = TARGETS[field], getattr(settings, field)
-    found = {f"shipped: {shipped_weights(target).name}": SHIPPED} if is_shipped(target) else {}
+    found: dict[str, str] = {}
+    if is_shipped(target):
+        path = shipped_weights(target)
+        alone = target is Target.DISPLACEMENT and settings.weights != SHIPPED
+        found[f"shipped: {path.name}"] = str(path) if alone else SHIPPED
     if target is Target.DISPLACEMENT:
-        # Where none ships, asking for it comes to the same.
-        found["contact solver's own"] = NONE if found or now != SHIPPED else SHIPPED
+        # Where none ships, or none goes with the force network, asking for it comes to the same.
+        plain = now == SHIPPED and SHIPPED not in found.values()
+        found["contact solver's own"] = SHIPPED if plain else NONE
     for path in sorted((folder / FOLDER).glob(f"*-{target.value}-*{SUFFIX}")):
         found[path.name] = str(path)
     if now not in found.values():

@@ -81,6 +81,25 @@ def test_shipped_weights_are_found_by_their_target(none_shipped: Path) -> None:
     assert "learned" in plan(FINGER, PressCase())
 
 
+def test_the_shipped_displacement_goes_with_the_shipped_force(
+    none_shipped: Path, tmp_path: Path
+) -> None:
+    """Own weights of forces are of another membrane: the solver's displacement stays."""
+    write_tiny(none_shipped, tiny_weights())
+    shipped = write_tiny(none_shipped, tiny_weights(target=Target.DISPLACEMENT))
+    own = write_tiny(tmp_path / "weights", tiny_weights((1.0, 0.0, 0.0)))
+    settings = LearnedSettings(weights=str(own))
+    force, displacement = weights_files(settings)
+    assert force is not None and force.name == own.name and displacement is None
+    assert offered(tmp_path, settings, "displacement") == {
+        f"shipped: {shipped.name}": str(shipped),
+        "contact solver's own": "",
+    }
+    asked = LearnedSettings(weights=str(own), displacement=str(shipped))
+    assert [file and file.name for file in weights_files(asked)] == [own.name, shipped.name]
+    assert offered(tmp_path, asked, "displacement")["contact solver's own"] == NONE
+
+
 def test_a_key_holds_the_name_of_the_weights_but_not_their_place(tmp_path: Path) -> None:
     """The same file elsewhere gives the same key; other weights, or another press, another."""
     one, copy = force_file(tmp_path / "a"), force_file(tmp_path / "b")
