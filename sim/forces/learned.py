@@ -84,13 +84,16 @@ def learned_forces(
         SolveError: If a displacement, or a prediction, is not finite.
         DeviceError: If the device has no room for a network.
     """
+    from sim.forces.network.predictor import steady_predictor
+
     _expect_target(force, Target.FORCE)
     if displacement is not None:
         _expect_target(displacement, Target.DISPLACEMENT)
     monitor(0.0, "carrying the displacement to the network's points")
     given_mm, given_N = _carried(mesh.outer, source.outer, contact)
     used = [force] if displacement is None else [force, displacement]
-    predictors = [_predictor(known.weights, source.outer, device) for known in used]
+    points_mm, faces = source.outer.points_mm, source.outer.faces
+    predictors = [steady_predictor(k.weights, points_mm, faces, device=device) for k in used]
     given = [
         given_field(known.weights, given_mm, given_N, factor=known.acquaintance.young_ratio)
         for known in used
@@ -133,21 +136,6 @@ def _expect_target(known: Known, wanted: Target) -> None:
             hint=f"choose weights whose name has -{wanted}- in it",
             at="learned.weights",
         )
-
-
-def _predictor(weights: NetworkWeights, skin: Skin, device: str) -> Predictor:
-    """The network on a skin; some frames are not worth compiling for."""
-    from sim.forces.network.acceleration import Acceleration
-    from sim.forces.network.predictor import Precision, Predictor
-
-    return Predictor(
-        weights,
-        np.asarray(skin.points_mm),
-        faces=np.asarray(skin.faces),
-        device=device,
-        precision=Precision.SINGLE,
-        acceleration=Acceleration.EAGER,
-    )
 
 
 def _predicted(

@@ -101,18 +101,11 @@ def field_target(weights: NetworkWeights) -> Target:
 
 def predictor_for(weights: NetworkWeights, source: Source) -> Predictor:
     """The network on the skin of a data set, in single precision, on the device there is."""
-    from sim.forces.network.acceleration import Acceleration
-    from sim.forces.network.predictor import Precision, Predictor
+    from sim.forces.network.predictor import steady_predictor
     from workbench.devices import torch_device
 
-    return Predictor(
-        weights,
-        source.skin.points_mm,
-        faces=source.skin.faces,
-        device=torch_device(),
-        precision=Precision.SINGLE,
-        acceleration=Acceleration.EAGER,
-    )
+    skin = source.skin
+    return steady_predictor(weights, skin.points_mm, skin.faces, device=torch_device())
 
 
 def learned_by(weights: NetworkWeights, predictor: Predictor, *, factor: float = 1.0) -> Learned:

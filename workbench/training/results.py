@@ -78,18 +78,9 @@ def single_predictor(weights: NetworkWeights, presses: Presses, device: str) -> 
     Raises:
         DeviceError: If the device has no room for it.
     """
-    from sim.forces.network.acceleration import Acceleration
-    from sim.forces.network.predictor import Precision, Predictor
+    from sim.forces.network.predictor import steady_predictor
 
-    predictor = Predictor(
-        weights,
-        presses.points_mm,
-        faces=presses.faces,
-        device=device,
-        precision=Precision.SINGLE,
-        acceleration=Acceleration.EAGER,
-    )
-    return predictor.predict
+    return steady_predictor(weights, presses.points_mm, presses.faces, device=device).predict
 
 
 def batches(values: np.ndarray, size: int) -> Iterator[np.ndarray]:

@@ -176,6 +176,32 @@ class Predictor:
         return found + given[..., corrected_channels(self.weights.target)]
 
 
+def steady_predictor(
+    weights: NetworkWeights, points_mm: np.ndarray, faces: np.ndarray, *, device: str
+) -> Predictor:
+    """A network for results that are kept or judged: in float32, and not worth compiling.
+
+    Args:
+        weights: Of the trained network.
+        points_mm: Points of the skin at rest [mm], shape (V, 3).
+        faces: Triangles between them, shape (F, 3).
+        device: `cpu` or `cuda`.
+
+    Raises:
+        DesignError: As `Predictor`.
+        DeviceError: As `Predictor`.
+        StoreError: As `Predictor`.
+    """
+    return Predictor(
+        weights,
+        np.asarray(points_mm),
+        faces=np.asarray(faces),
+        device=device,
+        precision=Precision.SINGLE,
+        acceleration=Acceleration.EAGER,
+    )
+
+
 def working_type(device: str, precision: Precision) -> torch.dtype:
     """The type of features on a device, by the table above."""
     if precision is Precision.SINGLE:
