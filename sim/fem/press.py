@@ -34,6 +34,7 @@ from workbench.core.design import Elastomer
 from workbench.core.errors import DesignError, SolveError
 from workbench.core.fem import FemSettings
 from workbench.core.force_field import ForceField, Source
+from workbench.core.freed_memory import freed_memory_kept
 from workbench.core.indenter import Indenter
 from workbench.core.monitor import Monitor, silent
 from workbench.core.press import Press
@@ -90,7 +91,8 @@ def solve_press(
     )
     course = _Course(mesh, material, collider, approach, settings, submodel)
     try:
-        course.run(monitor, on_frame)
+        with freed_memory_kept():
+            course.run(monitor, on_frame)
     except SolveError as error:
         error.frame, error.last_good = course.frame, course.frame - 1
         error.message = f"frame {course.frame + 1} of {approach.frame_count}: {error.message}"

@@ -39,7 +39,7 @@ from workbench.core.results import MembraneMesh, Skin
 from workbench.core.sensing import Contact
 
 if TYPE_CHECKING:
-    from sim.forces.network.predictor import Predictor
+    from sim.forces.network.steady import SteadyPredictor
 
 REMEDY = "Trust the contact solver, which is shown as well"
 SOLVE = ", or solve by finite elements"
@@ -84,7 +84,7 @@ def learned_forces(
         SolveError: If a displacement, or a prediction, is not finite.
         DeviceError: If the device has no room for a network.
     """
-    from sim.forces.network.predictor import steady_predictor
+    from sim.forces.network.steady import steady_predictor
 
     _expect_target(force, Target.FORCE)
     if displacement is not None:
@@ -139,7 +139,7 @@ def _expect_target(known: Known, wanted: Target) -> None:
 
 
 def _predicted(
-    predictors: Sequence[Predictor], given: Sequence[np.ndarray], monitor: Monitor
+    predictors: Sequence[SteadyPredictor], given: Sequence[np.ndarray], monitor: Monitor
 ) -> tuple[list[np.ndarray], np.ndarray]:
     """Fields of each network, (K, V, 3), from what enters each; time of each frame [s], (K,)."""
     rows: list[list[np.ndarray]] = [[] for _ in predictors]

@@ -114,6 +114,8 @@ def test_probe_returns_to_its_pixel(page: Any, server: Server) -> None:
     pressed(page, server)
     page.get_by_text("Pixel and skin").click()
     switch(page, "Probe on click")
+    # A click that comes before the box's own message aims the press.
+    page.locator(".probe-picture").wait_for(state="attached")
     page.mouse.click(*MIDDLE)
     pattern = r"pixel (\d+), (\d+) sees (\S+), (\S+), (\S+) mm\s+(\S+) × (\S+) mm per pixel"
     numbers = [float(number) for number in said(page, pattern).groups()]

@@ -251,6 +251,15 @@ def test_no_case_to_train_on_is_refused(tmp_path: Path) -> None:
     assert len(dataclasses.replace(PLAN, cases=1).states(few)) == 2
 
 
+def test_targets_that_are_all_zero_are_refused(tmp_path: Path) -> None:
+    """No press touched: there is nothing to learn, and nothing to measure losses in."""
+    nothing = PRESSES.parts["fem.contact_force_N"]
+    nothing = dataclasses.replace(nothing, values=np.zeros_like(nothing.values))
+    parts = {**PRESSES.parts, "fem.contact_force_N": nothing}
+    with pytest.raises(DesignError, match=r"of \d+ samples to train on none has a force"):
+        run(tmp_path, presses=dataclasses.replace(PRESSES, parts=parts))
+
+
 def test_a_field_that_is_not_finite_stops_before_the_first_step(tmp_path: Path) -> None:
     """A packed field with NaN: named, and no checkpoint is begun."""
     field = PRESSES.parts["fem.contact_force_N"]

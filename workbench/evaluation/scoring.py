@@ -23,7 +23,7 @@ from workbench.dataset.sample import Sample, Solved
 from workbench.evaluation.sources import Source
 
 if TYPE_CHECKING:
-    from sim.forces.network.predictor import Predictor
+    from sim.forces.network.steady import SteadyPredictor
 
 FIELDS = {Target.FORCE: "contact_force_N", Target.DISPLACEMENT: "displacement_mm"}
 """What of a solver's answer each target is."""
@@ -99,16 +99,16 @@ def field_target(weights: NetworkWeights) -> Target:
     return weights.target
 
 
-def predictor_for(weights: NetworkWeights, source: Source) -> Predictor:
+def predictor_for(weights: NetworkWeights, source: Source) -> SteadyPredictor:
     """The network on the skin of a data set, in single precision, on the device there is."""
-    from sim.forces.network.predictor import steady_predictor
+    from sim.forces.network.steady import steady_predictor
     from workbench.devices import torch_device
 
     skin = source.skin
     return steady_predictor(weights, skin.points_mm, skin.faces, device=torch_device())
 
 
-def learned_by(weights: NetworkWeights, predictor: Predictor, *, factor: float = 1.0) -> Learned:
+def learned_by(weights: NetworkWeights, predictor: SteadyPredictor, *, factor: float = 1.0) -> Learned:
     """What a network says of an answer of the contact solver.
 
     Args:

@@ -29,7 +29,8 @@ from workbench.training.results import batches, single_predictor
 
 if TYPE_CHECKING:
     from sim.forces.network.minkunet import MinkUNet
-    from sim.forces.training.trainer import Scales, Trainer
+    from sim.forces.training.feeds import Scales
+    from sim.forces.training.trainer import Trainer
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -39,6 +40,7 @@ class Beginning:
     network: MinkUNet
     scales: Scales
     voxel_per_spacing: float
+    patch_spacings: float
     spacing_mm: float
     train: Fields
     unit_mae: float
@@ -67,17 +69,34 @@ class Beginning:
             DesignError: If no training sample has a target that is not zero.
             DeviceError: If the device has no room for the data.
         """
+        from sim.forces.training.feeds import feeds
         from sim.forces.training.trainer import Trainer
 
+        settings, target = self.plan.settings, self.plan.target
+        if self.unit_mae == 0.0:
+            raise DesignError(
+                f"of {len(self.train)} samples to train on none has a {target} that is not zero",
+                hint="take a data set with presses that touch, in the split train",
+                at="train",
+            )
+        train, validation = feeds(
+            [self.train, self.validation],
+            self.points_mm,
+            self.scales,
+            voxel_mm=self.voxel_per_spacing * self.spacing_mm,
+            patch_mm=self.patch_spacings * self.spacing_mm,
+            spec=self.network.spec,
+            target=target,
+            turns=settings.turns,
+            device=self.device,
+        )
         return Trainer(
             self.network,
-            self.train,
-            self.validation,
-            points_mm=self.points_mm,
-            voxel_mm=self.voxel_per_spacing * self.spacing_mm,
-            target=self.plan.target,
-            settings=self.plan.settings,
-            scales=self.scales,
+            train,
+            validation,
+            unit=self.unit_mae / self.scales.output,
+            settings=settings,
+            output_scale=self.scales.output,
             device=self.device,
             numbers=self.numbers,
             seed=self.plan.seed,
@@ -95,6 +114,7 @@ class Beginning:
             spacing_mm=self.spacing_mm,
             force_scale_N=self.scales.force_N,
             corrects=self.corrects,
+            patch_spacings=self.patch_spacings,
             card=card,
         )
 
@@ -119,7 +139,7 @@ def begin(
 
     from sim.forces.network.minkunet import new_network
     from sim.forces.network.voxels import spacing_mm
-    from sim.forces.training.trainer import Scales
+    from sim.forces.training.feeds import Scales
 
     base = plan.base
     takes_force = plan.settings.takes_force if base is None else base.takes_force
@@ -146,15 +166,16 @@ def begin(
             force_N=(rms_of_nonzero(train.inputs[..., FORCE]) or 1.0) if takes_force else 0.0,
             output=rms_of_nonzero(train.targets) or 1.0,
         )
-        voxel = plan.settings.voxel_per_spacing
+        voxel, patch = plan.settings.voxel_per_spacing, plan.settings.patch_spacings
     else:
         network, scales, factor = _tuned(base, plan, states, presses, device)
-        voxel = base.voxel_per_spacing
+        voxel, patch = base.voxel_per_spacing, base.patch_spacings
         notes.append(f"the output scale of {plan.base_name} is multiplied by {factor:.4g}")
     return Beginning(
         network=network,
         scales=scales,
         voxel_per_spacing=voxel,
+        patch_spacings=patch,
         spacing_mm=spacing_mm(presses.points_mm, presses.faces),
         train=train,
         unit_mae=train.zero_mae,
@@ -182,7 +203,7 @@ def _tuned(
 ) -> tuple[MinkUNet, Scales, float]:
     """The network with its encoder frozen, its scales, and what the output's was multiplied by."""
     from sim.forces.network.minkunet import network_of
-    from sim.forces.training.trainer import Scales
+    from sim.forces.training.feeds import Scales
 
     if base.target != plan.target:
         raise DesignError(

@@ -22,6 +22,7 @@ import numpy as np
 
 from sim.forces.network.weights import Storage
 from sim.forces.training.settings import Numbers
+from workbench.core.freed_memory import freed_memory_kept
 from workbench.core.monitor import Monitor, silent
 from workbench.dataset.cases import Split
 from workbench.dataset.lock import held
@@ -72,7 +73,7 @@ def train(
         SolveError: If a field is not finite, or the loss becomes so; the last checkpoint is kept.
         DeviceError: If the device runs out of memory; the last checkpoint is kept.
     """
-    with held(out, doing="training in"):
+    with held(out, doing="training in"), freed_memory_kept():
         return _Training(presses, plan, out, device, numbers, tell).run(minutes, monitor)
 
 

@@ -15,7 +15,7 @@ from workbench.core.errors import DesignError
 from workbench.dataset.cases import Split
 from workbench.training.presses import Presses
 
-VERSION = 1
+VERSION = 2
 """Raised whenever the same plan and data give other weights."""
 
 

@@ -78,7 +78,7 @@ def single_predictor(weights: NetworkWeights, presses: Presses, device: str) -> 
     Raises:
         DeviceError: If the device has no room for it.
     """
-    from sim.forces.network.predictor import steady_predictor
+    from sim.forces.network.steady import steady_predictor
 
     return steady_predictor(weights, presses.points_mm, presses.faces, device=device).predict
 

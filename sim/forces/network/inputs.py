@@ -12,6 +12,8 @@ import numpy as np
 
 from sim.forces.network.spec import Target
 from sim.forces.network.weights import NetworkWeights
+from workbench.core.check import expect
+from workbench.core.errors import SolveError
 
 FORCE = slice(3, 6)
 """Channels of the force among those that enter; the displacement comes first."""
@@ -36,6 +38,24 @@ def given_field(
         return displacement_mm
     force = np.asarray(force_N, np.float32) / np.float32(factor)
     return np.concatenate([np.asarray(displacement_mm, np.float32), force], axis=-1)
+
+
+def finite_batch(given: np.ndarray, *, points: int, channels: int) -> np.ndarray:
+    """What enters a network for several samples, shape (B, V, I), of one or several.
+
+    Raises:
+        SolveError: If a number is not finite.
+    """
+    batch = given if given.ndim == 3 else given[None]
+    expect(batch, f"B {points} {channels}", name="given")
+    if not np.isfinite(batch).all():
+        bad = np.count_nonzero(~np.isfinite(batch))
+        raise SolveError(
+            f"{bad} of {batch.size} numbers given to the network are not finite",
+            hint="compute the press again",
+            at="given",
+        )
+    return batch
 
 
 def corrected_channels(target: Target) -> slice:

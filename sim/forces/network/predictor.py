@@ -1,5 +1,7 @@
 """A trained network in use: displacement of a skin in, field at the same points out, every frame.
 
+For networks that look at the whole skin; those that look at a patch of it are in `patches`.
+
 Voxels and kernel maps of the membrane are found once. Normalisation is folded into the
 convolutions. How the products are computed follows rules that were measured (`kernel_maps`,
 `products`):
@@ -29,13 +31,12 @@ from torch import Tensor
 
 from sim.forces.network.acceleration import Acceleration, Computation, accelerated
 from sim.forces.network.folding import folded
-from sim.forces.network.inputs import corrected_channels
+from sim.forces.network.inputs import corrected_channels, finite_batch
 from sim.forces.network.kernel_maps import Kernel, KernelMaps, kernel_maps
 from sim.forces.network.minkunet import network_of
 from sim.forces.network.spec import DEPTH, NetworkSpec
 from sim.forces.network.voxels import Voxels, spacing_mm, voxelise
 from sim.forces.network.weights import NetworkWeights
-from workbench.core.check import expect
 from workbench.core.errors import DeviceError, SolveError
 
 HALF_PAIRS_FROM = 20_000_000
@@ -103,7 +104,7 @@ class Predictor:
         self._wanted = acceleration
         self._by_samples: dict[int, Computation] = {}
         voxel_mm = weights.voxel_per_spacing * spacing_mm(points_mm, faces)
-        with _room(device):
+        with room_on(device):
             self.voxels = voxelise(points_mm, voxel_mm=voxel_mm).to(device)
             self._maps = maps_for_use(self.voxels, self.dtype, weights.spec)
             self._network = folded(network_of(weights)).to(device=device, dtype=self.dtype)
@@ -125,18 +126,9 @@ class Predictor:
             SolveError: If a number of what is given is not finite, or the field is not.
             DeviceError: If the device runs out of memory.
         """
-        several = given.ndim == 3
-        batch = given if several else given[None]
         points, channels = len(self.voxels.voxel_of_point), len(self.weights.input_scale)
-        expect(batch, f"B {points} {channels}", name="given")
-        if not np.isfinite(batch).all():
-            bad = np.count_nonzero(~np.isfinite(batch))
-            raise SolveError(
-                f"{bad} of {batch.size} numbers given to the network are not finite",
-                hint="compute the press again",
-                at="given",
-            )
-        with _room(self._device), torch.no_grad():
+        batch = finite_batch(given, points=points, channels=channels)
+        with room_on(self._device), torch.no_grad():
             field = self._field(np.ascontiguousarray(batch.swapaxes(0, 1), dtype=np.float32))
         if not np.isfinite(field).all():
             raise SolveError(
@@ -145,7 +137,7 @@ class Predictor:
                 at="precision",
             )
         result = np.ascontiguousarray(field.swapaxes(0, 1))
-        return result if several else result[0]
+        return result if given.ndim == 3 else result[0]
 
     def _field(self, given: np.ndarray) -> np.ndarray:
         """Field of all samples, shape (V, B, C) from (V, B, I)."""
@@ -174,32 +166,6 @@ class Predictor:
         if not self.weights.corrects:
             return found
         return found + given[..., corrected_channels(self.weights.target)]
-
-
-def steady_predictor(
-    weights: NetworkWeights, points_mm: np.ndarray, faces: np.ndarray, *, device: str
-) -> Predictor:
-    """A network for results that are kept or judged: in float32, and not worth compiling.
-
-    Args:
-        weights: Of the trained network.
-        points_mm: Points of the skin at rest [mm], shape (V, 3).
-        faces: Triangles between them, shape (F, 3).
-        device: `cpu` or `cuda`.
-
-    Raises:
-        DesignError: As `Predictor`.
-        DeviceError: As `Predictor`.
-        StoreError: As `Predictor`.
-    """
-    return Predictor(
-        weights,
-        np.asarray(points_mm),
-        faces=np.asarray(faces),
-        device=device,
-        precision=Precision.SINGLE,
-        acceleration=Acceleration.EAGER,
-    )
 
 
 def working_type(device: str, precision: Precision) -> torch.dtype:
@@ -235,7 +201,7 @@ def maps_for_use(voxels: Voxels, dtype: torch.dtype, spec: NetworkSpec) -> Kerne
 
 
 @contextlib.contextmanager
-def _room(device: str) -> Iterator[None]:
+def room_on(device: str) -> Iterator[None]:
     """Names the remedy when the device runs out of memory."""
     try:
         yield

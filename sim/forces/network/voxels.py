@@ -83,12 +83,13 @@ class _ToPoints(torch.autograd.Function):
         return sums.view(-1, *gradient.shape[1:]), None, None
 
 
-def voxelise(points_mm: np.ndarray, *, voxel_mm: float) -> Voxels:
+def voxelise(points_mm: np.ndarray, *, voxel_mm: float, shift: np.ndarray | float = 0.0) -> Voxels:
     """The occupied voxels of one membrane.
 
     Args:
         points_mm: Points of the membrane at rest [mm], shape (P, 3).
         voxel_mm: Edge of a voxel.
+        shift: Share of a voxel, in [0, 1), by which the points are moved among the voxels.
 
     Raises:
         DesignError: If there is no point, one is not finite, or the voxel is far too small.
@@ -108,7 +109,7 @@ def voxelise(points_mm: np.ndarray, *, voxel_mm: float) -> Voxels:
             hint=f"use {VOXEL_PER_SPACING} times the spacing of the points",
             at="voxel_mm",
         )
-    cells = np.floor((points_mm - low) / voxel_mm + 0.5).astype(np.int64)
+    cells = np.floor((points_mm - low) / voxel_mm + 0.5 + shift).astype(np.int64)
     unique, voxel_of_point = np.unique(cells, axis=0, return_inverse=True)
     numbered = np.concatenate([np.zeros((len(unique), 1), dtype=np.int64), unique], axis=1)
     group = torch.from_numpy(voxel_of_point.reshape(-1))

@@ -68,6 +68,9 @@ class NetworkWeights:
     not."""
     corrects: bool = False
     """Whether the output is added to the contact solver's own field."""
+    patch_spacings: float = 0.0
+    """The network sees no point farther than so many spacings from those that the contact solver's
+    own field is at, see `patches`; 0: it sees the whole skin."""
     card: Mapping[str, Any]
     """The data card: free JSON about the data and the training."""
 
@@ -232,9 +235,10 @@ def _from_header(header: Mapping[str, Any], arrays: Mapping[str, np.ndarray]) ->
         output_scale=tuple(float(scale) for scale in header["output_scale"]),
         voxel_per_spacing=float(header["voxel_per_spacing"]),
         spacing_mm=float(header["spacing_mm"]),
-        # Files of before the contact solver's force was asked for have neither.
+        # Files of before a network could take the contact solver's force, or a patch, have none.
         force_scale_N=float(header.get("force_scale_N", 0.0)),
         corrects=bool(header.get("corrects", False)),
+        patch_spacings=float(header.get("patch_spacings", 0.0)),
         card=header["card"],
     )
 
@@ -246,6 +250,8 @@ def _expect_finite(arrays: Mapping[str, np.ndarray], weights: NetworkWeights) ->
         bad.append("the scales")
     if not (math.isfinite(weights.force_scale_N) and weights.force_scale_N >= 0.0):
         bad.append("the scale of the force")
+    if not (math.isfinite(weights.patch_spacings) and weights.patch_spacings >= 0.0):
+        bad.append("the size of the patch")
     if bad:
         raise StoreError(
             f"weights that are not finite, or scales that are not positive: {', '.join(bad[:3])}",

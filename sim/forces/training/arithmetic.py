@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
+from collections.abc import Iterator
+
 import torch
 from torch import nn
 
@@ -36,6 +39,17 @@ def adam(network: nn.Module, settings: TrainingSettings, *, fused: bool) -> torc
 def is_full(error: RuntimeError) -> bool:
     """Whether an error says that a device has no memory left."""
     return isinstance(error, torch.OutOfMemoryError) or any(word in str(error) for word in FULL)
+
+
+@contextlib.contextmanager
+def room_for(device: str) -> Iterator[None]:
+    """Raises the error below where the device is full."""
+    try:
+        yield
+    except RuntimeError as error:
+        if not is_full(error):
+            raise
+        raise no_room(device) from error
 
 
 def no_room(device: str) -> DeviceError:

@@ -40,10 +40,19 @@ class Frame:
 
 def turn_matrix(turn: int, turns: int) -> np.ndarray:
     """Orthogonal matrix of a turn, shape (3, 3)."""
-    angle = 2.0 * math.pi * turn / turns
-    cosine, sine = math.cos(angle), math.sin(angle)
+    return about_axis(2.0 * math.pi * turn / turns, mirrored=bool(turn % 2))
+
+
+def about_axis(angle_rad: float, *, mirrored: bool) -> np.ndarray:
+    """Turn about z, after the mirror in the plane y = 0 where asked, shape (3, 3)."""
+    cosine, sine = math.cos(angle_rad), math.sin(angle_rad)
     turned = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
-    return turned @ np.diag([1.0, -1.0, 1.0]) if turn % 2 else turned
+    return turned @ np.diag([1.0, -1.0, 1.0]) if mirrored else turned
+
+
+def any_turn(rng: np.random.Generator) -> np.ndarray:
+    """Orthogonal matrix of any angle about the sensor's axis, every second one mirrored, (3, 3)."""
+    return about_axis(rng.uniform(0.0, 2.0 * math.pi), mirrored=bool(rng.integers(2)))
 
 
 def value_matrix(matrix: np.ndarray, target: Target) -> np.ndarray:

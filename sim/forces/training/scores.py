@@ -9,34 +9,28 @@ import torch
 from torch import Tensor
 
 from sim.forces.network.minkunet import MinkUNet
-from sim.forces.training.frames import Frame
+from sim.forces.training.feeds import Batch, Feed
 
 
-def network_output(
-    network: MinkUNet, frame: Frame, inputs: Tensor, *, half: torch.dtype | None = None
-) -> Tensor:
-    """What the network says at the points, float32, shape (V, B, C) from (V, B, I).
+def network_output(network: MinkUNet, batch: Batch, *, half: torch.dtype | None = None) -> Tensor:
+    """What the network says at the points, over its scale, float32, shape (P, B, C).
 
     Args:
         network: In training or in use.
-        frame: The orientation that the inputs are in.
-        inputs: What enters, over its scale.
+        batch: What enters.
         half: Type of the arithmetic inside the network; None: float32.
     """
-    features = frame.voxels.mean(inputs)
+    features = batch.voxels.mean(batch.inputs)
     kind = features.device.type
     with torch.autocast(kind, dtype=half or torch.bfloat16, enabled=half is not None):
-        values = network(features, frame.maps)
-    return frame.voxels.to_points(values.float())
+        values = network(features, batch.maps)
+    return batch.voxels.to_points(values.float())
 
 
 def sample_errors(
     network: MinkUNet,
-    frame: Frame,
-    inputs: Tensor,
-    targets: Tensor,
+    feed: Feed,
     *,
-    input_scale: Tensor,
     output_scale: float,
     batch: int,
     tick: Callable[[], None] = lambda: None,
@@ -45,20 +39,16 @@ def sample_errors(
 
     Args:
         network: In use.
-        frame: The orientation that the fields are in.
-        inputs: What enters, shape (S, V, I).
-        targets: What is right, shape (S, V, C).
-        input_scale: Of each channel that enters, shape (I,).
+        feed: The samples.
         output_scale: Of the network.
         batch: Samples at a time.
         tick: Called between batches; may raise.
     """
     errors = []
-    for first in range(0, len(inputs), batch):
+    for first in range(0, len(feed), batch):
         tick()
-        given = inputs[first : first + batch].transpose(0, 1) / input_scale
-        wanted = targets[first : first + batch].transpose(0, 1)
+        own = feed.batch(range(first, min(first + batch, len(feed))), None)
         with torch.no_grad():
-            found = network_output(network, frame, given.contiguous()) * output_scale
-            errors.append((found - wanted).abs().mean(dim=(0, 2), dtype=torch.float64).cpu())
+            away = (network_output(network, own) - own.targets).abs().double()
+            errors.append(own.errors(away).cpu() * output_scale)
     return torch.cat(errors).numpy() if errors else np.zeros(0)

@@ -44,6 +44,9 @@ class TrainingSettings:
     corrects: bool = False
     """Whether the network learns what is missing in the contact solver's own field, where it has
     one; else the field itself."""
+    patch_spacings: float = 0.0
+    """Reach of the patch that the network looks at beyond what touches, over the spacing of the
+    points, see `sim.forces.network.patches`; 0: it looks at the whole skin."""
     rate: float = 1e-3
     """Largest learning rate."""
     batch: int = 16
@@ -66,12 +69,14 @@ class TrainingSettings:
     """Error, over the scale of the output, below which it counts by its square, at the largest
     rate; it shrinks as the rate does. 0: the plain mean absolute error, see `trainer`."""
     turns: int = 1
-    """Orientations about the sensor's axis in which the membrane is looked at, see `frames`."""
+    """Orientations about the sensor's axis in which a whole skin is looked at, see `frames`; a
+    patch is turned by any angle."""
     patience: int = 0
     """Epochs without a better validation before it stops; 0: never."""
 
     def __post_init__(self) -> None:
         within(self.voxel_per_spacing, 0.02, 4.0, what="voxel", unit="spacings", at="voxel")
+        within(self.patch_spacings, 0.0, 1e3, what="patch", unit="spacings", at="patch_spacings")
         within(self.rate, 1e-7, 1.0, what="rate", unit="", at="rate")
         within(self.batch, 1, 4096, what="batch", unit="samples", at="batch")
         within(self.epochs, 1, 100_000, what="epochs", unit="", at="epochs")
@@ -114,17 +119,17 @@ PRESETS = {
             spec=SMALL,
             takes_force=True,
             corrects=True,
+            patch_spacings=4.5,
             rate=3e-3,
             batch=8,
-            epochs=200,
+            epochs=100,
             warm_up=0.03,
             cosine=True,
             weight_decay=1e-4,
             clip=1.0,
             averaging=0.99,
             foot=0.1,
-            turns=8,
-            patience=80,
+            patience=40,
         ),
         TrainingSettings(
             name="tune",

@@ -1,0 +1,146 @@
+"""The part of a skin that a network looks at: where the contact solver's field is, and around it.
+
+Nine in ten of a skin's points neither move nor bear a force. A network that looks at the rest alone
+learns ten times as fast, may turn each press in its own way, and takes as long on a large membrane
+as on a small one. What it says ends with the patch; beyond it the contact solver's field stays as
+it is where the network corrects it, else zero.
+
+The kernel maps are those of the patch: they are found anew for every press and frame, in less time
+than the network takes on the patch.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+import torch
+from scipy.spatial import KDTree
+
+from sim.forces.network.folding import folded
+from sim.forces.network.inputs import corrected_channels, finite_batch
+from sim.forces.network.kernel_maps import Kernel, kernel_maps
+from sim.forces.network.minkunet import network_of
+from sim.forces.network.predictor import room_on
+from sim.forces.network.spec import Target
+from sim.forces.network.voxels import spacing_mm, voxelise
+from sim.forces.network.weights import NetworkWeights
+from workbench.core.check import expect
+from workbench.core.errors import SolveError
+
+FAINT = 0.01
+"""Share of a field's largest value below which a point is taken for one without any."""
+
+
+class PatchFinder:
+    """Finds patches on one skin."""
+
+    def __init__(self, points_mm: np.ndarray, *, reach_mm: float) -> None:
+        """Prepare a skin.
+
+        Args:
+            points_mm: Points at rest [mm], shape (V, 3).
+            reach_mm: Farthest distance of a patch's point from where the field is.
+        """
+        self.points_mm = np.asarray(points_mm, dtype=np.float64)
+        self.reach_mm = reach_mm
+
+    @cached_property
+    def _tree(self) -> KDTree:
+        return KDTree(self.points_mm)
+
+    def patch(self, field: np.ndarray) -> np.ndarray:
+        """Numbers of the points of a patch in rising order; none where the field is zero.
+
+        Args:
+            field: What the contact solver says at the points, shape (V, C).
+        """
+        size = np.abs(expect(field, f"{len(self.points_mm)} C", name="field")).max(axis=1)
+        bearing = np.flatnonzero(size > FAINT * size.max(initial=0.0))
+        if not len(bearing):
+            return bearing
+        near, _ = KDTree(self.points_mm[bearing]).query(
+            self.points_mm, distance_upper_bound=self.reach_mm
+        )
+        return np.flatnonzero(np.isfinite(near))
+
+
+def leading_channels(target: Target, *, takes_force: bool) -> slice:
+    """Channels, of those that enter, of the field that a patch is laid around."""
+    return corrected_channels(target if takes_force else Target.DISPLACEMENT)
+
+
+class PatchPredictor:
+    """A network that looks at patches of one membrane, in float32; keep it as the membrane.
+
+    Attributes:
+        notes: What the user should know about how it runs; nothing is ever amiss.
+    """
+
+    notes: tuple[str, ...] = ()
+
+    def __init__(
+        self,
+        weights: NetworkWeights,
+        points_mm: np.ndarray,
+        *,
+        faces: np.ndarray | None = None,
+        device: str = "cpu",
+    ) -> None:
+        """Prepare the network for a membrane.
+
+        Args:
+            weights: Of a network that was trained on patches.
+            points_mm: Points of the skin at rest [mm], shape (V, 3).
+            faces: Triangles between them, shape (F, 3); they tell the spacing best.
+            device: `cpu` or `cuda`.
+
+        Raises:
+            DeviceError: If the device has no room for the network.
+            StoreError: If the weights do not fit their own description.
+        """
+        spacing = spacing_mm(points_mm, faces)
+        self.weights = weights
+        self._finder = PatchFinder(points_mm, reach_mm=weights.patch_spacings * spacing)
+        self._voxel_mm = weights.voxel_per_spacing * spacing
+        self._leading = leading_channels(weights.target, takes_force=weights.takes_force)
+        self._device = device
+        with room_on(device):
+            self._network = folded(network_of(weights)).to(device)
+        self._scale = torch.tensor(weights.output_scale)
+        self._input_scale = np.array(weights.input_scale, np.float32)
+
+    def predict(self, given: np.ndarray) -> np.ndarray:
+        """The field at the points; arguments, shapes and errors as `Predictor.predict`."""
+        points, channels = len(self._finder.points_mm), len(self._input_scale)
+        batch = finite_batch(given, points=points, channels=channels)
+        with room_on(self._device):
+            fields = np.stack([self._field(own) for own in batch])
+        return fields if given.ndim == 3 else fields[0]
+
+    def _field(self, given: np.ndarray) -> np.ndarray:
+        """Field of one sample, shape (V, C) from (V, I)."""
+        weights = self.weights
+        found = np.zeros((len(given), weights.target.channels), np.float32)
+        if weights.corrects:
+            found += given[:, corrected_channels(weights.target)]
+        patch = self._finder.patch(given[:, self._leading])
+        if len(patch):
+            found[patch] += self._on_patch(patch, given[patch])
+        return found
+
+    def _on_patch(self, patch: np.ndarray, given: np.ndarray) -> np.ndarray:
+        kernel = Kernel.PAIRS if self._device == "cpu" else Kernel.GATHER
+        voxels = voxelise(self._finder.points_mm[patch], voxel_mm=self._voxel_mm).to(self._device)
+        maps = kernel_maps(voxels, stem_edge=self.weights.spec.stem_edge, kernel=kernel)
+        features = torch.from_numpy((given / self._input_scale).astype(np.float32))[:, None]
+        with torch.no_grad():
+            values = self._network(voxels.mean(features.to(self._device)), maps)
+            field = (voxels.to_points(values)[:, 0].cpu() * self._scale).numpy()
+        if not np.isfinite(field).all():
+            raise SolveError(
+                "the network's field is not finite",
+                hint="use other weights, or train again",
+                at="weights",
+            )
+        return field

@@ -1,0 +1,262 @@
+"""What a step of a training is fed: samples brought together, turned, over their scales.
+
+`SkinFeed` keeps the whole skin of every sample on the device: a batch is one orientation of the
+membrane (`frames`), so that all its samples share voxels and kernel maps. `PatchFeed` takes of each
+sample the patch that the network will look at (`sim.forces.network.patches`) and lays the patches
+of a batch side by side, each in an orientation and a place among the voxels of its own: a press is
+seen in other voxels in every epoch, and a sample costs what is in it.
+
+Errors are means over the whole skins in both: what a patch leaves out counts by its target there,
+which a network that says nothing there misses.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from sim.forces.network.kernel_maps import Kernel, KernelMaps, kernel_maps
+from sim.forces.network.patches import PatchFinder, leading_channels
+from sim.forces.network.spec import NetworkSpec, Target
+from sim.forces.network.voxels import Voxels, join, voxelise
+from sim.forces.training.arithmetic import room_for
+from sim.forces.training.fields import Fields
+from sim.forces.training.frames import Frame, any_turn, frames_of, value_matrix
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Scales:
+    """What fields are divided by before they enter or leave the network."""
+
+    input_mm: float
+    force_N: float = 0.0
+    """Of the contact solver's force; 0: it does not enter."""
+    output: float
+    """In the unit of the target; one for all channels, which turn into each other."""
+
+    @property
+    def inputs(self) -> tuple[float, ...]:
+        """Of each vector that enters."""
+        return (self.input_mm, self.force_N) if self.force_N else (self.input_mm,)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Batch:
+    """Samples that are computed together, on the device."""
+
+    voxels: Voxels
+    maps: KernelMaps
+    inputs: Tensor
+    """What enters, over its scale, shape (P, B, I)."""
+    targets: Tensor
+    """What is right, over its scale, shape (P, B, C)."""
+    lengths: tuple[int, ...] = ()
+    """Points of each sample where they lie one after the other and B is 1."""
+    missed: Tensor
+    """Sum of the targets' sizes that are not among the points, of each sample, shape (S,)."""
+    values: int
+    """Of one sample that the mean error is over, those that are not among the points counted."""
+
+    def errors(self, away: Tensor) -> Tensor:
+        """Mean of each sample from the errors at the points (P, B, C), over the scale, (S,)."""
+        if not self.lengths:
+            sums = away.sum(dim=(0, 2))
+        else:
+            sums = torch.stack([own.sum() for own in away.split(self.lengths)])
+        return (sums + self.missed) / self.values
+
+
+class Feed(Protocol):
+    """Samples of one skin."""
+
+    def __len__(self) -> int: ...
+
+    def batch(self, samples: Sequence[int], draw: int | None) -> Batch:
+        """Samples by their numbers, turned as a random number says; None: as they are."""
+        ...
+
+
+class SkinFeed:
+    """Whole skins."""
+
+    def __init__(
+        self, fields: Fields, frames: Sequence[Frame], scales: Scales, *, device: str
+    ) -> None:
+        self._frames = frames
+        self._scales = scales
+        self._input_scale = torch.tensor(scales.inputs, device=device).repeat_interleave(3)
+        self._inputs, self._targets = _on(fields.inputs, device), _on(fields.targets, device)
+
+    def __len__(self) -> int:
+        return len(self._inputs)
+
+    def batch(self, samples: Sequence[int], draw: int | None) -> Batch:
+        """As `Feed`: of the orientations that there are, one for all samples."""
+        frame = self._frames[0 if draw is None else draw % len(self._frames)]
+        chosen = torch.tensor(samples, device=self._inputs.device)
+        inputs, targets = self._inputs.index_select(0, chosen), self._targets[chosen]
+        if draw is not None:
+            inputs = (inputs.unflatten(2, (-1, 3)) @ frame.vectors.t()).flatten(2)
+            targets = targets @ frame.values.t()
+        return Batch(
+            voxels=frame.voxels,
+            maps=frame.maps,
+            inputs=(inputs / self._input_scale).transpose(0, 1).contiguous(),
+            targets=(targets / self._scales.output).transpose(0, 1),
+            missed=torch.zeros(len(samples), device=inputs.device),
+            values=targets[0].numel(),
+        )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Patch:
+    """What is kept of a sample."""
+
+    points: np.ndarray
+    """Numbers of the points, shape (P,)."""
+    inputs: np.ndarray
+    targets: np.ndarray
+    missed: float
+    """Sum of the targets' sizes outside, in the target's unit."""
+
+
+class PatchFeed:
+    """Patches, each turned on its own."""
+
+    def __init__(
+        self,
+        fields: Fields,
+        points_mm: np.ndarray,
+        scales: Scales,
+        *,
+        voxel_mm: float,
+        reach_mm: float,
+        spec: NetworkSpec,
+        target: Target,
+        device: str,
+    ) -> None:
+        """Find the patches.
+
+        Args:
+            fields: Of the samples.
+            points_mm: Vertices of the skin at rest [mm], shape (V, 3).
+            scales: Of input and output.
+            voxel_mm: Edge of a voxel.
+            reach_mm: Of a patch beyond where the contact solver's field is.
+            spec: Of the network.
+            target: What is predicted.
+            device: Where batches are computed.
+        """
+        self._points_mm = points_mm
+        self._scales, self._voxel_mm, self._device = scales, voxel_mm, device
+        self._spec, self._target = spec, target
+        self._values = fields.targets[0].size if len(fields) else 0
+        finder = PatchFinder(points_mm, reach_mm=reach_mm)
+        leading = leading_channels(target, takes_force=scales.force_N > 0.0)
+        self._patches = [
+            _patch(finder.patch(given[:, leading]), given, wanted)
+            for given, wanted in zip(fields.inputs, fields.targets, strict=True)
+        ]
+
+    def __len__(self) -> int:
+        return len(self._patches)
+
+    def batch(self, samples: Sequence[int], draw: int | None) -> Batch:
+        """As `Feed`: each sample in an orientation of its own."""
+        parts = [self._turned(number, draw) for number in samples]
+        device = self._device
+        voxels = join([part[0] for part in parts]).to(device)
+        kernel = Kernel.PAIRS if device == "cpu" else Kernel.GATHER
+        missed = [self._patches[number].missed for number in samples]
+        return Batch(
+            voxels=voxels,
+            maps=kernel_maps(voxels, stem_edge=self._spec.stem_edge, kernel=kernel),
+            inputs=_on(np.concatenate([part[1] for part in parts])[:, None], device),
+            targets=_on(np.concatenate([part[2] for part in parts])[:, None], device),
+            lengths=tuple(len(part[1]) for part in parts),
+            missed=torch.tensor(missed, device=device) / self._scales.output,
+            values=self._values,
+        )
+
+    def _turned(self, number: int, draw: int | None) -> tuple[Voxels, np.ndarray, np.ndarray]:
+        """Voxels, input and target over their scales of one sample."""
+        own = self._patches[number]
+        points_mm = self._points_mm[own.points]
+        vectors = np.repeat(self._scales.inputs, 3)
+        if draw is None:
+            voxels = voxelise(points_mm, voxel_mm=self._voxel_mm)
+            return voxels, own.inputs / vectors, own.targets / self._scales.output
+        rng = np.random.default_rng([draw, number])
+        matrix = any_turn(rng)
+        voxels = voxelise(points_mm @ matrix.T, voxel_mm=self._voxel_mm, shift=rng.random(3))
+        inputs = (own.inputs.reshape(len(points_mm), -1, 3) @ matrix.T).reshape(own.inputs.shape)
+        targets = own.targets @ value_matrix(matrix, self._target).T
+        return voxels, inputs / vectors, targets / self._scales.output
+
+
+def feeds(
+    groups: Sequence[Fields],
+    points_mm: np.ndarray,
+    scales: Scales,
+    *,
+    voxel_mm: float,
+    patch_mm: float,
+    spec: NetworkSpec,
+    target: Target,
+    turns: int,
+    device: str,
+) -> list[Feed]:
+    """Feeds of groups of samples on one skin, whole or in patches.
+
+    Args:
+        groups: Samples to train on, samples to validate with.
+        points_mm: Vertices of the skin at rest [mm], shape (V, 3).
+        scales: Of input and output.
+        voxel_mm: Edge of a voxel.
+        patch_mm: Reach of a patch; 0: whole skins.
+        spec: Of the network.
+        target: What is predicted.
+        turns: Orientations of whole skins.
+        device: `cpu` or `cuda`.
+
+    Raises:
+        DesignError: If the points make no membrane.
+        DeviceError: If the device has no room for the data.
+    """
+    with room_for(device):
+        if patch_mm:
+            return [
+                PatchFeed(
+                    fields,
+                    points_mm,
+                    scales,
+                    voxel_mm=voxel_mm,
+                    reach_mm=patch_mm,
+                    spec=spec,
+                    target=target,
+                    device=device,
+                )
+                for fields in groups
+            ]
+        frames = frames_of(
+            points_mm, voxel_mm=voxel_mm, spec=spec, target=target, turns=turns, device=device
+        )
+        return [SkinFeed(fields, frames, scales, device=device) for fields in groups]
+
+
+def _patch(points: np.ndarray, given: np.ndarray, wanted: np.ndarray) -> _Patch:
+    """The patch of a sample; where nothing touches, one point stands for it."""
+    points = points if len(points) else np.zeros(1, np.int64)
+    missed = np.abs(wanted).sum(dtype=np.float64) - np.abs(wanted[points]).sum(dtype=np.float64)
+    return _Patch(
+        points=points, inputs=given[points], targets=wanted[points], missed=max(float(missed), 0.0)
+    )
+
+
+def _on(values: np.ndarray, device: str) -> Tensor:
+    return torch.from_numpy(np.ascontiguousarray(values, dtype=np.float32)).to(device)
