@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -12,13 +14,14 @@ from sim.forces.network.minkunet import arrays_of, new_network
 from sim.forces.network.patches import PatchFinder, PatchPredictor
 from sim.forces.network.spec import Target
 from sim.forces.network.steady import steady_predictor
+from sim.forces.network.turns import any_turn, turn_matrix, value_matrix
+from sim.forces.network.voxels import Voxels, voxelise
 from sim.forces.network.weights import (
     NetworkWeights,
     weights_from_bytes,
     weights_to_bytes,
 )
 from sim.forces.training.feeds import PatchFeed, Scales
-from sim.forces.training.frames import any_turn
 from sim.forces.training.scores import network_output
 from tests.unit.made_presses import SPEC, made_presses
 from workbench.core.errors import SolveError, StoreError
@@ -110,8 +113,9 @@ def test_a_press_that_touches_nothing_has_no_force() -> None:
     assert found.shape == (400, 3) and not found.any()
 
 
-def test_training_sees_what_is_seen_in_use() -> None:
-    """The network's output on a batch of the feed, point by point that of the predictor."""
+def test_training_sees_what_is_seen_in_use(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The network's output on a batch of the feed, point by point that of one look in use."""
+    monkeypatch.setattr("sim.forces.network.patches.LOOKS", 1)
     states = [0, 1, 5]
     batch = feed(states).batch(range(3), None)
     network = new_network(weights().spec, seed=4).eval()
@@ -155,6 +159,49 @@ def test_a_turned_sample_is_the_turned_press(monkeypatch: pytest.MonkeyPatch) ->
             vectors = ours[part, 0].numpy().reshape(-1, 3) @ matrix.T
             found = theirs[part, 0].numpy().reshape(-1, 3)
             np.testing.assert_allclose(found, vectors, atol=1e-6)
+
+
+def test_several_looks_are_the_mean_of_what_each_says(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of the turned press by one look, turned back; stress included, whose six numbers mix."""
+    enters = given([1])[0]
+    looks = 4
+    for target in (Target.FORCE, Target.STRESS):
+        spec = dataclasses.replace(SPEC, input_channels=6, output_channels=target.channels)
+        one = weights(
+            corrects=False,
+            spec=spec,
+            arrays=arrays_of(new_network(spec, seed=4)),
+            target=target,
+            output_scale=(SCALES.output,) * target.channels,
+        )
+        monkeypatch.setattr("sim.forces.network.patches.LOOKS", looks)
+        mean = PatchPredictor(one, PRESSES.points_mm, faces=PRESSES.faces).predict(enters)
+        monkeypatch.setattr("sim.forces.network.patches.LOOKS", 1)
+        seen = []
+        for look in range(looks):
+            matrix = turn_matrix(look, 4 * looks)
+            predictor = PatchPredictor(one, PRESSES.points_mm, faces=PRESSES.faces)
+            predictor._finder = PatchFinder(
+                PRESSES.points_mm @ matrix.T, reach_mm=predictor._finder.reach_mm
+            )
+            shifted = functools.partial(voxelise, shift=look / looks)
+
+            def moved(
+                points_mm: np.ndarray,
+                *,
+                voxel_mm: float,
+                shift: float,
+                shifted: Callable[..., Voxels] = shifted,
+            ) -> Voxels:
+                return shifted(points_mm, voxel_mm=voxel_mm)
+
+            monkeypatch.setattr("sim.forces.network.patches.voxelise", moved)
+            turned = (enters.reshape(-1, 2, 3) @ matrix.T).reshape(-1, 6).astype(np.float32)
+            found = predictor.predict(turned)
+            monkeypatch.setattr("sim.forces.network.patches.voxelise", voxelise)
+            seen.append(found @ value_matrix(matrix.T, target).T)
+        np.testing.assert_allclose(mean, np.mean(seen, axis=0), atol=1e-6)
+        assert np.abs(seen[0] - mean).max() > 1e-5
 
 
 def test_what_a_patch_leaves_out_counts_as_missed() -> None:

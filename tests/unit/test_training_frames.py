@@ -7,9 +7,10 @@ import pytest
 import torch
 
 from sim.forces.network.spec import PAPER, Target
+from sim.forces.network.turns import SYMMETRIC, turn_matrix, value_matrix
 from sim.forces.network.voxels import VOXEL_PER_SPACING
 from sim.forces.training.fields import Fields, mean_size, rms_of_nonzero
-from sim.forces.training.frames import SYMMETRIC, frames_of, turn_matrix, value_matrix
+from sim.forces.training.frames import frames_of
 from sim.forces.training.settings import OUR_VOXEL, PRESETS, TrainingSettings, rate_factor
 from tests.unit.made_presses import SPEC, dent, force_of, made_presses, sheet
 from workbench.core.errors import DesignError, SolveError

@@ -108,7 +108,9 @@ def predictor_for(weights: NetworkWeights, source: Source) -> SteadyPredictor:
     return steady_predictor(weights, skin.points_mm, skin.faces, device=torch_device())
 
 
-def learned_by(weights: NetworkWeights, predictor: SteadyPredictor, *, factor: float = 1.0) -> Learned:
+def learned_by(
+    weights: NetworkWeights, predictor: SteadyPredictor, *, factor: float = 1.0
+) -> Learned:
     """What a network says of an answer of the contact solver.
 
     Args:

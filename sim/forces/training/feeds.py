@@ -23,10 +23,11 @@ from torch import Tensor
 from sim.forces.network.kernel_maps import Kernel, KernelMaps, kernel_maps
 from sim.forces.network.patches import PatchFinder, leading_channels
 from sim.forces.network.spec import NetworkSpec, Target
+from sim.forces.network.turns import any_turn, value_matrix
 from sim.forces.network.voxels import Voxels, join, voxelise
 from sim.forces.training.arithmetic import room_for
 from sim.forces.training.fields import Fields
-from sim.forces.training.frames import Frame, any_turn, frames_of, value_matrix
+from sim.forces.training.frames import Frame, frames_of
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
