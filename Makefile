@@ -7,6 +7,8 @@ BIN := .venv/bin
 PORT ?= 8080
 # Tests of one file share bodies and meshes, so they stay together.
 PARALLEL := -n auto --maxprocesses 4 --dist loadfile
+# A process for each core: their threads would only wait for each other.
+ALONE := OMP_NUM_THREADS=1
 
 .DEFAULT_GOAL := help
 .PHONY: help setup run test check demo bench format lock browser clean
@@ -39,14 +41,14 @@ demo: setup ## The whole chain without a browser, into out/demo
 
 test: .venv/dev.stamp browser ## Install what tests need and pass every test
 	@# A browser draws in software and wants all cores: those tests run after the others, one by one.
-	$(BIN)/python -m pytest $(PARALLEL) -m "not ui" --durations=15; others=$$?; \
+	$(ALONE) $(BIN)/python -m pytest $(PARALLEL) -m "not ui" --durations=15; others=$$?; \
 	CHROMIUM="$$(bash .ci/chromium)" $(BIN)/python -m pytest -m ui --durations=15 && exit $$others
 
 check: .venv/dev.stamp ## Lint, format, types, fast tests
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/pyright
-	$(BIN)/python -m pytest -q $(PARALLEL) -m "not slow and not ui and not gpu"
+	$(ALONE) $(BIN)/python -m pytest -q $(PARALLEL) -m "not slow and not ui and not gpu"
 
 bench: .venv/dev.stamp browser ## Print the benchmark table
 	@CHROMIUM="$$(bash .ci/chromium)" $(BIN)/workbench bench all

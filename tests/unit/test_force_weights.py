@@ -145,9 +145,9 @@ def test_foreign_files_are_refused(content: bytes) -> None:
 def test_another_version_is_refused() -> None:
     """The version that was found and the one that is read are both named."""
     name, content = weights_to_bytes(make_weights())
-    newer = content.replace(FORMAT + b"1\n", FORMAT + b"2\n", 1)
+    newer = content.replace(FORMAT + b"2\n", FORMAT + b"3\n", 1)
     message = refused(name, newer).message
-    assert "version 2" in message and "version 1" in message
+    assert "version 3" in message and "up to 2" in message
 
 
 def test_renamed_files_are_refused_with_the_right_name() -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from workbench.core import freed_memory
 from workbench.core.freed_memory import freed_memory_kept
 
 pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="of GNU's C library")
@@ -37,6 +38,29 @@ def test_pages_are_asked_for_once_while_it_is_kept() -> None:
         with freed_memory_kept():
             assert faults() < 6 * PAGES
         assert faults() < 2 * PAGES
+
+
+def test_a_library_that_takes_no_larger_limit_gets_its_largest(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Before 2.35: a limit left at 128 KiB would make every large array a new one."""
+    limits: dict[int, int] = {}
+
+    class Old:
+        def mallopt(self, name: int, value: int) -> int:
+            if name == freed_memory._MMAP_THRESHOLD and value > 2**25:
+                return 0
+            limits[name] = value
+            return 1
+
+        def malloc_trim(self, pad: int) -> int:
+            return pad
+
+    monkeypatch.setattr(freed_memory, "_gnu_library", Old)
+    with freed_memory_kept():
+        assert limits[freed_memory._MMAP_THRESHOLD] == 2**25
+        assert limits[freed_memory._TRIM_THRESHOLD] == freed_memory.KEPT_BYTES
+    assert limits == freed_memory.USUAL
 
 
 def test_memory_is_given_back_afterwards() -> None:

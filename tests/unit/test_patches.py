@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+import hashlib
 from collections.abc import Callable
 
 import numpy as np
 import pytest
 import torch
 
+from sim.forces.network.kernel_maps import Kernel
 from sim.forces.network.minkunet import arrays_of, new_network
 from sim.forces.network.patches import PatchFinder, PatchPredictor
+from sim.forces.network.predictor import Predictor
 from sim.forces.network.spec import Target
 from sim.forces.network.steady import steady_predictor
 from sim.forces.network.turns import any_turn, turn_matrix, value_matrix
@@ -24,7 +27,7 @@ from sim.forces.network.weights import (
 from sim.forces.training.feeds import PatchFeed, Scales
 from sim.forces.training.scores import network_output
 from tests.unit.made_presses import SPEC, made_presses
-from workbench.core.errors import SolveError, StoreError
+from workbench.core.errors import DesignError, SolveError, StoreError
 
 PRESSES = made_presses(6, edge=20)
 SCALES = Scales(input_mm=0.3, force_N=0.02, output=0.004)
@@ -229,10 +232,77 @@ def test_what_a_patch_leaves_out_counts_as_missed() -> None:
     assert float(nothing[0]) * SCALES.output == pytest.approx(np.abs(targets).mean(), rel=1e-5)
 
 
+def test_samples_that_touch_nothing_count_by_their_target_alone() -> None:
+    """In a batch with others and without: no output of the network is in their error."""
+    fields = PRESSES.fields(Target.FORCE, [0, 1], takes_force=True, corrects=True)
+    inputs = fields.inputs.copy()
+    inputs[1] = 0.0
+    own = PatchFeed(
+        dataclasses.replace(fields, inputs=inputs),
+        PRESSES.points_mm,
+        SCALES,
+        voxel_mm=0.75,
+        reach_mm=REACH_MM,
+        spec=weights().spec,
+        target=Target.FORCE,
+        device="cpu",
+    )
+    size = np.abs(fields.targets[1]).mean() / SCALES.output
+    for samples in ([0, 1], [1]):
+        batch = own.batch(samples, 3)
+        assert batch.lengths[-1] == 0
+        wrong = torch.full(batch.targets.shape, 7.0)
+        assert float(batch.errors(wrong)[-1]) == pytest.approx(size, rel=1e-5)
+    assert batch.inputs.shape == (1, 1, 6) and not batch.inputs.any()
+
+
+def test_each_predictor_refuses_weights_of_the_other_kind() -> None:
+    """A patch network on the whole skin would answer, and wrongly."""
+    with pytest.raises(DesignError, match="look at patches"):
+        Predictor(weights(), PRESSES.points_mm)
+    with pytest.raises(DesignError, match="look at the whole skin"):
+        PatchPredictor(weights(patch_spacings=0.0), PRESSES.points_mm)
+
+
+def test_neighbours_gathered_or_in_pairs_say_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Gathered as on a GPU: in use and in training."""
+    fields = given([1, 2])
+    predictor = PatchPredictor(weights(), PRESSES.points_mm, faces=PRESSES.faces)
+    pairs, fed = predictor.predict(fields), feed([1, 2]).batch([0, 1], 5)
+    for name in ("sim.forces.network.patches", "sim.forces.training.feeds"):
+        monkeypatch.setattr(f"{name}.kernel_on", lambda device: Kernel.GATHER)
+    np.testing.assert_allclose(predictor.predict(fields), pairs, atol=1e-6)
+    network = new_network(weights().spec, seed=4).eval()
+    gathered = feed([1, 2]).batch([0, 1], 5)
+    assert fed.maps.levels[0].blocks and not gathered.maps.levels[0].blocks
+    with torch.no_grad():
+        outputs = [network_output(network, batch) for batch in (fed, gathered)]
+    np.testing.assert_allclose(*outputs, atol=1e-4)
+
+
+@pytest.mark.gpu
+@pytest.mark.skipif(not torch.cuda.is_available(), reason="needs a CUDA device")
+def test_a_gpu_says_what_a_cpu_says() -> None:
+    """Patches are found here, the network computes there."""
+    fields = given([1, 2])
+    here, there = (
+        steady_predictor(weights(), PRESSES.points_mm, PRESSES.faces, device=device).predict(fields)
+        for device in ("cpu", "cuda")
+    )
+    np.testing.assert_allclose(here, there, atol=1e-5 * np.abs(here).max())
+
+
 def test_the_file_keeps_the_size_of_the_patch() -> None:
     """And one of before patches has none: it looks at the whole skin."""
-    kept = weights_from_bytes(*weights_to_bytes(weights()))
+    name, content = weights_to_bytes(weights())
+    kept = weights_from_bytes(name, content)
     assert kept.patch_spacings == REACH_MM
+    _, whole = weights_to_bytes(weights(patch_spacings=0.0))
+    line, rest = whole.split(b"\n", 2)[0], whole.split(b"\n", 2)[2]
+    older = rest.replace(b'"patch_spacings": 0.0, ', b"")
+    digest = hashlib.sha256(older).hexdigest()
+    old = line[:-1] + b"1\n" + digest.encode() + b"\n" + older
+    assert weights_from_bytes(f"tiny-force-{digest[:16]}.weights", old).patch_spacings == 0.0
     with pytest.raises(StoreError, match="the size of the patch"):
         weights_to_bytes(weights(patch_spacings=float("nan")))
 

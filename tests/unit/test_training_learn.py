@@ -303,6 +303,28 @@ def test_tuning_starts_at_force_times_the_ratio_of_stiffness(
         run(tmp_path / "wrong", wrong, stiff)
 
 
+def test_a_network_of_patches_is_trained_kept_and_tuned(tmp_path: Path) -> None:
+    """The size of the patch goes from the settings into weights and card, and on when tuned."""
+    settings = dataclasses.replace(
+        SETTINGS, patch_spacings=2.0, takes_force=True, corrects=True, turns=1
+    )
+    plan = dataclasses.replace(PLAN, settings=settings)
+    done = run(tmp_path / "made", plan)
+    made = load_weights(done.weights)
+    assert (made.patch_spacings, made.takes_force, made.corrects) == (2.0, True, True)
+    card = made.card["training"]
+    assert (card["patch_spacings"], card["turns"]) == (2.0, "any")
+    # By one look at each sample while it learns, by four at the end.
+    best = done.rows[done.best_epoch - 1]["validation_mae"]
+    assert done.scores["validation"]["mae"] == pytest.approx(best, rel=0.5)
+    tuning = dataclasses.replace(PLAN, base=made, base_name=done.weights.name)
+    tuned = load_weights(run(tmp_path / "tuned", tuning, made_presses(12, young=0.2)).weights)
+    assert tuned.patch_spacings == 2.0
+    assert tuned.card["training"]["turns"] == "any"
+    with pytest.raises(DesignError, match="3 turns are of whole skins"):
+        dataclasses.replace(settings, turns=3)
+
+
 def test_the_best_factor_is_that_of_least_squares() -> None:
     """<found, wanted> / <found, found> over all samples; nothing to go by gives 1."""
     found, wanted = np.array([[1.0, 0.0], [1.0, 4.0]]), np.array([[3.0, 9.0], [5.0, 8.0]])

@@ -13,6 +13,7 @@ from __future__ import annotations
 import contextlib
 import ctypes
 import sys
+import threading
 from collections.abc import Generator
 
 _TRIM_THRESHOLD, _TOP_PAD, _MMAP_THRESHOLD = -1, -2, -3
@@ -21,12 +22,15 @@ KEPT_BYTES = 2**31 - 1
 """Free memory at the end of the heap from which it is given back while the process computes."""
 PAD_BYTES = 2**26
 """Asked for beyond what is needed each time the heap grows."""
-USUAL = {_TRIM_THRESHOLD: 2**26, _TOP_PAD: 2**17, _MMAP_THRESHOLD: 2**25}
-"""The largest that the library's own thresholds grow to, see `mallopt(3)`: they grow no more once
-they were set, and those it begins with make every array of 128 KiB a new one."""
-KEEPING = {_TRIM_THRESHOLD: KEPT_BYTES, _TOP_PAD: PAD_BYTES, _MMAP_THRESHOLD: KEPT_BYTES}
+LARGEST_BYTES = 2**25
+"""Largest array that comes from the heap where the library takes no larger limit (before 2.35), and
+afterwards: the library's own limit grows to it, but no more once any option was set, and the one it
+begins with makes every array of 128 KiB a new one. See `mallopt(3)`."""
+KEEPING = {_MMAP_THRESHOLD: KEPT_BYTES, _TRIM_THRESHOLD: KEPT_BYTES, _TOP_PAD: PAD_BYTES}
+USUAL = {_MMAP_THRESHOLD: LARGEST_BYTES, _TRIM_THRESHOLD: 2 * LARGEST_BYTES, _TOP_PAD: 2**17}
 
 _users: list[object] = []
+_turn = threading.Lock()
 
 
 @contextlib.contextmanager
@@ -36,24 +40,27 @@ def freed_memory_kept() -> Generator[None]:
     Threads share it: the first to enter begins, the last to leave ends.
     """
     user = object()
-    _users.append(user)
-    if len(_users) == 1:
-        _set(KEEPING)
+    with _turn:
+        _users.append(user)
+        if len(_users) == 1:
+            _set(KEEPING)
     try:
         yield
     finally:
-        _users.remove(user)
-        if not _users:
-            _set(USUAL)
-            _give_back()
+        with _turn:
+            _users.remove(user)
+            if not _users:
+                _set(USUAL)
+                _give_back()
 
 
 def _set(options: dict[int, int]) -> None:
     library = _gnu_library()
+    if library is None:
+        return
     for name, value in options.items():
-        # A threshold that this library's version does not take leaves the others as they are set.
-        if library is not None:
-            library.mallopt(name, value)
+        if not library.mallopt(name, value) and name == _MMAP_THRESHOLD:
+            library.mallopt(name, LARGEST_BYTES)
 
 
 def _give_back() -> None:

@@ -1,10 +1,11 @@
 """What a training begins with: a new network, or weights whose decoder is to learn another gel.
 
 To tune, the encoder stays as it is: it sees the dent, which a prescribed path makes alike for every
-stiffness, and so do the scale of the displacement and the size of a voxel in spacings. The scale of
-the output is multiplied by the one number that fits the old network's fields to the new ones best:
-where force is proportional to the stiffness, tuning begins at that answer. Where the contact
-solver's force enters, its scale is multiplied by the ratio of the moduli, and that is the number.
+stiffness, and so do the scale of the displacement and the sizes of voxel and patch in spacings. The
+scale of the output is multiplied by the one number that fits the old network's fields to the new
+ones best: where force is proportional to the stiffness, tuning begins at that answer. Where the
+contact solver's force enters, its scale is multiplied by the ratio of the moduli, and that is the
+number.
 """
 
 from __future__ import annotations

@@ -90,6 +90,7 @@ def training_card(
     device: str,
     seconds: float,
     tuned_from: str,
+    patch_spacings: float,
     finished: bool,
 ) -> dict[str, Any]:
     """How the weights were made."""
@@ -107,7 +108,8 @@ def training_card(
         "device": device,
         "rate": settings.rate,
         "batch": settings.batch,
-        "turns": settings.turns,
+        "turns": "any" if patch_spacings else settings.turns,
+        "patch_spacings": patch_spacings,
         "tuned_from": tuned_from,
         "program": __version__,
     }

@@ -208,6 +208,7 @@ class _Training:
             device=self.device,
             seconds=self.seconds,
             tuned_from=plan.base_name,
+            patch_spacings=self.begun.patch_spacings,
             finished=self._ended,
         )
         weights, scores = final_weights(

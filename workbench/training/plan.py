@@ -15,7 +15,7 @@ from workbench.core.errors import DesignError
 from workbench.dataset.cases import Split
 from workbench.training.presses import Presses
 
-VERSION = 2
+VERSION = 3
 """Raised whenever the same plan and data give other weights."""
 
 

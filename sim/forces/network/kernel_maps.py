@@ -40,6 +40,11 @@ class Kernel(StrEnum):
     PAIRS = "pairs"
 
 
+def kernel_on(device: str) -> Kernel:
+    """How convolutions in float32 are computed on a device."""
+    return Kernel.PAIRS if device == "cpu" else Kernel.GATHER
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class PairBlock:
     """The pairs of neighbours that end in some successive voxels, by offset."""

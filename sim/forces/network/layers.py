@@ -95,9 +95,24 @@ class Up(Down):
         return self.shifted(up(rows, maps.steps[self.level], weight, samples=samples))
 
 
+class BatchNorm(nn.BatchNorm1d):
+    """Batch normalisation; one row alone, which has no variance, is taken as in use.
+
+    A small patch by itself is one voxel at the coarsest level.
+    """
+
+    def forward(self, input: Tensor) -> Tensor:
+        """Rows of one level, shape (N, C), shifted and scaled."""
+        if self.training and len(input) == 1:
+            return functional.batch_norm(
+                input, self.running_mean, self.running_var, self.weight, self.bias, eps=self.eps
+            )
+        return super().forward(input)
+
+
 def norm(planes: int, *, there: bool) -> nn.Module:
     """Batch normalisation over all voxels and samples, or nothing."""
-    return nn.BatchNorm1d(planes) if there else nn.Identity()
+    return BatchNorm(planes) if there else nn.Identity()
 
 
 def activated(rows: Tensor, activation: Activation) -> Tensor:

@@ -37,7 +37,7 @@ from sim.forces.network.minkunet import network_of
 from sim.forces.network.spec import DEPTH, NetworkSpec
 from sim.forces.network.voxels import Voxels, spacing_mm, voxelise
 from sim.forces.network.weights import NetworkWeights
-from workbench.core.errors import DeviceError, SolveError
+from workbench.core.errors import DesignError, DeviceError, SolveError
 
 HALF_PAIRS_FROM = 20_000_000
 """Voxels times width squared of a level from which pairs pay in bfloat16 on a CPU. What they save
@@ -92,10 +92,16 @@ class Predictor:
             acceleration: On a CUDA device: what may be compiled and recorded.
 
         Raises:
-            DesignError: If the points make no membrane.
+            DesignError: If the points make no membrane, or the weights look at patches.
             DeviceError: If the device has no room for the network.
             StoreError: If the weights do not fit their own description.
         """
+        if weights.patch_spacings:
+            raise DesignError(
+                "these weights look at patches, not at the whole skin",
+                hint="let steady_predictor choose what predicts with them",
+                at="weights",
+            )
         self.weights = weights
         self.notes: tuple[str, ...] = ()
         self.acceleration = Acceleration.EAGER

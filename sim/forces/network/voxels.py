@@ -1,11 +1,12 @@
 """Points to voxels and back: a voxel takes the mean of its points and gives each its value.
 
-A point at p falls into voxel floor((p - low) / edge + 1/2), where `low` is the lower corner of the
-cloud: a membrane that is moved keeps its voxels, and a flat face of it lies in the middle of a
-layer of voxels, not on the border of two, where rounding would decide.
+A point at p falls into voxel floor((p - low) / edge + 1/2 + shift), where `low` is the lower corner
+of the cloud and the shift zero unless it is asked for: a membrane that is moved keeps its voxels,
+and a flat face of it lies in the middle of a layer of voxels, not on the border of two, where
+rounding would decide.
 
 Left out: nothing is interpolated between voxels. The points are those of the membrane at rest, so
-what a frame changes is features alone and the voxels are found once.
+what a frame changes is features alone and the voxels of a whole skin are found once.
 """
 
 from __future__ import annotations

@@ -28,7 +28,9 @@ from sim.forces.network.spec import Activation, NetworkSpec, Norm, Target
 from workbench.core.errors import StoreError, WorkbenchError
 
 FORMAT = b"sensor-workbench force network "
-VERSION = 1
+VERSION = 2
+READABLE = (1, 2)
+"""Files of version 1 look at the whole skin."""
 SUFFIX = ".weights"
 HASH_DIGITS = 16
 """Of the content hash in a file name."""
@@ -162,10 +164,10 @@ def _checked_body(name: str, content: bytes) -> bytes:
         )
     first, digest, body = (*content.split(b"\n", 2), b"", b"")[:3]
     version = first.removeprefix(FORMAT)
-    if version != str(VERSION).encode():
+    if version not in [str(number).encode() for number in READABLE]:
         raise StoreError(
             f"{name} has format version {version[:8].decode(errors='replace')}, "
-            f"this program reads version {VERSION}",
+            f"this program reads up to {VERSION}",
             hint="use weights of this version, or train the network again",
             at=name,
         )

@@ -7,7 +7,8 @@ of a batch side by side, each in an orientation and a place among the voxels of 
 seen in other voxels in every epoch, and a sample costs what is in it.
 
 Errors are means over the whole skins in both: what a patch leaves out counts by its target there,
-which a network that says nothing there misses.
+which a network that says nothing there misses. They are those of one look (`patches`): what is
+measured in the end, by several, is better.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from sim.forces.network.kernel_maps import Kernel, KernelMaps, kernel_maps
+from sim.forces.network.kernel_maps import KernelMaps, kernel_maps, kernel_on
 from sim.forces.network.patches import PatchFinder, leading_channels
 from sim.forces.network.spec import NetworkSpec, Target
 from sim.forces.network.turns import any_turn, value_matrix
@@ -57,7 +58,8 @@ class Batch:
     targets: Tensor
     """What is right, over its scale, shape (P, B, C)."""
     lengths: tuple[int, ...] = ()
-    """Points of each sample where they lie one after the other and B is 1."""
+    """Points of each sample where they lie one after the other and B is 1; what comes after them
+    belongs to no sample."""
     missed: Tensor
     """Sum of the targets' sizes that are not among the points, of each sample, shape (S,)."""
     values: int
@@ -68,7 +70,8 @@ class Batch:
         if not self.lengths:
             sums = away.sum(dim=(0, 2))
         else:
-            sums = torch.stack([own.sum() for own in away.split(self.lengths)])
+            own = away[: sum(self.lengths)].split(self.lengths)
+            sums = torch.stack([rows.sum() for rows in own])
         return (sums + self.missed) / self.values
 
 
@@ -119,7 +122,7 @@ class _Patch:
     """What is kept of a sample."""
 
     points: np.ndarray
-    """Numbers of the points, shape (P,)."""
+    """Numbers of the points, shape (P,); none where nothing touches."""
     inputs: np.ndarray
     targets: np.ndarray
     missed: float
@@ -169,20 +172,26 @@ class PatchFeed:
 
     def batch(self, samples: Sequence[int], draw: int | None) -> Batch:
         """As `Feed`: each sample in an orientation of its own."""
-        parts = [self._turned(number, draw) for number in samples]
-        device = self._device
-        voxels = join([part[0] for part in parts]).to(device)
-        kernel = Kernel.PAIRS if device == "cpu" else Kernel.GATHER
+        touching = [number for number in samples if len(self._patches[number].points)]
+        parts = [self._turned(number, draw) for number in touching] or [self._untouched()]
+        voxels = join([part[0] for part in parts]).to(self._device)
+        kernel = kernel_on(self._device)
         missed = [self._patches[number].missed for number in samples]
         return Batch(
             voxels=voxels,
             maps=kernel_maps(voxels, stem_edge=self._spec.stem_edge, kernel=kernel),
-            inputs=_on(np.concatenate([part[1] for part in parts])[:, None], device),
-            targets=_on(np.concatenate([part[2] for part in parts])[:, None], device),
-            lengths=tuple(len(part[1]) for part in parts),
-            missed=torch.tensor(missed, device=device) / self._scales.output,
+            inputs=_on(np.concatenate([part[1] for part in parts])[:, None], self._device),
+            targets=_on(np.concatenate([part[2] for part in parts])[:, None], self._device),
+            lengths=tuple(len(self._patches[number].points) for number in samples),
+            missed=torch.tensor(missed, device=self._device) / self._scales.output,
             values=self._values,
         )
+
+    def _untouched(self) -> tuple[Voxels, np.ndarray, np.ndarray]:
+        """A point for a batch in which nothing touches: a network takes no empty one."""
+        voxels = voxelise(self._points_mm[:1], voxel_mm=self._voxel_mm)
+        inputs = np.zeros((1, 3 * len(self._scales.inputs)))
+        return voxels, inputs, np.zeros((1, self._target.channels))
 
     def _turned(self, number: int, draw: int | None) -> tuple[Voxels, np.ndarray, np.ndarray]:
         """Voxels, input and target over their scales of one sample."""
@@ -227,7 +236,7 @@ def feeds(
 
     Raises:
         DesignError: If the points make no membrane.
-        DeviceError: If the device has no room for the data.
+        DeviceError: If the device has no room for whole skins.
     """
     with room_for(device):
         if patch_mm:
@@ -251,8 +260,6 @@ def feeds(
 
 
 def _patch(points: np.ndarray, given: np.ndarray, wanted: np.ndarray) -> _Patch:
-    """The patch of a sample; where nothing touches, one point stands for it."""
-    points = points if len(points) else np.zeros(1, np.int64)
     missed = np.abs(wanted).sum(dtype=np.float64) - np.abs(wanted[points]).sum(dtype=np.float64)
     return _Patch(
         points=points, inputs=given[points], targets=wanted[points], missed=max(float(missed), 0.0)

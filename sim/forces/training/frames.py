@@ -17,7 +17,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from sim.forces.network.kernel_maps import Kernel, KernelMaps, kernel_maps
+from sim.forces.network.kernel_maps import KernelMaps, kernel_maps, kernel_on
 from sim.forces.network.spec import NetworkSpec, Target
 from sim.forces.network.turns import turn_matrix, value_matrix
 from sim.forces.network.voxels import Voxels, voxelise
@@ -50,7 +50,7 @@ def frames_of(
         DesignError: If the points make no membrane.
         torch.OutOfMemoryError: If the device has no room for them.
     """
-    kernel = Kernel.PAIRS if device == "cpu" else Kernel.GATHER
+    kernel = kernel_on(device)
     found = []
     for turn in range(turns):
         matrix = turn_matrix(turn, turns)

@@ -16,6 +16,7 @@ from enum import StrEnum
 
 from sim.forces.network.spec import PAPER, SMALL, NetworkSpec
 from workbench.core.check import within
+from workbench.core.errors import DesignError
 
 OUR_VOXEL = 0.75
 """`sim.forces.network.voxels.VOXEL_PER_SPACING`, which cannot be imported without PyTorch."""
@@ -87,6 +88,12 @@ class TrainingSettings:
         within(self.averaging, 0.0, 0.99999, what="averaging", unit="", at="averaging")
         within(self.foot, 0.0, 100.0, what="foot", unit="scales", at="foot")
         within(self.turns, 1, 64, what="turns", unit="", at="turns")
+        if self.turns > 1 and self.patch_spacings:
+            raise DesignError(
+                f"{self.turns} turns are of whole skins; a patch is turned by any angle",
+                hint="leave --turns out, or choose the preset paper",
+                at="turns",
+            )
         within(self.patience, 0, 100_000, what="patience", unit="epochs", at="patience")
 
 
@@ -122,7 +129,7 @@ PRESETS = {
             patch_spacings=4.5,
             rate=3e-3,
             batch=8,
-            epochs=100,
+            epochs=120,
             warm_up=0.03,
             cosine=True,
             weight_decay=1e-4,

@@ -41,7 +41,8 @@ from workbench.core.monitor import Monitor, silent
 
 _Result = TypeVar("_Result")
 
-MOST_DRAWS = 2**62
+DRAWS_BELOW = 2**62
+"""End of the numbers that orientations are drawn from."""
 CHECK_STEPS = 20
 """Steps between two looks at the loss: each look waits for the device."""
 
@@ -71,8 +72,8 @@ class Trainer:
 
         Args:
             network: Untrained, or with its encoder frozen to be tuned.
-            train: What the loss is of, on the device.
-            validation: What the best epoch is chosen by, on the device; may be empty.
+            train: What the loss is of.
+            validation: What the best epoch is chosen by; may be empty.
             unit: Mean absolute error of zero output on what is trained on, over the output's scale.
             settings: Of the training.
             output_scale: What outputs are multiplied by, in the target's unit.
@@ -175,10 +176,10 @@ class Trainer:
         rng = np.random.default_rng([self._seed, self.epoch])
         count = len(self._train)
         order = np.concatenate([rng.permutation(count) for _ in range(self.settings.passes)])
-        draws = rng.integers(MOST_DRAWS, size=self._steps).tolist()
-        for step, draw in enumerate(draws):
-            first = step * self.settings.batch
-            yield order[first : first + self.settings.batch].tolist(), draw
+        draws = rng.integers(DRAWS_BELOW, size=self._steps).tolist()
+        # Parts as equal as can be: statistics of a batch with one sample left would be its own.
+        for samples, draw in zip(np.array_split(order, self._steps), draws, strict=True):
+            yield samples.tolist(), draw
 
     def _step(self, samples: list[int], draw: int) -> Tensor:
         """One step of the optimiser; its error, still on the device."""
