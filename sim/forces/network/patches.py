@@ -170,4 +170,4 @@ class PatchPredictor:
         looks = zip(field.reshape(LOOKS, len(patch), -1), turned, strict=True)
         target = self.weights.target
         seen = [own @ value_matrix(matrix.T, target).T for own, matrix in looks]
-        return np.mean(seen, axis=0, dtype=np.float64).astype(np.float32)
+        return np.asarray(np.mean(seen, axis=0, dtype=np.float64), np.float32)
