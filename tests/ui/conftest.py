@@ -18,6 +18,7 @@ from typing import Any
 
 import pytest
 
+from tests.ui.widgets import coarse_project, open_page, wait_until
 from workbench.benchmarks.browser import FLAGS
 
 START_LIMIT_S = 60
@@ -100,6 +101,26 @@ def browser() -> Iterator[Any]:
         )
         yield opened
         opened.close()
+
+
+@pytest.fixture(scope="package")
+def pressed_store(browser: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The store of a coarse project once the browser has shown its first image."""
+    server = Server(coarse_project(tmp_path_factory.mktemp("pressed")))
+    looking = browser.new_page()
+    open_page(looking, server.url)
+    wait_until(lambda: looking.get_by_text("Image ✓").count(), 180, "the example is pressed")
+    looking.close()
+    server.stop()
+    return server.project / "store"
+
+
+@pytest.fixture
+def pressed_project(pressed_store: Path, tmp_path: Path) -> Path:
+    """A coarse project whose press is found in its store: for tests of what comes after it."""
+    project = coarse_project(tmp_path)
+    shutil.copytree(pressed_store, project / "store")
+    return project
 
 
 @pytest.fixture

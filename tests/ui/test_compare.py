@@ -56,13 +56,13 @@ def second_wall(page: Any) -> None:
 
 
 def test_two_variants_are_compared_and_the_report_opens_by_itself(
-    tmp_path: Path, page: Any, start_server: Start
+    tmp_path: Path, pressed_project: Path, page: Any, start_server: Start
 ) -> None:
     """Wall 2 and 3 mm: what differs, blinking, B in the view, and a page that needs nothing else.
 
     A hostile note stays text in list and report, and a hostile name is refused.
     """
-    project = coarse_project(tmp_path)
+    project = pressed_project
     server = start_server(project)
     open_page(page, server.url)
     pressed(page)
@@ -152,10 +152,10 @@ def names(project: Path) -> list[str]:
 
 
 def test_a_sweep_of_three_walls_is_plotted_and_kept(
-    tmp_path: Path, page: Any, start_server: Start
+    pressed_project: Path, page: Any, start_server: Start
 ) -> None:
     """1.5, 7 and 12.5 mm: two images with values, one failure told; a point becomes a variant."""
-    project = coarse_project(tmp_path)
+    project = pressed_project
     server = start_server(project)
     open_page(page, server.url)
     pressed(page)

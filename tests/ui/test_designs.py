@@ -62,10 +62,10 @@ def test_start_from_a_picture_and_keep_it(tmp_path: Path, page: Any, start_serve
 
 
 def test_a_small_picture_follows_the_sliders(
-    tmp_path: Path, page: Any, start_server: Start
+    pressed_project: Path, page: Any, start_server: Start
 ) -> None:
     """Shape, light and depth each change the preview; an undo brings the rendered image back."""
-    server = start_server(coarse_project(tmp_path))
+    server = start_server(pressed_project)
     open_page(page, server.url)
     wait_until(lambda: page.get_by_text("Image ✓").count(), 180, "the example is pressed")
     rendered = image_source(page)
@@ -87,10 +87,10 @@ def test_a_small_picture_follows_the_sliders(
 
 
 def test_results_follow_by_themselves_once_edits_settle(
-    tmp_path: Path, page: Any, start_server: Start
+    pressed_project: Path, page: Any, start_server: Start
 ) -> None:
     """With Auto update two edits end in one fresh image, without a button."""
-    server = start_server(coarse_project(tmp_path))
+    server = start_server(pressed_project)
     open_page(page, server.url)
     wait_until(lambda: page.get_by_text("Image ✓").count(), 180, "the example is pressed")
     control(page, "Auto update").click(force=True)

@@ -47,9 +47,11 @@ def folder(page: Any, name: str) -> None:
     page.get_by_text(name, exact=True).first.click()
 
 
-def test_light_model_lamp_lens_and_views(tmp_path: Path, page: Any, start_server: Start) -> None:
+def test_light_model_lamp_lens_and_views(
+    tmp_path: Path, pressed_project: Path, page: Any, start_server: Start
+) -> None:
     """A model, an area of light, a fisheye and a second camera: rendered, seen as normals."""
-    server = start_server(coarse_project(tmp_path))
+    server = start_server(pressed_project)
     optics(page, server, pressed=True)
     choose(page, "Model", "linear")
     page.get_by_text("the paper's linear field").wait_for()

@@ -14,7 +14,6 @@ from tests.ui.conftest import Server
 from tests.ui.widgets import (
     VISIBLE_CHANGE,
     button,
-    coarse_project,
     control,
     open_page,
     slider_value,
@@ -87,13 +86,13 @@ def marked(page: Any, bare: np.ndarray) -> bool:
 
 
 def test_a_click_on_the_picture_finds_what_a_click_on_the_skin_had_there(
-    tmp_path: Path, browser: Any, start_server: Start
+    pressed_project: Path, browser: Any, start_server: Start
 ) -> None:
     """Boxes, mark and text within a pixel, on a screen of 1.5 pixels per point; a follower cannot.
 
     A place clicked on the skin has a pixel; that pixel, clicked in the picture, sees the place.
     """
-    server = start_server(coarse_project(tmp_path))
+    server = start_server(pressed_project)
     context = browser.new_context(viewport={"width": 1280, "height": 1000}, device_scale_factor=1.5)
     page = context.new_page()
     page.set_default_timeout(60_000)

@@ -19,7 +19,6 @@ import pytest
 from tests.ui.conftest import Server
 from tests.ui.widgets import (
     button,
-    coarse_project,
     open_page,
     set_number,
     slider_value,
@@ -85,9 +84,9 @@ def one_round(page: Any, rng: random.Random) -> None:
     page.wait_for_timeout(300)
 
 
-def test_a_long_day(tmp_path: Path, page: Any, start_server: Start) -> None:
+def test_a_long_day(pressed_project: Path, page: Any, start_server: Start) -> None:
     """Memory of server and lanes flat within 10 %, widgets alive, no process left behind."""
-    server = start_server(coarse_project(tmp_path))
+    server = start_server(pressed_project)
     open_page(page, server.url)
     wait_until(lambda: page.get_by_text("Image ✓").count(), 180, "the example is pressed")
     rng = random.Random(SEED)

@@ -31,10 +31,10 @@ Start = Callable[..., Server]
 
 
 def test_finite_elements_are_shown_beside_the_contact_solver(
-    tmp_path: Path, page: Any, start_server: Start
+    tmp_path: Path, pressed_project: Path, page: Any, start_server: Start
 ) -> None:
     """A draft is solved, its totals stand in the table, and the skin shows how far they differ."""
-    server = start_server(coarse_project(tmp_path))
+    server = start_server(pressed_project)
     open_page(page, server.url)
     wait_until(lambda: page.get_by_text("Image ✓").count(), 180, "the example is pressed")
     tab(page, "Forces").click()

@@ -44,10 +44,10 @@ def settled(page: Any) -> str:
 
 
 def test_dragging_the_handle_presses_there_at_once(
-    tmp_path: Path, page: Any, start_server: Start
+    tmp_path: Path, pressed_project: Path, page: Any, start_server: Start
 ) -> None:
     """The object follows the handle along the skin; force and image follow, nothing is stored."""
-    server = start_server(coarse_project(tmp_path))
+    server = start_server(pressed_project)
     studio(page, server)
     before = pixels(page)
     control(page, "Live").click(force=True)
@@ -101,7 +101,7 @@ def test_strokes_are_run_in_order_and_named(tmp_path: Path, page: Any, start_ser
 
 
 def test_a_step_object_is_read_by_the_worker(
-    tmp_path: Path, page: Any, start_server: Start
+    tmp_path: Path, pressed_project: Path, page: Any, start_server: Start
 ) -> None:
     """A file that is no STEP is refused by its name; a box of 7 mm becomes the object."""
     from build123d import Box, export_step
@@ -109,7 +109,7 @@ def test_a_step_object_is_read_by_the_worker(
     bad, good = tmp_path / "my bad.step", tmp_path / "my box.step"
     bad.write_text("no STEP")
     export_step(Box(7.0, 5.0, 4.0), str(good))
-    server = start_server(coarse_project(tmp_path))
+    server = start_server(pressed_project)
     studio(page, server)
     upload(page, "Load object", bad)
     wait_until(lambda: page.get_by_text("my bad.step").count(), 60, "the refusal is shown")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -32,9 +33,10 @@ MIDDLE = (640, 420)
 
 
 @pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+def server(tmp_path_factory: pytest.TempPathFactory, pressed_store: Path) -> Iterator[Server]:
     """A workbench at a coarse finger, whose press all tests look at."""
     project = coarse_project(tmp_path_factory.mktemp("view"))
+    shutil.copytree(pressed_store, project / "store")
     design = project / "designs" / "autosave.toml"
     design.write_text(design.read_text().replace('"coarse"', '"<b>cut</b>"'))
     running = Server(project)

@@ -1,13 +1,16 @@
 """Forces: frames per second of the network on membranes of 1,000, 5,000 and 25,000 points.
 
 Weights are untrained, which takes the same time. A frame is one displacement field in and one force
-field out, as the browser asks for it, the copies to and from the device included.
+field out, the copies to and from the device included: on the whole skin with its voxels and kernel
+maps at hand, in the fastest type and in float32; and as the source `learned` asks for it, in
+float32 on the patch around a dent, which is found anew each time and looked at from several sides.
 """
 
 from __future__ import annotations
 
+import dataclasses
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -18,6 +21,7 @@ from workbench.rows import Row, bounded, stated
 
 if TYPE_CHECKING:
     from sim.forces.network.predictor import Predictor
+    from sim.forces.network.spec import NetworkSpec
     from sim.forces.network.weights import NetworkWeights
 
 SIZES = (
@@ -27,6 +31,8 @@ SIZES = (
 )
 """Name, points, and frames per second asked of two CPU cores and of a data-centre GPU."""
 NETWORKS = ("paper", "small")
+DENT_MM = 2.5
+PATCH_SPACINGS = 4.5
 CPU_THREADS = 2
 WARMING = 3
 RUN_S = 0.3
@@ -47,16 +53,16 @@ class Measured:
 
 
 def rows() -> list[Row]:
-    """All rows of the room: as the browser uses the network, and in float32 for comparison."""
+    """All rows of the room: as fast as it goes, in float32, and as `learned` asks for it."""
     found = []
     for network in NETWORKS:
         for live, single in zip(paces(network), paces(network, single=True), strict=True):
             found += [live_row("inference", live), _single_row(single)]
-    return found
+    return [*found, patch_row()]
 
 
 def live_row(name: str, live: Measured) -> Row:
-    """Frames per second as the browser uses the network."""
+    """Frames per second with voxels and kernel maps at hand, in the fastest type."""
     row, least = f"{name}_{live.name}", live.least_fps
     return bounded(row, live.case, live.fps, unit="1/s", limit=least, sense="min")
 
@@ -64,6 +70,32 @@ def live_row(name: str, live: Measured) -> Row:
 def _single_row(single: Measured) -> Row:
     """The same in float32, as an evaluation uses it; nothing is asked of it."""
     return stated(f"inference_{single.name}", single.case, single.fps, unit="1/s")
+
+
+def patch_row() -> Row:
+    """A dent of 2.5 mm in the largest membrane; nothing is asked of it."""
+    from sim.forces.network.patches import LOOKS, PatchPredictor
+    from workbench.devices import torch_device
+
+    name, points, _ = SIZES[-1]
+    places_mm, device = shell(points), torch_device()
+    small = untrained("small")
+    spec = dataclasses.replace(small.spec, input_channels=6)
+    weights = dataclasses.replace(
+        small,
+        spec=spec,
+        arrays=_arrays(spec),
+        force_scale_N=1.0,
+        corrects=True,
+        patch_spacings=PATCH_SPACINGS,
+    )
+    given = np.zeros((points, 6), np.float32)
+    dent = np.linalg.norm(places_mm - places_mm[0], axis=1) < DENT_MM
+    given[dent] = np.random.default_rng(0).normal(size=(int(dent.sum()), 6))
+    predictor = PatchPredictor(weights, places_mm, device=device)
+    fps = _rate(lambda: predictor.predict(given))
+    case = f"small network, learned: a dent of {int(dent.sum())} of {points} points, {LOOKS} looks"
+    return stated(f"inference_patch_{name}", f"{case}, float32, {device}", fps, unit="1/s")
 
 
 def paces(network: str, *, single: bool = False) -> Iterator[Measured]:
@@ -135,7 +167,6 @@ def shell(points: int) -> np.ndarray:
 
 def untrained(network: str) -> NetworkWeights:
     """Weights that were never trained."""
-    from sim.forces.network.minkunet import arrays_of, new_network
     from sim.forces.network.spec import SPECS, Target
     from sim.forces.network.voxels import VOXEL_PER_SPACING
     from sim.forces.network.weights import NetworkWeights
@@ -143,7 +174,7 @@ def untrained(network: str) -> NetworkWeights:
     spec = SPECS[network]
     return NetworkWeights(
         spec=spec,
-        arrays=arrays_of(new_network(spec)),
+        arrays=_arrays(spec),
         target=Target.FORCE,
         input_scale_mm=1.0,
         output_scale=(1.0,) * spec.output_channels,
@@ -153,15 +184,26 @@ def untrained(network: str) -> NetworkWeights:
     )
 
 
+def _arrays(spec: NetworkSpec) -> dict[str, np.ndarray]:
+    from sim.forces.network.minkunet import arrays_of, new_network
+
+    return arrays_of(new_network(spec))
+
+
 def _fps(predictor: Predictor, points: int) -> float:
-    """Frames per second, median of some runs."""
+    """Frames per second on a whole skin."""
     displacement_mm = np.random.default_rng(0).normal(size=(points, 3)).astype(np.float32)
+    return _rate(lambda: predictor.predict(displacement_mm))
+
+
+def _rate(frame: Callable[[], object]) -> float:
+    """Frames per second, median of some runs."""
     for _ in range(WARMING):
-        predictor.predict(displacement_mm)
-    frames = max(1, round(RUN_S / median_s(lambda: predictor.predict(displacement_mm), runs=1)))
+        frame()
+    frames = max(1, round(RUN_S / median_s(frame, runs=1)))
 
     def run() -> None:
         for _ in range(frames):
-            predictor.predict(displacement_mm)
+            frame()
 
     return frames / median_s(run, runs=RUNS)

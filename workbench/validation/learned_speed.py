@@ -19,7 +19,7 @@ def rows(folder: Path = SHIPPED) -> list[Row]:
 
 
 def here_rows() -> list[Row]:
-    """As the browser uses the network, copies included; null: what the paper reports."""
+    """Kernel maps at hand, copies included, in the fastest type; null: what the paper reports."""
     from workbench.benchmarks.forces import NETWORKS, paces
 
     found = []
