@@ -115,6 +115,8 @@ def test_probe_returns_to_its_pixel(page: Any, server: Server) -> None:
     """A click on the skin has a pixel; that pixel, typed in, sees the place that was clicked."""
     pressed(page, server)
     page.get_by_text("Pixel and skin").click()
+    # The box moves while its folder opens.
+    page.wait_for_timeout(500)
     switch(page, "Probe on click")
     # A click that comes before the box's own message aims the press.
     page.locator(".probe-picture").wait_for(state="attached")
