@@ -25,6 +25,7 @@ from sim.forces.network.weights import (
     weights_to_bytes,
 )
 from sim.forces.training.feeds import PatchFeed, Scales
+from sim.forces.training.fields import Fields
 from sim.forces.training.scores import network_output
 from tests.unit.made_presses import SPEC, made_presses
 from workbench.core.errors import DesignError, SolveError, StoreError
@@ -60,10 +61,15 @@ def given(states: list[int]) -> np.ndarray:
     return PRESSES.fields(Target.FORCE, states, takes_force=True).inputs
 
 
-def feed(states: list[int]) -> PatchFeed:
-    """The same for training."""
+def corrections(states: list[int]) -> Fields:
+    """What a network that corrects learns from, of some states."""
+    return PRESSES.fields(Target.FORCE, states, takes_force=True, corrects=True)
+
+
+def feed_of(fields: Fields) -> PatchFeed:
+    """Samples as training takes them."""
     return PatchFeed(
-        PRESSES.fields(Target.FORCE, states, takes_force=True, corrects=True),
+        fields,
         PRESSES.points_mm,
         SCALES,
         voxel_mm=0.75,
@@ -72,6 +78,11 @@ def feed(states: list[int]) -> PatchFeed:
         target=Target.FORCE,
         device="cpu",
     )
+
+
+def feed(states: list[int]) -> PatchFeed:
+    """Those of some states."""
+    return feed_of(corrections(states))
 
 
 def test_a_patch_is_what_lies_within_reach_of_the_field() -> None:
@@ -209,22 +220,13 @@ def test_several_looks_are_the_mean_of_what_each_says(monkeypatch: pytest.Monkey
 
 def test_what_a_patch_leaves_out_counts_as_missed() -> None:
     """A force far from all that the solver knows of: its size is in the error of every network."""
-    fields = PRESSES.fields(Target.FORCE, [0], takes_force=True, corrects=True)
+    fields = corrections([0])
     far = int(np.argmax(np.linalg.norm(PRESSES.points_mm - PRESSES.points_mm[0], axis=1)))
     targets = fields.targets.copy()
     patch = PatchFinder(PRESSES.points_mm, reach_mm=REACH_MM).patch(fields.inputs[0, :, 3:])
     far = next(point for point in (far, 0, 19) if point not in patch)
     targets[0, far] = [0.01, -0.02, 0.03]
-    own = PatchFeed(
-        dataclasses.replace(fields, targets=targets),
-        PRESSES.points_mm,
-        SCALES,
-        voxel_mm=0.75,
-        reach_mm=REACH_MM,
-        spec=weights().spec,
-        target=Target.FORCE,
-        device="cpu",
-    )
+    own = feed_of(dataclasses.replace(fields, targets=targets))
     batch = own.batch([0], None)
     assert batch.values == targets[0].size
     assert float(batch.missed[0]) * SCALES.output == pytest.approx(0.06, rel=1e-5)
@@ -234,19 +236,10 @@ def test_what_a_patch_leaves_out_counts_as_missed() -> None:
 
 def test_samples_that_touch_nothing_count_by_their_target_alone() -> None:
     """In a batch with others and without: no output of the network is in their error."""
-    fields = PRESSES.fields(Target.FORCE, [0, 1], takes_force=True, corrects=True)
+    fields = corrections([0, 1])
     inputs = fields.inputs.copy()
     inputs[1] = 0.0
-    own = PatchFeed(
-        dataclasses.replace(fields, inputs=inputs),
-        PRESSES.points_mm,
-        SCALES,
-        voxel_mm=0.75,
-        reach_mm=REACH_MM,
-        spec=weights().spec,
-        target=Target.FORCE,
-        device="cpu",
-    )
+    own = feed_of(dataclasses.replace(fields, inputs=inputs))
     size = np.abs(fields.targets[1]).mean() / SCALES.output
     for samples in ([0, 1], [1]):
         batch = own.batch(samples, 3)

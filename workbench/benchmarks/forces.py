@@ -32,7 +32,6 @@ SIZES = (
 """Name, points, and frames per second asked of two CPU cores and of a data-centre GPU."""
 NETWORKS = ("paper", "small")
 DENT_MM = 2.5
-PATCH_SPACINGS = 4.5
 CPU_THREADS = 2
 WARMING = 3
 RUN_S = 0.3
@@ -75,6 +74,7 @@ def _single_row(single: Measured) -> Row:
 def patch_row() -> Row:
     """A dent of 2.5 mm in the largest membrane; nothing is asked of it."""
     from sim.forces.network.patches import LOOKS, PatchPredictor
+    from sim.forces.training.settings import PRESETS
     from workbench.devices import torch_device
 
     name, points, _ = SIZES[-1]
@@ -87,7 +87,7 @@ def patch_row() -> Row:
         arrays=_arrays(spec),
         force_scale_N=1.0,
         corrects=True,
-        patch_spacings=PATCH_SPACINGS,
+        patch_spacings=PRESETS["small"].patch_spacings,
     )
     given = np.zeros((points, 6), np.float32)
     dent = np.linalg.norm(places_mm - places_mm[0], axis=1) < DENT_MM
