@@ -75,6 +75,7 @@ def balance(
     tangent: bool = True,
     lag: Lag | None = None,
     convex: bool = False,
+    known: ElementState | None = None,
 ) -> Balance | None:
     """Forces at a displacement, shape (N, 3); None where an element is inverted.
 
@@ -85,8 +86,11 @@ def balance(
         tangent: Whether stiffnesses are wanted.
         lag: Pressure and normal of friction that is held, for all contact points.
         convex: As in `contact_law.traction`.
+        known: Forces of the elements, where they were found at this displacement before.
     """
-    elements = evaluate(body.elements, displacement_mm, tangent=tangent, leading=body.near)
+    elements = evaluate(
+        body.elements, displacement_mm, tangent=tangent, leading=body.near, known=known
+    )
     if not np.isfinite(elements.energy_Nmm):
         return None
     faces = body.faces

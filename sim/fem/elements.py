@@ -138,6 +138,7 @@ def evaluate(
     *,
     tangent: bool = False,
     leading: int | None = None,
+    known: ElementState | None = None,
 ) -> ElementState:
     """Energy and forces at nodal displacements.
 
@@ -146,20 +147,25 @@ def evaluate(
         displacement_mm: Of all nodes, shape (N, 3).
         tangent: Whether stiffnesses are wanted too.
         leading: Of the first so many elements only; None: of all.
+        known: Energy and forces where they were found at this displacement before; only
+            stiffnesses are found then.
     """
     count = len(elements.cells)
     wanted = (count if leading is None else leading) if tangent else 0
-    forces = np.zeros((count, 24))
+    last = wanted if known is not None else count
+    forces = np.zeros((last, 24))
     tangents = np.zeros((wanted, 24, 24)) if tangent else None
     energy = 0.0
     law = _linear_chunk if elements.linear else _neo_hookean_chunk
-    edges = sorted({*range(0, wanted, CHUNK), *range(wanted, count, CHUNK), count})
+    edges = sorted({*range(0, wanted, CHUNK), *range(wanted, last, CHUNK), last})
     for begin, end in itertools.pairwise(edges):
         part = slice(begin, end)
         block = tangents[part] if tangents is not None and end <= wanted else None
         energy += law(elements, displacement_mm, part, forces[part], block)
         if not np.isfinite(energy):
             break
+    if known is not None:
+        energy, forces = known.energy_Nmm, known.force_N
     return ElementState(energy_Nmm=energy, force_N=forces, tangent_N_mm=tangents)
 
 

@@ -16,6 +16,7 @@ import numpy as np
 from sim.fem.balance import Balance, Load, balance
 from sim.fem.body import Body
 from sim.fem.contact_law import Lag
+from sim.fem.elements import ElementState
 from sim.fem.newton import Effort, Solution, first_share, newton
 from sim.fem.tangent import Tangent
 
@@ -86,17 +87,18 @@ def minimise(
     most: int = MOST_STEPS,
 ) -> np.ndarray:
     """Displacement (N, 3) of least potential with friction held, as near as it comes."""
+    known: ElementState | None = None
     for _ in range(most):
-        state = balance(body, load, displacement_mm, lag=lag)
+        state = balance(body, load, displacement_mm, lag=lag, known=known)
         if state is None or state.relative < tolerance:
             break
         effort.lagged += 1
         effort.watch()
         step_mm = _descent(body, load, displacement_mm, state, lag, tangent, effort)
-        moved_mm = _search(body, load, displacement_mm, step_mm, state, lag)
-        if moved_mm is None:
+        found = _search(body, load, displacement_mm, step_mm, state, lag)
+        if found is None:
             break
-        displacement_mm = moved_mm
+        displacement_mm, known = found
     return displacement_mm
 
 
@@ -116,7 +118,7 @@ def _descent(
         if negative == 0 or state.residual_N @ body.system.reduced(step_mm) > 0.0:
             return step_mm
     effort.projected += 1
-    convex = balance(body, load, displacement_mm, lag=lag, convex=True)
+    convex = balance(body, load, displacement_mm, lag=lag, convex=True, known=state.elements)
     assert convex is not None
     positive = _positive(convex.elements.tangent_N_mm)
     tangent.factorise(convex, symmetric=True, elements_N_mm=positive)
@@ -137,20 +139,27 @@ def _search(
     step_mm: np.ndarray,
     state: Balance,
     lag: Lag,
-) -> np.ndarray | None:
+) -> tuple[np.ndarray, ElementState | None] | None:
     """Where along a step the potential is nearly least, shape (N, 3); None if nowhere lower.
 
-    The slope along the step is minus the residual times it. Stiff contact makes the potential one
-    of kinks, which a search that only asks for some decrease follows in twice as many steps.
+    With it the forces of the elements there, where the search ended with them. The slope along the
+    step is minus the residual times it. Stiff contact makes the potential one of kinks, which a
+    search that only asks for some decrease follows in twice as many steps.
     """
     way = body.system.reduced(step_mm)
     start = float(state.residual_N @ way)
     if start <= 0.0:
         return None
 
+    last: tuple[float, ElementState] | None = None
+
     def slope(share: float) -> float | None:
+        nonlocal last
         tried = balance(body, load, displacement_mm + share * step_mm, tangent=False, lag=lag)
-        return None if tried is None else float(tried.residual_N @ way)
+        if tried is None:
+            return None
+        last = share, tried.elements
+        return float(tried.residual_N @ way)
 
     high = first_share(step_mm)
     at_high = slope(high)
@@ -162,7 +171,8 @@ def _search(
     if at_high is None:
         return None
     share = _root(slope, start, high, at_high)
-    return displacement_mm + share * step_mm
+    known = last[1] if last is not None and last[0] == share else None
+    return displacement_mm + share * step_mm, known
 
 
 def _root(

@@ -93,7 +93,7 @@ def newton(
         if state.relative < tolerance:
             break
         history.append(float(np.linalg.norm(state.residual_N)))
-        stepped = _step(body, load, displacement_mm, tangent, max(history[-REMEMBERED:]))
+        stepped = _step(body, load, displacement_mm, state, tangent, max(history[-REMEMBERED:]))
         effort.newton += 1
         effort.watch()
         if stepped is None or _stalls(history):
@@ -108,13 +108,14 @@ def _step(
     body: Body,
     load: Load,
     displacement_mm: np.ndarray,
+    state: Balance,
     tangent: Tangent,
     reference_N: float,
 ) -> tuple[np.ndarray, Balance] | None:
     """One step with its line search; None if none of the tried ones will do."""
-    state = balance(body, load, displacement_mm)
-    assert state is not None
-    tangent.factorise(state)
+    linear = balance(body, load, displacement_mm, known=state.elements)
+    assert linear is not None
+    tangent.factorise(linear)
     step_mm = tangent.solve(state.residual_N)
     share = first_share(step_mm)
     best: tuple[float, np.ndarray, Balance] | None = None

@@ -74,6 +74,19 @@ def test_tangent_is_the_slope_of_the_force(law: Law) -> None:
     assert np.abs(tangent - tangent.transpose(0, 2, 1)).max() < 1e-15
 
 
+@LAWS
+def test_stiffness_is_the_same_when_the_forces_are_known(law: Law) -> None:
+    """Bit by bit, of the leading elements only; the forces are the known ones."""
+    _, elements = irregular(law)
+    motion = random_motion(0.03)
+    whole, known = evaluate(elements, motion, tangent=True), evaluate(elements, motion)
+    again = evaluate(elements, motion, tangent=True, leading=7, known=known)
+    assert whole.tangent_N_mm is not None and again.tangent_N_mm is not None
+    np.testing.assert_array_equal(again.tangent_N_mm, whole.tangent_N_mm[:7])
+    assert again.force_N is known.force_N and again.energy_Nmm == known.energy_Nmm
+    np.testing.assert_array_equal(again.force_N, whole.force_N)
+
+
 def test_hooke_stress_of_a_block() -> None:
     """A linear block of 1 mm2 under sigma = 2 mu e + lambda tr(e) I pulls with sigma N."""
     points_mm, cells = irregular_block()
