@@ -189,8 +189,18 @@ def fem(
     """The same press by finite elements, on a mesh of their own: minutes, and the truth."""
     start_device(monitor)
     from sim.fem.press import solve_press
+    from workbench.devices import torch_device
 
-    return solve_press(mesh, material, indenter, path, settings, sampled=sampled, monitor=monitor)
+    return solve_press(
+        mesh,
+        material,
+        indenter,
+        path,
+        settings,
+        sampled=sampled,
+        device=torch_device(),
+        monitor=monitor,
+    )
 
 
 def forces(

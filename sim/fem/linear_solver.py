@@ -1,5 +1,7 @@
 """Direct solution of the linearised equations: MKL's PARDISO where it is installed, else SuperLU.
 
+On a GPU a condensed matrix is factorised densely (`dense_solver`).
+
 The pattern of a body never changes, so PARDISO orders it once. SuperLU orders it anew each time and
 takes about three times as long; it knows nothing of inertia, so `negative_pivots` is None there.
 Source: Schenk and Gärtner (2004) for PARDISO, Li (2005) for SuperLU.
@@ -16,6 +18,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from sim.fem.dense_solver import MOST_EQUATIONS, DenseSolver
 from workbench.core.errors import SolveError
 
 UNSYMMETRIC, SYMMETRIC_INDEFINITE, POSITIVE = 11, -2, 2
@@ -59,9 +62,15 @@ class LinearSolver(Protocol):
 
 
 def make_solver(
-    *, symmetric: bool, positive: bool = False, single: bool = False, block: bool = False
+    *,
+    symmetric: bool,
+    positive: bool = False,
+    single: bool = False,
+    block: bool = False,
+    device: str = "cpu",
+    equations: int = 0,
 ) -> LinearSolver:
-    """The fastest solver that is installed, for matrices of one pattern.
+    """The fastest solver that is there, for matrices of one pattern.
 
     Args:
         symmetric: Whether the matrices are.
@@ -70,7 +79,14 @@ def make_solver(
             in 0.6 of the time. Newton's method finds the same zero of the same residual by them.
         block: Whether many equations all meet each other. Minimum degree puts those last, in 0.75
             of the time that nested dissection takes, which is twice as fast without them.
+        device: `cuda`: a matrix of float32 with such a block is solved there.
+        equations: How many there are.
     """
+    if device == "cuda" and single and block and equations <= MOST_EQUATIONS:
+        spare = functools.partial(
+            make_solver, symmetric=symmetric, positive=positive, single=True, block=True
+        )
+        return DenseSolver(symmetric=symmetric, spare=spare, device=device)
     if has_pardiso():
         return Pardiso(symmetric=symmetric, positive=positive, single=single, block=block)
     return SuperLU(single=single)

@@ -64,6 +64,7 @@ def solve_press(
     settings: FemSettings,
     *,
     sampled: SampledDistance | None = None,
+    device: str = "cpu",
     monitor: Monitor = silent,
     on_frame: OnFrame = lambda frame, outcome: None,
 ) -> ForceField:
@@ -76,6 +77,7 @@ def solve_press(
         press: Its path, and the regions that are driven meanwhile.
         settings: Region, increments, tolerance.
         sampled: The object's distance on `sampling_grid_mm` where a store has it.
+        device: `cpu`, or `cuda` where linear equations are to be solved on a GPU by PyTorch.
         monitor: Told frame and progress; raises `Cancelled` to stop.
         on_frame: Given each frame as soon as it has converged.
 
@@ -89,7 +91,7 @@ def solve_press(
     collider, approach, submodel = set_up(
         mesh, material, indenter, press, settings, sampled=sampled
     )
-    course = _Course(mesh, material, collider, approach, settings, submodel)
+    course = _Course(mesh, material, collider, approach, settings, submodel, device)
     try:
         with freed_memory_kept():
             course.run(monitor, on_frame)
@@ -159,6 +161,7 @@ class _Course:
         approach: Approach,
         settings: FemSettings,
         submodel: Submodel,
+        device: str,
     ) -> None:
         self.mesh = mesh
         self.approach = approach
@@ -175,7 +178,7 @@ class _Course:
             held_mm=self._held_mm,
             tolerance=settings.tolerance,
         )
-        self.tangent = Tangent(submodel.body)
+        self.tangent = Tangent(submodel.body, device=device)
         self.frame = 0
         self.outcomes: list[FemFrame] = []
 

@@ -24,17 +24,33 @@ class Tangent:
     It remembers the order of the equations, and holds memory until it is closed.
     """
 
-    def __init__(self, body: Body) -> None:
-        self.body = body
-        far = body.near < len(body.elements.cells)
-        self._unsymmetric = make_solver(symmetric=False, single=True, block=far)
-        self._symmetric = make_solver(symmetric=True, single=True, block=far)
-        self._used: LinearSolver = self._unsymmetric
+    def __init__(self, body: Body, *, device: str = "cpu") -> None:
+        """Make it ready.
+
+        Args:
+            body: The body.
+            device: `cpu`, or `cuda` to factorise there.
+        """
+        self.body, self._device = body, device
+        self._solvers: dict[bool, LinearSolver] = {}
+        self._symmetric = False
 
     @property
     def solver_name(self) -> str:
         """Of the linear solver, for people."""
-        return self._unsymmetric.name
+        return self._solver(symmetric=False).name
+
+    def _solver(self, *, symmetric: bool) -> LinearSolver:
+        """Made at its first use: it depends on how many equations are near."""
+        if symmetric not in self._solvers:
+            self._solvers[symmetric] = make_solver(
+                symmetric=symmetric,
+                single=True,
+                block=self._far is not None,
+                device=self._device,
+                equations=len(self._system.free),
+            )
+        return self._solvers[symmetric]
 
     def factorise(
         self, state: Balance, *, symmetric: bool = False, elements_N_mm: np.ndarray | None = None
@@ -50,15 +66,16 @@ class Tangent:
         Returns:
             Number of negative pivots of a symmetric tangent, where the solver counts them.
         """
-        self._used = self._symmetric if symmetric else self._unsymmetric
-        return self._used.factorise(self.matrix(state, elements_N_mm))
+        self._symmetric = symmetric
+        matrix = self.matrix(state, elements_N_mm)
+        return self._solver(symmetric=symmetric).factorise(matrix)
 
     def solve(self, right_N: np.ndarray) -> np.ndarray:
         """Way of all nodes, shape (N, 3), that answers forces at the free equations, (E,)."""
-        far = self._far
+        far, solver = self._far, self._solver(symmetric=self._symmetric)
         if far is None:
-            return self.body.system.expanded(self._used.solve(right_N))
-        near_mm = self._used.solve(far.near_part(right_N))
+            return self.body.system.expanded(solver.solve(right_N))
+        near_mm = solver.solve(far.near_part(right_N))
         return self.body.system.expanded(far.whole(right_N, near_mm))
 
     def matrix(self, state: Balance, elements_N_mm: np.ndarray | None = None) -> Any:
@@ -74,8 +91,8 @@ class Tangent:
 
     def close(self) -> None:
         """Give the memory of the factors back."""
-        self._unsymmetric.close()
-        self._symmetric.close()
+        for solver in self._solvers.values():
+            solver.close()
         if "_far" in self.__dict__ and self._far is not None:
             self._far.close()
 

@@ -9,10 +9,13 @@ import pytest
 
 from sim.fem import press as press_module
 from sim.fem import submodel as submodel_module
+from sim.fem import tangent as tangent_module
 from sim.fem.balance import Balance, Load, balance
 from sim.fem.body import Body
 from sim.fem.contact_law import PENALTY, Law
+from sim.fem.dense_solver import DenseSolver
 from sim.fem.far_field import condense
+from sim.fem.linear_solver import SuperLU
 from sim.fem.press import set_up, solve_press
 from sim.fem.studies.blocks import flat_membrane
 from sim.fem.submodel import Submodel
@@ -124,6 +127,21 @@ def test_a_press_is_the_same_with_a_condensed_far_field(monkeypatch: pytest.Monk
     np.testing.assert_allclose(small.contact_force_N, whole.contact_force_N, atol=1e-5 * size_N)
     np.testing.assert_allclose(small.displacement_mm, whole.displacement_mm, atol=1e-6)
     assert whole.residual.max() <= 1e-6 and small.residual.max() <= 1e-6
+
+
+def test_a_press_is_the_same_by_dense_factors(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What a GPU does, on the processor."""
+    known = solved(CLOSE_MM, monkeypatch)
+
+    def dense(*, symmetric: bool, **_: object) -> DenseSolver:
+        return DenseSolver(symmetric=symmetric, spare=SuperLU, device="cpu")
+
+    monkeypatch.setattr(tangent_module, "make_solver", dense)
+    found = solved(CLOSE_MM, monkeypatch)
+    assert "dense factors" in found.solver and "dense factors" not in known.solver
+    assert found.converged.all() and found.residual.max() <= 1e-6
+    size_N = np.abs(known.contact_force_N).max()
+    np.testing.assert_allclose(found.contact_force_N, known.contact_force_N, atol=1e-5 * size_N)
 
 
 def test_what_is_mostly_near_is_solved_as_a_whole(monkeypatch: pytest.MonkeyPatch) -> None:

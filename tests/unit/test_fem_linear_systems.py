@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
+from sim.fem.dense_solver import DenseSolver
 from sim.fem.elements import evaluate, make_elements
 from sim.fem.linear_solver import LinearSolver, Pardiso, SuperLU, has_pardiso, make_solver
 from sim.fem.sparse_system import System, freedoms_of, make_system
@@ -118,6 +121,85 @@ def test_negative_pivots_are_counted() -> None:
     right = np.ones(matrix.shape[0])
     np.testing.assert_allclose(shifted @ solver.solve(right), right, atol=1e-9)
     solver.close()
+
+
+def dense_solver(*, symmetric: bool) -> DenseSolver:
+    """The GPU's solver, on the processor."""
+    return DenseSolver(symmetric=symmetric, spare=SuperLU, device="cpu")
+
+
+@pytest.mark.parametrize("symmetric", [False, True])
+def test_dense_factors_in_float32_solve_to_1e_6(symmetric: bool) -> None:
+    """An unsymmetric matrix and a positive one on the pattern of a block, then other values."""
+    system, stiffness = stiff_block()
+    _, cells, _ = held_block()
+    skew = np.random.default_rng(5).normal(0.0, 0.02, stiffness.shape)
+    matrix = system.matrix((system.slots(cells), stiffness + (0.0 if symmetric else skew)))
+    right = np.random.default_rng(6).normal(size=matrix.shape[0])
+    known = np.linalg.solve(matrix.toarray(), right)
+    solver = dense_solver(symmetric=symmetric)
+    for factor in (1.0, 2.0):
+        assert solver.factorise(factor * matrix) == (0 if symmetric else None)
+        away = solver.solve(right) * factor - known
+        assert np.abs(away).max() < 1e-6 * np.abs(known).max()
+    solver.close()
+
+
+def test_a_dense_matrix_that_is_not_positive_is_told_and_solved() -> None:
+    """K - s I with s above the lowest eigenvalue."""
+    from scipy.sparse import identity
+
+    system, stiffness = stiff_block()
+    _, cells, _ = held_block()
+    matrix = system.matrix((system.slots(cells), stiffness))
+    values = np.linalg.eigvalsh(matrix.toarray())
+    shifted = (matrix - 0.5 * (values[4] + values[5]) * identity(matrix.shape[0])).tocsr()
+    solver = dense_solver(symmetric=True)
+    assert solver.factorise(matrix) == 0
+    assert solver.factorise(shifted) == 1
+    right = np.ones(matrix.shape[0])
+    known = np.linalg.solve(shifted.toarray(), right)
+    np.testing.assert_allclose(solver.solve(right), known, atol=1e-6 * np.abs(known).max())
+
+
+def test_the_processor_takes_over_when_the_memory_of_the_gpu_is_short(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """From then on, and the name says so."""
+    import torch
+    from scipy.sparse import identity
+
+    def refuse(*_: object, **__: object) -> None:
+        raise torch.OutOfMemoryError("CUDA out of memory")
+
+    solver, matrix = dense_solver(symmetric=False), (2.0 * identity(5)).tocsr()
+    solver.factorise(matrix)
+    monkeypatch.setattr(torch.linalg, "lu_factor_ex", refuse)
+    for _ in range(2):
+        solver.factorise(matrix)
+        np.testing.assert_allclose(solver.solve(np.ones(5)), 0.5)
+        np.testing.assert_allclose(solver.solve_many(np.ones((5, 2))), 0.5)
+    assert solver.name == "SuperLU, as the GPU's memory is short"
+    solver.close()
+
+
+def test_a_gpu_takes_condensed_matrices_of_float32_that_fit() -> None:
+    def name(**changed: object) -> str:
+        asked: dict[str, Any] = {"single": True, "block": True, "device": "cuda", "equations": 5000}
+        return make_solver(symmetric=False, **(asked | changed)).name
+
+    assert name() == "dense factors on the GPU"
+    processor = name(device="cpu")
+    assert processor in ("PARDISO", "SuperLU")
+    assert name(equations=20_000) == name(single=False) == name(block=False) == processor
+
+
+def test_a_dense_matrix_without_inverse_is_an_error_with_a_remedy() -> None:
+    from scipy.sparse import csr_matrix
+
+    with pytest.raises(SolveError, match="3 equations: they are singular") as caught:
+        dense_solver(symmetric=False).factorise(csr_matrix(np.diag([1.0, 0.0, 1.0])))
+    assert "fem.radius_mm" in caught.value.hint
 
 
 def test_singular_matrix_is_an_error_with_a_remedy() -> None:

@@ -11,7 +11,7 @@ from workbench.core.digest import digest
 from workbench.core.errors import SolveError, WorkbenchError
 from workbench.core.fem import FemSettings
 from workbench.core.force_field import ForceField
-from workbench.devices import open_device
+from workbench.devices import open_device, torch_device
 from workbench.validation.fem_cases import (
     DEPTH_MM,
     FAMILIES,
@@ -59,7 +59,14 @@ def _solved(case: MatrixCase) -> ForceField:
     from sim.fem.press import solve_press
 
     mesh = membrane(case.family, case.hex_mm)
-    return solve_press(mesh, material(), object_of(case.thing), press_of(case), case.settings)
+    return solve_press(
+        mesh,
+        material(),
+        object_of(case.thing),
+        press_of(case),
+        case.settings,
+        device=torch_device(),
+    )
 
 
 def _told(case: MatrixCase, result: ForceField | None, why: str, cpu_s: float) -> dict[str, Any]:
