@@ -192,7 +192,9 @@ def _predicted(
     right = body.system.reduced(right_N)
     if not right.any():
         return moved_mm
-    tangent.factorise(known)
+    if not tangent.exact:
+        tangent.factorise(known)
+    # Else the factors of the last increment's last step, which hardly moved anything.
     step_mm = tangent.solve(right)
     farthest_mm = LONGEST_GUESS * max(
         float(np.abs(way_mm).max(initial=0.0)), float(np.abs(held_mm).max(initial=0.0))
