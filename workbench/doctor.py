@@ -87,9 +87,19 @@ def _linear_solver() -> str:
         return "nothing to solve with: run make setup"
     from sim.fem.linear_solver import has_pardiso
 
+    near = "the GPU near the contact, elsewhere " if _torch_on_gpu() else ""
     if has_pardiso():
-        return "PARDISO of Intel MKL"
-    return "SuperLU, about 3 times as slow as PARDISO: pip install .[mkl] on an x86 processor"
+        return f"{near}PARDISO of Intel MKL"
+    faster = "pip install .[mkl] on an x86 processor"
+    return f"{near}SuperLU, about 3 times as slow as PARDISO: {faster}"
+
+
+def _torch_on_gpu() -> bool:
+    """Whether PyTorch computes on a GPU here; what is wrong with it is said elsewhere."""
+    try:
+        return bool(_version("torch")) and torch_device() == "cuda"
+    except (ImportError, OSError, DeviceError):
+        return False
 
 
 def _learned_forces() -> tuple[list[str], bool]:

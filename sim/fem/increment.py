@@ -110,6 +110,8 @@ def advance(
             at="press.depth_mm",
         )
     effort.halved += 1
+    # Its last factors are those of a state that came to nothing.
+    tangent.exact = False
     middle = 0.5 * (state.progress + progress)
     for goal in (middle, progress):
         state = advance(pairing, state, goal, tangent, effort, halvings=halvings + 1, watch=watch)
