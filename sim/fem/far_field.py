@@ -50,7 +50,7 @@ class FarField:
     def near_part(self, right_N: np.ndarray) -> np.ndarray:
         """Right-hand side of the near equations, (A,), of one of all free equations, (E,)."""
         found = right_N[self.near]
-        found[self.border] -= self.link.T @ self.factors.solve(right_N[self.far])
+        found[self.border] -= self.link.T @ self._far_part(right_N[self.far])
         return found
 
     def whole(self, right_N: np.ndarray, near_mm: np.ndarray) -> np.ndarray:
@@ -58,8 +58,11 @@ class FarField:
         found = np.empty_like(right_N)
         found[self.near] = near_mm
         rest_N = right_N[self.far] - self.link @ near_mm[self.border]
-        found[self.far] = self.factors.solve(rest_N)
+        found[self.far] = self._far_part(rest_N)
         return found
+
+    def _far_part(self, right_N: np.ndarray) -> np.ndarray:
+        return self.factors.solve_many(right_N[:, None])[:, 0]
 
     def close(self) -> None:
         """Give the memory of the factors back."""
@@ -86,7 +89,7 @@ def condense(body: Body) -> FarField:
     columns = near[border]
     below = at_rest[far]
     link = below[:, columns].tocsr()
-    factors = make_solver(symmetric=True, positive=True)
+    factors = make_solver(symmetric=True, positive=True, single=True)
     factors.factorise(below[:, far].tocsr())
     stiffness = at_rest[columns][:, columns].toarray()
     for begin in range(0, len(border), COLUMNS):

@@ -110,8 +110,6 @@ def advance(
             at="press.depth_mm",
         )
     effort.halved += 1
-    # Its last factors are those of a state that came to nothing.
-    tangent.exact = False
     middle = 0.5 * (state.progress + progress)
     for goal in (middle, progress):
         state = advance(pairing, state, goal, tangent, effort, halvings=halvings + 1, watch=watch)
@@ -194,9 +192,7 @@ def _predicted(
     right = body.system.reduced(right_N)
     if not right.any():
         return moved_mm
-    if not tangent.exact:
-        tangent.factorise(known)
-    # Else the factors of the last increment's last step, which hardly moved anything.
+    tangent.factorise(known)
     step_mm = tangent.solve(right)
     farthest_mm = LONGEST_GUESS * max(
         float(np.abs(way_mm).max(initial=0.0)), float(np.abs(held_mm).max(initial=0.0))

@@ -34,8 +34,6 @@ class Tangent:
         self.body, self._device = body, device
         self._solvers: dict[bool, LinearSolver] = {}
         self._symmetric = False
-        self.exact = False
-        """Whether the factors at hand are those of the exact, unsymmetric equations."""
 
     @property
     def solver_name(self) -> str:
@@ -68,7 +66,7 @@ class Tangent:
         Returns:
             Number of negative pivots of a symmetric tangent, where the solver counts them.
         """
-        self._symmetric, self.exact = symmetric, not symmetric
+        self._symmetric = symmetric
         matrix = self.matrix(state, elements_N_mm)
         return self._solver(symmetric=symmetric).factorise(matrix)
 
