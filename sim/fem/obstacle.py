@@ -42,9 +42,27 @@ class RigidPose:
 def distance(
     collider: Collider, pose: RigidPose, points_mm: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Signed distances [mm], (N,), and gradients, (N, 3), at points (N, 3) of the sensor frame."""
-    found, slopes = collider.distance((points_mm - pose.origin_mm) @ pose.rotation)
+    """Signed distances [mm], (N,), and gradients, (N, 3), at points (N, 3) of the sensor frame.
+
+    Beyond the samples of a sampled object nothing touches: there the distance is that from their
+    box, which is less than that from the object, and the gradient is zero.
+    """
+    body = (points_mm - pose.origin_mm) @ pose.rotation
+    if collider.shape is not Shape.GRID:
+        found, slopes = collider.distance(body)
+        return found, slopes @ pose.rotation.T
+    raw, inside = _cells(body, collider)
+    found = np.linalg.norm(raw - inside, axis=1) / collider.size[3]
+    slopes = np.zeros_like(body)
+    near = found <= 0.0
+    found[near], slopes[near] = collider.distance(body[near])
     return found, slopes @ pose.rotation.T
+
+
+def _cells(body: np.ndarray, collider: Collider) -> tuple[np.ndarray, np.ndarray]:
+    """Places in cells of the samples, (N, 3), and the nearest ones where they can be looked up."""
+    raw = (body - collider.size[:3]) * collider.size[3]
+    return raw, np.clip(raw, 1.5, np.array(collider.samples.shape) - 2.5)
 
 
 def curvature(collider: Collider, pose: RigidPose, points_mm: np.ndarray) -> np.ndarray:
@@ -127,8 +145,7 @@ def _cone_corner(rho: np.ndarray, z: np.ndarray, size: np.ndarray) -> np.ndarray
 
 def _sampled(body: np.ndarray, collider: Collider) -> np.ndarray:
     size, samples = collider.size, collider.samples
-    raw = (body - size[:3]) * size[3]
-    inside = np.clip(raw, 1.5, np.array(samples.shape) - 2.5)
+    raw, inside = _cells(body, collider)
     nearest = np.floor(inside + 0.5)
     local = inside - nearest
     orders = (line_weights(local), line_slopes(local), np.broadcast_to(CURVES, (*local.shape, 3)))

@@ -72,6 +72,19 @@ def test_curvature_of_a_sphere_is_exact() -> None:
     np.testing.assert_allclose(found[0], np.diag([1.0, 1.0, 0.0]) / 2.9, atol=1e-14)
 
 
+def test_far_points_of_a_sampled_object_have_a_bound_and_near_ones_the_distance() -> None:
+    """In front of the samples' box nothing touches, and the bound is below the true distance."""
+    collider = make_collider(Indenter(kind=IndenterKind.TORUS, size_mm=6.0), grid_mm=GRID_MM)
+    points_mm = POSE.origin_mm + np.random.default_rng(0).uniform(-6.0, 6.0, (4000, 3))
+    found, slopes = distance(collider, POSE, points_mm)
+    known, gradient = collider.distance((points_mm - POSE.origin_mm) @ POSE.rotation)
+    near = slopes.any(axis=1)
+    assert 200 < near.sum() < 2000 and (known[near] < 0.0).any()
+    np.testing.assert_array_equal(found[near], known[near])
+    np.testing.assert_array_equal(slopes[near], gradient[near] @ POSE.rotation.T)
+    assert (found[~near] > 0.0).all() and (found[~near] <= known[~near] + 1e-12).all()
+
+
 def test_an_object_carries_points_with_it() -> None:
     """A point fixed to the object keeps its body coordinates."""
     after = RigidPose(origin_mm=np.array([0.3, 0.0, 1.0]), rotation=POSE.rotation.T)
