@@ -106,3 +106,14 @@ def torch_device() -> str:
             at="device",
         )
     return "cpu"
+
+
+def solver_device() -> str:
+    """Where finite elements solve their equations: `cuda` where PyTorch computes there, else `cpu`.
+
+    They need no PyTorch, so what is wrong with it is left to those who do to say.
+    """
+    try:
+        return torch_device()
+    except (ImportError, OSError, DeviceError):
+        return "cpu"

@@ -14,7 +14,13 @@ from sim.forces.network.spec import Target
 from sim.forces.network.weights import load_weights
 from workbench import __version__
 from workbench.core.errors import DeviceError, StoreError
-from workbench.devices import chosen_device, cuda_count, torch_build, torch_device
+from workbench.devices import (
+    chosen_device,
+    cuda_count,
+    solver_device,
+    torch_build,
+    torch_device,
+)
 from workbench.shipped import is_shipped, shipped_weights
 
 REQUIRED = (
@@ -87,19 +93,11 @@ def _linear_solver() -> str:
         return "nothing to solve with: run make setup"
     from sim.fem.linear_solver import has_pardiso
 
-    near = "the GPU near the contact, elsewhere " if _torch_on_gpu() else ""
+    near = "the GPU near the contact, elsewhere " if solver_device() == "cuda" else ""
     if has_pardiso():
         return f"{near}PARDISO of Intel MKL"
     faster = "pip install .[mkl] on an x86 processor"
     return f"{near}SuperLU, about 3 times as slow as PARDISO: {faster}"
-
-
-def _torch_on_gpu() -> bool:
-    """Whether PyTorch computes on a GPU here; what is wrong with it is said elsewhere."""
-    try:
-        return bool(_version("torch")) and torch_device() == "cuda"
-    except (ImportError, OSError, DeviceError):
-        return False
 
 
 def _learned_forces() -> tuple[list[str], bool]:

@@ -189,7 +189,7 @@ def fem(
     """The same press by finite elements, on a mesh of their own: minutes, and the truth."""
     start_device(monitor)
     from sim.fem.press import solve_press
-    from workbench.devices import torch_device
+    from workbench.devices import solver_device
 
     return solve_press(
         mesh,
@@ -198,7 +198,7 @@ def fem(
         path,
         settings,
         sampled=sampled,
-        device=torch_device(),
+        device=solver_device(),
         monitor=monitor,
     )
 

@@ -6,7 +6,7 @@ Lampariello and Lucidi, 1986), or the best of six is taken if it is not three ti
 
 Near the solution the far field, taken as it is at rest, makes even fresh tangents converge by a
 factor of two or three a step only. There the last factors serve on, corrected by Broyden's update
-(1965, in the form of Kelley, 1995, that keeps the steps alone): a step then costs a tenth.
+(1965): a step then costs a tenth.
 """
 
 from __future__ import annotations
@@ -33,6 +33,8 @@ STALLED = 0.5
 CLOSE = 3e-2
 """Relative residual from which factors are kept."""
 MOST_UPDATES = 8
+LEAST_DIVISOR = 0.1
+"""Broyden's update divides by a number near 1; below this the factors are of no use any more."""
 WORTH = 0.5
 """Share of the residual that a step with kept factors may leave, else they are renewed."""
 
@@ -47,8 +49,6 @@ class Effort:
 
     newton: int = 0
     """Steps on the exact equations."""
-    updated: int = 0
-    """Steps with the factors of an earlier one."""
     lagged: int = 0
     """Steps on equations with friction held."""
     projected: int = 0
@@ -175,16 +175,13 @@ def _updated(
     """Go on with the last factors after a whole step `way_mm`, as long as that pays."""
     steps = [body.system.reduced(way_mm)]
     for _ in range(MOST_UPDATES):
-        way = body.system.reduced(tangent.solve(state.residual_N))
-        for before, after in itertools.pairwise(steps):
-            way = way + after * (before @ way) / (before @ before)
-        last = steps[-1]
-        way = way / (1.0 - (last @ way) / (last @ last))
-        effort.updated += 1
+        way = broyden_step(body.system.reduced(tangent.solve(state.residual_N)), steps)
         effort.watch()
+        if way is None or first_share(body.system.expanded(way)) < 1.0:
+            break
         moved_mm = displacement_mm + body.system.expanded(way)
         tried = balance(body, load, moved_mm, tangent=False)
-        if tried is None or not tried.relative < state.relative:
+        if tried is None or not _is_nearer(tried, state):
             break
         worth = tried.relative < WORTH * state.relative
         displacement_mm, state = moved_mm, tried
@@ -192,6 +189,33 @@ def _updated(
             break
         steps.append(way)
     return displacement_mm, state
+
+
+def broyden_step(way: np.ndarray, steps: list[np.ndarray]) -> np.ndarray | None:
+    """The next step of Broyden's method from what the first factors say.
+
+    With z = -B_0^-1 F at the newest place and the steps s_0 ... s_k that led there, z becomes
+    z + s_(j+1) (s_j . z) / |s_j|^2 for j = 0 ... k - 1, and s_(k+1) = z / (1 - s_k . z / |s_k|^2)
+    (Kelley 1995, section 7.3).
+
+    Args:
+        way: z, shape (E,).
+        steps: s_0 ... s_k, each of shape (E,), all of them whole.
+
+    Returns:
+        s_(k+1), shape (E,); None where it would be many times z.
+    """
+    for before, after in itertools.pairwise(steps):
+        way = way + after * (before @ way) / (before @ before)
+    last = steps[-1]
+    divisor = 1.0 - (last @ way) / (last @ last)
+    return way / divisor if divisor > LEAST_DIVISOR else None
+
+
+def _is_nearer(tried: Balance, state: Balance) -> bool:
+    """Whether the residual has fallen, by itself and beside the load."""
+    size_N, before_N = np.linalg.norm(tried.residual_N), np.linalg.norm(state.residual_N)
+    return bool(size_N < before_N and tried.relative < state.relative)
 
 
 def _stalls(history: list[float]) -> bool:

@@ -44,8 +44,8 @@ def distance(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Signed distances [mm], (N,), and gradients, (N, 3), at points (N, 3) of the sensor frame.
 
-    Beyond the samples of a sampled object nothing touches: there the distance is that from their
-    box, which is less than that from the object, and the gradient is zero.
+    Beyond the samples of a sampled object no contact is seen, also where a window has cut it: there
+    the distance is that from their box, and the gradient is zero.
     """
     body = (points_mm - pose.origin_mm) @ pose.rotation
     if collider.shape is not Shape.GRID:

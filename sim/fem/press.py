@@ -96,6 +96,7 @@ def solve_press(
     try:
         with freed_memory_kept():
             course.run(monitor, on_frame)
+        return course.result()
     except SolveError as error:
         error.frame, error.last_good = course.frame, course.frame - 1
         error.message = f"frame {course.frame + 1} of {approach.frame_count}: {error.message}"
@@ -103,7 +104,6 @@ def solve_press(
         raise
     finally:
         course.tangent.close()
-    return course.result()
 
 
 def set_up(

@@ -37,8 +37,9 @@ class Tangent:
 
     @property
     def solver_name(self) -> str:
-        """Of the linear solver, for people."""
-        return self._solver(symmetric=False).name
+        """Of the linear solver, for people; of none where there was nothing to solve."""
+        used = self._solvers.get(False) or self._solvers.get(True)
+        return "nothing to solve" if used is None else used.name
 
     def _solver(self, *, symmetric: bool) -> LinearSolver:
         """Made at its first use: it depends on how many equations are near."""

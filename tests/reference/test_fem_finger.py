@@ -83,7 +83,14 @@ def test_the_matrix_is_eight_objects_at_four_places_of_three_membranes() -> None
 
 
 def record_of(tmp_path: Path, **changes: object) -> Path:
-    told = {"ok": True, "why": "", "cpu_s": 5.0, "worst_residual": 1e-7, "reaction_N": [[0, 0, 1]]}
+    told = {
+        "ok": True,
+        "why": "",
+        "cpu_s": 5.0,
+        "worst_residual": 1e-7,
+        "solver": "PARDISO",
+        "reaction_N": [[0, 0, 1]],
+    }
     record: dict[str, object] = {
         "version": "0",
         "made": "2000-01-01",
@@ -100,6 +107,20 @@ def test_without_a_record_the_rows_fail_and_say_why(tmp_path: Path) -> None:
     assert [row.ok for row in rows] == [False] * 3
     assert "there is no record" in rows[0].case
     assert not any(row.ok for row in fem_matrix.repeated_rows(tmp_path / "none.json"))
+
+
+def test_times_on_a_gpu_are_not_taken_for_those_of_a_processor(tmp_path: Path) -> None:
+    """A family that a GPU solved has no such row; nothing fails for it."""
+    path = record_of(tmp_path)
+    record = json.loads(path.read_text())
+    for name, told in record["cases"].items():
+        if name.startswith("trunk"):
+            told["solver"] = "dense factors on the GPU"
+    path.write_text(json.dumps(record))
+    rows = fem_matrix.recorded_rows(path)
+    assert all(row.ok for row in rows)
+    timed = [row.case for row in rows if row.name == "fem_matrix_cpu"]
+    assert [case.split(":")[0] for case in timed] == ["finger", "paw"]
 
 
 def test_a_damaged_record_is_refused(tmp_path: Path) -> None:

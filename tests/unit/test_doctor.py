@@ -22,14 +22,14 @@ def test_the_solver_of_finite_elements_is_named(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """With MKL its name; without, how much slower it is and what to install. Both are well."""
-    monkeypatch.setattr(doctor, "torch_device", lambda: "cpu")
+    monkeypatch.setattr(doctor, "solver_device", lambda: "cpu")
     for there, says in ((True, "PARDISO of Intel MKL"), (False, "pip install .[mkl]")):
         monkeypatch.setattr(linear_solver, "has_pardiso", lambda there=there: there)
         line, healthy = line_of(tmp_path, "finite elements")
         assert says in line and healthy
         assert ("3 times as slow" in line) is not there
         assert "GPU" not in line
-    monkeypatch.setattr(doctor, "torch_device", lambda: "cuda")
+    monkeypatch.setattr(doctor, "solver_device", lambda: "cuda")
     line, healthy = line_of(tmp_path, "finite elements")
     assert "the GPU near the contact, elsewhere SuperLU" in line and healthy
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import weakref
 from typing import Any
 
 import numpy as np
@@ -162,25 +163,59 @@ def test_a_dense_matrix_that_is_not_positive_is_told_and_solved() -> None:
     np.testing.assert_allclose(solver.solve(right), known, atol=1e-6 * np.abs(known).max())
 
 
-def test_the_processor_takes_over_when_the_memory_of_the_gpu_is_short(
-    monkeypatch: pytest.MonkeyPatch,
+@pytest.mark.parametrize("call", ["lu_factor_ex", "lu_solve"])
+@pytest.mark.parametrize("error", ["OutOfMemoryError", "RuntimeError"])
+def test_the_processor_takes_over_when_the_gpu_fails(
+    call: str, error: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """From then on, and the name says so."""
+    """In either step, from then on; the name says why, and nothing of the GPU's is held."""
     import torch
     from scipy.sparse import identity
 
-    def refuse(*_: object, **__: object) -> None:
-        raise torch.OutOfMemoryError("CUDA out of memory")
+    kind = {"OutOfMemoryError": torch.OutOfMemoryError, "RuntimeError": RuntimeError}[error]
+    held: list[weakref.ref[object]] = []
 
-    solver, matrix = dense_solver(symmetric=False), (2.0 * identity(5)).tocsr()
+    def refuse(tensor: object, *_: object, **__: object) -> None:
+        held.append(weakref.ref(tensor))
+        raise kind("CUSOLVER_STATUS_ALLOC_FAILED")
+
+    def spare() -> SuperLU:
+        assert all(ref() is None for ref in held)
+        return SuperLU()
+
+    matrix = (2.0 * identity(5)).tocsr()
+    solver = DenseSolver(symmetric=False, spare=spare, device="cpu")
     solver.factorise(matrix)
-    monkeypatch.setattr(torch.linalg, "lu_factor_ex", refuse)
+    monkeypatch.setattr(torch.linalg, call, refuse)
     for _ in range(2):
         solver.factorise(matrix)
         np.testing.assert_allclose(solver.solve(np.ones(5)), 0.5)
         np.testing.assert_allclose(solver.solve_many(np.ones((5, 2))), 0.5)
-    assert solver.name == "SuperLU, as the GPU's memory is short"
+    assert solver.name == "SuperLU, as the GPU failed: CUSOLVER_STATUS_ALLOC_FAILED"
+    assert len(held) == 1
     solver.close()
+
+
+@pytest.mark.gpu
+@pytest.mark.parametrize("symmetric", [False, True])
+def test_a_gpu_solves_and_gives_its_memory_back(symmetric: bool) -> None:
+    """Positive, unsymmetric and indefinite matrices on the device itself."""
+    import torch
+
+    system, stiffness = stiff_block()
+    _, cells, _ = held_block()
+    skew = np.random.default_rng(5).normal(0.0, 0.02, stiffness.shape)
+    matrix = system.matrix((system.slots(cells), stiffness + (0.0 if symmetric else skew)))
+    right = np.random.default_rng(6).normal(size=matrix.shape[0])
+    before = torch.cuda.memory_allocated()
+    solver = DenseSolver(symmetric=symmetric, spare=SuperLU)
+    for sign, negative in ((1.0, 0), (-1.0, 1)):
+        assert solver.factorise(sign * matrix) == (negative if symmetric else None)
+        known = np.linalg.solve(sign * matrix.toarray(), right)
+        assert np.abs(solver.solve(right) - known).max() < 1e-6 * np.abs(known).max()
+    solver.close()
+    assert solver.name == "dense factors on the GPU"
+    assert torch.cuda.memory_allocated() <= before
 
 
 def test_a_gpu_takes_condensed_matrices_of_float32_that_fit() -> None:

@@ -156,7 +156,7 @@ class Bench:
         """Solve by finite elements and write each frame as it converges."""
         from sim.contact.region.placing import place_object
         from sim.fem.press import sampling_grid_mm, solve_press
-        from workbench.devices import torch_device
+        from workbench.devices import solver_device
 
         begun, aside_s = time.perf_counter(), 0.0
         settings = FemSettings(hex_mm=self.recipe.hex_mm)
@@ -180,7 +180,7 @@ class Bench:
                 indenter,
                 case.press,
                 settings,
-                device=torch_device(),
+                device=solver_device(),
                 monitor=self._watch,
                 on_frame=converged,
             )

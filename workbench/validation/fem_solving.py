@@ -11,7 +11,7 @@ from workbench.core.digest import digest
 from workbench.core.errors import SolveError, WorkbenchError
 from workbench.core.fem import FemSettings
 from workbench.core.force_field import ForceField
-from workbench.devices import open_device, torch_device
+from workbench.devices import open_device, solver_device
 from workbench.validation.fem_cases import (
     DEPTH_MM,
     FAMILIES,
@@ -65,7 +65,7 @@ def _solved(case: MatrixCase) -> ForceField:
         object_of(case.thing),
         press_of(case),
         case.settings,
-        device=torch_device(),
+        device=solver_device(),
     )
 
 
