@@ -116,11 +116,13 @@ class DenseSolver:
 
     def solve(self, right: np.ndarray) -> np.ndarray:
         """Solution for a right-hand side, shape (E,)."""
-        found = self.solve_many(right[:, None])[:, 0]
-        if self._spare is not None:
-            return self._spare.solve(right)
-        # As with PARDISO's factors in float32: one step of refinement.
-        return found + self.solve_many((right - self._given @ found)[:, None])[:, 0]
+        if self._spare is None:
+            found = self.solve_many(right[:, None])[:, 0]
+            # Asked again: the GPU may have failed just now.
+            if self._spare is None:
+                # As with PARDISO's factors in float32: one step of refinement.
+                return found + self.solve_many((right - self._given @ found)[:, None])[:, 0]
+        return self._spare.solve(right)
 
     def solve_many(self, right: np.ndarray) -> np.ndarray:
         """Solutions for the columns of a matrix, shape (E, K)."""

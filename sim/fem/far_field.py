@@ -45,7 +45,7 @@ class FarField:
     link: Any
     """K_FB in CSR form, shape (F, B)."""
     factors: LinearSolver
-    """Of K_FF."""
+    """Of K_FF, in float32 and not refined: they say where to step, the residual is exact."""
 
     def near_part(self, right_N: np.ndarray) -> np.ndarray:
         """Right-hand side of the near equations, (A,), of one of all free equations, (E,)."""

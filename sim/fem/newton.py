@@ -177,9 +177,12 @@ def _updated(
     for _ in range(MOST_UPDATES):
         way = broyden_step(body.system.reduced(tangent.solve(state.residual_N)), steps)
         effort.watch()
-        if way is None or first_share(body.system.expanded(way)) < 1.0:
+        if way is None:
             break
-        moved_mm = displacement_mm + body.system.expanded(way)
+        step_mm = body.system.expanded(way)
+        if first_share(step_mm) < 1.0:
+            break
+        moved_mm = displacement_mm + step_mm
         tried = balance(body, load, moved_mm, tangent=False)
         if tried is None or not _is_nearer(tried, state):
             break

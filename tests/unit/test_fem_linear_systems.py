@@ -43,6 +43,14 @@ def stiff_block() -> tuple[System, np.ndarray]:
     return make_system(len(points_mm), cells, points_mm[:, 0] == 0.0), stiffness
 
 
+def block_matrix(*, symmetric: bool) -> Any:
+    """Stiffness of that block at rest, or with random numbers of 0.02 in its elements."""
+    system, stiffness = stiff_block()
+    _, cells, _ = held_block()
+    skew = np.random.default_rng(5).normal(0.0, 0.02, stiffness.shape)
+    return system.matrix((system.slots(cells), stiffness + (0.0 if symmetric else skew)))
+
+
 def dense(system: System, nodes: np.ndarray, values: np.ndarray) -> np.ndarray:
     full = np.zeros((3 * system.node_count,) * 2)
     for freedoms, block in zip(freedoms_of(nodes), values, strict=True):
@@ -91,10 +99,7 @@ def test_reduced_and_expanded_are_inverse() -> None:
 def test_solution_is_that_of_dense_algebra(make: type[SuperLU]) -> None:
     """An unsymmetric matrix on the pattern of a block; 1e-9 leaves room for pivoting."""
     solver: LinearSolver = make()
-    system, stiffness = stiff_block()
-    skew = np.random.default_rng(5).normal(0.0, 0.02, stiffness.shape)
-    _, cells, _ = held_block()
-    matrix = system.matrix((system.slots(cells), stiffness + skew))
+    matrix = block_matrix(symmetric=False)
     right = np.random.default_rng(6).normal(size=matrix.shape[0])
     assert solver.factorise(matrix) is None
     known = np.linalg.solve(matrix.toarray(), right)
@@ -110,9 +115,7 @@ def test_negative_pivots_are_counted() -> None:
     """K - s I has as many negative pivots as K has eigenvalues below s (Sylvester)."""
     from scipy.sparse import identity
 
-    system, stiffness = stiff_block()
-    _, cells, _ = held_block()
-    matrix = system.matrix((system.slots(cells), stiffness))
+    matrix = block_matrix(symmetric=True)
     values = np.linalg.eigvalsh(matrix.toarray())
     solver = Pardiso(symmetric=True)
     assert solver.factorise(matrix) == 0
@@ -132,10 +135,7 @@ def dense_solver(*, symmetric: bool) -> DenseSolver:
 @pytest.mark.parametrize("symmetric", [False, True])
 def test_dense_factors_in_float32_solve_to_1e_6(symmetric: bool) -> None:
     """An unsymmetric matrix and a positive one on the pattern of a block, then other values."""
-    system, stiffness = stiff_block()
-    _, cells, _ = held_block()
-    skew = np.random.default_rng(5).normal(0.0, 0.02, stiffness.shape)
-    matrix = system.matrix((system.slots(cells), stiffness + (0.0 if symmetric else skew)))
+    matrix = block_matrix(symmetric=symmetric)
     right = np.random.default_rng(6).normal(size=matrix.shape[0])
     known = np.linalg.solve(matrix.toarray(), right)
     solver = dense_solver(symmetric=symmetric)
@@ -150,9 +150,7 @@ def test_a_dense_matrix_that_is_not_positive_is_told_and_solved() -> None:
     """K - s I with s above the lowest eigenvalue."""
     from scipy.sparse import identity
 
-    system, stiffness = stiff_block()
-    _, cells, _ = held_block()
-    matrix = system.matrix((system.slots(cells), stiffness))
+    matrix = block_matrix(symmetric=True)
     values = np.linalg.eigvalsh(matrix.toarray())
     shifted = (matrix - 0.5 * (values[4] + values[5]) * identity(matrix.shape[0])).tocsr()
     solver = dense_solver(symmetric=True)
@@ -202,10 +200,7 @@ def test_a_gpu_solves_and_gives_its_memory_back(symmetric: bool) -> None:
     """Positive, unsymmetric and indefinite matrices on the device itself."""
     import torch
 
-    system, stiffness = stiff_block()
-    _, cells, _ = held_block()
-    skew = np.random.default_rng(5).normal(0.0, 0.02, stiffness.shape)
-    matrix = system.matrix((system.slots(cells), stiffness + (0.0 if symmetric else skew)))
+    matrix = block_matrix(symmetric=symmetric)
     right = np.random.default_rng(6).normal(size=matrix.shape[0])
     before = torch.cuda.memory_allocated()
     solver = DenseSolver(symmetric=symmetric, spare=SuperLU)
