@@ -221,7 +221,6 @@ def test_rule_of_pairs_looks_at_voxels_and_width() -> None:
 
 @pytest.mark.gpu
 @pytest.mark.slow
-@pytest.mark.skipif(not torch.cuda.is_available(), reason="needs a CUDA device")
 @pytest.mark.parametrize("way", [Acceleration.EAGER, Acceleration.GRAPH, Acceleration.COMPILED])
 def test_cuda_equals_the_cpu(way: Acceleration) -> None:
     """float32 to rounding, float16 within 0.5 % of the largest force, call after call."""

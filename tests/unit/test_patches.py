@@ -274,7 +274,6 @@ def test_neighbours_gathered_or_in_pairs_say_the_same(monkeypatch: pytest.Monkey
 
 
 @pytest.mark.gpu
-@pytest.mark.skipif(not torch.cuda.is_available(), reason="needs a CUDA device")
 def test_a_gpu_says_what_a_cpu_says() -> None:
     """Patches are found here, the network computes there."""
     fields = given([1, 2])
