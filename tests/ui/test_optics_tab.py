@@ -115,13 +115,13 @@ def test_maps_are_measured_shown_and_read(tmp_path: Path, page: Any, start_serve
 
 
 def test_refused_optics_are_explained_where_they_are_set(
-    tmp_path: Path, page: Any, start_server: Start
+    tmp_path: Path, pressed_project: Path, page: Any, start_server: Start
 ) -> None:
     """A pinhole of 200 degrees, a colour that is none, a lamp in the wall: each told at its place.
 
     Undo takes the lamp back to where it was.
     """
-    server = start_server(coarse_project(tmp_path))
+    server = start_server(pressed_project)
     optics(page, server, pressed=True)
     set_number(page, "View deg", 200)
     page.get_by_text("outside 5 to 175 degree").first.wait_for()

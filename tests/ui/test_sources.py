@@ -14,7 +14,6 @@ from tests.ui.widgets import (
     button,
     changed_share,
     choose,
-    coarse_project,
     open_page,
     press,
     set_number,
@@ -55,9 +54,8 @@ def test_finite_elements_are_shown_beside_the_contact_solver(
     assert "Traceback" not in server.log.read_text()
 
 
-def project_with_weights(tmp_path: Path, *, there: bool = True) -> Path:
-    """The coarse finger with a tiny network that knows it, in its folder or gone from there."""
-    project = coarse_project(tmp_path)
+def add_weights(project: Path, *, there: bool = True) -> Path:
+    """Give the coarse finger a tiny network that knows it, in its folder or gone from there."""
     autosave = project / "designs" / "autosave.toml"
     text = autosave.read_text()
     card = card_of(design_from_toml(text), hex_mm=1.5, grid_mm=1.0)
@@ -70,10 +68,10 @@ def project_with_weights(tmp_path: Path, *, there: bool = True) -> Path:
 
 
 def test_a_network_predicts_what_it_knows_and_says_what_it_does_not(
-    tmp_path: Path, page: Any, start_server: Start
+    tmp_path: Path, pressed_project: Path, page: Any, start_server: Start
 ) -> None:
     """The known press by itself; a deeper one when asked, with a doubt in the panel and a badge."""
-    server = start_server(project_with_weights(tmp_path))
+    server = start_server(add_weights(pressed_project))
     open_page(page, server.url)
     wait_until(lambda: page.get_by_text("Image ✓").count(), 180, "the example is pressed")
     tab(page, "Forces").click()
@@ -104,10 +102,10 @@ def test_a_network_predicts_what_it_knows_and_says_what_it_does_not(
 
 
 def test_weights_that_are_gone_are_told_beside_the_button(
-    tmp_path: Path, page: Any, start_server: Start
+    pressed_project: Path, page: Any, start_server: Start
 ) -> None:
     """The file was there when the design was saved: a message with a remedy, and all else works."""
-    server = start_server(project_with_weights(tmp_path, there=False))
+    server = start_server(add_weights(pressed_project, there=False))
     open_page(page, server.url)
     wait_until(lambda: page.get_by_text("Image ✓").count(), 180, "the example is pressed")
     tab(page, "Forces").click()

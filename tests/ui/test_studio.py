@@ -13,7 +13,6 @@ from tests.ui.conftest import Server
 from tests.ui.widgets import (
     button,
     choose,
-    coarse_project,
     control,
     open_page,
     set_number,
@@ -74,9 +73,11 @@ def test_dragging_the_handle_presses_there_at_once(
     page.get_by_text("frame 2 of 2, approach").wait_for()
 
 
-def test_strokes_are_run_in_order_and_named(tmp_path: Path, page: Any, start_server: Start) -> None:
+def test_strokes_are_run_in_order_and_named(
+    pressed_project: Path, page: Any, start_server: Start
+) -> None:
     """A slide after the approach: its frames carry its name, and colours have their units."""
-    server = start_server(coarse_project(tmp_path))
+    server = start_server(pressed_project)
     studio(page, server)
     page.get_by_text("Motion after the approach").click()
     choose(page, "Stroke", "slide")
