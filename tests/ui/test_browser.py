@@ -69,10 +69,10 @@ def test_refused_value_is_explained_and_the_design_kept(
 
 
 def test_cancel_stops_a_press_within_three_seconds(
-    pressed_project: Path, page: Any, start_server: Start
+    tmp_path: Path, page: Any, start_server: Start
 ) -> None:
     """Cancel during a long press: the button disappears within 3 s, and the next run works."""
-    server = start_server(pressed_project)
+    server = start_server(coarse_project(tmp_path))
     open_page(page, server.url)
     wait_until(lambda: page.get_by_text("Contact ✓").count(), 180, "the example is pressed")
     tab(page, "Simulate").click()
