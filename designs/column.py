@@ -22,12 +22,11 @@ from typing import Any
 
 import numpy as np
 
+from designs.outline import QUARTER
 from designs.shells import sewn
 from workbench.core.booleans import expect_volume
 from workbench.core.marks import Field
 
-QUARTER = math.sqrt(0.5)
-"""Weight of the middle control point of a quarter circle."""
 APEX_MM = 1e-9
 
 

@@ -38,6 +38,7 @@ from typing import Any
 import numpy as np
 
 from designs.bodies import Bodies, Fields
+from designs.outline import upright_and_dome
 from designs.sliders import slider
 from workbench.core.booleans import cut, expect_volume
 from workbench.core.design import Layers
@@ -48,8 +49,6 @@ CAVITY_RADIUS_MM = 1.0
 """Smallest radius of the cavity that still lets a camera look out [mm]."""
 BORE_SHARE = 0.6
 """Radius of the camera bore over the cavity's."""
-SPHERE_MM = 1e-9
-"""Difference of radius and tip height below which the tip is a sphere [mm]."""
 GELTIP = "GelTip (SimTac, Supplementary)"
 
 
@@ -207,18 +206,9 @@ def _revolved(shape: FingerShape, outset_mm: float, inset_mm: float | None, *, w
 
 def _profile(shape: FingerShape, inset_mm: float) -> tuple[list[Any], tuple[float, float, float]]:
     """Half the outline in the plane y = 0, from the base up, and its apex."""
-    from build123d import Edge, Plane
-
     radius, tip = shape.outer_radius_mm - inset_mm, shape.tip_mm - inset_mm
     length = shape.cylinder_mm
-    section = Plane(origin=(0, 0, length), x_dir=(1, 0, 0), z_dir=(0, -1, 0))
-    # A circle gives a true sphere, which the kernel tessellates twice as fast as an ellipsoid.
-    if abs(radius - tip) < SPHERE_MM:
-        arc = Edge.make_circle(radius, section, 0.0, 90.0)
-    else:
-        arc = Edge.make_ellipse(radius, tip, section, 0.0, 90.0)
-    side = Edge.make_line((radius, 0, 0), (radius, 0, length))
-    return [side, arc], (0.0, 0.0, length + tip)
+    return upright_and_dome(radius, length, tip), (0.0, 0.0, length + tip)
 
 
 def _foot(shape: FingerShape, layers: Layers) -> Any:

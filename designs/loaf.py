@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from designs.outline import upright_and_dome
 from workbench.core.booleans import expect_volume, fuse
 
 
@@ -119,22 +120,12 @@ def _half_section(outside: Loaf, inside: Loaf | None) -> Any:
     """Half the section in the plane y = 0, at x >= 0."""
     from build123d import Edge, Face, Wire
 
-    outer = _profile(outside)
+    outer = upright_and_dome(outside.half_mm, outside.wall_mm, outside.dome_mm)
     if inside is None:
         lower, start, inner = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), []
     else:
-        inner = _profile(inside)
+        inner = upright_and_dome(inside.half_mm, inside.wall_mm, inside.dome_mm)
         lower, start = (0.0, 0.0, inside.top_mm), (inside.half_mm, 0.0, 0.0)
     foot = Edge.make_line(start, (outside.half_mm, 0.0, 0.0))
     ridge = Edge.make_line((0.0, 0.0, outside.top_mm), lower)
     return Face(Wire([foot, *outer, ridge, *inner]))
-
-
-def _profile(loaf: Loaf) -> list[Any]:
-    from build123d import Edge, Plane
-
-    section = Plane(origin=(0, 0, loaf.wall_mm), x_dir=(1, 0, 0), z_dir=(0, -1, 0))
-    side = Edge.make_line((loaf.half_mm, 0, 0), (loaf.half_mm, 0, loaf.wall_mm))
-    if abs(loaf.half_mm - loaf.dome_mm) < 1e-9:
-        return [side, Edge.make_circle(loaf.half_mm, section, 0.0, 90.0)]
-    return [side, Edge.make_ellipse(loaf.half_mm, loaf.dome_mm, section, 0.0, 90.0)]

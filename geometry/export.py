@@ -1,16 +1,14 @@
 """Files for the workshop: every part as STL, STEP and 3MF, assemblies, build sheet and parts list.
 
-A part without a B-rep body gets a STEP file of flat facets (`faceted`); a part that even that
-cannot hold gets none, and the build sheet says so.
+A part without a B-rep body, or whose B-rep reads back as another body, gets a STEP file of flat
+facets (`faceted`); a part that even that cannot hold gets none. Both are said.
 """
 
 from __future__ import annotations
 
 import dataclasses
-import tempfile
 from collections.abc import Sequence
-from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -19,8 +17,10 @@ from geometry.csg_brep import translated
 from geometry.fabricate import NO_BREP, stl_points
 from geometry.faceted import faceted
 from geometry.solid import part_from_brep
+from geometry.step import expect_read_back, step_bytes
+from geometry.surface import mesh_volume
 from geometry.threemf import threemf_bytes
-from workbench.core.errors import GeometryError, StoreError
+from workbench.core.errors import GeometryError
 from workbench.core.fabrication import (
     FabricationPart,
     HousingSet,
@@ -30,6 +30,7 @@ from workbench.core.fabrication import (
     SheetHead,
 )
 from workbench.core.monitor import Monitor, silent
+from workbench.core.results import Bundle
 
 ASSEMBLIES = {PartGroup.MOULD: "mould_assembly", PartGroup.SENSOR: "sensor_assembly"}
 ALL_PARTS = "all_parts.3mf"
@@ -60,49 +61,86 @@ def package_files(
     recipe: Recipe,
     head: SheetHead,
     monitor: Monitor = silent,
-) -> dict[str, np.ndarray]:
-    """Every file of the workshop, by its path within the results, shape (bytes,), uint8."""
+) -> Bundle:
+    """Every file of the workshop, by its path within the results."""
     parts = (*moulds.parts, *housing.parts)
     files: dict[str, bytes] = {}
-    bodies: dict[str, Any] = {}
-    missing: list[str] = []
+    steps: dict[str, StepFile] = {}
+    said: list[str] = []
     for number, part in enumerate(parts):
         monitor(0.7 * number / len(parts), f"writing {part.name}")
         stem = f"{FOLDERS[part.group]}/{part.name}"
         files[f"{stem}.stl"] = stl_bytes(part.points_mm, part.faces)
         files[f"{stem}.3mf"] = threemf_bytes([part])
         try:
-            bodies[part.name], files[f"{stem}.step"] = step_file(part)
+            step = step_file(part)
         except GeometryError as error:
-            missing.append(error.message)
+            said.append(error.message)
+            continue
+        steps[part.name], files[f"{stem}.step"] = step, step.data
+        said += [step.reason] if step.reason else []
     monitor(0.7, "writing the assemblies")
     for group, name in ASSEMBLIES.items():
-        found = [bodies[p.name] for p in parts if p.group is group and p.name in bodies]
+        found = [steps[p.name] for p in parts if p.group is group and p.name in steps]
         try:
             if found:
-                files[f"{FOLDERS[group]}/{name}.step"] = step_bytes(found, name)
+                files[f"{FOLDERS[group]}/{name}.step"] = assembly_bytes(found, name)
         except GeometryError as error:
-            missing.append(error.message)
+            said.append(error.message)
     files[ALL_PARTS] = threemf_bytes(parts)
-    sheet = build_sheet_html(moulds, housing, recipe, missing, head=head)
+    sheet = build_sheet_html(moulds, housing, recipe, said, head=head)
     files["build_sheet.html"] = sheet.encode()
     files["bom.csv"] = bom_csv(recipe).encode()
-    return {name: np.frombuffer(data, dtype=np.uint8).copy() for name, data in files.items()}
+    return Bundle(
+        files={name: np.frombuffer(data, dtype=np.uint8).copy() for name, data in files.items()},
+        step_volumes_mm3={name: step.volume_mm3 for name, step in steps.items()},
+        notice="; ".join(said),
+    )
 
 
-def step_file(part: FabricationPart) -> tuple[Any, bytes]:
-    """The part's body and its STEP file; of flat facets where the kernel refuses the B-rep.
+class StepFile(NamedTuple):
+    """A part as STEP, and what a reader finds in it."""
+
+    body: Any
+    data: bytes
+    volume_mm3: float
+    reason: str
+    """Why it has flat facets although the part has a B-rep; else ""."""
+
+
+def step_file(part: FabricationPart) -> StepFile:
+    """The part's STEP file; of flat facets where its B-rep cannot be written or read back.
 
     Raises:
-        GeometryError: If it refuses the facets too.
+        GeometryError: If the facets fail too.
     """
+    volume_mm3 = mesh_volume(part.points_mm, part.faces)
     try:
-        body = step_body(part)
-        return body, step_bytes([body], part.name)
-    except GeometryError:
+        return _written(part, volume_mm3)
+    except GeometryError as error:
         if not part.brep.size:
             raise
-    return step_file(dataclasses.replace(part, brep=NO_BREP))
+        facets = _written(dataclasses.replace(part, brep=NO_BREP), volume_mm3)
+        reason = f"{part.name}: its STEP file has flat facets ({error.message})"
+        return facets._replace(reason=reason)
+
+
+def assembly_bytes(steps: Sequence[StepFile], name: str) -> bytes:
+    """A STEP file of several parts, read back like those of one.
+
+    Raises:
+        GeometryError: If it reads back as something else.
+    """
+    data = step_bytes([step.body for step in steps], name)
+    expect_read_back(data, [step.volume_mm3 for step in steps], what=name)
+    return data
+
+
+def _written(part: FabricationPart, volume_mm3: float) -> StepFile:
+    body = step_body(part)
+    data = step_bytes([body], part.name)
+    found_mm3 = expect_read_back(data, [volume_mm3], what=part.name)
+    return StepFile(body, data, found_mm3, "")
 
 
 def step_body(part: FabricationPart) -> Any:
@@ -119,38 +157,3 @@ def step_body(part: FabricationPart) -> Any:
         )
     body.label = part.name
     return body
-
-
-def step_bytes(bodies: Sequence[Any], name: str) -> bytes:
-    """A STEP file: of one body as it is, of several as an assembly of named parts."""
-    # OCCT writes STEP to named files only.
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "part.step"
-        write_step(bodies, name, path)
-        return path.read_bytes()
-
-
-def write_step(bodies: Sequence[Any], name: str, path: Path) -> None:
-    """Write a STEP file.
-
-    Raises:
-        StoreError: If the file cannot be written.
-        GeometryError: If the kernel cannot turn a body into STEP.
-    """
-    from build123d import Compound, export_step
-
-    def written() -> bool:
-        shape = bodies[0] if len(bodies) == 1 else Compound(label=name, children=list(bodies))
-        try:
-            return export_step(shape, str(path), timestamp="2000-01-01T00:00:00")
-        except (OSError, RuntimeError) as error:
-            raise _unwritten(path) from error
-
-    if not translated(written, what=name):
-        raise _unwritten(path)
-
-
-def _unwritten(path: Path) -> StoreError:
-    return StoreError(
-        f"cannot write {path}", hint="check that the folder exists and has room", at="out"
-    )

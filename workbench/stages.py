@@ -305,14 +305,14 @@ def package(
     from geometry.export import package_files
 
     head = SheetHead(name=name, family=family, shrink_percent=shrink_percent, draft_deg=draft_deg)
-    return Bundle(files=package_files(moulds, housing, recipe, head, monitor=monitor))
+    return package_files(moulds, housing, recipe, head, monitor=monitor)
 
 
 STAGES = {
     stage.name: stage
     for stage in (
         Stage(name="intake", version=1, lane="cad", function=intake),
-        Stage(name="build", version=2, lane="cad", function=build),
+        Stage(name="build", version=3, lane="cad", function=build),
         Stage(name="mesh", version=2, lane="cad", function=mesh),
         Stage(name="quality", version=1, lane="cad", function=quality),
         Stage(name="tets", version=1, lane="cad", function=tets),
@@ -330,7 +330,7 @@ STAGES = {
         Stage(name="mould", version=2, lane="cad", function=mould),
         Stage(name="housing", version=2, lane="cad", function=housing),
         Stage(name="recipe", version=2, lane="cad", function=recipe),
-        Stage(name="package", version=2, lane="cad", function=package),
+        Stage(name="package", version=3, lane="cad", function=package),
         Stage(name="picture", version=2, lane="cad", function=picture),
         Stage(name="portrait", version=1, lane="cad", function=portrait),
         Stage(name="portrait_pressed", version=1, lane="cad", function=portrait_pressed),

@@ -10,12 +10,13 @@ import pytest
 
 from geometry.actuation import make_rods
 from geometry.cast import make_cast
-from geometry.export import package_files, step_body, stl_bytes, write_step
+from geometry.export import package_files, step_body, stl_bytes
 from geometry.housing import make_housing
 from geometry.indenters import load_stl
 from geometry.mould_fit import measure_fit
 from geometry.moulds import make_mould
 from geometry.recipe import make_recipe
+from geometry.step import write_step
 from geometry.supplies import ADHESIVE, bolt_length_mm, bolts, rim_mm2
 from geometry.surface import is_watertight, mesh_volume, pieces
 from workbench.core.camera import Camera
@@ -238,7 +239,7 @@ def test_files_are_complete_and_keep_volumes_and_names(
     from build123d import import_step
 
     head = SheetHead(name="one <finger>", family="finger", shrink_percent=0.2, draft_deg=0.0)
-    files = package_files(moulds, housing, recipe, head)
+    files = package_files(moulds, housing, recipe, head).files
     parts = (*moulds.parts, *housing.parts)
     for part in parts:
         folder = "moulds" if part.group is PartGroup.MOULD else "parts"

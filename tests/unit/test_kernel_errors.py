@@ -14,9 +14,10 @@ import pytest
 
 from geometry import csg, csg_brep, export
 from geometry.cast import make_cast
-from geometry.export import step_body, step_file, write_step
+from geometry.export import step_body, step_file
 from geometry.fabricate import Made, fabricate
 from geometry.solid import brep_bytes
+from geometry.step import write_step
 from workbench.core.errors import GeometryError, StoreError
 from workbench.core.fabrication import PartGroup
 from workbench.core.making import MouldOptions
@@ -89,10 +90,10 @@ def test_a_body_that_cannot_be_written_becomes_facets(
     """The first body is refused, its 12 facets are written: a STEP file of 24 mm3."""
     part = block().part
     monkeypatch.setattr(export, "part_from_brep", refuse(error))
-    body, data = step_file(part)
-    assert len(body.faces()) == 12
-    assert body.volume == pytest.approx(24.0)
-    assert data.startswith(b"ISO-10303-21")
+    step = step_file(part)
+    assert len(step.body.faces()) == 12
+    assert step.volume_mm3 == pytest.approx(24.0)
+    assert step.data.startswith(b"ISO-10303-21")
 
 
 def test_a_refused_export_is_no_full_disk(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -4,7 +4,8 @@ Parameters and layers are drawn uniformly within their sliders; sets that the fa
 DesignError are counted and drawn again, because a refusal tells the designer what to change. Each
 set is built by `workbench.building` in a worker process, so that a crash or a hang of the CAD
 kernel is one failure and not the end. The result is then measured in ways the builder does not
-use: a finer integral of the fields, and the box of the fields' zero set.
+use: a finer integral of the fields, the box of the fields' zero set, and every B-rep body written
+as STEP and read back.
 """
 
 from __future__ import annotations
@@ -41,6 +42,8 @@ FINEST_MM = 0.3
 """The same where it stands in for the kernel's volume [mm]: within 0.04 % of a grid of 0.15 mm on
 16 random sensors."""
 SIZE_LIMIT_MM = 1.0
+STEP_BODIES = ("membrane", "outer", "core", "support", "base")
+"""Bodies with a B-rep, of which `outer` and `core` have no triangles of their own."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -150,9 +153,10 @@ def _measured(trial: Trial, solid: Solid, fields: Any, seconds: float) -> Findin
         f"volume off the fields' by {field:.2%}": field > FIELD_LIMIT,
         f"size off by {size_mm:.2g} mm": size_mm > SIZE_LIMIT_MM,
     }
+    told = [text for text, bad in faults.items() if bad]
     return Finding(
         trial=trial,
-        fault=", ".join(text for text, bad in faults.items() if bad),
+        fault=", ".join([*told, *_step_faults(solid)]),
         softened=bool(solid.notice) and not distance,
         distance=distance,
         surface_error=surface,
@@ -160,6 +164,24 @@ def _measured(trial: Trial, solid: Solid, fields: Any, seconds: float) -> Findin
         size_error_mm=size_mm,
         seconds=seconds,
     )
+
+
+def _step_faults(solid: Solid) -> Iterator[str]:
+    """What a reader finds wrong in the STEP files of the bodies that have a B-rep."""
+    from geometry.solid import part_from_brep
+    from geometry.step import expect_read_back, step_bytes
+    from geometry.surface import mesh_volume
+
+    for name in STEP_BODIES:
+        brep, surface = getattr(solid, f"{name}_brep"), getattr(solid, name, None)
+        if not brep.size:
+            continue
+        body = part_from_brep(brep)
+        wanted_mm3 = mesh_volume(surface.points_mm, surface.faces) if surface else body.volume
+        try:
+            expect_read_back(step_bytes([body], name), [wanted_mm3], what=name)
+        except WorkbenchError as error:
+            yield error.message
 
 
 def sweep(names: list[str], count: int = SETS, *, workers: int | None = None) -> list[Finding]:
