@@ -22,7 +22,7 @@ import designs
 from designs.bodies import Bodies, Fields
 from designs.sequence import Sequence
 from workbench.core.design import Layers
-from workbench.core.errors import DesignError
+from workbench.core.errors import DesignError, shown
 
 
 @runtime_checkable
@@ -99,7 +99,7 @@ def family(name: str) -> Family:
     known = _registry()
     if name not in known:
         raise DesignError(
-            f"there is no sensor family {name!r}",
+            f"there is no sensor family {shown(name)}",
             hint=f"known families: {', '.join(sorted(known))}",
             at="family",
         )
@@ -128,7 +128,7 @@ def resolve_shape(name: str, values: Mapping[str, Any]) -> Any:
     for key in values:
         if key not in fields:
             raise DesignError(
-                f"the {name} has no parameter {key!r}",
+                f"the {name} has no parameter {shown(key)}",
                 hint=f"parameters of the {name}: {', '.join(fields)}",
                 at=f"shape.{key}",
             )
@@ -168,7 +168,7 @@ def _number(field: dataclasses.Field[Any], value: Any) -> float:
     number = isinstance(value, (int, float)) and not isinstance(value, bool)
     if not number or not math.isfinite(value):
         raise DesignError(
-            f"{slider.label} is {value!r}, which is not a finite number",
+            f"{slider.label} is {shown(value)}, which is not a finite number",
             hint=f"choose a value from {span}",
             at=at,
         )

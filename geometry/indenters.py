@@ -15,7 +15,7 @@ from geometry.obj import obj_corners
 from geometry.primitives import rounded_box, rounded_revolution, sphere
 from geometry.stl import stl_corners, welded
 from geometry.surface import mesh_volume, open_edges
-from workbench.core.errors import DesignError
+from workbench.core.errors import DesignError, shown
 from workbench.core.imported import ImportedBody, ReadBody, body_file
 from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
 
@@ -132,7 +132,7 @@ def _check_cone(indenter: Indenter) -> None:
 def _check_size(file: Path) -> None:
     if not file.is_file():
         raise DesignError(
-            f"there is no file {str(file)!r}",
+            f"there is no file {shown(str(file))}",
             hint="give the path of an STL, OBJ or STEP file",
             at=AT,
         )

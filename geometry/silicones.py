@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from workbench.core.errors import DesignError
+from workbench.core.errors import DesignError, shown
 
 PSI_MPA = 6.894757e-3
 """Megapascal in a pound per square inch. Source: NIST SP 811."""
@@ -151,7 +151,7 @@ def silicone(name: str) -> Silicone:
     """
     if name not in SILICONES:
         raise DesignError(
-            f"there is no silicone {name!r} in the table",
+            f"there is no silicone {shown(name)} in the table",
             hint=f"choose one of: {', '.join(SILICONES)}",
             at="casting.silicone",
         )

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from workbench.core.design import SensorDesign
-from workbench.core.errors import DesignError
+from workbench.core.errors import DesignError, shown
 from workbench.core.imported import BodyFile, ImportedBody, LengthUnit, Pick, body_file
 from workbench.core.mapping import from_table, to_table
 from workbench.named_files import BRING_IT, find_file
@@ -76,7 +76,7 @@ def read_body_table(table: Any, *, roots: Sequence[Path], enclosed: bool = False
     """
     if not isinstance(table, Mapping) or "outer" not in table:
         raise DesignError(
-            f"body is {table!r}, expected a table with the file of the outer body",
+            f"body is {shown(table)}, expected a table with the file of the outer body",
             hint="write [body] outer = 'file.step'",
             at="body.outer",
         )
@@ -96,11 +96,11 @@ def read_body_table(table: Any, *, roots: Sequence[Path], enclosed: bool = False
     unit, picks = table.get("unit", "auto"), table.get("picks", ())
     if not isinstance(unit, str) or unit not in units:
         raise DesignError(
-            f"body.unit is {unit!r}", hint=f"choose one of {', '.join(units)}", at="body.unit"
+            f"body.unit is {shown(unit)}", hint=f"choose one of {', '.join(units)}", at="body.unit"
         )
     if not isinstance(picks, Sequence) or isinstance(picks, str):
         raise DesignError(
-            f"body.picks is {picks!r}, expected a list",
+            f"body.picks is {shown(picks)}, expected a list",
             hint="write picks = [{patch = 3, region = 'actuator_0'}]",
             at="body.picks",
         )
@@ -131,14 +131,14 @@ def without_body(design: SensorDesign) -> SensorDesign:
 def _read(name: Any, label: Any, *, roots: Sequence[Path], enclosed: bool, at: str) -> BodyFile:
     if not isinstance(name, str) or not name:
         raise DesignError(
-            f"{at} is {name!r}, expected the path of a file", hint="write 'file.step'", at=at
+            f"{at} is {shown(name)}, expected the path of a file", hint="write 'file.step'", at=at
         )
     try:
         path = find_file([(root, name) for root in roots], enclosed=enclosed)
         if path is None:
             looked = " and ".join(str(root / name) for root in roots)
             raise DesignError(
-                f"there is no file {str(label or name)!r} for the body of this design",
+                f"there is no file {shown(str(label or name))} for the body of this design",
                 hint=BRING_IT if enclosed else f"looked for {looked}; load the file again",
                 at=at,
             )

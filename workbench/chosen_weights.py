@@ -16,7 +16,7 @@ from typing import Any
 
 from sim.forces.network.spec import Target
 from sim.forces.network.weights import SUFFIX, NetworkWeights, load_weights
-from workbench.core.errors import StoreError
+from workbench.core.errors import StoreError, shown
 from workbench.core.learned import NONE, SHIPPED, LearnedSettings, WeightsFile
 from workbench.shipped import is_shipped, shipped_weights
 
@@ -75,7 +75,8 @@ def about(file: WeightsFile) -> About:
     except (OSError, ValueError) as error:
         # The second: a path of a design file that no system takes.
         raise StoreError(
-            f"cannot read the weights {file.name!r}: {getattr(error, 'strerror', None) or error}",
+            f"cannot read the weights {shown(file.name)}: "
+            f"{getattr(error, 'strerror', None) or error}",
             hint=f"choose other weights, or put the file into the project's folder {FOLDER}",
             at=AT,
         ) from error

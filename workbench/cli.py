@@ -17,7 +17,7 @@ import threading
 import traceback
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 from workbench import (
     __version__,
@@ -27,7 +27,7 @@ from workbench import (
     sweep_command,
     train_command,
 )
-from workbench.core.errors import Cancelled, StoreError, WorkbenchError
+from workbench.core.errors import Cancelled, DesignError, StoreError, WorkbenchError, shown
 from workbench.fem_arguments import add_fem_commands
 from workbench.press_arguments import add_press_options, add_unit_option
 from workbench.project import Project
@@ -44,6 +44,8 @@ NUMBERS = (
     "--to",
 )
 """Options whose value may begin with a minus sign."""
+LONGEST_COMPLAINT, HEAD, TAIL = 600, 160, 60
+"""Characters of a complaint about options; of a longer one those of both ends."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -73,6 +75,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if isinstance(bug, OSError) and bug.errno in (errno.ENOSPC, errno.EDQUOT):
             full = StoreError(f"the disk is full: {bug}", hint="free some space and run again")
             return _print_error(full, as_json=as_json)
+        if isinstance(bug, OSError) and bug.errno == errno.ENAMETOOLONG:
+            long = DesignError(
+                f"the path {shown(bug.filename)} is longer than the file system takes",
+                hint="give a shorter one",
+            )
+            return _print_error(long, as_json=as_json)
         return _print_bug(project)
 
 
@@ -87,6 +95,15 @@ def _terminable() -> Iterator[None]:
         yield
     finally:
         signal.signal(signal.SIGTERM, before)
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser whose complaints repeat no more of a value than its ends."""
+
+    def error(self, message: str) -> NoReturn:
+        """Say what is wrong with the options and exit with 2."""
+        cut = len(message) > LONGEST_COMPLAINT
+        super().error(f"{message[:HEAD]}...{message[-TAIL:]}" if cut else message)
 
 
 def _join_negative(words: list[str]) -> list[str]:
@@ -124,7 +141,7 @@ def _print_bug(project: Project) -> int:
 
 def parser() -> argparse.ArgumentParser:
     """The whole command line."""
-    top = argparse.ArgumentParser(prog="workbench", description=__doc__)
+    top = Parser(prog="workbench", description=__doc__)
     top.add_argument("--version", action="version", version=__version__)
     common = argparse.ArgumentParser(add_help=False)
     common.add_argument(

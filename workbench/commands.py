@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from workbench.core.design import SensorDesign
-from workbench.core.errors import DesignError, DeviceError
+from workbench.core.errors import DesignError, DeviceError, shown
 from workbench.core.results import Solid
 from workbench.core.units import human_seconds
 from workbench.press_arguments import changed_design
@@ -215,7 +215,7 @@ def _print_rows(
 
     if options.room not in rooms:
         raise DesignError(
-            f"there is no room {options.room!r}", hint=suggest(options.room, rooms), at="room"
+            f"there is no room {shown(options.room)}", hint=suggest(options.room, rooms), at="room"
         )
     with listening(heard):
         rows = gathered(options.room, rooms[options.room])

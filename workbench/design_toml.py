@@ -14,7 +14,7 @@ from typing import Any
 
 from workbench.bodies import body_table, check_body, kept_files, read_body_table, without_body
 from workbench.core.design import SCHEMA, SensorDesign
-from workbench.core.errors import DesignError
+from workbench.core.errors import DesignError, shown
 from workbench.core.mapping import from_table, to_table
 from workbench.moduli import with_moduli
 from workbench.photos import (
@@ -74,7 +74,7 @@ def parse_toml(text: str, *, source: str) -> Mapping[str, Any]:
     schema = table.get("schema", SCHEMA)
     if not isinstance(schema, int) or isinstance(schema, bool) or schema < 1:
         raise DesignError(
-            f"{source} has schema {schema!r}", hint=f"write schema = {SCHEMA}", at="schema"
+            f"{source} has schema {shown(schema)}", hint=f"write schema = {SCHEMA}", at="schema"
         )
     if schema > SCHEMA:
         raise DesignError(

@@ -14,7 +14,7 @@ import io
 import os
 from typing import Any
 
-from workbench.core.errors import DeviceError
+from workbench.core.errors import DeviceError, shown
 
 VARIABLE = "WORKBENCH_DEVICE"
 
@@ -40,7 +40,7 @@ def chosen_device() -> str:
     wanted = os.environ.get(VARIABLE, "auto")
     if wanted not in ("auto", "cpu", "cuda"):
         raise DeviceError(
-            f"{VARIABLE} is {wanted!r}", hint="use cpu, cuda, or leave it unset", at="device"
+            f"{VARIABLE} is {shown(wanted)}", hint="use cpu, cuda, or leave it unset", at="device"
         )
     count = cuda_count()
     if wanted == "cuda" and count == 0:

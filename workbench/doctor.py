@@ -45,7 +45,6 @@ OPTIONAL = {
     "pymeshlab": "isotropic remeshing (GPL-3.0)",
     "pypardiso": "fast sparse solver, extra [mkl]",
     "mitsuba": "path-traced reference images, extra [mitsuba]",
-    "distributed": "sweeps on a cluster, extra [cluster]",
 }
 
 UNUSABLE = "UNUSABLE"

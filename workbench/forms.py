@@ -8,7 +8,7 @@ from __future__ import annotations
 from designs.family import Slider, families, family, resolve_shape, sliders
 from workbench.bodies import IMPORTED
 from workbench.core.design import SensorDesign
-from workbench.core.errors import DesignError
+from workbench.core.errors import DesignError, shown
 from workbench.named_designs import load_design as any_design
 from workbench.named_designs import presets
 
@@ -43,7 +43,7 @@ def load_design(name: str) -> SensorDesign:
         DesignError: If it is none: what a page sends must not become the path of a file.
     """
     if name not in choices():
-        raise DesignError(f"one cannot start from {name!r}", hint="choose from the list")
+        raise DesignError(f"one cannot start from {shown(name)}", hint="choose from the list")
     return any_design(name)
 
 

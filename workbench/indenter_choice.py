@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from workbench.core.check import within
-from workbench.core.errors import DesignError
+from workbench.core.errors import DesignError, shown
 from workbench.core.indenter import (
     DEFAULT_EDGE_RADIUS_MM,
     DEFAULT_SIZE_MM,
@@ -71,7 +71,7 @@ def choose_indenter(
     if name.lower().endswith(ENDINGS) or Path(name).exists():
         return of_mesh(load_mesh(Path(name)), size_mm, edge_radius_mm, texture)
     raise DesignError(
-        f"there is no indenter {name!r}",
+        f"there is no indenter {shown(name)}",
         hint=f"{suggest(kind, [*PRIMITIVES, *EVERYDAY])}; or give the path of an STL, OBJ or "
         "STEP file",
         at="indenter",
@@ -92,7 +92,7 @@ def choose_texture(words: str) -> Texture:
         values = [math.nan]
     if len(values) > 2 or not all(math.isfinite(value) for value in values):
         raise DesignError(
-            f"--texture is {words!r}, expected PATTERN or PATTERN:HEIGHT:PITCH in mm",
+            f"--texture is {shown(words)}, expected PATTERN or PATTERN:HEIGHT:PITCH in mm",
             hint="for example --texture waves:0.2:2",
             at=at,
         )
@@ -114,7 +114,7 @@ def choose_texture(words: str) -> Texture:
     plain = [Pattern.NONE.value, Pattern.GRID.value, Pattern.DOTS.value, Pattern.WAVES.value]
     if name not in plain:
         raise DesignError(
-            f"there is no texture {name!r}",
+            f"there is no texture {shown(name)}",
             hint=f"{suggest(name, plain)}; or letters=TEXT, or the path of a greyscale picture",
             at=at,
         )

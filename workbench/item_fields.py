@@ -13,7 +13,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from workbench.core.design import SensorDesign
-from workbench.core.errors import DesignError
+from workbench.core.errors import DesignError, shown
 from workbench.core.mapping import name_item, suggest
 from workbench.led_table import with_count
 
@@ -48,7 +48,7 @@ def with_field(design: SensorDesign, path: str, value: Any) -> SensorDesign:
     items = read_field(design, owner)
     if not 1 <= number <= len(items):
         raise DesignError(
-            f"{owner} has {len(items)} items, so there is no {path!r}",
+            f"{owner} has {len(items)} items, so there is no {shown(path)}",
             hint="add one first",
             at=owner,
         )
@@ -66,7 +66,7 @@ def _replaced(item: Any, steps: list[str], value: Any, at: str) -> Any:
     names: list[str] = [*getattr(item, "__dataclass_fields__", ())]
     where = f"{at}.{head}"
     if head not in names:
-        raise DesignError(f"there is no field {where!r}", hint=suggest(head, names), at=where)
+        raise DesignError(f"there is no field {shown(where)}", hint=suggest(head, names), at=where)
     inner = _replaced(getattr(item, head), rest, value, where) if rest else value
     return dataclasses.replace(item, **{head: inner})
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from workbench.array_files import read_arrays
 from workbench.core.digest import digest
-from workbench.core.errors import DesignError
+from workbench.core.errors import DesignError, shown
 from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
 from workbench.core.mapping import from_table, to_table
 from workbench.core.soft_body import SoftBody
@@ -143,5 +143,5 @@ def _check_faces(*, points_mm: np.ndarray, faces: np.ndarray) -> None:
 
 def _path(project: Project, key: str) -> Path:
     if not key.isalnum():
-        raise DesignError(f"{key!r} is not the key of a mesh", hint="load it again", at=AT)
+        raise DesignError(f"{shown(key)} is not the key of a mesh", hint="load it again", at=AT)
     return project.folder / "indenters" / f"{key}.npz"

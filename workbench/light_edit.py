@@ -9,7 +9,7 @@ import re
 
 import numpy as np
 
-from workbench.core.errors import DesignError
+from workbench.core.errors import DesignError, shown
 from workbench.core.lighting import HEX, SPECTRUM, TEMPERATURE, Lamp, LampKind, LedRing, LightModel
 
 NAMED = {
@@ -60,7 +60,7 @@ def _code(word: str, *, at: str) -> str:
     """A colour as the design writes it; numbers out of their range the design refuses."""
     colour = NAMED.get(word.lower(), word)
     if not any(form.fullmatch(colour) for form in (HEX, SPECTRUM, TEMPERATURE)):
-        raise DesignError(f"{word!r} is not a colour", hint=ALLOWED, at=at)
+        raise DesignError(f"{shown(word)} is not a colour", hint=ALLOWED, at=at)
     return colour
 
 
@@ -95,7 +95,7 @@ def read_numbers(text: str, *, at: str) -> tuple[float, ...]:
         return tuple(float(word) for word in words)
     except ValueError as error:
         raise DesignError(
-            f"{text!r} is not a list of numbers", hint="for example: -0.12, 0.01, 0, 0", at=at
+            f"{shown(text)} is not a list of numbers", hint="for example: -0.12, 0.01, 0, 0", at=at
         ) from error
 
 

@@ -14,7 +14,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from workbench.core.design import Elastomer
-from workbench.core.errors import DesignError
+from workbench.core.errors import DesignError, shown
 
 CONSTANTS = ("c10_MPa", "d1_per_MPa")
 MODULI = ("young_MPa", "poisson")
@@ -32,7 +32,7 @@ def with_moduli(material: Any) -> Any:
         value = material.get(name)
         if isinstance(value, bool) or not isinstance(value, (int, float)):
             raise DesignError(
-                f"material.{name} is {value!r}, and C10 and D1 need each other as numbers",
+                f"material.{name} is {shown(value)}, and C10 and D1 need each other as numbers",
                 hint="give both c10_MPa and d1_per_MPa, or young_MPa and poisson",
                 at=f"material.{name}",
             )

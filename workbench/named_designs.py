@@ -9,7 +9,7 @@ from typing import Any
 
 from workbench.bodies import ENDINGS, design_of_file
 from workbench.core.design import SensorDesign
-from workbench.core.errors import DesignError
+from workbench.core.errors import DesignError, shown
 from workbench.core.mapping import suggest
 from workbench.design_toml import design_from_toml
 from workbench.project import Project
@@ -56,7 +56,7 @@ def load_design(name: str, *, unit: str = "auto", project: Project | None = None
         roots = (beside, beside.parent, *kept)
         return design_from_toml(_read(path), source=name, roots=roots)
     raise DesignError(
-        f"there is no preset, family, TOML, STL or STEP file named {name!r}",
+        f"there is no preset, family, TOML, STL or STEP file named {shown(name)}",
         hint=suggest(name, {*presets(), *families()}),
         at="design",
     )

@@ -16,7 +16,7 @@ from typing import Any
 
 from workbench.core.camera import Camera
 from workbench.core.design import SensorDesign
-from workbench.core.errors import DesignError
+from workbench.core.errors import DesignError, shown
 from workbench.core.mapping import suggest
 from workbench.core.photo import MOST_BYTES, Photo, photo
 from workbench.named_files import BRING_IT, find_file
@@ -59,14 +59,14 @@ def read_photo(
     """
     if not isinstance(name, str) or not name:
         raise DesignError(
-            f"{at} is {name!r}, expected the path of a picture", hint="write 'idle.png'", at=at
+            f"{at} is {shown(name)}, expected the path of a picture", hint="write 'idle.png'", at=at
         )
     if name.startswith(BUILTIN):
         known = shipped_photos()
         short = name.removeprefix(BUILTIN)
         if short not in known:
             raise DesignError(
-                f"there is no shipped picture {short!r}", hint=suggest(short, known), at=at
+                f"there is no shipped picture {shown(short)}", hint=suggest(short, known), at=at
             )
         return known[short]
     folders = [folder for root in roots for folder in (root, root / FOLDER)]
@@ -76,7 +76,7 @@ def read_photo(
             places = " and ".join(str(f / name) for f in folders) or "shipped pictures only"
             looked = f"looked for {places}; put it there, or write builtin:NAME"
             raise DesignError(
-                f"there is no picture file {name!r}",
+                f"there is no picture file {shown(name)}",
                 hint=BRING_IT if enclosed else looked,
                 at=at,
             )

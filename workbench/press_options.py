@@ -12,7 +12,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from workbench.core.design import SensorDesign
-from workbench.core.errors import DesignError
+from workbench.core.errors import DesignError, shown
 from workbench.core.indenter import Indenter, IndenterKind
 from workbench.core.motion import Mover
 from workbench.core.press import Extent, Method, Press
@@ -192,7 +192,7 @@ def _numbers(text: str, *, at: str) -> Any:
         values = ()
     if len(values) != count:
         raise DesignError(
-            f"{at} is {text!r}, expected {count} numbers separated by commas: {what}",
+            f"{at} is {shown(text)}, expected {count} numbers separated by commas: {what}",
             hint=f"for example {at} {example}",
             at=at,
         )

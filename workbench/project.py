@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import Any
 
 from workbench.core.design import SensorDesign
-from workbench.core.errors import DesignError, StoreError
+from workbench.core.errors import DesignError, StoreError, shown
 from workbench.design_toml import design_files, design_to_toml
 from workbench.names import LONGEST, is_name
 from workbench.store import Store
@@ -46,7 +46,7 @@ class Project:
         """
         if not is_name(name):
             raise DesignError(
-                f"{name!r} cannot be a design name",
+                f"{shown(name)} cannot be a design name",
                 hint=f"use letters, digits, spaces and dashes, at most {LONGEST}",
                 at="name",
             )

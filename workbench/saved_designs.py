@@ -11,7 +11,7 @@ import contextlib
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from workbench.core.errors import DesignError, WorkbenchError
+from workbench.core.errors import DesignError, WorkbenchError, shown
 from workbench.design_toml import design_to_toml
 from workbench.names import AUTOSAVE
 from workbench.pipeline import plan
@@ -96,7 +96,9 @@ def save_named(project: Project, state: State) -> Path:
     path = project.design_path(name)
     if name == AUTOSAVE:
         raise DesignError(
-            f"{name!r} is what the workbench calls its own copy", hint="choose another", at="name"
+            f"{shown(name)} is what the workbench calls its own copy",
+            hint="choose another",
+            at="name",
         )
     project.keep_files(state.design)
     press = case_table(state.case, project)
@@ -168,7 +170,9 @@ def _bytes(path: Path) -> bytes:
         return path.read_bytes()
     except OSError as error:
         raise DesignError(
-            f"there is no readable design {path.stem!r}: {error}", hint="choose another", at="name"
+            f"there is no readable design {shown(path.stem)}: {error}",
+            hint="choose another",
+            at="name",
         ) from error
 
 

@@ -21,7 +21,7 @@ from typing import Any
 from designs.sequence import Sequence
 from workbench.core.actuation import Actuation
 from workbench.core.design import SensorDesign
-from workbench.core.errors import DesignError
+from workbench.core.errors import DesignError, shown
 from workbench.core.indenter import Indenter
 from workbench.core.mapping import suggest
 from workbench.core.motion import hold, release
@@ -68,7 +68,7 @@ def sequence(
     if name not in known:
         hint = suggest(name, known) if known else "the trunk has one: grip"
         raise DesignError(
-            f"the {design.family} has no sequence {name!r}", hint=hint, at="--sequence"
+            f"the {design.family} has no sequence {shown(name)}", hint=hint, at="--sequence"
         )
     chosen = known[name]
     count = FRAMES if frames is None else frames

@@ -13,7 +13,7 @@ import numpy as np
 from sim.forces.network.spec import Target
 from workbench.chosen_weights import chosen
 from workbench.core.design import SensorDesign
-from workbench.core.errors import DesignError
+from workbench.core.errors import DesignError, shown
 from workbench.core.force_field import ForceField, Source
 from workbench.core.mapping import suggest
 from workbench.force_sources import Forces, disagreement, totals
@@ -41,7 +41,9 @@ def asked_sources(text: str) -> tuple[Source, ...]:
     for name in names:
         if name not in known:
             raise DesignError(
-                f"there is no source {name!r} of forces", hint=suggest(name, known), at="--sources"
+                f"there is no source {shown(name)} of forces",
+                hint=suggest(name, known),
+                at="--sources",
             )
     return tuple(source for source in Source if source.value in names)
 

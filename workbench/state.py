@@ -14,7 +14,7 @@ from typing import Any
 from workbench.aim import default_target_mm
 from workbench.chosen_weights import from_project, to_project
 from workbench.core.design import SensorDesign
-from workbench.core.errors import DesignError
+from workbench.core.errors import DesignError, shown
 from workbench.core.fem import FemSettings
 from workbench.core.indenter import Indenter
 from workbench.core.learned import LearnedSettings
@@ -76,7 +76,7 @@ def read_state(text: str, project: Project, *, source: str, enclosed: bool = Fal
     table = parse_toml(text, source=source).get("press_case", {})
     if not isinstance(table, Mapping):
         raise DesignError(
-            f"press_case is {table!r}, expected a table", hint="remove it", at="press_case"
+            f"press_case is {shown(table)}, expected a table", hint="remove it", at="press_case"
         )
     known = {
         name: from_table(kind, table[name], at=f"press_case.{name}")

@@ -8,7 +8,7 @@ approach.
 
 from __future__ import annotations
 
-from workbench.core.errors import DesignError
+from workbench.core.errors import DesignError, shown
 from workbench.core.mapping import suggest
 from workbench.core.motion import (
     Stroke,
@@ -61,7 +61,7 @@ def read_stroke(text: str, *, frames: int) -> Stroke:
     kinds = [kind.value for kind in StrokeKind]
     if name not in kinds:
         raise DesignError(
-            f"there is no stroke {name!r}",
+            f"there is no stroke {shown(name)}",
             hint=f"{suggest(name, kinds)}; for example {EXAMPLES[StrokeKind.SLIDE]}",
             at=AT,
         )
@@ -112,7 +112,7 @@ def _numbers(text: str, kind: StrokeKind, words: str) -> tuple[float, ...]:
 
 def _unreadable(text: str, kind: StrokeKind) -> DesignError:
     return DesignError(
-        f"the stroke {text!r} cannot be read",
+        f"the stroke {shown(text)} cannot be read",
         hint=f"KIND:AMOUNT[:FRAMES], for example {EXAMPLES[kind]}",
         at=AT,
     )

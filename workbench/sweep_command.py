@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from workbench.aim import default_target_mm, with_fitting_ring
-from workbench.core.errors import Cancelled, DesignError, WorkbenchError
+from workbench.core.errors import Cancelled, DesignError, WorkbenchError, shown
 from workbench.core.mapping import suggest
 from workbench.core.units import human_seconds
 from workbench.design_toml import parse_toml
@@ -42,7 +42,7 @@ def sweep(options: argparse.Namespace, project: Project) -> int:
 
     if options.metric and options.metric not in RULES:
         hint = suggest(options.metric, RULES)
-        raise DesignError(f"there is no figure {options.metric!r}", hint=hint, at="--metric")
+        raise DesignError(f"there is no figure {shown(options.metric)}", hint=hint, at="--metric")
     printer = Progress(as_json=options.json)
     what = make_sweep(
         "sweep",

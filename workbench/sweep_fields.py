@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from workbench.aim import default_target_mm
-from workbench.core.errors import DesignError
+from workbench.core.errors import DesignError, shown
 from workbench.core.mapping import suggest
 from workbench.design_toml import check_design
 from workbench.forms import resolve_shape, sliders
@@ -107,7 +107,7 @@ def find_field(state: State, path: str) -> SweepField:
     known = {field.path: field for field in sweep_fields(state)}
     full = path if path.startswith(("design.", "case.")) else f"design.{path}"
     if full not in known:
-        raise DesignError(f"{path!r} cannot be swept", hint=suggest(full, known), at="--field")
+        raise DesignError(f"{shown(path)} cannot be swept", hint=suggest(full, known), at="--field")
     return known[full]
 
 

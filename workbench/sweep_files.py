@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from workbench.core.errors import DesignError
+from workbench.core.errors import DesignError, shown
 from workbench.design_toml import design_to_toml
 from workbench.project import Project
 from workbench.score_card import finite_figures
@@ -89,7 +89,7 @@ def load_sweep(project: Project, name: str) -> Sweep:
     except (OSError, ValueError, KeyError, AttributeError, TypeError) as error:
         what = f"it has no {error}" if isinstance(error, KeyError) else str(error)
         raise DesignError(
-            f"sweep {name!r} cannot be read: {what}", hint=f"see {path}", at="sweep"
+            f"sweep {shown(name)} cannot be read: {what}", hint=f"see {path}", at="sweep"
         ) from error
     base = read_state(text, project, source=str(path))
     sweep = Sweep(name=name, base=base, path=field, points=points, parts=parts)

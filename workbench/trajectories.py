@@ -18,7 +18,7 @@ from pathlib import Path
 
 import numpy as np
 
-from workbench.core.errors import DesignError
+from workbench.core.errors import DesignError, shown
 from workbench.core.mapping import suggest
 from workbench.core.motion import Mover
 from workbench.core.poses import composed, inverses, sensor_poses
@@ -101,7 +101,7 @@ def _rows(path: Path) -> list[tuple[int, list[str]]]:
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         reason = getattr(error, "strerror", None) or error
         raise DesignError(
-            f"the trajectory {str(path)!r} cannot be read: {reason}",
+            f"the trajectory {shown(str(path))} cannot be read: {reason}",
             hint=f"give a CSV file; {FORM}",
             at=AT,
         ) from error
@@ -132,7 +132,7 @@ def _number(
         value = math.nan
     if not math.isfinite(value):
         raise DesignError(
-            f"{path.name}, row {row} (line {line}), column {header[place]}: {text!r} is not a "
+            f"{path.name}, row {row} (line {line}), column {header[place]}: {shown(text)} is not a "
             "finite number",
             hint="write plain numbers with a point, for example -1.25",
             at=AT,

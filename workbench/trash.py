@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from workbench.core.errors import DesignError, StoreError
+from workbench.core.errors import DesignError, StoreError, shown
 from workbench.names import numbered
 
 TRASH = "trash"
@@ -29,7 +29,7 @@ def trash_file(folder: Path, name: str, *, what: str) -> str:
         StoreError: If the folder cannot be written.
     """
     if name not in file_names(folder):
-        raise DesignError(f"there is no {what} {name!r}", hint="it is gone already", at=what)
+        raise DesignError(f"there is no {what} {shown(name)}", hint="it is gone already", at=what)
     return _move(folder, folder / TRASH, name)
 
 
@@ -42,7 +42,7 @@ def restore_file(folder: Path, kept: str, *, what: str) -> str:
     """
     if kept not in file_names(folder / TRASH):
         hint = f"look in {folder / TRASH}"
-        raise DesignError(f"the trash has no {what} {kept!r}", hint=hint, at=what)
+        raise DesignError(f"the trash has no {what} {shown(kept)}", hint=hint, at=what)
     return _move(folder / TRASH, folder, kept)
 
 

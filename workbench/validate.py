@@ -9,7 +9,7 @@ import functools
 from collections.abc import Callable
 from pathlib import Path
 
-from workbench.core.errors import DesignError
+from workbench.core.errors import DesignError, shown
 from workbench.rows import Row
 from workbench.validation import (
     calculix,
@@ -49,7 +49,7 @@ def room_of(room: str, reference: str) -> str:
         return f"{room}_{reference}"
     known = ", ".join(f"{room} has {name}" for room, name in REFERENCES)
     raise DesignError(
-        f"the room {room!r} has no reference {reference!r}",
+        f"the room {shown(room)} has no reference {shown(reference)}",
         hint=f"of the rooms {known}",
         at="--reference",
     )
@@ -63,6 +63,8 @@ def with_data(room: str, data: Path) -> dict[str, Callable[[], list[Row]]]:
     """
     if room != "forces":
         raise DesignError(
-            f"the room {room!r} measures on no data set", hint="use --data with forces", at="--data"
+            f"the room {shown(room)} measures on no data set",
+            hint="use --data with forces",
+            at="--data",
         )
     return {**ROOMS, room: functools.partial(forces.rows, data)}

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from workbench.core.errors import WorkbenchError
+from workbench.core.errors import WorkbenchError, shown
 from workbench.names import numbered
 from workbench.project import Project
 from workbench.trash import file_names, move_file, restore_file, trash_file
@@ -70,7 +70,7 @@ def _entry(project: Project, name: str) -> Entry:
         return Entry(name=name, variant=variant, planned=planned_keys(variant.state))
     except WorkbenchError as error:
         # The list has the name before the reason.
-        reason = error.message.removeprefix(f"variant {name!r} cannot be read: ")
+        reason = error.message.removeprefix(f"variant {shown(name)} cannot be read: ")
         reason = reason.replace(repr(name), "its name", 1)
         return Entry(name=name, variant=None, reason=reason)
 

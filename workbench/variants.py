@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from workbench import __version__
-from workbench.core.errors import DesignError
+from workbench.core.errors import DesignError, shown
 from workbench.design_toml import design_to_toml
 from workbench.pipeline import plan
 from workbench.project import Project
@@ -64,7 +64,7 @@ def variant_path(project: Project, name: str) -> Path:
         return folder(project) / project.design_path(name).name
     # The design's own name is another field: the message must not land there.
     raise DesignError(
-        f"{name!r} cannot be what a variant is called",
+        f"{shown(name)} cannot be what a variant is called",
         hint="use letters, digits, spaces and dashes, at most 80",
         at="variant",
     )
@@ -146,7 +146,7 @@ def load_variant(project: Project, name: str) -> Variant:
     except (OSError, ValueError, KeyError, AttributeError, TypeError) as error:
         what = f"it has no {error}" if isinstance(error, KeyError) else str(error)
         raise DesignError(
-            f"variant {name!r} cannot be read: {what}", hint=f"see {path}", at="variant"
+            f"variant {shown(name)} cannot be read: {what}", hint=f"see {path}", at="variant"
         ) from error
     state = read_state(text, project, source=str(path))
     named = State(design=dataclasses.replace(state.design, name=name), case=state.case)
@@ -174,7 +174,7 @@ def _fields(table: Mapping[str, Any]) -> dict[str, Any]:
 def _key(key: Any) -> str:
     # A key becomes part of a path in the store.
     if not str(key).isalnum():
-        raise ValueError(f"{key!r} is not the key of a result")
+        raise ValueError(f"{shown(key)} is not the key of a result")
     return str(key)
 
 
@@ -216,7 +216,7 @@ def stored_keys(
 def refuse_taken(path: Path) -> None:
     if path.exists():
         raise DesignError(
-            f"there is a variant {path.stem!r} already",
+            f"there is a variant {shown(path.stem)} already",
             hint="choose another name, or rename the other one first",
             at="variant",
         )

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from workbench.core.errors import DesignError
+from workbench.core.errors import DesignError, shown
 
 
 def expect(array: np.ndarray, shape: str, *, name: str = "array") -> np.ndarray:
@@ -46,7 +46,9 @@ def within(
     span = f"{low:g} to {high:g} {unit}".strip()
     hint = hint or f"choose a value from {span}"
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
-        raise DesignError(f"{what} is {value!r}, which is not a finite number", hint=hint, at=at)
+        raise DesignError(
+            f"{what} is {shown(value)}, which is not a finite number", hint=hint, at=at
+        )
     if not low <= value <= high:
         given = f"{value:g} {unit}".strip()
         raise DesignError(f"{what} {given} is outside {span}", hint=hint, at=at)

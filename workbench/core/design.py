@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from typing import Any, cast
 
 from workbench.core.check import within
-from workbench.core.errors import DesignError
+from workbench.core.errors import DesignError, shown
 from workbench.core.imported import ImportedBody
 from workbench.core.inclusion import Inclusion
 from workbench.core.making import Casting, Housing, MouldOptions
@@ -181,6 +181,6 @@ def _replace(owner: Any, path: list[str], value: Any, dotted: str) -> Any:
     if isinstance(owner, Mapping):
         return {**cast("Mapping[str, Any]", owner), head: value}
     if head not in {f.name for f in dataclasses.fields(owner)}:
-        raise DesignError(f"there is no field {dotted!r}", hint="see the README", at=dotted)
+        raise DesignError(f"there is no field {shown(dotted)}", hint="see the README", at=dotted)
     inner = _replace(getattr(owner, head), rest, value, dotted) if rest else value
     return dataclasses.replace(owner, **{head: inner})

@@ -8,6 +8,23 @@ from __future__ import annotations
 
 from typing import Any
 
+LONGEST_ECHO = 80
+"""Characters of a value that a message repeats: a file may hold 100 KB where a number is due."""
+HEAD, TAIL = 50, 27
+
+
+def shown(value: object) -> str:
+    """A value as Python writes it, for a message; of a long one 80 characters of both ends.
+
+    The end stays because it is what tells one path from another.
+    """
+    return shortened(repr(value))
+
+
+def shortened(text: str) -> str:
+    """A text of at most 80 characters: a longer one loses its middle."""
+    return text if len(text) <= LONGEST_ECHO else f"{text[:HEAD]}...{text[-TAIL:]}"
+
 
 class WorkbenchError(Exception):
     """Base of every error we raise on purpose."""
@@ -19,7 +36,7 @@ class WorkbenchError(Exception):
         super().__init__(message)
         self.message = message
         self.hint = hint
-        self.at = at
+        self.at = shortened(at)
 
     def __reduce__(self) -> tuple[Any, ...]:
         # Exceptions with keyword fields lose them across a process boundary unless told how.

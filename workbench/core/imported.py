@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from workbench.core.check import expect
-from workbench.core.errors import DesignError
+from workbench.core.errors import DesignError, shown
 
 
 class FileKind(enum.StrEnum):
@@ -78,7 +78,7 @@ class Pick:
         numbered = head == "actuator" and number.isascii() and number.isdigit()
         if self.region != "base" and not (numbered and len(number) < 4):
             raise DesignError(
-                f"a picked face cannot be {self.region!r}",
+                f"a picked face cannot be {shown(self.region)}",
                 hint="choose base, actuator_0, actuator_1 ... actuator_999",
                 at="body.picks",
             )

@@ -8,7 +8,7 @@ import re
 from dataclasses import dataclass
 
 from workbench.core.check import within
-from workbench.core.errors import DesignError
+from workbench.core.errors import DesignError, shown
 
 Vector = tuple[float, float, float]
 
@@ -87,7 +87,7 @@ def check_colour(colour: str, *, at: str) -> None:
         within(kelvin, 1000.0, 20000.0, what="colour temperature", unit="K", at=at)
     elif not HEX.fullmatch(colour):
         raise DesignError(
-            f"LED colour {colour!r} is not of the form #rrggbb, 525nm, 525nm/35nm or 5600K",
+            f"LED colour {shown(colour)} is not of the form #rrggbb, 525nm, 525nm/35nm or 5600K",
             hint="for example #ff0000 for red",
             at=at,
         )

@@ -13,7 +13,7 @@ import typing
 from collections.abc import Mapping
 from typing import Any, cast
 
-from workbench.core.errors import DesignError
+from workbench.core.errors import DesignError, shown
 
 LARGEST_INTEGER = 2**53
 """Beyond it a float no longer holds every integer, and far beyond none at all."""
@@ -27,7 +27,7 @@ def from_table(cls: type[Any], table: Any, *, at: str = "") -> Any:
     """
     if not isinstance(table, Mapping):
         raise DesignError(
-            f"{at or 'the design'} is {table!r}, expected a table of fields",
+            f"{at or 'the design'} is {shown(table)}, expected a table of fields",
             hint="write it as [table] in TOML",
             at=at,
         )
@@ -37,13 +37,15 @@ def from_table(cls: type[Any], table: Any, *, at: str = "") -> Any:
     for name, raw in cast("Mapping[str, Any]", table).items():
         where = f"{at}.{name}" if at else name
         if name not in names:
-            raise DesignError(f"there is no field {where!r}", hint=suggest(name, names), at=where)
+            raise DesignError(
+                f"there is no field {shown(where)}", hint=suggest(name, names), at=where
+            )
         values[name] = _convert(hints[name], raw, where)
     missing = dataclasses.MISSING
     for field in dataclasses.fields(cls):
         if field.name not in values and field.default is field.default_factory is missing:
             raise DesignError(
-                f"{at or 'the design'} has no {field.name!r}",
+                f"{at or 'the design'} has no {shown(field.name)}",
                 hint=f"add {field.name} = ... to it",
                 at=f"{at}.{field.name}" if at else field.name,
             )
@@ -68,7 +70,7 @@ def suggest(name: str, known: typing.Iterable[str]) -> str:
     """A remedy for a misspelt name: the nearest known one, else all of them."""
     choices = sorted(known)
     near = difflib.get_close_matches(name, choices, n=1)
-    return f"did you mean {near[0]!r}?" if near else f"known: {', '.join(choices)}"
+    return f"did you mean '{near[0]}'?" if near else f"known: {', '.join(choices)}"
 
 
 def _convert(hint: Any, raw: Any, at: str) -> Any:
@@ -81,7 +83,7 @@ def _convert(hint: Any, raw: Any, at: str) -> Any:
     if isinstance(hint, type) and issubclass(hint, enum.Enum):
         values = [str(member.value) for member in hint]
         if raw not in values:
-            raise DesignError(f"{at} is {raw!r}", hint=suggest(str(raw), values), at=at)
+            raise DesignError(f"{at} is {shown(raw)}", hint=suggest(str(raw), values), at=at)
         return hint(raw)
     if origin is tuple:
         return _tuple(typing.get_args(hint), raw, at)
@@ -100,7 +102,7 @@ def _convert(hint: Any, raw: Any, at: str) -> Any:
         or (hint is int and raw in (True, False) and isinstance(raw, bool))
     ):
         raise DesignError(
-            f"{at} is {raw!r}, expected {hint.__name__}", hint="see the README", at=at
+            f"{at} is {shown(raw)}, expected {hint.__name__}", hint="see the README", at=at
         )
     return raw
 
@@ -108,7 +110,7 @@ def _convert(hint: Any, raw: Any, at: str) -> Any:
 def _table(raw: Any, at: str) -> Mapping[str, Any]:
     if not isinstance(raw, Mapping):
         raise DesignError(
-            f"{at} is {raw!r}, expected a table", hint=f"write it as [{at}] in TOML", at=at
+            f"{at} is {shown(raw)}, expected a table", hint=f"write it as [{at}] in TOML", at=at
         )
     return cast("Mapping[str, Any]", raw)
 
@@ -119,7 +121,7 @@ def _tuple(parts: tuple[Any, ...], raw: Any, at: str) -> tuple[Any, ...]:
     if items is None or (not open_ended and len(items) != len(parts)):
         count = "values" if open_ended else f"{len(parts)} values"
         raise DesignError(
-            f"{at} is {raw!r}, expected a list of {count}", hint="see the README", at=at
+            f"{at} is {shown(raw)}, expected a list of {count}", hint="see the README", at=at
         )
     kinds = [parts[0]] * len(items) if open_ended else list(parts)
     if open_ended and dataclasses.is_dataclass(parts[0]):

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from workbench.core.check import expect, within
-from workbench.core.errors import DesignError
+from workbench.core.errors import DesignError, shown
 
 
 class Pattern(enum.StrEnum):
@@ -120,7 +120,8 @@ class Texture:
         fits = 0 < len(self.text) <= LONGEST_TEXT
         if not fits or not all(" " <= c <= "~" for c in self.text) or not self.text.strip():
             raise DesignError(
-                f"the texture says {self.text!r}; it takes 1 to {LONGEST_TEXT} plain characters",
+                f"the texture says {shown(self.text)}; it takes 1 to {LONGEST_TEXT} plain "
+                "characters",
                 hint="use letters, digits and punctuation of ASCII",
                 at="indenter.texture.text",
             )

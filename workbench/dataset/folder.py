@@ -30,7 +30,7 @@ from typing import Any
 import numpy as np
 
 from workbench.core.digest import digest
-from workbench.core.errors import StoreError
+from workbench.core.errors import StoreError, shown
 from workbench.core.results import Skin
 from workbench.dataset.cases import Case, Split, case_of_row
 from workbench.dataset.recipe import table_key
@@ -211,7 +211,7 @@ def _manifest(folder: Path) -> dict[str, Any]:
         raise _changed(folder, f"{MANIFEST} cannot be read: {error!r}") from error
     if found != FORMAT:
         raise StoreError(
-            f"the data set {folder} has format {found!r}, made by program "
+            f"the data set {folder} has format {shown(found)}, made by program "
             f"{manifest.get('program', 'unknown')}; this one reads format {FORMAT}",
             hint="use the program that made it, or make it anew in another folder",
             at=str(folder),

@@ -25,7 +25,7 @@ import numpy as np
 
 from workbench.algorithms import BASE_MM, GRID_MM, PATHS, TIP_DEG
 from workbench.core.design import SensorDesign
-from workbench.core.errors import DesignError
+from workbench.core.errors import DesignError, shown
 from workbench.core.results import Skin
 from workbench.core.units import radians
 
@@ -127,8 +127,8 @@ def _shape(design: SensorDesign, pattern: Pattern) -> Any:
 
     if design.family != pattern.value:
         raise DesignError(
-            f"the {pattern.value} pattern is for the family {pattern.value!r}, this design is of "
-            f"the family {design.family!r}",
+            f"the {pattern.value} pattern is for that family, this design is of the "
+            f"family {shown(design.family)}",
             hint="use pattern spread, which takes any membrane",
             at="recipe.pattern",
         )

@@ -18,7 +18,7 @@ from typing import Any
 from workbench.core.check import within
 from workbench.core.design import SensorDesign
 from workbench.core.digest import digest
-from workbench.core.errors import DesignError
+from workbench.core.errors import DesignError, shown
 from workbench.core.fem import DRAFT_MM, QUALITY_MM
 from workbench.core.indenter import (
     DEFAULT_EDGE_RADIUS_MM,
@@ -229,7 +229,9 @@ def load_recipe(name: str, project: Any = None) -> Recipe:
         return recipe_from_toml(text, source=name, project=project)
     path = Path(name)
     if path.suffix != ".toml":
-        raise DesignError(f"there is no recipe {name!r}", hint=suggest(name, RECIPES), at="recipe")
+        raise DesignError(
+            f"there is no recipe {shown(name)}", hint=suggest(name, RECIPES), at="recipe"
+        )
     try:
         text = kept_text(path)
     except (OSError, ValueError) as error:

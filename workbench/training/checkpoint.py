@@ -11,7 +11,7 @@ import pickle
 from pathlib import Path
 from typing import Any
 
-from workbench.core.errors import StoreError
+from workbench.core.errors import StoreError, shown
 from workbench.whole_files import write_atomically
 
 FORMAT = 1
@@ -58,7 +58,7 @@ def read_checkpoint(folder: Path, key: str) -> dict[str, Any] | None:
         ) from error
     if found != FORMAT:
         raise StoreError(
-            f"the checkpoint {path} has format {found!r}, this program reads {FORMAT}",
+            f"the checkpoint {path} has format {shown(found)}, this program reads {FORMAT}",
             hint="go on with the program that began it, or train in another folder",
             at=str(path),
         )

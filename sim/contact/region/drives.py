@@ -6,7 +6,7 @@ import numpy as np
 
 from sim.contact.region.quadrature import SurfacePoints
 from workbench.core.actuation import Actuation
-from workbench.core.errors import DesignError
+from workbench.core.errors import DesignError, shown
 from workbench.core.press import Press
 from workbench.core.results import MembraneMesh, Skin, region_masks
 
@@ -30,7 +30,7 @@ def driven_faces(mesh: MembraneMesh, press: Press) -> tuple[np.ndarray, np.ndarr
         if not any(mask.any() for mask in chosen):
             names = ", ".join(sorted(set(regions[0]) | set(regions[1])))
             raise DesignError(
-                f"the membrane has no region {actuation.region!r} to drive; it has {names}",
+                f"the membrane has no region {shown(actuation.region)} to drive; it has {names}",
                 hint="name one of them, or choose a family with actuators, such as the trunk",
                 at="press.actuations",
             )

@@ -17,7 +17,7 @@ from sim.forces.network.kernel_maps import KernelMaps
 from sim.forces.network.layers import Block, Down, Stem, Up, activated, norm
 from sim.forces.network.spec import DEPTH, NetworkSpec, Norm
 from sim.forces.network.weights import NetworkWeights
-from workbench.core.errors import StoreError
+from workbench.core.errors import StoreError, shown
 
 
 class MinkUNet(nn.Module):
@@ -119,7 +119,7 @@ def network_of(weights: NetworkWeights) -> MinkUNet:
         network.load_state_dict(state)
     except RuntimeError as error:
         raise StoreError(
-            f"the weights do not fit the network {weights.spec.name!r} that they describe",
+            f"the weights do not fit the network {shown(weights.spec.name)} that they describe",
             hint="train the network again with this version",
             at="weights",
         ) from error
