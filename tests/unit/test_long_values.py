@@ -87,7 +87,7 @@ def test_no_field_echoes_a_long_value(cls: Any, value: Any) -> None:
 def test_no_option_echoes_a_long_value(
     words: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Exit 2 (3 of weights that cannot be read), and no line of more than a few hundred characters."""
+    """Exit 2, or 3 of weights that cannot be read, and no line of more than 600 characters."""
     common = ["--out", str(tmp_path / "out"), "--project", str(tmp_path / "project")]
     try:
         code = main(["run", "geltip", *common, *words])
