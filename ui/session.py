@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from workbench.core.design import SensorDesign
-from workbench.core.errors import WorkbenchError
+from workbench.core.errors import DamagedError, WorkbenchError
 from workbench.core.indenter import Indenter
 from workbench.design_toml import check_design, design_from_toml
 from workbench.item_fields import with_field
@@ -184,11 +184,14 @@ class Session:
         return {name: self.store.has(name, calls[name].key) for name in EVERYTHING if name in calls}
 
     def result(self, stage: str) -> Any:
-        """The stored result of a stage for the state as it stands, or None."""
+        """The stored result of a stage for the state as it stands, or None; of a damaged one too."""
         call = self.calls().get(stage)
         if call is None or not self.store.has(stage, call.key):
             return None
-        return self.store.load(stage, call.key)
+        try:
+            return self.store.load(stage, call.key)
+        except DamagedError:
+            return None
 
     def autosave(self, state: State | None = None) -> None:
         """Keep a state, by default the one that stands, for the next start.

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+from workbench.core.errors import DamagedError
 from workbench.stages import Outcome
 
 if TYPE_CHECKING:
@@ -67,7 +69,9 @@ class Showing:
         if self._keys.get(stage) == key:
             return
         if stage not in HEAVY:
-            self._put(stage, key, self.desk.session.store.load(stage, key))
+            # Damaged since it was looked into: the store has said so, and it is not there any more.
+            with contextlib.suppress(DamagedError):
+                self._put(stage, key, self.desk.session.store.load(stage, key))
         elif self._fetched.get(stage) != key:
             self.fetch(stage, key, lambda result: self._arrived(stage, key, result))
 

@@ -13,6 +13,7 @@ from typing import Any, Protocol, TypeVar
 
 from workbench.bodies import IMPORTED, check_body
 from workbench.core.design import Elastomer, SensorDesign
+from workbench.core.errors import DamagedError
 from workbench.core.fem import FemSettings
 from workbench.core.indenter import EDGELESS, Indenter
 from workbench.core.learned import LearnedSettings
@@ -205,12 +206,25 @@ def evaluate(
 ) -> Iterator[Outcome]:
     """Run the wanted stages and what they need; yield each outcome as it comes.
 
+    A result that turns out to be damaged when a later stage reads it is computed again.
+
     Raises:
         WorkbenchError: From the first stage that fails; earlier results stay stored.
     """
     calls = plan(design, case)
-    for name in needed(calls, wanted):
-        yield runner.run(calls[name], stage_monitor(monitor, name))
+    names = needed(calls, wanted)
+    waiting, healed = list(names), 0
+    while waiting:
+        try:
+            yield runner.run(calls[waiting[0]], stage_monitor(monitor, waiting[0]))
+        except DamagedError as error:
+            # Each time one is set aside: more often than there are stages is another fault.
+            healed += 1
+            if healed > len(names):
+                raise
+            waiting = [name for name in (error.at,) if name in calls] + waiting
+        else:
+            del waiting[0]
 
 
 def stage_monitor(monitor: StageMonitor | None, stage: str) -> Monitor:

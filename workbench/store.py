@@ -4,6 +4,9 @@ A result is written into a `.part-<pid>-...` folder, synced, and renamed: whoeve
 sees all of it, and of two writers the first one wins. Arrays are memory-mapped when loaded, so the
 browser process never reads what it does not show; those that are mostly zeros are packed
 (`workbench.sparse`), and unpacked when loaded.
+
+A result that cannot be read (a torn disk, an editor in the wrong folder) is moved to `damaged/`
+and is then as good as none: whoever needs it computes it again.
 """
 
 from __future__ import annotations
@@ -16,7 +19,7 @@ import secrets
 import shutil
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -24,11 +27,16 @@ from typing import Any
 import numpy as np
 
 from workbench.core.codec import pack, unpack
-from workbench.core.errors import StoreError
+from workbench.core.errors import DamagedError, StoreError, shortened
 from workbench.processes import is_alive
 from workbench.sparse import PARTS, mostly_zeros, pack_zeros, unpack_zeros
+from workbench.terminal import complain
 
 META = "meta.json"
+DAMAGED = "damaged"
+"""Folder of what could not be read, for whoever wants to know why."""
+TORN = (errno.ENOENT, errno.EIO)
+"""What the system says of a result that is not whole; anything else is no fault of the result."""
 DEFAULT_LIMIT_BYTES = 20 * 2**30
 """Size at which the least recently used results go."""
 
@@ -50,14 +58,33 @@ class Store:
     def __init__(self, root: Path | str, *, limit_bytes: int = DEFAULT_LIMIT_BYTES) -> None:
         self.root = Path(root)
         self.limit_bytes = limit_bytes
+        self.told: Callable[[str], None] = complain
+        """Who hears that a result was set aside."""
+        self._sound: dict[Path, int] = {}
+        """When the results that were looked into had been written [ns]."""
 
     def path(self, stage: str, key: str) -> Path:
         """Folder of a result, whether it exists or not."""
         return self.root / stage / key
 
     def has(self, stage: str, key: str) -> bool:
-        """Whether the whole result is there."""
-        return (self.path(stage, key) / META).exists()
+        """Whether the whole result is there; a damaged one is set aside, and is not.
+
+        Every array's header and length are looked at, once for each result.
+        """
+        meta = self.path(stage, key) / META
+        try:
+            written_ns = meta.stat().st_mtime_ns
+        except OSError:
+            return False
+        if self._sound.get(meta.parent) == written_ns:
+            return True
+        try:
+            self._arrays(stage, key, self._meta(stage, key))
+        except StoreError:
+            return False
+        self._sound[meta.parent] = written_ns
+        return True
 
     def entry(self, stage: str, key: str) -> Entry:
         """What is known of a stored result."""
@@ -68,21 +95,17 @@ class Store:
         """The stored dataclass, arrays read-only and memory-mapped unless packed.
 
         Raises:
-            StoreError: If it is missing or damaged.
+            DamagedError: If it cannot be read; it is set aside then, and said.
+            StoreError: If it is missing.
         """
         meta = self._meta(stage, key)
-        folder = self.path(stage, key)
+        arrays = self._arrays(stage, key, meta)
         try:
-            arrays = {name: _read(folder, name, meta) for name in meta["arrays"]}
             value = unpack(arrays, meta["tree"])
-        except (OSError, ValueError, KeyError, TypeError) as error:
-            raise StoreError(
-                f"the stored result {stage}/{key} is damaged: {error}",
-                hint=f"delete the folder {folder} and run again",
-                at=stage,
-            ) from error
+        except (ValueError, KeyError, TypeError) as error:
+            raise self._set_aside(stage, key, error) from error
         with contextlib.suppress(OSError):
-            os.utime(folder / META)
+            self._touch(self.path(stage, key) / META)
         return value
 
     def save(self, stage: str, key: str, value: Any, *, seconds: float, version: int) -> None:
@@ -129,13 +152,67 @@ class Store:
 
     def _meta(self, stage: str, key: str) -> dict[str, Any]:
         try:
-            return json.loads((self.path(stage, key) / META).read_bytes())
-        except (OSError, ValueError) as error:
+            meta = json.loads((self.path(stage, key) / META).read_bytes())
+            if not {"seconds", "bytes", "arrays", "tree"} <= set(meta):
+                raise ValueError("its description is not whole")
+            return meta
+        except FileNotFoundError as error:
             raise StoreError(
-                f"the stored result {stage}/{key} cannot be read: {error}",
-                hint="run the stage again; it will be recomputed",
+                f"there is no stored result {stage}/{key}",
+                hint="run the stage again; it will be computed anew",
                 at=stage,
             ) from error
+        except (OSError, ValueError, TypeError) as error:
+            raise self._set_aside(stage, key, error) from error
+
+    def _arrays(self, stage: str, key: str, meta: dict[str, Any]) -> dict[str, np.ndarray]:
+        """The arrays of a result, mapped unless packed."""
+        folder = self.path(stage, key)
+        try:
+            return {name: _read(folder, name, meta) for name in meta["arrays"]}
+        except (OSError, EOFError, ValueError, KeyError, TypeError) as error:
+            raise self._set_aside(stage, key, error) from error
+
+    def _set_aside(self, stage: str, key: str, error: Exception) -> StoreError:
+        """Move a result that cannot be read out of the way, say so, and return what to raise."""
+        if isinstance(error, OSError) and error.errno not in TORN:
+            return StoreError(
+                f"the stored result {stage}/{key} cannot be read: {error.strerror}",
+                hint="close other programs, or check the permissions of the project folder",
+                at=stage,
+            )
+        folder = self.path(stage, key)
+        aside = self.root / DAMAGED / f"{stage}-{key}-{secrets.token_hex(3)}"
+        self._sound.pop(folder, None)
+        try:
+            aside.parent.mkdir(exist_ok=True)
+            folder.rename(aside)
+        except FileNotFoundError:
+            # Another process was faster: it has said so.
+            pass
+        except OSError as stuck:
+            return StoreError(
+                f"the stored result {stage}/{key} is damaged ({shortened(str(error))}) and cannot "
+                f"be moved away: {stuck.strerror}",
+                hint=f"check the permissions of {self.root}, or choose another project",
+                at=stage,
+            )
+        else:
+            self.told(
+                f"notice: the stored result {stage}/{key[:12]} was damaged "
+                f"({shortened(str(error))}); it is now in {aside} and is computed again"
+            )
+        return DamagedError(
+            f"the stored result {stage}/{key} was damaged and has been set aside",
+            hint="run again: it is then computed anew",
+            at=stage,
+        )
+
+    def _touch(self, meta: Path) -> None:
+        """Note that a result was used, without looking into it again for that."""
+        os.utime(meta)
+        if meta.parent in self._sound:
+            self._sound[meta.parent] = meta.stat().st_mtime_ns
 
     def sweep(self) -> int:
         """Remove what dead writers left behind, then the oldest results beyond the size limit.

@@ -5,17 +5,19 @@ from __future__ import annotations
 import errno
 import json
 import os
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from workbench.core.design import SensorDesign
-from workbench.core.errors import StoreError
+from workbench.core.errors import DamagedError, StoreError
 from workbench.core.lighting import LightModel
 from workbench.core.results import Bundle, Picture
 from workbench.core.sensing import Metrics, Shot, TactileFrames
-from workbench.store import META, Store
+from workbench.pipeline import InlineRunner, PressCase, evaluate, plan
+from workbench.store import DAMAGED, META, Store
 
 
 def picture(value: int = 1) -> Picture:
@@ -190,14 +192,106 @@ def test_part_of_a_living_writer_is_kept(tmp_path: Path) -> None:
     assert part.exists()
 
 
-def test_damaged_result_is_named(tmp_path: Path) -> None:
-    """A truncated array is a StoreError that names the folder to delete."""
+def cut_short(folder: Path) -> None:
+    """An array of which half is there."""
+    path = folder / "value.png.npy"
+    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+
+
+def without_header(folder: Path) -> None:
+    """An array that lost its first bytes."""
+    path = folder / "value.png.npy"
+    path.write_bytes(b"\0" * 16 + path.read_bytes()[16:])
+
+
+def gone(folder: Path) -> None:
+    """An array that somebody deleted."""
+    (folder / "value.png.npy").unlink()
+
+
+def garbled(folder: Path) -> None:
+    """A description that is no JSON."""
+    (folder / META).write_bytes(b"{garbage")
+
+
+def emptied(folder: Path) -> None:
+    """A description without content, as power loss leaves it."""
+    (folder / META).write_bytes(b"")
+
+
+@pytest.mark.parametrize("harm", [cut_short, without_header, gone, garbled, emptied])
+@pytest.mark.parametrize("known", [False, True], ids=["other-process", "same-process"])
+def test_a_damaged_result_is_set_aside_once(
+    harm: Callable[[Path], None], known: bool, tmp_path: Path
+) -> None:
+    """It is not there any more, is said once, is kept for the curious, and is computed again."""
+    store, told = Store(tmp_path), []
+    store.told = told.append
+    store.save("s", "k", picture(), seconds=0.0, version=1)
+    if known:
+        assert store.has("s", "k")
+    harm(store.path("s", "k"))
+    if known:
+        with pytest.raises(DamagedError):
+            store.load("s", "k")
+    assert not store.has("s", "k")
+    assert not store.has("s", "k")
+    assert len(told) == 1
+    assert "s/k was damaged" in told[0]
+    assert len(list((tmp_path / DAMAGED).iterdir())) == 1
+    store.save("s", "k", picture(), seconds=0.0, version=1)
+    np.testing.assert_array_equal(store.load("s", "k").png, picture().png)
+
+
+def test_a_result_that_the_system_denies_is_not_damaged(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Too many open files: said, and the result stays where it is."""
     store = Store(tmp_path)
     store.save("s", "k", picture(), seconds=0.0, version=1)
-    (store.path("s", "k") / "value.png.npy").write_bytes(b"\x93NUMPY")
-    with pytest.raises(StoreError) as caught:
-        store.load("s", "k")
-    assert str(store.path("s", "k")) in caught.value.hint
+
+    def refuse(*_: object, **__: object) -> None:
+        raise OSError(errno.EMFILE, "Too many open files")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(np, "load", refuse)
+        with pytest.raises(StoreError, match="Too many open files") as caught:
+            store.load("s", "k")
+    assert not isinstance(caught.value, DamagedError)
+    assert store.has("s", "k")
+
+
+def test_a_chain_computes_what_is_damaged_again(tmp_path: Path) -> None:
+    """Body and mesh are torn: a run that wants the mesh makes both anew, and one notice each."""
+    design = SensorDesign(shape={"outer_radius_mm": 8.0, "cylinder_mm": 8.0})
+    store, told = Store(tmp_path), []
+    store.told = told.append
+    runner, case = InlineRunner(store), PressCase()
+    for _ in evaluate(design, case, runner, wanted=("mesh",)):
+        pass
+    calls = plan(design, case)
+    build = store.path("build", calls["build"].key)
+    (build / "value.membrane.points_mm.npy").write_bytes(b"torn")
+    mesh = store.path("mesh", calls["mesh"].key)
+    (mesh / META).write_bytes(b"torn")
+    done = [o.stage for o in evaluate(design, case, runner, wanted=("mesh",)) if not o.cached]
+    assert done == ["build", "mesh"]
+    assert len(told) == 2
+
+
+def test_damage_found_while_a_stage_reads_is_healed_too(tmp_path: Path) -> None:
+    """The body is torn after it was looked into: the mesh fails, the body is built, the mesh is."""
+    design = SensorDesign(shape={"outer_radius_mm": 8.0, "cylinder_mm": 8.0})
+    store = Store(tmp_path)
+    store.told = lambda text: None
+    runner, case = InlineRunner(store), PressCase()
+    (built,) = evaluate(design, case, runner, wanted=("build",))
+    assert store.has("build", built.key)
+    torn = store.path("build", built.key) / "value.membrane.points_mm.npy"
+    torn.write_bytes(b"torn")
+    outcomes = list(evaluate(design, case, runner, wanted=("mesh",)))
+    assert [o.stage for o in outcomes] == ["build", "build", "mesh"]
+    assert [o.cached for o in outcomes] == [True, False, False]
 
 
 def test_sweep_removes_the_least_recently_used(tmp_path: Path) -> None:

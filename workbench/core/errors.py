@@ -116,6 +116,13 @@ class StoreError(WorkbenchError):
     """A result could not be written or read (disk full, read-only, damaged)."""
 
 
+class DamagedError(StoreError):
+    """A stored result cannot be read; it has been set aside, so that it is computed again.
+
+    `at` is its stage.
+    """
+
+
 class LaneError(WorkbenchError):
     """A worker process ended while it was computing."""
 

@@ -301,7 +301,7 @@ class Bundle:
 
     files: dict[str, np.ndarray]
     """Bytes of each file by name, shape (bytes,), uint8."""
-    step_volumes_mm3: dict[str, float] = field(default_factory=dict)
+    step_volumes_mm3: dict[str, float] = field(default_factory=dict[str, float])
     """Volume that a reader finds in the STEP file of each part, by the part's name [mm3]."""
     notice: str = ""
     """What of the files is not as exact as asked for, for people."""
