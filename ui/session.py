@@ -184,7 +184,7 @@ class Session:
         return {name: self.store.has(name, calls[name].key) for name in EVERYTHING if name in calls}
 
     def result(self, stage: str) -> Any:
-        """The stored result of a stage for the state as it stands, or None; of a damaged one too."""
+        """The stored result of a stage for the state as it stands; None where none is readable."""
         call = self.calls().get(stage)
         if call is None or not self.store.has(stage, call.key):
             return None

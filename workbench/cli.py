@@ -7,7 +7,6 @@ Exit codes: 0 done, 2 bad input (a busy port included), 3 failed computation, fu
 from __future__ import annotations
 
 import argparse
-import contextlib
 import errno
 import json
 import os
@@ -15,7 +14,7 @@ import signal
 import sys
 import threading
 import traceback
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -31,6 +30,7 @@ from workbench.core.errors import Cancelled, DesignError, StoreError, WorkbenchE
 from workbench.fem_arguments import add_fem_commands
 from workbench.press_arguments import add_press_options, add_unit_option
 from workbench.project import Project
+from workbench.supervised import supervised
 from workbench.terminal import complain, say
 
 NUMBERS = (
@@ -48,22 +48,35 @@ LONGEST_COMPLAINT, HEAD, TAIL = 600, 160, 60
 """Characters of a complaint about options; of a longer one those of both ends."""
 
 
+def entry() -> int:
+    """Entry point of the `workbench` command; returns the exit code.
+
+    What computes here does so in a process of its own; the server has its lanes for that.
+    """
+    words = sys.argv[1:]
+    if "serve" in words[:1]:
+        return main(words)
+    return supervised(
+        lambda: main(words), ended=lambda number: _print_ended(number, as_json="--json" in words)
+    )
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Entry point of the `workbench` command; returns the exit code."""
+    """Run a command in this process; returns the exit code."""
     words = list(sys.argv[1:] if arguments is None else arguments)
     options = parser().parse_args(_join_negative(words))
     project = Project(options.project)
     # Taichi greets on stdout when it is imported, which belongs to the answer (`--json`).
     os.environ.setdefault("ENABLE_TAICHI_HEADER_PRINT", "0")
     as_json = getattr(options, "json", False)
+    request = _Terminable()
     try:
-        with _terminable():
+        with request:
             return options.handler(options, project)
     except WorkbenchError as error:
         return _print_error(error, as_json=as_json)
     except KeyboardInterrupt:
-        complain("cancelled; finished results are kept")
-        return Cancelled.exit_code
+        return _print_cancelled()
     except MemoryError:
         return _print_error(
             WorkbenchError(
@@ -72,6 +85,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
             as_json=as_json,
         )
     except Exception as bug:
+        # A native module that is interrupted while it is imported makes an ImportError of it.
+        if request.asked:
+            return _print_cancelled()
         if isinstance(bug, OSError) and bug.errno in (errno.ENOSPC, errno.EDQUOT):
             full = StoreError(f"the disk is full: {bug}", hint="free some space and run again")
             return _print_error(full, as_json=as_json)
@@ -84,17 +100,24 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _print_bug(project)
 
 
-@contextlib.contextmanager
-def _terminable() -> Iterator[None]:
-    """Treat SIGTERM as Ctrl-C while a command runs."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGTERM, before)
+class _Terminable:
+    """Treats SIGTERM as Ctrl-C while a command runs, and remembers that it came."""
+
+    def __init__(self) -> None:
+        self.asked = False
+
+    def __enter__(self) -> _Terminable:
+        if threading.current_thread() is threading.main_thread():
+            self._before = signal.signal(signal.SIGTERM, self._hear)
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        if threading.current_thread() is threading.main_thread():
+            signal.signal(signal.SIGTERM, self._before)
+
+    def _hear(self, number: int, frame: object) -> None:
+        self.asked = True
+        raise KeyboardInterrupt
 
 
 class Parser(argparse.ArgumentParser):
@@ -117,6 +140,11 @@ def _join_negative(words: list[str]) -> list[str]:
     return joined
 
 
+def _print_cancelled() -> int:
+    complain("cancelled; finished results are kept")
+    return Cancelled.exit_code
+
+
 def _print_error(error: WorkbenchError, *, as_json: bool) -> int:
     if as_json:
         say(json.dumps(error.as_dict()))
@@ -126,6 +154,18 @@ def _print_error(error: WorkbenchError, *, as_json: bool) -> int:
     if error.hint:
         complain(f" hint: {error.hint}")
     return error.exit_code
+
+
+def _print_ended(number: int, *, as_json: bool) -> int:
+    """Say that native code ended the command."""
+    name = signal.strsignal(number) or "unknown"
+    error = WorkbenchError(
+        f"the computation was ended by signal {number} ({name}): native code crashed, or the "
+        "system needed its memory",
+        hint="finished results are kept; run again with a coarser mesh or grid, or after changing "
+        "the last parameter a little",
+    )
+    return _print_error(error, as_json=as_json)
 
 
 def _print_bug(project: Project) -> int:
@@ -143,7 +183,7 @@ def parser() -> argparse.ArgumentParser:
     """The whole command line."""
     top = Parser(prog="workbench", description=__doc__)
     top.add_argument("--version", action="version", version=__version__)
-    common = argparse.ArgumentParser(add_help=False)
+    common = Parser(add_help=False)
     common.add_argument(
         "--project", metavar="DIR", help="project folder (default $WORKBENCH_PROJECT or .workbench)"
     )
@@ -239,4 +279,4 @@ def _run_options(sub: argparse.ArgumentParser) -> None:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(entry())

@@ -116,12 +116,13 @@ def _table(raw: Any, at: str) -> Mapping[str, Any]:
 
 
 def _tuple(parts: tuple[Any, ...], raw: Any, at: str) -> tuple[Any, ...]:
+    given: Any = raw
     items = cast("list[Any]", raw) if isinstance(raw, (list, tuple)) else None
     open_ended = len(parts) == 2 and parts[1] is Ellipsis
     if items is None or (not open_ended and len(items) != len(parts)):
         count = "values" if open_ended else f"{len(parts)} values"
         raise DesignError(
-            f"{at} is {shown(raw)}, expected a list of {count}", hint="see the README", at=at
+            f"{at} is {shown(given)}, expected a list of {count}", hint="see the README", at=at
         )
     kinds = [parts[0]] * len(items) if open_ended else list(parts)
     if open_ended and dataclasses.is_dataclass(parts[0]):
