@@ -24,7 +24,8 @@ setup: .venv/runtime.stamp ## Make .venv with the workbench command in .venv/bin
 	@touch $@
 
 .venv/runtime.stamp: .venv/python.stamp requirements.lock pyproject.toml
-	$(BIN)/python -m pip install --quiet --requirement requirements.lock
+	$(BIN)/python -m pip install --quiet $$($(BIN)/python .ci/torch_index.py) \
+		--requirement requirements.lock
 	$(BIN)/python -m pip install --quiet --no-deps --editable .
 	@touch $@
 
