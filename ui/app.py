@@ -26,6 +26,7 @@ from ui.editor import Editor
 from ui.guard import LOOPBACK, Gate, guarded
 from ui.help import Help
 from ui.incoming import Incoming
+from ui.links import links, reachable_names
 from ui.panels.compare import ComparePanel
 from ui.panels.make import MakePanel
 from ui.panels.mesh import MeshPanel
@@ -66,8 +67,8 @@ def serve(options: argparse.Namespace, project: Project) -> int:
     project.store.sweep()
     local = options.host in (*LOOPBACK, "::1")
     token = None if local else secrets.token_urlsafe(16)
-    hosts = LOOPBACK if local else (*LOOPBACK, options.host, socket.gethostname())
-    gate = Gate(hosts=hosts, token=token)
+    names = () if local else reachable_names(options.host)
+    gate = Gate(port=options.port, hosts=(*LOOPBACK, options.host, *names), token=token)
     with guarded(gate):
         server = viser.ViserServer(
             host=options.host, port=options.port, label="Sensor workbench", verbose=False
@@ -80,11 +81,12 @@ def serve(options: argparse.Namespace, project: Project) -> int:
     threading.Thread(target=warm_up, name="warm-up", daemon=True).start()
     build_desk(server, session, conductor, fast=options.fast_scene, tour=not options.no_tour)
     gate.health = lambda: {"ok": True, "version": __version__, "busy": conductor.busy}
-    name = f"[{options.host}]" if ":" in options.host else options.host
-    link = f"http://{name}:{options.port}/" + (f"?token={token}" if token else "")
-    print(f"The workbench is open at {link}  (Ctrl-C ends it)", flush=True)
+    here, *others = links(names or [options.host], options.port, token)
+    print(f"The workbench is open at {here}  (Ctrl-C ends it)", flush=True)
+    for link in others:
+        print(f"                   or at {link}", flush=True)
     if options.open:
-        webbrowser.open(link)
+        webbrowser.open(here)
     try:
         wait_for_stop()
         session.autosave()

@@ -2,27 +2,31 @@
 
 viser shares all widgets among the tabs of a server, so two people would pull at one slider. Here
 one tab is the editor. A tab that follows sees everything and may look around; what it sends to
-shared widgets is dropped by `ui.incoming`, and a note on top of its left dock says so and offers
-*Edit here*. When the editor's tab closes, the tab that comes next within `RELOAD_S` takes its place
-(a reload), else the one that has followed longest.
+shared widgets is dropped by `ui.incoming`, and a note on top of its left dock says who edits since
+when, and offers *Edit here*. When the editor's tab closes, the tab that comes next within
+`RELOAD_S` takes its place (a reload), else the one that has followed longest. A tab that comes
+while the editor's browser answers no ping takes its place too.
 
 Left out: rights. Whoever may open the page may take over.
 """
 
 from __future__ import annotations
 
+import asyncio
 import threading
+import time
 from collections.abc import Callable
 from typing import Any
 
 from ui.colours import AMBER
+from ui.plain import plain
+from ui.presence import Presence
 
 RELOAD_S = 4.0
 """Time that the place of a tab that left is kept for its reload [s]."""
 REMIND_S = 8.0
 FIRST = -1000.0
 """Order of the note: above all else in the left dock."""
-FOLLOWS = f"<span style='color:{AMBER}'>**This tab follows:** another tab edits.</span>"
 
 
 class Editor:
@@ -38,6 +42,10 @@ class Editor:
         self.on_lost: list[Callable[[int], None]] = []
         """Told the number of a tab that is there still and edits no more."""
         self._notes: dict[int, list[Any]] = {}
+        self._presence = Presence(server)
+        self._since = ""
+        """When the tab began to edit, as a clock shows it."""
+        self._asking: set[asyncio.Task[None]] = set()
         self._lock = threading.RLock()
         server.on_client_connect(self._came)
         server.on_client_disconnect(self._left)
@@ -55,7 +63,7 @@ class Editor:
     def _hand_over(self, client: Any) -> Any:
         """Make a tab the editor; returns the tab before, None where it is the same or gone."""
         before = self.server.get_clients().get(self.tab)
-        self.tab = client.client_id
+        self._appoint(client.client_id)
         self._unnote(client.client_id)
         if before is client:
             before = None
@@ -80,12 +88,41 @@ class Editor:
                 client, "This tab follows", "Another tab edits. Click \u201cEdit here\u201d first."
             )
 
+    def _appoint(self, tab: int) -> None:
+        """Let a tab edit; what the others read of it follows."""
+        self.tab, self._since = tab, time.strftime("%H:%M")
+        for number, (words, _) in self._notes.items():
+            if number != tab:
+                words.content = self._words()
+
+    def _words(self) -> str:
+        """Who edits, for the note of a tab that follows."""
+        who = "another tab" if self.tab is None else self._presence.words(self.tab)
+        text = f"**This tab follows:** {plain(who)} edits since {self._since}."
+        return f"<span style='color:{AMBER}'>{text}</span>"
+
     async def _came(self, client: Any) -> None:
         with self._lock:
             if self.tab is None:
-                self.tab = client.client_id
-            else:
-                self._note(client)
+                self._appoint(client.client_id)
+                return
+            self._note(client)
+            # viser greets the tab when this returns: it must not wait for the other's answer.
+            task = asyncio.get_running_loop().create_task(self._replace(self.tab, client))
+            self._asking.add(task)
+        task.add_done_callback(self._asking.discard)
+
+    async def _replace(self, tab: int, client: Any) -> None:
+        """Let a tab edit in the place of one whose browser is gone and whose connection stands."""
+        if await self._presence.answers(tab):
+            return
+        with self._lock:
+            if self.tab != tab or client.client_id not in self.server.get_clients():
+                return
+            before = self._hand_over(client)
+        self._presence.cut(tab)
+        # Not here: the event loop must not wait for whoever is told.
+        threading.Thread(target=self._tell_change, args=(before,), daemon=True).start()
 
     async def _left(self, client: Any) -> None:
         with self._lock:
@@ -108,7 +145,7 @@ class Editor:
 
     def _note(self, client: Any) -> None:
         gui = client.gui
-        words = gui.add_markdown(FOLLOWS, order=FIRST)
+        words = gui.add_markdown(self._words(), order=FIRST)
         hint = "What you change in this tab is not taken until then"
         button = gui.add_button("Edit here", hint=hint, order=FIRST + 1)
         button.on_click(lambda event: self.take_over(client))

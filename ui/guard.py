@@ -8,7 +8,6 @@ that one call is wrapped while the server is being built.
 from __future__ import annotations
 
 import contextlib
-import http.cookies
 import ipaddress
 import json
 import secrets
@@ -19,10 +18,24 @@ from typing import Any
 
 LOOPBACK = ("127.0.0.1", "localhost", "[::1]")
 COOKIE = "workbench_token"
+"""Begin of the cookie's name; the port follows, since browsers share cookies among ports."""
 HEALTH_PATH = "/healthz"
 MOST_MESSAGE_BYTES = 16 * 2**20
 """Of one message: a file comes in parts of half a megabyte, a picture of the view in one."""
+PING_S, PONG_S = 5.0, 15.0
+"""Time between two questions whether a tab is there, and what it has to answer [s]: a connection
+that was cut without a word would hold its place for minutes."""
+POLICY = (
+    "default-src 'none'; base-uri 'none'; object-src 'none'; form-action 'none'; "
+    "frame-ancestors 'self'; manifest-src 'self'; "
+    "script-src 'self' 'unsafe-inline' 'wasm-unsafe-eval' blob:; worker-src 'self' blob:; "
+    "style-src 'self' 'unsafe-inline'; font-src 'self' data:; img-src 'self' data: blob:; "
+    "connect-src 'self' data: blob:"
+)
+"""What the page may load and reach: itself alone. viser's page is one file with scripts in it, that
+unpacks its pictures and workers from data and blobs."""
 SAFE_HEADERS = {
+    "Content-Security-Policy": POLICY,
     "X-Content-Type-Options": "nosniff",
     "Referrer-Policy": "no-referrer",
     "X-Frame-Options": "SAMEORIGIN",
@@ -34,6 +47,7 @@ SAFE_HEADERS = {
 class Gate:
     """The rules of one server."""
 
+    port: int
     hosts: tuple[str, ...] = LOOPBACK
     token: str | None = None
     """Needed in a cookie, or once in the link; None on loopback."""
@@ -54,15 +68,26 @@ class Gate:
         if origin is not None and not _same_site(origin, headers["Host"]):
             return 403, {}, b"pages of other sites may not drive the workbench (Origin)\n"
         where = urllib.parse.urlsplit(path)
-        if where.path == HEALTH_PATH:
-            return 200, {"Content-Type": "application/json"}, json.dumps(self.health()).encode()
-        if self.token is None or self._has_cookie(headers.get("Cookie", "")):
-            return None
         given = urllib.parse.parse_qs(where.query).get("token", [""])[0]
-        if secrets.compare_digest(given.encode(), self.token.encode()):
-            cookie = f"{COOKIE}={self.token}; HttpOnly; SameSite=Lax; Path=/"
+        known = self._opens(given) or self._opens(_cookie(headers.get("Cookie", ""), self.cookie))
+        if where.path == HEALTH_PATH:
+            said = self.health() if known else {"ok": True}
+            return 200, {"Content-Type": "application/json"}, json.dumps(said).encode()
+        if self.token is not None and given and known:
+            cookie = f"{self.cookie}={self.token}; HttpOnly; SameSite=Lax; Path=/"
             return 302, {"Location": "/", "Set-Cookie": cookie}, b""
+        if known:
+            return None
         return 401, {}, b"open the link that the workbench printed in the terminal\n"
+
+    @property
+    def cookie(self) -> str:
+        """Name of the cookie: two servers of a machine do not log each other's pages out."""
+        return f"{COOKIE}_{self.port}"
+
+    def _opens(self, given: str) -> bool:
+        """Whether this is the token, or none is needed."""
+        return self.token is None or secrets.compare_digest(given.encode(), self.token.encode())
 
     def _known(self, netloc: str | None) -> bool:
         if not netloc or "@" in netloc:
@@ -73,12 +98,18 @@ class Gate:
         # Behind a token any address of the machine will do; a name could be another's.
         return self.token is not None and _is_address(host.strip("[]"))
 
-    def _has_cookie(self, text: str) -> bool:
-        jar: http.cookies.SimpleCookie = http.cookies.SimpleCookie()
-        with contextlib.suppress(http.cookies.CookieError):
-            jar.load(text)
-        given = jar[COOKIE].value if COOKIE in jar else ""
-        return secrets.compare_digest(given.encode(), (self.token or "").encode())
+
+def _cookie(text: str, name: str) -> str:
+    """Value of a cookie, or "".
+
+    Cookies of other programs on this machine come along, whose values need not be proper ones
+    (`x={"a":1}`); the standard library's reader stops at the first such.
+    """
+    for item in text.split(";"):
+        key, _, value = item.strip().partition("=")
+        if key == name:
+            return value.strip('"')
+    return ""
 
 
 def _same_site(origin: str, host: str) -> bool:
@@ -109,7 +140,7 @@ def guarded(gate: Gate) -> Iterator[None]:
     def serve(
         handler: Any, host: Any, port: Any, *, process_request: Any = None, **rest: Any
     ) -> Any:
-        rest["max_size"] = MOST_MESSAGE_BYTES
+        rest |= {"max_size": MOST_MESSAGE_BYTES, "ping_interval": PING_S, "ping_timeout": PONG_S}
 
         def ask(connection: Any, request: Any) -> Any:
             try:

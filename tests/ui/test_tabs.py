@@ -5,6 +5,10 @@ Most of it speaks viser's protocol without a browser (`workbench.benchmarks.tab`
 
 from __future__ import annotations
 
+import re
+import signal
+import subprocess
+import sys
 import time
 import tomllib
 from collections.abc import Callable, Iterator
@@ -45,6 +49,49 @@ def saved(server: Server, *names: str) -> Any:
     for name in names:
         value = value.get(name, {})
     return value
+
+
+FROZEN = """
+import sys, time
+from workbench.benchmarks.tab import Tab
+tab = Tab(sys.argv[1])
+tab.uuid("Straight length mm")
+print("here", flush=True)
+time.sleep(600)
+"""
+"""A tab in a process of its own, to be stopped with its connection open."""
+
+
+def test_a_tab_edits_in_place_of_one_that_is_gone_without_a_word(server: Server) -> None:
+    """The editor's process is frozen, its connection stands: who comes next edits in 10 s."""
+    command = [sys.executable, "-c", FROZEN, server.url]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        try:
+            assert process.stdout is not None
+            assert process.stdout.readline() == "here\n"
+            process.send_signal(signal.SIGSTOP)
+            began = time.monotonic()
+            with Tab(server.url) as tab:
+                tab.uuid("Edit here")
+                tab.wait(lambda: not tab.find("Edit here"), 10, "it edits")
+                tab.set(LENGTH, 23.0)
+                wait_until(lambda: saved(server, "shape", "cylinder_mm") == 23.0, 10, "it is taken")
+            assert time.monotonic() - began < 20.0
+        finally:
+            process.kill()
+
+
+def test_who_waits_sees_who_edits_and_since_when(two: tuple[Tab, Tab]) -> None:
+    """Browser, place and a time of day; the same once the other has taken over."""
+    editor, follower = two
+    note = re.compile(r"This tab follows:\*\* .+ on this machine edits since \d\d:\d\d\.")
+
+    def noted(tab: Tab) -> bool:
+        return any(note.search(str(w.get("_markdown", w))) for w in tab.widgets.values())
+
+    follower.wait(lambda: noted(follower), 5, "it reads who edits")
+    follower.click("Edit here")
+    editor.wait(lambda: noted(editor), 5, "the other reads it too")
 
 
 def test_a_tab_that_follows_sees_all_and_changes_nothing(
