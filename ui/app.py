@@ -7,8 +7,10 @@ warm, so a cached design is on screen at once.
 from __future__ import annotations
 
 import argparse
+import contextlib
 import errno
 import importlib
+import io
 import os
 import secrets
 import signal
@@ -36,6 +38,7 @@ from ui.panels.shape import ShapePanel
 from ui.panels.simulate import SimulatePanel
 from ui.panels.view import ViewPanel
 from ui.session import Session
+from ui.tenancy import Tenancy
 from workbench import __version__
 from workbench.conductor import Conductor
 from workbench.core.errors import DesignError
@@ -68,20 +71,36 @@ def serve(options: argparse.Namespace, project: Project) -> int:
     local = options.host in (*LOOPBACK, "::1")
     token = None if local else secrets.token_urlsafe(16)
     names = () if local else reachable_names(options.host)
+    here, *others = links(names or [options.host], options.port, token)
+    tenancy = Tenancy(project.folder, session, link=here)
+    holder = tenancy.enter()
+    if holder is not None:
+        print(
+            f"The project {project.folder} is open in another workbench, process {holder.pid}"
+            f"{f' at {holder.link}' if holder.link else ''}, since {holder.since}: it is only "
+            "shown here, until you take it over in the page",
+            flush=True,
+        )
     gate = Gate(port=options.port, hosts=(*LOOPBACK, options.host, *names), token=token)
-    with guarded(gate):
+    # viser prints a link of its own, without the token.
+    with guarded(gate), contextlib.redirect_stdout(io.StringIO()):
         server = viser.ViserServer(
             host=options.host, port=options.port, label="Sensor workbench", verbose=False
         )
     if server.get_port() != options.port:
         # Another program took the port between the check and the bind.
         server.stop()
+        tenancy.leave()
         raise _port_taken(options.port)
     conductor = Conductor(project.store, LaneRunner(project.store))
     threading.Thread(target=warm_up, name="warm-up", daemon=True).start()
-    build_desk(server, session, conductor, fast=options.fast_scene, tour=not options.no_tour)
+    desk = build_desk(server, session, conductor, fast=options.fast_scene, tour=not options.no_tour)
+    entered = desk.guarded(lambda event: desk.replaced())
+    tenancy.on_entered = lambda: entered(None)
+    tenancy.follow(desk.editor, holder)
+    desk.on_turn.append(tenancy.turn)
+    first_look(desk)
     gate.health = lambda: {"ok": True, "version": __version__, "busy": conductor.busy}
-    here, *others = links(names or [options.host], options.port, token)
     print(f"The workbench is open at {here}  (Ctrl-C ends it)", flush=True)
     for link in others:
         print(f"                   or at {link}", flush=True)
@@ -93,6 +112,7 @@ def serve(options: argparse.Namespace, project: Project) -> int:
     finally:
         conductor.close()
         server.stop()
+        tenancy.leave()
     return 0
 
 
@@ -132,7 +152,6 @@ def build_desk(
     if tour:
         guide.begin()
     editor.on_change = incoming.on_refused = desk.reports.log_soon
-    first_look(desk)
     threading.Thread(target=desk.jobs.pump_forever, name="pump", daemon=True).start()
     return desk
 
@@ -144,7 +163,7 @@ def first_look(desk: Desk) -> None:
     if desk.session.notice:
         desk.log(desk.session.notice)
         desk.reports.remark(desk.session.notice)
-    if not any(fresh.values()):
+    if not any(fresh.values()) and not desk.editor.is_shut:
         desk.log("first start: pressing the example in the background, a minute or so")
         desk.run("press", ("press", "shoot"))
 

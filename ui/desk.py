@@ -106,6 +106,8 @@ class Desk:
         self.jobs.on_events = self.refresh_header
         self.jobs.on_idle = self._idle
         self.jobs.on_failed = self._failed
+        self.on_turn: list[Callable[[], None]] = []
+        """What else is looked after each time the pump turns."""
         self.gizmos: list[Gizmo] = []
         """Handles in the 3D view, asked each time the pump turns."""
         self.live = LivePress(self)
@@ -270,6 +272,7 @@ class Desk:
             self.backstage.turn,
             self.scene.pressed.turn,
             self.upkeep.turn,
+            *self.on_turn,
         )
         for step in steps:
             self.guarded(lambda event, step=step: step())(None)

@@ -7,6 +7,9 @@ when, and offers *Edit here*. When the editor's tab closes, the tab that comes n
 `RELOAD_S` takes its place (a reload), else the one that has followed longest. A tab that comes
 while the editor's browser answers no ping takes its place too.
 
+While another server holds the project no tab edits: all follow, are told where it is open, and may
+take it over (`ui.tenancy`).
+
 Left out: rights. Whoever may open the page may take over.
 """
 
@@ -21,6 +24,7 @@ from typing import Any
 from ui.colours import AMBER
 from ui.plain import plain
 from ui.presence import Presence
+from workbench.core.errors import WorkbenchError
 
 RELOAD_S = 4.0
 """Time that the place of a tab that left is kept for its reload [s]."""
@@ -46,6 +50,8 @@ class Editor:
         self._since = ""
         """When the tab began to edit, as a clock shows it."""
         self._asking: set[asyncio.Task[None]] = set()
+        self._shut: tuple[str, Callable[[], None]] | None = None
+        """Why no tab may edit, in Markdown, and what taking over begins with."""
         self._lock = threading.RLock()
         server.on_client_connect(self._came)
         server.on_client_disconnect(self._left)
@@ -54,9 +60,45 @@ class Editor:
         """Whether what this tab sends is taken."""
         return tab == self.tab
 
+    @property
+    def is_shut(self) -> bool:
+        """Whether no tab may edit until one takes over."""
+        return self._shut is not None
+
+    def shut(self, why: str, on_open: Callable[[], None]) -> None:
+        """Let no tab edit until one of them takes over.
+
+        Args:
+            why: What all tabs read, Markdown.
+            on_open: Called before a tab takes over; what it raises, that tab is told.
+        """
+        with self._lock:
+            self._shut = why, on_open
+            clients = self.server.get_clients()
+            before, self.tab = clients.get(self.tab), None
+            for client in clients.values():
+                self._unnote(client.client_id)
+                self._note(client)
+        if before is not None:
+            for lost in self.on_lost:
+                lost(before.client_id)
+
     def take_over(self, client: Any) -> None:
         """Make a tab the editor; the one before follows, and both are told."""
+        if self._shut is not None:
+            _, on_open = self._shut
+            try:
+                on_open()
+            except WorkbenchError as error:
+                _tell(client, "Not taken over", f"{error.message}: {error.hint}")
+                return
         with self._lock:
+            if self._shut is not None:
+                self._shut = None
+                for other in self.server.get_clients().values():
+                    self._unnote(other.client_id)
+                    if other is not client:
+                        self._note(other)
             before = self._hand_over(client)
         self._tell_change(before)
 
@@ -84,9 +126,11 @@ class Editor:
         """Tell a tab that follows why nothing happened."""
         client = self.server.get_clients().get(tab)
         if client is not None:
-            _tell(
-                client, "This tab follows", "Another tab edits. Click \u201cEdit here\u201d first."
-            )
+            if self._shut is None:
+                words = "Another tab edits. Click \u201cEdit here\u201d first."
+            else:
+                words = "Another workbench has this project. Click \u201cTake over\u201d first."
+            _tell(client, "This tab follows", words)
 
     def _appoint(self, tab: int) -> None:
         """Let a tab edit; what the others read of it follows."""
@@ -97,16 +141,20 @@ class Editor:
 
     def _words(self) -> str:
         """Who edits, for the note of a tab that follows."""
+        if self._shut is not None:
+            return self._shut[0]
         who = "another tab" if self.tab is None else self._presence.words(self.tab)
         text = f"**This tab follows:** {plain(who)} edits since {self._since}."
         return f"<span style='color:{AMBER}'>{text}</span>"
 
     async def _came(self, client: Any) -> None:
         with self._lock:
-            if self.tab is None:
+            if self.tab is None and self._shut is None:
                 self._appoint(client.client_id)
                 return
             self._note(client)
+            if self.tab is None:
+                return
             # viser greets the tab when this returns: it must not wait for the other's answer.
             task = asyncio.get_running_loop().create_task(self._replace(self.tab, client))
             self._asking.add(task)
@@ -138,7 +186,7 @@ class Editor:
         """Let the tab that has followed longest edit, where none has come back."""
         with self._lock:
             clients = self.server.get_clients()
-            if self.tab is not None or not clients:
+            if self.tab is not None or self._shut is not None or not clients:
                 return
             self._hand_over(clients[min(clients)])
         self._tell_change(None)
@@ -147,7 +195,8 @@ class Editor:
         gui = client.gui
         words = gui.add_markdown(self._words(), order=FIRST)
         hint = "What you change in this tab is not taken until then"
-        button = gui.add_button("Edit here", hint=hint, order=FIRST + 1)
+        label = "Edit here" if self._shut is None else "Take over"
+        button = gui.add_button(label, hint=hint, order=FIRST + 1)
         button.on_click(lambda event: self.take_over(client))
         self._notes[client.client_id] = [words, button]
 

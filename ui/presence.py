@@ -47,8 +47,8 @@ class Presence:
 
     def _connection(self, tab: int) -> Any:
         # viser keeps the connections of its tabs here and has no public way to them.
-        websockets = getattr(self._server, "_websock_server", None)
-        return websockets and websockets._live_connections.get(tab)
+        sockets = getattr(self._server, "_websock_server", None)
+        return getattr(sockets, "_live_connections", {}).get(tab)
 
     def words(self, tab: int) -> str:
         """Who is behind a tab: browser, system and address; `another tab` where nobody knows."""

@@ -39,6 +39,8 @@ class Session:
         self.store = project.store
         self.notice = ""
         """What happened while loading, to be shown once."""
+        self.may_write: Callable[[], bool] = lambda: True
+        """Whether the project is this server's to write: another may have taken it."""
         self._clock = clock
         self._saving = threading.Lock()
         self._past: list[State] = []
@@ -196,10 +198,14 @@ class Session:
     def autosave(self, state: State | None = None) -> None:
         """Keep a state, by default the one that stands, for the next start.
 
+        Nothing is written while another server has the project.
+
         Raises:
             StoreError: If the project folder cannot be written; the file there stays.
         """
         with self._saving:
+            if not self.may_write():
+                return
             kept = self.state if state is None else state
             press_case = case_table(kept.case, self.project)
             self.project.save_design(AUTOSAVE, kept.design, press_case=press_case)

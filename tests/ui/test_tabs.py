@@ -81,6 +81,40 @@ def test_a_tab_edits_in_place_of_one_that_is_gone_without_a_word(server: Server)
             process.kill()
 
 
+def test_of_two_servers_on_a_project_one_writes(server: Server, start_server: Start) -> None:
+    """The second shows, names the first and writes nothing, until it takes over; a dead one's
+    project is free.
+    """
+    with Tab(server.url) as first:
+        first.set(LENGTH, 21.0)
+        wait_until(lambda: saved(server, "shape", "cylinder_mm") == 21.0, 10, "the first saves")
+        second = start_server(server.project)
+        wait_until(lambda: server.url in second.log.read_text(), 20, "it names the first")
+        with Tab(second.url) as other:
+            other.uuid("Take over")
+            assert any(server.url in str(widget) for widget in other.widgets.values())
+            other.set(LENGTH, 30.0)
+            other.wait(lambda: other.told("Another workbench has this project"), 5, "it is told")
+            time.sleep(1.5)
+            assert saved(server, "shape", "cylinder_mm") == 21.0
+            first.set(LENGTH, 22.0)
+            wait_until(lambda: saved(server, "shape", "cylinder_mm") == 22.0, 10, "it edits on")
+            other.click("Take over")
+            other.wait(lambda: other.value(LENGTH) == 22.0, 10, "it has what was edited meanwhile")
+            other.set(LENGTH, 30.0)
+            wait_until(lambda: saved(server, "shape", "cylinder_mm") == 30.0, 10, "it writes")
+            first.uuid("Take over")
+            first.set(LENGTH, 24.0)
+            time.sleep(1.5)
+            assert saved(server, "shape", "cylinder_mm") == 30.0
+    second.kill()
+    third = start_server(server.project)
+    with Tab(third.url) as tab:
+        tab.wait(lambda: tab.value(LENGTH) == 30.0, 20, "it begins where the killed one was")
+        tab.set(LENGTH, 25.0)
+        wait_until(lambda: saved(server, "shape", "cylinder_mm") == 25.0, 10, "it writes")
+
+
 def test_who_waits_sees_who_edits_and_since_when(two: tuple[Tab, Tab]) -> None:
     """Browser, place and a time of day; the same once the other has taken over."""
     editor, follower = two

@@ -26,7 +26,7 @@ from workbench.dataset.cases import Split, cases_of
 from workbench.dataset.collect import finish
 from workbench.dataset.estimate import estimate, estimate_text
 from workbench.dataset.folder import DataSet
-from workbench.dataset.lock import LOCK, held
+from workbench.dataset.lock import held
 from workbench.dataset.recipe import Recipe, load_recipe, recipe_from_toml
 from workbench.dataset.repair import repair
 from workbench.dataset.rows import append_row, read_rows
@@ -34,6 +34,7 @@ from workbench.dataset.sample import Sample, Solved, from_bytes, to_bytes
 from workbench.dataset.solving import Report
 from workbench.dataset.watch import Told, Watch
 from workbench.image_files import png_bytes
+from workbench.lock_file import LOCK
 from workbench.whole_files import write_atomically
 
 SKIN = flat_skin(5.0, 0.5)

@@ -24,8 +24,8 @@ from workbench.dataset.folder import (
     mesh_key,
     skin_data,
 )
-from workbench.dataset.lock import LOCK
 from workbench.dataset.recipe import Solvers, table_key
+from workbench.lock_file import LOCK
 from workbench.stages import STAGES
 from workbench.whole_files import write_atomically
 

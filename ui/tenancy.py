@@ -1,0 +1,103 @@
+"""Which of several servers writes a project: one; the others show it until they take it over.
+
+Two servers would write the same autosave over each other. The first holds the lock of the project
+folder; one that comes later tells its tabs where the project is open, lets none of them edit, and
+writes nothing. *Take over* takes the lock from the holder, which sees that at its next turn, writes
+no more, and shows the project in its turn. The lock of a server that has ended is free.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from ui.colours import AMBER
+from ui.editor import Editor
+from ui.plain import plain
+from ui.session import Session
+from workbench.core.errors import StoreError
+from workbench.lock_file import Holder, LockFile
+
+LOCK = "server.lock"
+LOOK_S = 1.0
+"""Time between two looks at the lock [s]."""
+
+
+class Tenancy:
+    """This server's hold of its project."""
+
+    def __init__(self, folder: Path, session: Session, *, link: str) -> None:
+        self.lock = LockFile(folder, name=LOCK, link=link)
+        self.session = session
+        self.on_entered: Callable[[], None] = lambda: None
+        """Called when this server begins to write the project again, with its state read anew."""
+        self._editor: Editor | None = None
+        self._looked = 0.0
+        session.may_write = lambda: self.lock.is_own
+
+    def enter(self) -> Holder | None:
+        """Take the project, or learn which server has it.
+
+        Raises:
+            StoreError: If the folder cannot be written.
+        """
+        try:
+            return self.lock.take()
+        except OSError as error:
+            raise self._unwritable(error) from error
+
+    def follow(self, editor: Editor, holder: Holder | None) -> None:
+        """Let tabs edit only while this server has the project, from now on."""
+        self._editor = editor
+        if holder is not None:
+            self._shut(holder)
+
+    def turn(self) -> None:
+        """See whether another server has taken the project; called by the pump."""
+        now = time.monotonic()
+        if self._editor is None or now - self._looked < LOOK_S:
+            return
+        self._looked = now
+        holder = self.lock.holder()
+        if holder == self.lock.own or self._editor.is_shut:
+            return
+        if holder is None or not holder.living:
+            # Somebody deleted the file, or took over and died: nobody writes but this server.
+            self.enter()
+        else:
+            self._shut(holder)
+
+    def leave(self) -> None:
+        """Give the project back."""
+        self.lock.release()
+
+    def _shut(self, holder: Holder) -> None:
+        assert self._editor is not None
+        self._editor.shut(_words(holder), self._seize)
+
+    def _seize(self) -> None:
+        """Take the project over, as it stands on disk: the other server may have edited it."""
+        try:
+            self.lock.seize()
+        except OSError as error:
+            raise self._unwritable(error) from error
+        self.session.open(None)
+        self.on_entered()
+
+    def _unwritable(self, error: OSError) -> StoreError:
+        return StoreError(
+            f"cannot write to {self.lock.path.parent}: {error.strerror or error}",
+            hint="check the folder's permissions, or choose another one with --project",
+            at="project",
+        )
+
+
+def _words(holder: Holder) -> str:
+    where = f" on {holder.host}" if holder.elsewhere else ""
+    told = f"process {holder.pid}{where}, since {holder.since}"
+    link = f" [Open it there]({holder.link})." if holder.link.startswith("http") else ""
+    return (
+        f"<span style='color:{AMBER}'>**Only shown here:** another workbench has this project "
+        f"({plain(told)}).</span>{link}"
+    )
