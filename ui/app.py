@@ -94,10 +94,12 @@ def serve(options: argparse.Namespace, project: Project) -> int:
         raise _port_taken(options.port)
     conductor = Conductor(project.store, LaneRunner(project.store))
     threading.Thread(target=warm_up, name="warm-up", daemon=True).start()
-    desk = build_desk(server, session, conductor, fast=options.fast_scene, tour=not options.no_tour)
+    editor = Editor(server)
+    tenancy.follow(editor, holder)
+    look = {"fast": options.fast_scene, "tour": not options.no_tour}
+    desk = build_desk(server, session, conductor, editor, **look)
     entered = desk.guarded(lambda event: desk.replaced())
     tenancy.on_entered = lambda: entered(None)
-    tenancy.follow(desk.editor, holder)
     desk.on_turn.append(tenancy.turn)
     first_look(desk)
     gate.health = lambda: {"ok": True, "version": __version__, "busy": conductor.busy}
@@ -117,7 +119,7 @@ def serve(options: argparse.Namespace, project: Project) -> int:
 
 
 def build_desk(
-    server: Any, session: Session, conductor: Conductor, *, fast: bool, tour: bool
+    server: Any, session: Session, conductor: Conductor, editor: Editor, *, fast: bool, tour: bool
 ) -> Desk:
     """Lay out all panels and show what is stored for the design."""
     run_in_order(server)
@@ -125,7 +127,6 @@ def build_desk(
     gui.configure_theme(dark_mode=True, show_logo=False, show_share_button=False, brand_color=BRAND)
     gui.main_panel.dock_left()
     gui.main_panel.set_width(385)
-    editor = Editor(server)
     incoming = Incoming(server, editor)
     with server.atomic():
         guide = Help(server, incoming)
