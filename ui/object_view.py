@@ -73,12 +73,12 @@ class ObjectView:
 
     def place(self, path: Press) -> None:
         """Stand the object on the skin near the target of a press."""
-        body = self.body
         self._pressed = None
-        if len(body.points):
+        place = self.body.place_near(path.target_mm)
+        if place is not None:
             if self._stale:
                 self._draw()
-            self._pose(standing_pose(body.points, body.normals, path.target_mm, self._lowest_mm))
+            self._pose(standing_pose(place, self._lowest_mm))
 
     def press(self, contact: Contact, frame: int) -> None:
         """Put it where a frame, counted from 0, has it, in the shape that it has there."""

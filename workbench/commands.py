@@ -111,6 +111,8 @@ def run(options: argparse.Namespace, project: Project) -> int:
         changed=start.changed,
         fields=options.image_fields,
     )
+    if "target" in summary["notices"]:
+        complain(f"notice: {summary['notices']['target']}")
     if not options.json:
         force = summary["contact"]
         depth_mm = force["frames"][-1]["depth_mm"]

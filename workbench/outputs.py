@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from workbench.aim import target_notice
 from workbench.core.design import SensorDesign
 from workbench.core.fabrication import (
     FabricationCheck,
@@ -291,6 +292,7 @@ def write_all(
         name: value.notice for name, value in load.items() if getattr(value, "notice", "")
     }
     told = {"press": path.notice, "material": design.material.notice, "design": changed}
+    told["target"] = target_notice(design, load["build"], path, load["press"])
     summary["notices"] |= {name: notice for name, notice in told.items() if notice}
     summary |= fabrication_tables(load["mould"], load["housing"], load["recipe"])
     drawn = drawings(load["build"], load["mesh"], load["press"], load.get("picture"))
