@@ -18,6 +18,7 @@ from geometry.surface import mesh_volume, open_edges
 from workbench.core.errors import DesignError, shown
 from workbench.core.imported import ImportedBody, ReadBody, body_file
 from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
+from workbench.core.turning import turn_matrix
 
 LARGEST_FILE_MB = 64
 MOST_TRIANGLES = 1_000_000
@@ -87,7 +88,7 @@ def scaled(mesh: IndenterMesh, size_mm: float) -> IndenterMesh:
 
 
 def primitive_mesh(indenter: Indenter) -> tuple[np.ndarray, np.ndarray]:
-    """Closed outward mesh of a sphere, cube, cone or cylinder, or a loaded mesh as it is.
+    """Closed outward mesh of a sphere, cube, cone or cylinder, or a loaded mesh, as it is turned.
 
     Texture and the rounding of a mesh are left out; see `workbench.indenter_display`.
 
@@ -97,9 +98,15 @@ def primitive_mesh(indenter: Indenter) -> tuple[np.ndarray, np.ndarray]:
     Raises:
         DesignError: If a cone is too small for its edge radius.
     """
+    mesh = indenter.standing_mesh
+    if mesh is not None:
+        return mesh.points_mm, mesh.faces
+    points, faces = _upright_mesh(indenter)
+    return points @ turn_matrix(indenter.turn_deg).T if indenter.turned else points, faces
+
+
+def _upright_mesh(indenter: Indenter) -> tuple[np.ndarray, np.ndarray]:
     half, radius = indenter.size_mm / 2, indenter.edge_radius_mm
-    if indenter.kind is IndenterKind.MESH and indenter.mesh is not None:
-        return indenter.mesh.points_mm, indenter.mesh.faces
     if indenter.kind is IndenterKind.SPHERE:
         return sphere(half)
     if indenter.kind is IndenterKind.CUBE:

@@ -40,6 +40,7 @@ NUMBERS = (
     "--depth-mm",
     "--size-mm",
     "--object-pose",
+    "--turn-deg",
     "--from",
     "--to",
 )

@@ -188,6 +188,7 @@ def press_summary(case: PressCase, contact: Contact) -> dict[str, Any]:
     return {
         "indenter": case.indenter.kind.value,
         "size_mm": case.indenter.size_mm,
+        "turn_deg": list(case.indenter.turn_deg),
         "target_mm": contact.target_mm.tolist(),
         "angle_deg": round(angle_deg),
         "azimuth_deg": math.degrees(math.atan2(*contact.target_mm[1::-1])),

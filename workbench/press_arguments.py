@@ -48,6 +48,8 @@ def _object_options(sub: argparse.ArgumentParser) -> None:
         "--edge-radius-mm", type=float, help="rounding of edges (default 0.45; of a file 0)"
     )
     sub.add_argument("--texture", metavar="PATTERN", help=TEXTURES)
+    text = "turn it about the fixed X, then Y, then Z; its -Z side meets the skin (default 0,0,0)"
+    sub.add_argument("--turn-deg", metavar="X,Y,Z", help=text)
     sub.add_argument("--soft-mpa", type=float, help="Young's modulus of a soft object [MPa]")
 
 
