@@ -66,6 +66,7 @@ def run(options: argparse.Namespace, project: Project) -> int:
     from workbench.partial import keeping_partial
     from workbench.pipeline import InlineRunner, evaluate, plan
     from workbench.source_files import asked_sources, with_weights, write_sources
+    from workbench.touching_side import touching_notice
 
     design = load_design(options.design, unit=options.unit, project=project)
     design = changed_design(options, design)
@@ -74,7 +75,8 @@ def run(options: argparse.Namespace, project: Project) -> int:
     first = press_case(options, design, default_target_mm(design))
     first = with_weights(first, options.weights, sources)
     plan(design, first)
-    for notice in (design.material.notice, first.press.notice):
+    touching = touching_notice(first.indenter)
+    for notice in (design.material.notice, first.press.notice, touching):
         if notice:
             complain(f"notice: {notice}")
     prepare(options.out, clear=RUN_FILES)

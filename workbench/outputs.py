@@ -32,6 +32,7 @@ from workbench.map_files import write_maps
 from workbench.pipeline import PressCase, results
 from workbench.stages import Call, Outcome
 from workbench.store import Store
+from workbench.touching_side import touching_notice
 from workbench.trajectories import pose_csv, press_poses
 from workbench.vtkfiles import write_vtk
 from workbench.whole_files import write_atomically
@@ -293,6 +294,7 @@ def write_all(
         name: value.notice for name, value in load.items() if getattr(value, "notice", "")
     }
     told = {"press": path.notice, "material": design.material.notice, "design": changed}
+    told["object"] = touching_notice(case.indenter)
     told["target"] = target_notice(design, load["build"], path, load["press"])
     summary["notices"] |= {name: notice for name, notice in told.items() if notice}
     summary |= fabrication_tables(load["mould"], load["housing"], load["recipe"])

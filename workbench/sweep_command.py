@@ -29,6 +29,7 @@ from workbench.project import Project
 from workbench.state import State, fresh_state, read_state
 from workbench.sweeps import Status, Sweep, done, failed, make_sweep, metrics_of, state_at
 from workbench.terminal import Progress, complain, say
+from workbench.touching_side import touching_notice
 from workbench.whole_files import write_atomically
 
 FILES = ("sweep.json", "sweep.csv", "sweep.html")
@@ -85,6 +86,9 @@ def base_state(options: argparse.Namespace, project: Project, printer: Progress)
     if design.body is not None and held is None:
         state = _aimed(state, project, printer)
         case = press_case(options, state.design, state.case.press.target_mm, held)
+    touching = touching_notice(case.indenter)
+    if touching:
+        complain(f"notice: {touching}")
     return State(design=state.design, case=case)
 
 

@@ -61,6 +61,10 @@ class FakeDesk:
         shown = object_view()
         self.scene = SimpleNamespace(object=shown, body=shown.body)
         self.live = SimpleNamespace(on=False)
+        self.told: list[str] = []
+
+    def tell(self, stage: str, result: Any) -> None:
+        self.told.append(stage)
 
     def take(self, indenter: Indenter) -> None:
         self.session.case = dataclasses.replace(self.session.case, indenter=indenter)
