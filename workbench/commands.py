@@ -41,6 +41,7 @@ def _start(
     """Build an imported body; one straight from its file gets LEDs that fit inside."""
     from workbench.aim import with_fitting_ring
     from workbench.pipeline import InlineRunner, PressCase, evaluate
+    from workbench.typed_fields import sets
 
     if design.body is None:
         return Start(design=design)
@@ -50,7 +51,7 @@ def _start(
         outcomes.append(outcome)
     solid = project.store.load("build", outcomes[-1].key)
     changed = ""
-    if not options.design.endswith(".toml"):
+    if not options.design.endswith(".toml") and not sets(options.set, "optics.ring"):
         design, changed = with_fitting_ring(design, solid)
     if changed:
         complain(changed)
@@ -132,9 +133,11 @@ def export(options: argparse.Namespace, project: Project) -> int:
     """Write a design's bodies, mould and meshes."""
     from workbench.exports import export_design, scene_notice
     from workbench.named_designs import load_design
+    from workbench.typed_fields import with_typed
 
     printer = Progress(as_json=options.json)
     design = load_design(options.design, unit=options.unit, project=project)
+    design = with_typed(design, options.set)
     notice = scene_notice(design) if options.mitsuba else ""
     if notice:
         complain(f"notice: {notice}")
