@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Any
 
 from workbench.core.design import SensorDesign
-from workbench.core.errors import DesignError
+from workbench.core.errors import DesignError, shown
 from workbench.core.mapping import from_table, suggest, to_table
 from workbench.design_toml import check_design
 from workbench.led_table import with_count
@@ -77,7 +77,7 @@ def _parted(word: str) -> tuple[str, str]:
     path, equals, text = word.partition("=")
     if not equals or not path.strip():
         raise DesignError(
-            f"--set {word[:80]!r} is no FIELD=VALUE",
+            f"--set {shown(word)} is no FIELD=VALUE",
             hint="for example --set material.friction=0.5",
             at="--set",
         )
@@ -209,7 +209,7 @@ def _unknown(path: str, table: Mapping[str, Any]) -> DesignError:
         hint = "the press is no part of a design: it has options of its own (see --help)"
     else:
         hint = nearest_field(path, table)
-    return DesignError(f"the design has no field {path[:80]!r}", hint=hint, at="--set")
+    return DesignError(f"the design has no field {shown(path)}", hint=hint, at="--set")
 
 
 def nearest_field(path: str, table: Mapping[str, Any]) -> str:

@@ -45,6 +45,31 @@ def test_feet_press_alike_until_they_are_turned_over(
     assert abs(np.log(turned[0] / turned[1])) > 0.1
 
 
+@pytest.mark.parametrize(
+    ("one", "turned"),
+    [
+        (("cube",), ("cube", "--turn-deg", "0,90,0")),
+        (("cylinder_side",), ("cylinder_end", "--turn-deg", "-90,0,0")),
+    ],
+)
+def test_a_turned_shape_presses_as_its_like_does(
+    workbench: Command,
+    coarse: Path,
+    tmp_path: Path,
+    one: tuple[str, ...],
+    turned: tuple[str, ...],
+) -> None:
+    """A cube on another face, a cylinder laid down: the force of the closed form within 1 %."""
+    forces = []
+    for words in (one, turned):
+        out = tmp_path / "-".join(words)
+        size = ("--size-mm", 5, "--indenter")
+        found = workbench("run", coarse, *TOUCH, *size, *words, "--out", out)
+        assert found.code == 0, found.stderr
+        forces.append(json.loads((out / "summary.json").read_text())["contact"]["normal_N"])
+    assert forces[1] == pytest.approx(forces[0], rel=0.01)
+
+
 def test_a_target_on_the_wall_is_pressed_where_it_was_typed(
     workbench: Command, coarse: Path, tmp_path: Path
 ) -> None:

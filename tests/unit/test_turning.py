@@ -15,12 +15,15 @@ from sim.contact.objects.collider import make_collider
 from sim.contact.objects.sampling import box_mm
 from sim.contact.objects.shapes import Shape
 from sim.contact.objects.solids import lowest_mm, solid
+from workbench.cli import parser
 from workbench.core.digest import digest
 from workbench.core.errors import DesignError
 from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
 from workbench.core.soft_body import SoftBody
 from workbench.core.texture import Pattern, Texture
 from workbench.core.turning import touching_with, turn_angles, turn_matrix
+from workbench.dataset.recipe import load_recipe, recipe_from_toml, recipe_to_toml
+from workbench.dataset_command import chosen_recipe
 from workbench.indenter_display import display_mesh
 from workbench.kept_indenters import indenter_table, read_indenter
 from workbench.project import Project
@@ -134,6 +137,17 @@ def test_an_object_as_it_came_keeps_its_key() -> None:
     assert digest(Indenter(kind=IndenterKind.CUBE)) == "bf5036bd0b20cda67ee6bf4f75175baa"
     assert digest(Indenter()) != digest(Indenter(turn_deg=(180.0, 0.0, 0.0)))
     assert digest(Indenter(turn_deg=(0, 0, 0))) == digest(Indenter())
+
+
+def test_a_recipe_of_objects_as_they_came_keeps_its_key() -> None:
+    """The table that a data set's key is made of has the turn only where there is one."""
+    recipe = load_recipe("tiny")
+    assert "turn_deg" not in recipe.table
+    words = ["dataset", "make", "tiny", "--out", "x", "--turn-deg", "90,0,-45"]
+    turned = chosen_recipe(parser().parse_args(words), Project(None))
+    assert turned.key != recipe.key
+    assert turned.indenter(IndenterKind.CUBE).turn_deg == (90.0, 0.0, -45.0)
+    assert recipe_from_toml(recipe_to_toml(turned)).turn_deg == turned.turn_deg
 
 
 def test_a_turn_is_kept_in_the_design_file(tmp_path: Path) -> None:
