@@ -13,7 +13,7 @@ import numpy as np
 from geometry.intake import read_body
 from geometry.obj import obj_corners
 from geometry.primitives import rounded_box, rounded_revolution, sphere
-from geometry.stl import stl_corners, welded
+from geometry.stl import sewn, stl_corners, welded
 from geometry.surface import mesh_volume, open_edges
 from workbench.core.errors import DesignError, shown
 from workbench.core.imported import ImportedBody, ReadBody, body_file
@@ -25,6 +25,8 @@ MOST_TRIANGLES = 1_000_000
 """Sampling the distance of more takes minutes."""
 SMALLEST_SHARE = 1e-6
 """Volume over that of the bounding box below which a mesh encloses nothing."""
+SEWN_WIDTHS = 1e-6
+"""Distance over the width up to which the corners of an open mesh are taken for one."""
 ENDINGS = (".stl", ".obj", ".step", ".stp")
 AT = "indenter"
 
@@ -162,6 +164,10 @@ def _closed_mesh(corners: np.ndarray, name: str) -> IndenterMesh:
         )
     points, faces = welded(corners)
     gaps = open_edges(faces)
+    if gaps:
+        near = sewn(points, faces, SEWN_WIDTHS * float(np.ptp(points, axis=0).max()))
+        if len(near[1]) and not open_edges(near[1]):
+            (points, faces), gaps = near, 0
     if gaps:
         raise DesignError(
             f"{name} is not watertight: {gaps} open edges",

@@ -34,24 +34,33 @@ class SkinPlace(NamedTuple):
     """Unit normal of the smooth surface, shape (3,)."""
 
 
-def place_near(points_mm: np.ndarray, faces: np.ndarray, query_mm: np.ndarray) -> SkinPlace:
+def place_near(
+    points_mm: np.ndarray, faces: np.ndarray, query_mm: np.ndarray | tuple[float, float, float]
+) -> SkinPlace:
     """The place of a surface nearest to one point.
 
-    All triangles are looked at, which for one point is quicker than a search tree.
+    All triangles whose box is no farther than the nearest corner are looked at, which for one point
+    is quicker than a search tree.
 
     Args:
         points_mm: Vertices, shape (N, 3).
         faces: Triangles counter-clockwise from outside, shape (M, 3), at least one.
         query_mm: The point, shape (3,).
     """
-    corners = np.asarray(points_mm, dtype=np.float64)[faces]
-    query = np.broadcast_to(np.asarray(query_mm, dtype=np.float64), (len(corners), 3))
-    found = closest_on_triangles(query, corners)
-    distance_mm = np.linalg.norm(found - query, axis=1)
-    face = int(np.argmin(distance_mm))
+    query = np.asarray(query_mm, dtype=np.float64)
+    a, b, c = (np.asarray(points_mm, dtype=np.float64)[faces[:, k]] - query for k in range(3))
+    low, high = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
+    beside = np.maximum(np.maximum(low, -high), 0.0)
+    box_2 = np.einsum("fc,fc->f", beside, beside)
+    near = np.flatnonzero(box_2 <= np.einsum("fc,fc->f", a, a).min())
+    corners = np.stack([a[near], b[near], c[near]], axis=1)
+    found = closest_on_triangles(np.zeros((len(near), 3)), corners)
+    distance_mm = np.linalg.norm(found, axis=1)
+    best = int(np.argmin(distance_mm))
+    face = int(near[best])
     normals = np.array([_corner_normal(points_mm, faces, face, k) for k in faces[face]])
-    normal = blended(corners[face], normals, found[face])
-    return SkinPlace(found[face], float(distance_mm[face]), face, normal)
+    normal = blended(corners[best], normals, found[best])
+    return SkinPlace(found[best] + query, float(distance_mm[best]), face, normal)
 
 
 def _corner_normal(points_mm: np.ndarray, faces: np.ndarray, face: int, corner: int) -> np.ndarray:

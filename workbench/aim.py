@@ -14,7 +14,6 @@ from workbench.core.lighting import LedMount
 from workbench.core.press import Press
 from workbench.core.results import Label, Solid
 from workbench.core.sensing import Contact
-from workbench.previews import outer_faces
 
 OFF_SKIN_MM = 1.0
 """Distance of a chosen target from the skin that is worth a word."""
@@ -59,7 +58,8 @@ def skin_place(solid: Solid, place_mm: tuple[float, float, float]) -> SkinPlace:
 
     Distances go to triangles: a straight wall has corners only at its ends.
     """
-    return place_near(*outer_faces(solid.membrane), np.asarray(place_mm))
+    membrane = solid.membrane
+    return place_near(membrane.points_mm, membrane.faces[membrane.has(Label.OUTER)], place_mm)
 
 
 def target_notice(design: SensorDesign, solid: Solid, path: Press, contact: Contact) -> str:
