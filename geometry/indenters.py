@@ -13,17 +13,20 @@ import numpy as np
 from geometry.intake import read_body
 from geometry.obj import obj_corners
 from geometry.primitives import rounded_box, rounded_revolution, sphere
-from geometry.stl import stl_corners, welded
+from geometry.stl import sewn, stl_corners, welded
 from geometry.surface import mesh_volume, open_edges
 from workbench.core.errors import DesignError, shown
 from workbench.core.imported import ImportedBody, ReadBody, body_file
 from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
+from workbench.core.turning import turn_matrix
 
 LARGEST_FILE_MB = 64
 MOST_TRIANGLES = 1_000_000
 """Sampling the distance of more takes minutes."""
 SMALLEST_SHARE = 1e-6
 """Volume over that of the bounding box below which a mesh encloses nothing."""
+SEWN_WIDTHS = 1e-6
+"""Distance over the width up to which the corners of an open mesh are taken for one."""
 ENDINGS = (".stl", ".obj", ".step", ".stp")
 AT = "indenter"
 
@@ -87,7 +90,7 @@ def scaled(mesh: IndenterMesh, size_mm: float) -> IndenterMesh:
 
 
 def primitive_mesh(indenter: Indenter) -> tuple[np.ndarray, np.ndarray]:
-    """Closed outward mesh of a sphere, cube, cone or cylinder, or a loaded mesh as it is.
+    """Closed outward mesh of a sphere, cube, cone or cylinder, or a loaded mesh, as it is turned.
 
     Texture and the rounding of a mesh are left out; see `workbench.indenter_display`.
 
@@ -97,9 +100,15 @@ def primitive_mesh(indenter: Indenter) -> tuple[np.ndarray, np.ndarray]:
     Raises:
         DesignError: If a cone is too small for its edge radius.
     """
+    mesh = indenter.standing_mesh
+    if mesh is not None:
+        return mesh.points_mm, mesh.faces
+    points, faces = _upright_mesh(indenter)
+    return points @ turn_matrix(indenter.turn_deg).T if indenter.turned else points, faces
+
+
+def _upright_mesh(indenter: Indenter) -> tuple[np.ndarray, np.ndarray]:
     half, radius = indenter.size_mm / 2, indenter.edge_radius_mm
-    if indenter.kind is IndenterKind.MESH and indenter.mesh is not None:
-        return indenter.mesh.points_mm, indenter.mesh.faces
     if indenter.kind is IndenterKind.SPHERE:
         return sphere(half)
     if indenter.kind is IndenterKind.CUBE:
@@ -155,6 +164,10 @@ def _closed_mesh(corners: np.ndarray, name: str) -> IndenterMesh:
         )
     points, faces = welded(corners)
     gaps = open_edges(faces)
+    if gaps:
+        near = sewn(points, faces, SEWN_WIDTHS * float(np.ptp(points, axis=0).max()))
+        if len(near[1]) and not open_edges(near[1]):
+            (points, faces), gaps = near, 0
     if gaps:
         raise DesignError(
             f"{name} is not watertight: {gaps} open edges",

@@ -38,6 +38,28 @@ def welded(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return points, faces[np.all(faces != np.roll(faces, 1, axis=1), axis=1)]
 
 
+def sewn(points: np.ndarray, faces: np.ndarray, within: float) -> tuple[np.ndarray, np.ndarray]:
+    """Vertices and triangles with vertices that are nearly one made one; collapsed ones dropped.
+
+    Some programs round the corners of one place differently, or write 0 beside 1e-9.
+
+    Args:
+        points: Vertices, shape (N, 3).
+        faces: Triangles, shape (M, 3).
+        within: Distance up to which two vertices are one.
+    """
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+    from scipy.spatial import KDTree
+
+    first, second = KDTree(points).query_pairs(within, output_type="ndarray").reshape(-1, 2).T
+    links = coo_matrix((np.ones(len(first)), (first, second)), (len(points), len(points)))
+    _, place = connected_components(links, directed=False)
+    _, kept = np.unique(place, return_index=True)
+    faces = place[faces]
+    return points[kept], faces[np.all(faces != np.roll(faces, 1, axis=1), axis=1)]
+
+
 def _binary_corners(data: bytes) -> np.ndarray | None:
     """Triangles of a binary STL, shape (M, 3, 3), or None when its length says it is none."""
     if len(data) < 84:

@@ -15,6 +15,7 @@ __all__ = [
     "Clip",
     "Plane",
     "RayCaster",
+    "closest_on_triangles",
     "closest_point",
     "face_areas",
     "half_space_clip",
@@ -117,7 +118,7 @@ def closest_point(
     centre = corners.mean(axis=1)
     radius = np.linalg.norm(corners - centre[:, None], axis=2).max(axis=1)
     nearest_face = KDTree(centre).query(query)[1]
-    best_point = _closest_on_triangle(query, corners[nearest_face])
+    best_point = closest_on_triangles(query, corners[nearest_face])
     best_distance = np.linalg.norm(query - best_point, axis=1)
     best_face = np.asarray(nearest_face, dtype=np.int64)
     size_class = np.floor(np.log2(np.maximum(radius, 1e-9))).astype(int)
@@ -144,7 +145,7 @@ def _keep_nearer(
 ) -> None:
     """Replace the best answers in place where a candidate is nearer."""
     best_point, best_distance, best_face = best
-    point = _closest_on_triangle(query[owner], corners[face])
+    point = closest_on_triangles(query[owner], corners[face])
     distance = np.linalg.norm(query[owner] - point, axis=1)
     order = np.lexsort((distance, owner))
     first = order[np.unique(owner[order], return_index=True)[1]]
@@ -154,7 +155,7 @@ def _keep_nearer(
     best_face[winner] = face[first]
 
 
-def _closest_on_triangle(query: np.ndarray, corners: np.ndarray) -> np.ndarray:
+def closest_on_triangles(query: np.ndarray, corners: np.ndarray) -> np.ndarray:
     """Nearest point of triangle i to query i, shape (Q, 3).
 
     The foot of the perpendicular where it falls inside, else the nearest of the three edges.

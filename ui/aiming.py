@@ -70,8 +70,9 @@ class Aiming:
     def keep_aim(self) -> None:
         """Bring a target that a change of shape left in the air back to the skin, and say so."""
         desk = self.desk
-        point, distance_mm = desk.scene.body.nearest(desk.session.case.press.target_mm)
-        if distance_mm > AIM_LIMIT_MM:
+        place = desk.scene.body.place_near(desk.session.case.press.target_mm)
+        if place is not None and place.distance_mm > AIM_LIMIT_MM:
+            point, distance_mm = place.point_mm, place.distance_mm
             design, solid = desk.session.design, desk.scene.body.solid
             if design.family == IMPORTED and solid is not None:
                 point = default_target_mm(design, solid)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ui.gizmo import Gizmo
-from workbench.live_press import LiveCall, Preview, aimed_mm, live_call
+from workbench.live_press import LiveCall, Preview, live_call
 from workbench.requests import Request
 
 if TYPE_CHECKING:
@@ -80,8 +80,9 @@ class LivePress:
     def _dragged(self, place_mm: np.ndarray, wxyz: np.ndarray) -> None:
         """Aim at the skin nearest to where the handle was dragged."""
         desk = self.desk
-        if not self.on or desk.scene.body.solid is None:
+        place = desk.scene.body.place_near((place_mm[0], place_mm[1], place_mm[2]))
+        if not self.on or place is None:
             return
-        x, y, z = (round(float(c), 2) for c in aimed_mm(desk.scene.body.solid, place_mm))
+        x, y, z = (round(float(c), 2) for c in place.point_mm)
         desk.edit("case.press.target_mm", (x, y, z))
         desk.fields.refresh()

@@ -41,6 +41,8 @@ class ObjectFollower:
         if request.case.indenter.kind is case.indenter.kind:
             shown = self.desk.scene.object
             shown.show(drawing, case.press)
+            if request.case.indenter == case.indenter:
+                self.desk.tell("object", drawing)
             if self.desk.live.on:
                 self.desk.live.gizmo.place(shown.standing[:3])
 

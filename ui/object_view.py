@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from ui.nodes import replace
 from ui.sensor import SensorView
+from workbench.core.poses import rotations
 from workbench.core.press import Press
 from workbench.core.sensing import Contact
 from workbench.object_drawing import Drawing
-from workbench.previews import standing_pose
+from workbench.previews import corner_normals, first_hit, standing_pose
 from workbench.soft_shape import deformed_mm, is_soft
 
 OBJECT_COLOUR = (232, 124, 44)
+TOUCHING_COLOUR = (255, 222, 70)
+"""Of the side that touches."""
+BEFORE_MM = 0.03
+"""How far that side is drawn before the object's own surface: in it, the two would flicker [mm]."""
 SEEN_THROUGH = 0.35
 """Opacity of an object that is seen through."""
 
@@ -26,6 +32,8 @@ class ObjectView:
         self.server = server
         self.body = body
         self.node: Any = None
+        self.touching: Any = None
+        """The side that touches, below the object in the scene tree: it moves with it."""
         self.allowed = True
         """Whether the designer wants to see the object at all."""
         self._present = True
@@ -39,6 +47,8 @@ class ObjectView:
         """Where the object stands: x, y, z [mm], qw, qx, qy, qz."""
         self._rest = np.zeros((0, 3)), np.zeros((0, 3), np.uint32)
         """Undeformed vertices [mm] and triangles."""
+        self._side = self._rest
+        """Those of the side that touches."""
         self._bent = False
         """Whether the object is drawn deformed."""
         self._stale = False
@@ -49,6 +59,7 @@ class ObjectView:
     def show(self, drawing: Drawing, path: Press) -> None:
         """Show an object where the frame on show has it, else on the skin at the target."""
         self._rest = drawing.points_mm, drawing.faces
+        self._side = drawing.touching
         self._bent = False
         self._lowest_mm = drawing.lowest_mm
         if self._pressed is None:
@@ -70,15 +81,29 @@ class ObjectView:
         else:
             with self.server.atomic():
                 replace(self.node, vertices, triangles)
+        self._draw_side()
+
+    def _draw_side(self) -> None:
+        """Draw the side that touches a little before the object's own surface."""
+        points, triangles = self._side
+        outward = corner_normals(points, triangles)
+        vertices = (points + BEFORE_MM * outward).astype(np.float32)
+        if self.touching is None and len(triangles):
+            self.touching = self.server.scene.add_mesh_simple(
+                "/indenter/touching", vertices, triangles, color=TOUCHING_COLOUR, side="double"
+            )
+        elif self.touching is not None:
+            with self.server.atomic():
+                replace(self.touching, vertices, triangles)
 
     def place(self, path: Press) -> None:
         """Stand the object on the skin near the target of a press."""
-        body = self.body
         self._pressed = None
-        if len(body.points):
+        place = self.body.place_near(path.target_mm)
+        if place is not None:
             if self._stale:
                 self._draw()
-            self._pose(standing_pose(body.points, body.normals, path.target_mm, self._lowest_mm))
+            self._pose(standing_pose(place, self._lowest_mm))
 
     def press(self, contact: Contact, frame: int) -> None:
         """Put it where a frame, counted from 0, has it, in the shape that it has there."""
@@ -91,6 +116,9 @@ class ObjectView:
             self._bent = is_soft(contact)
             shape = deformed_mm(contact, frame, points) if self._bent else points
             replace(self.node, shape.astype(np.float32), triangles)
+            if self.touching is not None:
+                # It is drawn as at rest, which a bent object is not.
+                self.touching.visible = not self._bent
 
     def _pose(self, pose: np.ndarray) -> None:
         self.standing = np.asarray(pose)
@@ -99,6 +127,26 @@ class ObjectView:
         with self.server.atomic():
             self.node.position = tuple(pose[:3])
             self.node.wxyz = tuple(pose[3:])
+
+    def await_click(self, clicked: Callable[[np.ndarray], None] | None) -> None:
+        """Hand the outward normal of the face that is clicked next to somebody; None: to nobody.
+
+        Only while somebody waits the object takes clicks: else the skin behind it does.
+        """
+        nodes = [node for node in (self.node, self.touching) if node is not None]
+        for node in nodes:
+            node.remove_click_callback("all")
+            if clicked is not None:
+                node.on_click(lambda event, then=clicked: self._clicked(event, then))
+
+    def _clicked(self, event: Any, then: Callable[[np.ndarray], None]) -> None:
+        points, triangles = self._rest
+        turn = rotations(self.standing[3:])
+        origin = (np.asarray(event.ray_origin) - self.standing[:3]) @ turn
+        found = first_hit(points, triangles, origin, np.asarray(event.ray_direction) @ turn)
+        if found is not None:
+            a, b, c = points[triangles[found[0]].astype(int)]
+            then(np.cross(b - a, c - a))
 
     def hide(self, wanted: bool) -> None:
         """Hide the object by itself, or show it again."""
@@ -123,8 +171,9 @@ class ObjectView:
     def see_through(self, wanted: bool) -> None:
         """Let the object be seen through, so that what happens below it shows."""
         self._seen_through = wanted
-        if self.node is not None:
-            self.node.opacity = SEEN_THROUGH if wanted else self._opacity
+        for node in (self.node, self.touching):
+            if node is not None:
+                node.opacity = SEEN_THROUGH if wanted else self._opacity
 
     def fade(self, opacity: float) -> None:
         """Draw the object with an opacity in [0, 1]."""

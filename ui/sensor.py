@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 
 from ui.nodes import Meshes
+from workbench.aim import SkinPlace, skin_place
 from workbench.core.results import Label, Solid
-from workbench.previews import corner_normals, first_hit, outer_faces, skin_parts
+from workbench.previews import first_hit, outer_faces, skin_parts
 from workbench.section_cut import Plane, clip
 
 SKIN_COLOUR = (196, 206, 220)
@@ -44,14 +45,12 @@ class SensorView:
         """What the body is cut by."""
         self.points = np.zeros((0, 3))
         """Vertices of the sensing side [mm], shape (N, 3)."""
-        self.normals = np.zeros((0, 3))
         self.solid: Solid | None = None
 
     def show_solid(self, solid: Solid) -> None:
         """Show a body in place of the one before."""
         self.solid = solid
-        self.points, faces = outer_faces(solid.membrane)
-        self.normals = corner_normals(self.points, faces)
+        self.points, _ = outer_faces(solid.membrane)
         parts = skin_parts(solid.membrane)
         pins = parts.pop("pins", None)
         for name, (points, triangles) in parts.items():
@@ -140,22 +139,14 @@ class SensorView:
         found = first_hit(points, faces, origin, direction)
         return None if found is None else (int(clickable[found[0]]), found[1])
 
-    def normal_near(self, target_mm: tuple[float, float, float]) -> np.ndarray:
-        """Outward unit normal of the skin nearest to a point, shape (3,); up without a body."""
-        if not len(self.points):
-            return np.array([0.0, 0.0, 1.0])
-        return self.normals[np.argmin(((self.points - np.asarray(target_mm)) ** 2).sum(axis=1))]
-
     def follow_tips(self) -> None:
         """Show the tips of pins where the pins are shown."""
         if self.tips is not None:
             self.tips.visible = self._skin_shown and self.inside.allowed
 
-    def nearest(self, target_mm: tuple[float, float, float]) -> tuple[np.ndarray, float]:
-        """The skin vertex nearest to a point and its distance [mm]."""
-        distance = np.linalg.norm(self.points - np.asarray(target_mm), axis=1)
-        best = int(np.argmin(distance))
-        return self.points[best], float(distance[best])
+    def place_near(self, target_mm: tuple[float, float, float]) -> SkinPlace | None:
+        """The place of the sensing side nearest to a point; None without a body."""
+        return None if self.solid is None else skin_place(self.solid, target_mm)
 
     @property
     def bounds_mm(self) -> tuple[np.ndarray, np.ndarray]:

@@ -1,4 +1,4 @@
-"""What only a built body can tell: where a first press makes sense, and which LED ring fits."""
+"""What only a built body can tell: where a press lands or makes sense, which LED ring fits."""
 
 from __future__ import annotations
 
@@ -7,11 +7,16 @@ import math
 
 import numpy as np
 
+from geometry.surface_place import SkinPlace, place_near
 from workbench.bodies import IMPORTED
 from workbench.core.design import SensorDesign
 from workbench.core.lighting import LedMount
+from workbench.core.press import Press
 from workbench.core.results import Label, Solid
+from workbench.core.sensing import Contact
 
+OFF_SKIN_MM = 1.0
+"""Distance of a chosen target from the skin that is worth a word."""
 RING_STEP_MM = 0.5
 FLAT_TOP_MM = 0.02
 """Faces this near to the highest point are its flat top [mm]."""
@@ -46,6 +51,32 @@ def default_target_mm(
     shape = resolve_shape(design.family, design.shape)
     x, y, z = (round(float(c), 3) for c in family(design.family).target(shape, design.layers))
     return x, y, z
+
+
+def skin_place(solid: Solid, place_mm: tuple[float, float, float]) -> SkinPlace:
+    """The place of a body's sensing skin nearest to a point, and how far that is off [mm].
+
+    Distances go to triangles: a straight wall has corners only at its ends.
+    """
+    membrane = solid.membrane
+    return place_near(membrane.points_mm, membrane.faces[membrane.has(Label.OUTER)], place_mm)
+
+
+def target_notice(design: SensorDesign, solid: Solid, path: Press, contact: Contact) -> str:
+    """What to say of a target that was chosen well off the skin, else ""."""
+    if path.trajectory is not None or path.target_mm == default_target_mm(design, solid):
+        return ""
+    away_mm = float(np.linalg.norm(contact.target_mm - np.array(path.target_mm)))
+    if away_mm <= OFF_SKIN_MM:
+        return ""
+    asked, used = (
+        ", ".join(f"{value:g}" for value in np.round(place, 2) + 0.0)
+        for place in (path.target_mm, contact.target_mm)
+    )
+    return (
+        f"the target ({asked}) mm is {away_mm:.1f} mm off the skin; "
+        f"the press went to the nearest place of the skin, ({used}) mm"
+    )
 
 
 def with_fitting_ring(design: SensorDesign, solid: Solid) -> tuple[SensorDesign, str]:

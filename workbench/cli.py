@@ -28,7 +28,7 @@ from workbench import (
 )
 from workbench.core.errors import Cancelled, DesignError, StoreError, WorkbenchError, shown
 from workbench.fem_arguments import add_fem_commands
-from workbench.press_arguments import add_press_options, add_unit_option
+from workbench.press_arguments import add_press_options, add_set_option, add_unit_option
 from workbench.project import Project
 from workbench.supervised import supervised
 from workbench.terminal import complain, say
@@ -40,6 +40,7 @@ NUMBERS = (
     "--depth-mm",
     "--size-mm",
     "--object-pose",
+    "--turn-deg",
     "--from",
     "--to",
 )
@@ -201,6 +202,7 @@ def parser() -> argparse.ArgumentParser:
     export = command(commands.export)
     export.add_argument("design", metavar="NAME|FILE")
     add_unit_option(export)
+    add_set_option(export)
     export.add_argument("--out", required=True, type=Path, metavar="DIR")
     export.add_argument("--tets", action="store_true", help="also tetrahedra: about a minute")
     text = "also mitsuba/scene.xml, the sensor at rest for the renderer Mitsuba 3"

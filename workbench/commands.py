@@ -41,6 +41,7 @@ def _start(
     """Build an imported body; one straight from its file gets LEDs that fit inside."""
     from workbench.aim import with_fitting_ring
     from workbench.pipeline import InlineRunner, PressCase, evaluate
+    from workbench.typed_fields import sets
 
     if design.body is None:
         return Start(design=design)
@@ -50,7 +51,7 @@ def _start(
         outcomes.append(outcome)
     solid = project.store.load("build", outcomes[-1].key)
     changed = ""
-    if not options.design.endswith(".toml"):
+    if not options.design.endswith(".toml") and not sets(options.set, "optics.ring"):
         design, changed = with_fitting_ring(design, solid)
     if changed:
         complain(changed)
@@ -66,6 +67,7 @@ def run(options: argparse.Namespace, project: Project) -> int:
     from workbench.partial import keeping_partial
     from workbench.pipeline import InlineRunner, evaluate, plan
     from workbench.source_files import asked_sources, with_weights, write_sources
+    from workbench.touching_side import touching_notice
 
     design = load_design(options.design, unit=options.unit, project=project)
     design = changed_design(options, design)
@@ -74,7 +76,8 @@ def run(options: argparse.Namespace, project: Project) -> int:
     first = press_case(options, design, default_target_mm(design))
     first = with_weights(first, options.weights, sources)
     plan(design, first)
-    for notice in (design.material.notice, first.press.notice):
+    touching = touching_notice(first.indenter)
+    for notice in (design.material.notice, first.press.notice, touching):
         if notice:
             complain(f"notice: {notice}")
     prepare(options.out, clear=RUN_FILES)
@@ -111,6 +114,8 @@ def run(options: argparse.Namespace, project: Project) -> int:
         changed=start.changed,
         fields=options.image_fields,
     )
+    if "target" in summary["notices"]:
+        complain(f"notice: {summary['notices']['target']}")
     if not options.json:
         force = summary["contact"]
         depth_mm = force["frames"][-1]["depth_mm"]
@@ -128,9 +133,11 @@ def export(options: argparse.Namespace, project: Project) -> int:
     """Write a design's bodies, mould and meshes."""
     from workbench.exports import export_design, scene_notice
     from workbench.named_designs import load_design
+    from workbench.typed_fields import with_typed
 
     printer = Progress(as_json=options.json)
     design = load_design(options.design, unit=options.unit, project=project)
+    design = with_typed(design, options.set)
     notice = scene_notice(design) if options.mitsuba else ""
     if notice:
         complain(f"notice: {notice}")

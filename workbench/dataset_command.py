@@ -14,8 +14,11 @@ from workbench.core.errors import DesignError
 from workbench.core.fem import DRAFT_MM
 from workbench.core.units import human_seconds
 from workbench.dataset.recipe import RECIPES, Recipe, Solvers, load_recipe
+from workbench.press_arguments import add_set_option
+from workbench.press_options import typed_numbers
 from workbench.project import Project
 from workbench.terminal import Progress, complain, say
+from workbench.typed_fields import with_typed
 
 TOLD_S = 10.0
 """Time between two lines of progress where there is no terminal to rewrite one [s]."""
@@ -49,6 +52,9 @@ def _make_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--young", type=float, metavar="MPA", help=text)
     sub.add_argument("--solver", choices=[solver.value for solver in Solvers])
     sub.add_argument("--no-images", action="store_true", help="fields and forces only")
+    add_set_option(sub)
+    text = "turn every object about the fixed X, then Y, then Z before it is pressed"
+    sub.add_argument("--turn-deg", metavar="X,Y,Z", help=text)
     sub.add_argument("--seed", type=int, metavar="S", help="of the order of cases and the split")
     text = "only say what there is to do and what it costs by the cases finished in DIR"
     sub.add_argument("--estimate", action="store_true", help=text)
@@ -67,12 +73,14 @@ def chosen_recipe(options: argparse.Namespace, project: Project) -> Recipe:
         "hex_mm": DRAFT_MM if options.draft else None,
         "images": False if options.no_images else None,
     }
+    if options.turn_deg is not None:
+        changes["turn_deg"] = typed_numbers(options.turn_deg, at="--turn-deg")
     given = {name: value for name, value in changes.items() if value is not None}
     recipe = dataclasses.replace(load_recipe(options.recipe, project), **given)
     if options.young is not None:
         design = recipe.design.replace("material.young_MPa", options.young)
         recipe = dataclasses.replace(recipe, design=design)
-    return recipe
+    return dataclasses.replace(recipe, design=with_typed(recipe.design, options.set))
 
 
 def make(options: argparse.Namespace, project: Project) -> int:

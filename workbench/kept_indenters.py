@@ -95,6 +95,9 @@ def _of_mesh(mesh: IndenterMesh, plain: Mapping[str, Any]) -> Indenter:
     """An indenter of triangles with the fields of a table that such a one has."""
     sizes = ("size_mm", "edge_radius_mm", "mesh_rounding_mm")
     numbers = {name: plain[name] for name in sizes if name in plain}
+    if "turn_deg" in plain:
+        turned = from_table(Indenter, {"turn_deg": plain["turn_deg"]}, at=AT)
+        numbers["turn_deg"] = turned.turn_deg
     parts = {
         name: from_table(kind, plain[name], at=f"{AT}.{name}")
         for name, kind in (("texture", Texture), ("soft", SoftBody))

@@ -21,10 +21,9 @@ from workbench.core.monitor import Monitor
 from workbench.core.motion import Mover
 from workbench.core.optics import Optics
 from workbench.core.press import ContactSettings, Press
-from workbench.core.results import MembraneMesh, Solid
+from workbench.core.results import MembraneMesh
 from workbench.core.sensing import Contact
 from workbench.pipeline import PressCase, plan
-from workbench.previews import outer_faces
 from workbench.stages import Ref
 from workbench.store import Store
 from workbench.surface_detail import detailed
@@ -138,15 +137,6 @@ def live_call(design: SensorDesign, case: PressCase) -> LiveCall:
         press=live_press(case.press),
         settings=case.settings,
     )
-
-
-def aimed_mm(solid: Solid, place_mm: np.ndarray) -> np.ndarray:
-    """The point of the sensing skin of a body that is nearest to a place, shape (3,) [mm]."""
-    from geometry.surface import closest_point
-
-    points, faces = outer_faces(solid.membrane)
-    found, *_ = closest_point(points, faces, np.asarray(place_mm, dtype=np.float64)[None])
-    return found[0]
 
 
 class Previewer:

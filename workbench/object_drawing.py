@@ -15,11 +15,15 @@ import numpy as np
 from workbench.core.digest import digest
 from workbench.core.indenter import Indenter
 from workbench.core.monitor import Monitor
+from workbench.core.turning import Angles
 from workbench.pipeline import at_defaults
 from workbench.store import Store
+from workbench.touching_side import meant_turn
 
 KEPT_SHAPES = 8
 """Shapes that a lane remembers: back and forth between a few objects costs nothing."""
+TOUCHING_MM = 0.5
+"""Height above its lowest point up to which an object is drawn as touching."""
 SHAPES = "object shapes"
 """Name under which a lane keeps them."""
 
@@ -34,6 +38,10 @@ class Drawing:
     """Triangles counter-clockwise from outside, shape (M, 3), uint32."""
     lowest_mm: float
     """Extent below the origin."""
+    touching: tuple[np.ndarray, np.ndarray] = (np.zeros((0, 3)), np.zeros((0, 3), np.uint32))
+    """Vertices [mm], (P, 3), and triangles, (Q, 3), of the side that touches."""
+    meant: Angles | None = None
+    """Turn with which its structured side would touch, where a flat one does."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -63,11 +71,15 @@ class DrawingCall:
         Raises:
             DesignError: If the shape cannot be made.
         """
+        from geometry.touching import touching_patch
+
         points_mm, faces = shapes_of(kept).shape(self.indenter)
         return Drawing(
             points_mm=points_mm,
             faces=faces.astype(np.uint32),
             lowest_mm=-float(points_mm[:, 2].min()),
+            touching=touching_patch(points_mm, faces, TOUCHING_MM),
+            meant=meant_turn(self.indenter),
         )
 
 

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from workbench.aim import target_notice
 from workbench.core.design import SensorDesign
 from workbench.core.fabrication import (
     FabricationCheck,
@@ -31,6 +32,7 @@ from workbench.map_files import write_maps
 from workbench.pipeline import PressCase, results
 from workbench.stages import Call, Outcome
 from workbench.store import Store
+from workbench.touching_side import touching_notice
 from workbench.trajectories import pose_csv, press_poses
 from workbench.vtkfiles import write_vtk
 from workbench.whole_files import write_atomically
@@ -187,6 +189,7 @@ def press_summary(case: PressCase, contact: Contact) -> dict[str, Any]:
     return {
         "indenter": case.indenter.kind.value,
         "size_mm": case.indenter.size_mm,
+        "turn_deg": list(case.indenter.turn_deg),
         "target_mm": contact.target_mm.tolist(),
         "angle_deg": round(angle_deg),
         "azimuth_deg": math.degrees(math.atan2(*contact.target_mm[1::-1])),
@@ -291,6 +294,8 @@ def write_all(
         name: value.notice for name, value in load.items() if getattr(value, "notice", "")
     }
     told = {"press": path.notice, "material": design.material.notice, "design": changed}
+    told["object"] = touching_notice(case.indenter)
+    told["target"] = target_notice(design, load["build"], path, load["press"])
     summary["notices"] |= {name: notice for name, notice in told.items() if notice}
     summary |= fabrication_tables(load["mould"], load["housing"], load["recipe"])
     drawn = drawings(load["build"], load["mesh"], load["press"], load.get("picture"))

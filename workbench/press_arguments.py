@@ -32,11 +32,18 @@ def add_unit_option(sub: argparse.ArgumentParser) -> None:
     )
 
 
+def add_set_option(sub: argparse.ArgumentParser) -> None:
+    """Fields of the design, as often as one likes."""
+    text = "any field of the design, for example material.friction=0.5; may be given several times"
+    sub.add_argument("--set", action="append", default=[], metavar="FIELD=VALUE", help=text)
+
+
 def add_press_options(sub: argparse.ArgumentParser) -> None:
     """What is pressed, where, how it moves and how it is computed; none has a default here."""
     _object_options(sub)
     _path_options(sub)
     _solver_options(sub)
+    add_set_option(sub)
     sub.add_argument("--material-law", choices=[law.value for law in Law], help="of the design")
     sub.add_argument("--light-model", choices=[m.value for m in LightModel])
 
@@ -48,6 +55,8 @@ def _object_options(sub: argparse.ArgumentParser) -> None:
         "--edge-radius-mm", type=float, help="rounding of edges (default 0.45; of a file 0)"
     )
     sub.add_argument("--texture", metavar="PATTERN", help=TEXTURES)
+    text = "turn it about the fixed X, then Y, then Z; its -Z side meets the skin (default 0,0,0)"
+    sub.add_argument("--turn-deg", metavar="X,Y,Z", help=text)
     sub.add_argument("--soft-mpa", type=float, help="Young's modulus of a soft object [MPa]")
 
 
@@ -82,11 +91,14 @@ def _solver_options(sub: argparse.ArgumentParser) -> None:
 
 
 def changed_design(options: argparse.Namespace, design: SensorDesign) -> SensorDesign:
-    """The design with the light model and the material's law that the options name.
+    """The design with the fields, the light model and the material's law that the options name.
 
     Raises:
-        DesignError: If it does not take one of them.
+        DesignError: If there is no such field, or the design does not take its value.
     """
+    from workbench.typed_fields import with_typed
+
+    design = with_typed(design, options.set)
     if options.light_model:
         design = design.replace("optics.light_model", LightModel(options.light_model))
     if options.material_law:

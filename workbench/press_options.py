@@ -32,6 +32,7 @@ NOT_WITH_TRAJECTORY = ("depth_mm", "shear_mm", "twist_deg", "frames", "stroke")
 EXAMPLES = {
     "--target": ("0,10,35", "x, y, z in mm"),
     "--shear-mm": ("0.5,0", "along U and V in mm"),
+    "--turn-deg": ("180,0,0", "degrees about X, then Y, then Z"),
     "--object-pose": ("0,0,20,1,0,0,0", "x, y, z in mm, then the unit quaternion qw, qx, qy, qz"),
 }
 """What may be typed, and what it means."""
@@ -71,7 +72,7 @@ def _sequence(options: argparse.Namespace, design: SensorDesign) -> PressCase:
 
     _refuse(options, NOT_WITH_SEQUENCE, "sequence")
     named = (options.indenter, options.size_mm, options.edge_radius_mm, options.texture)
-    named = (*named, options.soft_mpa)
+    named = (*named, options.soft_mpa, options.turn_deg)
     return sequence(
         design,
         options.sequence,
@@ -110,9 +111,11 @@ def _indenter(options: argparse.Namespace, held: Indenter | None = None) -> Inde
             edge_radius_mm=options.edge_radius_mm,
             texture=texture,
         )
-    if options.soft_mpa is None:
+    if options.soft_mpa is not None:
+        found = dataclasses.replace(found, soft=SoftBody(young_MPa=options.soft_mpa))
+    if options.turn_deg is None:
         return found
-    return dataclasses.replace(found, soft=SoftBody(young_MPa=options.soft_mpa))
+    return dataclasses.replace(found, turn_deg=typed_numbers(options.turn_deg, at="--turn-deg"))
 
 
 def _changed(options: argparse.Namespace, held: Indenter, texture: Texture | None) -> Indenter:
@@ -140,16 +143,16 @@ def _press(
         held = Press()
     frames = held.frames if options.frames is None else options.frames
     mover = held.mover if options.mover is None else Mover(options.mover)
-    pose = held.object_pose if standing is None else _numbers(standing, at="--object-pose")
+    pose = held.object_pose if standing is None else typed_numbers(standing, at="--object-pose")
     strokes = tuple(read_stroke(text, frames=frames) for text in options.stroke)
     if timed and (mover is Mover.OBJECT or pose is not None):
         # Otherwise the object stands where it touches the target.
         _refuse(options, ("target",), "trajectory")
     return dataclasses.replace(
         held,
-        target_mm=_numbers(options.target, at="--target") if options.target else target_mm,
+        target_mm=typed_numbers(options.target, at="--target") if options.target else target_mm,
         depth_mm=held.depth_mm if options.depth_mm is None else options.depth_mm,
-        shear_mm=held.shear_mm if shear is None else _numbers(shear, at="--shear-mm"),
+        shear_mm=held.shear_mm if shear is None else typed_numbers(shear, at="--shear-mm"),
         twist_deg=held.twist_deg if options.twist_deg is None else options.twist_deg,
         frames=frames,
         strokes=strokes or held.strokes,
@@ -183,7 +186,12 @@ def _settings(options: argparse.Namespace) -> dict[str, Any]:
     return {name: value for name, value in given.items() if value is not None}
 
 
-def _numbers(text: str, *, at: str) -> Any:
+def typed_numbers(text: str, *, at: str) -> Any:
+    """The numbers of an option of `EXAMPLES`.
+
+    Raises:
+        DesignError: If there are others than it takes.
+    """
     example, what = EXAMPLES[at]
     count = len(example.split(","))
     try:

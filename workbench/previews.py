@@ -10,6 +10,7 @@ import itertools
 import numpy as np
 
 from geometry.quality import CELL_EDGES, volume_quality
+from geometry.surface_place import SkinPlace
 from workbench.core.frames import quaternion, tangent
 from workbench.core.results import (
     Label,
@@ -173,21 +174,15 @@ def corner_normals(points_mm: np.ndarray, faces: np.ndarray) -> np.ndarray:
     return normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
 
 
-def standing_pose(
-    points_mm: np.ndarray,
-    normals: np.ndarray,
-    target_mm: tuple[float, float, float],
-    lowest_mm: float,
-) -> np.ndarray:
-    """x, y, z [mm], qw, qx, qy, qz of an indenter that stands on the skin near the target.
+def standing_pose(place: SkinPlace, lowest_mm: float) -> np.ndarray:
+    """x, y, z [mm], qw, qx, qy, qz of an indenter that stands at a place of the skin.
 
     For the eye only: the solver finds first touch exactly.
 
     Args:
+        place: Where it stands.
         lowest_mm: Extent of the indenter below its body origin.
     """
-    nearest = int(np.argmin(((points_mm - np.asarray(target_mm)) ** 2).sum(axis=1)))
-    normal = normals[nearest]
-    tangent_u = tangent(normal)
-    rotation = np.stack([tangent_u, np.cross(normal, tangent_u), normal], axis=1)
-    return np.r_[points_mm[nearest] + normal * lowest_mm, quaternion(rotation)]
+    tangent_u = tangent(place.normal)
+    rotation = np.stack([tangent_u, np.cross(place.normal, tangent_u), place.normal], axis=1)
+    return np.r_[place.point_mm + place.normal * lowest_mm, quaternion(rotation)]

@@ -29,6 +29,8 @@ from workbench.project import Project
 from workbench.state import State, fresh_state, read_state
 from workbench.sweeps import Status, Sweep, done, failed, make_sweep, metrics_of, state_at
 from workbench.terminal import Progress, complain, say
+from workbench.touching_side import touching_notice
+from workbench.typed_fields import sets
 from workbench.whole_files import write_atomically
 
 FILES = ("sweep.json", "sweep.csv", "sweep.html")
@@ -83,8 +85,12 @@ def base_state(options: argparse.Namespace, project: Project, printer: Progress)
     # What is wrong with the options is said before anything is built.
     case = press_case(options, design, state.case.press.target_mm, held)
     if design.body is not None and held is None:
-        state = _aimed(state, project, printer)
+        chosen = sets(options.set, "optics.ring")
+        state = _aimed(state, project, printer, fits_ring=not chosen)
         case = press_case(options, state.design, state.case.press.target_mm, held)
+    touching = touching_notice(case.indenter)
+    if touching:
+        complain(f"notice: {touching}")
     return State(design=state.design, case=case)
 
 
@@ -102,13 +108,13 @@ def _held_case(options: argparse.Namespace, project: Project) -> PressCase | Non
     return read_state(text, project, source=options.design).case
 
 
-def _aimed(state: State, project: Project, printer: Progress) -> State:
-    """A body from a file has to be built to be aimed at, and gets LEDs that fit inside."""
+def _aimed(state: State, project: Project, printer: Progress, *, fits_ring: bool) -> State:
+    """A body from a file has to be built to be aimed at; a ring nobody chose is made to fit."""
     runner = InlineRunner(project.store)
     for outcome in evaluate(state.design, state.case, runner, wanted=("build",), monitor=printer):
         printer.done(outcome)
     solid = project.store.load("build", plan(state.design, state.case)["build"].key)
-    design, _ = with_fitting_ring(state.design, solid)
+    design = with_fitting_ring(state.design, solid)[0] if fits_ring else state.design
     press = dataclasses.replace(state.case.press, target_mm=default_target_mm(design, solid))
     return State(design=design, case=dataclasses.replace(state.case, press=press))
 

@@ -76,6 +76,9 @@ OTHERS = tuple(
         ("case.press.shear_mm[2]", "Press: shear along V", "mm", -2.0, 2.0, False),
         ("case.press.twist_deg", "Press: twist", "°", -45.0, 45.0, False),
         ("case.indenter.size_mm", "Object: size", "mm", 0.5, 30.0, False),
+        ("case.indenter.turn_deg[1]", "Object: turn about X", "°", -180.0, 180.0, False),
+        ("case.indenter.turn_deg[2]", "Object: turn about Y", "°", -180.0, 180.0, False),
+        ("case.indenter.turn_deg[3]", "Object: turn about Z", "°", -180.0, 180.0, False),
         ("case.settings.grid_mm", "Contact solver: grid", "mm", 0.25, 1.5, False),
     )
 )

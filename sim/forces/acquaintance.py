@@ -170,6 +170,8 @@ def _of_object(card: Mapping[str, Any], indenter: Indenter) -> Iterator[str]:
     known = _unlike(card, "edge_radius_mm", indenter.edge_radius_mm)
     if known and indenter.kind not in EDGELESS:
         yield f"edges are rounded by {indenter.edge_radius_mm:g} mm, trained on {known} mm"
+    if indenter.turned:
+        yield "the object is turned, trained on objects as they came"
     if indenter.texture.raised:
         yield "the object has a texture, trained on smooth ones"
     if indenter.soft is not None:

@@ -14,6 +14,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from geometry.surface import closest_point
+from geometry.surface_place import smooth_normal
 from sim.optics.dents import FOOT_MM, LEAST_MM, SOFTNESS_MM
 from workbench.core.frames import tangent
 from workbench.core.results import Skin
@@ -37,10 +39,10 @@ def sketched(
         depth_mm: From first touch.
     """
     rest = np.asarray(skin.points_mm)
-    nearest = int(np.argmin(((rest - target_mm) ** 2).sum(axis=1)))
-    normal = np.asarray(skin.normals[nearest])
+    points, _, face = closest_point(rest, skin.faces, np.asarray(target_mm, dtype=float)[None])
+    normal = smooth_normal(skin, int(face[0]), points[0])
     across = tangent(normal)
-    offset = rest - rest[nearest]
+    offset = rest - points[0]
     places = offset @ np.stack([across, np.cross(normal, across), normal], axis=1)
     width_mm = float(np.ptp(points_mm, axis=0).max())
     near = np.flatnonzero(

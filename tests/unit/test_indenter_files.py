@@ -135,6 +135,28 @@ def test_scan_with_too_many_triangles_is_refused(
         load_mesh(path)
 
 
+@pytest.mark.parametrize(("apart_mm", "closed"), [(2e-6, True), (1e-3, False)])
+def test_corners_that_are_nearly_one_close_a_file(
+    tmp_path: Path, apart_mm: float, closed: bool
+) -> None:
+    """A box of 20 mm whose corners each triangle rounds differently, as some programs write them.
+
+    Nanometres are rounding; a micrometre may be a gap, and is refused as one.
+    """
+    points, faces = rounded_box(10.0, 0.0)
+    corners = points[faces] + np.random.default_rng(3).uniform(0.0, apart_mm, (len(faces), 3, 3))
+    lines = [f"vertex {x:.9f} {y:.9f} {z:.9f}" for x, y, z in corners.reshape(-1, 3)]
+    path = tmp_path / "box.stl"
+    path.write_text("solid box\n" + "\n".join(lines) + "\nendsolid")
+    if not closed:
+        with pytest.raises(DesignError, match="not watertight"):
+            load_mesh(path)
+        return
+    mesh = load_mesh(path)
+    assert is_watertight(mesh.faces)
+    assert mesh_volume(mesh.points_mm, mesh.faces) == pytest.approx(8000.0, rel=1e-5)
+
+
 @pytest.mark.parametrize(
     ("name", "size_mm", "volume_mm3"),
     [

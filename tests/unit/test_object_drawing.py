@@ -15,6 +15,7 @@ import pytest
 import workbench.indenter_display as display
 from ui.object_follower import ObjectFollower
 from ui.object_view import ObjectView
+from workbench.aim import SkinPlace
 from workbench.core.design import SensorDesign
 from workbench.core.indenter import Indenter, IndenterKind
 from workbench.core.monitor import silent
@@ -44,10 +45,8 @@ def object_view() -> ObjectView:
     server = SimpleNamespace(
         scene=SimpleNamespace(add_mesh_simple=add), atomic=contextlib.nullcontext
     )
-    skin = SimpleNamespace(
-        points=np.array([[0.0, 0, 10], [5, 0, 10]]), normals=np.tile([0.0, 0, 1], (2, 1))
-    )
-    body: Any = skin
+    flat = SkinPlace(np.array([0.0, 0.0, 10.0]), 0.0, 0, np.array([0.0, 0.0, 1.0]))
+    body: Any = SimpleNamespace(place_near=lambda target_mm: flat)
     return ObjectView(server, body)
 
 
@@ -62,6 +61,10 @@ class FakeDesk:
         shown = object_view()
         self.scene = SimpleNamespace(object=shown, body=shown.body)
         self.live = SimpleNamespace(on=False)
+        self.told: list[str] = []
+
+    def tell(self, stage: str, result: Any) -> None:
+        self.told.append(stage)
 
     def take(self, indenter: Indenter) -> None:
         self.session.case = dataclasses.replace(self.session.case, indenter=indenter)
@@ -97,13 +100,13 @@ def test_it_is_asked_for_before_there_is_a_body_and_drawn_on_it() -> None:
     """At the first start the shape comes before the body: nothing is drawn in the air."""
     desk: Any = FakeDesk()
     body = desk.scene.body
-    points, body.points = body.points, np.zeros((0, 3))
+    place_near, body.place_near = body.place_near, lambda target_mm: None
     follower = ObjectFollower(desk)
     follower.follow()
     assert len(desk.asked) == 1
     desk.answer(desk.session.case.indenter, tetrahedron(2.0))
     assert desk.scene.object.node is None
-    body.points = points
+    body.place_near = place_near
     desk.scene.object.place(Press())
     follower.follow()
     assert len(desk.asked) == 1

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from geometry.surface_place import SkinPlace
 from ui.aiming import Aiming
 from ui.desk import Desk
 from ui.ghost import Ghost, GhostView
@@ -128,6 +129,9 @@ def test_what_breaks_while_ghosts_are_drawn_is_told(error: Exception, told: int)
     assert (len(bugs), len(missing)) == (told, 1 - told)
 
 
+OFF = SkinPlace(np.ones(3), 9.0, 0, np.array([0.0, 0.0, 1.0]))
+
+
 @pytest.mark.parametrize("live", [False, True])
 def test_all_who_follow_the_target_hear_that_it_moved(live: bool) -> None:
     """Saving, Auto update and the sketch; the live press where it is on."""
@@ -143,7 +147,7 @@ def test_all_who_follow_the_target_hear_that_it_moved(live: bool) -> None:
         log=tells("log"),
         live=SimpleNamespace(on=live, follow=tells("live")),
         glimpse=SimpleNamespace(follow=tells("glimpse")),
-        scene=SimpleNamespace(body=SimpleNamespace(nearest=lambda point: (np.ones(3), 9.0))),
+        scene=SimpleNamespace(body=SimpleNamespace(place_near=lambda point: OFF)),
         session=SimpleNamespace(
             case=SimpleNamespace(press=SimpleNamespace(target_mm=(0.0, 0.0, 0.0))),
             design=SimpleNamespace(family="finger"),

@@ -11,6 +11,7 @@ import viser
 from ui.callbacks import put
 from ui.desk import Desk
 from ui.gallery import Card
+from ui.panels.touching import TouchingRows
 from workbench.core.design import SensorDesign
 from workbench.core.errors import Cancelled, DesignError
 from workbench.core.indenter import Indenter, IndenterKind
@@ -75,6 +76,7 @@ class ObjectFolder:
             self.file = gui.add_upload_button("Load object", mime_type=".stl,.obj,.step,.stp",
                                               icon=viser.Icon.UPLOAD, hint=hint)  # fmt: skip
             self.file.on_upload(desk.reports.received(self._sent, self._load_file))
+            self.touching = TouchingRows(desk, self._take)
             hint = "Its own elastomer and grid; takes several times as long"
             self.soft = gui.add_checkbox("Soft object", now.soft is not None, hint=hint)
             soft = now.soft or SoftBody()
@@ -231,6 +233,7 @@ class ObjectFolder:
     def refresh(self) -> None:
         """Show the object as it stands."""
         now = self.desk.session.case.indenter
+        self.touching.refresh()
         put(self.kind, self._label(now))
         put(self.size, min(max(now.size_mm, 0.5), MESH_SPAN_MM))
         put(self.edge, min(edge_mm(now), 3.0))

@@ -144,6 +144,8 @@ class SimulatePanel:
 
     def show(self, stage: str, result: Any) -> None:
         """Show the force of the last frame, with its residual and penetration beside it."""
+        if stage == "object":
+            self.objects.touching.show(result)
         if stage == "sensor":
             self.found = self.numbers.content = ""
         if stage == "press":

@@ -8,6 +8,7 @@ from __future__ import annotations
 from functools import partial
 from typing import Any
 
+import numpy as np
 import viser
 
 from ui.desk import Desk
@@ -58,7 +59,8 @@ class ViewPanel:
         scene, press = self.desk.scene, self.desk.session.case.press
         toward = None
         if side is Side.CONTACT:
-            toward = scene.body.normal_near(press.target_mm)
+            place = scene.body.place_near(press.target_mm)
+            toward = np.array([0.0, 0.0, 1.0]) if place is None else place.normal
         scene.views.look_from(side, *scene.bounds_mm, client=event.client, toward=toward)
         self._face(event.client)
 

@@ -2,7 +2,8 @@
 
 Floats are hashed by their exact bits (`float.hex`), so 0.1 + 0.2 and 0.3 differ; types and field
 names take part, so that two dataclasses with equal values do not collide. A field with metadata
-`cosmetic` (a name, a colour of the user interface) never changes a key. Unknown types raise.
+`cosmetic` (a name, a colour of the user interface) never changes a key; one with `later`, which
+came after results had been stored, only where it is not at its default. Unknown types raise.
 """
 
 from __future__ import annotations
@@ -34,9 +35,13 @@ def _feed(hasher: Any, value: Any) -> None:
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
         hasher.update(f"D{type(value).__name__}(".encode())
         for field in dataclasses.fields(value):
-            if not field.metadata.get("cosmetic"):
-                hasher.update(f"{field.name}=".encode())
-                _feed(hasher, getattr(value, field.name))
+            if field.metadata.get("cosmetic"):
+                continue
+            held = getattr(value, field.name)
+            if field.metadata.get("later") and held == field.default:
+                continue
+            hasher.update(f"{field.name}=".encode())
+            _feed(hasher, held)
         hasher.update(b")")
     elif isinstance(value, np.ndarray):
         array: Any = np.ascontiguousarray(cast("Any", value))

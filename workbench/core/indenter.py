@@ -16,6 +16,7 @@ from workbench.core.check import expect, within
 from workbench.core.errors import DesignError
 from workbench.core.soft_body import SoftBody
 from workbench.core.texture import SMOOTH, Texture
+from workbench.core.turning import AS_IT_CAME, FARTHEST_DEG, Angles, turn_matrix
 
 
 class IndenterKind(enum.StrEnum):
@@ -144,6 +145,10 @@ class Indenter:
     """Pattern on the side that meets the skin."""
     soft: SoftBody | None = None
     """Its elastomer; None: rigid."""
+    turn_deg: Angles = field(default=AS_IT_CAME, metadata={"later": True})
+    """Turn about the fixed X, then Y, then Z before the press [degree]: its side that is -Z then
+    meets the skin. Texture and what is held of a soft object stay where they are: on the touching
+    side, and away from it."""
 
     def __post_init__(self) -> None:
         hint = "the default is 6 mm"
@@ -155,11 +160,29 @@ class Indenter:
             widest = widest_edge_mm(self.kind, self.size_mm)
             within(self.edge_radius_mm, 0.0, widest, what="edge radius", unit="mm", at=at)
         self._check_mesh()
+        at = "indenter.turn_deg"
+        # Whole numbers are the same turn, and must be the same key.
+        object.__setattr__(self, "turn_deg", tuple(float(angle) for angle in self.turn_deg))
+        for angle in self.turn_deg:
+            within(angle, -FARTHEST_DEG, FARTHEST_DEG, what="turn", unit="degree", at=at)
         at = "indenter.texture.height_mm"
         # The upper half of the body takes the displacement up, so it must be thicker than that.
         tallest = self.size_mm / 10
         if self.texture.raised:
             within(self.texture.height_mm, 0.0, tallest, what="texture height", unit="mm", at=at)
+
+    @property
+    def turned(self) -> bool:
+        """Whether it stands otherwise than it came; a ball never does."""
+        return any(self.turn_deg) and self.kind is not IndenterKind.SPHERE
+
+    @property
+    def standing_mesh(self) -> IndenterMesh | None:
+        """Its mesh as it is turned, in the body frame."""
+        if self.mesh is None or not self.turned:
+            return self.mesh
+        turned_mm = self.mesh.points_mm @ turn_matrix(self.turn_deg).T
+        return IndenterMesh(points_mm=turned_mm, faces=self.mesh.faces, notice=self.mesh.notice)
 
     def _check_mesh(self) -> None:
         if (self.kind is IndenterKind.MESH) != (self.mesh is not None):

@@ -30,6 +30,7 @@ from workbench.core.indenter import (
 )
 from workbench.core.lighting import LightModel
 from workbench.core.mapping import from_table, to_table
+from workbench.core.turning import AS_IT_CAME, Angles
 from workbench.dataset.positions import MARGIN_MM, Pattern
 
 WHOLE = 1e-6
@@ -60,6 +61,8 @@ class Recipe:
     """Of every object [mm]: the paper gives none."""
     edge_radius_mm: float = DEFAULT_EDGE_RADIUS_MM
     """Rounding of every object's edges [mm]: physics, see the FEM's findings on cubes."""
+    turn_deg: Angles = AS_IT_CAME
+    """Turn of every object about the fixed X, then Y, then Z [degree]."""
     depth_mm: float = 1.0
     depth_step_mm: float = 0.1
     """One frame each [mm]."""
@@ -120,7 +123,12 @@ class Recipe:
 
     def indenter(self, kind: IndenterKind) -> Indenter:
         """The object of a kind."""
-        return Indenter(kind=kind, size_mm=self.size_mm, edge_radius_mm=self.edge_radius_mm)
+        return Indenter(
+            kind=kind,
+            size_mm=self.size_mm,
+            edge_radius_mm=self.edge_radius_mm,
+            turn_deg=self.turn_deg,
+        )
 
     @property
     def meshed_design(self) -> SensorDesign:
@@ -143,7 +151,11 @@ class Recipe:
         """The recipe as plain tables, as a manifest and a TOML file hold it."""
         from workbench.design_toml import design_table
 
-        return {**to_table(self), "design": design_table(self.design)}
+        table = {**to_table(self), "design": design_table(self.design)}
+        if not any(self.turn_deg):
+            # Data sets of before had no such field, and keep their key.
+            del table["turn_deg"]
+        return table
 
     @property
     def key(self) -> str:

@@ -15,6 +15,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from geometry.surface import closest_point
+from geometry.surface_place import smooth_normal
 from sim.contact.motion.covering import clear_way_mm, cover, overlaps_along
 from sim.contact.motion.path import Leg, State, Track, current, legs_of, straight_counts, track_of
 from sim.contact.motion.touch import first_touch
@@ -260,13 +261,3 @@ def _plan_straight(skin: Skin, collider: Collider, press: Press) -> Approach:
         touch_mm=touch_mm,
         press=press,
     )
-
-
-def smooth_normal(skin: Skin, face: int, point: np.ndarray) -> np.ndarray:
-    """Unit vertex normal interpolated at a point of a triangle, shape (3,)."""
-    corners = skin.points_mm[skin.faces[face]]
-    shares, *_ = np.linalg.lstsq(
-        np.vstack([corners.T, np.ones(3)]), np.append(point, 1.0), rcond=None
-    )
-    normal = np.clip(shares, 0.0, 1.0) @ skin.normals[skin.faces[face]]
-    return normal / np.linalg.norm(normal)

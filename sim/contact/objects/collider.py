@@ -65,7 +65,7 @@ def make_collider(
     window_mm: Window | None = None,
     whole: SampledDistance | None = None,
 ) -> Collider:
-    """Prepare an indenter; all but spheres, cylinders, cubes and cones are sampled.
+    """Prepare an indenter; all but unturned spheres, cylinders, cubes and cones are sampled.
 
     Args:
         indenter: The object.
@@ -80,7 +80,7 @@ def make_collider(
         DesignError: If the shape cannot be made.
     """
     shape = SHAPE_OF_KIND[indenter.kind]
-    if shape is Shape.GRID or indenter.texture.raised:
+    if shape is Shape.GRID or indenter.texture.raised or indenter.turned:
         return _sampled(indenter, grid_mm, window_mm, whole)
     ball = shape is Shape.SPHERE
     return Collider(

@@ -21,7 +21,7 @@ from sim.contact.objects.samples import (
     read_spline,
     spline,
 )
-from sim.contact.objects.solids import half_extent_mm, solid
+from sim.contact.objects.solids import smooth_box_mm, solid
 from workbench.core.digest import digest
 from workbench.core.errors import DesignError
 from workbench.core.indenter import Indenter
@@ -72,12 +72,7 @@ def sample_indenter(
 
 def box_mm(indenter: Indenter) -> tuple[np.ndarray, np.ndarray]:
     """Corners [mm] of a box that holds the indenter with its texture, shape (3,) each."""
-    mesh = indenter.mesh
-    if mesh is not None:
-        low, high = mesh.points_mm.min(axis=0), mesh.points_mm.max(axis=0)
-    else:
-        high = half_extent_mm(indenter)
-        low = -high
+    low, high = smooth_box_mm(indenter)
     raised = indenter.texture.height_mm if indenter.texture.raised else 0.0
     return low - [0.0, 0.0, raised], high
 
@@ -118,15 +113,16 @@ _lock = threading.Lock()
 
 def _smooth(indenter: Indenter, grid: SampleGrid) -> np.ndarray:
     """Signed distances without the texture, shape (A, B, C)."""
-    if indenter.mesh is None:
+    mesh = indenter.standing_mesh
+    if mesh is None:
         function, places = solid(indenter), grid.places()
         parts = [function(places[i : i + CHUNK]) for i in range(0, len(places), CHUNK)]
         return np.concatenate(parts).reshape(grid.shape)
     from sim.contact.objects.distance import mesh_distance, rounded_mesh_distance
 
     if indenter.mesh_rounding_mm:
-        return rounded_mesh_distance(indenter.mesh, grid, radius_mm=indenter.mesh_rounding_mm)
-    return mesh_distance(indenter.mesh, grid)
+        return rounded_mesh_distance(mesh, grid, radius_mm=indenter.mesh_rounding_mm)
+    return mesh_distance(mesh, grid)
 
 
 def _textured(

@@ -89,7 +89,7 @@ def analytic_size(indenter: Indenter) -> np.ndarray:
 
 
 def half_height_mm(indenter: Indenter) -> float:
-    """Distance from the body origin to the plane that bounds the shape toward -Z."""
+    """Distance from the body origin to the plane that bounds the unturned shape toward -Z."""
     if indenter.mesh is not None:
         return -float(indenter.mesh.points_mm[:, 2].min())
     if indenter.kind is IndenterKind.CONE:

@@ -16,6 +16,7 @@ import numpy as np
 from sim.contact.objects.profiles import POLYGONS, area_mm2, profile
 from sim.contact.objects.shapes import SHAPE_OF_KIND, Shape, analytic_size, evaluate, half_height_mm
 from workbench.core.indenter import Indenter, IndenterKind
+from workbench.core.turning import turn_matrix
 
 Solid = Callable[[np.ndarray], np.ndarray]
 """Signed distances [mm], shape (N,), of places (N, 3) in the body frame."""
@@ -24,12 +25,22 @@ ELLIPSOID_AXES = np.array([1.0, 0.7, 0.5])
 TUBE_SHARE = 0.15
 """Radius of the torus's tube over its outer diameter."""
 BISECTIONS = 60
+FAR_SHARE = 1e6
+"""Distance over the size from which a body is looked at for its extent: misses 1e-7 of it."""
 LEAST_SHARE = 1e-9
 """Places are kept this share of an axis off the ellipsoid's planes, where the root is double."""
 
 
 def solid(indenter: Indenter) -> Solid:
-    """Exact distance of any indenter that is no mesh, without its texture."""
+    """Exact distance of any indenter that is no mesh, as it is turned, without its texture."""
+    upright = _upright(indenter)
+    if not indenter.turned:
+        return upright
+    turn = turn_matrix(indenter.turn_deg)
+    return lambda place: upright(place @ turn)
+
+
+def _upright(indenter: Indenter) -> Solid:
     kind, size_mm, edge_mm = indenter.kind, indenter.size_mm, indenter.edge_radius_mm
     shape = SHAPE_OF_KIND[kind]
     if shape is not Shape.GRID:
@@ -49,11 +60,27 @@ def solid(indenter: Indenter) -> Solid:
     return lambda place: _prism(place, section, half_mm) - edge_mm
 
 
-def half_extent_mm(indenter: Indenter) -> np.ndarray:
-    """Half widths of a box about the origin that holds an indenter without its texture, (3,)."""
+def smooth_box_mm(indenter: Indenter) -> tuple[np.ndarray, np.ndarray]:
+    """Lower and upper corner [mm] of a box that holds an indenter without its texture, (3,) each.
+
+    A turned body's is exact: the support function h(d) of a body is the limit of t - f(t d) for
+    large t, f its distance.
+    """
+    mesh = indenter.standing_mesh
+    if mesh is not None:
+        return mesh.points_mm.min(axis=0), mesh.points_mm.max(axis=0)
+    if not indenter.turned:
+        half = _half_extent_mm(indenter)
+        return -half, half
+    far_mm = FAR_SHARE * indenter.size_mm
+    ways = np.vstack([-np.eye(3), np.eye(3)])
+    low, high = (far_mm - solid(indenter)(far_mm * ways)).reshape(2, 3)
+    return -low, high
+
+
+def _half_extent_mm(indenter: Indenter) -> np.ndarray:
+    """Half widths of such a box about the origin of an unturned kind, shape (3,)."""
     half = 0.5 * indenter.size_mm
-    if indenter.mesh is not None:
-        return np.abs(indenter.mesh.points_mm).max(axis=0)
     if indenter.kind is IndenterKind.ELLIPSOID:
         return half * ELLIPSOID_AXES
     if indenter.kind is IndenterKind.TORUS:
@@ -67,6 +94,8 @@ def half_extent_mm(indenter: Indenter) -> np.ndarray:
 
 def lowest_mm(indenter: Indenter) -> float:
     """Distance from the body origin to the plane that bounds an indenter toward -Z, untextured."""
+    if indenter.turned:
+        return -float(smooth_box_mm(indenter)[0][2])
     if indenter.kind is IndenterKind.ELLIPSOID:
         return 0.5 * indenter.size_mm * float(ELLIPSOID_AXES[2])
     if indenter.kind is IndenterKind.TORUS:
