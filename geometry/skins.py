@@ -18,7 +18,7 @@ from geometry.solid import COARSE_TOLERANCE_MM, TOLERANCE_MM
 from geometry.surface import face_areas, pieces, vertex_normals
 from geometry.transfer import face_regions
 from workbench.core.errors import MeshingError
-from workbench.core.results import Label, LabelledSurface, Skin
+from workbench.core.results import Label, LabelledSurface, MembraneMesh, Skin, Solid
 
 CAVITY_EDGE_MM = 0.65
 """Cell of the cavity skin [mm], so that no diagonal exceeds 1 mm; it only refracts light."""
@@ -72,6 +72,25 @@ def with_regions(skin: Skin, source: LabelledSurface, side: Label) -> Skin:
         normals=skin.normals,
         labels=labels,
         numbers=numbers,
+    )
+
+
+def rough_skins(solid: Solid) -> MembraneMesh:
+    """The skins of a body as it was tessellated: long triangles on straight walls, no hexahedra.
+
+    Made in a hundredth of a second, for looking at where things are; nothing can be pressed on it.
+
+    Raises:
+        MeshingError: If a region has no face.
+    """
+    return MembraneMesh(
+        hexes=None,
+        outer=region_skin(solid.membrane, Label.OUTER),
+        inner=region_skin(solid.membrane, Label.INNER),
+        cavity=region_skin(_facing_the_camera(solid.support), Label.INNER),
+        tips_mm=solid.tips_mm,
+        tip_radius_mm=solid.tip_radius_mm,
+        backing_mm=solid.backing_mm,
     )
 
 

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from workbench.aim import default_target_mm, with_fitting_ring
+from workbench.aim import default_target_mm
 from workbench.bodies import IMPORTED
 from workbench.core.results import Solid
+from workbench.fitting import fitted
 
 if TYPE_CHECKING:
     from ui.desk import Desk
@@ -61,10 +62,12 @@ class Aiming:
     def _fit_ring(self, solid: Solid) -> None:
         """Bring the LEDs of a body that has just come from a file inside it, and say so."""
         desk = self.desk
-        fitted, changed = with_fitting_ring(desk.session.design, solid)
+        if desk.session.design.family != IMPORTED:
+            return
+        design, changed = fitted(desk.session.design, solid)
         if changed:
-            desk.session.amend("design.optics.ring.radius_mm", fitted.optics.ring.radius_mm)
-            desk.scene.rig.show_optics(fitted.optics)
+            desk.session.amend("design.optics", design.optics)
+            desk.scene.rig.show_optics(design.optics)
             self._amended(changed)
 
     def keep_aim(self) -> None:

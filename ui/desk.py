@@ -13,6 +13,7 @@ import numpy as np
 from ui.aiming import Aiming
 from ui.backstage import Backstage
 from ui.editor import Editor
+from ui.foresight import Foresight
 from ui.gallery import Galleries
 from ui.gizmo import Gizmo
 from ui.glimpse import GlimpseFollower
@@ -34,7 +35,7 @@ from workbench.core.sensing import Contact
 from workbench.forms import resolve_shape
 from workbench.item_fields import read_field
 from workbench.pipeline import plan
-from workbench.requests import DRAWN, GLIMPSE, LIVE, PREDICTION, SHAPE, Finished, Request
+from workbench.requests import DRAWN, FORESIGHT, GLIMPSE, LIVE, PREDICTION, SHAPE, Finished, Request
 from workbench.stages import PARTIAL
 
 OF_A_SENSOR = ("press", "image", "maps", "forces", "learned", PREDICTION)
@@ -113,6 +114,7 @@ class Desk:
         self.live = LivePress(self)
         self.gizmos.append(self.live.gizmo)
         self.jobs.on_preview[LIVE] = self.live.show
+        self.foresight = Foresight(self)
         self.glimpse = GlimpseFollower(self)
         self.object = ObjectFollower(self)
         self.saving = Saving(session, self.reports, self.header.unsaved)
@@ -157,6 +159,7 @@ class Desk:
         else:
             # An edit taken back: what was being built for it must not hold up the rest.
             self.conductor.give_up(SHAPE)
+        self.foresight.follow()
         self.scene.rig.show_optics(session.design.optics)
         self.showing.show_stored()
         if self.current("build"):
@@ -246,6 +249,8 @@ class Desk:
         """Show the frames that settled before a press failed."""
         if topic == LIVE:
             self.live.failed()
+        elif topic == FORESIGHT:
+            self.foresight.failed()
         elif topic == GLIMPSE:
             self.glimpse.failed()
         elif topic == DRAWN:

@@ -59,6 +59,9 @@ class Header:
         self.banner = gui.add_markdown("", visible=False)
         self.unsaved = gui.add_markdown("", visible=False)
         self.notice = gui.add_markdown("", visible=False)
+        self.misfit = gui.add_markdown("", visible=False)
+        hint = "LEDs, lamps and cameras that are in a wall or outside move to where there is room"
+        self.fit = gui.add_button("Fit LEDs and camera to the body", visible=False, hint=hint)
         # A panel of its own: widgets must not move under the mouse when a job starts or ends.
         self.job = gui.add_panel(visible=False)
         with self.job.add_tab("Running", viser.Icon.LOADER):

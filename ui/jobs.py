@@ -20,6 +20,7 @@ from workbench.preview_call import PreviewCall
 from workbench.requests import (
     CUT,
     DRAWN,
+    FORESIGHT,
     GLIMPSE,
     LIVE,
     PREDICTION,
@@ -142,7 +143,7 @@ class Jobs:
                 then(event)
         elif then is not None:
             then(event)
-        elif error is not None and event.topic in (GLIMPSE, CUT):
+        elif error is not None and event.topic in (FORESIGHT, GLIMPSE, CUT):
             # What was wrong with the design itself is told, once, by the topic of its shape.
             if not event.failed:
                 log(f"{event.topic}: {in_full(error.message, error.hint)}")

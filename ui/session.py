@@ -16,6 +16,7 @@ from typing import Any
 from workbench.core.design import SensorDesign
 from workbench.core.errors import DamagedError, WorkbenchError
 from workbench.core.indenter import Indenter
+from workbench.core.optics import Optics
 from workbench.design_toml import check_design, design_from_toml
 from workbench.item_fields import with_field
 from workbench.named_designs import load_design
@@ -111,6 +112,11 @@ class Session:
             part = dataclasses.replace(getattr(self.case, group), **{name: value})
             case = dataclasses.replace(self.case, **{group: part})
             self._commit(dataclasses.replace(self.state, case=case), dotted)
+
+    def change_optics(self, optics: Optics) -> None:
+        """Take all lights and cameras of a design at once."""
+        design = self.design.replace("optics", optics)
+        self._commit(dataclasses.replace(self.state, design=design), "design.optics")
 
     def change_press(self, **values: Any) -> None:
         """Set several fields of the press as one step of undo.

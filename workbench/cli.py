@@ -28,7 +28,12 @@ from workbench import (
 )
 from workbench.core.errors import Cancelled, DesignError, StoreError, WorkbenchError, shown
 from workbench.fem_arguments import add_fem_commands
-from workbench.press_arguments import add_press_options, add_set_option, add_unit_option
+from workbench.press_arguments import (
+    add_fit_option,
+    add_press_options,
+    add_set_option,
+    add_unit_option,
+)
 from workbench.project import Project
 from workbench.supervised import supervised
 from workbench.terminal import complain, say
@@ -203,6 +208,7 @@ def parser() -> argparse.ArgumentParser:
     export.add_argument("design", metavar="NAME|FILE")
     add_unit_option(export)
     add_set_option(export)
+    add_fit_option(export)
     export.add_argument("--out", required=True, type=Path, metavar="DIR")
     export.add_argument("--tets", action="store_true", help="also tetrahedra: about a minute")
     text = "also mitsuba/scene.xml, the sensor at rest for the renderer Mitsuba 3"
@@ -270,6 +276,7 @@ def _run_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("design", metavar="NAME|FILE")
     add_unit_option(sub)
     add_press_options(sub)
+    add_fit_option(sub)
     text = "write depth, normals and masks of every pixel: frames.npz, some 4 MB an image"
     sub.add_argument("--image-fields", action="store_true", help=text)
     text = "totals side by side in sources.csv: mpm, learned (seconds), fem (minutes)"

@@ -28,8 +28,8 @@ class Start:
     """What a command starts from."""
 
     design: SensorDesign
-    solid: Solid | None = None
-    """An imported body, which had to be built to be aimed at."""
+    solid: Solid
+    """The built body: what does not fit it is said before anything else is computed."""
     outcomes: tuple[Outcome, ...] = ()
     changed: str = ""
     """What was changed of the design, for people."""
@@ -38,21 +38,20 @@ class Start:
 def _start(
     design: SensorDesign, options: argparse.Namespace, project: Project, printer: Progress
 ) -> Start:
-    """Build an imported body; one straight from its file gets LEDs that fit inside."""
-    from workbench.aim import with_fitting_ring
+    """Build the body; one straight from its file gets LEDs that fit inside, others on request."""
+    from workbench.fitting import fitted
     from workbench.pipeline import InlineRunner, PressCase, evaluate
     from workbench.typed_fields import sets
 
-    if design.body is None:
-        return Start(design=design)
     runner, outcomes = InlineRunner(project.store), []
     for outcome in evaluate(design, PressCase(), runner, wanted=("build",), monitor=printer):
         printer.done(outcome)
         outcomes.append(outcome)
     solid = project.store.load("build", outcomes[-1].key)
+    from_file = design.body is not None and not options.design.endswith(".toml")
     changed = ""
-    if not options.design.endswith(".toml") and not sets(options.set, "optics.ring"):
-        design, changed = with_fitting_ring(design, solid)
+    if options.fit or (from_file and not sets(options.set, "optics.ring")):
+        design, changed = fitted(design, solid)
     if changed:
         complain(changed)
     return Start(design=design, solid=solid, outcomes=tuple(outcomes), changed=changed)
@@ -62,6 +61,7 @@ def run(options: argparse.Namespace, project: Project) -> int:
     """Press a design and write images, forces and moulds."""
     from workbench.aim import default_target_mm
     from workbench.folder import RUN_FILES, prepare
+    from workbench.foresight import expect_fit
     from workbench.named_designs import load_design
     from workbench.outputs import write_all
     from workbench.partial import keeping_partial
@@ -89,6 +89,7 @@ def run(options: argparse.Namespace, project: Project) -> int:
     case = dataclasses.replace(case, learned=first.learned)
     if case.indenter.mesh is not None and case.indenter.mesh.notice:
         complain(case.indenter.mesh.notice)
+    expect_fit(start.solid, design.optics, case)
     calls = plan(design, case)
     runner, outcomes = InlineRunner(project.store), list(start.outcomes)
     known = {outcome.key for outcome in outcomes}
@@ -132,6 +133,7 @@ def run(options: argparse.Namespace, project: Project) -> int:
 def export(options: argparse.Namespace, project: Project) -> int:
     """Write a design's bodies, mould and meshes."""
     from workbench.exports import export_design, scene_notice
+    from workbench.foresight import optical_misfits
     from workbench.named_designs import load_design
     from workbench.typed_fields import with_typed
 
@@ -142,6 +144,8 @@ def export(options: argparse.Namespace, project: Project) -> int:
     if notice:
         complain(f"notice: {notice}")
     start = _start(design, options, project, printer)
+    for misfit in optical_misfits(start.solid, start.design.optics):
+        complain(f"notice: {misfit}")
     extra = {"tets": options.tets, "mitsuba": options.mitsuba}
     for path in export_design(start.design, options.out, project.store, printer, **extra):
         say(json.dumps({"file": str(path)}) if options.json else path)

@@ -15,6 +15,7 @@ from workbench.core.results import MembraneMesh
 from workbench.core.sampled import SampledDistance
 from workbench.design_toml import design_to_toml
 from workbench.force_calls import fem_parts
+from workbench.foresight import expect_fit
 from workbench.pipeline import InlineRunner, StageMonitor, evaluate, plan, stage_monitor
 from workbench.project import Project
 from workbench.state import State, case_table, read_state
@@ -35,9 +36,15 @@ def solved(state: State, project: Project, printer: Progress) -> ForceField:
     Raises:
         WorkbenchError: If body, mesh or object cannot be made, or an increment does not converge.
     """
-    runner = InlineRunner(project.store)
-    for outcome in evaluate(state.design, state.case, runner, wanted=(STAGE,), monitor=printer):
+    runner, store = InlineRunner(project.store), project.store
+    for outcome in evaluate(state.design, state.case, runner, wanted=("build",), monitor=printer):
         printer.done(outcome)
+    # A depth that no wall has is said before the body is meshed.
+    build = plan(state.design, state.case)["build"]
+    expect_fit(store.load(build.stage, build.key), None, state.case)
+    for outcome in evaluate(state.design, state.case, runner, wanted=(STAGE,), monitor=printer):
+        if outcome.stage != build.stage:
+            printer.done(outcome)
     return project.store.load(STAGE, plan(state.design, state.case)[STAGE].key)
 
 

@@ -38,6 +38,12 @@ def add_set_option(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--set", action="append", default=[], metavar="FIELD=VALUE", help=text)
 
 
+def add_fit_option(sub: argparse.ArgumentParser) -> None:
+    """Places that a body does not have, changed instead of refused."""
+    text = "bring LEDs, lamps and cameras inside the body where they are not"
+    sub.add_argument("--fit", action="store_true", help=text)
+
+
 def add_press_options(sub: argparse.ArgumentParser) -> None:
     """What is pressed, where, how it moves and how it is computed; none has a default here."""
     _object_options(sub)

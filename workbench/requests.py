@@ -17,13 +17,15 @@ LIVE = "live"
 """The topic of live presses: each request stops the one before."""
 GLIMPSE = "glimpse"
 """The topic of the small picture that follows the sliders."""
+FORESIGHT = "foresight"
+"""The topic of what will be refused."""
 CUT = "cut"
 """The topic of the section view."""
 DRAWN = "drawn object"
 """The topic of the object's shape in the 3D view."""
 PREDICTION = "prediction"
 """The topic of learned forces that nobody asked for: they follow a press that is done."""
-FOLLOWING = (SHAPE, GLIMPSE, CUT, DRAWN, PREDICTION)
+FOLLOWING = (SHAPE, FORESIGHT, GLIMPSE, CUT, DRAWN, PREDICTION)
 """Topics too quick for a bar or a Cancel, unless one takes longer than `PATIENCE_S`."""
 PATIENCE_S = 4.0
 """What follows the hand and still runs after this gives way to a newer request [s]."""

@@ -16,11 +16,12 @@ import time
 from pathlib import Path
 from typing import Any
 
-from workbench.aim import default_target_mm, with_fitting_ring
+from workbench.aim import default_target_mm
 from workbench.core.errors import Cancelled, DesignError, WorkbenchError, shown
 from workbench.core.mapping import suggest
 from workbench.core.units import human_seconds
 from workbench.design_toml import parse_toml
+from workbench.fitting import fitted
 from workbench.named_designs import load_design
 from workbench.pipeline import InlineRunner, PressCase, evaluate, plan
 from workbench.press_arguments import changed_design
@@ -114,7 +115,7 @@ def _aimed(state: State, project: Project, printer: Progress, *, fits_ring: bool
     for outcome in evaluate(state.design, state.case, runner, wanted=("build",), monitor=printer):
         printer.done(outcome)
     solid = project.store.load("build", plan(state.design, state.case)["build"].key)
-    design = with_fitting_ring(state.design, solid)[0] if fits_ring else state.design
+    design = fitted(state.design, solid)[0] if fits_ring else state.design
     press = dataclasses.replace(state.case.press, target_mm=default_target_mm(design, solid))
     return State(design=design, case=dataclasses.replace(state.case, press=press))
 

@@ -16,11 +16,12 @@ from geometry.intake import read_body
 from geometry.isosurface import distance_mm, isosurface
 from geometry.offset import inset_surface, inside
 from geometry.surface import face_areas, is_watertight, mesh_volume
-from workbench.aim import default_target_mm, with_fitting_ring
+from workbench.aim import default_target_mm
 from workbench.core.design import Layers, SensorDesign
 from workbench.core.errors import DesignError
 from workbench.core.imported import ImportedBody, LengthUnit, Pick, ReadBody, body_file
 from workbench.core.results import Label, Solid, region_masks
+from workbench.fitting import fitted
 
 SIDES = 96
 RADIUS_MM, HEIGHT_MM = 12.0, 20.0
@@ -243,14 +244,12 @@ def test_isosurface_of_a_ball() -> None:
 
 
 def test_leds_of_a_body_from_a_file_are_moved_inside(hollow_drum: Solid) -> None:
-    """Cavity of 9 mm less LED 1.1 mm and gaps 0.3 mm: 7.5 mm instead of 9; a finger's stays."""
+    """Cavity of 9 mm less LED 1.1 mm and gaps 0.3 mm: 7.5 mm instead of 9; what fits stays."""
     design = SensorDesign(name="drum", family="imported")
-    fitted, notice = with_fitting_ring(design, hollow_drum)
-    assert fitted.optics.ring.radius_mm == 7.5
+    inside, notice = fitted(design, hollow_drum)
+    assert inside.optics.ring.radius_mm == 7.5
     assert notice == "LED ring: radius 7.5 mm instead of 9 mm, to fit inside"
-    assert with_fitting_ring(fitted, hollow_drum) == (fitted, "")
-    finger = SensorDesign(name="finger", family="finger")
-    assert with_fitting_ring(finger, hollow_drum) == (finger, "")
+    assert fitted(inside, hollow_drum) == (inside, "")
 
 
 def test_the_top_of_an_imported_body_is_pressed_first(hollow_drum: Solid) -> None:
