@@ -22,7 +22,7 @@ from geometry.core_release import bend_strain, core_strain, pin_strain
 from geometry.csg import Body
 from geometry.parting import Parting
 from geometry.trapped import POCKET_VENT_MM
-from workbench.core.fabrication import FabricationCheck, FabricationPart, Severity
+from workbench.core.fabrication import FabricationCheck, FabricationPart, PartMotion, Severity
 from workbench.core.making import MouldOptions
 from workbench.core.results import LabelledSurface
 
@@ -101,9 +101,15 @@ def mould_checks(
     parting: Parting,
     channels: Channels,
     options: MouldOptions,
+    *,
+    way: np.ndarray,
 ) -> tuple[FabricationCheck, ...]:
-    """All checks of a mould that hold for every silicone."""
-    checks = [*_release(cast, parting), *_core(cast)]
+    """Checks of a mould's parts and channels that hold for every silicone.
+
+    Args:
+        way: Unit direction in which the core leaves, shape (3,).
+    """
+    checks = [*_release(cast, parting), *_core(cast, way)]
     for part in parts:
         checks += wall_and_bed(part, options.bed_mm, limits=MOULD_LIMITS)
     return (*checks, _trapped(channels), _feature(channels, options))
@@ -192,7 +198,23 @@ def _release(cast: Cast, parting: Parting) -> Iterator[FabricationCheck]:
         )
 
 
-def _core(cast: Cast) -> Iterator[FabricationCheck]:
+def motion_checks(motions: Sequence[PartMotion]) -> Iterator[FabricationCheck]:
+    """Whether rigid parts are in each other's way when the mould is opened."""
+    for motion in motions:
+        yield check(
+            "demoulding",
+            motion.part,
+            Worst(motion.overlap_mm3, motion.overlap_at_mm),
+            unit="mm3",
+            title="overlap with other parts on its way out",
+            limit=motion.tolerance_mm3,
+            bad=motion.tolerance_mm3,
+            message="no order of pulling the parts apart is free: choose another "
+            "mould.outer_parts, or bend or undercut the shape less",
+        )
+
+
+def _core(cast: Cast, way: np.ndarray) -> Iterator[FabricationCheck]:
     """How the core leaves the cast."""
     if cast.core is None:
         return
@@ -200,7 +222,7 @@ def _core(cast: Cast) -> Iterator[FabricationCheck]:
     sides = places.points_mm[:, 2] > cast.base_mm + 1e-3
     part = Spread(places.points_mm[sides], places.normals[sides], places.area_mm2)
     # The core leaves downward inside the silicone: its facets must look up, away from the pull.
-    draft = draft_deg(part, np.array([0.0, 0.0, 1.0]))
+    draft = draft_deg(part, -way)
     yield check(
         "draft",
         "core",
@@ -212,10 +234,33 @@ def _core(cast: Cast) -> Iterator[FabricationCheck]:
     )
 
 
-def release_strain(core: Body, membrane: LabelledSurface) -> Worst:
-    """Strain of the silicone when the core leaves: of its sections, its bend or the pins."""
-    strains = core_strain(core), bend_strain(core, membrane), pin_strain(membrane)
+def release_strain(core: Body, membrane: LabelledSurface, way: np.ndarray) -> Worst:
+    """Strain of the silicone when the core leaves: of its sections, its bend or the pins.
+
+    Args:
+        way: Unit direction in which the core leaves, shape (3,).
+    """
+    strains = core_strain(core), bend_strain(core, membrane, way), pin_strain(membrane)
     return max(strains, key=lambda worst: worst.value)
+
+
+def part_removal(part: str, strain: Worst, elongation: float) -> FabricationCheck:
+    """Whether a silicone bears to make way for an outer part that is pulled off it.
+
+    Args:
+        elongation: Its strain at break [1].
+    """
+    return check(
+        "part_removal",
+        part,
+        strain,
+        unit="strain",
+        title="stretch of the skin that it is pulled over",
+        limit=elongation / STRAIN_SAFETY,
+        bad=elongation,
+        message="choose a silicone with more elongation, raise mould.outer_parts or round the "
+        "shape",
+    )
 
 
 def core_removal(strain: Worst, elongation: float) -> FabricationCheck:

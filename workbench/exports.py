@@ -40,8 +40,8 @@ def export_design(
     `design.toml` (with the files of a body of its own under `bodies/`), `membrane.stl`,
     `support.stl`, `base.stl`, `mesh.npz` (nodes, hexahedra, labels), `mesh.vtu`, `membrane.vtp`,
     `exploded.png` (where the machine can render) and everything of the workshop: `moulds/`,
-    `parts/`, `all_parts.3mf`, `build_sheet.html`, `bom.csv`. Such files of an earlier export that
-    this one does not replace go.
+    `parts/`, `all_parts.3mf`, `build_sheet.html`, `recipe.json`, `bom.csv`. Such files of an
+    earlier export that this one does not replace go.
 
     Args:
         tets: Also write `tets.npz`: nodes, tetrahedra, labels; takes about a minute.

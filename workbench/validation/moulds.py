@@ -1,8 +1,8 @@
 """Moulds of every family: one row each, the number of limits that its mould misses.
 
 Looked at, without shrinkage and draft: every part one closed body after an STL file; overlap;
-volume of the cavity against the membrane's; walls of 2 mm, or a warning that says where; time. What
-was found stands in the row's case.
+volume of the cavity against the membrane's; walls of 2 mm, or a warning that says where; motions
+that are free; time. What was found stands in the row's case.
 """
 
 from __future__ import annotations
@@ -49,6 +49,7 @@ def _row(name: str) -> Row:
         moulds.overlap_mm3 > OVERLAP_MM3,
         error > VOLUME_ERROR,
         not thin_walls_are_told(moulds),
+        not all(motion.free for motion in moulds.motions),
         seconds > SECONDS,
     ]
     case = (
