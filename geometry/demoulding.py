@@ -7,7 +7,7 @@ skin may dent. The first is taken where it asks little of the skin, else the one
 order with a rigid part in the way comes last.
 
 A core that leaves a free skin may go aslant: for a bent one, which leans from its opening to its
-tip, the way with the least overlap with the skin where that lies is searched.
+tip, the way on which the least of its wall meets the skin where that lies is searched.
 
 Leaves out: turning parts on their way; friction.
 """
@@ -16,13 +16,14 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
 from geometry.cast import Cast
-from geometry.castability import Worst
+from geometry.castability import LIFT_MM, Worst, spread
+from geometry.csg import Body
 from geometry.csg_mesh import closed, evaluate
+from geometry.offset import inside
 from geometry.parting import Parting
 from geometry.squeezing import confined_strain, outer_strain
 from geometry.sweeping import swept, way_mm
@@ -33,12 +34,12 @@ APART_MM = 15.0
 EASY_STRAIN = 0.05
 """No silicone minds a strain as small as this [1]."""
 DOWN = np.array([0.0, 0.0, -1.0])
-TILTS_DEG = (0.0, 6.0, 12.0, 18.0, 24.0)
-FINE_DEG = 3.0
-WAYS_MM = (4.0, 12.0, 24.0)
+TILTS_DEG = tuple(range(0, 27, 2))
+WAYS_MM = (2.0, 6.0, 12.0, 20.0, 30.0)
 """How far a core is drawn to see what it meets of the skin [mm]."""
-STRAIGHT_SHARE = 1e-3
-"""A core that meets less of its skin than this goes straight out [1]."""
+STRAIGHT_SHARE = 0.01
+"""A core less of whose wall ever meets the skin goes straight out [1]."""
+SAMPLES = 1500
 LEAN_SHARE = 0.05
 """Share of a core's height at either end that tells where its middle is."""
 
@@ -118,21 +119,30 @@ def _stretch(
 
 def core_way(cast: Cast) -> np.ndarray:
     """Unit direction in which the core leaves a free skin, shape (3,)."""
-    if cast.core is None:
+    core = cast.core
+    if core is None:
         return DOWN
-    core = evaluate(cast.core)
-    skin = evaluate(cast.outer) - core
-    if _met_mm3(core, skin, DOWN) <= STRAIGHT_SHARE * float(skin.volume()):
+    wall = spread(core.points_mm, core.faces, SAMPLES)
+    # A hair inside the core, so that a wall that slides along the skin does not meet it.
+    start = wall.points_mm - LIFT_MM * wall.normals
+    if _met(cast, core, start, [DOWN])[0] <= STRAIGHT_SHARE:
         return DOWN
-    lean = _lean(cast.core.points_mm)
-    best = min(TILTS_DEG, key=lambda tilt: _met_mm3(core, skin, _aslant(lean, tilt)))
-    near = (best - FINE_DEG, best, best + FINE_DEG)
-    return _aslant(lean, min(near, key=lambda tilt: _met_mm3(core, skin, _aslant(lean, tilt))))
+    lean = _lean(core.points_mm)
+    ways = [_aslant(lean, tilt) for tilt in TILTS_DEG]
+    return ways[int(np.argmin(_met(cast, core, start, ways)))]
 
 
-def _met_mm3(core: Any, skin: Any, way: np.ndarray) -> float:
-    """Largest overlap of a core with its skin, where that lies, while it is drawn [mm3]."""
-    return max(float((core.translate(gone * way) ^ skin).volume()) for gone in WAYS_MM)
+def _met(cast: Cast, core: Body, start_mm: np.ndarray, ways: Sequence[np.ndarray]) -> np.ndarray:
+    """Largest share of a core's wall that is in the skin, where that lies, on each way, shape (W,).
+
+    Args:
+        start_mm: Places on the wall, shape (S, 3).
+    """
+    gone = np.array([[gone_mm * way for gone_mm in WAYS_MM] for way in ways])
+    places = (gone[:, :, None] + start_mm).reshape(-1, 3)
+    in_skin = inside(cast.outer.points_mm, cast.outer.faces, places)
+    in_skin &= ~inside(core.points_mm, core.faces, places)
+    return in_skin.reshape(len(ways), len(WAYS_MM), -1).mean(axis=2).max(axis=1)
 
 
 def _lean(points_mm: np.ndarray) -> np.ndarray:

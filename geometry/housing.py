@@ -6,8 +6,8 @@ grown outlines of those before it, so nothing overlaps. Parts:
 - `support`: the design's transparent shell, as it is;
 - `led_ring_holder`: a ring under the LEDs with a pocket for each, see `led_holder`; none without;
 - `camera_mount`: a cup on the camera's axis that the module slides into from the front;
-- `base`: the design's foot with seats for holder and mount, open to below for the mount; with a
-  sleeve up to a holder that would float above it, see `holder_seat`;
+- `housing_base`: the design's foot (`Solid.base`) with seats for holder and mount, open to below
+  for the mount; with a sleeve up to a holder that would float above it, see `holder_seat`;
 - `slider_0`, ...: for bodies with actuators, see `actuation`.
 
 Leaves out: wiring, screws between the parts, cable glands.
@@ -135,7 +135,7 @@ def _nodes(
     made = {
         "support": _cut(support, [membrane]),
         "camera_mount": _cut(cup, [*shells, *seats, module, cable_slot(camera, options)]),
-        "base": base,
+        "housing_base": base,
         **{rod.name: _cut(rod.body, [membrane]) for rod in rods},
     }
     if not ring.count:
@@ -155,7 +155,7 @@ def _nodes(
         "support": made.pop("support"),
         "led_ring_holder": holder,
         **made,
-        "base": csg.together(base, sleeve),
+        "housing_base": csg.together(base, sleeve),
     }
 
 
@@ -207,6 +207,6 @@ def _exploded(solid: Solid, rods: tuple[ActuatorRod, ...]) -> dict[str, tuple[fl
         "support": (0.0, 0.0, height),
         "led_ring_holder": (0.0, 0.0, APART_MM),
         "camera_mount": (0.0, 0.0, -2.0 * foot),
-        "base": (0.0, 0.0, 0.0),
+        "housing_base": (0.0, 0.0, 0.0),
         **{rod.name: rod.explode for rod in rods},
     }

@@ -167,7 +167,7 @@ def _holder_seat(parts: Sequence[FabricationPart], options: Housing) -> Fabricat
     named = {part.name: part for part in parts}
     holder, base = (
         closed(name, named[name].points_mm, named[name].faces)
-        for name in ("led_ring_holder", "base")
+        for name in ("led_ring_holder", "housing_base")
     )
     gap = seat_gap(holder, base)
     return check(

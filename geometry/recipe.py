@@ -100,7 +100,7 @@ def _checks(moulds: MouldSet, chosen: Silicone) -> tuple[FabricationCheck, ...]:
 def _placing(housing: HousingSet) -> str:
     """What puts the support in its place on the base."""
     found = {part.name: closed(part.name, part.points_mm, part.faces) for part in housing.parts}
-    others = [found[name] for name in ("led_ring_holder", "base") if name in found]
+    others = [found[name] for name in ("led_ring_holder", "housing_base") if name in found]
     if "support" in found and centred(found["support"], others):
         return "which centres it"
     return "measure that it is in the middle"
@@ -180,10 +180,10 @@ def _steps(
     if held:
         steps.append(
             "Solder the LEDs in the order of the list and press them into led_ring_holder; put "
-            "camera and camera_mount into the base from below, then the holder on top."
+            "camera and camera_mount into housing_base from below, then the holder on top."
         )
     else:
-        steps.append("Put camera and camera_mount into the base from below.")
+        steps.append("Put camera and camera_mount into housing_base from below.")
     if rim_mm2(solid.support):
         steps.append(
             f"Glue the support onto the base: a thin bead of {ADHESIVE} under its rim, "

@@ -328,7 +328,7 @@ STAGES = {
         Stage(name="shoot", version=4, lane="sim", function=shoot, parts=shoot_parts),
         Stage(name="maps", version=2, lane="sim", function=maps),
         Stage(name="mould", version=3, lane="cad", function=mould),
-        Stage(name="housing", version=2, lane="cad", function=housing),
+        Stage(name="housing", version=3, lane="cad", function=housing),
         Stage(name="recipe", version=3, lane="cad", function=recipe),
         Stage(name="package", version=4, lane="cad", function=package),
         Stage(name="picture", version=2, lane="cad", function=picture),

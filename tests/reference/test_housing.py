@@ -43,7 +43,7 @@ def named(made: HousingSet, name: str) -> dict[str, FabricationCheck]:
 def test_a_base_cut_in_two_is_bad(finger: Solid) -> None:
     """A module of 26 mm leaves a base of 353 mm3 of some 5900: more than nine tenths are lost."""
     made = housed(finger, Housing(camera_width_mm=26.0, camera_height_mm=26.0))
-    check = named(made, "loose_pieces")["base"]
+    check = named(made, "loose_pieces")["housing_base"]
     assert check.severity is Severity.BAD
     assert check.value > 0.5
     assert "smaller camera" in check.message
@@ -173,7 +173,7 @@ def test_a_holder_above_the_base_stands_on_a_sleeve(
     parts = {part.name: closed(part.name, part.points_mm, part.faces) for part in made.parts}
     parts["skin"] = closed("skin", solid.membrane.points_mm, solid.membrane.faces)
     assert max(overlaps_mm3(parts).values()) < 1e-6
-    sleeve = parts["base"].trim_by_plane((0.0, 0.0, 1.0), 0.01)
+    sleeve = parts["housing_base"].trim_by_plane((0.0, 0.0, 1.0), 0.01)
     box = sleeve.bounding_box()
     # LEDs tilted by 60 degrees need 0.8 + sin 60 0.95 + cos 60 0.8 mm, and 0.02 to spare.
     assert box[5] == pytest.approx(height_mm - 2.043 - 0.15, abs=1e-3)
@@ -185,7 +185,7 @@ def test_a_holder_above_the_base_stands_on_a_sleeve(
     # The camera sees no more of it than of the holder: nothing nearer to the axis than its hole.
     hole_mm = np.linalg.norm(arrays(parts["led_ring_holder"])[0][:, :2], axis=1).min()
     assert np.linalg.norm(points[:, :2], axis=1).min() >= hole_mm - 0.02
-    assert next(part for part in made.parts if part.name == "base").brep.size > 0
+    assert next(part for part in made.parts if part.name == "housing_base").brep.size > 0
 
 
 def test_a_holder_held_on_one_side_does_not_stand() -> None:
@@ -207,7 +207,7 @@ def test_a_holder_in_the_foot_needs_no_sleeve(finger: Solid) -> None:
     """A ring at 0.5 mm sits 1.5 mm deep in the foot: it stands there, and the foot stays flat."""
     made = housed(finger, Housing())
     assert named(made, "led_holder_seat")["led_ring_holder"].severity is Severity.GOOD
-    base = next(part for part in made.parts if part.name == "base")
+    base = next(part for part in made.parts if part.name == "housing_base")
     assert base.points_mm[:, 2].max() == pytest.approx(0.0, abs=1e-6)
 
 
@@ -238,9 +238,9 @@ def test_a_thin_ledge_goes_without_thinning_the_base_beside_it() -> None:
     camera = Camera(position_mm=(0.0, 0.0, 0.3))
     bed_mm = MouldOptions().bed_mm
     made = make_housing(solid, Housing(), ring=ring, camera=camera, bed_mm=bed_mm)
-    check = named(made, "minimum_wall")["base"]
+    check = named(made, "minimum_wall")["housing_base"]
     assert check.value == pytest.approx(1.35, abs=1e-3)
-    base = next(part for part in made.parts if part.name == "base")
+    base = next(part for part in made.parts if part.name == "housing_base")
     assert base.brep.size > 0
 
 
@@ -250,7 +250,7 @@ def test_a_sensor_without_a_ring_has_no_holder(finger: Solid) -> None:
         finger, Housing(), ring=LedRing(count=0), camera=Camera(), bed_mm=(200.0, 200.0, 200.0)
     )
     parts = {part.name: part.volume_mm3 for part in made.parts}
-    assert list(parts) == ["support", "camera_mount", "base"]
+    assert list(parts) == ["support", "camera_mount", "housing_base"]
     assert min(parts.values()) > 0.0
     checks = {check.name for check in made.checks}
     assert "camera_clearance" in checks

@@ -248,7 +248,7 @@ def test_housing_parts_clear_each_other_and_the_skin(housing: HousingSet, finger
         "support",
         "led_ring_holder",
         "camera_mount",
-        "base",
+        "housing_base",
     ]
     solids = {part.name: closed(part.name, part.points_mm, part.faces) for part in housing.parts}
     membrane = finger.membrane
