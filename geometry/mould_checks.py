@@ -14,7 +14,6 @@ from geometry.castability import (
     bed_ratio,
     draft_deg,
     spread,
-    thinnest_wall,
     undercut,
 )
 from geometry.channels import Channels
@@ -22,6 +21,7 @@ from geometry.core_release import bend_strain, core_strain, pin_strain
 from geometry.csg import Body
 from geometry.parting import Parting
 from geometry.trapped import POCKET_VENT_MM
+from geometry.walls import thinnest_wall
 from workbench.core.fabrication import FabricationCheck, FabricationPart, PartMotion, Severity
 from workbench.core.making import MouldOptions
 from workbench.core.results import LabelledSurface
@@ -33,7 +33,9 @@ LOCKED_SHARE = 0.35
 LEAST_DRAFT_DEG = -0.5
 """Silicone needs no draft, only no lean against the pull; half a degree is facets."""
 WALL_MM = 2.0
-"""Printed walls thinner than this bend under the bolts; sharp rims measure as thin walls too."""
+"""Printed walls thinner than this bend under the bolts."""
+LEAST_PRINT_MM = 0.4
+"""Walls thinner than one line of the usual nozzle are not there once printed [mm]."""
 STRAIN_SAFETY = 3.0
 """Share of the elongation at break that demoulding may take, as 1 / 3: data sheets give the
 elongation of flawless strips (ASTM D412), and cast skins tear at nicks and seams first."""
@@ -111,7 +113,9 @@ def mould_checks(
     """
     checks = [*_release(cast, parting), *_core(cast, way)]
     for part in parts:
-        checks += wall_and_bed(part, options.bed_mm, limits=MOULD_LIMITS)
+        wall = thinnest_wall(part.points_mm, part.faces)
+        checks.append(wall_check(part.name, wall, MOULD_LIMITS, options.feature_mm))
+        checks.append(bed_check(part, options.bed_mm, MOULD_LIMITS))
     return (*checks, _trapped(channels), _feature(channels, options))
 
 
@@ -132,40 +136,41 @@ MOULD_LIMITS = PrintLimits(
 )
 
 
-def wall_and_bed(
-    part: FabricationPart,
-    bed_mm: tuple[float, float, float],
-    *,
-    limits: PrintLimits,
-    wall: Worst | None = None,
-) -> tuple[FabricationCheck, FabricationCheck]:
-    """Thinnest wall and room on the printer of one part.
+def wall_check(
+    name: str, wall: Worst, limits: PrintLimits, feature_mm: float | None
+) -> FabricationCheck:
+    """Thinnest wall of a part: bad where the printer leaves nothing of it.
 
     Args:
-        wall: The thinnest wall where it is known.
+        feature_mm: Smallest feature that the printer does; None if the place is an edge, which it
+            rounds.
     """
-    place = (part.points_mm.min(axis=0) + part.points_mm.max(axis=0)) / 2
-    middle = (float(place[0]), float(place[1]), float(place[2]))
-    return (
-        check(
-            "minimum_wall",
-            part.name,
-            wall or thinnest_wall(part.points_mm, part.faces),
-            unit="mm",
-            limit=limits.wall_mm,
-            sense="min",
-            message=limits.thin,
-        ),
-        check(
-            "bed",
-            part.name,
-            Worst(100.0 * bed_ratio(part.points_mm, bed_mm), middle),
-            unit="%",
-            title="share of the bed",
-            limit=100.0,
-            bad=100.0,
-            message=limits.large,
-        ),
+    return check(
+        "minimum_wall",
+        name,
+        wall,
+        unit="mm",
+        limit=limits.wall_mm,
+        sense="min",
+        bad=None if feature_mm is None else max(LEAST_PRINT_MM, feature_mm),
+        message=limits.thin,
+    )
+
+
+def bed_check(
+    part: FabricationPart, bed_mm: tuple[float, float, float], limits: PrintLimits
+) -> FabricationCheck:
+    """Room on the printer for one part."""
+    x, y, z = (part.points_mm.min(axis=0) + part.points_mm.max(axis=0)) / 2
+    return check(
+        "bed",
+        part.name,
+        Worst(100.0 * bed_ratio(part.points_mm, bed_mm), (float(x), float(y), float(z))),
+        unit="%",
+        title="share of the bed",
+        limit=100.0,
+        bad=100.0,
+        message=limits.large,
     )
 
 

@@ -6,7 +6,8 @@ import dataclasses
 import io
 import json
 import math
-from collections.abc import Sequence
+import tempfile
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,10 +17,12 @@ from workbench.aim import target_notice
 from workbench.core.design import SensorDesign
 from workbench.core.fabrication import (
     FabricationCheck,
+    FabricationPart,
     HousingSet,
     MouldSet,
     PartGroup,
     Recipe,
+    Severity,
 )
 from workbench.core.force_field import ForceField
 from workbench.core.press import Press
@@ -113,6 +116,45 @@ def mould_rows(moulds: MouldSet) -> list[dict[str, Any]]:
     ]
 
 
+def part_rows(
+    moulds: MouldSet, housing: HousingSet, files: Mapping[str, np.ndarray]
+) -> list[dict[str, Any]]:
+    """The files of parts as `export --json` lists them: the mesh, and its STEP file read back.
+
+    Args:
+        files: Content of the package's files by path.
+    """
+    from geometry.surface import mesh_volume
+
+    rows = []
+    for part in (*moulds.parts, *housing.parts):
+        stem = f"{'moulds' if part.group is PartGroup.MOULD else 'parts'}/{part.name}"
+        rows.append(
+            {
+                "file": f"{stem}.stl",
+                "watertight": part.watertight,
+                "volume_mm3": mesh_volume(part.points_mm, part.faces),
+                "step_volume_mm3": _step_mm3(part, files.get(f"{stem}.step")),
+            }
+        )
+    return plain_numbers(rows)
+
+
+def _step_mm3(part: FabricationPart, content: np.ndarray | None) -> float | None:
+    """Volume of a part's STEP file read back [mm3]; None without one."""
+    if content is None:
+        return None
+    known = getattr(part, "step_volume_mm3", None)
+    if known is not None:
+        return float(known)
+    from build123d import import_step
+
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "part.step"
+        path.write_bytes(content.tobytes())
+        return float(import_step(str(path)).volume)
+
+
 def fabrication_tables(moulds: MouldSet, housing: HousingSet, recipe: Recipe) -> dict[str, Any]:
     """The tables `moulds`, `parts`, `checks` and `recipe` of the summary."""
     return {
@@ -127,9 +169,23 @@ def fabrication_tables(moulds: MouldSet, housing: HousingSet, recipe: Recipe) ->
             }
             for part in (*moulds.parts, *housing.parts)
         ],
-        "checks": [_plain(check) for check in (*moulds.checks, *housing.checks, *recipe.checks)],
+        "checks": check_rows(all_checks(moulds, housing, recipe)),
         "recipe": _plain(recipe),
     }
+
+
+def all_checks(
+    moulds: MouldSet, housing: HousingSet, recipe: Recipe
+) -> tuple[FabricationCheck, ...]:
+    """Every check of what is made, the worst first."""
+    order = (Severity.BAD, Severity.WARNING, Severity.GOOD)
+    found = (*moulds.checks, *housing.checks, *recipe.checks)
+    return tuple(sorted(found, key=lambda check: order.index(check.severity)))
+
+
+def check_rows(checks: Sequence[FabricationCheck]) -> list[dict[str, Any]]:
+    """Checks as `summary.json` and `export --json` list them."""
+    return [_plain(check) for check in checks]
 
 
 def _plain(value: FabricationCheck | Recipe) -> dict[str, Any]:
