@@ -155,7 +155,7 @@ def export(options: argparse.Namespace, project: Project) -> int:
     made = results(project.store, calls, ("mould", "housing", "recipe", "package"))
     checks = all_checks(made["mould"], made["housing"], made["recipe"])
     if options.json:
-        parts = part_rows(made["mould"], made["housing"], made["package"].files)
+        parts = part_rows(made["mould"], made["housing"], made["package"])
         say(json.dumps({"checks": check_rows(checks), "parts": parts}, allow_nan=False))
     else:
         for check in checks:

@@ -6,8 +6,7 @@ import dataclasses
 import io
 import json
 import math
-import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +16,6 @@ from workbench.aim import target_notice
 from workbench.core.design import SensorDesign
 from workbench.core.fabrication import (
     FabricationCheck,
-    FabricationPart,
     HousingSet,
     MouldSet,
     PartGroup,
@@ -116,43 +114,21 @@ def mould_rows(moulds: MouldSet) -> list[dict[str, Any]]:
     ]
 
 
-def part_rows(
-    moulds: MouldSet, housing: HousingSet, files: Mapping[str, np.ndarray]
-) -> list[dict[str, Any]]:
-    """The files of parts as `export --json` lists them: the mesh, and its STEP file read back.
-
-    Args:
-        files: Content of the package's files by path.
-    """
+def part_rows(moulds: MouldSet, housing: HousingSet, package: Bundle) -> list[dict[str, Any]]:
+    """The parts as `export --json` lists them: the volume of the mesh, and of its STEP file read
+    back, which is None where a part has none."""
     from geometry.surface import mesh_volume
 
-    rows = []
-    for part in (*moulds.parts, *housing.parts):
-        stem = f"{'moulds' if part.group is PartGroup.MOULD else 'parts'}/{part.name}"
-        rows.append(
-            {
-                "file": f"{stem}.stl",
-                "watertight": part.watertight,
-                "volume_mm3": mesh_volume(part.points_mm, part.faces),
-                "step_volume_mm3": _step_mm3(part, files.get(f"{stem}.step")),
-            }
-        )
+    rows = [
+        {
+            "file": f"{'moulds' if part.group is PartGroup.MOULD else 'parts'}/{part.name}.stl",
+            "watertight": part.watertight,
+            "volume_mm3": mesh_volume(part.points_mm, part.faces),
+            "step_volume_mm3": package.step_volumes_mm3.get(part.name),
+        }
+        for part in (*moulds.parts, *housing.parts)
+    ]
     return plain_numbers(rows)
-
-
-def _step_mm3(part: FabricationPart, content: np.ndarray | None) -> float | None:
-    """Volume of a part's STEP file read back [mm3]; None without one."""
-    if content is None:
-        return None
-    known = getattr(part, "step_volume_mm3", None)
-    if known is not None:
-        return float(known)
-    from build123d import import_step
-
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "part.step"
-        path.write_bytes(content.tobytes())
-        return float(import_step(str(path)).volume)
 
 
 def fabrication_tables(moulds: MouldSet, housing: HousingSet, recipe: Recipe) -> dict[str, Any]:
