@@ -18,7 +18,7 @@ HALF_WIDTH_MM = 2.5
 """Across the seam, of a box [mm]."""
 HALF_LENGTH_MM = 2.0
 """Along the seam, of a box [mm]."""
-RHOMB_MM = (2.1, 1.5)
+RHOMB_MM = (1.9, 1.4)
 """Half diagonals along and across the seam [mm]: sides at 54 degrees to it from its normal."""
 LEAST_MM = 0.5
 """Blocks too low for lugs of this height have none [mm]."""
