@@ -57,6 +57,7 @@ def build_sheet_html(
         "<h2>Steps</h2><ol>"
         + "".join(f"<li>{html.escape(s)}</li>" for s in recipe.steps)
         + "</ol>",
+        "<h2>Motions that open the mould</h2>" + _table(MOTION_HEAD, _motion_rows(moulds)),
         "<h2>Checks</h2>" + _checks((*moulds.checks, *housing.checks, *recipe.checks)),
         "<h2>Supplies</h2>" + _table(SUPPLY_HEAD, map(_supply_row, recipe.supplies)),
         "<h2>Prints</h2>" + _table(PRINT_HEAD, map(_print_row, recipe.prints)),
@@ -92,7 +93,21 @@ def bom_csv(recipe: Recipe) -> str:
 
 
 SUPPLY_HEAD = ("what", "amount", "for")
+MOTION_HEAD = ("step", "part", "along x, y, z", "distance")
 PRINT_HEAD = ("part", "for", "how", "volume", "size")
+
+
+def _motion_rows(moulds: MouldSet) -> list[tuple[str, ...]]:
+    """As `recipe.json` has them; closing is the reverse."""
+    return [
+        (
+            str(motion.step),
+            motion.part,
+            ", ".join(f"{round(share, 3) + 0.0:.3f}" for share in motion.direction),
+            f"{motion.distance_mm:.1f} mm",
+        )
+        for motion in moulds.motions
+    ]
 
 
 def _print_row(item: PrintItem) -> tuple[str, ...]:

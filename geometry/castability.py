@@ -14,10 +14,6 @@ import numpy as np
 from geometry.rays import RayCaster
 
 SAMPLES = 2000
-START_MM = 1e-3
-"""Depth below the surface at which a wall's ray starts [mm]."""
-OPPOSED_COSINE = 0.7
-"""A wall is between faces that look apart to within 45 degrees; a sharp edge is no wall."""
 LIFT_MM = 0.1
 """Undercuts shallower than this are none: the silicone gives way [mm]."""
 STEEPEST_SHARE = 0.01
@@ -105,25 +101,6 @@ def draft_deg(part: Spread, pull: np.ndarray) -> Worst:
     order = np.argsort(angle)
     worst = order[int(STEEPEST_SHARE * (len(order) - 1))]
     return Worst(float(angle[worst]), _place(part.points_mm[worst]))
-
-
-def thinnest_wall(points_mm: np.ndarray, faces: np.ndarray) -> Worst:
-    """Thinnest wall of a closed mesh [mm], by rays straight inward from its surface.
-
-    Only rays count that end on a face that looks the other way; inf when there is none.
-    """
-    places = spread(points_mm, faces)
-    inward = -places.normals
-    start = places.points_mm + START_MM * inward
-    distance, found, _ = RayCaster(points_mm, faces).hits(start, inward)
-    corners = np.asarray(points_mm, dtype=np.float64)[faces[found]]
-    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
-    opposed = np.einsum("ij,ij->i", normal, inward) > OPPOSED_COSINE
-    wall = np.where((found >= 0) & opposed, distance + START_MM, np.inf)
-    worst = int(np.argmin(wall))
-    middle = start[worst] + inward[worst] * (wall[worst] / 2 if np.isfinite(wall[worst]) else 0.0)
-    return Worst(float(wall[worst]), _place(middle))
 
 
 def bed_ratio(points_mm: np.ndarray, bed_mm: tuple[float, float, float]) -> float:

@@ -1,4 +1,4 @@
-"""How far the skin must stretch for the core to leave it, downward.
+"""How far the skin must stretch for the core to leave it, downward or aslant.
 
 Three things hold a core, each a strain of the skin:
 
@@ -31,6 +31,7 @@ CORE_SECTIONS = 60
 DIRECTIONS = 36
 """Sideways directions looked at, evenly around; the opposite of each is one of them."""
 PIN_BINS = 12
+DOWN = np.array([0.0, 0.0, -1.0])
 
 
 def core_strain(core: Body) -> Worst:
@@ -43,16 +44,23 @@ def core_strain(core: Body) -> Worst:
     return Worst(strain.value, (float(middle[0]), float(middle[1]), strain.place_mm[2]))
 
 
-def bend_strain(core: Body, membrane: LabelledSurface) -> Worst:
-    """Strain of the skin when a bent core leaves downward; 0 for a straight or nested core.
+def bend_strain(core: Body, membrane: LabelledSurface, way: np.ndarray = DOWN) -> Worst:
+    """Strain of the skin when a bent core leaves; 0 for a straight or nested core.
+
+    A core that leaves aslant is a core that leaves downward, all sheared until its way is upright:
+    sections stay level and keep their outlines.
 
     Args:
         membrane: The elastomer's surface: its outside is stretched most.
+        way: Unit direction in which it leaves, shape (3,).
     """
+    lean = np.array([way[0] / way[2], way[1] / way[2], 0.0])
+    core = Body(points_mm=core.points_mm - core.points_mm[:, 2:] * lean, faces=core.faces)
+    skin_mm = membrane.points_mm - membrane.points_mm[:, 2:] * lean
     heights = _heights(core)
     reach = _reach(core, heights)
     opposite = np.roll(reach, DIRECTIONS // 2, axis=1)
-    skin = _reach(Body(points_mm=membrane.points_mm, faces=membrane.faces), heights)
+    skin = _reach(Body(points_mm=skin_mm, faces=membrane.faces), heights)
     skin = (skin + np.roll(skin, DIRECTIONS // 2, axis=1)) / 2
     middle, half = (reach - opposite) / 2, (reach + opposite) / 2
     # Where shrinkage or rounding lifts the core's tip above the skin's own, the core's width is r.
@@ -70,7 +78,8 @@ def bend_strain(core: Body, membrane: LabelledSurface) -> Worst:
         first, turn = np.unravel_index(int(np.argmax(strain)), strain.shape)
         if strain[first, turn] > worst.value:
             x, y = (float(middle[mid][first, k]) for k in (0, DIRECTIONS // 4))
-            place = (x, y, float(heights[mid][first]))
+            height = float(heights[mid][first])
+            place = (x + height * float(lean[0]), y + height * float(lean[1]), height)
             worst = Worst(float(strain[first, turn]), place)
     return worst
 

@@ -26,7 +26,7 @@ GAP_SHARE = 0.26
 """Gap of the stack over the largest extent of the membrane's footprint."""
 GROUP_GAP_SHARE = 0.4
 """Gap between the groups over the same extent."""
-STACK = ("membrane", "support", "led_ring_holder", "base", "camera_mount")
+STACK = ("membrane", "support", "led_ring_holder", "housing_base", "camera_mount")
 """Parts of the sensor from the top."""
 
 
@@ -88,7 +88,7 @@ def _stack(solid: Solid, housing: HousingSet, width_mm: float) -> list[Place]:
         drop = np.array([0.0, 0.0, top_mm - float(points[:, 2].max())])
         places.append(Place(name, points + drop, faces))
         top_mm = float(places[-1].points_mm[:, 2].min()) - gap_mm
-        foot_mm = float(drop[2]) if name == "base" else foot_mm
+        foot_mm = float(drop[2]) if name == "housing_base" else foot_mm
     return places + _beside(housing.parts, foot_mm)
 
 

@@ -1,4 +1,5 @@
-"""Files for the workshop: every part as STL, STEP and 3MF, assemblies, build sheet and parts list.
+"""Files for the workshop: every part as STL, STEP and 3MF, assemblies, build sheet,
+motions of the recipe and parts list.
 
 A part without a B-rep body, or whose B-rep reads back as another body, gets a STEP file of flat
 facets (`faceted`); a part that even that cannot hold gets none. Both are said.
@@ -16,6 +17,7 @@ from geometry.build_sheet import bom_csv, build_sheet_html
 from geometry.csg_brep import translated
 from geometry.fabricate import NO_BREP, stl_points
 from geometry.faceted import faceted
+from geometry.opening_words import recipe_json
 from geometry.solid import part_from_brep
 from geometry.step import expect_read_back, step_bytes
 from geometry.surface import mesh_volume
@@ -91,6 +93,7 @@ def package_files(
     sheet = build_sheet_html(moulds, housing, recipe, said, head=head)
     files["build_sheet.html"] = sheet.encode()
     files["bom.csv"] = bom_csv(recipe).encode()
+    files["recipe.json"] = recipe_json(moulds.motions)
     return Bundle(
         files={name: np.frombuffer(data, dtype=np.uint8).copy() for name, data in files.items()},
         step_volumes_mm3={name: step.volume_mm3 for name, step in steps.items()},

@@ -6,8 +6,8 @@ grown outlines of those before it, so nothing overlaps. Parts:
 - `support`: the design's transparent shell, as it is;
 - `led_ring_holder`: a ring under the LEDs with a pocket for each, see `led_holder`; none without;
 - `camera_mount`: a cup on the camera's axis that the module slides into from the front;
-- `base`: the design's foot with seats for holder and mount, open to below for the mount; with a
-  sleeve up to a holder that would float above it, see `holder_seat`;
+- `housing_base`: the design's foot (`Solid.base`) with seats for holder and mount, open to below
+  for the mount; with a sleeve up to a holder that would float above it, see `holder_seat`;
 - `slider_0`, ...: for bodies with actuators, see `actuation`.
 
 Leaves out: wiring, screws between the parts, cable glands.
@@ -23,7 +23,7 @@ import numpy as np
 from geometry import csg
 from geometry.actuation import ActuatorRod, make_rods
 from geometry.camera_mount import cable_slot, cup_front_mm, cup_outline, cup_seat, module_room
-from geometry.castability import Worst, thinnest_wall
+from geometry.castability import Worst
 from geometry.csg_mesh import arrays, evaluate
 from geometry.fabricate import fabricate, largest
 from geometry.holder_seat import holder_seat
@@ -31,10 +31,11 @@ from geometry.housing_checks import LEAST_WALL_MM, housing_checks
 from geometry.led_holder import shaped_holder
 from geometry.led_room import hole_mm, led_rooms, ring_outline
 from geometry.supplies import camera_module
+from geometry.walls import thinnest_wall
 from workbench.core.camera import Camera
 from workbench.core.fabrication import FabricationPart, HousingSet, PartGroup
 from workbench.core.lighting import LedMount, LedRing
-from workbench.core.making import Housing
+from workbench.core.making import Housing, Printer
 from workbench.core.monitor import Monitor, silent
 from workbench.core.results import LabelledSurface, Solid
 
@@ -58,7 +59,7 @@ def make_housing(
     *,
     ring: LedRing,
     camera: Camera,
-    bed_mm: tuple[float, float, float],
+    printer: Printer,
     monitor: Monitor = silent,
 ) -> HousingSet:
     """Make the rigid parts of a sensor.
@@ -66,7 +67,7 @@ def make_housing(
     Args:
         ring: Of the LEDs; power, colours and emission are not looked at.
         camera: Only its pose is looked at.
-        bed_mm: Room of the printer.
+        printer: That prints the parts.
 
     Raises:
         GeometryError: If a part does not come out as one body.
@@ -101,7 +102,7 @@ def make_housing(
         bought.leds,
         options,
         in_shell=ring.mount is LedMount.SHELL,
-        bed_mm=bed_mm,
+        printer=printer,
         lost=lost,
     )
     return HousingSet(
@@ -135,7 +136,7 @@ def _nodes(
     made = {
         "support": _cut(support, [membrane]),
         "camera_mount": _cut(cup, [*shells, *seats, module, cable_slot(camera, options)]),
-        "base": base,
+        "housing_base": base,
         **{rod.name: _cut(rod.body, [membrane]) for rod in rods},
     }
     if not ring.count:
@@ -155,7 +156,7 @@ def _nodes(
         "support": made.pop("support"),
         "led_ring_holder": holder,
         **made,
-        "base": csg.together(base, sleeve),
+        "housing_base": csg.together(base, sleeve),
     }
 
 
@@ -184,9 +185,9 @@ def _holder(
 
 
 def _wall_mm(node: csg.Node) -> float:
-    """Thinnest wall of a body's largest piece [mm]; 0 for nothing."""
+    """Thinnest wall or edge of a body's largest piece [mm]; 0 for nothing."""
     solid = largest(evaluate(node))[0]
-    return 0.0 if solid.is_empty() else thinnest_wall(*arrays(solid)).value
+    return 0.0 if solid.is_empty() else thinnest_wall(*arrays(solid), edges=True).value
 
 
 def _cut(body: csg.Node, tools: Sequence[csg.Node]) -> csg.Node:
@@ -207,6 +208,6 @@ def _exploded(solid: Solid, rods: tuple[ActuatorRod, ...]) -> dict[str, tuple[fl
         "support": (0.0, 0.0, height),
         "led_ring_holder": (0.0, 0.0, APART_MM),
         "camera_mount": (0.0, 0.0, -2.0 * foot),
-        "base": (0.0, 0.0, 0.0),
+        "housing_base": (0.0, 0.0, 0.0),
         **{rod.name: rod.explode for rod in rods},
     }

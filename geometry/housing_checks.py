@@ -7,14 +7,17 @@ from typing import Any
 
 import numpy as np
 
-from geometry.castability import Worst, thinnest_wall
+from geometry.castability import Worst
 from geometry.csg import Node
 from geometry.csg_mesh import closed, evaluate
 from geometry.holder_seat import seat_gap
-from geometry.mould_checks import PrintLimits, check, wall_and_bed
-from workbench.core.fabrication import FabricationCheck, FabricationPart
-from workbench.core.making import Housing
-from workbench.core.results import Solid
+from geometry.mould_checks import PrintLimits, bed_check, check, wall_check
+from geometry.rays import RayCaster
+from geometry.surface import closest_point
+from geometry.walls import thinnest_wall
+from workbench.core.fabrication import FabricationCheck, FabricationPart, Severity
+from workbench.core.making import Housing, Printer
+from workbench.core.results import Label, LabelledSurface, Solid
 
 SEARCH_MM = 50.0
 """Gaps wider than this are not measured [mm]."""
@@ -44,7 +47,7 @@ def housing_checks(
     options: Housing,
     *,
     in_shell: bool,
-    bed_mm: tuple[float, float, float],
+    printer: Printer,
     lost: Mapping[str, Worst],
 ) -> tuple[FabricationCheck, ...]:
     """Gaps around the bought parts, and walls and sizes of the printed ones.
@@ -59,18 +62,18 @@ def housing_checks(
     shells = [closed("shell", surface.points_mm, surface.faces) for surface in walls]
     camera = evaluate(module)
     lights = [evaluate(led) for led in leds]
-    checks = [_camera_clearance(camera, shells, solid, options)]
+    cavity = Cavity(solid.membrane)
+    checks = [_camera_clearance(camera, shells, cavity, solid, options)]
     if lights:
-        clearance = _led_clearance(lights, [*shells, camera], options)
+        clearance = _led_clearance(lights, [*shells, camera], cavity, options)
         checks = [clearance, *checks, _holder_seat(parts, options)]
     for part in parts:
+        edge, limits = thinnest_wall(part.points_mm, part.faces, edges=True), HOUSING_LIMITS
         if part.name == "led_ring_holder":
-            wall = thinnest_wall(part.points_mm, part.faces)
             shell = closed("support", solid.support.points_mm, solid.support.faces)
-            limits = HOUSING_LIMITS._replace(thin=holder_advice(wall, lights, shell, options))
-            checks += wall_and_bed(part, bed_mm, limits=limits, wall=wall)
-        else:
-            checks += wall_and_bed(part, bed_mm, limits=HOUSING_LIMITS)
+            limits = limits._replace(thin=holder_advice(edge, lights, shell, options))
+        checks.append(_wall(part, edge, limits, printer))
+        checks.append(bed_check(part, printer.bed_mm, limits))
     checks += [_whole(name, share) for name, share in lost.items() if share.value > 0.0]
     return tuple(checks)
 
@@ -123,13 +126,60 @@ def _whole(name: str, lost: Worst) -> FabricationCheck:
     )
 
 
-def _led_clearance(lights: list[Any], others: list[Any], options: Housing) -> FabricationCheck:
+def _wall(
+    part: FabricationPart, edge: Worst, limits: PrintLimits, printer: Printer
+) -> FabricationCheck:
+    """Thinnest wall of a part, or a knife edge: that can be made, but chips and lets light by.
+
+    Args:
+        edge: The thinnest place, edges counted.
+    """
+    if edge.value >= limits.wall_mm:
+        return wall_check(part.name, edge, limits, printer.feature_mm)
+    wall = wall_check(
+        part.name, thinnest_wall(part.points_mm, part.faces), limits, printer.feature_mm
+    )
+    if wall.severity is Severity.BAD:
+        return wall
+    return wall_check(part.name, edge, limits, None)
+
+
+class Cavity:
+    """The room below a skin: what is bought must be there, or in the foot under it."""
+
+    def __init__(self, membrane: LabelledSurface) -> None:
+        self.membrane = membrane
+        self.caster = RayCaster(membrane.points_mm, membrane.faces)
+
+    def outside_mm(self, place_mm: tuple[float, float, float]) -> float:
+        """How far a place is from what the cavity is under [mm]; 0 inside it.
+
+        Straight up from a place in the cavity, or under it, the first that is met of the skin is
+        neither its outside nor its base.
+        """
+        start = np.array([place_mm])
+        face = int(self.caster.hits(start, np.array([[0.0, 0.0, 1.0]]))[1][0])
+        away = self.membrane.has(Label.OUTER) | self.membrane.has(Label.BASE)
+        if face >= 0 and not away[face]:
+            return 0.0
+        points, faces = self.membrane.points_mm, self.membrane.faces[~away]
+        return float(closest_point(points, faces, start)[1][0])
+
+    def room_mm(self, place_mm: tuple[float, float, float], gap_mm: float) -> float:
+        """The gap of what stands at a place; below 0 where that is not in the cavity at all."""
+        outside_mm = self.outside_mm(place_mm)
+        return min(gap_mm, -outside_mm) if outside_mm else gap_mm
+
+
+def _led_clearance(
+    lights: list[Any], others: list[Any], cavity: Cavity, options: Housing
+) -> FabricationCheck:
     """Smallest gap between an LED and support, skin, camera or the next LED."""
     gaps = []
     for number, light in enumerate(lights):
         following = [lights[(number + 1) % len(lights)]] if len(lights) > 1 else []
         gap = min(_gap(light, other) for other in [*others, *following])
-        gaps.append(Worst(gap, _centre(light)))
+        gaps.append(Worst(cavity.room_mm(_centre(light), gap), _centre(light)))
     return check(
         "led_clearance",
         "led_ring_holder",
@@ -143,10 +193,10 @@ def _led_clearance(lights: list[Any], others: list[Any], options: Housing) -> Fa
 
 
 def _camera_clearance(
-    camera: Any, shells: list[Any], solid: Solid, options: Housing
+    camera: Any, shells: list[Any], cavity: Cavity, solid: Solid, options: Housing
 ) -> FabricationCheck:
     """Smallest gap between the module and support or skin, or left below its mount in the foot."""
-    gap = min(_gap(camera, shell) for shell in shells)
+    gap = cavity.room_mm(_centre(camera), min(_gap(camera, shell) for shell in shells))
     box = camera.bounding_box()
     bottom = box[2] - options.clearance_mm - options.wall_mm
     below = float(bottom - solid.base.points_mm[:, 2].min())
@@ -167,7 +217,7 @@ def _holder_seat(parts: Sequence[FabricationPart], options: Housing) -> Fabricat
     named = {part.name: part for part in parts}
     holder, base = (
         closed(name, named[name].points_mm, named[name].faces)
-        for name in ("led_ring_holder", "base")
+        for name in ("led_ring_holder", "housing_base")
     )
     gap = seat_gap(holder, base)
     return check(

@@ -14,7 +14,6 @@ from geometry.castability import (
     bed_ratio,
     draft_deg,
     spread,
-    thinnest_wall,
     undercut,
 )
 from geometry.channels import Channels
@@ -22,7 +21,8 @@ from geometry.core_release import bend_strain, core_strain, pin_strain
 from geometry.csg import Body
 from geometry.parting import Parting
 from geometry.trapped import POCKET_VENT_MM
-from workbench.core.fabrication import FabricationCheck, FabricationPart, Severity
+from geometry.walls import thinnest_wall
+from workbench.core.fabrication import FabricationCheck, FabricationPart, PartMotion, Severity
 from workbench.core.making import MouldOptions
 from workbench.core.results import LabelledSurface
 
@@ -33,7 +33,9 @@ LOCKED_SHARE = 0.35
 LEAST_DRAFT_DEG = -0.5
 """Silicone needs no draft, only no lean against the pull; half a degree is facets."""
 WALL_MM = 2.0
-"""Printed walls thinner than this bend under the bolts; sharp rims measure as thin walls too."""
+"""Printed walls thinner than this bend under the bolts."""
+LEAST_PRINT_MM = 0.4
+"""Walls thinner than one line of the usual nozzle are not there once printed [mm]."""
 STRAIN_SAFETY = 3.0
 """Share of the elongation at break that demoulding may take, as 1 / 3: data sheets give the
 elongation of flawless strips (ASTM D412), and cast skins tear at nicks and seams first."""
@@ -101,11 +103,19 @@ def mould_checks(
     parting: Parting,
     channels: Channels,
     options: MouldOptions,
+    *,
+    way: np.ndarray,
 ) -> tuple[FabricationCheck, ...]:
-    """All checks of a mould that hold for every silicone."""
-    checks = [*_release(cast, parting), *_core(cast)]
+    """Checks of a mould's parts and channels that hold for every silicone.
+
+    Args:
+        way: Unit direction in which the core leaves, shape (3,).
+    """
+    checks = [*_release(cast, parting), *_core(cast, way)]
     for part in parts:
-        checks += wall_and_bed(part, options.bed_mm, limits=MOULD_LIMITS)
+        wall = thinnest_wall(part.points_mm, part.faces)
+        checks.append(wall_check(part.name, wall, MOULD_LIMITS, options.feature_mm))
+        checks.append(bed_check(part, options.bed_mm, MOULD_LIMITS))
     return (*checks, _trapped(channels), _feature(channels, options))
 
 
@@ -126,40 +136,41 @@ MOULD_LIMITS = PrintLimits(
 )
 
 
-def wall_and_bed(
-    part: FabricationPart,
-    bed_mm: tuple[float, float, float],
-    *,
-    limits: PrintLimits,
-    wall: Worst | None = None,
-) -> tuple[FabricationCheck, FabricationCheck]:
-    """Thinnest wall and room on the printer of one part.
+def wall_check(
+    name: str, wall: Worst, limits: PrintLimits, feature_mm: float | None
+) -> FabricationCheck:
+    """Thinnest wall of a part: bad where the printer leaves nothing of it.
 
     Args:
-        wall: The thinnest wall where it is known.
+        feature_mm: Smallest feature that the printer does; None if the place is an edge, which it
+            rounds.
     """
-    place = (part.points_mm.min(axis=0) + part.points_mm.max(axis=0)) / 2
-    middle = (float(place[0]), float(place[1]), float(place[2]))
-    return (
-        check(
-            "minimum_wall",
-            part.name,
-            wall or thinnest_wall(part.points_mm, part.faces),
-            unit="mm",
-            limit=limits.wall_mm,
-            sense="min",
-            message=limits.thin,
-        ),
-        check(
-            "bed",
-            part.name,
-            Worst(100.0 * bed_ratio(part.points_mm, bed_mm), middle),
-            unit="%",
-            title="share of the bed",
-            limit=100.0,
-            bad=100.0,
-            message=limits.large,
-        ),
+    return check(
+        "minimum_wall",
+        name,
+        wall,
+        unit="mm",
+        limit=limits.wall_mm,
+        sense="min",
+        bad=None if feature_mm is None else max(LEAST_PRINT_MM, feature_mm),
+        message=limits.thin,
+    )
+
+
+def bed_check(
+    part: FabricationPart, bed_mm: tuple[float, float, float], limits: PrintLimits
+) -> FabricationCheck:
+    """Room on the printer for one part."""
+    x, y, z = (part.points_mm.min(axis=0) + part.points_mm.max(axis=0)) / 2
+    return check(
+        "bed",
+        part.name,
+        Worst(100.0 * bed_ratio(part.points_mm, bed_mm), (float(x), float(y), float(z))),
+        unit="%",
+        title="share of the bed",
+        limit=100.0,
+        bad=100.0,
+        message=limits.large,
     )
 
 
@@ -192,7 +203,23 @@ def _release(cast: Cast, parting: Parting) -> Iterator[FabricationCheck]:
         )
 
 
-def _core(cast: Cast) -> Iterator[FabricationCheck]:
+def motion_checks(motions: Sequence[PartMotion]) -> Iterator[FabricationCheck]:
+    """Whether rigid parts are in each other's way when the mould is opened."""
+    for motion in motions:
+        yield check(
+            "demoulding",
+            motion.part,
+            Worst(motion.overlap_mm3, motion.overlap_at_mm),
+            unit="mm3",
+            title="overlap with other parts on its way out",
+            limit=motion.tolerance_mm3,
+            bad=motion.tolerance_mm3,
+            message="no order of pulling the parts apart is free: choose another "
+            "mould.outer_parts, or bend or undercut the shape less",
+        )
+
+
+def _core(cast: Cast, way: np.ndarray) -> Iterator[FabricationCheck]:
     """How the core leaves the cast."""
     if cast.core is None:
         return
@@ -200,7 +227,7 @@ def _core(cast: Cast) -> Iterator[FabricationCheck]:
     sides = places.points_mm[:, 2] > cast.base_mm + 1e-3
     part = Spread(places.points_mm[sides], places.normals[sides], places.area_mm2)
     # The core leaves downward inside the silicone: its facets must look up, away from the pull.
-    draft = draft_deg(part, np.array([0.0, 0.0, 1.0]))
+    draft = draft_deg(part, -way)
     yield check(
         "draft",
         "core",
@@ -212,10 +239,33 @@ def _core(cast: Cast) -> Iterator[FabricationCheck]:
     )
 
 
-def release_strain(core: Body, membrane: LabelledSurface) -> Worst:
-    """Strain of the silicone when the core leaves: of its sections, its bend or the pins."""
-    strains = core_strain(core), bend_strain(core, membrane), pin_strain(membrane)
+def release_strain(core: Body, membrane: LabelledSurface, way: np.ndarray) -> Worst:
+    """Strain of the silicone when the core leaves: of its sections, its bend or the pins.
+
+    Args:
+        way: Unit direction in which the core leaves, shape (3,).
+    """
+    strains = core_strain(core), bend_strain(core, membrane, way), pin_strain(membrane)
     return max(strains, key=lambda worst: worst.value)
+
+
+def part_removal(part: str, strain: Worst, elongation: float) -> FabricationCheck:
+    """Whether a silicone bears to make way for an outer part that is pulled off it.
+
+    Args:
+        elongation: Its strain at break [1].
+    """
+    return check(
+        "part_removal",
+        part,
+        strain,
+        unit="strain",
+        title="stretch of the skin that it is pulled over",
+        limit=elongation / STRAIN_SAFETY,
+        bad=elongation,
+        message="choose a silicone with more elongation, raise mould.outer_parts or round the "
+        "shape",
+    )
 
 
 def core_removal(strain: Worst, elongation: float) -> FabricationCheck:

@@ -3,7 +3,8 @@
 Both are volumes of triangle meshes by manifold3d, of the parts as they will be printed. What the
 parts leave free of a box around the cast is found once; the cast must lie in it. Asking what of the
 cast lies outside compares faces that look the same way, which is several times faster than
-intersecting each part with the cast: there every face meets its own reverse.
+intersecting each part with the cast: there every face meets its own reverse. An overlap is refused
+where it is more than a thousandth of a millimetre on all that touches: less is rounding.
 
 Source: Lalish, manifold, https://github.com/elalish/manifold (guaranteed manifold output).
 """
@@ -14,13 +15,11 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 from geometry.cast import Cast
-from geometry.csg import Node
+from geometry.csg import Body, Node
 from geometry.csg_mesh import SLIVER_MM3, arrays, closed, evaluate, overlaps_mm3
+from geometry.sweeping import LEAST_MM3, TOLERANCE_MM, tolerance_mm3
 from workbench.core.errors import GeometryError
 from workbench.core.fabrication import FabricationPart
-
-LARGEST_OVERLAP_MM3 = 1e-6
-"""More is a fault of the parts' descriptions, not of rounding [mm3]."""
 
 
 class Fit(NamedTuple):
@@ -48,16 +47,31 @@ def measure_fit(parts: Sequence[FabricationPart], cast: Cast, holes: Sequence[No
     room = manifold3d.Manifold.cube(high - low).translate(low)
     subtract = manifold3d.OpType.Subtract
     free = manifold3d.Manifold.batch_boolean([room, *solids.values()], subtract)
-    overlap_mm3 = max(*overlaps_mm3(solids).values(), _outside_mm3(cast, free))
-    if overlap_mm3 > LARGEST_OVERLAP_MM3:
+    shared = overlaps_mm3(solids)
+    for (one, other), found_mm3 in shared.items():
+        if found_mm3 > LEAST_MM3:
+            _check(f"{one} and {other}", found_mm3, tolerance_mm3(solids[one], solids[other]))
+    outside_mm3 = _outside_mm3(cast, free)
+    # All of the cast's surface touches the parts.
+    area_mm2 = sum(float(body.surface_area()) for body in map(evaluate, _bodies(cast)))
+    _check("the cast and its mould", outside_mm3, max(LEAST_MM3, TOLERANCE_MM * area_mm2))
+    cavity = manifold3d.Manifold.batch_boolean([free, *map(evaluate, holes)], subtract)
+    # Vents through outer parts reach into the box around the cast; they are not the cavity.
+    return Fit(max(*shared.values(), outside_mm3), float((cavity ^ evaluate(cast.outer)).volume()))
+
+
+def _check(what: str, overlap_mm3: float, limit_mm3: float) -> None:
+    """Refuse an overlap that is more than the rounding of faces that touch."""
+    if overlap_mm3 > limit_mm3:
         raise GeometryError(
-            f"mould parts overlap by {overlap_mm3:.3g} mm3, more than {LARGEST_OVERLAP_MM3:g} mm3",
+            f"mould parts overlap by {overlap_mm3:.3g} mm3, more than {limit_mm3:.3g} mm3: {what}",
             hint="raise mould.clearance_mm, or change the last shape parameter a little",
             at="mould",
         )
-    cavity = manifold3d.Manifold.batch_boolean([free, *map(evaluate, holes)], subtract)
-    # Vents through outer parts reach into the box around the cast; they are not the cavity.
-    return Fit(overlap_mm3, float((cavity ^ evaluate(cast.outer)).volume()))
+
+
+def _bodies(cast: Cast) -> list[Body]:
+    return [cast.outer] if cast.core is None else [cast.outer, cast.core]
 
 
 def _outside_mm3(cast: Cast, free: Any) -> float:

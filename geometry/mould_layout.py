@@ -13,9 +13,9 @@ from workbench.core.making import MouldOptions
 
 EAR_MM = 17.0
 """Room beside the body for a key and a bolt, with walls of 3 mm."""
-RIM_HEIGHT_MM = 4.0
-RIM_TO_BOLT_MM = 3.8
-"""From the rim to the axis of a bolt [mm], so that its head goes past."""
+LUG_HEIGHT_MM = 4.0
+LUG_TO_BOLT_MM = 4.2
+"""From a lug to the axis of the bolt above it [mm]: leaves a wall of more than 2 mm."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -70,9 +70,9 @@ class Layout:
         return (self.base_mm + self.top_mm) / 2
 
     @property
-    def rim_mm(self) -> float:
-        """Height of the rim over the base plane [mm]; low blocks leave room for the bolts."""
-        return min(RIM_HEIGHT_MM, self.bolt_mm - self.base_mm - RIM_TO_BOLT_MM)
+    def lug_mm(self) -> float:
+        """Height of the lugs over the base plane [mm]; low blocks leave room for the bolts."""
+        return min(LUG_HEIGHT_MM, self.bolt_mm - self.base_mm - LUG_TO_BOLT_MM)
 
 
 def make_layout(cast: Cast, parting: Parting, options: MouldOptions) -> Layout:

@@ -7,8 +7,8 @@ the lid, and the base of the body its highest place, so gate and vents end there
          |    .-'|'-.    |     with ears that carry the keys and the bolts;
          |   /  .|.  \\   |     three or four parts make a round block
          |  |  | | |  |  |     core, one piece with the flange
-      ._ |  |  | | |  |  | _.
-      | ||__|__|_|_|__|__|| |  rim of the flange around the block
+         |  |  | | |  |  |     lugs of the flange stand in the seams
+      .__|__|__|_|_|__|__|__.
       |_____\\_/_______|_____|
              gate    vent
 """
@@ -19,13 +19,15 @@ import numpy as np
 
 from geometry import csg
 from geometry.channels import Channels
+from geometry.lugs import lugs
 from geometry.mould_layout import Layout
 from geometry.seams import BLUNT_KEY, STRAIGHT_KEY, key_node, seams_of
 from geometry.trapped import POCKET_VENT_MM
 from workbench.core.errors import DesignError
 
 FLANGE_MM = 6.0
-RIM_WIDTH_MM = 3.0
+OVERHANG_MM = 3.0
+"""How far the flange stands out from under the block, to be held by [mm]."""
 THROAT_MM = 1.5
 """Straight part of the gate above its funnel [mm]."""
 FUNNEL_EDGE_MM = 2.0
@@ -47,7 +49,9 @@ def outer_part(number: int, layout: Layout, outer: csg.Node, pockets_mm: np.ndar
     # Each seam joins two parts: keys on the one whose turn comes first, sockets in the other.
     mine = [seam for seam in seams if seam.first == number]
     theirs = [seam for seam in seams if (seam.first + 1) % count == number]
-    sockets = [key_node(key, spot, layout.options.clearance_mm) for s in theirs for spot in s.keys]
+    gap = layout.options.clearance_mm
+    sockets = [key_node(key, spot, gap) for s in theirs for spot in s.keys]
+    sockets += [lug for s in (*mine, *theirs) for lug in lugs(s.lugs, layout, gap)]
     bolts = [hole for seam in (*mine, *theirs) for hole in seam.bolts]
     # Keys first: joined to a plain block they cost the CAD kernel nothing, after the body much.
     keyed = csg.together(piece, [key_node(key, spot, None) for seam in mine for spot in seam.keys])
@@ -57,7 +61,7 @@ def outer_part(number: int, layout: Layout, outer: csg.Node, pockets_mm: np.ndar
 
 
 def core_with_flange(layout: Layout, core: csg.Node | None, channels: Channels) -> csg.Node:
-    """The core standing on a flange whose rim fits around the block, with gate and vents.
+    """The core standing on a flange with lugs that fit into the block, with gate and vents.
 
     Args:
         core: The core in the local frame; None for a flat lid.
@@ -68,10 +72,8 @@ def core_with_flange(layout: Layout, core: csg.Node | None, channels: Channels) 
     """
     options, base = layout.options, layout.base_mm
     _check_gate(channels, layout)
-    gap = options.clearance_mm
-    plate = _slab(layout, gap + RIM_WIDTH_MM, base - FLANGE_MM, base + layout.rim_mm)
-    pocket = _slab(layout, gap, base, base + layout.rim_mm + 1.0)
     low = base - FLANGE_MM
+    plate = _slab(layout, OVERHANG_MM, low, base)
     # Up to the base plane and no farther: above it is the silicone, beside it the core.
     holes = [_hole(place, channels.vent_mm, low, base) for place in channels.vents_mm]
     holes.append(_hole(channels.gate_mm, channels.throat_mm, low, base))
@@ -85,7 +87,8 @@ def core_with_flange(layout: Layout, core: csg.Node | None, channels: Channels) 
         )
         holes.append(csg.moved(funnel, (*channels.gate_mm, 0.0)))
     # Before the core joins: the CAD kernel is slow with its surface, and these do not meet it.
-    flange = csg.without(csg.without(plate, [pocket]), holes)
+    found = [lug for seam in seams_of(layout) for lug in lugs(seam.lugs, layout, None)]
+    flange = csg.without(csg.together(plate, found), holes)
     part = csg.together(flange, [] if core is None else [core])
     return csg.without(part, air_holes(channels.pockets_mm, layout, POCKET_VENT_MM))
 
@@ -151,7 +154,7 @@ def _check_gate(channels: Channels, layout: Layout) -> None:
     offset = np.abs(channels.gate_mm - layout.middle)
     if layout.round:
         offset = np.full(2, np.linalg.norm(offset))
-    room = layout.half_mm + RIM_WIDTH_MM - offset
+    room = layout.half_mm + OVERHANG_MM - offset
     limit_mm = 2 * (float(room.min()) - FUNNEL_EDGE_MM)
     if layout.options.gate_diameter_mm > limit_mm:
         raise DesignError(

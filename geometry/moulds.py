@@ -16,19 +16,24 @@ import numpy as np
 from geometry import csg
 from geometry.cast import Cast, footprint, make_cast
 from geometry.channels import Channels, make_channels
-from geometry.fabricate import fabricate
-from geometry.mould_checks import mould_checks, release_strain
+from geometry.demoulding import core_way, drawn_apart, hardship, opening
+from geometry.fabricate import Made, fabricate
+from geometry.mould_checks import motion_checks, mould_checks, release_strain
 from geometry.mould_fit import measure_fit
 from geometry.mould_layout import Layout, make_layout
 from geometry.mould_parts import air_holes, core_with_flange, outer_part
-from geometry.parting import COUNTS, Parting, best_parting
-from workbench.core.fabrication import MouldSet, PartGroup
+from geometry.parting import COUNTS, Parting, ranked_partings
+from geometry.silicones import UNKNOWN_ELONGATION
+from workbench.core.fabrication import MouldSet, PartGroup, PartMotion
 from workbench.core.making import MouldOptions
 from workbench.core.monitor import Monitor, silent
 from workbench.core.results import Solid
 
-APART_MM = 15.0
-"""Gap between the parts of the exploded view [mm]."""
+NOWHERE = (0.0, 0.0, 0.0)
+TORN_STRAIN = UNKNOWN_ELONGATION
+"""A skin that must stretch by more is as good as jammed, whatever it is cast of [1]."""
+MOST_TRIED = 4
+"""Partings that are tried where the parts of the first cannot be taken apart."""
 
 
 def make_mould(
@@ -38,38 +43,34 @@ def make_mould(
 ) -> MouldSet:
     """Make the mould of a body that stands on its base plane with its tip up.
 
+    Where no order of motions opens it, other partings are tried; the best of all is made, and its
+    checks say what is still in the way.
+
     Raises:
         DesignError: If the gate does not fit.
         GeometryError: If a part is not one body, or parts overlap.
     """
     monitor(0.0, "looking for the best split")
     cast = make_cast(solid, options)
-    parting = best_parting(cast, (options.outer_parts,) if options.outer_parts else COUNTS)
+    counts = (options.outer_parts,) if options.outer_parts else COUNTS
     channels = make_channels(cast, options.vent_count)
-    layout = make_layout(cast, parting, options)
-    nodes = _nodes(cast, layout, channels)
-    parts, reasons = [], []
-    for number, (name, node) in enumerate(nodes.items()):
-        monitor(0.1 + 0.6 * number / len(nodes), f"making {name}")
-        made = fabricate(
-            name,
-            node,
-            group=PartGroup.MOULD,
-            explode=_explode(number, layout),
-            pull=_pull(number, parting),
-        )
-        parts.append(made.part)
-        reasons += [made.reason] if made.reason else []
+    core_pull = core_way(cast)
+    tried: list[tuple[Parting, list[Made], tuple[PartMotion, ...]]] = []
+    for parting in ranked_partings(cast, counts)[:MOST_TRIED]:
+        made = _made(cast, parting, channels, options, monitor)
+        motions = opening([one.part for one in made], cast, parting, core_pull)
+        tried.append((parting, made, motions))
+        if hardship(motions) <= (False, TORN_STRAIN):
+            break
+    parting, made, motions = min(tried, key=lambda found: hardship(found[2]))
     monitor(0.7, "checking")
-    found = measure_fit(parts, cast, air_holes(channels.pockets_mm, layout, 0.0))
-    checks = mould_checks(
-        parts,
-        cast,
-        parting,
-        channels,
-        options,
-    )
-    strain = None if cast.core is None else release_strain(cast.core, solid.membrane)
+    parts = drawn_apart([one.part for one in made], motions)
+    vents = air_holes(channels.pockets_mm, make_layout(cast, parting, options), 0.0)
+    found = measure_fit(parts, cast, vents)
+    way = np.array(next(motion.direction for motion in motions if motion.part == "core"))
+    of_parts = mould_checks(parts, cast, parting, channels, options, way=way)
+    checks = (*of_parts, *motion_checks(motions))
+    strain = None if cast.core is None else release_strain(cast.core, solid.membrane, way)
     return MouldSet(
         parts=tuple(parts),
         split_azimuth_deg=parting.azimuth_deg,
@@ -79,8 +80,25 @@ def make_mould(
         release_strain=None if strain is None else strain.value,
         release_mm=(0.0, 0.0, 0.0) if strain is None else strain.place_mm,
         checks=checks,
-        notice="; ".join(reasons),
+        notice="; ".join(one.reason for one in made if one.reason),
+        motions=motions,
     )
+
+
+def _made(
+    cast: Cast,
+    parting: Parting,
+    channels: Channels,
+    options: MouldOptions,
+    monitor: Monitor,
+) -> list[Made]:
+    """The printable parts of one parting: the outer ones, then the core."""
+    nodes = _nodes(cast, make_layout(cast, parting, options), channels)
+    made = []
+    for number, (name, node) in enumerate(nodes.items()):
+        monitor(0.1 + 0.6 * number / len(nodes), f"making {name}")
+        made.append(fabricate(name, node, group=PartGroup.MOULD, explode=NOWHERE))
+    return made
 
 
 def _nodes(cast: Cast, layout: Layout, channels: Channels) -> dict[str, csg.Node]:
@@ -110,18 +128,3 @@ def _beside(cast: Cast, places_mm: np.ndarray) -> np.ndarray:
 
     inside = shapely.convex_hull(footprint(cast))
     return ~shapely.contains_xy(inside, places_mm[:, 0], places_mm[:, 1])
-
-
-def _pull(number: int, parting: Parting) -> tuple[float, float, float]:
-    if number == parting.count:
-        return (0.0, 0.0, -1.0)
-    x, y, z = parting.pulls[number]
-    return float(x), float(y), float(z)
-
-
-def _explode(number: int, layout: Layout) -> tuple[float, float, float]:
-    x, y, z = _pull(number, layout.parting)
-    if z:
-        return (0.0, 0.0, -(layout.top_mm - layout.base_mm + APART_MM))
-    apart = float(layout.half_mm[0]) + APART_MM
-    return x * apart, y * apart, 0.0

@@ -77,21 +77,37 @@ class Parting:
         return np.asarray(np.interp(z_mm, self.curve_mm[:, 1], self.curve_mm[:, 0]))
 
 
-def best_parting(cast: Cast, counts: Sequence[int]) -> Parting:
-    """The parting with the least undercut among these numbers of parts, given rising."""
+def ranked_partings(cast: Cast, counts: Sequence[int]) -> list[Parting]:
+    """Partings into these numbers of parts, given rising, the one to take first.
+
+    After it those to try where its parts cannot be taken apart: the best of each other number, and
+    then of each the least undercut at least an eighth of a turn from its best.
+    """
     places = spread(cast.sensing.points_mm, cast.sensing.faces, SAMPLES)
     caster = RayCaster(cast.outer.points_mm, cast.outer.faces)
     sections = _sections(cast)
-    chosen = None
+    chosen, others = None, []
     for count in counts:
         turns = np.arange(0.0, 180.0 if count == 2 else 360.0 / count, STEP_DEG)
         tried = [_scored(cast, sections, count, turn, places, caster) for turn in turns]
-        # Rounded, so that the first of equally good azimuths wins over one better by noise.
-        best = min(tried, key=lambda parting: round(parting.undercut, 3))
+        best = min(tried, key=_blocked)
         if chosen is None or _worth(chosen.undercut, best.undercut):
             chosen = best
+        others += [best, *sorted((p for p in tried if _aside(p, best)), key=_blocked)[:1]]
     assert chosen is not None  # counts is never empty
-    return chosen
+    return [chosen, *sorted((p for p in others if p is not chosen), key=_blocked)]
+
+
+def _blocked(parting: Parting) -> float:
+    # Rounded, so that the first of equally good azimuths wins over one better by noise.
+    return round(parting.undercut, 3)
+
+
+def _aside(parting: Parting, other: Parting) -> bool:
+    """Whether two partings into as many parts lie an eighth of their period apart or more."""
+    period = 360.0 / parting.count
+    apart = abs(parting.azimuth_deg - other.azimuth_deg) % period
+    return min(apart, period - apart) >= period / 8.0
 
 
 def _worth(fewer: float, more: float) -> bool:

@@ -21,7 +21,7 @@ COLOURS = {
     "membrane": "#f08a6c",
     "support": "#a9d6ea",
     "led_ring_holder": "#4c9a6a",
-    "base": "#565d66",
+    "housing_base": "#565d66",
     "camera_mount": "#8a919b",
     "core": "#e6cf86",
 }

@@ -13,7 +13,8 @@ from geometry.csg_mesh import closed
 from geometry.gel import gel_step
 from geometry.holder_seat import centred
 from geometry.leds import led_items
-from geometry.mould_checks import core_removal
+from geometry.mould_checks import core_removal, part_removal
+from geometry.opening_words import closing_steps, opening_steps
 from geometry.silicones import NEAR, Silicone, elongation, nearest, silicone
 from geometry.supplies import ADHESIVE, bolts, rim_mm2, supplies
 from geometry.surface import face_areas
@@ -78,16 +79,28 @@ def make_recipe(
 
 
 def _checks(moulds: MouldSet, chosen: Silicone) -> tuple[FabricationCheck, ...]:
-    if moulds.release_strain is None:
-        return ()
-    strain = Worst(moulds.release_strain, moulds.release_mm)
-    return (core_removal(strain, elongation(chosen.name)),)
+    bears = elongation(chosen.name)
+    checks = [
+        part_removal(motion.part, Worst(motion.strain, motion.strain_at_mm), bears)
+        for motion in moulds.motions
+        if motion.part != "core"
+    ]
+    if moulds.release_strain is not None:
+        confined = [
+            Worst(motion.strain, motion.strain_at_mm)
+            for motion in moulds.motions
+            if motion.part == "core"
+        ]
+        strains = [Worst(moulds.release_strain, moulds.release_mm), *confined]
+        strain = max(strains, key=lambda worst: worst.value)
+        checks.append(core_removal(strain, bears))
+    return tuple(checks)
 
 
 def _placing(housing: HousingSet) -> str:
     """What puts the support in its place on the base."""
     found = {part.name: closed(part.name, part.points_mm, part.faces) for part in housing.parts}
-    others = [found[name] for name in ("led_ring_holder", "base") if name in found]
+    others = [found[name] for name in ("led_ring_holder", "housing_base") if name in found]
     if "support" in found and centred(found["support"], others):
         return "which centres it"
     return "measure that it is in the middle"
@@ -140,7 +153,6 @@ def _steps(
     share_a: float,
     backing_MPa: float,
 ) -> tuple[str, ...]:
-    outer = [part.name for part in moulds.parts if part.name != "core"]
     pins = len(solid.tips_mm)
     life = f", within {chosen.pot_life_min:g} minutes" if chosen.pot_life_min else ""
     steps = [
@@ -148,15 +160,12 @@ def _steps(
         f"{', '.join(part.name for part in housing.parts)}; wash, cure and sand the cavity.",
         "Coat all mould faces with release agent: printed resin stops platinum silicone from "
         "curing, so bake it or seal it with clear acrylic lacquer first.",
-        f"Bolt {' and '.join(outer)} together with {bolts(moulds)[0]} M3 bolts, a washer under "
-        "each head and nut, and turn them tip down.",
+        *closing_steps(moulds.motions, bolts(moulds)[0]),
         f"Weigh {mass_g * share_a:.2f} g of part A and {mass_g * (1 - share_a):.2f} g of part B of "
         f"{chosen.name} ({pour_ml:.2f} ml in all), stir slowly and degas under vacuum.",
-        f"Close the mould with the core, flange up, and fill it through the gate{life}, until "
-        "silicone stands in every vent.",
+        f"Fill the mould through the gate{life}, until silicone stands in every vent.",
         f"Let it cure ({chosen.cure} at room temperature), flange up and level.",
-        "Open the bolts, pull the outer parts along their arrows, then roll the skin off the core; "
-        "cut gate and vents flush.",
+        *opening_steps(moulds.motions, hollow=moulds.release_strain is not None),
     ]
     if pins:
         steps.append(f"Dab white silicone paint on the tips of the {pins} pins.")
@@ -171,10 +180,10 @@ def _steps(
     if held:
         steps.append(
             "Solder the LEDs in the order of the list and press them into led_ring_holder; put "
-            "camera and camera_mount into the base from below, then the holder on top."
+            "camera and camera_mount into housing_base from below, then the holder on top."
         )
     else:
-        steps.append("Put camera and camera_mount into the base from below.")
+        steps.append("Put camera and camera_mount into housing_base from below.")
     if rim_mm2(solid.support):
         steps.append(
             f"Glue the support onto the base: a thin bead of {ADHESIVE} under its rim, "

@@ -49,6 +49,8 @@ class Seam:
     keys: tuple[tuple[np.ndarray, np.ndarray], ...]
     """Place and direction of each key."""
     bolts: tuple[csg.Node, ...]
+    lugs: tuple[tuple[np.ndarray, np.ndarray], ...]
+    """Place and direction along the seam of each lug of the flange, in x and y."""
 
 
 def seams_of(layout: Layout) -> list[Seam]:
@@ -57,7 +59,7 @@ def seams_of(layout: Layout) -> list[Seam]:
         return [_radial_seam(number, layout) for number in range(layout.parting.count)]
     reach = layout.half_mm[1] - layout.ear_mm
     inward = np.array([-1.0, 0.0, 0.0])
-    keys, bolts = [], []
+    keys, bolts, spots = [], [], []
     for side in (-1.0, 1.0):
         y = layout.middle[1] + side * (reach + KEY_OFFSET_MM)
         for z in _key_heights(layout):
@@ -66,7 +68,8 @@ def seams_of(layout: Layout) -> list[Seam]:
         long = 2.0 * layout.half_mm[0]
         spot = np.array([layout.middle[0], y, layout.bolt_mm])
         bolts.append(csg.along(csg.cylinder(BOLT_RADIUS_MM, -long, long), inward, spot))
-    return [Seam(first=0, keys=tuple(keys), bolts=tuple(bolts))]
+        spots.append((spot[:2], np.array([0.0, side])))
+    return [Seam(first=0, keys=tuple(keys), bolts=tuple(bolts), lugs=tuple(spots))]
 
 
 def _radial_seam(number: int, layout: Layout) -> Seam:
@@ -95,7 +98,7 @@ def _radial_seam(number: int, layout: Layout) -> Seam:
         for low, high in ((GRIP_MM, far), (-far, -GRIP_MM))
     ]
     bolts = (hole, *seats)
-    return Seam(first=number, keys=keys, bolts=bolts)
+    return Seam(first=number, keys=keys, bolts=bolts, lugs=((spot[:2], outward[:2]),))
 
 
 def _key_heights(layout: Layout) -> list[float]:

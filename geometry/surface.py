@@ -18,6 +18,7 @@ __all__ = [
     "closest_on_triangles",
     "closest_point",
     "face_areas",
+    "face_normals",
     "half_space_clip",
     "is_watertight",
     "mesh_volume",
@@ -56,6 +57,13 @@ def face_areas(points_mm: np.ndarray, faces: np.ndarray) -> np.ndarray:
     corners = np.asarray(points_mm, dtype=np.float64)[faces]
     cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     return 0.5 * np.linalg.norm(cross, axis=1)
+
+
+def face_normals(points_mm: np.ndarray, faces: np.ndarray) -> np.ndarray:
+    """Unit normal of each triangle, shape (M, 3); of one without an area, what rounding makes."""
+    corners = np.asarray(points_mm, dtype=np.float64)[faces]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
 
 
 def mesh_volume(points_mm: np.ndarray, faces: np.ndarray) -> float:

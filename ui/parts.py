@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ui.nodes import Meshes
-from workbench.core.fabrication import FabricationPart, PartGroup
+from workbench.core.fabrication import FabricationPart, PartGroup, PartMotion
 from workbench.section_cut import Plane
 
 MOULD_COLOURS = ((122, 162, 214), (146, 186, 160), (214, 182, 112), (180, 150, 200))
@@ -27,13 +27,21 @@ class PartsView:
         self.on_moved: Callable[[], None] = lambda: None
         """Set by the scene: other parts are on show, or they stand elsewhere."""
         self.parts: dict[str, FabricationPart] = {}
+        self.motions: tuple[PartMotion, ...] = ()
         self.shown: set[str] = set()
         self.spread = 1.0
 
-    def load(self, parts: tuple[FabricationPart, ...]) -> None:
-        """Take the parts of another design; none of them is on show yet."""
+    def load(
+        self, parts: tuple[FabricationPart, ...], motions: tuple[PartMotion, ...] = ()
+    ) -> None:
+        """Take the parts of another design; none of them is on show yet.
+
+        Args:
+            motions: How the mould is opened: its parts move one after another, as the recipe says.
+        """
         self.clear()
         self.parts = {part.name: part for part in parts}
+        self.motions = motions
 
     def show(self, names: set[str], spread: float) -> None:
         """Show these parts, moved apart by `spread` in [0, 1]."""
@@ -72,8 +80,15 @@ class PartsView:
         part = self.parts.get(name)
         if part is None:
             return place_mm
-        x, y, z = np.asarray(place_mm) + self.spread * np.asarray(part.explode)
+        x, y, z = np.asarray(place_mm) + self._share(name) * np.asarray(part.explode)
         return float(x), float(y), float(z)
+
+    def _share(self, name: str) -> float:
+        """How much of its way a part has gone: those of the mould go in turn, others together."""
+        for turn, motion in enumerate(self.motions):
+            if motion.part == name:
+                return min(max(self.spread * len(self.motions) - turn, 0.0), 1.0)
+        return self.spread
 
     def bounds_mm(self) -> tuple[np.ndarray, np.ndarray]:
         """Lowest and highest corner of the parts on show [mm]."""

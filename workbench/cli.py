@@ -1,7 +1,9 @@
 """The command line: what may be typed, and what its errors look like.
 
-Exit codes: 0 done, 2 bad input (a busy port included), 3 failed computation, full disk or device,
-130 cancelled. Anything else is a bug: a traceback, and a crash file in the project folder.
+Exit codes: 0 done, 1 done but not good (a red check of `export` or `run --strict`, a row of
+`validate` or `bench` beyond its limit), 2 bad input (a busy port included), 3 failed computation,
+full disk or device, 130 cancelled. Anything else is a bug: a traceback, and a crash file in the
+project folder.
 """
 
 from __future__ import annotations
@@ -277,6 +279,8 @@ def _run_options(sub: argparse.ArgumentParser) -> None:
     add_unit_option(sub)
     add_press_options(sub)
     add_fit_option(sub)
+    text = "exit 1 where a check of mould, housing or recipe is red"
+    sub.add_argument("--strict", action="store_true", help=text)
     text = "write depth, normals and masks of every pixel: frames.npz, some 4 MB an image"
     sub.add_argument("--image-fields", action="store_true", help=text)
     text = "totals side by side in sources.csv: mpm, learned (seconds), fem (minutes)"

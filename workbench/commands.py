@@ -63,11 +63,12 @@ def run(options: argparse.Namespace, project: Project) -> int:
     from workbench.folder import RUN_FILES, prepare
     from workbench.foresight import expect_fit
     from workbench.named_designs import load_design
-    from workbench.outputs import write_all
+    from workbench.outputs import all_checks, write_all
     from workbench.partial import keeping_partial
-    from workbench.pipeline import InlineRunner, evaluate, plan
+    from workbench.pipeline import InlineRunner, evaluate, plan, results
     from workbench.source_files import asked_sources, with_weights, write_sources
     from workbench.touching_side import touching_notice
+    from workbench.verdict import complain_of_red
 
     design = load_design(options.design, unit=options.unit, project=project)
     design = changed_design(options, design)
@@ -127,15 +128,20 @@ def run(options: argparse.Namespace, project: Project) -> int:
         say(f"open {options.out / 'report.html'}")
     if sources:
         write_sources(options.out, sources, design, case, project.store, printer)
-    return 0
+    made = results(project.store, calls, ("mould", "housing", "recipe"))
+    code = complain_of_red(all_checks(made["mould"], made["housing"], made["recipe"]))
+    return code if options.strict else 0
 
 
 def export(options: argparse.Namespace, project: Project) -> int:
-    """Write a design's bodies, mould and meshes."""
+    """Write a design's bodies, mould and meshes; 1 where a check says they cannot be made."""
     from workbench.exports import export_design, scene_notice
     from workbench.foresight import optical_misfits
     from workbench.named_designs import load_design
+    from workbench.outputs import all_checks, check_rows, part_rows
+    from workbench.pipeline import PressCase, plan, results
     from workbench.typed_fields import with_typed
+    from workbench.verdict import check_line, complain_of_red
 
     printer = Progress(as_json=options.json)
     design = load_design(options.design, unit=options.unit, project=project)
@@ -149,7 +155,16 @@ def export(options: argparse.Namespace, project: Project) -> int:
     extra = {"tets": options.tets, "mitsuba": options.mitsuba}
     for path in export_design(start.design, options.out, project.store, printer, **extra):
         say(json.dumps({"file": str(path)}) if options.json else path)
-    return 0
+    calls = plan(start.design, PressCase())
+    made = results(project.store, calls, ("mould", "housing", "recipe", "package"))
+    checks = all_checks(made["mould"], made["housing"], made["recipe"])
+    if options.json:
+        parts = part_rows(made["mould"], made["housing"], made["package"])
+        say(json.dumps({"checks": check_rows(checks), "parts": parts}, allow_nan=False))
+    else:
+        for check in checks:
+            say(check_line(check))
+    return complain_of_red(checks)
 
 
 def presets(options: argparse.Namespace, project: Project) -> int:

@@ -40,8 +40,8 @@ def export_design(
     `design.toml` (with the files of a body of its own under `bodies/`), `membrane.stl`,
     `support.stl`, `base.stl`, `mesh.npz` (nodes, hexahedra, labels), `mesh.vtu`, `membrane.vtp`,
     `exploded.png` (where the machine can render) and everything of the workshop: `moulds/`,
-    `parts/`, `all_parts.3mf`, `build_sheet.html`, `bom.csv`. Such files of an earlier export that
-    this one does not replace go.
+    `parts/`, `all_parts.3mf`, `build_sheet.html`, `recipe.json`, `bom.csv`. Such files of an
+    earlier export that this one does not replace go.
 
     Args:
         tets: Also write `tets.npz`: nodes, tetrahedra, labels; takes about a minute.
@@ -73,9 +73,11 @@ def export_design(
     found = results(store, plan(design, PressCase()), ("build", *wanted, "picture"))
     solid, hexes = found["build"], found["mesh"].hexes
     files = {"design.toml": design_to_toml(design).encode()}
-    for name in ("membrane", "support", "base"):
+    for name in ("membrane", "base"):
         surface = getattr(solid, name)
         files[f"{name}.stl"] = stl_bytes(surface.points_mm, surface.faces)
+    # One name, one body: where the skin cuts into the support, the part to print is what there is.
+    files["support.stl"] = found["package"].files["parts/support.stl"].tobytes()
     if hexes is not None:
         files["mesh.npz"] = _volume_bytes(hexes)
     if tets:

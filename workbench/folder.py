@@ -27,7 +27,7 @@ RUN_FILES = (
         for folder in ("moulds", "parts")
         for ending in ("stl", "step", "3mf")
     ),
-    *("all_parts.3mf", "build_sheet.html", "bom.csv"),
+    *("all_parts.3mf", "build_sheet.html", "recipe.json", "bom.csv"),
 )
 """All that a run writes, as patterns of `Path.glob`."""
 

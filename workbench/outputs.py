@@ -20,6 +20,7 @@ from workbench.core.fabrication import (
     MouldSet,
     PartGroup,
     Recipe,
+    Severity,
 )
 from workbench.core.force_field import ForceField
 from workbench.core.press import Press
@@ -113,6 +114,23 @@ def mould_rows(moulds: MouldSet) -> list[dict[str, Any]]:
     ]
 
 
+def part_rows(moulds: MouldSet, housing: HousingSet, package: Bundle) -> list[dict[str, Any]]:
+    """The parts as `export --json` lists them: the volume of the mesh, and of its STEP file read
+    back, which is None where a part has none."""
+    from geometry.surface import mesh_volume
+
+    rows = [
+        {
+            "file": f"{'moulds' if part.group is PartGroup.MOULD else 'parts'}/{part.name}.stl",
+            "watertight": part.watertight,
+            "volume_mm3": mesh_volume(part.points_mm, part.faces),
+            "step_volume_mm3": package.step_volumes_mm3.get(part.name),
+        }
+        for part in (*moulds.parts, *housing.parts)
+    ]
+    return plain_numbers(rows)
+
+
 def fabrication_tables(moulds: MouldSet, housing: HousingSet, recipe: Recipe) -> dict[str, Any]:
     """The tables `moulds`, `parts`, `checks` and `recipe` of the summary."""
     return {
@@ -127,9 +145,23 @@ def fabrication_tables(moulds: MouldSet, housing: HousingSet, recipe: Recipe) ->
             }
             for part in (*moulds.parts, *housing.parts)
         ],
-        "checks": [_plain(check) for check in (*moulds.checks, *housing.checks, *recipe.checks)],
+        "checks": check_rows(all_checks(moulds, housing, recipe)),
         "recipe": _plain(recipe),
     }
+
+
+def all_checks(
+    moulds: MouldSet, housing: HousingSet, recipe: Recipe
+) -> tuple[FabricationCheck, ...]:
+    """Every check of what is made, the worst first."""
+    order = (Severity.BAD, Severity.WARNING, Severity.GOOD)
+    found = (*moulds.checks, *housing.checks, *recipe.checks)
+    return tuple(sorted(found, key=lambda check: order.index(check.severity)))
+
+
+def check_rows(checks: Sequence[FabricationCheck]) -> list[dict[str, Any]]:
+    """Checks as `summary.json` and `export --json` list them."""
+    return [_plain(check) for check in checks]
 
 
 def _plain(value: FabricationCheck | Recipe) -> dict[str, Any]:

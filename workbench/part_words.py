@@ -11,7 +11,7 @@ KINDS: tuple[tuple[str, str], ...] = (
     (r"half_([a-d])", "mould half {}"),
     (r"part_([a-d])", "outer mould part {}"),
     (r"core", "mould core"),
-    (r"base", "base of the housing"),
+    (r"housing_base", "base of the housing"),
     (r"led_ring_holder", "LED ring holder"),
     (r"slider_(\d+)", "actuator rod {}"),
 )

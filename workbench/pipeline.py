@@ -134,7 +134,7 @@ def plan(design: SensorDesign, case: PressCase) -> dict[str, Call]:
     coloured = at_defaults(optics.ring, *unbuilt)
     dark = at_defaults(coloured, "colours")
     pose = (eye.position_mm, eye.wxyz)
-    housing = Call("housing", (build.ref, design.housing, dark, *pose, design.mould.bed_mm))
+    housing = Call("housing", (build.ref, design.housing, dark, *pose, design.mould.printer))
     bought = (coloured, design.casting, material.young_MPa, material.density_g_cm3)
     recipe = Call("recipe", (build.ref, mould.ref, housing.ref, *bought, material.backing_MPa))
     head = (design.name, design.family, design.mould.shrink_percent, design.mould.draft_deg)

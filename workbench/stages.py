@@ -19,7 +19,7 @@ from workbench.core.force_field import ForceField
 from workbench.core.imported import ImportedBody, Pick, ReadBody
 from workbench.core.indenter import Indenter
 from workbench.core.lighting import LedRing
-from workbench.core.making import Casting, Housing
+from workbench.core.making import Casting, Housing, Printer
 from workbench.core.monitor import Monitor, part, silent
 from workbench.core.press import ContactSettings, Press
 from workbench.core.results import (
@@ -231,7 +231,7 @@ def housing(
     ring: LedRing,
     camera_mm: tuple[float, float, float],
     camera_wxyz: tuple[float, float, float, float],
-    bed_mm: tuple[float, float, float],
+    printer: Printer,
     *,
     monitor: Monitor,
 ) -> HousingSet:
@@ -239,7 +239,7 @@ def housing(
     from geometry.housing import make_housing
 
     camera = Camera(position_mm=camera_mm, wxyz=camera_wxyz)
-    return make_housing(solid, options, ring=ring, camera=camera, bed_mm=bed_mm, monitor=monitor)
+    return make_housing(solid, options, ring=ring, camera=camera, printer=printer, monitor=monitor)
 
 
 def recipe(
@@ -327,10 +327,10 @@ STAGES = {
         Stage(name="photons", version=1, lane="sim", function=photons),
         Stage(name="shoot", version=4, lane="sim", function=shoot, parts=shoot_parts),
         Stage(name="maps", version=2, lane="sim", function=maps),
-        Stage(name="mould", version=2, lane="cad", function=mould),
-        Stage(name="housing", version=2, lane="cad", function=housing),
-        Stage(name="recipe", version=2, lane="cad", function=recipe),
-        Stage(name="package", version=3, lane="cad", function=package),
+        Stage(name="mould", version=4, lane="cad", function=mould),
+        Stage(name="housing", version=4, lane="cad", function=housing),
+        Stage(name="recipe", version=3, lane="cad", function=recipe),
+        Stage(name="package", version=4, lane="cad", function=package),
         Stage(name="picture", version=2, lane="cad", function=picture),
         Stage(name="portrait", version=1, lane="cad", function=portrait),
         Stage(name="portrait_pressed", version=1, lane="cad", function=portrait_pressed),

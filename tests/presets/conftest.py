@@ -21,6 +21,13 @@ outer_radius_mm = 8.0
 cylinder_mm = 8.0
 [meshing]
 hex_mm = 0.8
+[housing]
+camera_width_mm = 2.4
+camera_height_mm = 2.4
+camera_depth_mm = 3.0
+led_width_mm = 1.2
+led_height_mm = 1.0
+wall_mm = 0.9
 [optics.baking]
 photons = 200000
 nodes = 1000
@@ -30,7 +37,8 @@ radius_mm = 3.0
 width_px = 160
 height_px = 120
 """
-"""A small finger whose whole chain takes about 10 s; its tip is at z = 16 mm."""
+"""A small finger whose whole chain takes about 10 s; its tip is at z = 16 mm, and camera and LEDs
+are small enough for its cavity."""
 
 
 @dataclass(frozen=True, kw_only=True)

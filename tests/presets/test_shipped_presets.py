@@ -73,7 +73,7 @@ def test_leds_and_camera_of_a_preset_have_their_gaps(name: str) -> None:
         ring,
         camera.position_mm,
         camera.wxyz,
-        design.mould.bed_mm,
+        design.mould.printer,
         monitor=silent,
     )
     gaps = {check.name: check for check in made.checks if check.name.endswith("_clearance")}

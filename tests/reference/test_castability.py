@@ -12,13 +12,12 @@ from geometry.castability import (
     draft_deg,
     removal_strain,
     spread,
-    thinnest_wall,
     undercut,
 )
 from geometry.core_release import core_strain
 from geometry.csg_brep import checked
 from geometry.csg_mesh import arrays, evaluate, overlaps_mm3
-from geometry.primitives import rounded_box, sphere
+from geometry.primitives import sphere
 from geometry.silicones import SILICONES, doubled_MPa, gent_MPa, nearest, silicone
 from geometry.trapped import pockets
 from workbench.core.errors import DesignError, GeometryError
@@ -70,14 +69,6 @@ def test_draft_of_a_cone_is_its_half_angle() -> None:
     part = places._replace(points_mm=places.points_mm[sides], normals=places.normals[sides])
     # Facets of a 64-gon are steeper than the cone by 0.1 % at most.
     assert draft_deg(part, UP).value == pytest.approx(np.degrees(np.arctan(0.25)), abs=0.05)
-
-
-def test_thinnest_wall_of_a_box() -> None:
-    """10 x 10 x 0.7 mm: 0.7 mm, at half its height."""
-    points, faces = rounded_box(5.0, 0.0)
-    found = thinnest_wall(points * [1.0, 1.0, 0.07], faces)
-    assert found.value == pytest.approx(0.7, abs=1e-3)
-    assert found.place_mm[2] == pytest.approx(0.0, abs=0.01)
 
 
 def test_air_under_an_inverted_cup() -> None:

@@ -213,8 +213,7 @@ def test_export_writes_the_scene(tmp_path: Path, capsys: pytest.CaptureFixture[s
     out = tmp_path / "out"
     words = ["export", "geltip", "--mitsuba", "--out", str(out), "--json"]
     assert main([*words, "--project", str(tmp_path / "p")]) == 0
-    files = [
-        json.loads(line)["file"] for line in capsys.readouterr().out.splitlines() if "file" in line
-    ]
+    rows = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    files = [row["file"] for row in rows if "file" in row]
     for name in ("scene.xml", "skin.ply", "wall.ply"):
         assert str(out / "mitsuba" / name) in files and (out / "mitsuba" / name).stat().st_size > 0

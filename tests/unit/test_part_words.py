@@ -8,7 +8,7 @@ from workbench.part_words import part_label, part_words
 
 NAMES = (
     *("half_a", "half_b", "part_a", "part_b", "part_c", "part_d", "core"),
-    *("support", "led_ring_holder", "camera_mount", "base", "slider_1", "slider_2"),
+    *("support", "led_ring_holder", "camera_mount", "housing_base", "slider_1", "slider_2"),
 )
 
 

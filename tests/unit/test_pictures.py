@@ -65,7 +65,7 @@ HOUSING = HousingSet(
         part("support", 3.0, (0.0, 0.0, 3.0)),
         part("led_ring_holder", 2.0, (0.0, 0.0, 0.0)),
         part("camera_mount", 1.0, (0.0, 0.0, -4.0)),
-        part("base", 4.0, (0.0, 0.0, -4.0)),
+        part("housing_base", 4.0, (0.0, 0.0, -4.0)),
         part("slider_0", 1.0, (5.0, 0.0, 0.0), explode=(10.0, 0.0, 0.0)),
     )
 )

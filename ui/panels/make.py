@@ -148,7 +148,8 @@ class MakePanel:
             self.notes_folder.visible = bool(notices)
             remarks = [remark for notice in notices for remark in notice.split("; ")]
             self.notes.content = "\n\n".join(plain(remark) for remark in remarks)
-            self.tree.offer(parts)
+            mould = found["mould"]
+            self.tree.offer(parts, mould.motions if mould is not None else ())
             self.checks.offer(checks)
             recipe = found["recipe"]
             self.recipe_folder.visible = recipe is not None

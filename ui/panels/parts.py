@@ -7,10 +7,32 @@ from typing import Any
 import viser
 
 from ui.desk import Desk
-from workbench.core.fabrication import FabricationPart, PartGroup
+from ui.player import Player
+from workbench.core.fabrication import FabricationPart, PartGroup, PartMotion
 from workbench.part_words import part_label
 
+FRAMES = 50
+"""Steps in which the mould is opened by itself: four seconds."""
+OPEN = viser.Icon.PLAYER_PLAY
 TITLES = {PartGroup.MOULD: "Mould parts", PartGroup.SENSOR: "Sensor parts"}
+
+
+class Opening:
+    """The exploded view as frames, for the player."""
+
+    max = FRAMES
+
+    def __init__(self, spread: Any) -> None:
+        self.spread = spread
+
+    @property
+    def value(self) -> int:
+        """Frame on show."""
+        return round(FRAMES * self.spread.value)
+
+    @value.setter
+    def value(self, frame: int) -> None:
+        self.spread.value = frame / FRAMES
 
 
 class PartsTree:
@@ -22,9 +44,14 @@ class PartsTree:
         hint = "In place of the sensor"
         self.view = gui.add_checkbox("Show parts", False, visible=False, hint=hint)
         self.view.on_update(desk.guarded(lambda event: self._view()))
-        hint = "How far the parts stand apart, over the full way"
-        self.spread = gui.add_slider("Explode", 0.0, 1.0, 0.05, 1.0, visible=False, hint=hint)
+        hint = "How far the mould is opened, one part after another, as the recipe says"
+        step = 1.0 / FRAMES
+        self.spread = gui.add_slider("Explode", 0.0, 1.0, step, 1.0, visible=False, hint=hint)
         self.spread.on_update(desk.guarded(self._moved))
+        self.player = Player(Opening(self.spread))
+        hint = "Open the mould, motion by motion"
+        self.play = gui.add_button("Play opening", icon=OPEN, visible=False, hint=hint)
+        self.play.on_click(desk.guarded(lambda event: self._play()))
         self.folder = gui.add_folder("Parts", visible=False)
         self.back = gui.add_panel(visible=False)
         with self.back.add_tab("Parts on show"):
@@ -37,8 +64,14 @@ class PartsTree:
         self.parts: tuple[FabricationPart, ...] = ()
         self.closed: list[Any] = []
 
-    def offer(self, parts: tuple[FabricationPart, ...]) -> None:
-        """Take the parts of another design; those of the mould are ticked."""
+    def offer(
+        self, parts: tuple[FabricationPart, ...], motions: tuple[PartMotion, ...] = ()
+    ) -> None:
+        """Take the parts of another design; those of the mould are ticked.
+
+        Args:
+            motions: How the mould is opened, for the exploded view.
+        """
         shown = self.view.value
         if not parts:
             self.put_away()
@@ -46,13 +79,13 @@ class PartsTree:
         for handle in self.closed:
             handle.remove()
         self.closed, self.boxes, self.groups = [], {}, {}
-        for handle in (self.view, self.spread, self.folder):
+        for handle in (self.view, self.spread, self.play, self.folder):
             handle.visible = bool(parts)
         for group, title in TITLES.items():
             members = [part for part in parts if part.group is group]
             if members:
                 self._add_group(group, title, members)
-        self.desk.scene.parts.load(parts)
+        self.desk.scene.parts.load(parts, motions)
         if shown and parts:
             self._show()
 
@@ -87,7 +120,13 @@ class PartsTree:
     def _moved(self, event: Any) -> None:
         self._show()
         if event.client is not None:
+            self.player.stop()
             self._back_off()
+
+    def _play(self) -> None:
+        self.bring_out()
+        self.spread.value = 0.0
+        self.player.start()
 
     def _back_off(self) -> None:
         """An eye that flew to a place would stand inside parts that come or move."""

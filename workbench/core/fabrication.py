@@ -81,6 +81,34 @@ class FabricationCheck:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
+class PartMotion:
+    """One motion that opens the mould; the others run backward, in reverse order, close it."""
+
+    step: int
+    """From 1, in the order in which the parts move."""
+    part: str
+    direction: tuple[float, float, float]
+    """Unit vector in the sensor frame."""
+    distance_mm: float
+    """Until the part is clear of all that is still in its place [mm]."""
+    overlap_mm3: float = 0.0
+    """Largest overlap with another rigid part on the way [mm3]; 0 where the way is free."""
+    tolerance_mm3: float = 0.0
+    """Overlap that is only the rounding of faces that touch [mm3]."""
+    overlap_at_mm: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Where that overlap is [mm]."""
+    strain: float = 0.0
+    """What the skin must stretch to make way for the part [1]."""
+    strain_at_mm: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Where that is [mm]."""
+
+    @property
+    def free(self) -> bool:
+        """Whether no rigid part is in the way."""
+        return self.overlap_mm3 <= self.tolerance_mm3
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
 class MouldSet:
     """All parts of a casting mould and what was measured on them."""
 
@@ -99,6 +127,8 @@ class MouldSet:
     """Where that is [mm]."""
     checks: tuple[FabricationCheck, ...] = ()
     notice: str = ""
+    motions: tuple[PartMotion, ...] = ()
+    """How the mould is opened, in order."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

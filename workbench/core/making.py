@@ -7,6 +7,20 @@ from dataclasses import dataclass
 from workbench.core.check import within
 from workbench.core.errors import DesignError
 
+BED_MM = (145.0, 145.0, 185.0)
+"""Source: Formlabs Form 3, the printer of the paper's trunk sensor [mm]."""
+FEATURE_MM = 0.4
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Printer:
+    """What of a printer decides whether a part can be made."""
+
+    bed_mm: tuple[float, float, float] = BED_MM
+    """Room [mm]."""
+    feature_mm: float = FEATURE_MM
+    """Smallest feature that can be printed: nozzle diameter, or twice the pixel [mm]."""
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class MouldOptions:
@@ -25,10 +39,15 @@ class MouldOptions:
     """Parts of the outer mould: 2, 3 or 4; 0 lets the search for the least undercut decide."""
     draft_deg: float = 0.0
     """Taper of the core toward its tip [degree]; the elastomer gets thicker by it."""
-    bed_mm: tuple[float, float, float] = (145.0, 145.0, 185.0)
-    """Room of the printer. Source: Formlabs Form 3, the printer of the paper's trunk sensor."""
-    feature_mm: float = 0.4
-    """Smallest feature that can be printed: nozzle diameter, or twice the pixel [mm]."""
+    bed_mm: tuple[float, float, float] = BED_MM
+    """Room of the printer [mm]."""
+    feature_mm: float = FEATURE_MM
+    """Smallest feature that can be printed [mm]."""
+
+    @property
+    def printer(self) -> Printer:
+        """The printer of mould and housing."""
+        return Printer(bed_mm=self.bed_mm, feature_mm=self.feature_mm)
 
     def __post_init__(self) -> None:
         at = "mould"
