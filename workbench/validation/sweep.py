@@ -64,6 +64,10 @@ class Finding:
     trial: Trial
     fault: str = ""
     """Empty when all is well."""
+    refused: str = ""
+    """What was said of a sensor that cannot be made."""
+    jammed: bool = False
+    """Whether a red check says that its mould cannot be opened."""
     softened: bool = False
     distance: bool = False
     """Built by signed distance."""
@@ -191,7 +195,7 @@ def sweep(names: list[str], count: int = SETS, *, workers: int | None = None) ->
         workers: Processes; as many as there are cores when left out.
     """
     todo = [trial for name in names for trial in draw(name, count)]
-    return _Workers(workers or os.cpu_count() or 1).judge(todo)
+    return Workers(judge, workers).judge(todo)
 
 
 def rows(count: int = SETS, *, names: list[str] | None = None) -> list[Row]:
@@ -220,12 +224,25 @@ def sweep_row(name: str, run: Callable[[], list[Finding]]) -> Row:
     return bounded(f"sweep_{name}", case, len(faults), unit="1", limit=0)
 
 
-class _Workers:
-    """Processes that judge trials one by one, and are replaced when they die or hang."""
+class Workers:
+    """Processes that judge trials one by one, and are replaced when they die or hang.
 
-    def __init__(self, count: int) -> None:
+    Args:
+        judge: What they do with a trial; a function of a module.
+        count: Processes; as many as there are cores when left out.
+        hang_s: Time after which one counts as hung [s].
+    """
+
+    def __init__(
+        self,
+        judge: Callable[[Trial], Finding],
+        count: int | None = None,
+        *,
+        hang_s: float = HANG_S,
+    ) -> None:
         self._context = multiprocessing.get_context("spawn")
-        self._count = count
+        self._count = count or os.cpu_count() or 1
+        self._judge, self._hang_s = judge, hang_s
 
     def judge(self, todo: list[Trial]) -> list[Finding]:
         """Findings in the order of the trials."""
@@ -233,7 +250,10 @@ class _Workers:
         for number in range(len(todo)):
             waiting.put(number)
         found: dict[int, Finding] = {}
-        hands = [_Hand(self._context) for _ in range(min(self._count, len(todo)))]
+        hands = [
+            _Hand(self._context, self._judge, self._hang_s)
+            for _ in range(min(self._count, len(todo)))
+        ]
         try:
             while len(found) < len(todo):
                 for hand in hands:
@@ -252,13 +272,13 @@ class _Workers:
 class _Hand:
     """One process."""
 
-    def __init__(self, context: Any) -> None:
-        self._context = context
+    def __init__(self, context: Any, judge: Callable[[Trial], Finding], hang_s: float) -> None:
+        self._context, self._judge, self._hang_s = context, judge, hang_s
         self._start()
 
     def _start(self) -> None:
         self._pipe, child = self._context.Pipe()
-        self._process = self._context.Process(target=_serve, args=(child,), daemon=True)
+        self._process = self._context.Process(target=_serve, args=(child, self._judge), daemon=True)
         self._process.start()
         child.close()
         self.number: int | None = None
@@ -282,9 +302,9 @@ class _Hand:
             self._process.join(1.0)
             fault = f"the process ended with {self._process.exitcode}"
         else:
-            if time.monotonic() - self._since < HANG_S:
+            if time.monotonic() - self._since < self._hang_s:
                 return None
-            fault = f"no answer within {HANG_S:g} s"
+            fault = f"no answer within {self._hang_s:g} s"
         self.close()
         self._start()
         return Finding(trial=trial, fault=fault)
@@ -296,7 +316,7 @@ class _Hand:
         self._pipe.close()
 
 
-def _serve(pipe: Any) -> None:
+def _serve(pipe: Any, judge: Callable[[Trial], Finding]) -> None:
     """Main loop of a worker process."""
     # Imported before the first trial is timed.
     import build123d  # noqa: F401
