@@ -19,11 +19,13 @@ from workbench.validation import (
     geometry,
     mitsuba_witness,
     optics,
+    part_sets,
     robustness,
 )
 
 ROOMS: dict[str, Callable[[], list[Row]]] = {
     "geometry": geometry.rows,
+    "parts": part_sets.rows,
     "contact": contact.rows,
     "optics": optics.rows,
     "fem": fem.rows,
