@@ -119,6 +119,8 @@ class Desk:
         self.object = ObjectFollower(self)
         self.saving = Saving(session, self.reports, self.header.unsaved)
         self._sensor: tuple[str, str] | None = None
+        self._built = ""
+        """Key of the body that was asked for last; empty once it is there."""
         self._covering: set[str] = set()
         self._lock = self.reports.lock
 
@@ -152,13 +154,7 @@ class Desk:
         self.saving.edited()
         self.upkeep.edited()
         session = self.session
-        self._follow_sensor()
-        if not session.store.has("build", session.calls()["build"].key):
-            # First of all: the worker builds while the widgets follow.
-            self.jobs.submit(SHAPE, session.design, session.case, ("build",))
-        else:
-            # An edit taken back: what was being built for it must not hold up the rest.
-            self.conductor.give_up(SHAPE)
+        self._begin()
         self.foresight.follow()
         self.scene.rig.show_optics(session.design.optics)
         self.showing.show_stored()
@@ -177,6 +173,19 @@ class Desk:
             panel.refresh()
         self.glimpse.follow()
         self.refresh_header()
+
+    def _begin(self) -> None:
+        """First of all: the worker builds while the widgets follow, and the old body shows it."""
+        session = self.session
+        self._follow_sensor()
+        key = session.calls()["build"].key
+        if session.store.has("build", key):
+            # An edit taken back: what was being built for it must not hold up the rest.
+            self.conductor.give_up(SHAPE)
+            self._built = ""
+        elif key != self._built:
+            self._built = key
+            self.jobs.submit(SHAPE, session.design, session.case, ("build",))
 
     def cover(self, what: str, shown: bool) -> None:
         """Tell all panels whether parts, or the edges of a mesh, are looked at, not the press."""
@@ -197,7 +206,9 @@ class Desk:
                 # What was asked of the sensor before must not hold up this one.
                 self.conductor.stop(topic)
             self.scene.rig.forget_image()
+            self.scene.body.dim(True)
             self.tell("sensor", None)
+            self.refresh_header()
         self._sensor = sensor
 
     def origin(self) -> tuple[str, str]:
@@ -208,6 +219,7 @@ class Desk:
     def replaced(self) -> None:
         """Follow a change of many fields at once: undo, a preset, an upload."""
         with self._lock:
+            self._begin()
             for panel in self.panels:
                 # Another family's widgets come before they are given values.
                 panel.refresh()
@@ -284,6 +296,8 @@ class Desk:
 
     def refresh_header(self) -> None:
         """Show which stages are done and which are stale."""
-        self.header.show_stages(self.session.fresh(), self.jobs.running)
+        fresh = self.session.fresh()
+        building = {} if fresh["build"] or not self.conductor.works_on(SHAPE) else {"build"}
+        self.header.show_stages(fresh, self.jobs.running, begun=building)
         self.header.show_design(self.session.design)
         self.upkeep.refresh()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from typing import Any
 
 import viser
@@ -78,9 +78,15 @@ class Header:
         if self.title.content != text:
             self.title.content = text
 
-    def show_stages(self, fresh: Mapping[str, bool], running: Mapping[str, Progress]) -> None:
-        """Which stages are done, stale or running."""
-        active = {progress.stage for progress in running.values()}
+    def show_stages(
+        self,
+        fresh: Mapping[str, bool],
+        running: Mapping[str, Progress],
+        *,
+        begun: Collection[str] = (),
+    ) -> None:
+        """Which stages are done, stale or running; those begun have told nothing yet."""
+        active = {*begun, *(progress.stage for progress in running.values())}
         marks = {True: "✓", False: "○"}
         text = " &nbsp;".join(
             f"{name} {'▶' if stage in active else marks[fresh[stage]]}"

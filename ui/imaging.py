@@ -53,9 +53,20 @@ def coloured_glb(
     return write_glb(points, colours, known, both_sides=cut)
 
 
-def placeholder(width_px: int = 320, height_px: int = 240) -> np.ndarray:
-    """A grey image that stands where none has been rendered."""
-    return np.full((height_px, width_px, 3), 70, np.uint8)
+def placeholder(*lines: str, width_px: int = 320, height_px: int = 240) -> np.ndarray:
+    """A dark image that stands where none has been rendered, and says what fills it."""
+    image = np.full((height_px, width_px, 3), 34, np.uint8)
+    if not lines:
+        return image
+    import cv2
+
+    face, size, white = cv2.FONT_HERSHEY_SIMPLEX, 0.45, (175, 180, 188)
+    top = height_px // 2 - 10 * (len(lines) - 1)
+    for number, line in enumerate(lines):
+        (wide, high), _ = cv2.getTextSize(line, face, size, 1)
+        place = ((width_px - wide) // 2, top + high // 2 + 22 * number)
+        cv2.putText(image, line, place, face, size, white, 1, cv2.LINE_AA)
+    return image
 
 
 def legend(

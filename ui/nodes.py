@@ -13,6 +13,9 @@ import numpy as np
 
 from workbench.section_cut import Plane, clip, packed
 
+DIMMED = 0.06
+"""Opacity of what belongs to another state."""
+
 
 class Meshes:
     """All plain meshes below one name of the scene tree."""
@@ -32,6 +35,10 @@ class Meshes:
         """Whether the designer wants to see them at all."""
         self.opacity: float | None = None
         """In place of the opacity of their looks."""
+        self.dimmed = False
+        """Whether they are of another state: what takes their place is being made."""
+        self._own: dict[str, float | None] = {}
+        """Opacity of the looks of each mesh; None where it has none."""
         self._shown = True
 
     def put(
@@ -46,6 +53,7 @@ class Meshes:
             looks: Colour, opacity, shading and, unless both, the side to draw, as viser calls them.
         """
         self.whole[name] = np.asarray(points), np.asarray(faces)
+        self._own[name] = looks.get("opacity")
         vertices, triangles = self._cut(name)
         if name in self.nodes:
             replace(self.nodes[name], vertices, triangles)
@@ -108,6 +116,15 @@ class Meshes:
         self.opacity = opacity
         for node in self.nodes.values():
             node.opacity = opacity
+
+    def dim(self, dimmed: bool) -> None:
+        """Draw them as a shadow of what was, or as they are."""
+        if dimmed == self.dimmed:
+            return
+        self.dimmed = dimmed
+        for name, node in self.nodes.items():
+            own = self._own[name] if self.opacity is None else self.opacity
+            node.opacity = DIMMED if dimmed else own
 
 
 def drawable(points: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -49,6 +49,7 @@ class SensorView:
 
     def show_solid(self, solid: Solid) -> None:
         """Show a body in place of the one before."""
+        self.dim(False)
         self.solid = solid
         self.points, _ = outer_faces(solid.membrane)
         parts = skin_parts(solid.membrane)
@@ -93,6 +94,11 @@ class SensorView:
         )
         names = (f"actuator_{n} {ACTUATOR_NAMES[n % len(ACTUATOR_NAMES)]}" for n in numbers)
         return ", ".join(names)
+
+    def dim(self, dimmed: bool) -> None:
+        """Draw it as a shadow of what was, while another sensor's body is built, or as it is."""
+        for meshes in self.groups:
+            meshes.dim(dimmed)
 
     def show(self, visible: bool) -> None:
         """Show or hide all of it."""

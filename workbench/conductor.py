@@ -90,6 +90,11 @@ class Conductor:
                 if following or not topic.spared:
                     topic.cancel()
 
+    def works_on(self, topic: str) -> bool:
+        """Whether a request of this topic runs or waits."""
+        with self._guard:
+            return topic in self._topics and self._topics[topic].busy
+
     def give_up(self, *topics: str) -> None:
         """Nobody waits for these any more: what waits is forgotten, what takes long is stopped."""
         with self._guard:

@@ -20,6 +20,13 @@ from workbench.metric_rules import rule
 BLINK_S = 0.5
 """How long each of the two blinking pictures is shown [s]."""
 NO_IMAGE = "No press of this sensor yet: *Run press* makes an image."
+IMAGE_COMES = (
+    "The tactile image appears here.",
+    "Run press (R) computes it;",
+    "a sketch comes first.",
+)
+CHANGE_COMES = ("Its change against the untouched skin", "appears here.")
+"""What empty places say."""
 
 
 class ImageTab:
@@ -44,12 +51,12 @@ class ImageTab:
         self.blink = gui.add_checkbox("Blink with rest", False, visible=False, hint=hint)
         self.blink.on_update(desk.guarded(lambda event: self._blinks()))
         clicks = gui.add_html("")
-        self.image = gui.add_image(placeholder(), format="jpeg")
+        self.image = gui.add_image(placeholder(*IMAGE_COMES), format="jpeg")
         self.rest = gui.add_image(placeholder(), format="jpeg", visible=False)
         self.turns = Blink(desk.server, self.image, self.rest, period_s=BLINK_S)
         self.legend = gui.add_html("")
         self.change_text = gui.add_markdown("")
-        self.change = gui.add_image(placeholder(), format="jpeg")
+        self.change = gui.add_image(placeholder(*CHANGE_COMES), format="jpeg")
         self.measures = gui.add_folder("Measures", expand_by_default=False, visible=False)
         with self.measures:
             self.numbers = gui.add_html("")
@@ -81,7 +88,8 @@ class ImageTab:
         """Show no image."""
         self.forget()
         self.change_text.content = self.legend.content = ""
-        self.image.image = self.change.image = placeholder()
+        self.image.image = placeholder(*IMAGE_COMES)
+        self.change.image = placeholder(*CHANGE_COMES)
         self.camera.visible = self.view.visible = self.measures.visible = False
         self.blink.visible = self.blink.value = False
 
