@@ -8,18 +8,15 @@ faces that cut through each other, files that enclose nothing.
 
 from __future__ import annotations
 
-import tempfile
-from pathlib import Path
-from typing import Any
-
 import numpy as np
 
-from geometry.csg_brep import translated
+from geometry.cad_file import read_cad
 from geometry.holes import close_holes
 from geometry.meshlab import crossing_faces
+from geometry.solid import weld
 from geometry.stl import stl_corners, welded
 from geometry.surface import face_areas, mesh_volume, open_edges, pieces
-from workbench.core.errors import DesignError, GeometryError, MeshingError
+from workbench.core.errors import DesignError, MeshingError
 from workbench.core.imported import (
     BodyFile,
     FileKind,
@@ -50,28 +47,29 @@ def read_body(body: ImportedBody, monitor: Monitor = silent) -> ReadBody:
     Raises:
         DesignError: Saying what is wrong with the file, where, and what to do.
     """
-    monitor(0.0, "reading the outer body")
-    outer, unit, said = _in_mm(body.outer, body.unit, at="body.outer", role=OUTER)
+    outer, unit, said = _in_mm(body.outer, body.unit, (OUTER, "body.outer"), monitor)
     inner = None
     if body.inner is not None:
-        monitor(0.5, "reading the inner body")
         # Files of one export share their unit; that of a STEP file says nothing about an STL.
         shared = unit if body.outer.kind is FileKind.STL else body.unit
-        inner, _, more = _in_mm(body.inner, shared, at="body.inner", role=INNER)
+        inner, _, more = _in_mm(body.inner, shared, (INNER, "body.inner"), monitor)
         said += more
     return ReadBody(outer=outer, inner=inner, unit=unit.value, notice="; ".join(said))
 
 
 def _in_mm(
-    file: BodyFile, wanted: LengthUnit, *, at: str, role: str
+    file: BodyFile, wanted: LengthUnit, place: tuple[str, str], monitor: Monitor
 ) -> tuple[ReadSurface, LengthUnit, list[str]]:
     """One file's surface in mm, its unit, and what was done to it.
 
     Messages name the file, because they are shown once; notices are stored, and the same content
-    under another name must read the same, so they name the role.
+    under another name must read the same, so they name the role, the first of `place`.
     """
+    role, at = place
     try:
-        surface, notes = _read_step(file) if file.kind is FileKind.STEP else _read_stl(file)
+        surface, notes = (
+            _read_step(file, monitor) if file.kind is FileKind.STEP else _read_stl(file)
+        )
         _expect_simple(surface, file.name)
         unit = _unit(surface, file, wanted, notes)
     except (DesignError, MeshingError) as error:
@@ -112,51 +110,24 @@ def _unit(surface: ReadSurface, file: BodyFile, wanted: LengthUnit, notes: list[
     )
 
 
-def _read_step(file: BodyFile) -> tuple[ReadSurface, list[str]]:
-    from build123d import import_step
-
-    from geometry.solid import tessellate
-
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "body.step"
-        path.write_bytes(file.data.tobytes())
-        try:
-            shape: Any = translated(lambda: import_step(str(path)))
-        except GeometryError as error:
-            raise DesignError(
-                f"{file.name} is not a STEP file: {error.message}",
-                hint="export the body as STEP AP203, AP214 or AP242",
-            ) from error
-    solids = list(shape.solids())
-    if len(solids) != 1:
-        _refuse_count(file.name, [float(solid.volume) for solid in solids])
-    solid = solids[0]
-    notes = []
-    if not solid.is_valid:
-        solid = _fixed(solid)
-        if solid is None or not solid.is_valid or len(solid.solids()) != 1:
-            raise DesignError(
-                f"{file.name} holds a solid that the CAD kernel calls invalid: its faces cut "
-                "through each other or do not meet",
-                hint="repair it in the program that made it, or export it as STL",
-            )
-        notes.append("the CAD kernel repaired the solid")
-    try:
-        points, faces, patch = translated(lambda: tessellate(solid))
-    except (MeshingError, GeometryError) as error:
+def _read_step(file: BodyFile, monitor: Monitor) -> tuple[ReadSurface, list[str]]:
+    found = read_cad(file, monitor)
+    if len(found.solids_mm3) != 1:
+        _refuse_count(file.name, list(found.solids_mm3))
+    if not found.sound:
         raise DesignError(
-            f"{file.name} cannot be turned into a closed surface: {error.message}",
+            f"{file.name} holds a solid that the CAD kernel calls invalid: its faces cut "
+            "through each other or do not meet",
             hint="repair it in the program that made it, or export it as STL",
-        ) from error
-    return ReadSurface(points_mm=points, faces=faces, patch=patch), notes
-
-
-def _fixed(solid: Any) -> Any:
-    """The solid as the CAD kernel repairs it, or None if it gave up."""
-    try:
-        return translated(solid.fix)
-    except GeometryError:
-        return None
+        )
+    points, faces, patch = weld(found.points_mm, found.faces, found.patch)
+    gaps = open_edges(faces)
+    if gaps or mesh_volume(points, faces) <= 0.0:
+        raise DesignError(
+            f"{file.name} cannot be turned into a closed surface: {gaps} edges are open",
+            hint="repair it in the program that made it, or export it as STL",
+        )
+    return ReadSurface(points_mm=points, faces=faces, patch=patch), list(found.notes)
 
 
 def _read_stl(file: BodyFile) -> tuple[ReadSurface, list[str]]:
