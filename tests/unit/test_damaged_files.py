@@ -8,6 +8,7 @@ from __future__ import annotations
 import struct
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -22,6 +23,12 @@ from workbench.core.monitor import Monitor, silent
 from workbench.indenter_choice import of_mesh
 
 BALL = trimesh.creation.icosphere(3, 15.0)
+
+
+def ball_as(kind: str) -> bytes:
+    """The ball as a file of a kind."""
+    made: Any = BALL.export(file_type=kind)
+    return made.encode() if isinstance(made, str) else bytes(made)
 
 
 @pytest.fixture(scope="module")
@@ -118,7 +125,7 @@ def test_a_damaged_step_as_an_object_is_refused_by_name(step: bytes, tmp_path: P
 
 def test_a_header_of_four_billion_triangles_allocates_nothing(tmp_path: Path) -> None:
     """The count is believed only where the file is as long as it says."""
-    whole = bytes(BALL.export(file_type="stl"))
+    whole = ball_as("stl")
     data = whole[:80] + struct.pack("<I", 0xFFFFFFFF) + whole[84:]
     with pytest.raises(DesignError, match=r"big.stl is not an STL file"):
         read("big.stl", data)
@@ -130,7 +137,7 @@ def test_a_header_of_four_billion_triangles_allocates_nothing(tmp_path: Path) ->
 
 def test_a_vertex_far_out_is_named() -> None:
     """One flipped bit of an exponent: the place is told, not that the body has no faces."""
-    data = bytearray(BALL.export(file_type="stl"))
+    data = bytearray(ball_as("stl"))
     data[84 + 50 * 7 + 12 : 84 + 50 * 7 + 16] = struct.pack("<f", 3e30)
     with pytest.raises(DesignError, match=r"ball.stl has a vertex at \(3e\+30, .*damaged"):
         read("ball.stl", bytes(data))
@@ -140,8 +147,7 @@ def test_a_vertex_far_out_is_named() -> None:
 @pytest.mark.parametrize("kind", ["stl", "stl_ascii", "obj"])
 def test_damaged_meshes_end_in_messages(tmp_path: Path, kind: str) -> None:
     """Forty files of each format: read, or refused; anything else is a bug."""
-    made = BALL.export(file_type=kind)
-    data = made.encode() if isinstance(made, str) else bytes(made)
+    data = ball_as(kind)
     rng = np.random.default_rng(3)
     path = tmp_path / f"ball.{kind[:3]}"
     for turn in range(40):
