@@ -16,6 +16,7 @@ import numpy as np
 from geometry.csg_mesh import arrays, closed
 from geometry.isosurface import distance_mm
 from geometry.offset import inset_surface, inside
+from geometry.shell import two_sides, walls_mm
 from geometry.surface import mesh_volume
 from workbench.core.design import Layers
 from workbench.core.errors import DesignError
@@ -61,7 +62,18 @@ def build_imported(
     turn = _rotation(shape)
     outer, shift = _placed(body.outer, turn, shape.cut_mm)
     monitor(0.2, "offsetting the wall")
-    if body.inner is None:
+    notice, sides = body.notice, two_sides(outer) if body.inner is None else None
+    if sides is not None:
+        outer, core = sides
+        _expect_inside(outer, core)
+        thin_mm, thick_mm = walls_mm(outer, core)
+        shell = (
+            f"the body is a shell already, {thin_mm:.2g} to {thick_mm:.2g} mm thick: its two sides "
+            "are outer and inner, and layers.elastomer_mm is not used"
+        )
+        notice = "; ".join(part for part in (notice, shell) if part)
+        cavity = _offset(core, layers.support_mm, at="layers.support_mm")
+    elif body.inner is None:
         core = _offset(outer, layers.elastomer_mm, at="layers.elastomer_mm")
         inset_mm = layers.elastomer_mm + layers.support_mm
         monitor(0.5, "offsetting the support")
@@ -86,7 +98,7 @@ def build_imported(
         volume_mm3=mesh_volume(membrane.points_mm, membrane.faces),
         method=BodyMethod.IMPORTED,
         patches=_patches(outer, core),
-        notice=body.notice,
+        notice=notice,
     )
 
 

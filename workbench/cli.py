@@ -26,6 +26,7 @@ from workbench import (
     sweep_command,
     train_command,
 )
+from workbench.body_arguments import add_body_options
 from workbench.core.errors import Cancelled, DesignError, StoreError, WorkbenchError, shown
 from workbench.fem_arguments import add_fem_commands
 from workbench.press_arguments import add_press_options, add_set_option, add_unit_option
@@ -41,6 +42,7 @@ NUMBERS = (
     "--size-mm",
     "--object-pose",
     "--turn-deg",
+    "--body-turn-deg",
     "--from",
     "--to",
 )
@@ -201,7 +203,7 @@ def parser() -> argparse.ArgumentParser:
     _run_options(command(commands.run))
     export = command(commands.export)
     export.add_argument("design", metavar="NAME|FILE")
-    add_unit_option(export)
+    add_body_options(export)
     add_set_option(export)
     export.add_argument("--out", required=True, type=Path, metavar="DIR")
     export.add_argument("--tets", action="store_true", help="also tetrahedra: about a minute")
@@ -243,7 +245,7 @@ def parser() -> argparse.ArgumentParser:
 
 def _sweep_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("design", metavar="NAME|FILE", help="a file brings its press")
-    add_unit_option(sub)
+    add_body_options(sub)
     text = "for example design.shape.length_mm or case.press.depth_mm"
     sub.add_argument("--field", required=True, metavar="FIELD", help=text)
     sub.add_argument("--from", dest="start", required=True, type=float, metavar="VALUE")
@@ -268,7 +270,7 @@ def _serve_options(sub: argparse.ArgumentParser) -> None:
 
 def _run_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("design", metavar="NAME|FILE")
-    add_unit_option(sub)
+    add_body_options(sub)
     add_press_options(sub)
     text = "write depth, normals and masks of every pixel: frames.npz, some 4 MB an image"
     sub.add_argument("--image-fields", action="store_true", help=text)
