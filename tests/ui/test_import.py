@@ -88,11 +88,11 @@ def test_a_damaged_body_is_offered_a_repair_in_one_click(
     assert not page.get_by_role("button", name="Repair and load").count()
     upload(page, "Load outer body", path)
     says = "On offer: the body is remeshed at"
-    wait_until(lambda: page.get_by_text(says).count(), 60, "the repair is offered")
+    wait_until(lambda: page.get_by_text(says).count(), 150, "the repair is offered")
     page.get_by_text("coarse · finger").first.wait_for()
     page.get_by_role("button", name="Repair and load").click()
-    page.get_by_text("pair · imported").wait_for(timeout=60_000)
-    wait_until(lambda: page.get_by_text("Shape ✓").count(), 90, "the body is built")
+    page.get_by_text("pair · imported").wait_for(timeout=150_000)
+    wait_until(lambda: page.get_by_text("Shape ✓").count(), 150, "the body is built")
     assert not page.get_by_role("button", name="Repair and load").count()
 
 
