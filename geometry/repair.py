@@ -18,6 +18,7 @@ import numpy as np
 from geometry.csg_mesh import arrays, closed
 from geometry.isosurface import distance_mm, isosurface
 from geometry.meshlab import crossing_faces
+from geometry.surface import face_areas
 from geometry.winding import (
     SAMPLES_PER_STEP,
     Grid,
@@ -36,6 +37,8 @@ BESIDE_STEPS = 1.5
 """How far to either side of a face it is looked whether it is on the border, in steps."""
 REACH_STEPS = 1.0
 """How far a vertex is moved onto the file's own faces, in steps."""
+MOST_LAYERS = 30.0
+"""Area over that of a square as wide as the body: a box has 6, crumpled faces hundreds."""
 FLAT_STEPS = 0.1
 """Tolerance within which the new triangles are thinned out, in steps."""
 DEBRIS_SHARE = 1e-3
@@ -63,13 +66,15 @@ class Repaired:
 
 
 def remeshed(points: np.ndarray, faces: np.ndarray) -> Repaired | None:
-    """The border of what triangles go round, or None where they go round nothing.
+    """The border of what triangles go round, or None where they go round nothing or in a heap.
 
     Args:
         points: Vertices (N, 3).
         faces: Triangles (M, 3); those that are connected face the same way.
     """
     extent = np.ptp(points[faces].reshape(-1, 3), axis=0)
+    if face_areas(points, faces).sum() > MOST_LAYERS * float(extent.max()) ** 2:
+        return None
     step = max(float(extent.max()) / STEPS, _widest_step(extent))
     grid = grid_around(points[faces].reshape(-1, 3), step)
     places, areas = samples_of(points, faces, step / SAMPLES_PER_STEP)

@@ -26,6 +26,10 @@ BORDER_PLACES = 9
 """Places along each edge of the grid's border at which the repeated bodies are measured."""
 
 
+GOLDEN = 0.6180339887
+"""Multiples of it, less their whole part, are spread evenly."""
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Grid:
     """Where the winding number is known."""
@@ -52,28 +56,54 @@ def samples_of(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Places on triangles, none farther apart than the spacing.
 
-    Triangles are halved at their longest edge, so that long thin ones do not become a crowd.
+    Triangles are halved at their longest edge; slivers, which would become a crowd, get places in a
+    row.
 
     Returns:
         Places (S, 3), and area vectors (S, 3) that add up to those of the triangles.
     """
-    left, done = points[faces], []
+    left, found = points[faces], []
     while len(left):
         edges = np.roll(left, -1, axis=1) - left
-        length = np.einsum("mij,mij->mi", edges, edges)
-        longest = length.argmax(axis=1)
-        short = length.max(axis=1) <= spacing**2
-        done.append(left[short])
-        left, longest = left[~short], longest[~short]
-        row = np.arange(len(left))
-        start, stop, apex = (left[row, (longest + k) % 3] for k in range(3))
+        length = np.linalg.norm(edges, axis=2)
+        longest, row = length.argmax(axis=1), np.arange(len(left))
+        area = 0.5 * np.cross(edges[:, 0], edges[:, 1])
+        # Lower than the spacing: nothing is gained by places beside each other.
+        thin = 2.0 * np.linalg.norm(area, axis=1) <= spacing * length[row, longest]
+        short = length[row, longest] <= spacing
+        found.append((left[short].mean(axis=1), area[short]))
+        found.append(_rows(left[thin & ~short], spacing))
+        row = row[~(thin | short)]
+        start, stop, apex = (left[row, (longest[row] + k) % 3] for k in range(3))
         middle = (start + stop) / 2
-        left = np.concatenate(
-            [np.stack([start, middle, apex], 1), np.stack([middle, stop, apex], 1)]
-        )
-    corners = np.concatenate(done)
-    area = 0.5 * np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    return corners.mean(axis=1), area
+        halves = [np.stack([start, middle, apex], 1), np.stack([middle, stop, apex], 1)]
+        left = np.concatenate(halves)
+    return np.vstack([places for places, _ in found]), np.vstack([areas for _, areas in found])
+
+
+def _rows(corners: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndarray]:
+    """Places along the longest edge of slivers (M, 3, 3), with the area of the width there."""
+    edges = np.roll(corners, -1, axis=1) - corners
+    length = np.linalg.norm(edges, axis=2)
+    first, row = length.argmax(axis=1), np.arange(len(corners))
+    start, stop, apex = (corners[row, (first + k) % 3] for k in range(3))
+    along = stop - start
+    foot = np.einsum("ij,ij->i", apex - start, along) / np.einsum("ij,ij->i", along, along)
+    foot = np.clip(foot, 1e-9, 1.0 - 1e-9)
+    area = 0.5 * np.cross(edges[:, 0], edges[:, 1])
+    # Needles lie side by side by the thousand: their places are set off against each other, so that
+    # together they are as dense as those of a triangle.
+    enough = 4.0 * np.linalg.norm(area, axis=1) / spacing**2
+    count = np.ceil(np.minimum(length.max(axis=1, initial=0.0) / spacing, enough)).astype(np.int64)
+    count = np.maximum(count, 1)
+    owner = np.repeat(row, count)
+    number = np.arange(len(owner)) - np.repeat(np.cumsum(count) - count, count)
+    share = (number + np.where(count > 2, GOLDEN * row % 1.0, 0.5)[owner]) / count[owner]
+    width = np.minimum(share / foot[owner], (1.0 - share) / (1.0 - foot[owner]))
+    side = apex - start - foot[:, None] * along
+    places = start[owner] + share[:, None] * along[owner] + 0.5 * width[:, None] * side[owner]
+    weight = width / np.bincount(owner, width, len(corners))[owner]
+    return places, weight[:, None] * area[owner]
 
 
 def winding_number(places: np.ndarray, areas: np.ndarray, grid: Grid) -> np.ndarray:

@@ -62,16 +62,16 @@ def test_the_winding_number_is_the_sum_of_solid_angles(top_mm: float) -> None:
 
 
 def test_samples_hold_the_area_of_long_and_of_small_triangles() -> None:
-    """A blade of 60 x 0.5 and a speck: areas add up, no place is far from the next."""
+    """A blade of 60 x 0.5 and a speck: areas add up, places are near and few."""
     points = np.array(
         [[0, 0, 0], [60, 0, 0], [60, 0.5, 0], [5, 5, 1], [5.01, 5, 1], [5, 5.01, 1.0]]
     )
     faces = np.array([[0, 1, 2], [3, 4, 5]])
     places, areas = samples_of(points, faces, 0.4)
     assert areas.sum(axis=0) == pytest.approx([0.0, 0.0, 15.0 + 5e-5])
-    assert len(places) < 10_000
+    assert len(places) < 1000
     gaps = np.diff(np.sort(places[places[:, 2] == 0.0][:, 0]))
-    assert gaps.max() < 0.4
+    assert gaps.max() < 0.6
 
 
 @pytest.mark.parametrize("name", ["crossing_2.stl", "holes_6.stl", "crossing_3.stl"])
