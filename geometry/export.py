@@ -2,24 +2,24 @@
 motions of the recipe and parts list.
 
 A part without a B-rep body, or whose B-rep reads back as another body, gets a STEP file of flat
-facets (`faceted`); a part that even that cannot hold gets none. Both are said.
+facets (`faceted`); a part that even that cannot hold gets none. Both are said. Assemblies are put
+together from the parts' own files, and read back like them.
 """
 
 from __future__ import annotations
 
-import dataclasses
-from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from geometry.build_sheet import bom_csv, build_sheet_html
 from geometry.csg_brep import translated
-from geometry.fabricate import NO_BREP, stl_points
-from geometry.faceted import faceted
+from geometry.fabricate import stl_points
+from geometry.faceted import faceted_step
 from geometry.opening_words import recipe_json
 from geometry.solid import part_from_brep
 from geometry.step import expect_read_back, step_bytes
+from geometry.step_assembly import assembly_step
 from geometry.surface import mesh_volume
 from geometry.threemf import threemf_bytes
 from workbench.core.errors import GeometryError
@@ -83,10 +83,13 @@ def package_files(
         said += [step.reason] if step.reason else []
     monitor(0.7, "writing the assemblies")
     for group, name in ASSEMBLIES.items():
-        found = [steps[p.name] for p in parts if p.group is group and p.name in steps]
+        found = {p.name: steps[p.name] for p in parts if p.group is group and p.name in steps}
+        data = {part: step.data for part, step in found.items()}
         try:
-            if found:
-                files[f"{FOLDERS[group]}/{name}.step"] = assembly_bytes(found, name)
+            if data:
+                whole = assembly_step(name, data)
+                expect_read_back(whole, [step.volume_mm3 for step in found.values()], what=name)
+                files[f"{FOLDERS[group]}/{name}.step"] = whole
         except GeometryError as error:
             said.append(error.message)
     files[ALL_PARTS] = threemf_bytes(parts)
@@ -104,7 +107,6 @@ def package_files(
 class StepFile(NamedTuple):
     """A part as STEP, and what a reader finds in it."""
 
-    body: Any
     data: bytes
     volume_mm3: float
     reason: str
@@ -117,46 +119,23 @@ def step_file(part: FabricationPart) -> StepFile:
     Raises:
         GeometryError: If the facets fail too.
     """
-    volume_mm3 = mesh_volume(part.points_mm, part.faces)
-    try:
-        return _written(part, volume_mm3)
-    except GeometryError as error:
-        if not part.brep.size:
-            raise
-        facets = _written(dataclasses.replace(part, brep=NO_BREP), volume_mm3)
-        reason = f"{part.name}: its STEP file has flat facets ({error.message})"
-        return facets._replace(reason=reason)
-
-
-def assembly_bytes(steps: Sequence[StepFile], name: str) -> bytes:
-    """A STEP file of several parts, read back like those of one.
-
-    Raises:
-        GeometryError: If it reads back as something else.
-    """
-    data = step_bytes([step.body for step in steps], name)
-    expect_read_back(data, [step.volume_mm3 for step in steps], what=name)
-    return data
-
-
-def _written(part: FabricationPart, volume_mm3: float) -> StepFile:
-    body = step_body(part)
-    data = step_bytes([body], part.name)
-    found_mm3 = expect_read_back(data, [volume_mm3], what=part.name)
-    return StepFile(body, data, found_mm3, "")
+    volume_mm3, reason = mesh_volume(part.points_mm, part.faces), ""
+    if part.brep.size:
+        try:
+            data = step_bytes([step_body(part)], part.name)
+            return StepFile(data, expect_read_back(data, [volume_mm3], what=part.name), "")
+        except GeometryError as error:
+            reason = f"{part.name}: its STEP file has flat facets ({error.message})"
+    data, _ = faceted_step(part.points_mm, part.faces, name=part.name)
+    return StepFile(data, expect_read_back(data, [volume_mm3], what=part.name), reason)
 
 
 def step_body(part: FabricationPart) -> Any:
-    """The part as a named build123d body: its B-rep, or flat facets.
+    """The B-rep of a part as a named build123d body.
 
     Raises:
-        GeometryError: If it has neither.
+        GeometryError: If the kernel cannot read it.
     """
-    if part.brep.size:
-        body = translated(lambda: part_from_brep(part.brep), what=part.name)
-    else:
-        body = translated(
-            lambda: faceted(part.points_mm, part.faces, what=part.name), what=part.name
-        )
+    body = translated(lambda: part_from_brep(part.brep), what=part.name)
     body.label = part.name
     return body

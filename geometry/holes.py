@@ -14,13 +14,17 @@ SMALL_SHARE = 0.05
 """Width of a hole over that of the body below which it may be closed by a fan."""
 
 
+class Damaged(DesignError):
+    """What is wrong with a surface that a remesh may cure; never leaves the reading of a file."""
+
+
 def close_holes(
     points_mm: np.ndarray, faces: np.ndarray, name: str, notes: list[str]
 ) -> tuple[np.ndarray, np.ndarray]:
     """The surface with flat openings capped and small holes closed; says so in `notes`.
 
     Raises:
-        DesignError: If an opening is neither flat nor small, or the surface does not close.
+        Damaged: If an opening is neither flat nor small, or the surface does not close.
     """
     if not open_edges(faces):
         return points_mm, faces
@@ -44,14 +48,14 @@ def close_holes(
             points_mm, faces = np.vstack([points_mm, centre]), np.vstack([faces, fan])
             notes.append(f"a hole {width:.3g} wide at {place} was closed")
         else:
-            raise DesignError(
+            raise Damaged(
                 f"{name} is open: a hole {width:.3g} wide at {place}, larger than "
                 f"{100 * SMALL_SHARE:g} % of the body",
                 hint="close it in the program that made it",
             )
     left = open_edges(faces)
     if left:
-        raise DesignError(
+        raise Damaged(
             f"{name} is open: {left} edges have no partner, and faces may be missing or doubled",
             hint="repair it in the program that made it",
         )

@@ -16,7 +16,8 @@ import numpy as np
 from geometry.csg_mesh import arrays, closed
 from geometry.isosurface import distance_mm
 from geometry.offset import inset_surface, inside
-from geometry.surface import mesh_volume
+from geometry.shell import two_sides, walls_mm
+from geometry.surface import face_areas, mesh_volume
 from workbench.core.design import Layers
 from workbench.core.errors import DesignError
 from workbench.core.imported import Pick, ReadBody, ReadSurface
@@ -29,6 +30,10 @@ CORE_FACE = 1_000_000
 FLAT_MM = 1e-6
 LEAST_BASE_MM2 = 10.0
 """Smallest base that can carry a sensor [mm2]."""
+SETTLE_MM = (0.0, 0.1, 0.2, 0.4, 0.8)
+"""How much higher a foot is cut that is not flat by itself, as that of a scan [mm]."""
+ROUGH_SHARE = 0.005
+"""Share of the base that a flat foot may lack, by a chamfer."""
 LARGEST_MM = 400.0
 """Longest body that is offset: twice the largest likely sensor; grids grow with its cube [mm]."""
 LEAST_WALL_MM = 0.2
@@ -61,7 +66,18 @@ def build_imported(
     turn = _rotation(shape)
     outer, shift = _placed(body.outer, turn, shape.cut_mm)
     monitor(0.2, "offsetting the wall")
-    if body.inner is None:
+    notice, sides = body.notice, two_sides(outer) if body.inner is None else None
+    if sides is not None:
+        outer, core = sides
+        _expect_inside(outer, core)
+        thin_mm, thick_mm = walls_mm(outer, core)
+        shell = (
+            f"the body is a shell already, {thin_mm:.2g} to {thick_mm:.2g} mm thick: its two sides "
+            "are outer and inner, and layers.elastomer_mm is not used"
+        )
+        notice = "; ".join(part for part in (notice, shell) if part)
+        cavity = _offset(core, layers.support_mm, at="layers.support_mm")
+    elif body.inner is None:
         core = _offset(outer, layers.elastomer_mm, at="layers.elastomer_mm")
         inset_mm = layers.elastomer_mm + layers.support_mm
         monitor(0.5, "offsetting the support")
@@ -86,7 +102,7 @@ def build_imported(
         volume_mm3=mesh_volume(membrane.points_mm, membrane.faces),
         method=BodyMethod.IMPORTED,
         patches=_patches(outer, core),
-        notice=body.notice,
+        notice=notice,
     )
 
 
@@ -120,21 +136,32 @@ def _placed(surface: ReadSurface, turn: np.ndarray, cut_mm: float) -> tuple[Any,
             at="shape.cut_mm",
         )
     whole = _solid(points, surface.faces, surface.patch)
-    body = whole.translate((0.0, 0.0, -(low + cut_mm))).trim_by_plane((0.0, 0.0, 1.0), 0.0)
-    # Just above the cut: on it, a flat foot of the body has no section.
-    section = body.slice(min(0.01, 0.01 * (high - low)))
-    area = float(section.area())
-    if area < LEAST_BASE_MM2:
-        raise DesignError(
-            f"the base is {area:.3g} mm2, less than {LEAST_BASE_MM2:g} mm2: the body stands on a "
-            "point or an edge",
-            hint="raise shape.cut_mm, or turn the body until its foot is down",
-            at="shape.cut_mm",
-        )
+    for rise_mm in SETTLE_MM:
+        shift_mm = low + cut_mm + rise_mm
+        body = whole.translate((0.0, 0.0, -shift_mm)).trim_by_plane((0.0, 0.0, 1.0), 0.0)
+        # Just above the cut: on it, a flat foot of the body has no section.
+        section = body.slice(min(0.01, 0.01 * (high - low)))
+        area = float(section.area())
+        if area < LEAST_BASE_MM2:
+            raise DesignError(
+                f"the base is {area:.3g} mm2, less than {LEAST_BASE_MM2:g} mm2: the body stands "
+                "on a point or an edge",
+                hint="raise shape.cut_mm, or turn the body until its foot is down",
+                at="shape.cut_mm",
+            )
+        if abs(_flat_mm2(body) - area) <= ROUGH_SHARE * area:
+            break
     outline = np.concatenate(section.to_polygons())
     middle = (outline.min(axis=0) + outline.max(axis=0)) / 2
-    shift = np.array([middle[0], middle[1], low + cut_mm])
+    shift = np.array([middle[0], middle[1], shift_mm])
     return body.translate((-float(middle[0]), -float(middle[1]), 0.0)), shift
+
+
+def _flat_mm2(body: Any) -> float:
+    """Area of the faces on z = 0."""
+    points, faces, _ = _arrays(body)
+    flat = np.abs(points[faces][:, :, 2]).max(axis=1) < FLAT_MM
+    return float(face_areas(points, faces[flat]).sum())
 
 
 def _offset(outer: Any, inset_mm: float, *, at: str) -> Any:

@@ -1,24 +1,24 @@
-"""A designer's file to a closed surface in mm: read, repaired where that is safe, and said so.
+"""A designer's file to closed surfaces in mm: read, repaired where that is safe, and said so.
 
-Safe are: vertices that lie within a thousandth of a percent of the body's size, doubled and
-collapsed triangles, a body that is inside out, flat openings (the open foot of a skin) and holes
-smaller than a twentieth of the body. Refused, with place and remedy: several bodies, larger holes,
-faces that cut through each other, files that enclose nothing.
+What cannot be mended safely (`geometry.mending`) is refused with place and remedy, and with the
+offer to remesh it (`geometry.repair`) by a stated deviation, which is made only once accepted.
 """
 
 from __future__ import annotations
 
-import tempfile
-from pathlib import Path
-from typing import Any
+from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.csg_brep import translated
-from geometry.holes import close_holes
-from geometry.meshlab import crossing_faces
+from geometry.cad_child import SEW_MM
+from geometry.cad_file import read_cad
+from geometry.holes import Damaged
+from geometry.mending import Triangles, expect_simple, facing_outward, mended, refuse_count
+from geometry.repair import Repaired, remeshed
+from geometry.solid import weld
 from geometry.stl import stl_corners, welded
-from geometry.surface import face_areas, mesh_volume, open_edges, pieces
+from geometry.surface import mesh_volume, open_edges, pieces
 from workbench.core.errors import DesignError, GeometryError, MeshingError
 from workbench.core.imported import (
     BodyFile,
@@ -27,6 +27,7 @@ from workbench.core.imported import (
     LengthUnit,
     ReadBody,
     ReadSurface,
+    RepairOffer,
 )
 from workbench.core.monitor import Monitor, silent
 
@@ -34,64 +35,93 @@ OUTER, INNER = "outer", "inner"
 MM_PER = {LengthUnit.MM: 1.0, LengthUnit.CM: 10.0, LengthUnit.M: 1000.0, LengthUnit.INCH: 25.4}
 LIKELY_MM = (8.0, 200.0)
 """Sizes that a tactile sensor may have: what an unknown unit is judged by [mm]."""
-MERGE_SHARE = 1e-5
-"""Vertices nearer than this share of the body's size are one."""
-STRAY_SHARE = 1e-5
-"""Pieces with less than this share of the largest piece's area are debris: 0.1 mm on a finger."""
-SHEET_SHARE = 1e-6
-"""Volume over that of the bounding box below which a surface encloses nothing."""
 SMOOTH_COSINE = 0.866
 """Neighbouring triangles of an STL that differ by less than 30 degrees are one patch."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Asked:
+    """One file of a body, and how it is to be read."""
+
+    file: BodyFile
+    unit: LengthUnit
+    role: str
+    repair: bool
+    """Whether a remesh is accepted."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Closed:
+    """What one file holds, in the file's unit."""
+
+    outer: Triangles
+    hollow: Triangles | None = None
+    """The inner side of a double-walled body, facing outward too."""
+    patch: np.ndarray | None = None
+    """Face of the CAD file of each triangle (M,), where they are known."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Found:
+    """What one file holds, in mm."""
+
+    outer: ReadSurface
+    hollow: ReadSurface | None
+    unit: LengthUnit
+    said: list[str]
 
 
 def read_body(body: ImportedBody, monitor: Monitor = silent) -> ReadBody:
     """Read the outer body and, where there is one, the inner.
 
     Raises:
-        DesignError: Saying what is wrong with the file, where, and what to do.
+        DesignError: Saying what is wrong with the file, where, and what to do; with `repair` where
+            a remesh is on offer.
     """
-    monitor(0.0, "reading the outer body")
-    outer, unit, said = _in_mm(body.outer, body.unit, at="body.outer", role=OUTER)
-    inner = None
+    outer = _in_mm(_Asked(file=body.outer, unit=body.unit, role=OUTER, repair=body.repair), monitor)
+    inner, said = outer.hollow, outer.said
     if body.inner is not None:
-        monitor(0.5, "reading the inner body")
         # Files of one export share their unit; that of a STEP file says nothing about an STL.
-        shared = unit if body.outer.kind is FileKind.STL else body.unit
-        inner, _, more = _in_mm(body.inner, shared, at="body.inner", role=INNER)
-        said += more
-    return ReadBody(outer=outer, inner=inner, unit=unit.value, notice="; ".join(said))
+        shared = outer.unit if body.outer.kind is FileKind.STL else body.unit
+        asked = _Asked(file=body.inner, unit=shared, role=INNER, repair=body.repair)
+        found = _in_mm(asked, monitor)
+        inner, said = found.outer, said + found.said
+    return ReadBody(outer=outer.outer, inner=inner, unit=outer.unit.value, notice="; ".join(said))
 
 
-def _in_mm(
-    file: BodyFile, wanted: LengthUnit, *, at: str, role: str
-) -> tuple[ReadSurface, LengthUnit, list[str]]:
+def _in_mm(asked: _Asked, monitor: Monitor) -> _Found:
     """One file's surface in mm, its unit, and what was done to it.
 
     Messages name the file, because they are shown once; notices are stored, and the same content
     under another name must read the same, so they name the role.
     """
+    notes: list[str] = []
     try:
-        surface, notes = _read_step(file) if file.kind is FileKind.STEP else _read_stl(file)
-        _expect_simple(surface, file.name)
-        unit = _unit(surface, file, wanted, notes)
+        read = _read_step if asked.file.kind is FileKind.STEP else _read_stl
+        closed, unit, factor = read(asked, notes, monitor)
     except (DesignError, MeshingError) as error:
-        error.at = error.at or at
+        error.at = error.at or f"body.{asked.role}"
         raise
-    # The CAD kernel has already turned a STEP file's own unit into mm.
-    factor = 1.0 if file.kind is FileKind.STEP else MM_PER[unit]
-    scaled = ReadSurface(
-        points_mm=surface.points_mm * factor, faces=surface.faces, patch=surface.patch
+    return _Found(
+        outer=_surface(closed.outer, factor, closed.patch),
+        hollow=None if closed.hollow is None else _surface(closed.hollow, factor),
+        unit=unit,
+        said=[f"{asked.role} body: {note}" for note in notes],
     )
-    return scaled, unit, [f"{role} body: {note}" for note in notes]
 
 
-def _unit(surface: ReadSurface, file: BodyFile, wanted: LengthUnit, notes: list[str]) -> LengthUnit:
-    """The unit given, that of a STEP file, or the one that makes an STL as large as a sensor."""
-    if file.kind is FileKind.STEP:
-        return LengthUnit.MM
-    if wanted is not LengthUnit.AUTO:
-        return wanted
-    size = float(np.ptp(surface.points_mm, axis=0).max())
+def _surface(triangles: Triangles, factor: float, patch: np.ndarray | None = None) -> ReadSurface:
+    points, faces = triangles
+    if patch is None:
+        patch = smooth_patches(points, faces)
+    return ReadSurface(points_mm=points * factor, faces=faces, patch=patch)
+
+
+def _unit(points: np.ndarray, asked: _Asked, notes: list[str]) -> LengthUnit:
+    """The unit given, or the one that makes an STL as large as a sensor."""
+    if asked.unit is not LengthUnit.AUTO:
+        return asked.unit
+    size = float(np.ptp(points, axis=0).max())
     low, high = LIKELY_MM
     fits = [unit for unit, factor in MM_PER.items() if low <= size * factor <= high]
     if fits[:1] == [LengthUnit.MM]:
@@ -106,153 +136,105 @@ def _unit(surface: ReadSurface, file: BodyFile, wanted: LengthUnit, notes: list[
         return fits[0]
     options = ", ".join(f"{u.value}: {size * MM_PER[u]:.3g} mm" for u in fits or MM_PER)
     raise DesignError(
-        f"{file.name} is {size:.3g} units long, and an STL does not say which ({options})",
+        f"{asked.file.name} is {size:.3g} units long, and an STL does not say which ({options})",
         hint="choose the unit of the file: mm, cm, m or inch",
         at="body.unit",
     )
 
 
-def _read_step(file: BodyFile) -> tuple[ReadSurface, list[str]]:
-    from build123d import import_step
+def _read_step(
+    asked: _Asked, notes: list[str], monitor: Monitor
+) -> tuple[_Closed, LengthUnit, float]:
+    """What a STEP file holds; the CAD kernel has already turned the file's own unit into mm."""
+    name, found = asked.file.name, read_cad(asked.file, monitor)
+    points, faces, patch = weld(found.points_mm, found.faces, found.patch)
 
-    from geometry.solid import tessellate
-
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "body.step"
-        path.write_bytes(file.data.tobytes())
-        try:
-            shape: Any = translated(lambda: import_step(str(path)))
-        except GeometryError as error:
-            raise DesignError(
-                f"{file.name} is not a STEP file: {error.message}",
-                hint="export the body as STEP AP203, AP214 or AP242",
-            ) from error
-    solids = list(shape.solids())
-    if len(solids) != 1:
-        _refuse_count(file.name, [float(solid.volume) for solid in solids])
-    solid = solids[0]
-    notes = []
-    if not solid.is_valid:
-        solid = _fixed(solid)
-        if solid is None or not solid.is_valid or len(solid.solids()) != 1:
-            raise DesignError(
-                f"{file.name} holds a solid that the CAD kernel calls invalid: its faces cut "
-                "through each other or do not meet",
-                hint="repair it in the program that made it, or export it as STL",
+    def attempt(made: list[str]) -> _Closed:
+        if len(found.solids_mm3) > 1:
+            refuse_count(name, list(found.solids_mm3))
+        made += found.notes
+        whole = found.sound and not open_edges(faces) and mesh_volume(points, faces) > 0.0
+        if whole and pieces(faces).max() == 0:
+            expect_simple(points, faces, name)
+            return _Closed(outer=(points, faces), patch=patch)
+        if not found.solids_mm3 and pieces(faces).max() > 0:
+            raise Damaged(
+                f"{name} holds {patch.max() + 1} loose faces that do not meet within {SEW_MM:g} mm",
+                hint="export a closed solid, not surfaces or wires",
             )
-        notes.append("the CAD kernel repaired the solid")
-    try:
-        points, faces, patch = translated(lambda: tessellate(solid))
-    except (MeshingError, GeometryError) as error:
-        raise DesignError(
-            f"{file.name} cannot be turned into a closed surface: {error.message}",
-            hint="repair it in the program that made it, or export it as STL",
-        ) from error
-    return ReadSurface(points_mm=points, faces=faces, patch=patch), notes
+        outer, hollow = mended(points, faces, name, made)
+        return _Closed(outer=outer, hollow=hollow)
+
+    return _or_repaired(attempt, (points, faces), 1.0, asked, notes), LengthUnit.MM, 1.0
 
 
-def _fixed(solid: Any) -> Any:
-    """The solid as the CAD kernel repairs it, or None if it gave up."""
+def _read_stl(
+    asked: _Asked, notes: list[str], monitor: Monitor
+) -> tuple[_Closed, LengthUnit, float]:
+    """What an STL holds, in its own numbers, and what one of them is in mm."""
+    name = asked.file.name
+    points, faces = welded(stl_corners(asked.file.data.tobytes(), name, at=""))
+    if not len(faces):
+        raise DesignError(f"{name} has no faces", hint="export the body, not an empty file")
+    unit = _unit(points, asked, notes)
+
+    def attempt(made: list[str]) -> _Closed:
+        outer, hollow = mended(points, faces, name, made)
+        return _Closed(outer=outer, hollow=hollow)
+
+    closed = _or_repaired(attempt, (points, faces), MM_PER[unit], asked, notes)
+    return closed, unit, MM_PER[unit]
+
+
+def _or_repaired(
+    attempt: Callable[[list[str]], _Closed],
+    triangles: Triangles,
+    factor: float,
+    asked: _Asked,
+    notes: list[str],
+) -> _Closed:
+    """What mending gives, else the remeshed surface where that is accepted.
+
+    Raises:
+        DesignError: With the offer of a remesh, where it is not.
+    """
+    made: list[str] = []
     try:
-        return translated(solid.fix)
+        closed = attempt(made)
+    except Damaged as damage:
+        reason = damage
+    else:
+        notes += made
+        return closed
+    refusal = DesignError(reason.message, hint=reason.hint, at=reason.at)
+    repaired = _remeshed(triangles)
+    if repaired is None:
+        raise refusal from None
+    offer = RepairOffer(
+        step_mm=repaired.step * factor,
+        deviation_mm=repaired.deviation * factor,
+        closed_mm=repaired.closed_width * factor,
+    )
+    if not asked.repair:
+        refusal.repair = offer
+        refusal.hint = (
+            f"run again with --repair: {offer.words} (repair = true under [body] in a design "
+            f"file); or {reason.hint}"
+        )
+        raise refusal from None
+    # The reason names the file, and what is stored must not.
+    why = reason.message.replace(asked.file.name, "it")
+    notes.append(f"{offer.words}, because {why}")
+    return _Closed(outer=(repaired.points, repaired.faces))
+
+
+def _remeshed(triangles: Triangles) -> Repaired | None:
+    points, faces = triangles
+    try:
+        repaired = remeshed(points, facing_outward(points, faces))
     except GeometryError:
         return None
-
-
-def _read_stl(file: BodyFile) -> tuple[ReadSurface, list[str]]:
-    points, faces = welded(stl_corners(file.data.tobytes(), file.name, at=""))
-    notes: list[str] = []
-    points, faces = _merged(points, faces, notes)
-    faces = _one_piece(points, faces, file.name, notes)
-    faces = _consistent(points, faces, notes)
-    points, faces = close_holes(points, faces, file.name, notes)
-    used, packed = np.unique(faces, return_inverse=True)
-    points, faces = points[used], packed.reshape(-1, 3)
-    volume = mesh_volume(points, faces)
-    size = float(np.ptp(points, axis=0).max())
-    if abs(volume) <= SHEET_SHARE * size**3:
-        raise DesignError(
-            f"{file.name} encloses no volume", hint="export a solid body, not a sheet"
-        )
-    if volume < 0.0:
-        faces = faces[:, ::-1]
-        notes.append("it was inside out and has been turned")
-    faces = np.ascontiguousarray(faces, dtype=np.int32)
-    return ReadSurface(points_mm=points, faces=faces, patch=smooth_patches(points, faces)), notes
-
-
-def _merged(
-    points: np.ndarray, faces: np.ndarray, notes: list[str]
-) -> tuple[np.ndarray, np.ndarray]:
-    """Without doubled triangles; where edges are open, with near vertices made one."""
-    _, first = np.unique(np.sort(faces, axis=1), axis=0, return_index=True)
-    if len(first) < len(faces):
-        notes.append(f"{len(faces) - len(first)} doubled triangles were removed")
-        faces = faces[np.sort(first)]
-    if not open_edges(faces):
-        return points, faces
-    reach = MERGE_SHARE * float(np.ptp(points, axis=0).max())
-    _, group = np.unique(np.round(points / reach), axis=0, return_inverse=True)
-    count = int(group.max()) + 1
-    if count == len(points):
-        return points, faces
-    notes.append(f"{len(points) - count} vertices were merged with a neighbour")
-    merged = np.zeros((count, 3))
-    merged[group.ravel()] = points
-    faces = group.ravel()[faces]
-    return merged, faces[np.all(faces != np.roll(faces, 1, axis=1), axis=1)]
-
-
-def _one_piece(points: np.ndarray, faces: np.ndarray, name: str, notes: list[str]) -> np.ndarray:
-    """Triangles of the only piece, after debris has been dropped."""
-    piece = pieces(faces)
-    area = np.bincount(piece, face_areas(points, faces))
-    kept = np.flatnonzero(area > STRAY_SHARE * area.max())
-    if len(kept) > 1:
-        _refuse_count(name, [abs(mesh_volume(points, faces[piece == k])) for k in kept])
-    if len(area) > 1:
-        notes.append(f"{len(area) - 1} loose pieces of debris were removed")
-    return faces[piece == kept[0]]
-
-
-def _refuse_count(name: str, volumes: list[float]) -> None:
-    if not volumes:
-        raise DesignError(
-            f"{name} holds no solid body",
-            hint="export a closed solid, not surfaces or wires",
-        )
-    sizes = ", ".join(f"{volume:.4g}" for volume in sorted(volumes, reverse=True)[:4])
-    raise DesignError(
-        f"{name} holds {len(volumes)} bodies (volumes {sizes} in the file's unit), a membrane is "
-        "one",
-        hint="union parts that belong together; a body that hollows the other is the inner file",
-    )
-
-
-def _consistent(points: np.ndarray, faces: np.ndarray, notes: list[str]) -> np.ndarray:
-    """Triangles that all turn the same way round."""
-    start, stop = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
-    span = int(faces.max()) + 1
-    if len(np.unique(start * span + stop)) == len(start):
-        return faces
-    import trimesh
-
-    mesh = trimesh.Trimesh(points, faces, process=False)
-    trimesh.repair.fix_winding(mesh)
-    notes.append("triangles that faced the wrong way were turned")
-    return np.asarray(mesh.faces, dtype=np.int64)
-
-
-def _expect_simple(surface: ReadSurface, name: str) -> None:
-    """Refuse faces that cut through each other."""
-    crossing = crossing_faces(surface.points_mm, surface.faces)
-    if crossing.any():
-        x, y, z = surface.points_mm[surface.faces[crossing]].mean(axis=(0, 1))
-        raise DesignError(
-            f"{np.count_nonzero(crossing)} of {len(crossing)} faces of {name} cut through each "
-            f"other, near ({x:.3g}, {y:.3g}, {z:.3g}) in the file's own coordinates",
-            hint="repair it in the program that made it: union the parts, or remove the fold",
-        )
+    return repaired if repaired is not None and repaired.bodies == 1 else None
 
 
 def smooth_patches(points_mm: np.ndarray, faces: np.ndarray) -> np.ndarray:

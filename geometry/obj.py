@@ -9,6 +9,7 @@ import itertools
 
 import numpy as np
 
+from geometry.stl import expect_together
 from workbench.core.errors import DesignError
 
 
@@ -32,7 +33,7 @@ def obj_corners(data: bytes, name: str, *, at: str) -> np.ndarray:
         if len(corners) and (corners.min() < 0 or corners.max() >= len(points)):
             raise ValueError("a face names a vertex that is not there")
         found = points.reshape(-1, 3)[corners.reshape(-1, 3)]
-    except (ValueError, IndexError) as error:
+    except (ValueError, IndexError, OverflowError) as error:
         raise DesignError(
             f"{name} is not an OBJ file: {error}", hint="export the body as OBJ or STL", at=at
         ) from error
@@ -44,6 +45,7 @@ def obj_corners(data: bytes, name: str, *, at: str) -> np.ndarray:
             hint="repair the mesh in the program that made it",
             at=at,
         )
+    expect_together(found, name, at=at)
     return found
 
 

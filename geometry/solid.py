@@ -121,17 +121,9 @@ def tessellate(
     Raises:
         MeshingError: If it is not watertight or is inside out.
     """
-    from OCP.BRepMesh import BRepMesh_IncrementalMesh
-
-    BRepMesh_IncrementalMesh(part.wrapped, tolerance_mm, False, angle_rad, True)
-    points, faces, patches, offset = [], [], [], 0
-    for number, face in enumerate(part.faces()):
-        face_points, face_triangles = _face_arrays(face)
-        points.append(face_points)
-        faces.append(face_triangles + offset)
-        patches.append(np.full(len(face_triangles), number, dtype=np.int32))
-        offset += len(face_points)
-    tessellation = weld(np.concatenate(points), np.concatenate(faces), np.concatenate(patches))
+    tessellation = weld(
+        *loose_triangles(part.wrapped, tolerance_mm=tolerance_mm, angle_rad=angle_rad)
+    )
     gaps = open_edges(tessellation.faces)
     if gaps:
         raise MeshingError(
@@ -147,6 +139,42 @@ def tessellate(
             at="shape",
         )
     return tessellation
+
+
+def loose_triangles(shape: Any, *, tolerance_mm: float, angle_rad: float) -> Tessellation:
+    """Triangles of a shape of OCCT, face by face, each with vertices of its own.
+
+    Raises:
+        MeshingError: If the kernel made none.
+    """
+    from OCP.BRepMesh import BRepMesh_IncrementalMesh
+    from OCP.TopAbs import TopAbs_ShapeEnum
+    from OCP.TopExp import TopExp_Explorer
+
+    BRepMesh_IncrementalMesh(shape, tolerance_mm, False, angle_rad, True)
+    explorer = TopExp_Explorer(shape, TopAbs_ShapeEnum.TopAbs_FACE)
+    # Two faces that differ in nothing but the way they are reached have one hash.
+    found: dict[int, Any] = {}
+    while explorer.More():
+        found[hash(explorer.Current())] = explorer.Current()
+        explorer.Next()
+    points, faces, patches, offset = [], [], [], 0
+    for number, face in enumerate(found.values()):
+        arrays = _face_arrays(face)
+        if arrays is None:
+            # The surface stays open there, as whoever welds it finds.
+            continue
+        points.append(arrays[0])
+        faces.append(arrays[1] + offset)
+        patches.append(np.full(len(arrays[1]), number, dtype=np.int32))
+        offset += len(arrays[0])
+    if not points:
+        raise MeshingError(
+            "the CAD kernel made no triangles",
+            hint="change the last shape parameter a little",
+            at="shape",
+        )
+    return Tessellation(np.concatenate(points), np.concatenate(faces), np.concatenate(patches))
 
 
 def weld(points_mm: np.ndarray, faces: np.ndarray, patch: np.ndarray) -> Tessellation:
@@ -202,20 +230,17 @@ def part_from_brep(array: np.ndarray) -> Any:
     return Shape.cast(shape)
 
 
-def _face_arrays(face: Any) -> tuple[np.ndarray, np.ndarray]:
-    """Vertices and outward triangles of one tessellated B-rep face."""
+def _face_arrays(face: Any) -> tuple[np.ndarray, np.ndarray] | None:
+    """Vertices and outward triangles of one tessellated B-rep face; None if it has none."""
     from OCP.BRep import BRep_Tool
     from OCP.TopAbs import TopAbs_Orientation
     from OCP.TopLoc import TopLoc_Location
+    from OCP.TopoDS import TopoDS
 
     location = TopLoc_Location()
-    mesh = BRep_Tool.Triangulation_s(face.wrapped, location)
+    mesh = BRep_Tool.Triangulation_s(TopoDS.Face(face), location)
     if mesh is None:
-        raise MeshingError(
-            "the CAD kernel left a face without triangles",
-            hint="change the last shape parameter a little",
-            at="shape",
-        )
+        return None
     # Flat iterators: a list of 50,000 tuples costs twice as much, most of it garbage collection.
     nodes = itertools.chain.from_iterable(
         mesh.Node(i).Coord() for i in range(1, mesh.NbNodes() + 1)
@@ -229,7 +254,7 @@ def _face_arrays(face: Any) -> tuple[np.ndarray, np.ndarray]:
         move = location.Transformation()
         matrix = np.array([[move.Value(r, c) for c in range(1, 5)] for r in range(1, 4)])
         points = points @ matrix[:, :3].T + matrix[:, 3]
-    if face.wrapped.Orientation() == TopAbs_Orientation.TopAbs_REVERSED:
+    if face.Orientation() == TopAbs_Orientation.TopAbs_REVERSED:
         triangles = triangles[:, ::-1]
     return points, triangles
 

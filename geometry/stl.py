@@ -6,6 +6,9 @@ import numpy as np
 
 from workbench.core.errors import DesignError
 
+BULK_PERCENT, FAR = 90.0, 1e4
+"""A vertex so many times farther out than nine tenths of all is no part of a body."""
+
 
 def stl_corners(data: bytes, name: str, *, at: str) -> np.ndarray:
     """Triangles of an STL file, shape (M, 3, 3), float64, in the file's unit.
@@ -25,7 +28,30 @@ def stl_corners(data: bytes, name: str, *, at: str) -> np.ndarray:
             hint="repair the mesh in the program that made it",
             at=at,
         )
+    expect_together(corners, name, at=at)
     return corners
+
+
+def expect_together(corners: np.ndarray, name: str, *, at: str) -> None:
+    """Refuse triangles (M, 3, 3) of which a few lie absurdly far from all others.
+
+    That is how a flipped bit of an exponent looks; beside such a size the body would be a point.
+
+    Raises:
+        DesignError: Naming the place.
+    """
+    flat = corners.reshape(-1, 3)
+    middle = np.median(flat, axis=0)
+    away = np.abs(flat - middle).max(axis=1)
+    bulk, farthest = float(np.percentile(away, BULK_PERCENT)), int(np.argmax(away))
+    if away[farthest] > FAR * bulk > 0.0:
+        x, y, z = flat[farthest]
+        raise DesignError(
+            f"{name} has a vertex at ({x:.3g}, {y:.3g}, {z:.3g}), {away[farthest] / bulk:.2g} "
+            "times as far out as the others; the file is damaged",
+            hint="export the body again from the program that made it",
+            at=at,
+        )
 
 
 def welded(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -57,6 +57,7 @@ def body_table(body: ImportedBody) -> dict[str, Any]:
         "outer_name": body.outer.name,
         "unit": body.unit.value,
         "picks": [to_table(pick) for pick in body.picks],
+        "repair": body.repair,
     }
     if body.inner is not None:
         table |= {"inner": kept_name(body.inner), "inner_name": body.inner.name}
@@ -67,7 +68,8 @@ def read_body_table(table: Any, *, roots: Sequence[Path], enclosed: bool = False
     """The body that a `[body]` table names.
 
     Args:
-        table: `outer`, and optionally `inner`, their names for people, `unit` and `picks`.
+        table: `outer`, and optionally `inner`, their names for people, `unit`, `picks` and
+            `repair`.
         roots: Folders in which the files are looked for, in order.
         enclosed: Whether the files must lie inside these folders.
 
@@ -80,7 +82,7 @@ def read_body_table(table: Any, *, roots: Sequence[Path], enclosed: bool = False
             hint="write [body] outer = 'file.step'",
             at="body.outer",
         )
-    known = {"outer", "inner", "outer_name", "inner_name", "unit", "picks"}
+    known = {"outer", "inner", "outer_name", "inner_name", "unit", "picks", "repair"}
     for name in table:
         if name not in known:
             raise DesignError(
@@ -98,6 +100,13 @@ def read_body_table(table: Any, *, roots: Sequence[Path], enclosed: bool = False
         raise DesignError(
             f"body.unit is {shown(unit)}", hint=f"choose one of {', '.join(units)}", at="body.unit"
         )
+    repair = table.get("repair", False)
+    if not isinstance(repair, bool):
+        raise DesignError(
+            f"body.repair is {repair!r}, expected true or false",
+            hint="write repair = true to accept the remesh of a damaged file",
+            at="body.repair",
+        )
     if not isinstance(picks, Sequence) or isinstance(picks, str):
         raise DesignError(
             f"body.picks is {shown(picks)}, expected a list",
@@ -109,6 +118,7 @@ def read_body_table(table: Any, *, roots: Sequence[Path], enclosed: bool = False
         inner=inner,
         unit=units[unit],
         picks=tuple(from_table(Pick, pick, at="body.picks") for pick in picks),
+        repair=repair,
     )
 
 

@@ -28,6 +28,7 @@ from workbench import (
     sweep_command,
     train_command,
 )
+from workbench.body_arguments import add_body_options
 from workbench.core.errors import Cancelled, DesignError, StoreError, WorkbenchError, shown
 from workbench.fem_arguments import add_fem_commands
 from workbench.press_arguments import (
@@ -48,6 +49,7 @@ NUMBERS = (
     "--size-mm",
     "--object-pose",
     "--turn-deg",
+    "--body-turn-deg",
     "--from",
     "--to",
 )
@@ -208,7 +210,7 @@ def parser() -> argparse.ArgumentParser:
     _run_options(command(commands.run))
     export = command(commands.export)
     export.add_argument("design", metavar="NAME|FILE")
-    add_unit_option(export)
+    add_body_options(export)
     add_set_option(export)
     add_fit_option(export)
     export.add_argument("--out", required=True, type=Path, metavar="DIR")
@@ -251,7 +253,7 @@ def parser() -> argparse.ArgumentParser:
 
 def _sweep_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("design", metavar="NAME|FILE", help="a file brings its press")
-    add_unit_option(sub)
+    add_body_options(sub)
     text = "for example design.shape.length_mm or case.press.depth_mm"
     sub.add_argument("--field", required=True, metavar="FIELD", help=text)
     sub.add_argument("--from", dest="start", required=True, type=float, metavar="VALUE")
@@ -276,7 +278,7 @@ def _serve_options(sub: argparse.ArgumentParser) -> None:
 
 def _run_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("design", metavar="NAME|FILE")
-    add_unit_option(sub)
+    add_body_options(sub)
     add_press_options(sub)
     add_fit_option(sub)
     text = "exit 1 where a check of mould, housing or recipe is red"

@@ -12,6 +12,7 @@ import time
 from pathlib import Path
 from typing import Any
 
+from workbench.body_arguments import placed_design
 from workbench.core.design import SensorDesign
 from workbench.core.errors import DesignError, DeviceError, shown
 from workbench.core.results import Solid
@@ -70,7 +71,7 @@ def run(options: argparse.Namespace, project: Project) -> int:
     from workbench.touching_side import touching_notice
     from workbench.verdict import complain_of_red
 
-    design = load_design(options.design, unit=options.unit, project=project)
+    design = placed_design(options, load_design(options.design, project=project))
     design = changed_design(options, design)
     # What is wrong with the design or the options is said before anything is written or built.
     sources = asked_sources(options.sources)
@@ -144,7 +145,7 @@ def export(options: argparse.Namespace, project: Project) -> int:
     from workbench.verdict import check_line, complain_of_red
 
     printer = Progress(as_json=options.json)
-    design = load_design(options.design, unit=options.unit, project=project)
+    design = placed_design(options, load_design(options.design, project=project))
     design = with_typed(design, options.set)
     notice = scene_notice(design) if options.mitsuba else ""
     if notice:

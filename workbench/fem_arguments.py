@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from workbench import fem_command
-from workbench.press_arguments import add_press_options, add_unit_option
+from workbench.body_arguments import add_body_options
+from workbench.press_arguments import add_press_options
 
 
 def add_fem_commands(top: argparse.ArgumentParser, common: argparse.ArgumentParser) -> None:
@@ -38,7 +39,7 @@ def add_fem_commands(top: argparse.ArgumentParser, common: argparse.ArgumentPars
 
 def _case_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("design", metavar="NAME|FILE", help="a file brings its press")
-    add_unit_option(sub)
+    add_body_options(sub)
     add_press_options(sub)
     sub.add_argument("--draft", action="store_true", help="0.9 mm mesh: about 10 %% too stiff")
     text = "part that takes part, about the target (default 12); 0: all"

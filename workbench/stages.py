@@ -311,7 +311,7 @@ def package(
 STAGES = {
     stage.name: stage
     for stage in (
-        Stage(name="intake", version=1, lane="cad", function=intake),
+        Stage(name="intake", version=2, lane="cad", function=intake),
         Stage(name="build", version=3, lane="cad", function=build),
         Stage(name="mesh", version=2, lane="cad", function=mesh),
         Stage(name="quality", version=1, lane="cad", function=quality),
@@ -330,7 +330,7 @@ STAGES = {
         Stage(name="mould", version=4, lane="cad", function=mould),
         Stage(name="housing", version=4, lane="cad", function=housing),
         Stage(name="recipe", version=3, lane="cad", function=recipe),
-        Stage(name="package", version=4, lane="cad", function=package),
+        Stage(name="package", version=5, lane="cad", function=package),
         Stage(name="picture", version=2, lane="cad", function=picture),
         Stage(name="portrait", version=1, lane="cad", function=portrait),
         Stage(name="portrait_pressed", version=1, lane="cad", function=portrait_pressed),

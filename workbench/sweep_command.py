@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from workbench.aim import default_target_mm
+from workbench.body_arguments import placed_design
 from workbench.core.errors import Cancelled, DesignError, WorkbenchError, shown
 from workbench.core.mapping import suggest
 from workbench.core.units import human_seconds
@@ -79,7 +80,7 @@ def base_state(options: argparse.Namespace, project: Project, printer: Progress)
     Raises:
         DesignError: If there is no such design or a value is refused.
     """
-    design = load_design(options.design, unit=options.unit, project=project)
+    design = placed_design(options, load_design(options.design, project=project))
     design = changed_design(options, design)
     held = _held_case(options, project)
     state = fresh_state(design) if held is None else State(design=design, case=held)

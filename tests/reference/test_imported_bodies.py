@@ -10,12 +10,15 @@ import numpy as np
 import pytest
 
 from designs.imported import ImportedShape
+from geometry.csg_mesh import closed
 from geometry.export import stl_bytes
 from geometry.imported import build_imported
 from geometry.intake import read_body
 from geometry.isosurface import distance_mm, isosurface
 from geometry.offset import inset_surface, inside
+from geometry.shell import two_sides
 from geometry.surface import face_areas, is_watertight, mesh_volume
+from tests.foreign_bodies import cup
 from workbench.aim import default_target_mm
 from workbench.core.design import Layers, SensorDesign
 from workbench.core.errors import DesignError
@@ -257,3 +260,29 @@ def test_the_top_of_an_imported_body_is_pressed_first(hollow_drum: Solid) -> Non
     design = SensorDesign(name="drum", family="imported")
     assert default_target_mm(design, hollow_drum) == pytest.approx((0.0, 0.0, HEIGHT_MM), abs=1e-3)
     assert default_target_mm(design) == (0.0, 0.0, 0.0)
+
+
+def test_a_shell_open_at_its_foot_keeps_its_own_two_sides() -> None:
+    """A domed column with a wall of 2.5 mm: that wall, whatever `layers.elastomer_mm` says.
+
+    V = pi (13^2 23 + 2/3 13^3) - pi (10.5^2 23 + 2/3 10.5^3), less 0.2 % of chords.
+    """
+    made = cup(2.5)
+    read = body_of(np.asarray(made.vertices), np.asarray(made.faces))
+    solid = build_imported(read, ImportedShape(), Layers(elastomer_mm=1.0))
+    exact = math.pi * ((13.0**2 - 10.5**2) * 23.0 + 2.0 / 3.0 * (13.0**3 - 10.5**3))
+    assert solid.volume_mm3 == pytest.approx(exact, rel=5e-3)
+    assert "is a shell already, 2.5 to 2.5 mm thick" in solid.notice
+    for surface in (solid.membrane, solid.support, solid.base):
+        assert is_watertight(surface.faces)
+
+
+def test_a_thick_block_with_a_bore_is_no_shell() -> None:
+    """A bore with less than a quarter of the volume is nobody's camera room: the wall is even."""
+    import trimesh
+
+    block = trimesh.creation.box((30.0, 30.0, 30.0))
+    bore = trimesh.creation.cylinder(4.0, 20.0)
+    bore.apply_translation((0.0, 0.0, -15.0))
+    made = trimesh.boolean.difference([block, bore], engine="manifold")
+    assert two_sides(closed("b", np.add(made.vertices, [0, 0, 15.0]), made.faces)) is None

@@ -332,16 +332,6 @@ def test_files_are_complete_and_keep_volumes_and_names(
     assert files["bom.csv"].tobytes().count(b"\nLED,") == 9
 
 
-def test_bodies_without_brep_get_a_faceted_step(moulds: MouldSet) -> None:
-    """The half's triangles as a solid: the same volume to 0.1 %, valid."""
-    import dataclasses
-
-    half = dataclasses.replace(moulds.parts[0], brep=np.zeros(0, np.uint8))
-    body = step_body(half)
-    assert body.is_valid
-    assert body.volume == pytest.approx(half.volume_mm3, rel=1e-3)
-
-
 def test_a_folder_that_is_not_there_is_named(moulds: MouldSet, tmp_path: Path) -> None:
     """StoreError, not a traceback of the kernel."""
     with pytest.raises(StoreError, match="cannot write"):

@@ -70,6 +70,32 @@ def test_bad_file_is_refused_and_a_box_becomes_a_sensor(
     page.get_by_text("slab · imported").wait_for()
 
 
+def test_a_damaged_body_is_offered_a_repair_in_one_click(
+    tmp_path: Path, page: Any, start_server: Start
+) -> None:
+    """Two blocks that were not united: refused with a remesh on offer, which a click makes."""
+    import trimesh
+
+    block = trimesh.creation.box((24.0, 24.0, 20.0))
+    other = block.copy()
+    other.apply_translation((0.0, 0.0, 12.0))
+    path = tmp_path / "pair.stl"
+    trimesh.util.concatenate([block, other]).export(path)
+    server = start_server(coarse_project(tmp_path))
+    open_page(page, server.url)
+    stop_first_press(page)
+    page.get_by_text("Own body (STEP or STL)").click()
+    assert not page.get_by_role("button", name="Repair and load").count()
+    upload(page, "Load outer body", path)
+    says = "On offer: the body is remeshed at"
+    wait_until(lambda: page.get_by_text(says).count(), 150, "the repair is offered")
+    page.get_by_text("coarse · finger").first.wait_for()
+    page.get_by_role("button", name="Repair and load").click()
+    page.get_by_text("pair · imported").wait_for(timeout=150_000)
+    wait_until(lambda: page.get_by_text("Shape ✓").count(), 150, "the body is built")
+    assert not page.get_by_role("button", name="Repair and load").count()
+
+
 def test_unit_asked_for_and_leds_brought_inside(
     tmp_path: Path, page: Any, start_server: Start
 ) -> None:

@@ -96,7 +96,7 @@ def test_step_file_comes_back_in_mm(tmp_path: Path) -> None:
     assert mesh_volume(mesh.points_mm, mesh.faces) == pytest.approx(6000.0)
     assert mesh.points_mm.min(axis=0) == pytest.approx([-5.0, -10.0, -15.0])
     path.write_text("not a STEP file")
-    with pytest.raises(DesignError, match=r"box\.step holds no solid body") as caught:
+    with pytest.raises(DesignError, match=r"box\.step is not a STEP file") as caught:
         choose_indenter(str(path))
     assert caught.value.at == "indenter"
 

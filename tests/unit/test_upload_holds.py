@@ -68,7 +68,7 @@ def bodies(desk: FakeDesk, button: Any) -> Any:
     folder: Any = IntakeFolder.__new__(IntakeFolder)
     folder.desk, folder.outer, folder.trial = desk, button, None
     folder.unit = SimpleNamespace(value="mm")
-    folder.said = SimpleNamespace(content="")
+    folder.said, folder.mend = SimpleNamespace(content=""), SimpleNamespace(visible=False)
     return desk.reports.received(folder._sent_outer, folder._load_outer)
 
 

@@ -1,8 +1,9 @@
 """A body of the designer's own: upload, unit, an optional inner body, and labels by clicking.
 
 A file is read on trial by the worker. Only one that can be read replaces the design, so a refused
-file leaves everything as it was, with the reason under the button. What the reader repaired or
-inferred stands in the note above the tabs.
+file leaves everything as it was, with the reason under the button. Where a remesh would do, it is
+offered with its deviation, and made by one click. What the reader repaired or inferred stands in
+the note above the tabs.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from ui.desk import Desk
 from ui.plain import plain
 from workbench.bodies import IMPORTED
 from workbench.core.design import SensorDesign
-from workbench.core.errors import Cancelled, DesignError
+from workbench.core.errors import Cancelled, DesignError, WorkbenchError
 from workbench.core.imported import BodyFile, ImportedBody, LengthUnit, Pick, body_file
 from workbench.requests import Finished
 from workbench.uploads import MOST_BYTES, check_upload, own_name
@@ -46,10 +47,14 @@ class IntakeFolder:
         )
         self.outer.on_upload(desk.reports.received(self._sent_outer, self._load_outer))
         fields.anchor("Load outer body", f"{BODY}.outer")
+        self.said = gui.add_markdown("")
+        hint = "Remesh the file that was refused, with the deviation that is stated above"
+        self.mend = gui.add_button("Repair and load", visible=False, hint=hint)
+        self.mend.on_click(desk.guarded(self._mend))
+        fields.anchor("Repair and load", f"{BODY}.repair")
         self.more = gui.add_folder("Inner body and labels", visible=False)
         with self.more:
             self._fill_more()
-        self.said = gui.add_markdown("")
         desk.pick = self._pick
 
     def _fill_more(self) -> None:
@@ -96,6 +101,10 @@ class IntakeFolder:
         if event.client is not None and body is not None:
             self._try(dataclasses.replace(body, unit=LengthUnit(self.unit.value)))
 
+    def _mend(self, event: Any) -> None:
+        if self.trial is not None:
+            self._try(dataclasses.replace(self.trial, repair=True))
+
     def _received(self, button: Any, *, at: str) -> BodyFile:
         """The uploaded file; its digest is made without the desk's lock.
 
@@ -123,6 +132,7 @@ class IntakeFolder:
         else:
             candidate = SensorDesign(name=name, family=IMPORTED, body=body)
         self.desk.reports.settle()
+        self.mend.visible = False
         self.said.content = f"reading {plain(body.outer.name)} ..."
         self.desk.trial("import", candidate, "intake", self._read)
 
@@ -132,7 +142,7 @@ class IntakeFolder:
             self.trial = None
             return
         if event.error is not None:
-            self.desk.reports.report(event.error, edited=f"design.{event.error.at}")
+            self._refuse(event.error)
             return
         self.trial = None
         session, design = self.desk.session, event.request.design
@@ -143,6 +153,15 @@ class IntakeFolder:
         else:
             session.replace_design(design)
         self.desk.replaced()
+
+    def _refuse(self, error: WorkbenchError) -> None:
+        """Say why the file is not used, and offer the remesh that would make it usable."""
+        offer = error.repair if isinstance(error, DesignError) else None
+        if offer is not None:
+            error.hint = f"press Repair and load: {offer.words}"
+            self.said.content = f"On offer: {offer.words}."
+        self.mend.visible = offer is not None
+        self.desk.reports.report(error, edited=f"design.{error.at}")
 
     def _pick(self, face: int) -> bool:
         """Label the file's face under a click, or take its label back."""

@@ -64,6 +64,8 @@ class DesignError(WorkbenchError):
     """A value the designer chose is outside what can be built or simulated."""
 
     exit_code = 2
+    repair: Any = None
+    """What a repair would do, a `workbench.core.imported.RepairOffer`, where one is on offer."""
 
 
 class GeometryError(WorkbenchError):

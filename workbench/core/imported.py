@@ -94,6 +94,29 @@ class ImportedBody:
     """The body that hollows it; without it the wall is `layers.elastomer_mm` everywhere."""
     unit: LengthUnit = LengthUnit.AUTO
     picks: tuple[Pick, ...] = ()
+    repair: bool = False
+    """Whether a file that cannot be used as it is may be remeshed; see `RepairOffer`."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RepairOffer:
+    """What a remesh would do to a damaged file, said before it is accepted."""
+
+    step_mm: float
+    """Width of the grid of the remesh [mm]."""
+    deviation_mm: float
+    """Largest distance between the file's outer faces and the new surface [mm]."""
+    closed_mm: float
+    """About the width of the widest hole that it closes [mm]; 0 without one."""
+
+    @property
+    def words(self) -> str:
+        """One clause for people."""
+        holes = f", holes up to {self.closed_mm:.2g} mm wide closed" if self.closed_mm else ""
+        return (
+            f"the body is remeshed at {self.step_mm:.2g} mm, deviation at most "
+            f"{self.deviation_mm:.2g} mm{holes}"
+        )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -1,0 +1,197 @@
+"""What a remesh by winding number gives, against closed forms, and how it is offered."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+import trimesh
+
+from geometry.intake import read_body
+from geometry.isosurface import distance_mm
+from geometry.meshlab import crossing_faces
+from geometry.repair import remeshed
+from geometry.surface import is_watertight, mesh_volume
+from geometry.winding import grid_around, sampled, samples_of, winding_number
+from tests.foreign_bodies import FORTY, Foreign, cup, double_walled, written
+from workbench.bodies import body_table, read_body_table
+from workbench.core.errors import DesignError
+from workbench.core.imported import ImportedBody, ReadBody, body_file
+
+BALL = trimesh.creation.icosphere(4, 15.0)
+BALL_MM3 = float(BALL.volume)
+BY_NAME = {foreign.name: foreign for foreign in FORTY}
+
+
+def read(name: str, data: bytes, *, repair: bool = False) -> ReadBody:
+    return read_body(ImportedBody(outer=body_file(name, data), repair=repair))
+
+
+def exported(made: trimesh.Trimesh) -> bytes:
+    return bytes(made.export(file_type="stl"))  # pyright: ignore[reportArgumentType]
+
+
+def exact_winding(points: np.ndarray, faces: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """Sum of solid angles over 4 pi: van Oosterom and Strackee, 1983."""
+    a, b, c = (points[faces[:, k]][None] - places[:, None] for k in range(3))
+    x, y, z = (np.linalg.norm(corner, axis=2) for corner in (a, b, c))
+    triple = np.einsum("qfi,qfi->qf", a, np.cross(b, c))
+    below = (
+        x * y * z
+        + np.einsum("qfi,qfi->qf", a, b) * z
+        + np.einsum("qfi,qfi->qf", b, c) * x
+        + np.einsum("qfi,qfi->qf", c, a) * y
+    )
+    return 2.0 * np.arctan2(triple, below).sum(axis=1) / (4.0 * np.pi)
+
+
+@pytest.mark.parametrize("top_mm", [20.0, 5.0, 0.0])
+def test_the_winding_number_is_the_sum_of_solid_angles(top_mm: float) -> None:
+    """A whole ball, one without its cap, and a half: to 0.08 where no face is near."""
+    faces = BALL.faces[BALL.triangles_center[:, 2] < top_mm]
+    points = np.array(BALL.vertices)
+    grid = grid_around(points[faces].reshape(-1, 3), 0.5)
+    found = winding_number(*samples_of(points, faces, 0.35), grid)
+    rng = np.random.default_rng(0)
+    low, high = grid.low + 2.0, grid.low + 0.5 * (np.array(grid.size) - 1) - 2.0
+    places = rng.uniform(low, high, (200, 3))
+    places = places[distance_mm(points, faces, places) > 1.5]
+    want = exact_winding(points, faces, places)
+    assert np.abs(sampled(found, grid, places) - want).max() < 0.08
+
+
+def test_samples_hold_the_area_of_long_and_of_small_triangles() -> None:
+    """A blade of 60 x 0.5 and a speck: areas add up, places are near and few."""
+    points = np.array(
+        [[0, 0, 0], [60, 0, 0], [60, 0.5, 0], [5, 5, 1], [5.01, 5, 1], [5, 5.01, 1.0]]
+    )
+    faces = np.array([[0, 1, 2], [3, 4, 5]])
+    places, areas = samples_of(points, faces, 0.4)
+    assert areas.sum(axis=0) == pytest.approx([0.0, 0.0, 15.0 + 5e-5])
+    assert len(places) < 1000
+    gaps = np.diff(np.sort(places[places[:, 2] == 0.0][:, 0]))
+    assert gaps.max() < 0.6
+
+
+@pytest.mark.parametrize("name", ["crossing_2.stl", "holes_6.stl", "crossing_3.stl"])
+def test_a_remesh_is_closed_simple_and_as_near_as_it_says(name: str) -> None:
+    """Doubled faces, cracks and a knot: what is measured from outside is what is stated."""
+    foreign = BY_NAME[name]
+    made = trimesh.load_mesh(trimesh.util.wrap_as_stream(written(foreign)), file_type="stl")
+    points, faces = np.asarray(made.vertices, np.float64), np.asarray(made.faces)
+    found = remeshed(points, faces)
+    assert found is not None
+    assert found.bodies == 1
+    assert is_watertight(found.faces)
+    assert not crossing_faces(found.points, found.faces).any()
+    off = distance_mm(points, faces, found.points)
+    assert off.max() <= max(found.deviation, found.closed_width) + 1e-6
+    assert found.deviation < 2.0 * found.step
+
+
+def test_two_overlapping_blocks_hold_what_their_union_does() -> None:
+    """Blocks of 20 x 20 x 20 mm that share a half: 12,000 mm3, edges cut by parts of a step."""
+    block = trimesh.creation.box((20.0, 20.0, 20.0))
+    other = block.copy()
+    other.apply_translation((0.0, 0.0, 10.0))
+    data = exported(trimesh.util.concatenate([block, other]))
+    with pytest.raises(DesignError, match=r"pair\.stl holds 2 bodies") as caught:
+        read("pair.stl", data)
+    offer = caught.value.repair
+    assert 0.0 < offer.deviation_mm < 0.5
+    assert offer.closed_mm == 0.0
+    assert f"run again with --repair: {offer.words}" in caught.value.hint
+    body = read("pair.stl", data, repair=True)
+    assert mesh_volume(body.outer.points_mm, body.outer.faces) == pytest.approx(12000.0, rel=5e-3)
+    assert offer.words in body.notice
+    assert "pair.stl" not in body.notice
+    assert read("twin.stl", data, repair=True).notice == body.notice
+
+
+def test_a_hole_is_closed_and_its_width_told() -> None:
+    """A ball without its cap 18 mm wide: a film spans it, the volume between cut and whole ball."""
+    kept = BALL.copy()
+    kept.update_faces(~(kept.triangles_center[:, 2] > 12.0))
+    # Nothing flat: one vertex of the rim is out of its plane.
+    points = np.array(kept.vertices)
+    rim = np.argsort(np.abs(points[:, 2] - 12.0))[:1]
+    points[rim, 2] -= 0.5
+    data = exported(trimesh.Trimesh(points, kept.faces, process=False))
+    with pytest.raises(DesignError, match="is open: a hole") as caught:
+        read("bowl.stl", data)
+    assert 8.0 < caught.value.repair.closed_mm < 25.0
+    body = read("bowl.stl", data, repair=True)
+    cap_mm3 = np.pi * 3.0**2 * (3 * 15.0 - 3.0) / 3
+    held = mesh_volume(body.outer.points_mm, body.outer.faces)
+    assert BALL_MM3 - 2 * cap_mm3 < held < BALL_MM3
+
+
+def test_a_sound_file_is_not_touched_by_an_accepted_repair() -> None:
+    """`repair = true` is leave, not an order."""
+    body = read("ball.stl", exported(BALL), repair=True)
+    assert len(body.outer.faces) == len(BALL.faces)
+    assert body.notice == ""
+
+
+def test_two_balls_apart_are_refused_without_an_offer() -> None:
+    """No remesh makes one body of them."""
+    foreign = BY_NAME["crossing_8.stl"]
+    for repair in (False, True):
+        with pytest.raises(DesignError, match="holds 2 bodies") as caught:
+            read(foreign.name, written(foreign), repair=repair)
+        assert caught.value.repair is None
+        assert "--repair" not in caught.value.hint
+
+
+def test_a_double_walled_body_has_its_own_inner_side() -> None:
+    """A ball of 16 mm in which one of 13 mm is hollow: the two sides, said once."""
+    body = read("shell.stl", exported(double_walled()))
+    assert body.inner is not None
+    # Icospheres of 5,120 faces hold 0.2 % less than their balls.
+    for surface, radius_mm in ((body.outer, 16.0), (body.inner, 13.0)):
+        want = 4.0 / 3.0 * np.pi * radius_mm**3
+        assert mesh_volume(surface.points_mm, surface.faces) == pytest.approx(want, rel=4e-3)
+    assert body.notice == "outer body: it is a shell already, so its two sides are used"
+
+
+def cad(number: int) -> Foreign:
+    return BY_NAME[f"cad_{number}.step"]
+
+
+@pytest.mark.parametrize("number", [0, 3])
+def test_loose_faces_of_a_step_are_sewn(number: int) -> None:
+    """A shell without its solid, and faces 0.002 mm apart: closed, and said."""
+    body = read(cad(number).name, written(cad(number)))
+    assert is_watertight(body.outer.faces)
+    assert "loose faces were sewn" in body.notice
+
+
+def test_loose_faces_too_far_apart_are_offered_a_remesh() -> None:
+    """A cone on a plate whose faces are 0.05 mm out: refused, then remeshed near its volume."""
+    foreign = cad(4)
+    with pytest.raises(DesignError, match=r"do not meet within 0\.01 mm") as caught:
+        read(foreign.name, written(foreign))
+    assert caught.value.repair is not None
+    body = read(foreign.name, written(foreign), repair=True)
+    # The plate ends 1 mm within the cone, where 13.8 mm of radius are in both.
+    cone_mm3 = np.pi * 28.0 / 3 * (14**2 + 14 * 9 + 9**2)
+    want = cone_mm3 + np.pi * (6 * 16**2 - (14**2 + 14 * 13.82 + 13.82**2) / 3)
+    assert mesh_volume(body.outer.points_mm, body.outer.faces) == pytest.approx(want, rel=0.03)
+
+
+def test_acceptance_is_kept_in_the_design_file(tmp_path: object) -> None:
+    """`repair` goes through the table, refuses other types, and makes another key."""
+    from pathlib import Path
+
+    from workbench.core.digest import digest
+
+    folder = Path(str(tmp_path))
+    (folder / "a.stl").write_bytes(exported(cup()))
+    plain = read_body_table({"outer": "a.stl"}, roots=(folder,))
+    assert plain.repair is False
+    asked = read_body_table({"outer": "a.stl", "repair": True}, roots=(folder,))
+    assert body_table(asked)["repair"] is True
+    assert digest(asked) != digest(plain) == digest(dataclasses.replace(asked, repair=False))
+    with pytest.raises(DesignError, match=r"body\.repair is 'yes'"):
+        read_body_table({"outer": "a.stl", "repair": "yes"}, roots=(folder,))
