@@ -24,6 +24,8 @@ NO_BREP = np.zeros(0, dtype=np.uint8)
 SHORTEST_MM = (0.0, 1e-5, 1e-4, 1e-3)
 """Edges collapsed in turn until the part survives an STL file [mm]; float32 resolves 4e-6 at 50."""
 TRIVIAL_SHARE = 1e-9
+CRUMB_MM3 = 1e-6
+"""A piece with less volume is rounding: a cube of a hundredth of a millimetre [mm3]."""
 GIVEN_SHARE = 0.01
 """Largest relative difference of a part's triangles from the B-rep that the design has of it:
 chords of 0.05 mm cost a thin shell 0.5 %."""
@@ -61,7 +63,7 @@ def fabricate(
     Raises:
         GeometryError: If the part is empty or falls into pieces.
     """
-    solid = evaluate(node)
+    solid = without_crumbs(evaluate(node))
     lost = Worst(0.0, (0.0, 0.0, 0.0))
     if keep_largest:
         solid, lost = largest(solid)
@@ -92,6 +94,17 @@ def fabricate(
         process=process,
     )
     return Made(part=part, reason=reason, lost=lost)
+
+
+def without_crumbs(solid: Any) -> Any:
+    """A manifold without pieces of no volume, which cuts leave where two faces nearly coincide."""
+    pieces_of = solid.decompose()
+    if len(pieces_of) < 2:
+        return solid
+    import manifold3d
+
+    kept = [piece for piece in pieces_of if float(piece.volume()) > CRUMB_MM3]
+    return manifold3d.Manifold.compose(kept)
 
 
 def largest(solid: Any) -> tuple[Any, Worst]:

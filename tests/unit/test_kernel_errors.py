@@ -115,6 +115,19 @@ def test_a_given_body_of_another_size_is_not_used() -> None:
     assert "has 27 mm3, its triangles 24 mm3" in made.reason
 
 
+def test_a_crumb_without_a_volume_is_no_second_piece() -> None:
+    """A cube of a micrometre beside a block: one body of 24 mm3; one of 1 mm is a piece."""
+    for size_mm, refused in ((1e-3, False), (1.0, True)):
+        low, high = (10.0, 0.0, 0.0), (10.0 + size_mm, size_mm, size_mm)
+        node = csg.Union(parts=(BLOCK, csg.Box(low_mm=low, high_mm=high)))
+        place = {"group": PartGroup.MOULD, "explode": (0.0, 0.0, 0.0)}
+        if refused:
+            with pytest.raises(GeometryError, match="falls into 2 pieces"):
+                fabricate("block", node, **place)
+        else:
+            assert fabricate("block", node, **place).part.volume_mm3 == pytest.approx(24.0)
+
+
 def test_lost_pieces_are_measured_and_end_the_exact_body() -> None:
     """Blocks of 24 and 6 mm3: 20 % is lost at the middle of the smaller, with a B-rep or not."""
     crumb = csg.Box(low_mm=(10.0, 0.0, 0.0), high_mm=(11.0, 3.0, 2.0))
