@@ -41,7 +41,9 @@ def main(arguments: list[str]) -> int:
         found = {"reason": str(error).strip() or type(error).__name__}
     with out.open("wb") as file:
         said = {name: value for name, value in found.items() if not isinstance(value, np.ndarray)}
-        arrays = {name: value for name, value in found.items() if isinstance(value, np.ndarray)}
+        arrays: dict[str, Any] = {
+            name: value for name, value in found.items() if isinstance(value, np.ndarray)
+        }
         np.savez(file, said=json.dumps(said), **arrays)
     return 0
 

@@ -35,6 +35,8 @@ OUTER, INNER = "outer", "inner"
 MM_PER = {LengthUnit.MM: 1.0, LengthUnit.CM: 10.0, LengthUnit.M: 1000.0, LengthUnit.INCH: 25.4}
 LIKELY_MM = (8.0, 200.0)
 """Sizes that a tactile sensor may have: what an unknown unit is judged by [mm]."""
+LARGEST_MM = 1e6
+"""A coordinate of a kilometre is a flipped bit of a STEP file [mm]."""
 SMOOTH_COSINE = 0.866
 """Neighbouring triangles of an STL that differ by less than 30 degrees are one patch."""
 
@@ -147,6 +149,13 @@ def _read_step(
 ) -> tuple[_Closed, LengthUnit, float]:
     """What a STEP file holds; the CAD kernel has already turned the file's own unit into mm."""
     name, found = asked.file.name, read_cad(asked.file, monitor)
+    largest_mm = float(np.abs(found.points_mm).max(initial=0.0))
+    if not largest_mm <= LARGEST_MM:
+        raise DesignError(
+            f"{name} has a vertex at {largest_mm:.3g} mm, beyond {LARGEST_MM:g} mm; the file is "
+            "damaged",
+            hint="export the body again from the program that made it",
+        )
     points, faces, patch = weld(found.points_mm, found.faces, found.patch)
 
     def attempt(made: list[str]) -> _Closed:

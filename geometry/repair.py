@@ -30,6 +30,8 @@ from geometry.winding import (
 
 STEPS = 128
 """Steps along the longest side: 0.3 mm on a finger of 40 mm."""
+MOST_PLACES = 3_000_000
+"""Samples of a surface beyond which it is a heap of damaged faces: a body takes a tenth of that."""
 MOST_SAMPLES = 3_000_000
 """Of the grid; bodies as wide as long get a somewhat wider step."""
 INSIDE = 0.5
@@ -73,11 +75,16 @@ def remeshed(points: np.ndarray, faces: np.ndarray) -> Repaired | None:
         faces: Triangles (M, 3); those that are connected face the same way.
     """
     extent = np.ptp(points[faces].reshape(-1, 3), axis=0)
-    if face_areas(points, faces).sum() > MOST_LAYERS * float(extent.max()) ** 2:
+    area = float(face_areas(points, faces).sum())
+    if not area <= MOST_LAYERS * float(extent.max()) ** 2:
+        # Asked so that what is no number is refused too: halving such triangles would never end.
         return None
     step = max(float(extent.max()) / STEPS, _widest_step(extent))
+    spacing = step / SAMPLES_PER_STEP
+    if not _expected_places(points, faces, spacing) <= MOST_PLACES:
+        return None
     grid = grid_around(points[faces].reshape(-1, 3), step)
-    places, areas = samples_of(points, faces, step / SAMPLES_PER_STEP)
+    places, areas = samples_of(points, faces, spacing)
     winding = winding_number(places, areas, grid)
     found = isosurface(INSIDE - winding, grid.low, step)
     if found is None:
@@ -96,6 +103,14 @@ def remeshed(points: np.ndarray, faces: np.ndarray) -> Repaired | None:
         closed_width=2.0 * hole,
         bodies=bodies,
     )
+
+
+def _expected_places(points: np.ndarray, faces: np.ndarray, spacing: float) -> float:
+    """About how many samples triangles take: by area, and slivers by length."""
+    corners = points[faces]
+    longest = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).max(axis=1)
+    wanted = np.maximum(face_areas(points, faces) / spacing**2, longest / spacing)
+    return float(np.maximum(wanted, 1.0).sum())
 
 
 def _widest_step(extent: np.ndarray) -> float:

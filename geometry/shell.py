@@ -38,8 +38,9 @@ def two_sides(body: Any) -> tuple[Any, Any] | None:
     kept = np.flatnonzero(area > STRAY_SHARE * area.sum())
     if len(kept) != 2:
         return None
-    sides = [_lidded(points, faces[piece == k], numbers[piece == k]) for k in kept]
-    if sides[0] is None or sides[1] is None:
+    lidded = [_lidded(points, faces[piece == k], numbers[piece == k]) for k in kept]
+    sides = [side for side in lidded if side is not None]
+    if len(sides) != 2:
         return None
     sides.sort(key=lambda side: -abs(side[0]))
     (outer_mm3, *outer), (inner_mm3, points, faces, numbers) = sides

@@ -26,7 +26,7 @@ from workbench.core.results import Label, LabelledSurface, Solid
 TOLERANCE_MM = 0.02
 ANGLE_RAD = 0.1
 COARSE_TOLERANCE_MM = 0.02
-COARSE_ANGLE_RAD = 0.2
+COARSE_ANGLE_RAD = 0.25
 """Support and foot are never touched, but printed: chords may cost a thin shell 0.3 %."""
 WELD_MM = 1e-5
 """Vertices nearer than this are one [mm]; the kernel's own tolerance is 1e-7."""

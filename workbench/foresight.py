@@ -1,4 +1,4 @@
-"""What will be refused, told before anything long is computed: `sim.foresight` for whoever asks.
+"""What will be refused, told before anything long is computed: `misfits` for whoever asks.
 
 A `ForesightCall` is a `workbench.preview_call`: nothing of it is stored, since the body is and the
 answer takes a moment.
@@ -49,7 +49,7 @@ class ForesightCall:
         self, store: Store, kept: dict[str, Any], monitor: Monitor
     ) -> tuple[DesignError, ...]:
         """Everything that will be refused."""
-        from sim.foresight import misfits
+        from workbench.misfits import misfits
 
         solid = store.load(self.solid.stage, self.solid.key)
         return tuple(misfits(solid, self.optics, self.indenter, self.press))
@@ -74,7 +74,7 @@ def expect_fit(solid: Solid, optics: Optics | None, case: PressCase) -> None:
     Raises:
         DesignError: The first misfit; its hint names the others.
     """
-    from sim.foresight import misfits
+    from workbench.misfits import misfits
 
     found = misfits(solid, optics, case.indenter, case.press)
     if not found:
@@ -89,6 +89,6 @@ def expect_fit(solid: Solid, optics: Optics | None, case: PressCase) -> None:
 
 def optical_misfits(solid: Solid, optics: Optics) -> list[str]:
     """What is wrong with the places of lights and cameras, with its remedy, in words."""
-    from sim.foresight import misfits
+    from workbench.misfits import misfits
 
     return [f"{error.message}; {error.hint}, or use --fit" for error in misfits(solid, optics)]

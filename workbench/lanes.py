@@ -41,7 +41,7 @@ REPORT_S = 0.05
 WARM_UP = {
     "cad": ("designs.finger", "geometry.solid", "build123d", "manifold3d", "embreex"),
     "sim": ("sim.contact.solver", "sim.optics.render", "embreex", "scipy.ndimage"),
-    "look": ("sim.optics.render", "sim.foresight", "geometry.solid", "manifold3d", "embreex"),
+    "look": ("sim.optics.render", "workbench.misfits", "geometry.solid", "manifold3d", "embreex"),
 }
 """What each lane imports before its first job, so that the first click is warm.
 

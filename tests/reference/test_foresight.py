@@ -14,7 +14,6 @@ from sim.contact.motion.approach import plan_approach
 from sim.contact.objects.collider import make_collider
 from sim.contact.readout.verdict import check_depth
 from sim.contact.region.backing import support_points_mm
-from sim.foresight import misfits
 from sim.optics.places import check_camera, check_lights
 from workbench.aim import default_target_mm
 from workbench.building import build_solid
@@ -27,6 +26,7 @@ from workbench.core.press import Press
 from workbench.core.results import Solid
 from workbench.fitting import fitted
 from workbench.foresight import foresight_call
+from workbench.misfits import misfits
 from workbench.named_designs import load_design, presets
 from workbench.pipeline import PressCase
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from workbench.core.errors import DesignError
+from workbench.core.errors import DesignError, shown
 from workbench.design_bundle import unbundle, zipped
 from workbench.forms import load_design
 from workbench.named_designs import load_design as any_design
@@ -41,8 +41,9 @@ def test_a_loaded_design_names_no_file_outside(table: str, packed: bool, tmp_pat
         with pytest.raises(DesignError, match="there is no") as caught:
             unbundle("d", content, project)
         said = f"{caught.value.message} {caught.value.hint}"
-        told.add(said.replace(name, ""))
-        assert str(tmp_path) not in said.replace(name, "")
+        # A long path is repeated without its middle.
+        told.add(said.replace(shown(name), "''"))
+        assert str(tmp_path) not in said.replace(shown(name), "")
     assert len(told) == 1
 
 

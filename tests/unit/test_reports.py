@@ -89,9 +89,10 @@ def test_a_step_that_fails_stops_no_other(reports: Reports) -> None:
         scene=SimpleNamespace(pressed=step("pressed")),
         upkeep=step("upkeep"),
         saving=step("saving"),
+        on_turn=[lambda: turned.append("tenancy")],
     )
     Desk._idle(desk)  # pyright: ignore[reportPrivateUsage]
-    assert turned == ["saving", "gizmo", "backstage", "pressed", "upkeep"]
+    assert turned == ["saving", "gizmo", "backstage", "pressed", "upkeep", "tenancy"]
 
 
 def test_a_thumbnail_is_told_under_the_lock(reports: Reports, project: Project) -> None:

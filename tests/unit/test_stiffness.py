@@ -123,6 +123,7 @@ def test_a_set_of_another_stiffness_has_the_same_cases(tmp_path: Path) -> None:
     def recipe(young: float | None):
         names = ("cases", "seed", "solver", "draft", "no_images")
         options = dict.fromkeys(names) | {"recipe": "small", "young": young}
+        options |= {"turn_deg": None, "set": []}
         return chosen_recipe(argparse.Namespace(**options), Project(str(tmp_path)))
 
     nominal, soft = recipe(None), recipe(SOFT_MPa)

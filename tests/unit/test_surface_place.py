@@ -47,7 +47,9 @@ def test_normal_turns_evenly_on_a_curved_skin() -> None:
 
 def aiming_at(solid: Solid, target_mm: tuple[float, float, float]) -> Any:
     """A desk that shows a body and aims at a target; it remembers what it is amended to."""
-    nothing = SimpleNamespace(put=lambda *words: None, keep=lambda *words: None)
+    nothing = SimpleNamespace(
+        put=lambda *words: None, keep=lambda *words: None, dim=lambda dimmed: None
+    )
     view = SensorView(SimpleNamespace(), lambda event: None)
     view.skin = view.inside = view.support = view.foot = nothing  # pyright: ignore[reportAttributeAccessIssue]
     view.show = lambda visible: None
