@@ -7,7 +7,6 @@ where they belong (`state`, `variants`, `sweep_files`).
 from __future__ import annotations
 
 import dataclasses
-import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -25,6 +24,7 @@ from workbench.photos import (
     with_photos,
     without_photos,
 )
+from workbench.whole_files import toml_table
 
 GUEST_TABLES = ("press_case", "variant", "sweep")
 """Tables of a design file that the design itself does not read."""
@@ -66,8 +66,8 @@ def parse_toml(text: str, *, source: str) -> Mapping[str, Any]:
         DesignError: For broken TOML or a newer schema.
     """
     try:
-        table = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+        table = toml_table(text)
+    except ValueError as error:
         raise DesignError(
             f"{source} is not valid TOML: {error}", hint="correct the line named", at="design"
         ) from error

@@ -5,7 +5,6 @@ Figures stand in the file, so that the plot outlives the results; images come fr
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -17,7 +16,7 @@ from workbench.score_card import finite_figures
 from workbench.state import case_table, read_state
 from workbench.sweeps import MOST, Point, Status, Sweep
 from workbench.trash import restore_file, trash_file
-from workbench.whole_files import kept_text, write_atomically
+from workbench.whole_files import kept_text, toml_table, write_atomically
 
 FOLDER = "sweeps"
 
@@ -81,7 +80,7 @@ def load_sweep(project: Project, name: str) -> Sweep:
     path = sweep_path(project, name)
     try:
         text = kept_text(path)
-        table: dict[str, Any] = tomllib.loads(text)["sweep"]
+        table: dict[str, Any] = toml_table(text)["sweep"]
         points = tuple(_point(row) for row in table["points"])
         if not 1 <= len(points) <= MOST:
             raise ValueError(f"it has {len(points)} points")

@@ -12,7 +12,6 @@ import dataclasses
 import difflib
 import enum
 import re
-import tomllib
 import types
 import typing
 from collections.abc import Iterator, Mapping, Sequence
@@ -26,6 +25,7 @@ from workbench.design_toml import check_design
 from workbench.led_table import with_count
 from workbench.moduli import CONSTANTS, MODULI, with_moduli
 from workbench.photos import FIELDS, design_photos, with_photos, without_photos
+from workbench.whole_files import toml_table
 
 STEP = re.compile(r"(\w+)(?:\[(\d+)\])?")
 COUNT, POWERS = "optics.ring.count", "optics.ring.powers"
@@ -198,8 +198,8 @@ def _read_list(kind: Any, text: str, path: str) -> Any:
 def _toml(text: str) -> Any:
     """The one value of a line of TOML, None if it is none."""
     try:
-        table = tomllib.loads(f"value = {text}")
-    except (tomllib.TOMLDecodeError, RecursionError):
+        table = toml_table(f"value = {text}")
+    except ValueError:
         return None
     return table["value"] if len(table) == 1 else None
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 import time
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,7 +22,7 @@ from workbench.project import Project
 from workbench.score_card import figures, finite_figures
 from workbench.state import State, case_table, read_state
 from workbench.store import Store
-from workbench.whole_files import kept_text, write_atomically
+from workbench.whole_files import kept_text, toml_table, write_atomically
 
 FOLDER = "variants"
 KEPT = ("build", "mesh", "press", "shoot", "maps", "mould", "housing", "recipe")
@@ -141,7 +140,7 @@ def load_variant(project: Project, name: str) -> Variant:
     path = variant_path(project, name)
     try:
         text = kept_text(path)
-        table: dict[str, Any] = tomllib.loads(text)["variant"]
+        table: dict[str, Any] = toml_table(text)["variant"]
         fields = _fields(table)
     except (OSError, ValueError, KeyError, AttributeError, TypeError) as error:
         what = f"it has no {error}" if isinstance(error, KeyError) else str(error)

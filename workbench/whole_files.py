@@ -5,9 +5,11 @@ from __future__ import annotations
 import contextlib
 import os
 import secrets
+import tomllib
 from pathlib import Path
+from typing import Any
 
-from workbench.core.errors import StoreError
+from workbench.core.errors import StoreError, shortened
 from workbench.names import numbered
 
 MAX_TOML_BYTES = 1_000_000
@@ -32,6 +34,25 @@ def kept_text(path: Path) -> str:
     if path.stat().st_size > MAX_TOML_BYTES:
         raise ValueError(f"it is larger than {MAX_TOML_BYTES} bytes")
     return path.read_text(encoding="utf-8")
+
+
+def toml_table(text: str) -> dict[str, Any]:
+    """The tables of a TOML file.
+
+    Raises:
+        ValueError: If it is none: also where Python's own parser has another error, as for 4,000
+            brackets or a number of 5,000 digits.
+    """
+    try:
+        return tomllib.loads(text)
+    except RecursionError:
+        raise ValueError("its lists or tables are nested too deeply") from None
+    except tomllib.TOMLDecodeError as error:
+        # The parser repeats names whole, however long.
+        raise ValueError(shortened(str(error))) from error
+    except ValueError:
+        # Python reads no whole number of more digits.
+        raise ValueError("one of its numbers has thousands of digits") from None
 
 
 def write_atomically(path: Path, content: bytes) -> None:

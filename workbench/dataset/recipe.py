@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import dataclasses
 import enum
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -202,10 +201,11 @@ def recipe_from_toml(text: str, *, source: str = "the recipe", project: Any = No
     """
     from workbench.design_toml import design_from_toml
     from workbench.named_designs import load_design
+    from workbench.whole_files import toml_table
 
     try:
-        table = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+        table = toml_table(text)
+    except ValueError as error:
         raise DesignError(
             f"{source} is not valid TOML: {error}", hint="correct the line named", at="recipe"
         ) from error
