@@ -2,8 +2,8 @@
 
 `python -m geometry.cad_child FILE OUT SECONDS` reads the STEP file FILE and leaves in OUT, an
 `.npz`, what `geometry.cad_file` reads back: loose triangles, or the reason why there are none. The
-process ends by itself after SECONDS, and with the process that started it. Only OCP is imported:
-build123d would take three more seconds.
+process ends by itself after SECONDS of the processor, and with the process that started it. Only
+OCP is imported: build123d would take three more seconds.
 """
 
 # OCP has no type stubs.
@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import math
 import signal
 import sys
 from pathlib import Path
@@ -22,6 +23,8 @@ import numpy as np
 
 from geometry.solid import ANGLE_RAD, TOLERANCE_MM, loose_triangles
 
+WAITS = 8.0
+"""Times SECONDS that it may take on a machine that is busy with others, or waits for its disk."""
 MOST_MEMORY = 8 << 30
 """A damaged number must not ask this machine for all its memory [bytes]."""
 FINE_SHARE = 5e-5
@@ -53,9 +56,11 @@ def _confine(seconds: float) -> None:
     import ctypes
     import resource
 
-    # The kernel may hold the interpreter for as long as it likes: only the system's alarm ends it.
+    # The kernel may hold the interpreter for as long as it likes: only the system's signals end it.
     signal.signal(signal.SIGALRM, signal.SIG_DFL)
-    signal.setitimer(signal.ITIMER_REAL, seconds)
+    signal.setitimer(signal.ITIMER_REAL, WAITS * seconds)
+    with contextlib.suppress(ValueError, OSError):
+        resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(seconds), math.ceil(seconds) + 1))
     with contextlib.suppress(ValueError, OSError):
         resource.setrlimit(resource.RLIMIT_AS, (MOST_MEMORY, MOST_MEMORY))
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))

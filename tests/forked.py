@@ -65,6 +65,8 @@ class Forks:
 
 
 def _serve(pipe: Any, prepare: Callable[[], None]) -> None:
+    import workbench.cli  # noqa: F401
+
     prepare()
     with contextlib.suppress(EOFError):
         while True:

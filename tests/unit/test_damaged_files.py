@@ -168,3 +168,16 @@ def test_a_number_of_fifty_digits_in_an_obj_is_refused(tmp_path: Path) -> None:
     path.write_text(f"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 {'9' * 50}\n")
     with pytest.raises(DesignError, match=r"ball.obj is not an OBJ file"):
         load_mesh(path)
+
+
+def test_a_coordinate_beyond_a_kilometre_is_refused(
+    step: bytes, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A flipped bit of an exponent: 1e308 mm cost 19 GB before the system ended the command."""
+    from geometry import intake
+
+    found = cad_file.read_cad(body_file("body.step", step))
+    found.points_mm[7] = 1e308
+    monkeypatch.setattr(intake, "read_cad", lambda file, monitor: found)
+    with pytest.raises(DesignError, match=r"body.step has a vertex at 1e\+308 mm"):
+        read_body(ImportedBody(outer=body_file("body.step", step)))
