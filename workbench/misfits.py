@@ -18,7 +18,7 @@ import numpy as np
 from geometry.rays import RayCaster
 from geometry.skins import rough_skins
 from geometry.surface_place import place_near
-from sim.contact.motion.approach import FARTHEST_TARGET_MM, plan_approach
+from sim.contact.motion.approach import expect_near, plan_approach
 from sim.contact.objects.collider import Collider, make_collider
 from sim.contact.readout.verdict import check_depth
 from sim.contact.region.backing import support_points_mm
@@ -80,14 +80,7 @@ def _check_press(mesh: MembraneMesh, indenter: Indenter, press: Press) -> None:
     """
     outer = mesh.outer
     place = place_near(outer.points_mm, outer.faces, press.target_mm)
-    if place.distance_mm > FARTHEST_TARGET_MM:
-        x, y, z = (round(float(value), 1) + 0.0 for value in place.point_mm)
-        raise DesignError(
-            f"the target is {place.distance_mm:.1f} mm off the skin, more than "
-            f"{FARTHEST_TARGET_MM:g} mm",
-            hint=f"the nearest place of the skin is {x:g}, {y:g}, {z:g}",
-            at="press.target_mm",
-        )
+    expect_near(press, place.point_mm, place.distance_mm)
     if press.actuations or indenter.soft is not None:
         # Driven regions move the skin, and a soft object gives way itself.
         return

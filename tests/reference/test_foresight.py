@@ -103,8 +103,8 @@ def test_a_target_off_the_skin_is_told_with_the_nearest_place(finger: Solid) -> 
     press = Press(target_mm=(0.0, 35.0, 13.0))
     (error,) = misfits(finger, None, Indenter(), press)
     assert error.at == "press.target_mm"
-    assert "20.0 mm off the skin" in error.message
-    assert "0, 15, 13" in error.hint
+    assert "is 20.0 mm from the skin; the limit is 5 mm" in error.message
+    assert "(0.0, 15.0, 13.0) mm" in error.hint
 
 
 @pytest.mark.parametrize("kind", [IndenterKind.SPHERE, IndenterKind.CUBE, IndenterKind.CROSS])
@@ -183,7 +183,7 @@ def test_the_question_is_small_and_its_answer_can_be_sent(finger: Solid, tmp_pat
     ("words", "told"),
     [
         (["--depth-mm", "2.6"], "the indenter reaches the support"),
-        (["--target", "0,40,13"], "mm off the skin"),
+        (["--target", "0,40,13"], "mm from the skin"),
         (["--set", "optics.ring.radius_mm=14"], "in the elastomer wall"),
         (["--set", "shape.outer_radius_mm=10", "--target", "0,0,42"], "LED 1 of 9"),
     ],

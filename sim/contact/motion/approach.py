@@ -170,6 +170,24 @@ class Approach:
         return self.depth_mm(frame) > SHALLOW_MM
 
 
+def expect_near(press: Press, nearest_mm: np.ndarray, distance_mm: float) -> None:
+    """Refuse a target that is not near the skin.
+
+    Raises:
+        DesignError: With the distance, the limit and the nearest point of the skin [mm].
+    """
+    if distance_mm <= FARTHEST_TARGET_MM:
+        return
+    # Adding zero turns the minus zero of a rounded coordinate into zero.
+    nearest = ", ".join(f"{x:.1f}" for x in np.round(nearest_mm, 1) + 0.0)
+    raise DesignError(
+        f"target {tuple(press.target_mm)} mm is {distance_mm:.1f} mm from the skin; "
+        f"the limit is {FARTHEST_TARGET_MM:g} mm",
+        hint=f"the nearest point of the skin is ({nearest}) mm",
+        at="press.target_mm",
+    )
+
+
 def plan_approach(skin: Skin, collider: Collider, press: Press) -> Approach:
     """Find the target on the outer skin, the first touch, and the whole path.
 
@@ -238,15 +256,7 @@ def _plan_straight(skin: Skin, collider: Collider, press: Press) -> Approach:
     """Project the target on the outer skin and find the first touch."""
     query = np.array([press.target_mm], dtype=np.float64)
     points, distances, faces = closest_point(skin.points_mm, skin.faces, query)
-    if distances[0] > FARTHEST_TARGET_MM:
-        # Adding zero turns the minus zero of a rounded coordinate into zero.
-        nearest = ", ".join(f"{x:.1f}" for x in np.round(points[0], 1) + 0.0)
-        raise DesignError(
-            f"target {tuple(press.target_mm)} mm is {distances[0]:.1f} mm from the skin; "
-            f"the limit is {FARTHEST_TARGET_MM:g} mm",
-            hint=f"the nearest point of the skin is ({nearest}) mm",
-            at="press.target_mm",
-        )
+    expect_near(press, points[0], float(distances[0]))
     target = points[0]
     normal = smooth_normal(skin, int(faces[0]), target)
     tangent_u = tangent(normal)
