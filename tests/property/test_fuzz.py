@@ -21,8 +21,6 @@ from tests.forked import Ended, Forks
 from tests.fuzzing import changed_design, changed_file, whole_files
 
 SEED = int(os.environ.get("WORKBENCH_FUZZ_SEED", "16"))
-KEEP = os.environ.get("WORKBENCH_FUZZ_KEEP", "")
-"""Folder for the cases that failed."""
 HANG_S = 180.0
 REFUSED_S = 10.0
 """Time within which what cannot be built is refused [s]; that of the processor is counted."""
@@ -153,7 +151,8 @@ def run_all(
         folder = root / str(number)
         folder.mkdir()
         words = command(number, folder)
-        words += ["--out", "out", "--project", "project"]
+        # One project for all: what they share is built once.
+        words += ["--out", "out", "--project", "../project"]
         ended = forks.run(words, folder, limit_s=HANG_S)
         codes[ended.code] += 1
         slowest_s = max(slowest_s, ended.cpu_s if ended.code else 0.0)
