@@ -18,6 +18,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
+from websockets.exceptions import ConnectionClosed
 
 from tests.ui.conftest import Server
 from tests.ui.widgets import coarse_project
@@ -78,8 +79,8 @@ class Designer:
         while not self.tab.closed:
             act = self.rng.choice(acts)
             self.done.append(act.__name__)
-            # What is refused, or not to be had yet, is part of a designer's day.
-            with contextlib.suppress(TimeoutError):
+            # What is refused, or not to be had yet, is part of a designer's day; so is the kill.
+            with contextlib.suppress(TimeoutError, ConnectionClosed):
                 act()
             self.pause(self.rng.uniform(0.0, 3.0))
 
