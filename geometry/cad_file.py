@@ -21,7 +21,7 @@ from workbench.core.errors import DesignError
 from workbench.core.imported import BodyFile
 from workbench.core.monitor import Monitor, silent
 
-LIMIT_S, LIMIT_S_PER_MB = 8.0, 10.0
+LIMIT_S, LIMIT_S_PER_MB = 7.0, 10.0
 """Time of the processor that a file may take to read: a small one that keeps the kernel busy is
 refused within 10 s, and a sound one of 10 MB takes a tenth of its share."""
 POLL_S = 0.1
@@ -104,7 +104,7 @@ def _ended(source: Path, out: Path, limit_s: float, monitor: Monitor) -> int:
 def _died(name: str, code: int, limit_s: float) -> DesignError:
     import signal
 
-    if code in (-signal.SIGXCPU, -signal.SIGALRM):
+    if code in (-signal.SIGPROF, -signal.SIGALRM):
         why = f"it takes the CAD kernel more than {limit_s:.0f} s"
     else:
         how = f"signal {-code}" if code < 0 else f"exit status {code}"

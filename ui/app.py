@@ -67,7 +67,7 @@ def serve(options: argparse.Namespace, project: Project) -> int:
     check_port(options.host, options.port)
     session = Session(project)
     session.open(options.design, unit=options.unit)
-    project.store.sweep()
+    project.sweep()
     local = options.host in (*LOOPBACK, "::1")
     token = None if local else secrets.token_urlsafe(16)
     names = () if local else reachable_names(options.host)

@@ -83,7 +83,7 @@ def run(options: argparse.Namespace, project: Project) -> int:
         if notice:
             complain(f"notice: {notice}")
     prepare(options.out, clear=RUN_FILES)
-    project.store.sweep()
+    project.sweep()
     printer = Progress(as_json=options.json)
     start = _start(design, options, project, printer)
     design = start.design

@@ -15,6 +15,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import time
 from pathlib import Path
@@ -24,11 +25,14 @@ from workbench.core.design import SensorDesign
 from workbench.core.errors import DesignError, StoreError, shown
 from workbench.design_toml import design_files, design_to_toml
 from workbench.names import LONGEST, is_name
+from workbench.processes import is_alive
 from workbench.store import Store
 from workbench.whole_files import free_path, write_atomically
 
 VARIABLE = "WORKBENCH_PROJECT"
 DEFAULT_FOLDER = ".workbench"
+PARTS = tuple(f"{folder}.part-*" for folder in ("", "*/", "*/trash/", "designs/previous/*/"))
+"""Where files may lie that were being written when their writer was killed."""
 
 
 class Project:
@@ -87,6 +91,16 @@ class Project:
             ) from error
         write_atomically(kept, content)
         return kept
+
+    def sweep(self) -> None:
+        """Remove what killed writers left behind, and results beyond the store's limit."""
+        self.store.sweep()
+        for pattern in PARTS:
+            for part in self.folder.glob(pattern):
+                pid = part.name.split("-")[1]
+                if part.is_file() and not (pid.isdecimal() and is_alive(int(pid))):
+                    with contextlib.suppress(OSError):
+                        part.unlink()
 
     def write_crash(self, text: str) -> Path:
         """Keep a traceback for a bug report; returns the file."""

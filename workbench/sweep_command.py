@@ -58,7 +58,7 @@ def sweep(options: argparse.Namespace, project: Project) -> int:
         parts=options.parts,
     )
     prepare(options.out, clear=FILES)
-    project.store.sweep()
+    project.sweep()
     what = compute(what, project, printer, as_json=options.json)
     contents = {
         "sweep.json": json.dumps(sweep_table(what), indent=1, allow_nan=False),

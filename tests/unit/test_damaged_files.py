@@ -5,7 +5,10 @@
 
 from __future__ import annotations
 
+import signal
 import struct
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -102,6 +105,19 @@ def test_a_kernel_that_dies_or_hangs_is_a_message(
     monkeypatch.setattr(cad_file, "LIMIT_S_PER_MB", 0.0)
     with pytest.raises(DesignError, match=r"^bone.step cannot be read: .* more than"):
         read("bone.step", step)
+
+
+def test_a_kernel_that_spins_is_ended_within_seconds() -> None:
+    """The processor's time counts, so that it is 10 s on a quiet machine and no less on a busy one;
+    one that only waits has some times as long.
+    """
+    spin = "from geometry.cad_child import _confine; _confine(0.3)\nwhile True: pass"
+    ended = subprocess.run([sys.executable, "-c", spin], timeout=30, check=False)
+    assert ended.returncode == -signal.SIGPROF
+    wait = "from geometry.cad_child import _confine; _confine(0.3)\nimport time; time.sleep(60)"
+    ended = subprocess.run([sys.executable, "-c", wait], timeout=30, check=False)
+    assert ended.returncode == -signal.SIGALRM
+    assert cad_file.LIMIT_S < 8.0
 
 
 def test_reading_a_step_can_be_cancelled(step: bytes) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
@@ -100,3 +101,22 @@ def test_failed_write_keeps_the_old_file(tmp_path: Path, monkeypatch: pytest.Mon
         write_atomically(path, b"new")
     assert path.read_bytes() == b"old"
     assert list(tmp_path.iterdir()) == [path]
+
+
+def test_what_a_killed_writer_left_is_swept_away(tmp_path: Path) -> None:
+    """Of designs, variants, versions and results; what a living one writes, and all else, stays."""
+    project = Project(tmp_path)
+    places = ("designs", "variants", "variants/trash", "designs/previous/a", "store/build")
+    for place in places:
+        (tmp_path / place).mkdir(parents=True)
+        # No process has this number: Linux's largest is 2^22.
+        for pid in (99_999_999, os.getpid()):
+            (tmp_path / place / f".part-{pid}-0a").write_text("half")
+        (tmp_path / place / "kept.toml").write_text("whole")
+    (tmp_path / "store" / "build" / ".part-99999999-0a").unlink()
+    (tmp_path / "store" / "build" / ".part-99999999-0a").mkdir()
+    project.sweep()
+    for place in places:
+        left = sorted(file.name for file in (tmp_path / place).iterdir() if file.name[0] == ".")
+        assert left == [f".part-{os.getpid()}-0a"], place
+        assert (tmp_path / place / "kept.toml").exists()

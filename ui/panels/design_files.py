@@ -53,6 +53,8 @@ class DesignFiles:
         self.known: dict[str, tuple[int, int] | None] = {}
         """Stamps of the files that were opened or saved here, by name: no others are replaced
         without asking."""
+        self.read = desk.session.design.name
+        """The name of the design when its box was last read or written."""
         self.trashed = ""
         """Name in the trash of what was deleted last."""
 
@@ -112,9 +114,10 @@ class DesignFiles:
         threading.Thread(target=self.shelf.entries, name="designs", daemon=True).start()
 
     def refresh(self) -> None:
-        """Show the name as it stands."""
-        if self.name.value != self.desk.session.design.name:
-            self.name.value = self.desk.session.design.name
+        """Show a name that came from elsewhere; one that is being typed stays."""
+        name = self.desk.session.design.name
+        if name != self.read:
+            self.read = self.name.value = name
 
     def _list(self) -> None:
         names = saved_names(self.project) or (NONE,)
@@ -124,12 +127,23 @@ class DesignFiles:
             self.kept.value = now if now in names else names[0]
 
     def _rename(self, event: Any) -> None:
-        if event.client is not None and self.name.value.strip():
-            self.desk.edit("design.name", self.name.value.strip()[:80])
+        if event.client is not None:
+            self._read_name()
+
+    def _read_name(self) -> None:
+        """Take the name that stands in its box.
+
+        Handlers run in threads, in no order of their own: Save may come before that of the name.
+        """
+        typed = self.name.value.strip()[:80]
+        if typed and typed != self.desk.session.design.name:
+            self.desk.edit("design.name", typed)
+        self.read = self.desk.session.design.name
 
     def _keep(self, what: str, event: Any) -> None:
         desk = self.desk
         desk.fields.read_typed(now=True)
+        self._read_name()
         name = desk.session.design.name
         stamp = file_stamp(self.project, name)
         if what == COPY:
