@@ -15,7 +15,8 @@ Leaves out: turning parts on their way; friction.
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -53,12 +54,14 @@ def opening(
         parts: The finished outer parts and, last, the core.
         core_pull: Direction in which the core leaves a free skin.
     """
-    first = _motions(parts, cast, parting, core_pull, outer_first=True)
-    least = max(EASY_STRAIN, confined_strain(cast, DOWN).value)
-    if hardship(first) <= (False, least):
-        return first
-    other = _motions(parts, cast, parting, DOWN, outer_first=False)
-    return min((first, other), key=hardship)
+    solids = {part.name: closed(part.name, part.points_mm, part.faces) for part in parts}
+    skin = evaluate(cast.outer)
+    tried = []
+    for order in _orders(list(solids), cast, parting, core_pull):
+        tried.append(_motions(order, solids, skin))
+        if all(motion.free for motion in tried[-1]):
+            return tried[-1]
+    return min(tried, key=hardship)
 
 
 def hardship(motions: Sequence[PartMotion]) -> tuple[bool, float]:
@@ -66,42 +69,84 @@ def hardship(motions: Sequence[PartMotion]) -> tuple[bool, float]:
     return not all(motion.free for motion in motions), max(motion.strain for motion in motions)
 
 
+class _Pull(NamedTuple):
+    """One part's way out, before it is known what is in it."""
+
+    part: str
+    way: np.ndarray
+    """Unit direction, shape (3,)."""
+    stretch: Worst
+    """What the skin must stretch for it."""
+
+
+def _strain(order: Sequence[_Pull]) -> float:
+    return max(pull.stretch.value for pull in order)
+
+
+def _orders(
+    names: Sequence[str], cast: Cast, parting: Parting, core_pull: np.ndarray
+) -> Iterator[list[_Pull]]:
+    """The known orders, the best first: where its ways are free, the next need not be tried."""
+    first = _order(names, cast, parting, core_pull, outer_first=True)
+    easy = _strain(first) <= max(EASY_STRAIN, confined_strain(cast, DOWN).value)
+    if easy:
+        yield first
+    other = _order(names, cast, parting, DOWN, outer_first=False)
+    yield from [other] if easy else sorted((first, other), key=_strain)
+
+
+def _order(
+    names: Sequence[str], cast: Cast, parting: Parting, core_pull: np.ndarray, *, outer_first: bool
+) -> list[_Pull]:
+    """One of the known orders, with what it asks of the skin.
+
+    Args:
+        names: Of the outer parts and, last, the core.
+    """
+    *outer, core = names
+    ways = dict(zip(outer, parting.pulls, strict=True))
+    return [
+        _Pull(
+            name,
+            ways.get(name, core_pull),
+            _stretch(cast, parting, name, outer, outer_first=outer_first),
+        )
+        for name in ((*outer, core) if outer_first else (core, *outer))
+    ]
+
+
 def _motions(
-    parts: Sequence[FabricationPart],
-    cast: Cast,
-    parting: Parting,
-    core_pull: np.ndarray,
-    *,
-    outer_first: bool,
+    order: Sequence[_Pull], solids: Mapping[str, Any], skin: Any
 ) -> tuple[PartMotion, ...]:
-    """The motions of one order, with what is in the way of each."""
-    solids = {part.name: closed(part.name, part.points_mm, part.faces) for part in parts}
-    *outer, core = solids
-    skin = evaluate(cast.outer)
-    found = []
-    for name in (*outer, core) if outer_first else (core, *outer):
-        pull = core_pull if name == core else parting.pulls[outer.index(name)]
-        others = {other: solid for other, solid in solids.items() if other != name}
+    """The motions of an order, with what is in the way of each.
+
+    Args:
+        solids: The parts as manifolds, closed.
+        skin: The membrane's outside as a manifold.
+    """
+    placed = dict(solids)
+    found: list[PartMotion] = []
+    for name, way, stretch in order:
+        others = {other: solid for other, solid in placed.items() if other != name}
         # What has moved is out of the way already, and need not be passed again.
         gone = {motion.part for motion in found}
         near = {other: solid for other, solid in others.items() if other not in gone}
-        distance_mm = way_mm(solids[name], {**near, "skin": skin}, pull) + APART_MM
-        met = swept(solids[name], others, pull, distance_mm)
-        strain = _stretch(cast, parting, name, outer, outer_first=outer_first)
+        distance_mm = way_mm(placed[name], {**near, "skin": skin}, way) + APART_MM
+        met = swept(placed[name], others, way, distance_mm)
         found.append(
             PartMotion(
                 step=len(found) + 1,
                 part=name,
-                direction=_triple(pull),
+                direction=_triple(way),
                 distance_mm=round(distance_mm, 1),
                 overlap_mm3=met.overlap_mm3,
                 tolerance_mm3=met.tolerance_mm3,
                 overlap_at_mm=met.place_mm,
-                strain=strain.value,
-                strain_at_mm=strain.place_mm,
+                strain=stretch.value,
+                strain_at_mm=stretch.place_mm,
             )
         )
-        solids[name] = solids[name].translate(distance_mm * pull)
+        placed[name] = placed[name].translate(distance_mm * way)
     return tuple(found)
 
 

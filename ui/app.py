@@ -101,7 +101,9 @@ def serve(options: argparse.Namespace, project: Project) -> int:
     entered = desk.guarded(lambda event: desk.replaced())
     tenancy.on_entered = lambda: entered(None)
     desk.on_turn.append(tenancy.turn)
-    first_look(desk)
+    # The pump already turns: two threads that show the same body would undo each other's work.
+    with desk.reports.lock:
+        first_look(desk)
     gate.health = lambda: {"ok": True, "version": __version__, "busy": conductor.busy}
     print(f"The workbench is open at {here}  (Ctrl-C ends it)", flush=True)
     for link in others:

@@ -101,6 +101,7 @@ def test_of_two_servers_on_a_project_one_writes(server: Server, start_server: St
             wait_until(lambda: saved(server, "shape", "cylinder_mm") == 22.0, 10, "it edits on")
             other.click("Take over")
             other.wait(lambda: other.value(LENGTH) == 22.0, 10, "it has what was edited meanwhile")
+            other.wait(lambda: other.told("This tab edits now"), 10, "it is told that it edits")
             other.set(LENGTH, 30.0)
             wait_until(lambda: saved(server, "shape", "cylinder_mm") == 30.0, 10, "it writes")
             first.uuid("Take over")
