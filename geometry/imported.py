@@ -39,6 +39,8 @@ LARGEST_MM = 400.0
 LEAST_WALL_MM = 0.2
 """Thinnest elastomer that can be cast [mm]."""
 BORE_SHARE = 0.6
+FIN_MM = 0.1
+"""What of the foot's outline is thinner than twice this is left out: a remeshed body has burrs."""
 LEAST_OPENING_MM = 6.0
 """Narrowest way into the cavity about the middle of the base: the smallest camera modules are
 about 4 mm wide."""
@@ -266,7 +268,8 @@ def _foot(outer: Any, cavity: Any, shape: Any) -> LabelledSurface:
     """The outline of the base, wider by the lip, with a bore for the camera."""
     import manifold3d
 
-    outline = outer.slice(0.01).offset(shape.base_lip_mm, manifold3d.JoinType.Round)
+    outline = outer.slice(0.01).offset(-FIN_MM, manifold3d.JoinType.Round)
+    outline = outline.offset(shape.base_lip_mm + FIN_MM, manifold3d.JoinType.Round)
     height = shape.base_height_mm
     plate = manifold3d.Manifold.extrude(outline, height).translate((0.0, 0.0, -height))
     radius = BORE_SHARE * _opening_mm(cavity) / 2

@@ -29,6 +29,8 @@ MOST_WAYS = 100
 PLACES = 5
 """Places looked at along each."""
 ENTER_MM = 1e-4
+LEVEL = 1e-6
+"""A way that falls by less of its length never reaches the base plane [1]."""
 LEAST_MM = 1e-3
 """A skin squeezed to less is torn: keeps the strain finite."""
 SAMPLES = 2000
@@ -92,8 +94,10 @@ def _through(body: Body, start_mm: np.ndarray, pull: np.ndarray, base_mm: float)
     within = entry[:, 2] > base_mm + LIFT_MM
     entry = entry[within]
     leave = caster.hits(entry, along[: len(entry)])[0]
-    falling = max(-float(pull[2]), 1e-9)
-    leave = np.minimum(leave, (entry[:, 2] - base_mm) / falling)
+    if pull[2] < -LEVEL:
+        leave = np.minimum(leave, (entry[:, 2] - base_mm) / -pull[2])
+    # A way that only grazes the body goes in and never comes out.
+    leave, entry = leave[np.isfinite(leave)], entry[np.isfinite(leave)]
     longest = np.argsort(-leave, kind="stable")[:MOST_WAYS]
     return Ways(entry[longest], leave[longest, None] * pull)
 

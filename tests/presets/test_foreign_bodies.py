@@ -17,7 +17,7 @@ pytestmark = pytest.mark.slow
 
 HOPELESS = ("crossing_8.stl", "cad_5.step", "cad_8.step")
 """Two balls apart, a loft that the kernel tessellates in forty layers, and one flat face."""
-MADE = ("holes_5.stl", "crossing_2.stl", "cad_7.step")
+MADE = ("holes_5.stl", "crossing_2.stl", "cad_4.step")
 
 
 def test_there_are_forty_of_four_kinds() -> None:

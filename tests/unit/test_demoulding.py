@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from geometry.demoulding import core_way, hardship
 from geometry.mould_checks import motion_checks, part_removal
 from geometry.opening_words import closing_steps, direction_words, opening_steps, recipe_json
 from geometry.parting import Parting
+from geometry.rays import RayCaster
 from geometry.squeezing import confined_strain, outer_strain
 from geometry.sweeping import swept, tolerance_mm3, touching_mm2, way_mm
 from ui.parts import PartsView
@@ -51,6 +53,12 @@ HALVES = Parting(
     curve_mm=np.array([[0.0, 0.0], [0.0, 20.0]]),
     undercut=0.0,
 )
+
+
+HOOKED = csg.Union(
+    parts=(box(-10, -10, 0, 10, 10, 20), box(9, -10, 0, 13, 10, 2), box(12, -10, 0, 13, 10, 10))
+)
+"""A block with a fin that stands up beside it."""
 
 
 def motion(step: int, part: str, direction: tuple[float, float, float], mm: float) -> PartMotion:
@@ -99,16 +107,28 @@ def test_faces_that_slide_on_each_other_are_no_overlap() -> None:
 def test_a_skin_squeezed_against_its_core_stretches_by_depth_over_rest() -> None:
     """Behind a fin of 1 mm a wall passes 0.5 mm deep, 12.5 - 6 = 6.5 mm from the core: 0.5 / 6.5;
     with the core gone the skin of half width 10 dents by 0.5 / 10."""
-    hooked = csg.Union(
-        parts=(box(-10, -10, 0, 10, 10, 20), box(9, -10, 0, 13, 10, 2), box(12, -10, 0, 13, 10, 10))
-    )
-    made = cast(body(hooked), body(box(-6, -6, 0, 6, 6, 15)))
+    made = cast(body(HOOKED), body(box(-6, -6, 0, 6, 6, 15)))
     backed = outer_strain(made, HALVES, 0, backed=True)
     assert backed.value == pytest.approx(0.5 / 6.5, rel=0.02)
     assert backed.place_mm[0] == pytest.approx(12.5, abs=0.01)
     free = outer_strain(made, HALVES, 0, backed=False)
     assert free.value == pytest.approx(0.5 / 10.0, rel=0.02)
     assert outer_strain(made, HALVES, 1, backed=True).value == 0.0
+
+
+def test_a_ray_that_misses_makes_no_endless_way(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A ray through a corner may come out nowhere: its way is left out, not 6 km long."""
+    hits = RayCaster.hits
+
+    def sometimes_missing(caster: RayCaster, origins: np.ndarray, along: np.ndarray) -> Any:
+        distance, *others = hits(caster, origins, along)
+        return np.where(np.arange(len(distance)) % 7 == 3, np.inf, distance), *others
+
+    monkeypatch.setattr(RayCaster, "hits", sometimes_missing)
+    made = cast(body(HOOKED), body(box(-6, -6, 0, 6, 6, 15)))
+    worst = outer_strain(made, HALVES, 0, backed=True)
+    assert worst.value < 1.0
+    assert np.abs(worst.place_mm).max() <= 20.0
 
 
 def test_a_core_with_a_head_squeezes_a_skin_that_is_held() -> None:
