@@ -41,6 +41,8 @@ WAYS_MM = (2.0, 6.0, 12.0, 20.0, 30.0)
 STRAIGHT_SHARE = 0.01
 """A core less of whose wall ever meets the skin goes straight out [1]."""
 SAMPLES = 1500
+UPRIGHT_SHARE = 0.02
+"""A core whose tip is aside of its opening by less of its height stands upright [1]."""
 LEAN_SHARE = 0.05
 """Share of a core's height at either end that tells where its middle is."""
 
@@ -173,6 +175,8 @@ def core_way(cast: Cast) -> np.ndarray:
     if _met(cast, core, start, [DOWN])[0] <= STRAIGHT_SHARE:
         return DOWN
     lean = _lean(core.points_mm)
+    if lean is None:
+        return DOWN
     ways = [_aslant(lean, tilt) for tilt in TILTS_DEG]
     return ways[int(np.argmin(_met(cast, core, start, ways)))]
 
@@ -190,13 +194,16 @@ def _met(cast: Cast, core: Body, start_mm: np.ndarray, ways: Sequence[np.ndarray
     return in_skin.reshape(len(ways), len(WAYS_MM), -1).mean(axis=2).max(axis=1)
 
 
-def _lean(points_mm: np.ndarray) -> np.ndarray:
-    """Unit direction in which a core leans from its opening to its tip, shape (2,)."""
+def _lean(points_mm: np.ndarray) -> np.ndarray | None:
+    """Unit direction in which a core leans from its opening to its tip, shape (2,); None where it
+    stands upright.
+    """
     low, high = points_mm[:, 2].min(), points_mm[:, 2].max()
     reach = LEAN_SHARE * (high - low)
     ends = [points_mm[points_mm[:, 2] < low + reach], points_mm[points_mm[:, 2] > high - reach]]
     root, tip = ((end.min(axis=0) + end.max(axis=0))[:2] / 2 for end in ends)
-    return (tip - root) / max(float(np.linalg.norm(tip - root)), 1e-9)
+    aside_mm = float(np.linalg.norm(tip - root))
+    return (tip - root) / aside_mm if aside_mm > UPRIGHT_SHARE * (high - low) else None
 
 
 def _aslant(lean: np.ndarray, tilt_deg: float) -> np.ndarray:

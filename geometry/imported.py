@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 
 from geometry.csg_mesh import arrays, closed
-from geometry.isosurface import distance_mm
-from geometry.offset import inset_surface, inside
-from geometry.shell import two_sides, walls_mm
+from geometry.offset import inset_surface
+from geometry.shell import two_sides
 from geometry.surface import face_areas, mesh_volume
+from geometry.wall_between import Wall, wall_between
 from workbench.core.design import Layers
 from workbench.core.errors import DesignError
 from workbench.core.imported import Pick, ReadBody, ReadSurface
@@ -71,10 +71,10 @@ def build_imported(
     notice, sides = body.notice, two_sides(outer) if body.inner is None else None
     if sides is not None:
         outer, core = sides
-        _expect_inside(outer, core)
-        thin_mm, thick_mm = walls_mm(outer, core)
+        wall = _expect_inside(outer, core)
+        thick = f"{wall.least_mm:.2g} to {wall.most_mm:.2g} mm thick"
         shell = (
-            f"the body is a shell already, {thin_mm:.2g} to {thick_mm:.2g} mm thick: its two sides "
+            f"the body is a shell already, {thick}: its two sides "
             "are outer and inner, and layers.elastomer_mm is not used"
         )
         notice = "; ".join(part for part in (notice, shell) if part)
@@ -194,29 +194,24 @@ def _offset(outer: Any, inset_mm: float, *, at: str) -> Any:
     return kept
 
 
-def _expect_inside(outer: Any, core: Any) -> None:
-    """Refuse an inner body that comes through the outer, or leaves too thin a wall."""
+def _expect_inside(outer: Any, core: Any) -> Wall:
+    """The wall; refuses an inner body that comes through the outer, or leaves too thin a one."""
     if core.is_empty() or core.bounding_box()[2] > FLAT_MM:
         raise DesignError(
             "the inner body does not reach the base of the outer",
             hint="both files must share one coordinate system; raise shape.cut_mm if they do",
             at="body.inner",
         )
-    points, faces, _ = _arrays(outer)
-    inner, _, _ = _arrays(core)
-    above = inner[inner[:, 2] > FLAT_MM]
-    side = ~(np.abs(points[faces][:, :, 2]).max(axis=1) < FLAT_MM)
-    distance = distance_mm(points, faces[side], above)
-    distance = np.where(inside(points, faces, above), distance, -distance)
-    worst = int(np.argmin(distance))
-    if distance[worst] < LEAST_WALL_MM:
-        x, y, z = above[worst]
+    wall = wall_between(outer, core)
+    if wall.least_mm < LEAST_WALL_MM:
+        x, y, z = wall.least_at_mm
         raise DesignError(
-            f"the wall between outer and inner body is {distance[worst]:.2g} mm at "
+            f"the wall between outer and inner body is {wall.least_mm:.2g} mm at "
             f"({x:.1f}, {y:.1f}, {z:.1f}) mm, less than {LEAST_WALL_MM:g} mm",
             hint="make the inner body smaller; both files must share one coordinate system",
             at="body.inner",
         )
+    return wall
 
 
 def _labelled(body: Any, picks: Sequence[Pick]) -> LabelledSurface:
@@ -287,9 +282,12 @@ def _opening_mm(cavity: Any) -> float:
         DesignError: If a camera does not pass.
     """
     import manifold3d
+    import shapely
 
     section = cavity.slice(0.01)
-    rim_mm = float(np.linalg.norm(np.concatenate(section.to_polygons()), axis=1).min())
+    # To the edges of the outline: it has corners only where it bends.
+    outlines = [shapely.LinearRing(outline) for outline in section.to_polygons()]
+    rim_mm = min(outline.distance(shapely.Point(0.0, 0.0)) for outline in outlines)
     open_there = not (section ^ manifold3d.CrossSection.circle(FLAT_MM, 8)).is_empty()
     width_mm = 2.0 * rim_mm if open_there else 0.0
     if width_mm < LEAST_OPENING_MM:

@@ -12,7 +12,6 @@ import numpy as np
 
 from geometry.csg_mesh import arrays, closed
 from geometry.holes import Damaged, close_holes
-from geometry.isosurface import distance_mm
 from geometry.surface import face_areas, mesh_volume, pieces
 
 FLAT_MM = 1e-6
@@ -49,15 +48,6 @@ def two_sides(body: Any) -> tuple[Any, Any] | None:
         return None
     whole = closed("the outer side", *outer)
     return whole, closed("the inner side", points, faces[:, ::-1], numbers)
-
-
-def walls_mm(outer: Any, core: Any) -> tuple[float, float]:
-    """Thinnest and thickest way from a vertex of the inner side to the outer side [mm]."""
-    points, faces = arrays(outer)
-    skin = faces[np.abs(points[faces][:, :, 2]).max(axis=1) >= FLAT_MM]
-    inner, _ = arrays(core)
-    found = distance_mm(points, skin, inner)
-    return float(found.min()), float(found.max())
 
 
 def _lidded(

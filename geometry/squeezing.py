@@ -60,7 +60,7 @@ def outer_strain(cast: Cast, parting: Parting, number: int, *, backed: bool) -> 
     depth_mm = _depth_mm(cast.sensing, places_mm)
     if backed:
         return _worst(depth_mm / np.maximum(_behind_mm(cast, places_mm), LEAST_MM), places_mm)
-    return _worst(depth_mm / _half_width_mm(cast, places_mm[np.argmax(depth_mm)]), places_mm)
+    return _worst(depth_mm / _half_widths_mm(cast, places_mm), places_mm)
 
 
 def confined_strain(cast: Cast, pull: np.ndarray) -> Worst:
@@ -120,11 +120,24 @@ def _behind_mm(cast: Cast, places_mm: np.ndarray) -> np.ndarray:
     return _depth_mm(cast.core, places_mm)
 
 
-def _half_width_mm(cast: Cast, place_mm: np.ndarray) -> float:
-    """Half the smaller width of the body's section at the height of a place [mm]."""
-    outlines = evaluate(cast.outer).slice(float(place_mm[2])).to_polygons()
-    points = np.concatenate([np.asarray(outline) for outline in outlines])
-    return max(LEAST_MM, float(np.ptp(points, axis=0).min()) / 2)
+def _half_widths_mm(cast: Cast, places_mm: np.ndarray) -> np.ndarray:
+    """Half the smaller width of the body's section at the height of each place [mm], shape (P,).
+
+    However the section is turned; fins and toes beside each other bend aside as a whole.
+    """
+    import shapely
+
+    body = evaluate(cast.outer)
+    heights_mm, rows = np.unique(np.round(places_mm[:, 2], 1), return_inverse=True)
+    found = np.full(len(heights_mm), LEAST_MM)
+    for number, height_mm in enumerate(heights_mm):
+        outlines = body.slice(float(height_mm)).to_polygons()
+        if not outlines:
+            continue
+        around = shapely.MultiPoint(np.concatenate(outlines)).minimum_rotated_rectangle
+        sides_mm = np.linalg.norm(np.diff(shapely.get_coordinates(around)[:3], axis=0), axis=1)
+        found[number] = max(LEAST_MM, float(sides_mm.min()) / 2)
+    return found[rows.reshape(-1)]
 
 
 def _worst(strain: np.ndarray, places_mm: np.ndarray) -> Worst:

@@ -68,21 +68,32 @@ def way_mm(moving: Any, others: Mapping[str, Any], direction: np.ndarray) -> flo
 
 def swept(moving: Any, others: Mapping[str, Any], direction: np.ndarray, distance_mm: float) -> Met:
     """The worst overlap of a manifold with others while it moves along a straight way."""
-    limits: dict[str, float] = {}
     worst = FREE
     count = max(1, int(np.ceil(distance_mm / STEP_MM)))
     for gone_mm in distance_mm * np.arange(1, count + 1) / count:
         moved = moving.translate(gone_mm * direction)
-        for name, other in others.items():
+        for other in others.values():
             if not _boxes_meet(moved, other):
                 continue
             shared = moved ^ other
-            if shared.volume() <= LEAST_MM3:
-                continue
-            limit_mm3 = limits.setdefault(name, tolerance_mm3(moving, other))
-            met = Met(float(shared.volume()), limit_mm3, _middle(shared))
-            worst = max(worst, met, key=lambda found: found.over_mm3)
+            if shared.volume() > LEAST_MM3:
+                met = Met(float(shared.volume()), _rounding_mm3(shared), _middle(shared))
+                worst = max(worst, met, key=lambda found: (found.over_mm3 > 0, found.overlap_mm3))
     return worst
+
+
+def _rounding_mm3(shared: Any) -> float:
+    """How much of an overlap may be the rounding of faces that slide on each other [mm3].
+
+    Only what is thin all over: a peg that is caught is no rounding, however wide the faces around
+    it. Sheets thinner than the shift vanish where the body meets itself shifted along X, Y and Z;
+    both faces of a sheet belong to its area.
+    """
+    kept = shared
+    for shift_mm in 2.0 * np.sqrt(3.0) * TOLERANCE_MM * np.eye(3):
+        kept = kept ^ shared.translate(shift_mm) ^ shared.translate(-shift_mm)
+    thin = kept.volume() <= LEAST_MM3
+    return max(LEAST_MM3, TOLERANCE_MM * float(shared.surface_area()) / 2) if thin else LEAST_MM3
 
 
 def _boxes_meet(one: Any, other: Any) -> bool:

@@ -61,10 +61,8 @@ class Foresight:
         if body.solid is None:
             return
         design, changed = fitted(desk.session.design, body.solid)
-        if not changed:
-            desk.reports.notify(
-                "Nothing was moved", "No place inside the body was found for what does not fit."
-            )
+        if design == desk.session.design:
+            desk.reports.notify("Nothing was moved", f"{changed or 'All of it is inside'}.")
             return
         desk.session.change_optics(design.optics)
         desk.replaced()

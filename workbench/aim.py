@@ -35,10 +35,12 @@ def default_target_mm(
         top_mm = corners[:, :, 2].max()
         highest = corners[(corners[:, :, 2] > top_mm - FLAT_TOP_MM).all(axis=1)]
         if len(highest):
-            # In the middle of a flat top, not at one of its corners.
+            # In the middle of a flat top, not at one of its corners; on it where it is a rim.
             edges = highest[:, 1:] - highest[:, :1]
             area = np.linalg.norm(np.cross(edges[:, 0], edges[:, 1]), axis=1)
-            point = area @ highest.mean(axis=1) / area.sum()
+            middle = area @ highest.mean(axis=1) / area.sum()
+            top = np.arange(3 * len(highest)).reshape(-1, 3)
+            point = place_near(highest.reshape(-1, 3), top, middle).point_mm
         else:
             point = corners.reshape(-1, 3)[np.argmax(corners[:, :, 2])]
         x, y, z = (round(float(c), 3) for c in point)

@@ -2,14 +2,15 @@
 
 Each light and camera that the checks refuse is moved as little as the candidates allow: a ring gets
 the largest radius that keeps its LEDs' own size and the clearance from the support, in half
-millimetres; lamps and cameras go toward the axis, and up to the base. What fits stays as it is.
+millimetres; lamps and cameras go toward the axis at their height, else to other heights in the
+cavity, the nearest first. What fits stays as it is.
 """
 
 from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TypeVar
 
 import numpy as np
@@ -23,6 +24,9 @@ from workbench.core.results import MembraneMesh, Solid
 RING_STEP_MM = 0.5
 SHARES = np.linspace(1.0, 0.0, 21)
 """Parts of the way from the axis at which a lamp or camera is tried [1]."""
+FEW_SHARES = SHARES[::5]
+LEVELS = np.linspace(1.0, 0.0, 21)
+"""Parts of the cavity's height at which they are tried then [1]."""
 ABOVE_BASE_MM = 0.3
 """Height over the base of what was below it [mm]: that of the default camera."""
 Placed = TypeVar("Placed", LedRing, Lamp, Camera)
@@ -47,25 +51,22 @@ def fitted(design: SensorDesign, solid: Solid) -> tuple[SensorDesign, str]:
 
     if optics.ring.count:
         ring = _first(optics.ring, _rings(design, solid, mesh), ring_fits)
-        if ring != optics.ring:
+        if ring is None:
+            said.append("LED ring: no radius and height were found at which it fits")
+        elif ring != optics.ring:
             said.append(_ring_words(optics.ring, ring))
             design = design.replace("optics.ring", ring)
-    base_mm = float(mesh.cavity.points_mm[:, 2].min())
-    lamps = tuple(
-        _first(lamp, _nearer(lamp, base_mm), lambda lamp: check_lights(mesh, dark, (lamp,)))
+    lamps = [
+        _first(lamp, _nearer(lamp, mesh), lambda lamp: check_lights(mesh, dark, (lamp,)))
         for lamp in optics.lamps
-    )
-    if lamps != optics.lamps:
-        said.append(f"lamps: {_moved(optics.lamps, lamps)}")
-        design = design.replace("optics.lamps", lamps)
+    ]
+    design = design.replace("optics.lamps", _placed("lamp", optics.lamps, lamps, said))
     before = optics.all_cameras
     cameras = [
-        _first(eye, _nearer(eye, base_mm), lambda eye: check_camera(mesh, eye)) for eye in before
+        _first(eye, _nearer(eye, mesh), lambda eye: check_camera(mesh, eye)) for eye in before
     ]
-    if tuple(cameras) != tuple(before):
-        said.append(f"cameras: {_moved(before, cameras)}")
-        design = design.replace("optics.camera", cameras[0])
-        design = design.replace("optics.cameras", tuple(cameras[1:]))
+    first, *others = _placed("camera", before, cameras, said)
+    design = design.replace("optics.camera", first).replace("optics.cameras", tuple(others))
     return design, "; ".join(said)
 
 
@@ -83,8 +84,8 @@ def ring_room_mm(design: SensorDesign, solid: Solid, ring: LedRing | None = None
     return float(distance.min()) - half_mm - 2 * housing.clearance_mm
 
 
-def _first(now: Placed, others: Iterable[Placed], check: Callable[[Placed], None]) -> Placed:
-    """The first that the check takes; what there is now, if none."""
+def _first(now: Placed, others: Iterable[Placed], check: Callable[[Placed], None]) -> Placed | None:
+    """The first that the check takes, what there is now before all others; None if none is."""
     for one in (now, *others):
         try:
             check(one)
@@ -94,15 +95,15 @@ def _first(now: Placed, others: Iterable[Placed], check: Callable[[Placed], None
                 return now
         else:
             return one
-    return now
+    return None
 
 
 def _rings(design: SensorDesign, solid: Solid, mesh: MembraneMesh) -> Iterator[LedRing]:
     """Rings with other radii, then at other heights too, the nearest first."""
     ring = design.optics.ring
     base_mm, top_mm = (float(f(mesh.cavity.points_mm[:, 2])) for f in (np.min, np.max))
-    heights = np.clip([ring.height_mm, *np.linspace(0.9, 0.1, 9) * top_mm], base_mm, None)
-    for height_mm in heights:
+    others = sorted(LEVELS[2:-2:2] * top_mm, key=lambda height: abs(height - ring.height_mm))
+    for height_mm in np.clip([ring.height_mm, *others], base_mm, None):
         raised = dataclasses.replace(ring, height_mm=round(float(height_mm), 2))
         if ring.mount is LedMount.CAVITY:
             room_mm = ring_room_mm(design, solid, raised)
@@ -127,13 +128,22 @@ def _shell_radii(mesh: MembraneMesh, ring: LedRing) -> list[float]:
     return [(low_mm + high_mm) / 2] if low_mm < high_mm < math.inf else []
 
 
-def _nearer(item: Placed, base_mm: float) -> Iterator[Placed]:
-    """A lamp or camera nearer and nearer to the axis, at its height or just above the base."""
-    x, y, z = item.position_mm  # pyright: ignore[reportAttributeAccessIssue]
-    height_mm = max(z, base_mm + ABOVE_BASE_MM)
-    for share in SHARES:
-        place = (round(float(share * x), 3), round(float(share * y), 3), round(height_mm, 3))
-        yield dataclasses.replace(item, position_mm=place)
+def _nearer(item: Placed, mesh: MembraneMesh) -> Iterator[Placed]:
+    """A lamp or camera toward the axis at its height, then at other heights, the nearest first."""
+    position = np.array(item.position_mm)  # pyright: ignore[reportAttributeAccessIssue]
+    low_mm, high_mm = (float(f(mesh.cavity.points_mm[:, 2])) for f in (np.min, np.max))
+    low_mm += ABOVE_BASE_MM
+    level_mm = max(float(position[2]), low_mm)
+    places = [np.array([*(share * position[:2]), level_mm]) for share in SHARES]
+    grid = [
+        np.array([*(share * position[:2]), low_mm + level * (high_mm - low_mm)])
+        for level in LEVELS
+        for share in FEW_SHARES
+    ]
+    places += sorted(grid, key=lambda place: float(np.linalg.norm(place - position)))
+    for place in places:
+        x, y, z = (round(float(value), 3) for value in place)
+        yield dataclasses.replace(item, position_mm=(x, y, z))
 
 
 def _ring_words(before: LedRing, after: LedRing) -> str:
@@ -143,10 +153,15 @@ def _ring_words(before: LedRing, after: LedRing) -> str:
     return f"{words}, to fit inside"
 
 
-def _moved(before: Iterable[Lamp | Camera], after: Iterable[Lamp | Camera]) -> str:
-    pairs = zip(before, after, strict=True)
-    return ", ".join(
-        f"{number} to ({', '.join(f'{value:g}' for value in new.position_mm)}) mm"
-        for number, (old, new) in enumerate(pairs, start=1)
-        if old != new
-    )
+def _placed(
+    what: str, before: Sequence[Placed], after: Sequence[Placed | None], said: list[str]
+) -> tuple[Placed, ...]:
+    """Where each is now, with a word for each that has moved and each that found no place."""
+    for number, (old, new) in enumerate(zip(before, after, strict=True), start=1):
+        name = f"{what} {number}" if len(before) > 1 else what
+        if new is None:
+            said.append(f"{name}: no place was found at which it fits")
+        elif new != old:
+            place = ", ".join(f"{value:g}" for value in new.position_mm)  # pyright: ignore[reportAttributeAccessIssue]
+            said.append(f"{name} to ({place}) mm")
+    return tuple(new or old for old, new in zip(before, after, strict=True))

@@ -63,6 +63,7 @@ def test_a_finger_as_it_is_fits(finger: Solid) -> None:
         ("ring.radius_mm", 20.0, "optics.ring.radius_mm", "in the space outside"),
         ("camera.position_mm", (13.5, 0.0, 5.0), "optics.camera.position_mm", "inside the wall"),
         ("camera.position_mm", (0.0, 0.0, -3.0), "optics.camera.position_mm", "below the base"),
+        ("camera.position_mm", (0.0, 0.0, 39.5), "optics.camera.position_mm", "inside the wall"),
         ("lamps", (Lamp(position_mm=(0.0, 14.0, 9.0)),), "optics.lamps[1].position_mm", "wall"),
     ],
 )
@@ -88,6 +89,15 @@ def test_a_ring_that_a_new_radius_no_longer_holds() -> None:
     assert moved.optics.ring.radius_mm == pytest.approx(5.5)
     assert "instead of 9 mm" in said
     assert misfits(solid, moved.optics) == []
+
+
+def test_what_finds_no_place_is_named(finger: Solid) -> None:
+    """A ring of LEDs of 20 mm finds no radius at any height; nothing is changed."""
+    design = SensorDesign().replace("housing.led_width_mm", 20.0)
+    design = design.replace("housing.led_height_mm", 20.0)
+    same, said = fitted(design.replace("optics.ring.radius_mm", 20.0), finger)
+    assert same.optics.ring.radius_mm == 20.0
+    assert said == "LED ring: no radius and height were found at which it fits"
 
 
 def test_leds_in_the_shell_stay_in_it(finger: Solid) -> None:

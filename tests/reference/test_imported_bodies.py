@@ -286,3 +286,66 @@ def test_a_thick_block_with_a_bore_is_no_shell() -> None:
     bore.apply_translation((0.0, 0.0, -15.0))
     made = trimesh.boolean.difference([block, bore], engine="manifold")
     assert two_sides(closed("b", np.add(made.vertices, [0, 0, 15.0]), made.faces)) is None
+
+
+@pytest.mark.parametrize(("slot_mm", "said"), [(4.95, "is 0.05 mm at"), (7.0, "is -2 mm at")])
+def test_a_slot_over_the_middle_of_a_flat_inside_is_measured(slot_mm: float, said: str) -> None:
+    """Walls of 5 mm; a slot in the outside comes near to the core, or through it, where neither
+    has a corner of the other's in reach. So does a body that is such a shell already."""
+    outer, inner = slotted(slot_mm), block(30.0, 30.0, 25.0)
+    with pytest.raises(DesignError, match=said):
+        build_imported(body_of(*outer, inner=inner), ImportedShape(), Layers())
+    shallow = build_imported(body_of(*slotted(3.0), inner=inner), ImportedShape(), Layers())
+    assert shallow.notice == ""
+    shell = boolean("difference", outer, inner)
+    if slot_mm < 5.0:
+        with pytest.raises(DesignError, match=said):
+            build_imported(body_of(*shell), ImportedShape(), Layers())
+
+
+def block(*size_mm: float) -> tuple[np.ndarray, np.ndarray]:
+    """A box on z = 0."""
+    import trimesh
+
+    made = trimesh.creation.box(size_mm)
+    return np.add(made.vertices, [0.0, 0.0, size_mm[2] / 2]), np.asarray(made.faces)
+
+
+def boolean(kind: str, *bodies: tuple[np.ndarray, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    """Union or difference of bodies."""
+    import trimesh
+
+    made = getattr(trimesh.boolean, kind)([trimesh.Trimesh(*b) for b in bodies], engine="manifold")
+    return np.asarray(made.vertices), np.asarray(made.faces)
+
+
+def slotted(deep_mm: float) -> tuple[np.ndarray, np.ndarray]:
+    """A box of 40 x 40 x 30 mm with a slot of 20 x 4 mm in the middle of one side."""
+    points, faces = block(16.0, 20.0, 4.0)
+    return boolean(
+        "difference", block(40.0, 40.0, 30.0), (np.add(points, [28.0 - deep_mm, 0, 8]), faces)
+    )
+
+
+def test_a_narrow_cavity_has_no_way_in_for_a_camera() -> None:
+    """A cavity of 4 x 40 mm is 4 mm wide, though its corners are 40 mm apart."""
+    with pytest.raises(DesignError, match="is 4 mm wide about the middle"):
+        build_imported(
+            body_of(*block(14.0, 50.0, 30.0)),
+            ImportedShape(),
+            Layers(elastomer_mm=3.0, support_mm=2.0),
+        )
+
+
+def test_a_dish_is_aimed_at_on_its_rim() -> None:
+    """The middle of a rim is in the air: the nearest place of the rim, 14 to 20 mm out."""
+    import trimesh
+
+    dish = trimesh.creation.cylinder(14.0, 10.0, sections=SIDES)
+    hollow = boolean(
+        "difference", drum(20.0, 30.0), (np.add(dish.vertices, [0, 0, 30.0]), dish.faces)
+    )
+    solid = build_imported(body_of(*hollow), ImportedShape(), Layers())
+    x, y, z = default_target_mm(SensorDesign(name="dish", family="imported"), solid)
+    assert z == pytest.approx(30.0, abs=0.02)
+    assert 13.9 < math.hypot(x, y) < 20.0

@@ -101,7 +101,40 @@ def test_faces_that_slide_on_each_other_are_no_overlap() -> None:
     assert swept(one, {"below": below}, X, 12.0).over_mm3 <= 0.0
     sunk = one.translate((0.0, 0.0, -0.005))
     assert swept(sunk, {"below": below}, X, 12.0).over_mm3 > 0.2
+    grazed = one.translate((0.0, 0.0, -0.0005))
+    assert swept(grazed, {"below": below}, X, 12.0).over_mm3 <= 0.0
     assert way_mm(one, {"below": below}, X) == pytest.approx(10.0)
+
+
+def test_a_peg_is_caught_however_wide_the_faces_around_it() -> None:
+    """A peg of 1.5 x 1.2 x 1 mm in its socket under 2400 mm2 that slide: 1.2 mm3 at 1 mm, 1.8 at 2,
+    where the rounding of so much area would be 2.4 mm3."""
+    slab = csg.Union(parts=(box(0, 0, 0, 60, 40, 5), box(30, 20, -1, 31.5, 21.2, 0)))
+    socket = csg.without(box(0, 0, -5, 60, 40, 0), [box(30, 20, -1, 31.5, 21.2, 1)])
+    met = swept(evaluate(slab), {"below": evaluate(socket)}, X, 20.0)
+    assert met.overlap_mm3 == pytest.approx(1.5 * 1.2, rel=0.01)
+    assert met.over_mm3 > 1.0
+
+
+def test_a_skin_is_as_wide_as_its_narrow_side_however_it_is_turned() -> None:
+    """A fin beside a slab of 8 x 60 mm dents it by 0.5 / 4, along the axes and askew."""
+    slab = csg.Union(
+        parts=(box(-4, -30, 0, 4, 30, 20), box(3, -30, 0, 7, 30, 2), box(6, -30, 0, 7, 30, 10))
+    )
+    cavity = body(box(-2, -28, 0, 2, 28, 15))
+    straight = outer_strain(cast(body(slab), cavity), HALVES, 0, backed=False)
+    assert straight.value == pytest.approx(0.5 / 5.5, rel=0.02)
+    askew = Parting(
+        count=2,
+        azimuth_deg=40.0,
+        middle_mm=np.zeros(2),
+        curve_mm=np.array([[0.0, 0.0], [0.0, 20.0]]),
+        undercut=0.0,
+    )
+    turned = cast(body(csg.turned(slab, 40.0)), body(csg.turned(cavity, 40.0)))
+    assert outer_strain(turned, askew, 0, backed=False).value == pytest.approx(
+        straight.value, rel=0.05
+    )
 
 
 def test_a_skin_squeezed_against_its_core_stretches_by_depth_over_rest() -> None:
@@ -165,6 +198,23 @@ def test_a_leaning_core_leaves_along_its_lean(slope: float) -> None:
         numbers=np.full(len(made.outer.faces), -1, np.int16),
     )
     assert bend_strain(core, skin, core_way(made)).value == pytest.approx(0.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("aside_mm", [0.0, 1e-7, 0.1])
+def test_an_upright_core_wider_than_its_neck_goes_straight_down(aside_mm: float) -> None:
+    """A bulb leans nowhere: rounding of its tip is no direction, and the way has length 1."""
+    bulb = csg.Union(
+        parts=(
+            csg.cylinder(5.0, 0.0, 10.0),
+            csg.cylinder(9.0, 10.0, 25.0),
+            csg.cylinder(2.0, 25.0, 28.0),
+        )
+    )
+    core = body(bulb)
+    tip = core.points_mm[:, 2] > 27.0
+    points = core.points_mm + aside_mm * np.outer(tip, [1.0, 0.0, 0.0])
+    made = cast(body(csg.cylinder(12.0, 0.0, 30.0)), csg.Body(points_mm=points, faces=core.faces))
+    assert core_way(made) == pytest.approx(DOWN)
 
 
 def test_what_is_in_the_way_is_bad_and_told_with_its_place() -> None:
