@@ -72,7 +72,8 @@ def serve(options: argparse.Namespace, project: Project) -> int:
     token = None if local else secrets.token_urlsafe(16)
     names = () if local else reachable_names(options.host)
     here, *others = links(names or [options.host], options.port, token)
-    tenancy = Tenancy(project.folder, session, link=here)
+    # Others can read the lock's file, so the token does not stand there.
+    tenancy = Tenancy(project.folder, session, link=here.partition("?")[0])
     holder = tenancy.enter()
     if holder is not None:
         print(

@@ -61,11 +61,13 @@ class Session:
         return self.state.case
 
     def open(self, name: str | None, *, unit: str = "auto") -> None:
-        """Start from a named design, else from where the last session stopped.
+        """Start from a named design, else from where the last session stopped; nothing to undo.
 
         Raises:
             DesignError: If the named design does not exist; a broken autosave only leaves a notice.
         """
+        self._past.clear()
+        self._future.clear()
         if name is not None:
             self.state = fresh_state(load_design(name, unit=unit, project=self.project))
             return

@@ -8,6 +8,7 @@ no more, and shows the project in its turn. The lock of a server that has ended 
 
 from __future__ import annotations
 
+import contextlib
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -34,7 +35,10 @@ class Tenancy:
         """Called when this server begins to write the project again, with its state read anew."""
         self._editor: Editor | None = None
         self._looked = 0.0
-        session.may_write = lambda: self.lock.is_own
+        self._told = ""
+        # A lock that nobody holds, because its file is gone or unreadable, forbids nothing: a write
+        # that fails is told, one that is left out is not.
+        session.may_write = lambda: self.lock.holder() in (None, self.lock.own)
 
     def enter(self) -> Holder | None:
         """Take the project, or learn which server has it.
@@ -60,11 +64,15 @@ class Tenancy:
             return
         self._looked = now
         holder = self.lock.holder()
-        if holder == self.lock.own or self._editor.is_shut:
+        if holder == self.lock.own:
             return
-        if holder is None or not holder.living:
+        if self._editor.is_shut:
+            self._shut(holder)
+        elif holder is None or not holder.living:
             # Somebody deleted the file, or took over and died: nobody writes but this server.
-            self.enter()
+            with contextlib.suppress(StoreError):
+                # A folder that cannot be written is told by whoever writes the design.
+                self.enter()
         else:
             self._shut(holder)
 
@@ -72,9 +80,13 @@ class Tenancy:
         """Give the project back."""
         self.lock.release()
 
-    def _shut(self, holder: Holder) -> None:
+    def _shut(self, holder: Holder | None) -> None:
+        """Let no tab edit; what all read is renewed where the holder has changed or ended."""
         assert self._editor is not None
-        self._editor.shut(_words(holder), self._seize)
+        words = _words(holder)
+        if words != self._told:
+            self._told = words
+            self._editor.shut(words, self._seize)
 
     def _seize(self) -> None:
         """Take the project over, as it stands on disk: the other server may have edited it."""
@@ -82,6 +94,7 @@ class Tenancy:
             self.lock.seize()
         except OSError as error:
             raise self._unwritable(error) from error
+        self._told = ""
         self.session.open(None)
         self.on_entered()
 
@@ -93,7 +106,10 @@ class Tenancy:
         )
 
 
-def _words(holder: Holder) -> str:
+def _words(holder: Holder | None) -> str:
+    if holder is None or not holder.living:
+        told = "**Only shown here:** the workbench that had this project has ended."
+        return f"<span style='color:{AMBER}'>{told}</span>"
     where = f" on {holder.host}" if holder.elsewhere else ""
     told = f"process {holder.pid}{where}, since {holder.since}"
     link = f" [Open it there]({holder.link})." if holder.link.startswith("http") else ""

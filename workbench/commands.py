@@ -136,7 +136,7 @@ def run(options: argparse.Namespace, project: Project) -> int:
 
 def export(options: argparse.Namespace, project: Project) -> int:
     """Write a design's bodies, mould and meshes; 1 where a check says they cannot be made."""
-    from workbench.exports import export_design, scene_notice
+    from workbench.exports import clear_exports, export_design, scene_notice
     from workbench.foresight import optical_misfits
     from workbench.named_designs import load_design
     from workbench.outputs import all_checks, check_rows, part_rows
@@ -150,6 +150,7 @@ def export(options: argparse.Namespace, project: Project) -> int:
     notice = scene_notice(design) if options.mitsuba else ""
     if notice:
         complain(f"notice: {notice}")
+    clear_exports(options.out, but=Path(options.design))
     start = _start(design, options, project, printer)
     for misfit in optical_misfits(start.solid, start.design.optics):
         complain(f"notice: {misfit}")

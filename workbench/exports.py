@@ -14,7 +14,7 @@ from workbench.core.errors import DeviceError
 from workbench.core.optics import Transport
 from workbench.core.results import MembraneMesh, VolumeMesh
 from workbench.design_toml import design_files, design_to_toml
-from workbench.folder import prepare, remove_stale
+from workbench.folder import RUN_FILES, prepare, remove_stale
 from workbench.outputs import write_package
 from workbench.pipeline import InlineRunner, PressCase, StageMonitor, evaluate, plan, results
 from workbench.store import Store
@@ -23,7 +23,23 @@ from workbench.whole_files import write_atomically
 
 OPTIONAL = ("mesh.npz", "tets.npz", "exploded.png", "bodies/*", "mitsuba/*")
 """Files that not every export writes."""
+MADE = ("membrane.stl", "support.stl", "base.stl", "mesh.npz", "tets.npz", "exploded.png")
+"""What is made of a design; `design.toml` and `bodies/` may be the very one that is asked for."""
 STAGES = ("mesh", "mould", "housing", "recipe", "package")
+
+
+def clear_exports(out: Path, *, but: Path) -> None:
+    """Make the folder, without what an earlier run or export made there.
+
+    Args:
+        but: The design or body that is asked for, which stays.
+
+    Raises:
+        DesignError: If a file has that name.
+        StoreError: If the folder cannot be made or written.
+    """
+    made = (*RUN_FILES, *MADE, "mitsuba/*")
+    prepare(out, clear=[name for name in made if (out / name).resolve() != but.resolve()])
 
 
 def export_design(
@@ -56,7 +72,7 @@ def export_design(
 
     if mitsuba:
         _check_scene(design)
-    prepare(out)
+    prepare(out, clear=())
     runner = InlineRunner(store)
     wanted = (*STAGES, "tets") if tets else STAGES
     if mitsuba:

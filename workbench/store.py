@@ -35,6 +35,8 @@ from workbench.terminal import complain
 META = "meta.json"
 DAMAGED = "damaged"
 """Folder of what could not be read, for whoever wants to know why."""
+DAMAGED_KEPT = 10
+"""So many of them, the newest."""
 TORN = (errno.ENOENT, errno.EIO)
 """What the system says of a result that is not whole; anything else is no fault of the result."""
 DEFAULT_LIMIT_BYTES = 20 * 2**30
@@ -102,7 +104,7 @@ class Store:
         arrays = self._arrays(stage, key, meta)
         try:
             value = unpack(arrays, meta["tree"])
-        except (ValueError, KeyError, TypeError) as error:
+        except (ValueError, LookupError, TypeError, AttributeError, RecursionError) as error:
             raise self._set_aside(stage, key, error) from error
         with contextlib.suppress(OSError):
             self._touch(self.path(stage, key) / META)
@@ -153,7 +155,8 @@ class Store:
     def _meta(self, stage: str, key: str) -> dict[str, Any]:
         try:
             meta = json.loads((self.path(stage, key) / META).read_bytes())
-            if not {"seconds", "bytes", "arrays", "tree"} <= set(meta):
+            whole = {"seconds", "bytes", "arrays", "tree"} <= set(meta)
+            if not (whole and isinstance(meta["bytes"], int)):
                 raise ValueError("its description is not whole")
             return meta
         except FileNotFoundError as error:
@@ -228,9 +231,16 @@ class Store:
                 removed += 1
         entries: list[tuple[float, int, Path]] = []
         for meta in self.root.glob(f"*/*/{META}"):
-            with contextlib.suppress(OSError, ValueError, KeyError):
-                size = json.loads(meta.read_bytes())["bytes"]
+            if meta.parent.parent.name == DAMAGED:
+                continue
+            # What is damaged is set aside, with a word, by whoever asks for it.
+            with contextlib.suppress(OSError, ValueError, KeyError, TypeError):
+                size = int(json.loads(meta.read_bytes())["bytes"])
                 entries.append((meta.stat().st_mtime, size, meta.parent))
+        aside = sorted((self.root / DAMAGED).glob("*"), key=lambda folder: folder.stat().st_mtime)
+        for folder in aside[:-DAMAGED_KEPT]:
+            shutil.rmtree(folder, ignore_errors=True)
+            removed += 1
         total = sum(size for _, size, _ in entries)
         for _, size, folder in sorted(entries, key=lambda item: item[0]):
             if total <= self.limit_bytes:

@@ -167,7 +167,9 @@ class Topic:
                 wanted=request.wanted,
                 monitor=reporter,
             ):
-                waiting.pop(0)
+                # A stage whose input was found damaged is done twice.
+                if outcome.stage in waiting:
+                    waiting.remove(outcome.stage)
                 self.events.put(StageDone(topic=self.name, outcome=outcome, request=request))
             if request.preview is not None:
                 call = request.preview

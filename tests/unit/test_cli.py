@@ -22,9 +22,10 @@ from workbench import bench, doctor, outputs, validate
 from workbench.benchmarks.pipeline import rerun_row
 from workbench.cli import main, parser
 from workbench.core.design import Law, SensorDesign
-from workbench.core.errors import SolveError
+from workbench.core.errors import DesignError, SolveError
 from workbench.core.press import ContactSettings, Extent, Method, Press
 from workbench.core.trajectory import unit_pose
+from workbench.design_toml import design_to_toml
 from workbench.named_designs import load_design
 from workbench.pipeline import PressCase
 from workbench.press_options import press_case
@@ -452,3 +453,26 @@ def test_solver_import_prints_nothing_into_the_answer(tmp_path: Path) -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert json.loads(done.stdout) == []
+
+
+def test_a_failed_export_leaves_nothing_of_an_earlier_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Parts, pictures and reports of another design go; the design that is asked for, the bodies it
+    names and what is not ours stay.
+    """
+
+    def refused(*args: object, **keywords: object) -> None:
+        raise DesignError("no body")
+
+    monkeypatch.setattr("workbench.pipeline.evaluate", refused)
+    out = tmp_path / "out"
+    old = ("moulds/core.stl", "parts/support.step", "recipe.json", "report.html", "membrane.stl")
+    mine = ("bodies/0.stl", "mine.txt")
+    for name in (*old, *mine):
+        (out / name).parent.mkdir(parents=True, exist_ok=True)
+        (out / name).write_text("old")
+    (out / "design.toml").write_text(design_to_toml(SensorDesign(name="mine")))
+    assert run(tmp_path, "export", str(out / "design.toml"), "--out", str(out)) == 2
+    assert not [name for name in old if (out / name).exists()]
+    assert all((out / name).exists() for name in (*mine, "design.toml"))

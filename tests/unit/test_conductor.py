@@ -13,14 +13,14 @@ import pytest
 
 from workbench.conductor import Conductor
 from workbench.core.design import SensorDesign
-from workbench.core.errors import Cancelled, MeshingError
+from workbench.core.errors import Cancelled, DamagedError, MeshingError
 from workbench.core.monitor import Monitor
 from workbench.core.press import Press
 from workbench.core.sensing import Contact
 from workbench.live_press import LiveCall, Preview
 from workbench.pipeline import PressCase
 from workbench.preview_call import PreviewCall
-from workbench.requests import LIVE, SHAPE, Finished, PreviewDone
+from workbench.requests import LIVE, SHAPE, Finished, PreviewDone, StageDone
 from workbench.stages import Call, Outcome
 from workbench.store import Store
 
@@ -122,6 +122,28 @@ def test_the_stage_that_failed_is_named(tmp_path: Path) -> None:
     conductor.submit("mesh", design("any"), PressCase(), ("mesh",))
     end = finished(conductor)
     assert (end.failed, type(end.error)) == ("mesh", MeshingError)
+
+
+def test_a_stage_that_is_done_twice_ends_well(tmp_path: Path) -> None:
+    """The mesher finds the body damaged: it is built anew, and the mesh is made."""
+
+    class Healing(Slow):
+        healed = False
+
+        def run(self, call: Call, monitor: Monitor) -> Outcome:
+            if call.stage == "mesh" and not self.healed:
+                self.healed = True
+                raise DamagedError("the stored result is damaged", at="build")
+            return Outcome(stage=call.stage, key=call.key, cached=False, seconds=0.0)
+
+    conductor = Conductor(Store(tmp_path), Healing())
+    conductor.submit("mesh", design("any"), PressCase(), ("mesh",))
+    done = []
+    while not isinstance(event := conductor.events.get(timeout=WAIT_S), Finished):
+        if isinstance(event, StageDone):
+            done.append(event.outcome.stage)
+    assert (event.error, event.failed) == (None, "")
+    assert done == ["build", "build", "mesh"]
 
 
 def test_live_body_is_not_stopped_by_the_next(conductor: Conductor, slow: Slow) -> None:

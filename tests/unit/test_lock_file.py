@@ -7,6 +7,7 @@ import json
 import os
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -50,12 +51,20 @@ def test_who_takes_it_over_has_it(tmp_path: Path) -> None:
     assert second.is_own
 
 
-@pytest.mark.parametrize("what", ["dead", "number used again", "garbage", "empty"])
+@pytest.mark.parametrize("what", ["dead", "not reaped", "number used again", "garbage", "empty"])
 def test_nobody_is_held_up_by_what_is_gone(what: str, tmp_path: Path) -> None:
     """A dead process, a living one that is another, a file that says nothing."""
     lock = LockFile(tmp_path)
     if what == "dead":
         written(lock, pid=ended())
+    elif what == "not reaped":
+        # Its parent has not asked how it ended, and in some containers nobody ever does.
+        process = subprocess.Popen([sys.executable, "-c", "print('on')"], stdout=subprocess.PIPE)
+        began = started(process.pid)
+        assert process.stdout is not None
+        process.stdout.read()
+        time.sleep(0.2)
+        written(lock, pid=process.pid, started=began)
     elif what == "number used again":
         if not started(os.getpid()):
             pytest.skip("the system does not tell when a process began")

@@ -35,6 +35,19 @@ def test_a_long_value_keeps_both_ends() -> None:
     assert text.endswith("/idle.png'")
 
 
+@pytest.mark.parametrize("path", [f"{LONG}.toml", f"{'folder/' * 20_000}x.toml"])
+@pytest.mark.parametrize("command", ["run", "export"])
+def test_a_path_that_no_disk_takes_is_cut(
+    command: str, path: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """As the design, and as the folder of the results."""
+    project = ["--project", str(tmp_path / "p")]
+    assert main([command, path, *project, "--out", str(tmp_path / "out")]) in (2, 3)
+    assert main([command, "geltip", *project, "--out", f"{tmp_path}/{path}"]) in (2, 3)
+    captured = capsys.readouterr()
+    assert max(map(len, (captured.out + captured.err).splitlines())) < LONGEST_LINE
+
+
 def test_where_is_cut_too() -> None:
     """A misspelt field of 100 KB."""
     assert len(GeometryError("no", at=f"shape.{LONG}").at) == 80

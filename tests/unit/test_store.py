@@ -219,7 +219,50 @@ def emptied(folder: Path) -> None:
     (folder / META).write_bytes(b"")
 
 
-@pytest.mark.parametrize("harm", [cut_short, without_header, gone, garbled, emptied])
+def nothing_said(folder: Path) -> None:
+    """A description that is JSON, and says nothing."""
+    (folder / META).write_text("null")
+
+
+def no_size(folder: Path) -> None:
+    """A description with a word where the size belongs."""
+    meta = json.loads((folder / META).read_text())
+    (folder / META).write_text(json.dumps({**meta, "bytes": "many"}))
+
+
+HARMS = [cut_short, without_header, gone, garbled, emptied, nothing_said, no_size]
+
+
+@pytest.mark.parametrize("harm", HARMS)
+def test_a_sweep_passes_by_what_is_damaged(harm: Callable[[Path], None], tmp_path: Path) -> None:
+    """It is for whoever asks for the result to find; what was set aside is kept, the newest ten."""
+    store = Store(tmp_path)
+    store.told = lambda text: None
+    store.save("s", "k", picture(), seconds=0.0, version=1)
+    harm(store.path("s", "k"))
+    assert store.sweep() == 0
+    for number in range(12):
+        store.save("s", f"k{number}", picture(), seconds=0.0, version=1)
+        harm(store.path("s", f"k{number}"))
+        assert not store.has("s", f"k{number}")
+    assert store.sweep() == 2
+    assert len(list((tmp_path / "damaged").iterdir())) == 10
+
+
+@pytest.mark.parametrize("tree", [{"map": [1]}, {"class": "Picture", "fields": []}])
+def test_a_description_of_something_else_is_set_aside(tree: object, tmp_path: Path) -> None:
+    """Whole arrays under a tree that no result has."""
+    store = Store(tmp_path)
+    store.told = lambda text: None
+    store.save("s", "k", picture(), seconds=0.0, version=1)
+    meta = json.loads((store.path("s", "k") / META).read_text())
+    (store.path("s", "k") / META).write_text(json.dumps({**meta, "tree": tree}))
+    with pytest.raises(DamagedError):
+        store.load("s", "k")
+    assert not store.has("s", "k")
+
+
+@pytest.mark.parametrize("harm", HARMS)
 @pytest.mark.parametrize("known", [False, True], ids=["other-process", "same-process"])
 def test_a_damaged_result_is_set_aside_once(
     harm: Callable[[Path], None], known: bool, tmp_path: Path

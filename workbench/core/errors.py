@@ -6,9 +6,12 @@ beside the widget and the command line can print it.
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 LONGEST_ECHO = 80
+LONGEST_WORD = 300
+"""Words of a message that are longer are cut: longer than the paths that people have."""
 """Characters of a value that a message repeats: a file may hold 100 KB where a number is due."""
 HEAD, TAIL = 50, 27
 
@@ -26,6 +29,11 @@ def shortened(text: str) -> str:
     return text if len(text) <= LONGEST_ECHO else f"{text[:HEAD]}...{text[-TAIL:]}"
 
 
+def _without_endless_words(text: str) -> str:
+    """A text whose words are no longer than a path that the system takes: a name may be a file."""
+    return re.sub(rf"\S{{{LONGEST_WORD},}}", lambda word: shortened(word[0]), text)
+
+
 class WorkbenchError(Exception):
     """Base of every error we raise on purpose."""
 
@@ -34,8 +42,8 @@ class WorkbenchError(Exception):
 
     def __init__(self, message: str, *, hint: str = "", at: str = "") -> None:
         super().__init__(message)
-        self.message = message
-        self.hint = hint
+        self.message = _without_endless_words(message)
+        self.hint = _without_endless_words(hint)
         self.at = shortened(at)
 
     def __reduce__(self) -> tuple[Any, ...]:
