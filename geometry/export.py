@@ -21,6 +21,7 @@ from geometry.solid import part_from_brep
 from geometry.step import expect_read_back, step_bytes
 from geometry.step_assembly import assembly_step
 from geometry.surface import mesh_volume
+from geometry.thinning import WITHIN_MM
 from geometry.threemf import threemf_bytes
 from workbench.core.errors import GeometryError
 from workbench.core.fabrication import (
@@ -77,7 +78,10 @@ def package_files(
         try:
             step = step_file(part)
         except GeometryError as error:
-            said.append(error.message)
+            said.append(
+                f"{part.name} has no STEP file, and the assembly goes without it, so use its STL "
+                f"or 3MF ({error.message})"
+            )
             continue
         steps[part.name], files[f"{stem}.step"] = step, step.data
         said += [step.reason] if step.reason else []
@@ -110,7 +114,7 @@ class StepFile(NamedTuple):
     data: bytes
     volume_mm3: float
     reason: str
-    """Why it has flat facets although the part has a B-rep; else ""."""
+    """Why it has flat facets although the part has a B-rep, and how far they are off; else ""."""
 
 
 def step_file(part: FabricationPart) -> StepFile:
@@ -126,7 +130,10 @@ def step_file(part: FabricationPart) -> StepFile:
             return StepFile(data, expect_read_back(data, [volume_mm3], what=part.name), "")
         except GeometryError as error:
             reason = f"{part.name}: its STEP file has flat facets ({error.message})"
-    data, _ = faceted_step(part.points_mm, part.faces, name=part.name)
+    data, far_mm = faceted_step(part.points_mm, part.faces, name=part.name)
+    if far_mm > WITHIN_MM:
+        reason = reason or f"{part.name}: its STEP file has flat facets"
+        reason += f", up to {far_mm:.2f} mm off its STL and 3MF, which hold all triangles"
     return StepFile(data, expect_read_back(data, [volume_mm3], what=part.name), reason)
 
 

@@ -60,7 +60,7 @@ def faceted_step(points_mm: np.ndarray, faces: np.ndarray, *, name: str) -> tupl
         The file, and the largest distance of its facets from the mesh [mm].
 
     Raises:
-        GeometryError: If it is not closed, or cannot be thinned out to few enough facets.
+        GeometryError: If it is not closed, or few enough facets would be another body.
     """
     points, triangles, far_mm = thinned(points_mm, faces, what=name)
     about = f"flat facets, at most {far_mm:.3f} mm from the mesh"

@@ -222,6 +222,7 @@ def _or_repaired(
     offer = RepairOffer(
         step_mm=repaired.step * factor,
         deviation_mm=repaired.deviation * factor,
+        farthest=repaired.farthest,
         closed_mm=repaired.closed_width * factor,
     )
     if not asked.repair:

@@ -16,14 +16,13 @@ from typing import Any
 import numpy as np
 
 from geometry.csg_mesh import arrays, closed
-from geometry.isosurface import distance_mm, isosurface
+from geometry.deviation import deviation
+from geometry.isosurface import isosurface
 from geometry.meshlab import crossing_faces
 from geometry.surface import face_areas
 from geometry.winding import (
     SAMPLES_PER_STEP,
-    Grid,
     grid_around,
-    sampled,
     samples_of,
     winding_number,
 )
@@ -35,8 +34,6 @@ MOST_PLACES = 3_000_000
 MOST_SAMPLES = 3_000_000
 """Of the grid; bodies as wide as long get a somewhat wider step."""
 INSIDE = 0.5
-BESIDE_STEPS = 1.5
-"""How far to either side of a face it is looked whether it is on the border, in steps."""
 REACH_STEPS = 1.0
 """How far a vertex is moved onto the file's own faces, in steps."""
 MOST_LAYERS = 30.0
@@ -45,7 +42,6 @@ FLAT_STEPS = 0.1
 """Tolerance within which the new triangles are thinned out, in steps."""
 DEBRIS_SHARE = 1e-3
 """Pieces with less than this share of the largest volume are debris."""
-PLACES = 60_000
 ROUNDS = 4
 
 
@@ -60,7 +56,9 @@ class Repaired:
     step: float
     """Width of the grid."""
     deviation: float
-    """Largest distance between the file's outer faces and the new surface, either way."""
+    """Largest distance between what can be seen of the file and the new surface, either way."""
+    farthest: tuple[float, float, float]
+    """Where that is."""
     closed_width: float
     """About the width of the widest hole that was closed; 0 without one."""
     bodies: int
@@ -93,14 +91,14 @@ def remeshed(points: np.ndarray, faces: np.ndarray) -> Repaired | None:
     if solid is None:
         return None
     made = _onto(points, faces, *arrays(solid.simplify(FLAT_STEPS * step)), step)
-    outer = _on_border(places, areas, winding, grid)
-    far, hole = _apart((points, faces), made, outer, step)
+    off = deviation((points, faces), made, (places, areas), step)
     return Repaired(
         points=made[0],
         faces=made[1],
         step=step,
-        deviation=far,
-        closed_width=2.0 * hole,
+        deviation=off.largest,
+        farthest=off.place,
+        closed_width=2.0 * off.hole,
         bodies=bodies,
     )
 
@@ -158,32 +156,3 @@ def _turned(before: np.ndarray, after: np.ndarray, triangles: np.ndarray) -> np.
         return np.cross(b - a, c - a)
 
     return np.einsum("ij,ij->i", normals(before), normals(after)) < 0.0
-
-
-def _on_border(
-    places: np.ndarray, areas: np.ndarray, winding: np.ndarray, grid: Grid
-) -> np.ndarray:
-    """Samples of the file with inside on one side and outside on the other, shape (K, 3)."""
-    stride = max(1, len(places) // PLACES)
-    places, areas = places[::stride], areas[::stride]
-    beside = BESIDE_STEPS * grid.step * areas
-    beside /= np.maximum(np.linalg.norm(areas, axis=1, keepdims=True), 1e-300)
-    above = sampled(winding, grid, places + beside)
-    below = sampled(winding, grid, places - beside)
-    return places[(above < INSIDE) & (below > INSIDE)]
-
-
-def _apart(
-    file: tuple[np.ndarray, np.ndarray],
-    made: tuple[np.ndarray, np.ndarray],
-    outer: np.ndarray,
-    step: float,
-) -> tuple[float, float]:
-    """Largest distance of the surfaces from each other, and of what closes holes from the file."""
-    there = distance_mm(*made, outer).max() if len(outer) else 0.0
-    places = np.vstack([made[0], made[0][made[1]].mean(axis=1)])
-    back = distance_mm(*file, places[:: max(1, len(places) // PLACES)])
-    lids = back > REACH_STEPS * step
-    # Beside a hole what closes it begins at the rim, and is no deviation of what the file has.
-    here = 0.0 if lids.any() else back.max()
-    return float(max(there, here)), float(back[lids].max(initial=0.0))

@@ -2,14 +2,16 @@
 
 Quadric decimation (Garland and Heckbert, Surface simplification using quadric error metrics, 1997)
 as VTK does it, which halves again and again while the surface stays within a tolerance; where its
-result is no closed body, manifold3d's collapses, which always are one. STL and 3MF files hold all
-triangles.
+result is no closed body, manifold3d's collapses, which always are one. A volume alone does not tell
+a block from one with two hundred pins, so the distance is measured, and bounded: where few facets
+are too far off, more are written. STL and 3MF files hold all triangles.
 """
 
 from __future__ import annotations
 
 import contextlib
-from typing import Any
+from collections.abc import Iterator
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -17,84 +19,104 @@ from geometry.csg_mesh import arrays, closed
 from geometry.isosurface import distance_mm
 from workbench.core.errors import GeometryError
 
-MOST_FACETS = 2500
+USUAL_FACETS = 2500
 """Facets of a part: 0.9 MB of STEP, and 2 s to read."""
+MOST_FACETS = 20_000
+"""Of a part that fewer would make another body: 8 MB, and 15 s to read."""
 ENOUGH_FACETS = 600
 """A part with fewer is left as it is."""
 WITHIN_MM = 0.1
-"""Largest distance of thinned facets from the triangles, where `MOST_FACETS` allow it."""
+"""Distance of thinned facets from the triangles beyond which nothing more is thinned out."""
+FARTHEST_MM = 0.2
+"""Largest distance of facets that are still the same body: what a printer's layers round off."""
 SAME_VOLUME = 0.003
 SLIVER_MM = 1e-5
 """A facet lower than this has no normal that a reader could trust."""
 CLEAN_MM = 1e-4
 """Edges shorter than this are collapsed before facets are written."""
 FIRST_MM = 0.005
-PLACES = 20_000
-"""Places at which the distance is measured, at most."""
+
+Triangles = tuple[np.ndarray, np.ndarray]
+"""Vertices (N, 3) [mm] and faces (M, 3)."""
 
 
 def thinned(
     points_mm: np.ndarray, faces: np.ndarray, *, what: str
 ) -> tuple[np.ndarray, np.ndarray, float]:
-    """Fewer facets of the same closed body.
+    """Fewer facets of the same closed body, or more where fewer would be another one.
 
     Returns:
         Vertices (N, 3) [mm], triangles (M, 3), and their largest distance from the first ones,
-        either way [mm].
+        either way [mm], at most `FARTHEST_MM`.
 
     Raises:
-        GeometryError: If no thinning leaves a sound body of few enough facets.
+        GeometryError: If no thinning leaves a sound body of few enough facets within that.
     """
     exact = points_mm, faces
     whole = closed(what, points_mm, faces).simplify(CLEAN_MM)
-    volume_mm3, best = float(whole.volume()), (*arrays(whole), 0.0)
-    if _many(best) or not _writable(*best[:2], volume_mm3):
+    volume_mm3 = float(whole.volume())
+    if whole.num_tri() > USUAL_FACETS or not _writable(*arrays(whole), volume_mm3):
         # Collapses that hardly show, because the decimation takes its time by the triangle.
-        whole, best = whole.simplify(FIRST_MM), None
-    count = min(whole.num_tri() // 2, MOST_FACETS)
-    while best is None or count >= ENOUGH_FACETS:
-        made = _fewer(whole, count, volume_mm3)
-        if made is None:
-            break
-        far_mm = _apart_mm(exact, arrays(made))
-        if best is not None and far_mm > WITHIN_MM:
-            break
-        whole, best, count = made, (*arrays(made), far_mm), count // 2
+        whole = whole.simplify(FIRST_MM)
+    best, count = None, USUAL_FACETS
+    while best is None and count <= MOST_FACETS:
+        best = _fewer(whole, count, exact, volume_mm3)
+        count *= 2
     if best is None:
         raise GeometryError(
-            f"{what} has {len(faces)} triangles that cannot be thinned out to the "
-            f"{MOST_FACETS} facets of a STEP file",
+            f"{what} has {len(faces)} triangles, and no STEP file of at most {MOST_FACETS} flat "
+            f"facets is within {FARTHEST_MM:g} mm of them",
             hint="use its STL or 3MF file",
             at="mould",
         )
-    return best
+    fewer: _Thin | None = best
+    while fewer is not None and fewer.far_mm <= WITHIN_MM:
+        best, count = fewer, min(fewer.solid.num_tri() // 2, USUAL_FACETS)
+        fewer = _fewer(best.solid, count, exact, volume_mm3) if count >= ENOUGH_FACETS else None
+    return (*arrays(best.solid), best.far_mm)
 
 
-def _many(found: tuple[np.ndarray, np.ndarray, float]) -> bool:
-    return len(found[1]) > MOST_FACETS
+class _Thin(NamedTuple):
+    """A manifold and its distance from the triangles that were given."""
+
+    solid: Any
+    far_mm: float
 
 
-def _fewer(whole: Any, count: int, volume_mm3: float) -> Any | None:
-    """A manifold of at most about so many facets, or None where there is none."""
+def _fewer(whole: Any, count: int, exact: Triangles, volume_mm3: float) -> _Thin | None:
+    """At most about so many facets of the same body, or None where there are none."""
+    for solid in _candidates(whole, count):
+        made = arrays(solid)
+        if _writable(*made, volume_mm3):
+            far_mm = _apart_mm(exact, made)
+            if far_mm <= FARTHEST_MM:
+                return _Thin(solid, far_mm)
+    return None
+
+
+def _candidates(whole: Any, count: int) -> Iterator[Any]:
+    """Closed bodies of at most about so many facets, what is likely to be nearest first."""
     import pyvista
 
-    points, faces = arrays(whole)
-    padded = np.column_stack([np.full(len(faces), 3), faces]).ravel()
-    surface = pyvista.PolyData(points, padded).decimate(
-        1.0 - count / len(faces), volume_preservation=True
-    )
-    with contextlib.suppress(GeometryError):
-        places = np.asarray(surface.points, np.float64)
-        solid = closed("part", places, surface.regular_faces).simplify(CLEAN_MM)
-        if len(solid.decompose()) == 1 and _writable(*arrays(solid), volume_mm3):
-            return solid
-    tolerance_mm = WITHIN_MM / 4
-    while tolerance_mm <= 8 * WITHIN_MM:
+    if whole.num_tri() <= count:
+        yield whole
+    else:
+        points, faces = arrays(whole)
+        padded = np.column_stack([np.full(len(faces), 3), faces]).ravel()
+        surface = pyvista.PolyData(points, padded).decimate(
+            1.0 - count / len(faces), volume_preservation=True
+        )
+        with contextlib.suppress(GeometryError):
+            places = np.asarray(surface.points, np.float64)
+            solid = closed("part", places, surface.regular_faces).simplify(CLEAN_MM)
+            if len(solid.decompose()) == 1:
+                yield solid
+    tolerance_mm = FARTHEST_MM / 8
+    while tolerance_mm <= FARTHEST_MM:
         solid = whole.simplify(tolerance_mm)
-        if solid.num_tri() <= count and _writable(*arrays(solid), volume_mm3):
-            return solid
+        if solid.num_tri() <= count:
+            yield solid
         tolerance_mm *= 2
-    return None
 
 
 def _writable(points: np.ndarray, faces: np.ndarray, volume_mm3: float) -> bool:
@@ -110,11 +132,12 @@ def _writable(points: np.ndarray, faces: np.ndarray, volume_mm3: float) -> bool:
     )
 
 
-def _apart_mm(exact: tuple[np.ndarray, np.ndarray], made: tuple[np.ndarray, np.ndarray]) -> float:
-    """Largest distance between two surfaces, from the vertices and middles of either."""
-    found = 0.0
-    for (points, faces), (others, facets) in ((exact, made), (made, exact)):
-        places = np.vstack([points, points[faces].mean(axis=1)])
-        places = places[:: max(1, len(places) // PLACES)]
-        found = max(found, float(distance_mm(others, facets, places).max()))
-    return found
+def _apart_mm(exact: Triangles, made: Triangles) -> float:
+    """Largest distance between two surfaces, from the vertices of either and the facets' middles.
+
+    All vertices are asked: one pin among thousands of triangles is what thinning out may lose.
+    """
+    points, facets = made
+    places = np.vstack([points, points[facets].mean(axis=1)])
+    there, back = distance_mm(points, facets, exact[0]), distance_mm(*exact, places)
+    return float(max(there.max(), back.max()))

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -12,11 +13,16 @@ import numpy as np
 import pytest
 import trimesh
 
+from geometry import thinning
+from geometry.csg_mesh import arrays
+from geometry.export import step_file
 from geometry.faceted import faceted_step
+from geometry.isosurface import distance_mm
 from geometry.step_assembly import assembly_step
 from geometry.surface import mesh_volume
-from geometry.thinning import MOST_FACETS, thinned
+from geometry.thinning import FARTHEST_MM, USUAL_FACETS, thinned
 from workbench.core.errors import GeometryError
+from workbench.core.fabrication import FabricationPart, PartGroup
 
 
 def ball(subdivisions: int, waves_mm: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
@@ -25,6 +31,19 @@ def ball(subdivisions: int, waves_mm: float = 0.0) -> tuple[np.ndarray, np.ndarr
     points = np.array(made.vertices)
     points *= 1.0 + waves_mm / 15.0 * np.sin(points[:, [0]])
     return points, np.asarray(made.faces)
+
+
+def pinned(*, outward: bool) -> tuple[np.ndarray, np.ndarray]:
+    """A block of 60 x 40 x 30 mm with 228 pins, or blind holes, of 0.6 x 0.9 mm in its top."""
+    import manifold3d
+
+    block = manifold3d.Manifold.cube((60.0, 40.0, 30.0), center=True)
+    pin = manifold3d.Manifold.cylinder(1.8, 0.3, circular_segments=16, center=True)
+    places = [(x, y, 15.0) for x in np.linspace(-27, 27, 19) for y in np.linspace(-17, 17, 12)]
+    pins = manifold3d.Manifold.batch_boolean(
+        [pin.translate(place) for place in places], manifold3d.OpType.Add
+    )
+    return arrays(block + pins if outward else block - pins)
 
 
 def read(data: bytes, folder: Path) -> Any:
@@ -47,7 +66,7 @@ def test_facets_read_back_as_one_valid_solid(
     assert len(body.solids()) == 1
     assert body.is_valid
     assert len(body.faces()) == min(len(faces), data.count(b"POLY_LOOP"))
-    assert data.count(b"POLY_LOOP") <= MOST_FACETS
+    assert data.count(b"POLY_LOOP") <= USUAL_FACETS
     assert body.volume == pytest.approx(mesh_volume(points, faces), rel=3e-3)
     assert far_mm < 0.2
     assert f"at most {far_mm:.3f} mm from the mesh".encode() in data
@@ -68,6 +87,47 @@ def test_the_stated_distance_is_that_of_the_facets() -> None:
     middle = np.linalg.norm(fewer[facets].mean(axis=1), axis=1)
     deepest = 15.0 - float(middle.min())
     assert 0.5 * far_mm < deepest < far_mm + 0.01
+
+
+@pytest.mark.parametrize("outward", [True, False])
+def test_pins_and_blind_holes_of_a_block_are_not_thinned_away(outward: bool) -> None:
+    """228 of 0.6 x 0.9 mm: .08 % of the volume, and another body without them."""
+    points, faces = pinned(outward=outward)
+    fewer, facets, far_mm = thinned(points, faces, what="block")
+    assert far_mm <= FARTHEST_MM
+    assert distance_mm(fewer, facets, points).max() <= far_mm
+    pins_mm3 = mesh_volume(points, faces) - 72000.0
+    assert mesh_volume(fewer, facets) - 72000.0 == pytest.approx(pins_mm3, rel=0.1)
+
+
+def test_a_body_that_no_facets_hold_is_refused_with_the_remedy(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Where 2,500 facets were the most: the pins would be gone, so nothing is written."""
+    monkeypatch.setattr(thinning, "MOST_FACETS", USUAL_FACETS)
+    with pytest.raises(GeometryError, match=r"no STEP file .* is within 0\.2 mm") as caught:
+        faceted_step(*pinned(outward=True), name="block")
+    assert "STL or 3MF" in caught.value.hint
+
+
+@pytest.mark.parametrize("waves_mm", [0.0, 0.8])
+def test_a_distance_that_counts_is_told(waves_mm: float) -> None:
+    """Of a ball nothing is said; with waves the facets are 0.12 mm off, and the part's reason."""
+    points, faces = ball(6, waves_mm)
+    part = FabricationPart(
+        name="ball",
+        group=PartGroup.SENSOR,
+        points_mm=points,
+        faces=faces.astype(np.int32),
+        brep=np.zeros(0, dtype=np.uint8),
+        explode=(0.0, 0.0, 0.0),
+        volume_mm3=mesh_volume(points, faces),
+        watertight=True,
+    )
+    found = re.search(r"flat facets, up to (\d\.\d\d) mm off its STL", step_file(part).reason)
+    assert bool(found) == bool(waves_mm)
+    if found:
+        assert float(found[1]) == pytest.approx(thinned(points, faces, what="ball")[2], abs=0.005)
 
 
 def test_an_open_mesh_is_refused() -> None:

@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 import dataclasses
+from typing import Any
 
 import numpy as np
 import pytest
 import trimesh
 
+from geometry.deviation import BETWEEN_STEPS, deviation
 from geometry.intake import read_body
 from geometry.isosurface import distance_mm
 from geometry.meshlab import crossing_faces
 from geometry.repair import remeshed
+from geometry.solid_angles import WindingNumber
 from geometry.surface import is_watertight, mesh_volume
 from geometry.winding import grid_around, sampled, samples_of, winding_number
 from tests.foreign_bodies import FORTY, Foreign, cup, double_walled, written
 from workbench.bodies import body_table, read_body_table
 from workbench.core.errors import DesignError
-from workbench.core.imported import ImportedBody, ReadBody, body_file
+from workbench.core.imported import ImportedBody, ReadBody, RepairOffer, body_file
 
 BALL = trimesh.creation.icosphere(4, 15.0)
 BALL_MM3 = float(BALL.volume)
@@ -74,9 +77,72 @@ def test_samples_hold_the_area_of_long_and_of_small_triangles() -> None:
     assert gaps.max() < 0.6
 
 
-@pytest.mark.parametrize("name", ["crossing_2.stl", "holes_6.stl", "crossing_3.stl"])
-def test_a_remesh_is_closed_simple_and_as_near_as_it_says(name: str) -> None:
-    """Doubled faces, cracks and a knot: what is measured from outside is what is stated."""
+@pytest.mark.parametrize("beside_mm", [1e-4, 0.03, 3.0])
+def test_the_winding_number_at_places_holds_beside_faces(beside_mm: float) -> None:
+    """A ball without its cap: clusters far off count as dipoles, to 0.01."""
+    kept = BALL.triangles_center[:, 2] < 12.0
+    points, faces = np.array(BALL.vertices), BALL.faces[kept]
+    middle, up = BALL.triangles_center[kept][::40], BALL.face_normals[kept][::40]
+    places = np.vstack([middle + beside_mm * up, middle - beside_mm * up])
+    want = exact_winding(points, faces, places)
+    assert np.abs(WindingNumber(points, faces).at(places) - want).max() < 0.01
+
+
+@pytest.mark.parametrize("thick_mm", [0.3, 0.03])
+@pytest.mark.parametrize("slot", [False, True])
+def test_a_thin_fin_or_slot_that_is_lost_is_in_the_stated_deviation(
+    slot: bool, thick_mm: float
+) -> None:
+    """10 x 10 mm and 0.3 mm thick on a block of 40 x 40 x 20, which another block cuts through."""
+    block = trimesh.creation.box((40.0, 40.0, 20.0))
+    blade = trimesh.creation.box((10.0, thick_mm, 20.0))
+    blade.apply_translation((0.0, 0.0, 10.0))
+    cut = trimesh.boolean.difference if slot else trimesh.boolean.union
+    other = trimesh.creation.box((10.0, 10.0, 10.0))
+    other.apply_translation((20.0, 0.0, 0.0))
+    made: Any = trimesh.util.concatenate([cut([block, blade], engine="manifold"), other])
+    with pytest.raises(DesignError, match=r"bodies|cut through") as caught:
+        read("blade.stl", exported(made))
+    offer = caught.value.repair
+    found = remeshed(np.array(made.vertices), np.asarray(made.faces))
+    assert found is not None
+    off_mm = distance_mm(found.points, found.faces, np.array(made.vertices)).max()
+    assert off_mm > 9.0
+    assert off_mm <= offer.deviation_mm < off_mm + 0.1
+    x, y, z = offer.farthest
+    assert abs(x) <= 5.0 and abs(y) <= 0.2 and (z < 1.0 if slot else z > 19.0)
+    assert "mm, because what is thinner than about 0.7" in offer.words
+
+
+def test_a_lid_hides_no_deviation_elsewhere() -> None:
+    """A block without its top, closed, and a needle of 0.8 mm on its foot that the file lacks."""
+    block = trimesh.creation.box((20.0, 20.0, 20.0))
+    file = np.array(block.vertices), block.faces[block.triangles_center[:, 2] < 9.0]
+    needle = trimesh.creation.box((0.02, 0.02, 1.6))
+    needle.apply_translation((3.0, 4.0, -10.0))
+    made: Any = trimesh.boolean.union([block, needle], engine="manifold")
+    closed = np.array(made.vertices), np.asarray(made.faces)
+    found = deviation(file, closed, samples_of(*file, 0.7), 1.0)
+    assert found.largest == pytest.approx(0.8 + BETWEEN_STEPS)
+    assert found.place == pytest.approx((3.0, 4.0, -10.8), abs=0.02)
+    assert found.hole > 3.0
+
+
+def test_a_stated_deviation_is_rounded_up() -> None:
+    """9.82 mm is not at most 9.8 mm."""
+    for mm, said in ((10.04, "10.1"), (9.82, "9.9"), (0.3, "0.3"), (0.0401, "0.041"), (0.0, "0")):
+        offer = RepairOffer(step_mm=20.0, deviation_mm=mm, farthest=(0.0, 0.0, 0.0), closed_mm=0.0)
+        assert offer.words.endswith(f"deviation at most {said} mm")
+
+
+@pytest.mark.parametrize(
+    ("name", "off_steps"), [("crossing_2.stl", 2.0), ("holes_6.stl", 2.0), ("crossing_3.stl", 6.0)]
+)
+def test_a_remesh_is_closed_simple_and_as_near_as_it_says(name: str, off_steps: float) -> None:
+    """Doubled faces, cracks and a knot: what is measured from outside is what is stated.
+
+    The fold of the knot is inside out and is lost: five steps.
+    """
     foreign = BY_NAME[name]
     made = trimesh.load_mesh(trimesh.util.wrap_as_stream(written(foreign)), file_type="stl")
     points, faces = np.asarray(made.vertices, np.float64), np.asarray(made.faces)
@@ -87,7 +153,7 @@ def test_a_remesh_is_closed_simple_and_as_near_as_it_says(name: str) -> None:
     assert not crossing_faces(found.points, found.faces).any()
     off = distance_mm(points, faces, found.points)
     assert off.max() <= max(found.deviation, found.closed_width) + 1e-6
-    assert found.deviation < 2.0 * found.step
+    assert found.deviation < off_steps * found.step
 
 
 def test_two_overlapping_blocks_hold_what_their_union_does() -> None:

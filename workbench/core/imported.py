@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import enum
 import hashlib
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -106,6 +107,8 @@ class RepairOffer:
     """Width of the grid of the remesh [mm]."""
     deviation_mm: float
     """Largest distance between the file's outer faces and the new surface [mm]."""
+    farthest: tuple[float, float, float]
+    """Where that is, in the file's own coordinates."""
     closed_mm: float
     """About the width of the widest hole that it closes [mm]; 0 without one."""
 
@@ -113,10 +116,25 @@ class RepairOffer:
     def words(self) -> str:
         """One clause for people."""
         holes = f", holes up to {self.closed_mm:.2g} mm wide closed" if self.closed_mm else ""
+        lost = ""
+        if self.deviation_mm > self.step_mm:
+            x, y, z = self.farthest
+            lost = (
+                f", because what is thinner than about {2.0 * self.step_mm:.2g} mm may be lost, as "
+                f"near ({x:.3g}, {y:.3g}, {z:.3g}) in the file's own coordinates"
+            )
         return (
             f"the body is remeshed at {self.step_mm:.2g} mm, deviation at most "
-            f"{self.deviation_mm:.2g} mm{holes}"
+            f"{_rounded_up(self.deviation_mm):.6g} mm{lost}{holes}"
         )
+
+
+def _rounded_up(value: float) -> float:
+    """To two digits, or a tenth: who accepts a deviation must not find a larger one."""
+    if value <= 0.0:
+        return 0.0
+    unit = min(0.1, 10.0 ** (math.floor(math.log10(value)) - 1))
+    return math.ceil(value / unit - 1e-9) * unit
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
