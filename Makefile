@@ -1,7 +1,7 @@
 # `make` prints this help.
 SHELL := /bin/bash
-PYTHON ?= $(shell for p in python3.12 python3.11 python3; do \
-	$$p -c 'import sys; sys.exit(not (3,11) <= sys.version_info[:2] < (3,13))' 2>/dev/null \
+PYTHON ?= $(shell for p in python3.12 python3.11 python3.13 python3; do \
+	$$p -c 'import sys; sys.exit(not (3,11) <= sys.version_info[:2] < (3,14))' 2>/dev/null \
 	&& echo $$p && break; done)
 BIN := .venv/bin
 PORT ?= 8080
@@ -19,7 +19,7 @@ help: ## Print this help
 setup: .venv/runtime.stamp ## Make .venv with the workbench command in .venv/bin
 
 .venv/python.stamp:
-	@test -n "$(PYTHON)" || { echo "Python 3.11 or 3.12 is needed; install it or set PYTHON=..."; exit 2; }
+	@test -n "$(PYTHON)" || { echo "Python 3.11, 3.12 or 3.13 is needed; install one or set PYTHON=..."; exit 2; }
 	$(PYTHON) -m venv .venv
 	@touch $@
 

@@ -29,7 +29,7 @@ from workbench import (
     train_command,
 )
 from workbench.body_arguments import add_body_options
-from workbench.core.errors import Cancelled, DesignError, StoreError, WorkbenchError, shown
+from workbench.core.errors import Cancelled, DesignError, Stopped, StoreError, WorkbenchError, shown
 from workbench.fem_arguments import add_fem_commands
 from workbench.press_arguments import (
     add_fit_option,
@@ -83,6 +83,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         with request:
             return options.handler(options, project)
+    except Stopped as stopped:
+        return _print_cancelled(stopped.message)
     except WorkbenchError as error:
         return _print_error(error, as_json=as_json)
     except KeyboardInterrupt:
@@ -150,8 +152,8 @@ def _join_negative(words: list[str]) -> list[str]:
     return joined
 
 
-def _print_cancelled() -> int:
-    complain("cancelled; finished results are kept")
+def _print_cancelled(words: str = "cancelled; finished results are kept") -> int:
+    complain(words)
     return Cancelled.exit_code
 
 

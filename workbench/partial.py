@@ -3,6 +3,8 @@
 Images, `contact.npz`, `forces.csv`, poses and VTK files hold those frames only; `summary.json` says
 which frame failed and why. There is no report and no mould: the run has failed. What keeps them
 from being written stands in the hint; why the press failed is what the designer must read first.
+
+Of a press that was stopped by Ctrl-C there are arrays, tables and VTK files only, within a second.
 """
 
 from __future__ import annotations
@@ -14,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from workbench.core.design import SensorDesign
-from workbench.core.errors import SolveError, WorkbenchError
+from workbench.core.errors import SolveError, Stopped, WorkbenchError
 from workbench.core.monitor import Monitor
 from workbench.image_files import write_images
 from workbench.outputs import plain_numbers, summary_table, write_press
@@ -60,6 +62,20 @@ def keeping_partial(
                 frames = "frame 1" if count == 1 else f"frames 1 to {count}"
                 error.message += f"; {frames} settled and {'is' if count == 1 else 'are'} in {out}"
         raise
+    except Stopped as stopped:
+        if stopped.kept:
+            count = _write_arrays(out, design, case, store, stopped.kept)
+            frames = "frame 1" if count == 1 else f"frames 1 to {count}"
+            stopped.message += f"; {frames} settled and {'is' if count == 1 else 'are'} in {out}"
+        raise
+
+
+def _write_arrays(out: Path, design: SensorDesign, case: PressCase, store: Store, key: str) -> int:
+    """Write what needs no rendering, for which there is no time; returns the count of frames."""
+    contact = store.load(PARTIAL, key)
+    load = results(store, plan(design, case), ("build", "mesh"))
+    write_press(out, case.press, load["build"], load["mesh"], contact)
+    return len(contact.reaction_N)
 
 
 def _write(

@@ -12,7 +12,7 @@ from typing import Any
 from workbench.calls import Call, Outcome, Ref, Stage
 from workbench.core.camera import Camera
 from workbench.core.design import Elastomer, Layers, Meshing, MouldOptions
-from workbench.core.errors import SolveError, StoreError
+from workbench.core.errors import SolveError, Stopped, StoreError
 from workbench.core.fabrication import HousingSet, MouldSet, Recipe, SheetHead
 from workbench.core.fem import FemSettings
 from workbench.core.force_field import ForceField
@@ -66,14 +66,14 @@ def run(store: Store, call: Call, monitor: Monitor = silent) -> Outcome:
     rest = part(monitor, PARTS_SHARE, 1.0) if parts else monitor
     try:
         value, seconds = timed(stage.function, *inputs, monitor=rest)
-    except SolveError as error:
+    except (SolveError, Stopped) as error:
         _keep_partial(store, stage, key, error)
         raise
     store.save(stage.name, key, value, seconds=spent_s + seconds, version=stage.version)
     return Outcome(stage=stage.name, key=key, cached=False, seconds=spent_s + seconds)
 
 
-def _keep_partial(store: Store, stage: Stage, key: str, error: SolveError) -> None:
+def _keep_partial(store: Store, stage: Stage, key: str, error: SolveError | Stopped) -> None:
     """Store what settled, and leave its key in the error instead, which then is small to send."""
     if error.partial is None:
         return

@@ -23,7 +23,7 @@ from sim.contact.readout.outcome import collect, frame_outcome
 from sim.contact.readout.verdict import check_frame
 from sim.contact.run import FORCE_CHANGE, NET_FORCE, Run
 from workbench.core.design import Elastomer
-from workbench.core.errors import SolveError
+from workbench.core.errors import SolveError, Stopped
 from workbench.core.indenter import Indenter
 from workbench.core.monitor import Monitor, silent
 from workbench.core.press import ContactSettings, Method, Press
@@ -179,7 +179,21 @@ class Solver:
         return Run(problem, self.relaxation, number, frame=frame)
 
     def run(self) -> None:
-        """Relax until every press has ended."""
+        """Relax until every press has ended.
+
+        Raises:
+            Stopped: If Ctrl-C came after frames of a single press had settled; it holds them.
+        """
+        try:
+            self._relax()
+        except KeyboardInterrupt as asked:
+            first = self.runs[0]
+            if len(self.runs) > 1 or not first.outcomes:
+                raise
+            partial = collect(first.outcomes, first.problem, substeps=int(self.substeps[0]))
+            raise Stopped("cancelled", partial=partial) from asked
+
+    def _relax(self) -> None:
         while self.active.any():
             for case in np.flatnonzero(self.active & ~self.settling).tolist():
                 self.runs[case].feed()

@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import csv
 import json
+import signal
+import subprocess
+import sys
+import time
 from pathlib import Path
 
 import numpy as np
@@ -71,3 +75,36 @@ def test_a_press_that_fails_on_its_way_leaves_what_settled(
     # What the next run clears is all that this one wrote.
     prepare(out, clear=RUN_FILES)
     assert [path for path in out.rglob("*") if path.is_file()] == []
+
+
+def test_ctrl_c_keeps_the_frames_that_had_settled(
+    project: Path, coarse: Path, tmp_path: Path
+) -> None:
+    """Asked to stop in frame 3 or later of 60: within 3 s the command has ended with 130, and
+    forces, arrays and VTK files hold what had settled; nothing else is there.
+    """
+    out = tmp_path / "out"
+    words = f"run {coarse} --indenter sphere --size-mm 4 --target 0,0,16 --depth-mm 1 --frames 60"
+    command = [sys.executable, "-m", "workbench.cli", *words.split(), "--grid-mm", "0.8"]
+    command += ["--project", str(project), "--out", str(out), "--json"]
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as run:
+        assert run.stdout is not None
+        assert run.stderr is not None
+        for line in run.stdout:
+            if "frame 3 of 60" in json.loads(line).get("note", ""):
+                break
+        run.send_signal(signal.SIGINT)
+        asked = time.monotonic()
+        run.stdout.read()
+        said = run.stderr.read()
+        assert run.wait() == 130
+        assert time.monotonic() - asked < 3.0
+    rows = list(csv.DictReader((out / "forces.csv").open()))
+    assert 2 <= len(rows) < 60
+    assert f"cancelled; frames 1 to {len(rows)} settled and are in {out}" in said
+    with np.load(out / "contact.npz") as arrays:
+        assert len(arrays["reaction_N"]) == len(rows)
+    assert (out / "contact_001.vtp").exists()
+    assert not (out / "summary.json").exists()

@@ -141,3 +141,17 @@ class Cancelled(WorkbenchError):
     """The user asked to stop."""
 
     exit_code = 130
+
+
+class Stopped(Cancelled):
+    """The user stopped a press of which frames had settled.
+
+    Attributes:
+        partial: The result of those frames, until a store has taken it, else None.
+        kept: Key under which a store keeps them, or "".
+    """
+
+    def __init__(self, message: str, *, hint: str = "", at: str = "", partial: Any = None) -> None:
+        super().__init__(message, hint=hint, at=at)
+        self.partial = partial
+        self.kept = ""
