@@ -16,13 +16,15 @@ from geometry.castability import Worst
 from geometry.csg_mesh import arrays, evaluate
 from geometry.solid import part_from_brep
 from geometry.stl import welded
-from geometry.surface import is_watertight, pieces
+from geometry.surface import is_watertight, pieces, vertex_normals
 from workbench.core.errors import GeometryError
 from workbench.core.fabrication import FabricationPart, PartGroup
 
 NO_BREP = np.zeros(0, dtype=np.uint8)
 SHORTEST_MM = (0.0, 1e-5, 1e-4, 1e-3)
 """Edges collapsed in turn until the part survives an STL file [mm]; float32 resolves 4e-6 at 50."""
+APART_MM = 2e-3
+"""How far a vertex draws back from another in the same place [mm]: no printer sees it."""
 TRIVIAL_SHARE = 1e-9
 CRUMB_MM3 = 1e-6
 """A piece with less volume is rounding: a cube of a hundredth of a millimetre [mm3]."""
@@ -81,6 +83,9 @@ def fabricate(
         brep = NO_BREP
     else:
         brep, reason, volume_mm3 = _brep(node, brep, volume_mm3, name)
+    if not closed:
+        touching = f"{name} touches itself: its STL file is not closed where it does"
+        reason = "; ".join(words for words in (reason, touching) if words)
     part = FabricationPart(
         name=name,
         group=group,
@@ -124,10 +129,26 @@ def durable(solid: Any) -> tuple[np.ndarray, np.ndarray, bool]:
     points, faces, closed = *arrays(solid), False
     for shortest_mm in SHORTEST_MM:
         points, faces = arrays(solid.simplify(shortest_mm) if shortest_mm else solid)
-        closed = is_watertight(welded(stl_points(points)[faces])[1])
-        if closed:
-            break
+        for tried in (points, apart(points, faces)):
+            closed = is_watertight(welded(stl_points(tried)[faces])[1])
+            if closed:
+                return tried, faces, closed
     return points, faces, closed
+
+
+def apart(points_mm: np.ndarray, faces: np.ndarray) -> np.ndarray:
+    """Vertices of which no two are in one place: where a body touches itself, both sides draw back.
+
+    Along such an edge four triangles meet in a file that only knows places.
+    """
+    _, place, count = np.unique(
+        stl_points(points_mm), axis=0, return_inverse=True, return_counts=True
+    )
+    touching = count[place.reshape(-1)] > 1
+    if not touching.any():
+        return points_mm
+    normals = vertex_normals(points_mm, faces)
+    return np.where(touching[:, None], points_mm - APART_MM * normals, points_mm)
 
 
 def stl_points(points_mm: np.ndarray) -> np.ndarray:
