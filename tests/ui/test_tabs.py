@@ -151,7 +151,7 @@ def test_take_over_and_leave(server: Server, two: tuple[Tab, Tab]) -> None:
     follower.click("Edit here")
     editor.wait(lambda: editor.find("Edit here"), 5, "the former editor follows")
     assert editor.told("Another tab took over")
-    assert not follower.find("Edit here")
+    follower.wait(lambda: not follower.find("Edit here"), 5, "the other edits")
     editor.set(LENGTH, 20.0)
     editor.wait(lambda: editor.value(LENGTH) == 27.0, 5, "its slider snaps back")
     follower.set(LENGTH, 21.0)
