@@ -59,15 +59,19 @@ def keeping_partial(
             except WorkbenchError as unwritten:
                 error.hint += f"; what settled was not written: {unwritten.message}"
             else:
-                frames = "frame 1" if count == 1 else f"frames 1 to {count}"
-                error.message += f"; {frames} settled and {'is' if count == 1 else 'are'} in {out}"
+                error.message += f"; {_settled(count, out)}"
         raise
     except Stopped as stopped:
         if stopped.kept:
             count = _write_arrays(out, design, case, store, stopped.kept)
-            frames = "frame 1" if count == 1 else f"frames 1 to {count}"
-            stopped.message += f"; {frames} settled and {'is' if count == 1 else 'are'} in {out}"
+            stopped.message += f"; {_settled(count, out)}"
         raise
+
+
+def _settled(count: int, out: Path) -> str:
+    if count == 1:
+        return f"frame 1 settled and is in {out}"
+    return f"frames 1 to {count} settled and are in {out}"
 
 
 def _write_arrays(out: Path, design: SensorDesign, case: PressCase, store: Store, key: str) -> int:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 from typing import Any
 
@@ -124,13 +125,7 @@ def test_a_skin_is_as_wide_as_its_narrow_side_however_it_is_turned() -> None:
     cavity = body(box(-2, -28, 0, 2, 28, 15))
     straight = outer_strain(cast(body(slab), cavity), HALVES, 0, backed=False)
     assert straight.value == pytest.approx(0.5 / 5.5, rel=0.02)
-    askew = Parting(
-        count=2,
-        azimuth_deg=40.0,
-        middle_mm=np.zeros(2),
-        curve_mm=np.array([[0.0, 0.0], [0.0, 20.0]]),
-        undercut=0.0,
-    )
+    askew = dataclasses.replace(HALVES, azimuth_deg=40.0)
     turned = cast(body(csg.turned(slab, 40.0)), body(csg.turned(cavity, 40.0)))
     assert outer_strain(turned, askew, 0, backed=False).value == pytest.approx(
         straight.value, rel=0.05

@@ -103,7 +103,7 @@ def file_faults(bundle: Bundle, told: str) -> Iterator[str]:
             yield f"{name} is not closed"
         step = bundle.files.get(name.replace(".stl", ".step"))
         if step is None:
-            if Path(name).stem not in told:
+            if Path(name).stem not in bundle.notice:
                 yield f"{name} has no STEP file and nothing is said"
             continue
         found = read_back(step.tobytes())
