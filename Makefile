@@ -5,13 +5,13 @@ PYTHON ?= $(shell for p in python3.12 python3.11 python3.13 python3; do \
 	&& echo $$p && break; done)
 BIN := .venv/bin
 PORT ?= 8080
-# Tests of one file share bodies and meshes, so they stay together.
-PARALLEL := -n auto --maxprocesses 4 --dist loadfile
+# Tests of one file share bodies and meshes, so they stay together, in the order of tests/conftest.py.
+PARALLEL := -n auto --maxprocesses 4 --dist loadfile --no-loadscope-reorder
 # A process for each core: their threads would only wait for each other.
 ALONE := OMP_NUM_THREADS=1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test check demo bench format lock browser clean
+.PHONY: help setup run test check demo bench docs format lock browser clean
 
 help: ## Print this help
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "make %-8s %s\n", $$1, $$2}'
@@ -48,7 +48,7 @@ test: .venv/dev.stamp browser ## Install what tests need and pass every test
 check: .venv/dev.stamp ## Lint, format, types, fast tests
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
-	$(BIN)/pyright
+	$(BIN)/pyright --pythonpath $(BIN)/python
 	$(ALONE) $(BIN)/python -m pytest -q $(PARALLEL) -m "not slow and not ui and not gpu"
 
 bench: .venv/dev.stamp browser ## Print the benchmark table
@@ -56,6 +56,9 @@ bench: .venv/dev.stamp browser ## Print the benchmark table
 
 browser:
 	@bash .ci/chromium >/dev/null
+
+docs: setup ## Write the pages that are made from the program
+	$(BIN)/python -m docs.generate
 
 format: .venv/dev.stamp ## Format and sort imports
 	$(BIN)/ruff check --fix-only
@@ -65,4 +68,4 @@ lock: .venv/dev.stamp ## Resolve dependencies anew into the lock files
 	$(BIN)/python .ci/lock.py
 
 clean: ## Remove what make made; results under .workbench stay
-	rm -rf .venv out build *.egg-info
+	rm -rf .venv out build dist *.egg-info

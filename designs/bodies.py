@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from workbench.core.marks import NO_MARKS, Field, Marks
+from workbench.core.result.marks import NO_MARKS, Field, Marks
 
 WALL_SHARE = 0.5
 """Least wall over its nominal thickness, in every family."""

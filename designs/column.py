@@ -24,8 +24,8 @@ import numpy as np
 
 from designs.outline import QUARTER
 from designs.shells import sewn
-from workbench.core.booleans import expect_volume
-from workbench.core.marks import Field
+from workbench.core.base.booleans import expect_volume
+from workbench.core.result.marks import Field
 
 APEX_MM = 1e-9
 

@@ -48,11 +48,11 @@ from designs.bodies import Bodies, Fields
 from designs.loaf import Loaf, loaf_body, loaf_shell
 from designs.plates import bored_plate
 from designs.sliders import slider
-from workbench.core.booleans import cut, fuse
-from workbench.core.design import Layers
-from workbench.core.errors import DesignError, GeometryError
-from workbench.core.marks import Marks, Region
-from workbench.core.results import Label
+from workbench.core.base.booleans import cut, fuse
+from workbench.core.base.errors import DesignError, GeometryError
+from workbench.core.design.design import Layers
+from workbench.core.result.marks import Marks, Region
+from workbench.core.result.results import Label
 
 CAVITY_MM = 2.5
 """Smallest half width and height of the cavity under the window [mm]."""

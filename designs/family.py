@@ -10,19 +10,16 @@ slider: `min`, `max`, `step`, `unit`, `label`, `hint` and, where a number comes 
 from __future__ import annotations
 
 import dataclasses
-import functools
-import importlib
 import math
-import pkgutil
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol, runtime_checkable
 
-import designs
 from designs.bodies import Bodies, Fields
 from designs.sequence import Sequence
-from workbench.core.design import Layers
-from workbench.core.errors import DesignError, shown
+from workbench.core.base.errors import DesignError, shown
+from workbench.core.base.records import records
+from workbench.core.design.design import Layers
 
 
 @runtime_checkable
@@ -135,14 +132,8 @@ def resolve_shape(name: str, values: Mapping[str, Any]) -> Any:
     return shape_type(**{key: _number(fields[key], value) for key, value in values.items()})
 
 
-@functools.cache
 def _registry() -> dict[str, Family]:
-    found: dict[str, Family] = {}
-    for module in pkgutil.iter_modules(designs.__path__):
-        candidate = getattr(importlib.import_module(f"designs.{module.name}"), "FAMILY", None)
-        if candidate is not None:
-            found[candidate.name] = candidate
-    return found
+    return {found.name: found for found in records("designs", "FAMILY").values()}
 
 
 def _slider(field: dataclasses.Field[Any]) -> Slider:

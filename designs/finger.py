@@ -40,10 +40,10 @@ import numpy as np
 from designs.bodies import Bodies, Fields
 from designs.outline import upright_and_dome
 from designs.sliders import slider
-from workbench.core.booleans import cut, expect_volume
-from workbench.core.design import Layers
-from workbench.core.errors import DesignError
-from workbench.core.marks import Field
+from workbench.core.base.booleans import cut, expect_volume
+from workbench.core.base.errors import DesignError
+from workbench.core.design.design import Layers
+from workbench.core.result.marks import Field
 
 CAVITY_RADIUS_MM = 1.0
 """Smallest radius of the cavity that still lets a camera look out [mm]."""

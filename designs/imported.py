@@ -33,8 +33,8 @@ from typing import Any, NoReturn
 
 from designs.bodies import Bodies, Fields
 from designs.sliders import slider
-from workbench.core.design import Layers
-from workbench.core.errors import DesignError
+from workbench.core.base.errors import DesignError
+from workbench.core.design.design import Layers
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

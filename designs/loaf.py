@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from designs.outline import upright_and_dome
-from workbench.core.booleans import expect_volume, fuse
+from workbench.core.base.booleans import expect_volume, fuse
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

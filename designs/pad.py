@@ -42,10 +42,10 @@ import numpy as np
 from designs.bodies import Bodies, Fields
 from designs.plates import bored_plate, rectangle_distance, rounded_prism
 from designs.sliders import slider
-from workbench.core.booleans import cut, expect_volume, fuse, intersect
-from workbench.core.design import Layers
-from workbench.core.errors import DesignError
-from workbench.core.marks import Field
+from workbench.core.base.booleans import cut, expect_volume, fuse, intersect
+from workbench.core.base.errors import DesignError
+from workbench.core.design.design import Layers
+from workbench.core.result.marks import Field
 
 CAVITY_MM = 4.0
 """Smallest width, depth and height of the cavity: a camera and LEDs must fit [mm]."""

@@ -49,10 +49,10 @@ from designs.bodies import Bodies, Fields
 from designs.prisms import elliptic_foot, rounded_prism
 from designs.shells import hollow
 from designs.sliders import slider
-from workbench.core.booleans import expect_volume, fuse, volume
-from workbench.core.design import Layers
-from workbench.core.errors import DesignError, GeometryError
-from workbench.core.marks import Field
+from workbench.core.base.booleans import expect_volume, fuse, volume
+from workbench.core.base.errors import DesignError, GeometryError
+from workbench.core.design.design import Layers
+from workbench.core.result.marks import Field
 
 TOES = 4
 SHARPNESS = 14.0

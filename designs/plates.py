@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from workbench.core.booleans import cut, expect_volume
+from workbench.core.base.booleans import cut, expect_volume
 
 BORE_SHARE = 0.6
 """Radius of the camera bore over the cavity's smallest half width."""

@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from workbench.core.booleans import expect_volume, fillet
+from workbench.core.base.booleans import expect_volume, fillet
 
 CORNER = 1.0 - math.pi / 4.0
 """Area between a square corner and its rounding, over r^2."""

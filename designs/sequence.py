@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from workbench.core.actuation import Place
-from workbench.core.indenter import IndenterKind
+from workbench.core.press.actuation import Place
+from workbench.core.press.indenter import IndenterKind
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -12,8 +12,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from workbench.core.booleans import expect_volume, volume
-from workbench.core.errors import GeometryError
+from workbench.core.base.booleans import expect_volume, volume
+from workbench.core.base.errors import GeometryError
 
 FLAT_MM = 1e-6
 VOLUME_ERROR = 1e-3

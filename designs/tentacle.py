@@ -50,9 +50,9 @@ from designs.column import Column, column_body, column_field
 from designs.prisms import elliptic_foot
 from designs.shells import hollow
 from designs.sliders import slider
-from workbench.core.booleans import cut, fuse
-from workbench.core.design import Layers
-from workbench.core.errors import DesignError, GeometryError
+from workbench.core.base.booleans import cut, fuse
+from workbench.core.base.errors import DesignError, GeometryError
+from workbench.core.design.design import Layers
 
 CAVITY_MM = 2.0
 """Smallest half width of the cavity: room for a small camera [mm]."""

@@ -56,12 +56,12 @@ from designs.prisms import (
 from designs.sequence import Lobe, Sequence
 from designs.shells import hollow
 from designs.sliders import slider
-from workbench.core.booleans import cut, expect_volume, fillet
-from workbench.core.design import Layers
-from workbench.core.errors import DesignError
-from workbench.core.indenter import IndenterKind
-from workbench.core.marks import Field, Marks, Region
-from workbench.core.results import Label
+from workbench.core.base.booleans import cut, expect_volume, fillet
+from workbench.core.base.errors import DesignError
+from workbench.core.design.design import Layers
+from workbench.core.press.indenter import BALL
+from workbench.core.result.marks import Field, Marks, Region
+from workbench.core.result.results import Label
 
 CAVITY_MM = 4.0
 """Smallest half width and height of the cavity: room for camera and LEDs [mm]."""
@@ -200,9 +200,9 @@ class Trunk:
         )
         grip = Sequence(
             title="Press a ball on the saddle and close both lobes on it",
+            kind=BALL,
             lobes=lobes,
             close_deg=CLOSE_DEG,
-            kind=IndenterKind.SPHERE,
             size_mm=round(HELD_SHARE * shape.peak_mm, 1),
             depth_mm=round(HELD_DEPTH_SHARE * layers.elastomer_mm, 2),
             grid_mm=round(GRID_SHARE * layers.elastomer_mm, 2),

@@ -1,4 +1,4 @@
-"""Draw the gallery of the README: every family with its membrane, its parts and what it feels.
+"""Draw the gallery of README and designs: each family's membrane, parts and image.
 
 `.venv/bin/python docs/gallery.py` runs each preset through the pipeline (about three minutes; the
 project folder keeps the results, so again takes seconds) and writes `docs/gallery.png`. Each row
@@ -17,14 +17,15 @@ import cv2  # noqa: TID253 (a program of its own, not part of the package)
 import numpy as np
 
 from designs.family import family
-from geometry.pictures import exploded_sensor, thumbnail
-from workbench.aim import default_target_mm
-from workbench.core.design import SensorDesign
-from workbench.core.indenter import Indenter
-from workbench.core.press import Press
-from workbench.named_designs import load_design
-from workbench.pipeline import InlineRunner, PressCase, evaluate, plan, results
-from workbench.project import Project
+from geometry.picture.pictures import exploded_sensor, thumbnail
+from workbench.core.design.design import SensorDesign
+from workbench.core.press.indenter import Indenter
+from workbench.core.press.press import Press
+from workbench.core.press.press_case import PressCase
+from workbench.planning.plan import InlineRunner, evaluate, plan, results
+from workbench.project.aim import default_target_mm
+from workbench.project.named_designs import load_design
+from workbench.project.project import Project
 
 PICTURE = Path(__file__).with_name("gallery.png")
 PRESETS = ("geltip", "trunk", "paw", "thumb", "tentacle", "pad", "digitac")

@@ -1,4 +1,4 @@
-"""Draw the pictures of the README about light: what each family sees, and the maps of one design.
+"""Draw the pictures of the pages about light: what each family sees, and the maps of one design.
 
 `.venv/bin/python docs/optics_sheets.py` runs each preset through the pipeline (about five minutes;
 the project folder keeps the results, so again takes seconds) and writes two pictures.
@@ -19,21 +19,22 @@ import numpy as np
 from gallery import FAINT, FRAME, GROUND, GUTTER_PX, INK, blank, paste, save, window, write
 
 from designs.family import family
-from geometry.rendering import canvas, look, png, surface
-from workbench.aim import default_target_mm
-from workbench.colour_scale import NOTHING_GREY, viridis
-from workbench.core.design import SensorDesign
-from workbench.core.indenter import Indenter
-from workbench.core.lighting import LightModel
-from workbench.core.maps import DesignerMaps, SkinMap
-from workbench.core.press import Press
-from workbench.core.results import Skin
-from workbench.core.sensing import TactileFrames
-from workbench.image_views import View, looked
-from workbench.map_display import is_flag, map_look
-from workbench.named_designs import load_design
-from workbench.pipeline import InlineRunner, PressCase, evaluate, plan, results
-from workbench.project import Project
+from geometry.picture.rendering import canvas, look, png, surface
+from workbench.core.design.design import SensorDesign
+from workbench.core.design.lighting import LightModel
+from workbench.core.press.indenter import Indenter
+from workbench.core.press.press import Press
+from workbench.core.press.press_case import PressCase
+from workbench.core.result.maps import DesignerMaps, SkinMap
+from workbench.core.result.results import Skin
+from workbench.core.result.sensing import TactileFrames
+from workbench.planning.plan import InlineRunner, evaluate, plan, results
+from workbench.project.aim import default_target_mm
+from workbench.project.named_designs import load_design
+from workbench.project.project import Project
+from workbench.view.colour_scale import NOTHING_GREY, viridis
+from workbench.view.image_views import View, looked
+from workbench.view.map_display import is_flag, map_look
 
 FOLDER = Path(__file__).parent
 PRESETS = ("geltip", "trunk", "paw", "thumb", "tentacle", "pad", "digitac")
@@ -71,7 +72,7 @@ COLUMNS = (
 
 def computed(name: str, project: Project, *wanted: str) -> tuple[SensorDesign, dict[str, Any]]:
     """A preset and the stored results of its chain, computed where they are missing."""
-    design = load_design(name).replace("optics.light_model", LightModel.HYBRID)
+    design = load_design(name).replace("optics.light_model", LightModel("hybrid"))
     press = Press(target_mm=default_target_mm(design), depth_mm=DEPTH_MM, frames=FRAMES)
     case = PressCase(indenter=Indenter(size_mm=BALL_MM), press=press)
     for outcome in evaluate(design, case, InlineRunner(project.store), wanted=wanted):

@@ -9,16 +9,7 @@ import cv2  # noqa: TID253 (a program of its own, not part of the package)
 import numpy as np
 
 from docs.page_shots import LONG_S, SIZE, command, fresh, number, quiet, shoot, tick
-from tests.ui.widgets import (
-    button,
-    choose,
-    control,
-    press,
-    set_number,
-    tab,
-    type_text,
-    wait_until,
-)
+from tests.ui.widgets import button, choose, control, press, set_number, tab, type_text, wait_until
 
 
 def first(page: Any) -> None:

@@ -21,7 +21,7 @@ from docs.page_shots import FOLDER, SIZE, fresh, quiet
 from docs.screen_steps import STEPS
 from tests.ui.conftest import Server
 from tests.ui.widgets import tab
-from workbench.benchmarks.browser import FLAGS
+from workbench.proof.benchmarks.browser import FLAGS
 
 PRESETS = Path(__file__).parent.parent / "designs" / "presets"
 PRESS = """

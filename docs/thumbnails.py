@@ -13,17 +13,18 @@ import cv2  # noqa: TID253 (a program of its own, not part of the package)
 import numpy as np
 import tomli_w
 
-from geometry.pictures import thumbnail
-from geometry.rendering import canvas, draw, look, png
-from workbench import stages
-from workbench.core.indenter import Indenter
-from workbench.core.monitor import silent
-from workbench.forms import choices
-from workbench.indenter_display import display_mesh
-from workbench.indenter_edit import another, gallery
-from workbench.named_designs import load_design
-from workbench.pipeline import PressCase, plan
-from workbench.thumbnails import FOLDER, KEYS, object_key, start_key
+from geometry.picture.pictures import thumbnail
+from geometry.picture.rendering import canvas, draw, look, png
+from workbench.core.base.monitor import silent
+from workbench.core.press.indenter import Indenter
+from workbench.core.press.press_case import PressCase
+from workbench.edit.forms import choices
+from workbench.edit.indenter_edit import another, gallery
+from workbench.edit.thumbnails import FOLDER, KEYS, object_key, start_key
+from workbench.live.indenter_display import display_mesh
+from workbench.pipeline.stages.build import build
+from workbench.planning.plan import plan
+from workbench.project.named_designs import load_design
 
 SIZE_PX, FINER = 144, 3
 OBJECT_COLOUR = "#e87c2c"
@@ -35,7 +36,7 @@ def pictures() -> Iterator[tuple[str, str, np.ndarray]]:
     """Name, key and PNG bytes of each, at `FINER` times the size."""
     size = (FINER * SIZE_PX, FINER * SIZE_PX)
     for name in choices():
-        solid = stages.build(*plan(load_design(name), PressCase())["build"].inputs, monitor=silent)
+        solid = build(plan(load_design(name), PressCase())["build"].inputs, monitor=silent)
         yield f"start-{name}", start_key(name), thumbnail(solid, size)
     for name in gallery().values():
         points, faces = display_mesh(another(name, Indenter()))

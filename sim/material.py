@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from workbench.core.design import Elastomer, Law
+from workbench.core.design.design import Elastomer, Law
 
 SMALLEST_VOLUME_RATIO = 1e-3
 """Floor of J inside J^(-2/3); only an inverted point, which a settled state has not, meets it."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from workbench.core.results import MembraneMesh, Skin
+from workbench.core.result.results import MembraneMesh, Skin
 
 
 def finger_skin(radius_mm: float, cylinder_mm: float, edge_mm: float) -> Skin:

@@ -10,12 +10,18 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from designs.family import family, resolve_shape
-from workbench.core.design import Layers, Meshing
-from workbench.core.results import MembraneMesh, Solid
+from workbench.core.design.design import Layers, Meshing
+from workbench.core.result.results import MembraneMesh, Solid
 
 # Other work on the machine must not fail an example that is merely slow.
 settings.register_profile("patient", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("patient")
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Files with slow tests come first: a long one that begins last leaves the other cores idle."""
+    slow = {item.path for item in items if item.get_closest_marker("slow")}
+    items.sort(key=lambda item: item.path not in slow)
 
 
 def pytest_runtest_setup(item: pytest.Item) -> None:
@@ -30,7 +36,7 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
 @pytest.fixture(scope="session")
 def build_finger() -> Callable[..., Solid]:
     """A function that builds a finger: shape parameters by name, and `layers`."""
-    from geometry.solid import assemble
+    from geometry.body.solid import assemble
 
     def build(layers: Layers | None = None, **shape: Any) -> Solid:
         bodies = family("finger").build(resolve_shape("finger", shape), layers or Layers())
@@ -48,7 +54,7 @@ def finger(build_finger: Callable[..., Solid]) -> Solid:
 @pytest.fixture(scope="session")
 def finger_mesh(finger: Solid) -> MembraneMesh:
     """The default finger in hexahedra of 0.4 mm."""
-    from geometry.hexmesh import mesh_membrane
+    from geometry.volume.hexmesh import mesh_membrane
 
     return mesh_membrane(finger, Meshing())
 
@@ -56,6 +62,6 @@ def finger_mesh(finger: Solid) -> MembraneMesh:
 @pytest.fixture(scope="session")
 def taichi_device() -> str:
     """Taichi, initialised once in the thread of the tests: `cpu` or `cuda`."""
-    from workbench.devices import open_device
+    from workbench.pipeline.devices import open_device
 
     return open_device()

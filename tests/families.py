@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 from designs.family import family, resolve_shape
-from workbench.core.design import Layers
-from workbench.core.errors import DesignError, GeometryError
+from workbench.core.base.errors import DesignError, GeometryError
+from workbench.core.design.design import Layers
 
 
 def expect_refusal(name: str, shape: dict[str, float], layers: dict[str, float], at: str) -> None:

@@ -65,7 +65,6 @@ class Forks:
 
 
 def _serve(pipe: Any, prepare: Callable[[], None]) -> None:
-    import workbench.cli  # noqa: F401
 
     prepare()
     with contextlib.suppress(EOFError):
@@ -91,7 +90,7 @@ def _waited(child: int, deadline: float) -> tuple[int, Any]:
 
 def _command(words: list[str], folder: Path) -> None:
     """Run the command line in this fork, which ends here."""
-    from workbench.cli import main
+    from workbench.cli.command_line import main
 
     code = 70
     try:

@@ -11,9 +11,9 @@ import numpy as np
 from sim.forces.network.minkunet import arrays_of, new_network
 from sim.forces.network.spec import NetworkSpec, Target
 from sim.forces.network.weights import NetworkWeights, Storage
-from workbench.core.design import SensorDesign
-from workbench.design_toml import design_table
-from workbench.weight_files import save_weights
+from workbench.core.design.design import SensorDesign
+from workbench.pipeline.weight_files import save_weights
+from workbench.project.design_toml import design_table
 
 SPEC = NetworkSpec(name="tiny", planes=(4,) * 8, stem_planes=4)
 

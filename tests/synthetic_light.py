@@ -6,12 +6,13 @@ import dataclasses
 
 import numpy as np
 
-from sim.optics.bake import bake_light
-from workbench.core.light import AZIMUTHS, SINES, TILTS, LightField, NormalTable, Scattered
-from workbench.core.lighting import TRACED, LedRing, LightModel
-from workbench.core.results import MembraneMesh
+from sim.optics.field.bake import bake_light
+from sim.optics.field.model import model_of
+from workbench.core.design.lighting import LedRing, LightModel
+from workbench.core.result.light import AZIMUTHS, SINES, TILTS, LightField, NormalTable, Scattered
+from workbench.core.result.results import MembraneMesh
 
-UNTRACED = [model for model in LightModel if model not in TRACED]
+UNTRACED = [model for model in LightModel if not model_of(model).traced]
 SHADED = [model for model in LightModel if model is not LightModel.PHOTONS]
 
 
@@ -24,7 +25,7 @@ def lit(
     of the normal, in another colour toward +X than toward -X.
     """
     ring = ring or LedRing()
-    if model not in TRACED:
+    if not model_of(model).traced:
         return bake_light(mesh, ring, model=model), None
     light = bake_light(mesh, ring, model=LightModel.DIRECT)
     skin = mesh.seen

@@ -13,16 +13,16 @@ from pathlib import Path
 import numpy as np
 
 from tests.unit.test_dataset_cases import flat_skin
-from workbench.core.indenter import IndenterKind
-from workbench.core.results import Skin
-from workbench.dataset.begin import begin
-from workbench.dataset.cases import Case, cases_of
-from workbench.dataset.folder import DataSet
-from workbench.dataset.positions import Pattern
-from workbench.dataset.recipe import Recipe
-from workbench.dataset.sample import Sample, Solved, to_bytes
-from workbench.named_designs import load_design
-from workbench.whole_files import write_atomically
+from workbench.core.press.indenter import IndenterKind
+from workbench.core.result.results import Skin
+from workbench.learning.dataset.begin import begin
+from workbench.learning.dataset.cases import Case, cases_of
+from workbench.learning.dataset.folder import DataSet
+from workbench.learning.dataset.positions import Pattern
+from workbench.learning.dataset.recipe import Recipe
+from workbench.learning.dataset.sample import Sample, Solved, to_bytes
+from workbench.project.named_designs import load_design
+from workbench.system.whole_files import write_atomically
 
 KINDS = (IndenterKind.CROSS, IndenterKind.HEXAGON, IndenterKind.SPHERE, IndenterKind.FLOWER)
 WIDTH_MM = {kind: 1.0 + 0.2 * number for number, kind in enumerate(KINDS)}

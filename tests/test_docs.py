@@ -1,28 +1,39 @@
-"""The README is kept honest: every command, option, room and file key is in it."""
+"""Pages written by hand are kept honest: every key, field, choice and name is there."""
 
 from __future__ import annotations
 
-import argparse
 import dataclasses
-import importlib
-import inspect
 import re
-from pathlib import Path
 from typing import Any
 
 import pytest
 
-from sim.optics.maps import measure
-from workbench.cli import parser
-from workbench.core.camera import Camera, ImageSensor, LensModel
-from workbench.core.lighting import Baking, Lamp, LampKind, LedMount, LedRing, LightModel
-from workbench.core.optics import Coating, MarkerPattern, Markers, Optics
-from workbench.design_toml import design_from_toml
-from workbench.named_designs import presets
-from workbench.photos import shipped_photos
+from designs.family import families
+from docs.generate_command_line import commands
+from geometry.objects.everyday import EVERYDAY
+from sim.contact.motion.approach import FARTHEST_TARGET_MM
+from sim.forces.training.settings import PRESETS
+from sim.optics.field.model import models as models_in_order
+from sim.optics.maps.map_kind import map_kinds
+from tests.pages import BY_HAND, DOCS, ROOT, code, first_column, page, words
+from workbench.core.base.errors import DesignError
+from workbench.core.design.camera import Camera, ImageSensor, LensModel
+from workbench.core.design.lighting import Baking, Lamp, LampKind, LedMount, LedRing, LightModel
+from workbench.core.design.making import Casting, Housing, MouldOptions
+from workbench.core.design.optics import Coating, Composition, MarkerPattern, Markers, Optics
+from workbench.core.press.indenter import IndenterKind
+from workbench.core.press.motion import StrokeKind
+from workbench.core.result.force_field import Source
+from workbench.edit.strokes import read_stroke
+from workbench.learning.dataset.cases import Split
+from workbench.learning.dataset.recipe import RECIPES
+from workbench.project.design_toml import design_from_toml
+from workbench.project.named_designs import presets
+from workbench.project.photos import shipped_photos
+from workbench.project.saved_designs import MOST_VERSIONS
+from workbench.report.export import exports
+from workbench.system.folder import CAMERA_FILES, NUMBER, RUN_FILES
 
-ROOT = Path(__file__).parent.parent
-README = (ROOT / "README.md").read_text()
 KEYS = (
     "schema design family device stages stage key cached seconds contact reaction_N normal_N "
     "residual penetration_mm particles grid_mm substeps images moulds file watertight volume_mm3 "
@@ -32,106 +43,135 @@ KEYS = (
     "light_model press maps difference_000.png motion_000.png markers.csv frames.npz maps.npz "
     "name case value unit reference null ceiling error error_kind limit sense ok"
 ).split()
-PROSE = re.sub(r"^```.*?^```$", "", README, flags=re.MULTILINE | re.DOTALL)
-CODE = " ".join(re.findall(r"`([^`]+)`", PROSE))
-"""All that stands between single backticks; the tables of keys and options are among it."""
-
-
-def commands() -> dict[str, argparse.ArgumentParser]:
-    return {name: found for name, found in below(parser()).items() if not below(found)}
-
-
-def below(top: argparse.ArgumentParser) -> dict[str, argparse.ArgumentParser]:
-    """Every command of a parser, those of a group by both words, and the groups themselves."""
-    found: dict[str, argparse.ArgumentParser] = {}
-    for action in top._actions:
-        if isinstance(action, argparse._SubParsersAction):
-            for name, sub in action.choices.items():
-                inner = {f"{name} {word}": command for word, command in below(sub).items()}
-                found |= {name: sub, **inner}
-    return found
-
-
-def command_row(name: str) -> str:
-    """The row of a command in the README's table."""
-    (row,) = re.findall(rf"^\| `workbench {name}\b.*$", README, flags=re.MULTILINE)
-    return row
-
-
-def section(title: str) -> str:
-    """The text under a heading, up to the next one."""
-    return re.split(r"^#+ ", README.split(f"# {title}\n")[1], flags=re.MULTILINE)[0]
-
-
-@pytest.mark.parametrize("name", commands())
-def test_every_option_of_every_command_is_documented(name: str) -> None:
-    """Each long option stands in the command's row, those of the press in the table of `run`."""
-    pressing = ("run", "sweep", "fem solve", "fem export")
-    text = command_row(name) + (section("`workbench run`") if name in pressing else "")
-    documented = set(re.findall(r"(?<![\w-])--[a-z-]+", text)) | {"--help", "--project"}
-    options = {o for a in commands()[name]._actions for o in a.option_strings if o[:2] == "--"}
-    assert options <= documented, options - documented
-
-
-def test_the_project_folder_is_documented_once_for_all_commands() -> None:
-    """Every command takes `--project DIR`."""
-    assert "--project DIR" in CODE
-    assert all("--project" in c.format_help() for c in commands().values())
-
-
-@pytest.mark.parametrize("name", ["validate", "bench"])
-def test_every_room_is_documented(name: str) -> None:
-    """The row of the command lists exactly the rooms there are."""
-    rooms = importlib.import_module(f"workbench.{name}").ROOMS
-    code = re.findall(r"`([^`]+)`", command_row(name))[1:]
-    assert " ".join(code).split() == list(rooms)
 
 
 @pytest.mark.parametrize("key", KEYS)
 def test_every_contract_key_is_documented(key: str) -> None:
-    """Other tools read these names: each stands in the README as code, a whole word."""
-    assert key in re.findall(r"[\w.]+", CODE)
+    """Other tools read these names: each stands in formats.md as code, a whole word."""
+    assert key in words("formats")
+
+
+MADE = {name for kind in exports().values() for name in kind.makes if not name.endswith("/*")}
+
+
+@pytest.mark.parametrize("pattern", sorted({*RUN_FILES, *MADE} - set(CAMERA_FILES)))
+def test_every_file_that_a_run_or_an_export_writes_is_documented(pattern: str) -> None:
+    """As code in formats.md or making.md; numbered ones by the first, folders by their ending."""
+    name = pattern.replace(NUMBER, "000").rpartition("/")[2]
+    assert name.replace("_*.", "_000.") in code("formats").split() + code("making").split()
 
 
 @pytest.mark.parametrize("part", [Camera, ImageSensor, LedRing, Lamp, Coating, Markers, Baking])
-def test_every_field_of_the_optics_is_documented(part: Any) -> None:
-    """A designer finds each field that a design file may hold."""
+def test_every_field_of_the_optics_is_explained(part: Any) -> None:
+    """A designer finds what each field is for."""
     fields = {item.name for item in dataclasses.fields(part)}
-    # The table of the image sensor has a name of its own: `[optics.camera.sensor]`.
-    assert fields - {"sensor"} <= set(re.findall(r"\w+", CODE)), part
+    # The image sensor has a table of its own: `[optics.camera.sensor]`.
+    assert fields - {"sensor"} <= set(re.findall(r"\w+", code("optics"))), part
 
 
-@pytest.mark.parametrize("choice", [LightModel, LensModel, LampKind, LedMount, MarkerPattern])
-def test_every_choice_of_the_optics_is_documented(choice: Any) -> None:
-    """Each light model, lens, form of a lamp, mount and pattern stands in the README as code."""
-    assert {member.value for member in choice} <= set(re.findall(r"\w+", CODE))
+@pytest.mark.parametrize("part", [MouldOptions, Casting])
+def test_every_field_of_making_is_explained(part: Any) -> None:
+    """What a designer chooses about mould and recipe."""
+    assert {item.name for item in dataclasses.fields(part)} <= words("making")
+
+
+def test_the_housing_is_told_by_fields_that_it_has() -> None:
+    """Those that the page names."""
+    assert {"wall_mm", "clearance_mm"} <= {item.name for item in dataclasses.fields(Housing)}
+
+
+@pytest.mark.parametrize(
+    "choice", [LightModel, LensModel, LampKind, LedMount, MarkerPattern, Composition]
+)
+def test_every_choice_of_the_optics_is_explained(choice: Any) -> None:
+    """Each light model, lens, form of a lamp, mount, pattern and composition, as code."""
+    assert {member.value for member in choice} <= set(re.findall(r"\w+", code("optics")))
+
+
+def test_the_tables_of_choices_are_whole() -> None:
+    """One row for each light model and each lens; the default model is the program's."""
+    models = first_column(page("optics"), "name | equation")
+    assert models == [model.value for model in models_in_order()]
+    assert first_column(page("optics"), "`lens`") == [lens.value for lens in LensModel]
+    (default,) = re.findall(r"^\| `(\w+)` \(default\) \|", page("optics"), re.MULTILINE)
+    assert default == Optics().light_model.value
 
 
 def test_every_shipped_photograph_is_documented() -> None:
     """Each is written as a design names it."""
-    assert {f"builtin:{name}" for name in shipped_photos()} <= set(CODE.split())
+    assert {f"builtin:{name}" for name in shipped_photos()} <= set(code("optics").split())
 
 
 def test_every_map_and_its_score_are_documented() -> None:
     """Names as the maps' source gives them; single lights are numbered there."""
-    found = re.findall(r'name=f?"([\w.{}:]+)"', inspect.getsource(measure))
-    names = {name.replace("{number:02d}", "01") for name in found}
+    names = {*map_kinds(), *(kind.figure for kind in map_kinds().values())}
+    names |= {"led_01", "led_01_reach_percent"}
     assert len(names) == 20
-    assert names <= set(re.findall(r"[\w.]+", CODE)), names
+    assert names <= words("maps"), names
 
 
 def test_the_example_of_optics_is_a_design() -> None:
-    """Two cameras, 6 LEDs and a line of 9 points over a photograph, as the README writes it."""
-    blocks = re.findall(r"^```toml\n(\[optics\].*?)^```$", README, flags=re.MULTILINE | re.DOTALL)
+    """Two cameras, 6 LEDs and a line of 9 points over a photograph, as the page writes it."""
+    blocks = re.findall(r"^```toml\n(.*?)^```$", page("optics"), re.MULTILINE | re.DOTALL)
     (optics,) = (design_from_toml(block).optics for block in blocks)
     assert isinstance(optics, Optics) and optics.background is not None
     assert (len(optics.all_cameras), optics.lights) == (2, 15)
 
 
-def test_links_lead_somewhere() -> None:
-    """Every relative link of the README names a file of the repository."""
-    for target in re.findall(r"\]\(([^)#:]+)\)", README):
-        assert (ROOT / target).exists(), target
+def test_the_example_of_a_design_is_one() -> None:
+    """A slim finger with a stiffer coat; the second example wants files that are not there."""
+    first, second = re.findall(r"^```toml\n(.*?)^```$", page("designs"), re.MULTILINE | re.DOTALL)
+    design = design_from_toml(first)
+    assert (design.shape["cylinder_mm"], len(design.material.inclusions)) == (30.0, 1)
+    # Everything but its two files is as the program wants it.
+    with pytest.raises(DesignError, match=r"no file 'bone\.stl' for the body"):
+        design_from_toml(second)
+
+
+def test_objects_and_families_are_all_named() -> None:
+    """The objects are exactly what `--indenter` takes by name; the families those there are."""
+    (told,) = re.findall(r"`--indenter` takes one of (.*?); or a file", page("contact"), re.DOTALL)
+    kinds = {kind.value for kind in IndenterKind if kind is not IndenterKind.MESH}
+    assert set(re.findall(r"`(\w+)`", told)) == kinds | set(EVERYDAY)
+    (told,) = re.findall(r"parameters of its own: (.*?) for a body", page("designs"), re.DOTALL)
+    assert set(re.findall(r"`(\w+)`", told)) == set(families())
+
+
+def test_the_table_of_strokes_is_what_may_be_typed() -> None:
+    """Each row is read as a stroke, and each kind has one."""
+    found = [read_stroke(row, frames=2).kind for row in first_column(page("contact"), "stroke")]
+    assert found == list(StrokeKind)
+
+
+def test_numbers_in_the_text_are_the_programs() -> None:
+    """Versions that are kept, how far a target may be off, and the splits of a data set."""
+    assert f"the {MOST_VERSIONS} versions before" in page("designs")
+    assert f"more than {FARTHEST_TARGET_MM:g} mm refused" in page("contact")
+    (told,) = re.findall(r"are in one split \((.*?)\)", page("data-sets"))
+    assert re.findall(r"`(\w+)`", told) == [split.value for split in Split]
+
+
+def test_sources_of_forces_recipes_and_presets_are_all_named() -> None:
+    """The table of sources is whole; the sentences name exactly those there are."""
+    assert first_column(page("forces"), "source") == [source.value for source in Source]
+    (told,) = re.findall(r"The recipes that ship are (.*?)\.", page("data-sets"), re.DOTALL)
+    assert set(re.findall(r"`(\w+)`", told)) == set(RECIPES)
+    (told,) = re.findall(r"Presets are (.*?)\.", page("data-sets"), re.DOTALL)
+    assert set(re.findall(r"`(\w+)`", told)) == set(PRESETS)
+
+
+def test_elements_of_the_deck_are_the_programs() -> None:
+    """Each that can be chosen, and the one that is the default."""
+    (element,) = (a for a in commands()["fem export"]._actions if a.dest == "element")
+    assert set(re.findall(r"`(C3D\w+)`", page("forces"))) == set(element.choices or ())
+    assert f"`{element.default}`, the default" in page("forces")
+
+
+@pytest.mark.parametrize("name", BY_HAND)
+def test_a_page_is_reached_from_the_readme(name: str) -> None:
+    """And begins with its title."""
+    assert f"(docs/{name}.md)" in (ROOT / "README.md").read_text()
+    assert page(name).startswith("# ")
 
 
 def test_presets_open_with_their_purpose() -> None:
@@ -139,30 +179,9 @@ def test_presets_open_with_their_purpose() -> None:
     assert all(len(purpose) > 20 for purpose in presets().values())
 
 
-@pytest.mark.parametrize("package", ["workbench", "designs", "geometry", "sim", "ui"])
-def test_every_package_has_its_design_note(package: str) -> None:
-    """One short DESIGN.md per package."""
-    assert len((ROOT / package / "DESIGN.md").read_text().splitlines()) < 60
-
-
-def test_every_file_of_the_front_is_in_its_design_note() -> None:
-    """`ui/DESIGN.md` names each file with its idea."""
-    note = (ROOT / "ui" / "DESIGN.md").read_text()
-    files = [*(ROOT / "ui").glob("*.py"), *(ROOT / "ui" / "panels").glob("*.py")]
-    unnamed = {f.name for f in files if f"`{f.name}`" not in note} - {"__init__.py"}
-    assert unnamed == set()
-
-
-def test_every_relative_link_of_the_docs_leads_somewhere() -> None:
-    """Pictures too."""
-    for text in (ROOT / "docs").glob("*.md"):
-        for target in re.findall(r"\]\(([^)#:]+)\)", text.read_text()):
-            assert (text.parent / target).exists(), (text.name, target)
-
-
 def test_the_screenshots_stay_small() -> None:
     """Each below 200 KB, all together below 2 MB."""
-    sizes = [picture.stat().st_size for picture in (ROOT / "docs" / "screens").iterdir()]
+    sizes = [picture.stat().st_size for picture in (DOCS / "screens").iterdir()]
     assert sizes
     assert max(sizes) < 200_000
     assert sum(sizes) < 2_000_000

@@ -1,77 +1,170 @@
-"""The arrows between packages point one way, and starting the front loads nothing heavy."""
+"""The house: packages in ranks that point one way, rooms of a size to look over, no circles."""
 
 from __future__ import annotations
 
 import ast
+import functools
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).parent.parent
-OURS = ("workbench", "designs", "geometry", "sim", "ui")
-FILES = sorted(p for name in OURS for p in (ROOT / name).rglob("*.py"))
+TOP = ("workbench", "designs", "geometry", "sim", "ui")
+RANKS = """
+    workbench.core  workbench.core.base
+    workbench.core.objects  workbench.core.objects.kinds
+    workbench.core.design  workbench.core.result  workbench.core.press
+    workbench.system
+
+    geometry  geometry.formats  geometry.picture  geometry.surface  geometry.body
+    designs
+    geometry.intake  geometry.objects  geometry.volume  geometry.mould  geometry.housing
+    geometry.workshop
+
+    sim  sim.forces.network  sim.forces.training  sim.forces
+    sim.contact.grid  sim.contact.objects  sim.contact.motion  sim.contact.region
+    sim.contact.engine  sim.contact.readout  sim.contact.particles  sim.contact.solver
+    sim.contact.soft  sim.contact  sim.contact.studies
+    sim.fem  sim.fem.studies
+    sim.optics  sim.optics.camera  sim.optics.light  sim.optics.transport  sim.optics.field
+    sim.optics.field.models  sim.optics.raster  sim.optics.studio
+    sim.optics.maps  sim.optics.maps.kinds  sim.optics.proof
+
+    workbench.view  workbench.pipeline  workbench.pipeline.stages  workbench.planning
+    workbench.project  workbench.edit  workbench.live  workbench.report  workbench.report.exports
+    workbench.variants
+    workbench.learning  workbench.learning.dataset  workbench.learning.training
+    workbench.proof  workbench.proof.validation  workbench.proof.validation.geometry
+    workbench.proof.validation.optics  workbench.proof.validation.contact
+    workbench.proof.validation.fem  workbench.proof.benchmarks
+    workbench.learning.evaluation  workbench.proof.validation.learned
+
+    workbench.door  workbench
+
+    ui.page  ui.scene  ui.desk
+    ui.panels  ui.panels.compare  ui.panels.make  ui.panels.mesh  ui.panels.optics  ui.panels.shape
+    ui.panels.simulate  ui.panels.view  ui.panels.results
+    ui
+    workbench.cli  workbench.cli.commands
+""".split()
+"""Packages, the lowest first: a module imports its own package and those before it."""
+MOST_MODULES = 25
+MOST_LINES = 500
+DOOR = ("workbench.cli.commands.serve", "ui.app")
+"""The command line starts the front here, and touches it nowhere else."""
+CIRCLES = (
+    {
+        *("aiming", "auto_update", "desk", "foresight", "glimpse", "live"),
+        *("object_follower", "shown_results"),
+    },
+)
+"""Files that still import each other; the list may only shrink."""
 
 
-def may_import(room: str, target: str) -> bool:
-    """Whether a module of `room` may import `target`: the table of the architecture."""
-    core = target == "workbench.core" or target.startswith("workbench.core.")
-    package = target.split(".", maxsplit=1)[0]
-    if room == "core":
-        return core
-    if room == "designs":
-        return core or package == "designs"
-    if room == "geometry":
-        return core or package == "geometry"
-    if room == "sim":
-        surface = target.startswith(("geometry.surface", "geometry.rays"))
-        return core or package == "sim" or surface
-    if room == "ui":
-        return package in ("ui", "workbench")
-    return package in ("workbench", "designs", "geometry", "sim")
+def module_name(path: Path) -> str:
+    parts = path.relative_to(ROOT).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
 
 
-def room_of(path: Path) -> str:
-    parts = path.relative_to(ROOT).parts
-    return "core" if parts[:2] == ("workbench", "core") else parts[0]
+MODULES = {module_name(p): p for name in TOP for p in sorted((ROOT / name).rglob("*.py"))}
+"""Files by the names that they are imported by."""
 
 
-def imported(path: Path) -> list[str]:
-    names: list[str] = []
-    for node in ast.walk(ast.parse(path.read_text())):
+def package_of(module: str) -> str:
+    return module if MODULES[module].name == "__init__.py" else module.rpartition(".")[0]
+
+
+def imports(tree: ast.AST) -> Iterator[str]:
+    """Everything imported anywhere in a file: inside functions and for type checkers too."""
+    for node in ast.walk(tree):
         if isinstance(node, ast.Import):
-            names += [alias.name for alias in node.names]
-        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
-            names += [node.module, *(f"{node.module}.{alias.name}" for alias in node.names)]
-    return [name for name in names if name.split(".")[0] in OURS]
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            assert not node.level, "imports are absolute"
+            for alias in node.names:
+                inner = f"{node.module}.{alias.name}"
+                yield inner if inner in MODULES else node.module or ""
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda p: str(p.relative_to(ROOT)))
-def test_imports_point_one_way(path: Path) -> None:
-    """No module imports a layer above it; `workbench serve` may reach the front, lazily."""
-    room = room_of(path)
-    for name in imported(path):
-        lazy_front = path.name == "commands.py" and name.startswith("ui.app")
-        # `from geometry import surface` is named as package and as module: the module decides.
-        if name in OURS and may_import(room, f"{name}.surface"):
-            continue
-        assert lazy_front or may_import(room, name), f"{path.name} imports {name}"
+@functools.cache
+def imported(module: str) -> frozenset[str]:
+    """Modules of ours that a module imports."""
+    found = set(imports(ast.parse(MODULES[module].read_text())))
+    return frozenset(name for name in found if name in MODULES) - {module}
+
+
+def modules_in(package: str) -> list[str]:
+    return [module for module in MODULES if package_of(module) == package]
+
+
+def test_every_package_has_its_rank() -> None:
+    """The list names all packages once."""
+    assert sorted(RANKS) == sorted({package_of(module) for module in MODULES})
+
+
+@pytest.mark.parametrize("package", RANKS)
+def test_imports_point_one_way(package: str) -> None:
+    """No module imports a package of a higher rank, not even lazily or for its types."""
+    allowed = set(RANKS[: RANKS.index(package) + 1])
+    if package.startswith("workbench.cli"):
+        allowed -= {name for name in RANKS if name.split(".")[0] == "ui"}
+    wrong = [
+        (module, target)
+        for module in modules_in(package)
+        for target in imported(module)
+        if package_of(target) not in allowed and (module, target) != DOOR
+    ]
+    assert not wrong
+
+
+@pytest.mark.parametrize("package", RANKS)
+def test_a_room_can_be_looked_over(package: str) -> None:
+    """A package has at most 25 modules and says what it is for."""
+    rooms = modules_in(package)
+    assert len(rooms) - 1 <= MOST_MODULES
+    assert ast.get_docstring(ast.parse(MODULES[package].read_text()))
+
+
+def test_no_files_import_each_other() -> None:
+    """No circle of files, but for those on the list, which are all still there."""
+    circles = [
+        {module.rpartition(".")[2] for module in circle} for circle in circles_of(sorted(MODULES))
+    ]
+    assert sorted(map(sorted, circles)) == sorted(map(sorted, CIRCLES))
+
+
+def circles_of(modules: list[str]) -> list[set[str]]:
+    """Groups of files that reach each other, by what each of them reaches."""
+    reached = {module: reach(module) for module in modules}
+    circles = []
+    for module in modules:
+        circle = {other for other in reached[module] if module in reached[other]}
+        if circle and circle not in circles:
+            circles.append(circle)
+    return circles
+
+
+def reach(module: str) -> set[str]:
+    """All that a module imports, and what that imports."""
+    found: set[str] = set()
+    todo = list(imported(module))
+    while todo:
+        here = todo.pop()
+        if here not in found:
+            found.add(here)
+            todo += imported(here)
+    return found
 
 
 def test_core_imports_only_the_standard_library_and_numpy() -> None:
     """core has no third-party import but numpy."""
-    for path in FILES:
-        if room_of(path) != "core":
-            continue
-        for node in ast.walk(ast.parse(path.read_text())):
-            modules = []
-            if isinstance(node, ast.Import):
-                modules = [alias.name for alias in node.names]
-            elif isinstance(node, ast.ImportFrom):
-                modules = [node.module or ""]
-            for module in modules:
-                top = module.split(".")[0]
+    for module, path in MODULES.items():
+        if module.startswith("workbench.core"):
+            for name in imports(ast.parse(path.read_text())):
+                top = name.split(".")[0]
                 assert top in sys.stdlib_module_names or top in ("numpy", "workbench"), module
 
 
@@ -89,5 +182,5 @@ def test_front_loads_no_heavy_package() -> None:
 
 def test_no_file_is_longer_than_500_lines() -> None:
     """A file over 500 lines must be split."""
-    for path in FILES:
-        assert len(path.read_text().splitlines()) <= 500, path
+    for path in MODULES.values():
+        assert len(path.read_text().splitlines()) <= MOST_LINES, path

@@ -22,28 +22,23 @@ from typing import Any
 
 import viser
 
-from ui.callbacks import run_in_order
-from ui.desk import Desk
-from ui.editor import Editor
+from ui.desk.desk import Desk
+from ui.desk.session import Session
 from ui.guard import LOOPBACK, Gate, guarded
-from ui.help import Help
-from ui.incoming import Incoming
 from ui.links import links, reachable_names
-from ui.panels.compare import ComparePanel
-from ui.panels.make import MakePanel
-from ui.panels.mesh import MeshPanel
-from ui.panels.optics import OpticsPanel
-from ui.panels.results import ResultsPanel
-from ui.panels.shape import ShapePanel
-from ui.panels.simulate import SimulatePanel
-from ui.panels.view import ViewPanel
-from ui.session import Session
+from ui.page.callbacks import run_in_order
+from ui.page.editor import Editor
+from ui.page.help import Help
+from ui.page.incoming import Incoming
+from ui.panels.page import pages
+from ui.panels.results.page import ResultsPanel
+from ui.panels.view.page import ViewPanel
 from ui.tenancy import Tenancy
-from workbench import __version__
-from workbench.conductor import Conductor
-from workbench.core.errors import DesignError
-from workbench.lanes import LaneRunner
-from workbench.project import Project
+from workbench.core.base.errors import DesignError
+from workbench.core.base.version import VERSION
+from workbench.live.conductor import Conductor
+from workbench.live.lanes import LaneRunner
+from workbench.project.project import Project
 
 BRAND = (37, 99, 235)
 DRAWING = (
@@ -52,8 +47,8 @@ DRAWING = (
     "scipy.spatial",
     "trimesh",
     "manifold3d",
-    "geometry.everyday",
-    "geometry.indenters",
+    "geometry.objects.everyday",
+    "geometry.objects.indenters",
 )
 """What this process draws and chooses objects with, and is slow to import."""
 
@@ -105,7 +100,7 @@ def serve(options: argparse.Namespace, project: Project) -> int:
     # The pump already turns: two threads that show the same body would undo each other's work.
     with desk.reports.lock:
         first_look(desk)
-    gate.health = lambda: {"ok": True, "version": __version__, "busy": conductor.busy}
+    gate.health = lambda: {"ok": True, "version": VERSION, "busy": conductor.busy}
     print(f"The workbench is open at {here}  (Ctrl-C ends it)", flush=True)
     for link in others:
         print(f"                   or at {link}", flush=True)
@@ -132,27 +127,22 @@ def build_desk(
     gui.main_panel.set_width(385)
     incoming = Incoming(server, editor)
     with server.atomic():
-        guide = Help(server, incoming)
+        found = pages()
+        guide = Help(server, incoming, {label: page.help for label, page in found.items()})
         desk = Desk(server, session, conductor, editor, fast=fast)
         tabs = gui.add_tab_group()
         # Six labels without icons fit on one row.
-        pages = {
-            "Shape": ShapePanel,
-            "Mesh": MeshPanel,
-            "Optics": OpticsPanel,
-            "Simulate": SimulatePanel,
-            "Make": MakePanel,
-            "Compare": ComparePanel,
-        }
-        for label, panel in pages.items():
-            with tabs.add_tab(label):
-                desk.panels.append(panel(desk))
-                guide.button(label)
+        for label, build in ((label, found[label].page.build) for label in found):
+            if build is not None:
+                with tabs.add_tab(label):
+                    desk.panels.append(build(desk))
+                    guide.button(label)
         results = ResultsPanel(desk)
         desk.panels += [results, results.maps, ViewPanel(desk, results.dock)]
         with results.dock.add_tab("?"):
-            guide.button("Results")
-            guide.button("View")
+            for label, folder in found.items():
+                if folder.page.build is None:
+                    guide.button(label)
     if tour:
         guide.begin()
     editor.on_change = incoming.on_refused = desk.reports.log_soon

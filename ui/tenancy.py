@@ -13,12 +13,12 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from ui.colours import AMBER
-from ui.editor import Editor
-from ui.plain import plain
-from ui.session import Session
-from workbench.core.errors import StoreError
-from workbench.lock_file import Holder, LockFile
+from ui.desk.session import Session
+from ui.page.colours import AMBER
+from ui.page.editor import Editor
+from ui.page.plain import plain
+from workbench.core.base.errors import StoreError
+from workbench.system.lock_file import Holder, LockFile
 
 LOCK = "server.lock"
 LOOK_S = 1.0

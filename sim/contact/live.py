@@ -24,17 +24,18 @@ import numpy as np
 
 from sim.contact.engine.relaxation import Relaxation
 from sim.contact.motion.path import State, legs_of
-from sim.contact.problem import Problem, make_problem
+from sim.contact.press import press_membrane
+from sim.contact.readout.problem import Problem, make_problem
 from sim.contact.readout.verdict import check_depth
 from sim.contact.region.backing import support_points_mm
-from sim.contact.solver import press_membrane, relaxation_of, resume
-from workbench.core.design import Elastomer
-from workbench.core.indenter import Indenter
-from workbench.core.monitor import Monitor, silent
-from workbench.core.motion import press_stroke
-from workbench.core.press import ContactSettings, Method, Press
-from workbench.core.results import MaterialPoints, MembraneMesh
-from workbench.core.sensing import Contact
+from sim.contact.solver.solver import relaxation_of, resume
+from workbench.core.base.monitor import Monitor, silent
+from workbench.core.design.design import Elastomer
+from workbench.core.press.indenter import Indenter
+from workbench.core.press.motion import press_stroke
+from workbench.core.press.press import ContactSettings, Method, Press
+from workbench.core.result.results import MaterialPoints, MembraneMesh
+from workbench.core.result.sensing import Contact
 
 DEEPER_MM = 0.25
 """How much deeper than planned a region and its contact points serve: they reach 1 mm farther."""

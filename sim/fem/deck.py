@@ -18,8 +18,8 @@ from sim.fem.deck_mesh import DeckMesh, Element, deck_mesh, element_lines, face_
 from sim.fem.deck_object import Shell
 from sim.fem.deck_text import carried_lines
 from sim.fem.submodel import Submodel
-from workbench.core.design import Elastomer
-from workbench.core.errors import DesignError
+from workbench.core.base.errors import DesignError
+from workbench.core.design.design import Elastomer
 
 STICK_SHARE = 0.1
 """Stick stiffness of the deck's friction over the penalty: ours has it at a pressure of E / 6."""

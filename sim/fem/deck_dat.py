@@ -16,7 +16,7 @@ from sim.fem.deck import DeckCase, skin_cells
 from sim.fem.deck_forces import stress_forces
 from sim.fem.deck_mesh import deck_mesh
 from sim.fem.deck_results import OtherResult, expect_frames
-from workbench.core.errors import StoreError
+from workbench.core.base.errors import StoreError
 
 BLOCK = re.compile(r"^ *(total force|displacements|stresses) .*for set (\w+) and time +(\S+) *$")
 WIDTHS = {"total force": 3, "displacements": 4, "stresses": 8}

@@ -11,11 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.surface import face_areas, vertex_normals
+from geometry.surface.surface import face_areas, vertex_normals
 from sim.contact.motion.approach import Approach
 from sim.contact.objects.collider import Collider
 from sim.contact.region.refinement import path_samples
-from workbench.core.errors import SolveError
+from workbench.core.base.errors import SolveError
 
 NEAR_MM = 1.5
 """Gap to the undeformed skin up to which a part of the object may be met [mm]: skin bulges."""

@@ -14,9 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim.fem.deck import DeckCase
-from workbench.core.errors import SolveError, StoreError
-from workbench.core.force_field import ForceField, Source
-from workbench.core.frames import quaternion
+from workbench.core.base.errors import SolveError, StoreError
+from workbench.core.base.frames import quaternion
+from workbench.core.result.force_field import ForceField, Source
 
 COLUMNS = ("step", "node", "ux", "uy", "uz", "fx", "fy", "fz")
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from workbench.core.errors import StoreError
+from workbench.core.base.errors import StoreError
 
 CARRIED, END = "**| ", " |"
 """Around the pieces of text that the workbench itself reads again."""

@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from workbench.core.errors import SolveError
+from workbench.core.base.errors import SolveError
 
 if TYPE_CHECKING:
-    from sim.fem.linear_solver import LinearSolver
+    from sim.fem.factors import LinearSolver
 
 MOST_EQUATIONS = 16_000
 """Beyond them a matrix takes a GB, and a sparse factorisation is the faster one."""

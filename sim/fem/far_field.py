@@ -19,7 +19,8 @@ import numpy as np
 
 from sim.fem.body import Body
 from sim.fem.elements import evaluate
-from sim.fem.linear_solver import LinearSolver, make_solver
+from sim.fem.factors import LinearSolver
+from sim.fem.linear_solver import make_solver
 from sim.fem.sparse_system import System, make_system
 
 COLUMNS = 128

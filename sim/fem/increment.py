@@ -18,7 +18,7 @@ from sim.fem.lagged import lagged, minimise
 from sim.fem.newton import Effort, Solution, newton
 from sim.fem.obstacle import RigidPose
 from sim.fem.tangent import Tangent
-from workbench.core.errors import SolveError
+from workbench.core.base.errors import SolveError
 
 START_TOLERANCE = 0.1
 """Relative residual, with the friction of the last increment, at which exact steps begin."""

@@ -14,12 +14,13 @@ import importlib.util
 import os
 import sys
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
 from sim.fem.dense_solver import MOST_EQUATIONS, DenseSolver
-from workbench.core.errors import SolveError
+from sim.fem.factors import LinearSolver
+from workbench.core.base.errors import SolveError
 
 UNSYMMETRIC, SYMMETRIC_INDEFINITE, POSITIVE = 11, -2, 2
 """PARDISO's types of matrix."""
@@ -37,28 +38,6 @@ NEGATIVE_PIVOTS = 23
 """Places in PARDISO's `iparm`, counted from 1."""
 PIVOTING = 0.01
 """SuperLU: a diagonal entry is kept as pivot down to this share of its column's largest."""
-
-
-class LinearSolver(Protocol):
-    """A factorised matrix."""
-
-    name: str
-
-    def factorise(self, matrix: Any) -> int | None:
-        """Take a CSR matrix; number of negative pivots if the solver counts them."""
-        ...
-
-    def solve(self, right: np.ndarray) -> np.ndarray:
-        """Solution for a right-hand side, shape (E,)."""
-        ...
-
-    def solve_many(self, right: np.ndarray) -> np.ndarray:
-        """Solutions for the columns of a matrix, shape (E, K)."""
-        ...
-
-    def close(self) -> None:
-        """Give the memory of the factors back."""
-        ...
 
 
 def make_solver(

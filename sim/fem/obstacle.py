@@ -13,9 +13,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sim.contact.grid.stencil import line_slopes, line_weights
 from sim.contact.objects.collider import Collider
-from sim.contact.objects.shapes import TINY_MM, Shape
-from sim.contact.region.stencil import line_slopes, line_weights
+from sim.contact.objects.shapes import TINY_MM
+from workbench.core.objects.kind import Shape
 
 CURVES = np.array([1.0, -2.0, 1.0])
 """Second derivatives of the quadratic B-spline's three weights by the position in cells."""

@@ -30,16 +30,16 @@ from sim.fem.obstacle import RigidPose
 from sim.fem.readout import FemFrame, read_frame
 from sim.fem.submodel import Submodel, cut_out
 from sim.fem.tangent import Tangent
-from workbench.core.design import Elastomer
-from workbench.core.errors import DesignError, SolveError
-from workbench.core.fem import FemSettings
-from workbench.core.force_field import ForceField, Source
-from workbench.core.freed_memory import freed_memory_kept
-from workbench.core.indenter import Indenter
-from workbench.core.monitor import Monitor, silent
-from workbench.core.press import Press
-from workbench.core.results import MembraneMesh
-from workbench.core.sampled import SampledDistance
+from workbench.core.base.errors import DesignError, SolveError
+from workbench.core.base.freed_memory import freed_memory_kept
+from workbench.core.base.monitor import Monitor, silent
+from workbench.core.design.design import Elastomer
+from workbench.core.press.fem import FemSettings
+from workbench.core.press.indenter import Indenter
+from workbench.core.press.press import Press
+from workbench.core.result.force_field import ForceField, Source
+from workbench.core.result.results import MembraneMesh
+from workbench.core.result.sampled import SampledDistance
 
 NEAR_MARGIN_MM = 1.0
 """Around the patch that the object covers on its path, tangents are exact so far [mm]. A cube half

@@ -16,8 +16,8 @@ from sim.fem.elements import CORNERS, Elements, displacement_gradient
 from sim.fem.increment import Pairing, State
 from sim.fem.submodel import Submodel
 from sim.material import energy_density_MPa
-from workbench.core.frames import quaternion
-from workbench.core.results import MembraneMesh
+from workbench.core.base.frames import quaternion
+from workbench.core.result.results import MembraneMesh
 
 LEAST = 1e-300
 LEAST_PRESSURE_SHARE = 1e-3

@@ -12,20 +12,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim.contact.region.backing import (
-    SIDEWAYS,
-    backed_faces,
-    bonded_faces,
-    foundation_N_mm3,
-)
+from sim.contact.region.backing import SIDEWAYS, backed_faces, bonded_faces, foundation_N_mm3
 from sim.contact.region.drives import UNDRIVEN, driven_faces
 from sim.contact.region.materials import moduli_MPa_at
 from sim.fem.body import Body, Faces, make_faces
 from sim.fem.elements import make_elements
-from workbench.core.design import Elastomer, Law
-from workbench.core.errors import MeshingError
-from workbench.core.press import Press
-from workbench.core.results import MembraneMesh, VolumeMesh
+from workbench.core.base.errors import MeshingError
+from workbench.core.design.design import Elastomer, Law
+from workbench.core.press.press import Press
+from workbench.core.result.results import MembraneMesh, VolumeMesh
 
 SIDES = np.array(
     [(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]

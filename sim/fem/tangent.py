@@ -13,8 +13,9 @@ import numpy as np
 
 from sim.fem.balance import Balance
 from sim.fem.body import Body
+from sim.fem.factors import LinearSolver
 from sim.fem.far_field import FarField, condense
-from sim.fem.linear_solver import LinearSolver, make_solver
+from sim.fem.linear_solver import make_solver
 from sim.fem.sparse_system import System
 
 

@@ -21,10 +21,10 @@ from typing import Any
 import numpy as np
 
 from sim.forces.network.spec import Target
-from workbench.core.design import Elastomer
-from workbench.core.indenter import EDGELESS, Indenter, IndenterKind
-from workbench.core.motion import StrokeKind
-from workbench.core.press import ContactSettings, Method, Press
+from workbench.core.design.design import Elastomer
+from workbench.core.press.indenter import Indenter
+from workbench.core.press.motion import StrokeKind
+from workbench.core.press.press import ContactSettings, Method, Press
 
 SAME = 1e-3
 """Relative difference below which numbers of a card are the same."""
@@ -160,7 +160,7 @@ def _of_material(card: Mapping[str, Any], material: Elastomer) -> Iterator[str]:
 def _of_object(card: Mapping[str, Any], indenter: Indenter) -> Iterator[str]:
     kinds = card.get("indenters")
     name = indenter.kind.value.replace("_", " ")
-    if indenter.kind is IndenterKind.MESH:
+    if indenter.mesh is not None:
         yield "the object comes from a file, trained on none such"
     elif kinds is not None and indenter.kind.value not in kinds:
         yield f"the object is of a kind that training never showed: {name}"
@@ -168,7 +168,7 @@ def _of_object(card: Mapping[str, Any], indenter: Indenter) -> Iterator[str]:
     if known:
         yield f"the object is {indenter.size_mm:g} mm wide, trained on {known} mm"
     known = _unlike(card, "edge_radius_mm", indenter.edge_radius_mm)
-    if known and indenter.kind not in EDGELESS:
+    if known and indenter.record.edge_share is not None:
         yield f"edges are rounded by {indenter.edge_radius_mm:g} mm, trained on {known} mm"
     if indenter.turned:
         yield "the object is turned, trained on objects as they came"

@@ -26,17 +26,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from geometry.surface import face_areas, vertex_normals
+from geometry.surface.surface import face_areas, vertex_normals
 from sim.forces.acquaintance import Acquaintance
 from sim.forces.network.inputs import given_field
 from sim.forces.network.spec import Target
 from sim.forces.network.weights import NetworkWeights
 from sim.forces.transfer import shares_on, transferred
-from workbench.core.errors import StoreError
-from workbench.core.force_field import ForceField, Source
-from workbench.core.monitor import Monitor, silent
-from workbench.core.results import MembraneMesh, Skin
-from workbench.core.sensing import Contact
+from workbench.core.base.errors import StoreError
+from workbench.core.base.monitor import Monitor, silent
+from workbench.core.result.force_field import ForceField, Source
+from workbench.core.result.results import MembraneMesh, Skin
+from workbench.core.result.sensing import Contact
 
 if TYPE_CHECKING:
     from sim.forces.network.steady import SteadyPredictor

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.surface import closest_point
-from workbench.core.force_field import ForceField
-from workbench.core.results import MembraneMesh, Skin
+from geometry.surface.surface import closest_point
+from workbench.core.result.force_field import ForceField
+from workbench.core.result.results import MembraneMesh, Skin
 
 LEAST = 1e-12
 

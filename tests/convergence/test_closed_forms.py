@@ -7,7 +7,7 @@ import math
 import pytest
 
 from sim.contact.studies import closed_forms
-from workbench.core.design import Elastomer
+from workbench.core.design.design import Elastomer
 
 THICK_MM = 1000.0
 MATERIAL = Elastomer(poisson=0.4)

@@ -7,17 +7,17 @@ import dataclasses
 import numpy as np
 import pytest
 
-from sim.contact import specimens
 from sim.contact.motion.approach import plan_approach
 from sim.contact.objects.collider import make_collider
+from sim.contact.press import press_membrane
 from sim.contact.region.radius import MARGIN_WALLS, region_radius_mm
-from sim.contact.solver import press_membrane
+from sim.contact.studies import specimens
 from sim.contact.studies.finger import at_45_degrees
-from workbench.core.design import Elastomer
-from workbench.core.errors import DesignError
-from workbench.core.indenter import Indenter, IndenterKind
-from workbench.core.press import ContactSettings, Press
-from workbench.core.results import Label
+from workbench.core.base.errors import DesignError
+from workbench.core.design.design import Elastomer
+from workbench.core.press.indenter import Indenter, IndenterKind
+from workbench.core.press.press import ContactSettings, Press
+from workbench.core.result.results import Label
 
 
 @pytest.mark.slow

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from sim.contact.studies import backed, finger, layer, sliding
-from workbench.core.press import Press
+from workbench.core.press.press import Press
 
 pytestmark = pytest.mark.usefixtures("taichi_device")
 

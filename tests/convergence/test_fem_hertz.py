@@ -7,7 +7,7 @@ import pytest
 
 from sim.fem.studies import hertz
 from sim.fem.studies.blocks import graded
-from workbench.core.design import Elastomer, Law
+from workbench.core.design.design import Elastomer, Law
 
 MATERIAL = Elastomer(law=Law.LINEAR, friction=0.0)
 

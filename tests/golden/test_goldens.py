@@ -13,15 +13,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from workbench.core.camera import Camera
-from workbench.core.codec import pack
-from workbench.core.design import Meshing, SensorDesign
-from workbench.core.lighting import Baking, LedRing
-from workbench.core.optics import Optics
-from workbench.core.press import ContactSettings, Press
-from workbench.pipeline import InlineRunner, PressCase, evaluate, plan, results
-from workbench.stages import STAGES
-from workbench.store import Store
+from workbench.core.base.codec import pack
+from workbench.core.design.camera import Camera
+from workbench.core.design.design import Meshing, SensorDesign
+from workbench.core.design.lighting import Baking, LedRing
+from workbench.core.design.optics import Optics
+from workbench.core.press.press import ContactSettings, Press
+from workbench.core.press.press_case import PressCase
+from workbench.pipeline.store import Store
+from workbench.planning.plan import InlineRunner, evaluate, plan, results
+from workbench.planning.stage_table import STAGES
 
 FILE = Path(__file__).parent / "stages.json"
 DESIGN = SensorDesign(

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from workbench.cli import main
+from workbench.cli.command_line import main
 
 COARSE = """\
 schema = 1

@@ -7,12 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.surface import closest_point, face_areas
-from workbench.aim import skin_place
-from workbench.named_designs import load_design, presets
-from workbench.pipeline import InlineRunner, PressCase, evaluate, plan
-from workbench.previews import outer_faces
-from workbench.store import Store
+from geometry.surface.surface import closest_point, face_areas
+from workbench.core.press.press_case import PressCase
+from workbench.pipeline.store import Store
+from workbench.planning.plan import InlineRunner, evaluate, plan
+from workbench.project.aim import skin_place
+from workbench.project.named_designs import load_design, presets
+from workbench.view.previews import outer_faces
 
 KEPT_MM = 0.1
 LARGEST = 40

@@ -27,7 +27,7 @@ def test_more_particles_than_memory_is_refused_and_the_good_press_is_kept(
     """With 1 MiB free: particles, need and limit in one message; afterwards all is found again."""
     words = ("run", coarse, *BALL, *PRESS, "--out", tmp_path / "out")
     assert workbench(*words).code == 0
-    monkeypatch.setattr("sim.contact.region.memory.free_bytes", lambda: 2.0**20)
+    monkeypatch.setattr("sim.contact.engine.memory.free_bytes", lambda: 2.0**20)
     deeper = ("run", coarse, *BALL, *PRESS[:3], "0.6", *PRESS[4:], "--out", tmp_path / "deeper")
     run = workbench(*deeper)
     refused(run, "million particles need 0.", "contact.grid_mm")

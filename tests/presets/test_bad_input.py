@@ -27,7 +27,7 @@ def stored(
     project: Path, coarse: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> dict[str, float]:
     """Normal force [N] of the primitives, and a store with a finished result."""
-    from workbench.cli import main
+    from workbench.cli.command_line import main
 
     forces = {}
     # The STL cube has sharp edges, so the primitive has too.

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from workbench.core.trajectory import COLUMNS
+from workbench.core.press.trajectory import COLUMNS
 
 pytestmark = pytest.mark.slow
 

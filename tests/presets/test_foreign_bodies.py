@@ -7,11 +7,11 @@ from typing import Any
 
 import pytest
 
-from geometry.intake import read_body
-from geometry.surface import is_watertight, mesh_volume
+from geometry.intake.intake import read_body
+from geometry.surface.surface import is_watertight, mesh_volume
 from tests.foreign_bodies import FORTY, KINDS, Foreign, written
-from workbench.core.errors import DesignError
-from workbench.core.imported import ImportedBody, body_file
+from workbench.core.base.errors import DesignError
+from workbench.core.design.imported import ImportedBody, body_file
 
 pytestmark = pytest.mark.slow
 

@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 
 from designs.family import Slider, families, family, resolve_shape, sliders
-from geometry.surface import is_watertight
-from workbench.core.design import Layers
-from workbench.core.errors import DesignError, GeometryError
-from workbench.core.monitor import silent
-from workbench.stages import build
+from geometry.surface.surface import is_watertight
+from workbench.core.base.errors import DesignError, GeometryError
+from workbench.core.base.monitor import silent
+from workbench.core.design.design import Layers
+from workbench.pipeline.stages.build import BuildInputs, build
 
 NAMES = sorted(families())
 BUILT = [name for name in NAMES if name != "imported"]
@@ -92,7 +92,10 @@ def test_bodies_at_sampled_ends_are_whole(name: str) -> None:
     for number in random.choice(len(ends), 4, replace=False):
         key, value = ends[number]
         try:
-            solid = build(name, resolve_shape(name, {key: value}), LAYERS, monitor=silent)
+            solid = build(
+                BuildInputs(family=name, shape=resolve_shape(name, {key: value}), layers=LAYERS),
+                monitor=silent,
+            )
         except (DesignError, GeometryError) as error:
             assert error.hint, (key, value)
             continue
@@ -104,7 +107,9 @@ def test_bodies_at_sampled_ends_are_whole(name: str) -> None:
 def test_a_fillet_larger_than_the_wall_is_made_smaller_and_told() -> None:
     """Rim of 3 mm, wall of 0.5 mm: half the radius, a notice with both, and a closed body."""
     shape = resolve_shape("trunk", {"rim_mm": 3.0})
-    solid = build("trunk", shape, Layers(elastomer_mm=0.5), monitor=silent)
+    solid = build(
+        BuildInputs(family="trunk", shape=shape, layers=Layers(elastomer_mm=0.5)), monitor=silent
+    )
     assert is_watertight(solid.membrane.faces)
     assert solid.notice == "Rim radius 3 mm could not be built; 1.5 mm was"
 

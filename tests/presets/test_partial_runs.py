@@ -14,9 +14,9 @@ import numpy as np
 import pytest
 
 from tests.presets.conftest import Command
-from workbench.folder import RUN_FILES, prepare
-from workbench.stages import PARTIAL
-from workbench.store import Store
+from workbench.pipeline.store import Store
+from workbench.planning.running import PARTIAL
+from workbench.system.folder import RUN_FILES, prepare
 
 pytestmark = pytest.mark.slow
 

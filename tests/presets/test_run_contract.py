@@ -15,12 +15,12 @@ import numpy as np
 import pytest
 import trimesh
 
-from geometry.surface import mesh_volume
-from ui.session import Session
-from workbench.cli import main
-from workbench.core.indenter import Indenter
-from workbench.core.press import ContactSettings, Press
-from workbench.project import Project
+from geometry.surface.surface import mesh_volume
+from ui.desk.session import Session
+from workbench.cli.command_line import main
+from workbench.core.press.indenter import Indenter
+from workbench.core.press.press import ContactSettings, Press
+from workbench.project.project import Project
 
 pytestmark = pytest.mark.slow
 
@@ -393,7 +393,7 @@ def test_full_disk_during_a_stage_keeps_the_stages_before(
     wider = tmp_path / "wider.toml"
     wider.write_text(coarse.read_text() + "fov_x_deg = 90.0\n")
     with monkeypatch.context() as patch:
-        patch.setattr("workbench.store._write", full)
+        patch.setattr("workbench.pipeline.store._write", full)
         failed = workbench("run", wider, *OPTIONS, "--out", tmp_path / "out")
     assert failed.code == 3
     assert "is full" in failed.stderr.splitlines()[0]

@@ -11,12 +11,13 @@ import pytest
 import trimesh
 
 from designs.family import resolve_shape
-from geometry.housing_checks import LEAST_WALL_MM
-from workbench.core.fabrication import Severity
-from workbench.core.monitor import silent
-from workbench.core.press import ContactSettings
-from workbench.named_designs import load_design, presets
-from workbench.stages import build, housing
+from geometry.housing.housing_checks import LEAST_WALL_MM
+from workbench.core.base.monitor import silent
+from workbench.core.press.press import ContactSettings
+from workbench.core.result.fabrication import Severity
+from workbench.pipeline.stages.build import BuildInputs, build
+from workbench.pipeline.stages.housing import HousingInputs, housing
+from workbench.project.named_designs import load_design, presets
 
 pytestmark = pytest.mark.slow
 
@@ -67,15 +68,19 @@ def test_leds_and_camera_of_a_preset_have_their_gaps(name: str) -> None:
     holder stands, and every wall has 0.8 mm."""
     design = load_design(name)
     shape = resolve_shape(design.family, design.shape)
-    solid = build(design.family, shape, design.layers, monitor=silent)
+    solid = build(
+        BuildInputs(family=design.family, shape=shape, layers=design.layers), monitor=silent
+    )
     camera, ring = design.optics.camera, design.optics.ring
     made = housing(
-        solid,
-        design.housing,
-        ring,
-        camera.position_mm,
-        camera.wxyz,
-        design.mould.printer,
+        HousingInputs(
+            solid=solid,
+            options=design.housing,
+            ring=ring,
+            camera_mm=camera.position_mm,
+            camera_wxyz=camera.wxyz,
+            printer=design.mould.printer,
+        ),
         monitor=silent,
     )
     gaps = {check.name: check for check in made.checks if check.name.endswith("_clearance")}

@@ -7,17 +7,18 @@ import numpy as np
 import pytest
 
 from sim.contact.engine.relaxation import Balances, Relaxation
-from sim.contact.problem import make_problem
-from sim.contact.run import Run
-from sim.contact.solver import press_membrane, relaxation_of
-from sim.contact.specimens import flat_block
+from sim.contact.press import press_membrane
+from sim.contact.readout.problem import make_problem
+from sim.contact.solver.run import Run
+from sim.contact.solver.solver import relaxation_of
 from sim.contact.studies.finger import at_45_degrees, penetration_and_balance, press_finger
-from workbench.core.design import Elastomer
-from workbench.core.errors import Cancelled, SolveError
-from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
-from workbench.core.monitor import silent
-from workbench.core.press import ContactSettings, Press
-from workbench.core.sensing import Contact
+from sim.contact.studies.specimens import flat_block
+from workbench.core.base.errors import Cancelled, SolveError
+from workbench.core.base.monitor import silent
+from workbench.core.design.design import Elastomer
+from workbench.core.press.indenter import Indenter, IndenterKind, IndenterMesh
+from workbench.core.press.press import ContactSettings, Press
+from workbench.core.result.sensing import Contact
 
 pytestmark = pytest.mark.usefixtures("taichi_device")
 

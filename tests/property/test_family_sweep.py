@@ -8,9 +8,17 @@ import time
 
 import pytest
 
-from workbench.validation import sweep as sweeps
-from workbench.validation.meshes import family_names
-from workbench.validation.sweep import Finding, Trial, Workers, draw, judge, sweep, sweep_row
+from workbench.proof.validation.geometry import sweep as sweeps
+from workbench.proof.validation.geometry.meshes import family_names
+from workbench.proof.validation.geometry.sweep import (
+    Finding,
+    Trial,
+    Workers,
+    draw,
+    judge,
+    sweep,
+    sweep_row,
+)
 
 
 @pytest.mark.parametrize("name", family_names())

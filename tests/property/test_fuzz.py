@@ -1,8 +1,8 @@
 """Whatever a design or a CAD file holds, the command line answers with a sentence, and soon.
 
-Commands run through `workbench.cli.main`, each in a process of its own, up to the point where the
-expensive stages would begin. `WORKBENCH_FUZZ_CASES` says how many of each kind; 300 is what a
-release is tried with. `WORKBENCH_FUZZ_SEED` chooses others.
+Commands run through `workbench.cli.command_line`, each in a process of its own, up to the point
+where the expensive stages would begin. `WORKBENCH_FUZZ_CASES` says how many of each kind; 300 is
+what a release is tried with. `WORKBENCH_FUZZ_SEED` chooses others.
 """
 
 from __future__ import annotations
@@ -40,11 +40,9 @@ def prepare() -> None:
     import scipy.spatial  # noqa: F401
 
     import designs.family
-    import geometry.imported  # noqa: F401
-    import workbench.aim
-    import workbench.exports
-    import workbench.outputs  # noqa: F401
-    from workbench import pipeline, stages
+    from workbench.pipeline import stage as stages
+    from workbench.planning import plan as pipeline
+    from workbench.planning import running
 
     designs.family.families()
 
@@ -53,7 +51,7 @@ def prepare() -> None:
         if call.stage in ("press", "mould"):
             raise SystemExit(0)
         if call.stage in ("intake", "build", "object"):
-            return stages.run(self.store, call, monitor)
+            return running.run(self.store, call, monitor)
         return stages.Outcome(stage=call.stage, key=call.key, cached=True, seconds=0.0)
 
     pipeline.InlineRunner.run = cheap
@@ -69,10 +67,10 @@ def forks() -> Iterator[Forks]:
 @pytest.fixture(scope="module")
 def sound_designs() -> list[str]:
     """Every preset with all its fields written out, and a press with all of its own."""
-    from workbench.design_toml import design_to_toml
-    from workbench.named_designs import load_design
-    from workbench.project import Project
-    from workbench.state import case_table, fresh_state
+    from workbench.project.design_toml import design_to_toml
+    from workbench.project.named_designs import load_design
+    from workbench.project.project import Project
+    from workbench.project.state import case_table, fresh_state
 
     found = []
     for name in HOUSE:

@@ -7,14 +7,14 @@ import math
 import numpy as np
 import pytest
 
-from sim.optics.bake import bake_light
-from sim.optics.render import shoot
-from sim.optics.specimen import dent, finger
+from sim.optics.field.bake import bake_light
+from sim.optics.proof.specimen import dent, finger
+from sim.optics.studio.render import shoot
 from tests.synthetic_light import UNTRACED
-from workbench.core.camera import Camera
-from workbench.core.lighting import LedRing, LightModel
-from workbench.core.optics import Optics
-from workbench.core.sensing import TactileFrames
+from workbench.core.design.camera import Camera
+from workbench.core.design.lighting import LedRing, LightModel
+from workbench.core.design.optics import Optics
+from workbench.core.result.sensing import TactileFrames
 
 pytestmark = pytest.mark.usefixtures("taichi_device")
 

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from designs.family import family, resolve_shape, sliders
-from geometry import checks
-from geometry.hexmesh import mesh_membrane
-from geometry.lattice import material_points
-from workbench.core.design import Layers, Meshing
-from workbench.core.errors import DesignError
-from workbench.core.results import Label, Solid
+from geometry.volume import checks
+from geometry.volume.hexmesh import mesh_membrane
+from geometry.volume.lattice import material_points
+from workbench.core.base.errors import DesignError
+from workbench.core.design.design import Layers, Meshing
+from workbench.core.result.results import Label, Solid
 
 
 def random_finger(seed: int) -> tuple[dict[str, float], Layers]:

@@ -9,15 +9,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sim.contact.problem import Problem
-from sim.contact.specimens import flat_block
-from workbench.core.errors import DesignError, SolveError
-from workbench.core.indenter import IndenterKind
-from workbench.core.press import ContactSettings, Press
-from workbench.core.sensing import Contact
-from workbench.validation import endurance, robustness, trials
-from workbench.validation.robustness import Finding, State, judge, judged
-from workbench.validation.trials import Motion, Sensor, Trial
+from sim.contact.readout.problem import Problem
+from sim.contact.studies.specimens import flat_block
+from workbench.core.base.errors import DesignError, SolveError
+from workbench.core.press.indenter import IndenterKind
+from workbench.core.press.press import ContactSettings, Press
+from workbench.core.result.sensing import Contact
+from workbench.proof.validation.contact import endurance, robustness, trials
+from workbench.proof.validation.contact.robustness import Finding, State, judge, judged
+from workbench.proof.validation.contact.trials import Motion, Sensor, Trial
 
 
 def trial(number: int = 0, motion: Motion = Motion.PRESS) -> Trial:
@@ -37,7 +37,7 @@ def block(taichi_device: str) -> Sensor:
 @pytest.fixture(scope="module")
 def settled(block: Sensor) -> Contact:
     """A ball pressed into it."""
-    from sim.contact.solver import solve
+    from sim.contact.solver.solver import solve
 
     (result,) = solve([robustness._problem(trial(), block)])
     assert isinstance(result, Contact)
@@ -86,7 +86,7 @@ def test_press_that_breaks_the_batch_is_one_fault(
     block: Sensor, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Of three presses one has a bug and one is refused; the third settles all the same."""
-    from sim.contact import solver
+    from sim.contact.solver import solver
 
     solve = solver.solve
 
@@ -131,7 +131,7 @@ def test_saved_sensors_are_the_same(tmp_path: Path, monkeypatch: pytest.MonkeyPa
 @pytest.mark.slow
 def test_memory_is_flat_over_presses_of_changing_designs(taichi_device: str) -> None:
     """60 presses: the resident set after the last 40 is within 20 MB of that after the first 20."""
-    from sim.contact.solver import solve
+    from sim.contact.solver.solver import solve
 
     sizes_MB = []
     for number in range(60):

@@ -7,19 +7,21 @@ import dataclasses
 import numpy as np
 import pytest
 
-from sim.contact.solver import press_membrane
-from sim.contact.specimens import finger
-from workbench.core.actuation import Actuation, Place
-from workbench.core.design import Elastomer
-from workbench.core.indenter import Indenter
-from workbench.core.monitor import silent
-from workbench.core.press import ContactSettings, Extent, Press
-from workbench.core.results import Label, MembraneMesh
-from workbench.core.sensing import Contact
-from workbench.named_designs import load_design
-from workbench.pipeline import plan
-from workbench.sequences import LIFT_FRAMES, sequence
-from workbench.stages import build, lattice, mesh
+from sim.contact.press import press_membrane
+from sim.contact.studies.specimens import finger
+from workbench.core.base.monitor import silent
+from workbench.core.design.design import Elastomer
+from workbench.core.press.actuation import Actuation, Place
+from workbench.core.press.indenter import Indenter
+from workbench.core.press.press import ContactSettings, Extent, Press
+from workbench.core.result.results import Label, MembraneMesh
+from workbench.core.result.sensing import Contact
+from workbench.edit.sequences import LIFT_FRAMES, sequence
+from workbench.pipeline.stages.build import build
+from workbench.pipeline.stages.lattice import LatticeInputs, lattice
+from workbench.pipeline.stages.mesh import MeshInputs, mesh
+from workbench.planning.plan import plan
+from workbench.project.named_designs import load_design
 
 pytestmark = pytest.mark.usefixtures("taichi_device")
 
@@ -81,9 +83,9 @@ def grip() -> tuple[MembraneMesh, Contact]:
     """The trunk's grip on a coarse grid: two frames a phase, at its usual closing."""
     design = load_design("trunk").replace("meshing.hex_mm", 0.8)
     case = sequence(design, "grip", frames=GRIP_FRAMES, settings={"grid_mm": 1.25})
-    solid = build(*plan(design, case)["build"].inputs, monitor=silent)
-    skins = mesh(solid, design.meshing, monitor=silent)
-    points = lattice(solid, case.settings.grid_mm, monitor=silent)
+    solid = build(plan(design, case)["build"].inputs, monitor=silent)
+    skins = mesh(MeshInputs(solid=solid, meshing=design.meshing), monitor=silent)
+    points = lattice(LatticeInputs(solid=solid, grid_mm=case.settings.grid_mm), monitor=silent)
     contact = press_membrane(
         skins, points, design.material, case.indenter, case.press, case.settings
     )

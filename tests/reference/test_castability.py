@@ -5,22 +5,17 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from geometry import csg
-from geometry.cast import Cast
-from geometry.castability import (
-    bed_ratio,
-    draft_deg,
-    removal_strain,
-    spread,
-    undercut,
-)
-from geometry.core_release import core_strain
-from geometry.csg_brep import checked
-from geometry.csg_mesh import arrays, evaluate, overlaps_mm3
-from geometry.primitives import sphere
-from geometry.silicones import SILICONES, doubled_MPa, gent_MPa, nearest, silicone
-from geometry.trapped import pockets
-from workbench.core.errors import DesignError, GeometryError
+from geometry.body import csg
+from geometry.body.csg_brep import checked
+from geometry.body.csg_mesh import arrays, evaluate, overlaps_mm3
+from geometry.body.silicones import SILICONES, doubled_MPa, gent_MPa, nearest, silicone
+from geometry.mould.cast import Cast
+from geometry.mould.castability import bed_ratio, draft_deg, removal_strain, undercut
+from geometry.mould.core_release import core_strain
+from geometry.mould.trapped import pockets
+from geometry.surface.primitives import sphere
+from geometry.surface.spread import spread
+from workbench.core.base.errors import DesignError, GeometryError
 
 UP = np.array([0.0, 0.0, 1.0])
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from geometry import csg
-from geometry.cast import Cast, make_cast
-from geometry.channels import make_channels
-from geometry.csg_mesh import arrays, evaluate
-from geometry.trapped import pockets
-from workbench.core.design import MouldOptions
-from workbench.core.results import Solid
+from geometry.body import csg
+from geometry.body.csg_mesh import arrays, evaluate
+from geometry.mould.cast import Cast, make_cast
+from geometry.mould.channels import make_channels
+from geometry.mould.trapped import pockets
+from workbench.core.design.design import MouldOptions
+from workbench.core.result.results import Solid
 
 TURN = np.radians(10.0)
 LEANING = np.array(
@@ -23,7 +23,7 @@ LEANING = np.array(
 @pytest.fixture(scope="module")
 def pad() -> Solid:
     """The default pad: its flat inner face is bonded to the window."""
-    from workbench.validation.meshes import default_solid
+    from workbench.proof.validation.geometry.meshes import default_solid
 
     return default_solid("pad")
 
@@ -31,7 +31,7 @@ def pad() -> Solid:
 @pytest.fixture(scope="module")
 def digitac() -> Solid:
     """The default pad with 31 pins."""
-    from workbench.validation.meshes import default_solid
+    from workbench.proof.validation.geometry.meshes import default_solid
 
     return default_solid("digitac")
 

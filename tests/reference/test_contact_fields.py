@@ -5,16 +5,16 @@ import dataclasses
 import numpy as np
 import pytest
 
-from sim.contact.problem import make_problem
+from sim.contact.press import press_membrane
 from sim.contact.readout.fields import VOIGT, skin_stress, volume_state
-from sim.contact.solver import press_membrane
-from sim.contact.specimens import flat_block
+from sim.contact.readout.problem import make_problem
+from sim.contact.studies.specimens import flat_block
 from sim.material import energy_density_MPa, moduli_MPa, stress_of
-from workbench.core.design import Elastomer, Law
-from workbench.core.inclusion import Inclusion, Where
-from workbench.core.indenter import Indenter
-from workbench.core.press import ContactSettings, Press
-from workbench.core.sensing import Contact
+from workbench.core.design.design import Elastomer, Law
+from workbench.core.design.inclusion import Inclusion, Where
+from workbench.core.press.indenter import Indenter
+from workbench.core.press.press import ContactSettings, Press
+from workbench.core.result.sensing import Contact
 
 pytestmark = pytest.mark.usefixtures("taichi_device")
 

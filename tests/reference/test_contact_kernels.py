@@ -10,19 +10,19 @@ from sim.contact.engine.batch import Case
 from sim.contact.engine.relaxation import STEP_CAP, STEPS, Relaxation
 from sim.contact.motion.approach import plan_approach
 from sim.contact.objects.collider import make_collider
-from sim.contact.objects.shapes import SAMPLED
-from sim.contact.problem import prepare
+from sim.contact.readout.problem import prepare
 from sim.contact.region.domain import stencil_nodes
-from sim.contact.specimens import flat_block
+from sim.contact.studies.specimens import flat_block
 from sim.material import elastic_solid
-from workbench.core.design import Elastomer, Law
-from workbench.core.inclusion import Inclusion, Where
-from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
-from workbench.core.press import ContactSettings, Press
-from workbench.core.results import Label
+from workbench.core.design.design import Elastomer, Law
+from workbench.core.design.inclusion import Inclusion, Where
+from workbench.core.objects.kind import Shape, kind_of
+from workbench.core.press.indenter import Indenter, IndenterKind, IndenterMesh
+from workbench.core.press.press import ContactSettings, Press
+from workbench.core.result.results import Label
 
 MATERIAL = Elastomer()
-ANALYTIC = [kind for kind in IndenterKind if kind not in SAMPLED]
+ANALYTIC = [kind for kind in IndenterKind if kind_of(kind).shape is not Shape.GRID]
 # Single precision has 6e-8; sums of 27 to 200 terms and the cancellation of the position lose
 # two digits.
 RELATIVE = 1e-5

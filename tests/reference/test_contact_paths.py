@@ -7,17 +7,17 @@ import pytest
 
 from sim.contact.motion.approach import plan_approach
 from sim.contact.objects.collider import make_collider
+from sim.contact.press import press_membrane
 from sim.contact.region.refinement import path_distance_mm, path_samples
-from sim.contact.solver import press_membrane
-from sim.contact.specimens import flat_block
-from workbench.core.actuation import Actuation
-from workbench.core.design import Elastomer
-from workbench.core.errors import DesignError
-from workbench.core.indenter import Indenter
-from workbench.core.motion import slide
-from workbench.core.press import ContactSettings, Press
-from workbench.core.soft_body import SoftBody
-from workbench.core.trajectory import Trajectory
+from sim.contact.studies.specimens import flat_block
+from workbench.core.base.errors import DesignError
+from workbench.core.design.design import Elastomer
+from workbench.core.press.actuation import Actuation
+from workbench.core.press.indenter import Indenter
+from workbench.core.press.motion import slide
+from workbench.core.press.press import ContactSettings, Press
+from workbench.core.press.soft_body import SoftBody
+from workbench.core.press.trajectory import Trajectory
 
 pytestmark = pytest.mark.usefixtures("taichi_device")
 

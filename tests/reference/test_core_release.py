@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from geometry.core_release import bend_strain
-from geometry.csg import Body
-from workbench.core.results import Label, LabelledSurface
+from geometry.body.csg import Body
+from geometry.mould.core_release import bend_strain
+from workbench.core.result.results import Label, LabelledSurface
 
 LEVELS, AROUND = 121, 72
 

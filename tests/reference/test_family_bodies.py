@@ -17,10 +17,10 @@ from designs.tentacle import TentacleShape
 from designs.thumb import ThumbShape, nail_mm3
 from designs.trunk import TrunkShape, saddle_mm3
 from tests.families import expect_found_out, expect_refusal
-from workbench.building import build_solid
-from workbench.core.design import Layers
-from workbench.core.errors import GeometryError
-from workbench.core.results import Label
+from workbench.core.base.errors import GeometryError
+from workbench.core.design.design import Layers
+from workbench.core.result.results import Label
+from workbench.pipeline.building import build_solid
 
 SHARP = {"width_mm": 50.0, "depth_mm": 24.0, "lobe_mm": 12.0, "lobe_ratio": 0.6, "rim_mm": 3.0}
 """A trunk whose ridges, of radius 0.88 mm, are sharper than its rim."""
@@ -43,7 +43,7 @@ def test_straight_column_is_a_capped_cylinder() -> None:
 
 def test_column_field_vanishes_on_the_kernels_surface_with_slope_one() -> None:
     """f = 0 and |grad f| = 1 at every vertex above the base."""
-    from geometry.solid import tessellate
+    from geometry.body.solid import tessellate
 
     points = tessellate(column_body(BENT, what="column")).points_mm
     points = points[points[:, 2] > 1e-3]

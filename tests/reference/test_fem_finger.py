@@ -8,12 +8,20 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from workbench.core.errors import StoreError
-from workbench.core.fem import DRAFT_MM
-from workbench.core.indenter import IndenterKind
-from workbench.validation import fem_matrix
-from workbench.validation.fem_cases import MatrixCase, every_case, object_of, press_of
-from workbench.validation.fem_presses import FRAMES, MIRROR, Case, finger, mirrored_finger, solved
+from workbench.core.base.errors import StoreError
+from workbench.core.base.version import VERSION
+from workbench.core.press.fem import DRAFT_MM
+from workbench.core.press.indenter import IndenterKind
+from workbench.proof.validation.fem import fem_matrix
+from workbench.proof.validation.fem.fem_cases import MatrixCase, every_case, object_of, press_of
+from workbench.proof.validation.fem.fem_presses import (
+    FRAMES,
+    MIRROR,
+    Case,
+    finger,
+    mirrored_finger,
+    solved,
+)
 
 
 @pytest.mark.slow
@@ -155,7 +163,7 @@ def test_a_record_of_other_settings_is_refused(tmp_path: Path) -> None:
 
 def test_a_runner_goes_on_where_it_was_stopped(tmp_path: Path) -> None:
     """Cases that the file holds are not solved again; a file of other settings is not touched."""
-    path = record_of(tmp_path, version=fem_matrix.__version__)
+    path = record_of(tmp_path, version=VERSION)
     before = path.read_bytes()
     record = fem_matrix.solve_all(every_case(), path, 1, every_case()[0].hex_mm)
     assert len(record["cases"]) == 96

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from designs.family import family, resolve_shape
-from geometry import checks
-from geometry.solid import brep_bytes, part_from_brep
-from workbench.core.design import Layers
-from workbench.core.errors import GeometryError
-from workbench.core.results import Label, Solid
+from geometry.body.solid import brep_bytes, part_from_brep
+from geometry.volume import checks
+from workbench.core.base.errors import GeometryError
+from workbench.core.design.design import Layers
+from workbench.core.result.results import Label, Solid
 
 
 def test_volume_is_that_of_a_hemisphere_capped_cylinder(finger: Solid) -> None:

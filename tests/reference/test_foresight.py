@@ -9,26 +9,26 @@ from typing import Any
 import numpy as np
 import pytest
 
-from geometry.hexmesh import mesh_membrane
+from geometry.volume.hexmesh import mesh_membrane
 from sim.contact.motion.approach import plan_approach
 from sim.contact.objects.collider import make_collider
 from sim.contact.readout.verdict import check_depth
 from sim.contact.region.backing import support_points_mm
-from sim.optics.places import check_camera, check_lights
-from workbench.aim import default_target_mm
-from workbench.building import build_solid
-from workbench.cli import main
-from workbench.core.design import Meshing, SensorDesign
-from workbench.core.errors import DesignError
-from workbench.core.indenter import Indenter, IndenterKind
-from workbench.core.lighting import Lamp, LedMount
-from workbench.core.press import Press
-from workbench.core.results import Solid
-from workbench.fitting import fitted
-from workbench.foresight import foresight_call
-from workbench.misfits import misfits
-from workbench.named_designs import load_design, presets
-from workbench.pipeline import PressCase
+from sim.optics.light.places import check_camera, check_lights
+from workbench.cli.command_line import main
+from workbench.core.base.errors import DesignError
+from workbench.core.design.design import Meshing, SensorDesign
+from workbench.core.design.lighting import Lamp, LedMount
+from workbench.core.press.indenter import Indenter, IndenterKind
+from workbench.core.press.press import Press
+from workbench.core.press.press_case import PressCase
+from workbench.core.result.results import Solid
+from workbench.pipeline.building import build_solid
+from workbench.planning.fitting import fitted
+from workbench.planning.foresight import foresight_call
+from workbench.planning.misfits import misfits
+from workbench.project.aim import default_target_mm
+from workbench.project.named_designs import load_design, presets
 
 
 def body(design: SensorDesign) -> Solid:
@@ -167,7 +167,7 @@ def test_presets_fit_and_rough_skins_say_what_meshes_say(name: str) -> None:
 def _near_a_wall(mesh: Any, design: SensorDesign, part: str) -> bool:
     from scipy.spatial import KDTree
 
-    from sim.optics.lights import place_leds
+    from sim.optics.light.lights import place_leds
 
     optics = design.optics
     places = place_leds(optics.ring).position_mm if part == "ring" else [optics.camera.position_mm]
@@ -179,7 +179,7 @@ def test_the_question_is_small_and_its_answer_can_be_sent(finger: Solid, tmp_pat
     """As the lanes do it: through pickle, with the fields of the errors."""
     import pickle
 
-    from workbench.store import Store
+    from workbench.pipeline.store import Store
 
     design = SensorDesign().replace("optics.ring.radius_mm", 14.0)
     call = foresight_call(design, PressCase())

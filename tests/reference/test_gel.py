@@ -7,21 +7,21 @@ import dataclasses
 import pytest
 
 from designs.digitac import DigitacShape
-from geometry.gel import gap_ml, gel_step
-from geometry.moulds import make_mould
-from geometry.recipe import make_recipe
-from geometry.solid import part_from_brep
-from workbench.core.design import Layers, MouldOptions
-from workbench.core.fabrication import HousingSet, MouldSet
-from workbench.core.lighting import LedRing
-from workbench.core.making import Casting
-from workbench.core.results import Solid
+from geometry.body.solid import part_from_brep
+from geometry.mould.gel import gap_ml, gel_step
+from geometry.mould.moulds import make_mould
+from geometry.workshop.recipe import make_recipe
+from workbench.core.design.design import Layers, MouldOptions
+from workbench.core.design.lighting import LedRing
+from workbench.core.design.making import Casting
+from workbench.core.result.fabrication import HousingSet, MouldSet
+from workbench.core.result.results import Solid
 
 
 @pytest.fixture(scope="module")
 def digitac() -> Solid:
     """The default pad with pins."""
-    from workbench.validation.meshes import default_solid
+    from workbench.proof.validation.geometry.meshes import default_solid
 
     return default_solid("digitac")
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sim.optics.camera import axis_cosines
-from sim.optics.ghost import mirrored_radiance
-from sim.optics.specimen import finger
-from sim.optics.transport_scenes import plane, sphere
+from sim.optics.camera.camera import axis_cosines
+from sim.optics.proof.ghost import mirrored_radiance
+from sim.optics.proof.specimen import finger
+from sim.optics.proof.transport_scenes import plane, sphere
 from sim.specimens import skins_only
-from workbench.core.camera import Camera
-from workbench.core.results import MembraneMesh, Skin
+from workbench.core.design.camera import Camera
+from workbench.core.result.results import MembraneMesh, Skin
 
 CAMERA = Camera(width_px=32, height_px=24, fov_x_deg=80.0, position_mm=(0.0, 0.0, 0.0))
 INDEX = 1.41

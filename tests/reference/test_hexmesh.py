@@ -8,13 +8,13 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from geometry import checks
-from geometry.hexmesh import mesh_membrane
-from geometry.hexquality import hex_volumes, scaled_jacobian
-from geometry.surface import open_edges
-from workbench.core.design import Layers, Meshing
-from workbench.core.errors import MeshingError
-from workbench.core.results import Label, MembraneMesh, Solid
+from geometry.surface.surface import open_edges
+from geometry.volume import checks
+from geometry.volume.hexmesh import mesh_membrane
+from geometry.volume.hexquality import hex_volumes, scaled_jacobian
+from workbench.core.base.errors import MeshingError
+from workbench.core.design.design import Layers, Meshing
+from workbench.core.result.results import Label, MembraneMesh, Solid
 
 UNIT = np.array(
     [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]], float

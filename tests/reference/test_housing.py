@@ -8,22 +8,22 @@ import numpy as np
 import pytest
 
 from designs.family import resolve_shape
-from geometry import csg
-from geometry.csg_mesh import arrays, closed, evaluate, overlaps_mm3
-from geometry.holder_seat import FARTHEST_MM, seat_gap
-from geometry.housing import make_housing
-from geometry.led_holder import opened, shadow, shaped_holder
-from geometry.recipe import make_recipe
-from geometry.surface import mesh_volume
-from geometry.walls import thinnest_wall
-from workbench.core.camera import Camera
-from workbench.core.design import Layers
-from workbench.core.fabrication import FabricationCheck, HousingSet, MouldSet, Severity
-from workbench.core.lighting import LedRing
-from workbench.core.making import Casting, Housing, Printer
-from workbench.core.monitor import silent
-from workbench.core.results import Solid
-from workbench.stages import build
+from geometry.body import csg
+from geometry.body.csg_mesh import arrays, closed, evaluate, overlaps_mm3
+from geometry.housing.holder_seat import FARTHEST_MM, seat_gap
+from geometry.housing.housing import make_housing
+from geometry.housing.led_holder import opened, shadow, shaped_holder
+from geometry.mould.walls import thinnest_wall
+from geometry.surface.surface import mesh_volume
+from geometry.workshop.recipe import make_recipe
+from workbench.core.base.monitor import silent
+from workbench.core.design.camera import Camera
+from workbench.core.design.design import Layers
+from workbench.core.design.lighting import LedRing
+from workbench.core.design.making import Casting, Housing, Printer
+from workbench.core.result.fabrication import FabricationCheck, HousingSet, MouldSet, Severity
+from workbench.core.result.results import Solid
+from workbench.pipeline.stages.build import BuildInputs, build
 
 RING = csg.without(csg.cylinder(10.0, -1.0, 1.0), [csg.cylinder(5.0, -2.0, 2.0)])
 NOWHERE = csg.moved(csg.cylinder(1.0, 0.0, 1.0), (0.0, 0.0, -50.0))
@@ -149,7 +149,10 @@ def test_a_holder_held_together_by_a_skin_is_in_pieces(finger: Solid) -> None:
 
 def pad(height_mm: float, radius_mm: float, options: Housing) -> tuple[Solid, HousingSet]:
     """The pad's rigid parts with a ring of tilted LEDs."""
-    solid = build("pad", resolve_shape("pad", {}), Layers(support_mm=1.0), monitor=silent)
+    solid = build(
+        BuildInputs(family="pad", shape=resolve_shape("pad", {}), layers=Layers(support_mm=1.0)),
+        monitor=silent,
+    )
     ring = LedRing(count=12, radius_mm=radius_mm, height_mm=height_mm, tilt_deg=-60.0)
     camera = Camera(position_mm=(0.0, 0.0, 0.3))
     return solid, make_housing(solid, options, ring=ring, camera=camera, printer=Printer())
@@ -231,7 +234,10 @@ def test_advice_for_crowded_leds_is_fewer() -> None:
 def test_a_thin_ledge_goes_without_thinning_the_base_beside_it() -> None:
     """DIGITac: above the corners of the mount's seat, beyond the ring's, 1.35 mm of base are left;
     the ledge of 0.5 mm between the two seats is gone."""
-    solid = build("digitac", resolve_shape("digitac", {}), Layers(), monitor=silent)
+    solid = build(
+        BuildInputs(family="digitac", shape=resolve_shape("digitac", {}), layers=Layers()),
+        monitor=silent,
+    )
     ring = LedRing(count=6, radius_mm=5.0, height_mm=1.3)
     camera = Camera(position_mm=(0.0, 0.0, 0.3))
     made = make_housing(solid, Housing(), ring=ring, camera=camera, printer=Printer())

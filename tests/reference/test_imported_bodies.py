@@ -10,21 +10,21 @@ import numpy as np
 import pytest
 
 from designs.imported import ImportedShape
-from geometry.csg_mesh import closed
-from geometry.export import stl_bytes
-from geometry.imported import build_imported
-from geometry.intake import read_body
-from geometry.isosurface import distance_mm, isosurface
-from geometry.offset import inset_surface, inside
-from geometry.shell import two_sides
-from geometry.surface import face_areas, is_watertight, mesh_volume
+from geometry.body.csg_mesh import closed
+from geometry.intake.imported import build_imported
+from geometry.intake.intake import read_body
+from geometry.intake.shell import two_sides
+from geometry.surface.isosurface import distance_mm, isosurface
+from geometry.surface.offset import inset_surface, inside
+from geometry.surface.surface import face_areas, is_watertight, mesh_volume
+from geometry.workshop.export import stl_bytes
 from tests.foreign_bodies import cup
-from workbench.aim import default_target_mm
-from workbench.core.design import Layers, SensorDesign
-from workbench.core.errors import DesignError
-from workbench.core.imported import ImportedBody, LengthUnit, Pick, ReadBody, body_file
-from workbench.core.results import Label, Solid, region_masks
-from workbench.fitting import fitted
+from workbench.core.base.errors import DesignError
+from workbench.core.design.design import Layers, SensorDesign
+from workbench.core.design.imported import ImportedBody, LengthUnit, Pick, ReadBody, body_file
+from workbench.core.result.results import Label, Solid, region_masks
+from workbench.planning.fitting import fitted
+from workbench.project.aim import default_target_mm
 
 SIDES = 96
 RADIUS_MM, HEIGHT_MM = 12.0, 20.0

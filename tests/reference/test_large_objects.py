@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 import trimesh
 
+from sim.contact.press import press_membrane
 from sim.contact.region.placing import place_object
-from sim.contact.solver import press_membrane
-from sim.contact.specimens import flat_block
-from workbench.core.design import Elastomer
-from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
-from workbench.core.press import ContactSettings, Press
+from sim.contact.studies.specimens import flat_block
+from workbench.core.design.design import Elastomer
+from workbench.core.press.indenter import Indenter, IndenterKind, IndenterMesh
+from workbench.core.press.press import ContactSettings, Press
 
 pytestmark = pytest.mark.usefixtures("taichi_device")
 PRESS = Press(target_mm=(0.0, 0.0, 2.0), depth_mm=0.3, frames=1)

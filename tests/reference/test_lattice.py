@@ -7,11 +7,11 @@ import math
 import numpy as np
 import pytest
 
-from geometry import checks
-from geometry.lattice import material_points
-from geometry.primitives import rounded_box, sphere
-from workbench.core.monitor import silent
-from workbench.core.results import LabelledSurface, Solid
+from geometry.surface.primitives import rounded_box, sphere
+from geometry.volume import checks
+from geometry.volume.lattice import material_points
+from workbench.core.base.monitor import silent
+from workbench.core.result.results import LabelledSurface, Solid
 
 
 def surface(mesh: tuple[np.ndarray, np.ndarray], shift: tuple[float, ...]) -> LabelledSurface:
@@ -36,7 +36,7 @@ def test_bits_name_the_sub_cells() -> None:
     assert points.fractions[0].tolist() == [0, 0, 0, 0, 0, 1, 0, 0]
 
 
-@pytest.mark.parametrize("height", [0.013, 0.37, 1.0 / 3.0])
+@pytest.mark.parametrize("height", [1e-4, 0.013, 0.37, 1.0 / 3.0])
 def test_fractions_are_exact_along_z(height: float) -> None:
     """A slab from z = -0.5 up to `height`: full below, height / 0.5 in the sub-cell it ends in."""
     points, faces = rounded_box(0.5, 0.0)

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from sim.contact.live import LiveContact, Way, one_frame
-from sim.contact.solver import press_membrane
-from sim.contact.specimens import flat_block
-from workbench.core.design import Elastomer
-from workbench.core.errors import Cancelled
-from workbench.core.indenter import Indenter
-from workbench.core.motion import slide
-from workbench.core.press import ContactSettings, Press
+from sim.contact.press import press_membrane
+from sim.contact.studies.specimens import flat_block
+from workbench.core.base.errors import Cancelled
+from workbench.core.design.design import Elastomer
+from workbench.core.press.indenter import Indenter
+from workbench.core.press.motion import slide
+from workbench.core.press.press import ContactSettings, Press
 
 pytestmark = pytest.mark.usefixtures("taichi_device")
 

@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 from scipy.spatial import ConvexHull
 
-from geometry.hexmesh import mesh_membrane
-from geometry.lattice import material_points
-from geometry.quality import quality_report, skin_quality, tetrahedron_quality
-from geometry.surface import face_areas, is_watertight, mesh_volume
-from geometry.tets import boundary_faces, tetrahedra
-from sim.optics.within import inside
-from workbench.core.design import Meshing
-from workbench.core.results import Label, MembraneMesh, Skin, Solid, VolumeMesh, region_masks
-from workbench.validation.meshes import default_solid, family_names, worst_area_error
+from geometry.surface.surface import face_areas, is_watertight, mesh_volume
+from geometry.volume.hexmesh import mesh_membrane
+from geometry.volume.lattice import material_points
+from geometry.volume.quality import quality_report, skin_quality, tetrahedron_quality
+from geometry.volume.tets import boundary_faces, tetrahedra
+from sim.optics.camera.within import inside
+from workbench.core.design.design import Meshing
+from workbench.core.result.results import Label, MembraneMesh, Skin, Solid, VolumeMesh, region_masks
+from workbench.proof.validation.geometry.meshes import default_solid, family_names, worst_area_error
 
 HEX_FAMILIES = ("finger", "pad", "paw", "thumb", "trunk")
 CELL_FACES = ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))

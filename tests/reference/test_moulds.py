@@ -9,25 +9,25 @@ from typing import Any
 import numpy as np
 import pytest
 
-from geometry.actuation import make_rods
-from geometry.cast import make_cast
-from geometry.demoulding import opening
-from geometry.export import package_files, step_body, stl_bytes
-from geometry.housing import make_housing
-from geometry.indenters import load_stl
-from geometry.mould_fit import measure_fit
-from geometry.moulds import make_mould
-from geometry.recipe import make_recipe
-from geometry.step import write_step
-from geometry.supplies import ADHESIVE, bolt_length_mm, bolts, rim_mm2
-from geometry.surface import is_watertight, mesh_volume, pieces
-from workbench.core.camera import Camera
-from workbench.core.design import Elastomer, Layers, MouldOptions
-from workbench.core.errors import DesignError, GeometryError, StoreError
-from workbench.core.fabrication import HousingSet, MouldSet, PartGroup, Recipe, SheetHead
-from workbench.core.lighting import LedRing
-from workbench.core.making import Casting, Housing, Printer
-from workbench.core.results import Solid
+from geometry.housing.actuation import make_rods
+from geometry.housing.housing import make_housing
+from geometry.housing.supplies import ADHESIVE, bolt_length_mm, bolts, rim_mm2
+from geometry.mould.cast import make_cast
+from geometry.mould.demoulding import opening
+from geometry.mould.mould_fit import measure_fit
+from geometry.mould.moulds import make_mould
+from geometry.objects.indenters import load_stl
+from geometry.surface.surface import is_watertight, mesh_volume, pieces
+from geometry.workshop.export import package_files, step_body, stl_bytes
+from geometry.workshop.recipe import make_recipe
+from geometry.workshop.step import write_step
+from workbench.core.base.errors import DesignError, GeometryError, StoreError
+from workbench.core.design.camera import Camera
+from workbench.core.design.design import Elastomer, Layers, MouldOptions
+from workbench.core.design.lighting import LedRing
+from workbench.core.design.making import Casting, Housing, Printer
+from workbench.core.result.fabrication import HousingSet, MouldSet, PartGroup, Recipe, SheetHead
+from workbench.core.result.results import Solid
 
 
 @pytest.fixture(scope="module")
@@ -179,7 +179,7 @@ def test_another_parting_is_tried_where_parts_jam(
     """Two parts that are said to be in each other's way are given up for three that are not."""
     import dataclasses
 
-    from geometry import moulds as making
+    from geometry.mould import moulds as making
 
     def jammed(parts: Any, cast: Any, parting: Any, core_pull: Any) -> Any:
         found = opening(parts, cast, parting, core_pull)
@@ -244,7 +244,7 @@ def test_gate_wider_than_the_flange_is_refused(build_finger: Callable[..., Solid
 
 def test_housing_parts_clear_each_other_and_the_skin(housing: HousingSet, finger: Solid) -> None:
     """No two of support, holder, mount, base and membrane share more than 1e-6 mm3."""
-    from geometry.csg_mesh import closed, overlaps_mm3
+    from geometry.body.csg_mesh import closed, overlaps_mm3
 
     assert [part.name for part in housing.parts] == [
         "support",
@@ -342,7 +342,7 @@ def test_a_folder_that_is_not_there_is_named(moulds: MouldSet, tmp_path: Path) -
 @pytest.mark.parametrize("name", ["pad", "digitac", "trunk", "thumb", "tentacle", "paw"])
 def test_every_family_has_a_mould(name: str) -> None:
     """The row of validation misses no limit."""
-    from workbench.validation.moulds import rows
+    from workbench.proof.validation.geometry.moulds import rows
 
     (row,) = rows([name])
     assert row.ok, row.case
@@ -377,7 +377,7 @@ def test_bolts_of_more_parts_and_of_wide_moulds() -> None:
 
 def test_a_rod_says_what_it_is_for() -> None:
     """`slider_0` of the trunk is the actuator rod for lobe 0."""
-    from workbench.validation.meshes import default_solid
+    from workbench.proof.validation.geometry.meshes import default_solid
 
     rods = make_rods(default_solid("trunk"), Housing())
     assert [rod.title for rod in rods] == [f"actuator rod for lobe {n}" for n in (0, 1)]

@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from geometry.surface import RayCaster
-from sim.optics.bake import bake_light
-from sim.optics.camera import refracted_rays
-from sim.optics.checks import depth_error_mm
-from sim.optics.gbuffer import look, open_view
-from sim.optics.specimen import dent, finger
-from workbench.core.camera import Camera
-from workbench.core.lighting import LedRing, LightModel
-from workbench.core.results import Skin
+from geometry.surface.surface import RayCaster
+from sim.optics.camera.camera import refracted_rays
+from sim.optics.field.bake import bake_light
+from sim.optics.proof.checks import depth_error_mm
+from sim.optics.proof.specimen import dent, finger
+from sim.optics.raster.gbuffer import look, open_view
+from workbench.core.design.camera import Camera
+from workbench.core.design.lighting import LedRing, LightModel
+from workbench.core.result.results import Skin
 
 
 def section_tangent(skin: Skin, vertex: int, led_mm: np.ndarray) -> np.ndarray | None:

@@ -15,12 +15,12 @@ from designs.family import family, resolve_shape
 from designs.loaf import Loaf, loaf_body, loaf_shell
 from designs.pad import PadShape, slab_mm3
 from designs.plates import rectangle_distance
-from geometry.surface import face_areas
+from geometry.surface.surface import face_areas
 from tests.families import expect_found_out, expect_refusal
-from workbench.building import build_solid, coarse_volume_mm3
-from workbench.core.design import Layers
-from workbench.core.errors import DesignError
-from workbench.core.results import Label
+from workbench.core.base.errors import DesignError
+from workbench.core.design.design import Layers
+from workbench.core.result.results import Label
+from workbench.pipeline.building import build_solid, coarse_volume_mm3
 
 THIN = {"elastomer_mm": 1.2}
 WIDE_PINS = {"pin_rows": 3.0, "pin_columns": 5.0, "pin_radius_mm": 0.8}
@@ -210,9 +210,9 @@ def test_the_narrow_side_is_named_with_its_own_limit() -> None:
 @pytest.mark.slow
 def test_support_points_of_a_digitac_lie_on_its_window() -> None:
     """The roots of pins as well: -0.08 to +0.001 mm, where pins' sides once made it 0.3 mm."""
-    from geometry.hexmesh import mesh_membrane
+    from geometry.volume.hexmesh import mesh_membrane
     from sim.contact.region.backing import backed_faces, bonded_faces, support_points_mm
-    from workbench.core.design import Meshing
+    from workbench.core.design.design import Meshing
 
     shape, layers = DigitacShape(), Layers(elastomer_mm=1.2)
     mesh = mesh_membrane(build_solid(family("digitac"), shape, layers), Meshing())

@@ -15,13 +15,13 @@ from sim.contact.particles import reference as twin
 from sim.contact.particles.cloud import Cloud, make_cloud
 from sim.contact.particles.press import press_particles
 from sim.contact.particles.state import OBJECT_DENSITY, State
-from sim.contact.specimens import flat_block
+from sim.contact.studies.specimens import flat_block
 from sim.material import elastic_solid
-from workbench.core.design import Elastomer
-from workbench.core.errors import DesignError
-from workbench.core.indenter import Indenter
-from workbench.core.press import ContactSettings, Press
-from workbench.core.soft_body import SoftBody
+from workbench.core.base.errors import DesignError
+from workbench.core.design.design import Elastomer
+from workbench.core.press.indenter import Indenter
+from workbench.core.press.press import ContactSettings, Press
+from workbench.core.press.soft_body import SoftBody
 
 pytestmark = pytest.mark.usefixtures("taichi_device")
 

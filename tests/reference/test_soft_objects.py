@@ -6,20 +6,20 @@ import numpy as np
 import pytest
 
 from sim.contact.engine import reference
-from sim.contact.problem import make_problem
+from sim.contact.press import press_membrane
+from sim.contact.readout.problem import make_problem
 from sim.contact.soft.body import SoftObject, make_soft_object
 from sim.contact.soft.kernels import MEMBRANE, OBJECT
 from sim.contact.soft.meeting import meet
 from sim.contact.soft.reference import commit_history, contact_forces
 from sim.contact.soft.solver import SoftRelaxation
-from sim.contact.solver import press_membrane
-from sim.contact.specimens import flat_block
-from workbench.core.design import Elastomer
-from workbench.core.errors import DesignError
-from workbench.core.indenter import Indenter
-from workbench.core.press import ContactSettings, Press
-from workbench.core.sensing import Contact
-from workbench.core.soft_body import SoftBody
+from sim.contact.studies.specimens import flat_block
+from workbench.core.base.errors import DesignError
+from workbench.core.design.design import Elastomer
+from workbench.core.press.indenter import Indenter
+from workbench.core.press.press import ContactSettings, Press
+from workbench.core.press.soft_body import SoftBody
+from workbench.core.result.sensing import Contact
 
 pytestmark = pytest.mark.usefixtures("taichi_device")
 

@@ -4,22 +4,25 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import re
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from geometry import csg, csg_brep
-from geometry.export import step_file
-from geometry.fabricate import fabricate
-from geometry.solid import brep_bytes
-from geometry.step import expect_read_back, read_back, step_bytes
-from workbench.core.design import Layers
-from workbench.core.errors import GeometryError
-from workbench.core.fabrication import PartGroup
-from workbench.validation import sweep as sweeps
-from workbench.validation.sweep import Trial, judge
+from geometry.body import csg, csg_brep
+from geometry.body.solid import brep_bytes
+from geometry.mould.fabricate import fabricate
+from geometry.workshop.export import step_file
+from geometry.workshop.faceted import faceted_step
+from geometry.workshop.step import expect_assembly, expect_read_back, read_back, step_bytes
+from geometry.workshop.step_assembly import assembly_step
+from workbench.core.base.errors import GeometryError
+from workbench.core.design.design import Layers
+from workbench.core.result.fabrication import PartGroup
+from workbench.proof.validation.geometry import sweep as sweeps
+from workbench.proof.validation.geometry.sweep import Trial, judge
 
 BLOCK = csg.Box(low_mm=(0.0, 0.0, 0.0), high_mm=(4.0, 3.0, 2.0))
 
@@ -64,7 +67,7 @@ def test_a_surface_of_revolution_of_an_ellipse_is_caught() -> None:
     body = _spun_ellipse(4.0, 6.0)
     assert body.volume == pytest.approx(2.0 / 3.0 * math.pi * 16.0 * 6.0)
     with pytest.raises(GeometryError, match="reads back as"):
-        expect_read_back(step_bytes([body], "spun"), [body.volume], what="spun")
+        expect_read_back(step_bytes([body], "spun"), body.volume, what="spun")
 
 
 def test_a_part_that_reads_back_as_another_gets_facets() -> None:
@@ -80,11 +83,41 @@ def test_a_part_that_reads_back_as_another_gets_facets() -> None:
     assert read_back(step.data).volume_mm3 == pytest.approx(24.0)
 
 
+def _facets(low_mm: float = 0.0) -> bytes:
+    """A block of 24 mm3 as flat facets."""
+    made = fabricate("block", BLOCK, group=PartGroup.MOULD, explode=(0.0, 0.0, 0.0)).part
+    return faceted_step(made.points_mm + low_mm, made.faces, name="block")[0]
+
+
+def test_flat_facets_are_sound_as_they_are_written() -> None:
+    """A reader that mends nothing finds what one that mends finds: 24 mm3, valid."""
+    assert read_back(_facets(), repaired=False) == read_back(_facets())
+    assert expect_read_back(_facets(), 24.0, what="block", repaired=False) == pytest.approx(24.0)
+
+
+def test_a_facet_turned_inside_out_is_caught_where_nothing_is_mended() -> None:
+    """One loop of a block runs backwards: a reader that mends would not tell."""
+    loop = re.compile(rb"POLY_LOOP\('',\((#\d+),(#\d+),(#\d+)\)\)")
+    turned = loop.sub(rb"POLY_LOOP('',(\3,\2,\1))", _facets(), count=1)
+    assert turned != _facets()
+    with pytest.raises(GeometryError, match="reads back as"):
+        expect_read_back(turned, 24.0, what="block", repaired=False)
+
+
+def test_an_assembly_that_lost_or_changed_a_part_is_caught() -> None:
+    """Two blocks of 24 mm3 are meant: one is missing, or another is larger."""
+    whole = assembly_step("pair", {"here": _facets(), "there": _facets(10.0)})
+    expect_assembly(whole, [24.0, 24.0], what="pair")
+    for meant_mm3 in ([24.0, 24.0, 24.0], [24.0], [20.0, 28.0]):
+        with pytest.raises(GeometryError, match="reads back as solids of 24, 24 mm3"):
+            expect_assembly(whole, meant_mm3, what="pair")
+
+
 def test_garbage_is_no_solid() -> None:
     """Text that is no STEP holds nothing, and is refused where something is expected."""
     assert read_back(b"no STEP at all").solids == 0
     with pytest.raises(GeometryError, match="0 valid solids"):
-        expect_read_back(b"no STEP at all", [1.0], what="nothing")
+        expect_read_back(b"no STEP at all", 1.0, what="nothing")
 
 
 def test_the_sweep_sees_a_body_that_does_not_survive() -> None:

@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from geometry.primitives import rounded_box, sphere
-from geometry.surface import (
+from geometry.surface.primitives import rounded_box, sphere
+from geometry.surface.surface import (
     Plane,
     RayCaster,
     closest_point,

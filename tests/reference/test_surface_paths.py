@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sim.optics.bake import bake_light, tangential_from
-from sim.optics.checks import plane_closed_form
-from sim.optics.geodesic import SkinWays
-from sim.optics.section_curve import level_curves, plane_section, tangent_toward
-from sim.optics.specimen import finger
-from workbench.core.lighting import LedRing, LightModel
-from workbench.core.results import MembraneMesh, Skin
+from sim.optics.field.bake import bake_light
+from sim.optics.field.lines import tangential_from
+from sim.optics.light.geodesic import SkinWays
+from sim.optics.light.section_curve import level_curves, plane_section, tangent_toward
+from sim.optics.proof.checks import plane_closed_form
+from sim.optics.proof.specimen import finger
+from workbench.core.design.lighting import LedRing, LightModel
+from workbench.core.result.results import MembraneMesh, Skin
 
 
 @pytest.fixture(scope="module")

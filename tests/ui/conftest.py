@@ -18,8 +18,8 @@ from typing import Any
 
 import pytest
 
-from tests.ui.widgets import coarse_project, open_page, wait_until
-from workbench.benchmarks.browser import FLAGS
+from tests.ui.widgets import DRAW_WHEN_LOOKED_AT, coarse_project, open_page, wait_until
+from workbench.proof.benchmarks.browser import FLAGS
 
 START_LIMIT_S = 60
 
@@ -107,10 +107,11 @@ def browser() -> Iterator[Any]:
 def pressed_store(browser: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The store of a coarse project once the browser has shown its first image."""
     server = Server(coarse_project(tmp_path_factory.mktemp("pressed")))
-    looking = browser.new_page()
-    open_page(looking, server.url)
-    wait_until(lambda: looking.get_by_text("Image ✓").count(), 180, "the example is pressed")
-    looking.close()
+    tab = browser.new_page()
+    tab.add_init_script(DRAW_WHEN_LOOKED_AT)
+    open_page(tab, server.url)
+    wait_until(lambda: tab.get_by_text("Image ✓").count(), 180, "the example is pressed")
+    tab.close()
     server.stop()
     return server.project / "store"
 
@@ -125,8 +126,9 @@ def pressed_project(pressed_store: Path, tmp_path: Path) -> Path:
 
 @pytest.fixture
 def page(browser: Any) -> Iterator[Any]:
-    """A fresh tab that may download."""
+    """A fresh tab that may download; its 3D view is drawn while a test looks at it."""
     context = browser.new_context(viewport={"width": 1280, "height": 1000}, accept_downloads=True)
+    context.add_init_script(DRAW_WHEN_LOOKED_AT)
     tab = context.new_page()
     tab.set_default_timeout(60_000)
     yield tab

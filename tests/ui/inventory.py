@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from ui.keys import in_words
-from workbench.benchmarks.tab import Tab
+from ui.page.keys import in_words
+from workbench.proof.benchmarks.tab import Tab
 
 KINDS = (
     "Slider MultiSlider Number Text Checkbox Dropdown ButtonGroup Button UploadButton "

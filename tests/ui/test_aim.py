@@ -10,8 +10,8 @@ import pytest
 
 from tests.ui.conftest import Server
 from tests.ui.widgets import COARSE, coarse_project, open_page, tab, type_numbers, wait_until
-from workbench.project import Project
-from workbench.state import read_state
+from workbench.project.project import Project
+from workbench.project.state import read_state
 
 pytestmark = [pytest.mark.ui, pytest.mark.slow]
 

@@ -24,7 +24,7 @@ from tests.ui.widgets import (
     type_text,
     wait_until,
 )
-from workbench.benchmarks.tab import Tab
+from workbench.proof.benchmarks.tab import Tab
 
 pytestmark = [pytest.mark.ui, pytest.mark.slow]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -10,15 +11,21 @@ import pytest
 
 from tests.ui.conftest import Server
 from tests.ui.widgets import button, coarse_project, open_page, tab, wait_until
-from ui.help import PANELS
-from ui.help import page as help_page
-from ui.keys import Command, clashes, in_words
-from ui.tour import STEPS
-from workbench.benchmarks.tab import Tab
+from ui.page.keys import Command, in_words
+from ui.page.tour import STEPS
+from ui.panels.page import pages
+from workbench.proof.benchmarks.tab import Tab
 
 pytestmark = [pytest.mark.ui, pytest.mark.slow]
 
 Start = Callable[..., Server]
+
+
+def clashes(commands: list[Command]) -> list[str]:
+    """Keys and names that more than one command has."""
+    keys = Counter(command.keys for command in commands if command.keys)
+    labels = Counter(command.label for command in commands)
+    return [name for name, count in (keys + labels).items() if count > 1]
 
 
 def test_the_tour_is_shown_once_and_again_on_request(
@@ -55,10 +62,10 @@ def test_help_opens_on_every_panel_also_in_a_tab_that_follows(
     server = start_server(coarse_project(tmp_path))
     with Tab(server.url) as editor, Tab(server.url) as follower:
         editor.uuid("Help: Shape")
-        for panel in PANELS:
+        for panel in pages():
             for who in (editor, follower):
                 who.click(f"Help: {panel}")
-                words = help_page(panel).splitlines()[0]
+                words = pages()[panel].help.splitlines()[0]
                 who.wait(lambda w=who, t=words: w.told(t[:60]), 10, f"help on {panel}")
         shared = [
             Command(label=props["label"], keys=in_words(props["hotkey"], props["modifier"]))
@@ -68,7 +75,7 @@ def test_help_opens_on_every_panel_also_in_a_tab_that_follows(
         assert clashes(shared) == []
         labels = {command.label for command in shared}
         wanted = {"Run press", "Render image", "Cancel what runs", "Undo", "Redo", "Fit view"}
-        assert labels >= wanted | {"Tour", "Keyboard map"} | {f"Help on {p}" for p in PANELS}
+        assert labels >= wanted | {"Tour", "Keyboard map"} | {f"Help on {p}" for p in pages()}
         editor.trigger("Keyboard map")
         for command in shared:
             row = f"| {command.label} | {command.keys} |"

@@ -10,7 +10,7 @@ import pytest
 
 from tests.ui.conftest import Server
 from tests.ui.widgets import coarse_project
-from workbench.benchmarks.tab import Tab
+from workbench.proof.benchmarks.tab import Tab
 
 pytestmark = [pytest.mark.ui, pytest.mark.slow]
 
@@ -100,8 +100,8 @@ def history(tab: Tab) -> list[str]:
 
 def test_empty_places_say_what_fills_them() -> None:
     """Lines of text in the picture: it is not one grey."""
-    from ui.imaging import placeholder
-    from ui.panels.image import CHANGE_COMES, IMAGE_COMES
+    from ui.page.imaging import placeholder
+    from ui.panels.results.image import CHANGE_COMES, IMAGE_COMES
 
     for lines in (IMAGE_COMES, CHANGE_COMES):
         assert len({tuple(pixel) for row in placeholder(*lines) for pixel in row}) > 5

@@ -22,14 +22,14 @@ from websockets.exceptions import ConnectionClosed
 
 from tests.ui.conftest import Server
 from tests.ui.widgets import coarse_project
-from workbench.benchmarks.tab import Tab
-from workbench.project import Project
-from workbench.saved_designs import open_design, saved_names
-from workbench.state import read_state
-from workbench.store import DAMAGED, Store
-from workbench.sweep_files import list_sweeps, load_sweep
-from workbench.variant_files import list_variants
-from workbench.variants import load_variant
+from workbench.pipeline.store import DAMAGED, Store
+from workbench.project.project import Project
+from workbench.project.saved_designs import open_design, saved_names
+from workbench.project.state import read_state
+from workbench.proof.benchmarks.tab import Tab
+from workbench.variants.sweep_files import list_sweeps, load_sweep
+from workbench.variants.variant_files import list_variants
+from workbench.variants.variants import load_variant
 
 pytestmark = [pytest.mark.ui, pytest.mark.slow]
 

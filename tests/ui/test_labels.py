@@ -18,7 +18,7 @@ import pytest
 from tests.ui.conftest import Server
 from tests.ui.inventory import HEADER, Control, controls, laid_out
 from tests.ui.widgets import COARSE, button, open_page, tab, wait_until
-from workbench.benchmarks.tab import Tab
+from workbench.proof.benchmarks.tab import Tab
 
 pytestmark = [pytest.mark.ui, pytest.mark.slow]
 

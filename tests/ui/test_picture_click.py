@@ -11,14 +11,7 @@ import numpy as np
 import pytest
 
 from tests.ui.conftest import Server
-from tests.ui.widgets import (
-    VISIBLE_CHANGE,
-    button,
-    control,
-    open_page,
-    slider_value,
-    wait_until,
-)
+from tests.ui.widgets import VISIBLE_CHANGE, button, control, open_page, slider_value, wait_until
 
 pytestmark = [pytest.mark.ui, pytest.mark.slow]
 

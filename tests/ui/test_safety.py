@@ -17,7 +17,7 @@ import pytest
 
 from tests.ui.conftest import Server
 from tests.ui.widgets import coarse_project, open_page, upload, wait_until
-from workbench.benchmarks.tab import Tab
+from workbench.proof.benchmarks.tab import Tab
 
 pytestmark = [pytest.mark.ui, pytest.mark.slow]
 

@@ -17,14 +17,7 @@ from typing import Any
 import pytest
 
 from tests.ui.conftest import Server
-from tests.ui.widgets import (
-    button,
-    open_page,
-    set_number,
-    slider_value,
-    tab,
-    wait_until,
-)
+from tests.ui.widgets import button, open_page, set_number, slider_value, tab, wait_until
 
 sync_api = pytest.importorskip("playwright.sync_api")
 pytestmark = [pytest.mark.ui, pytest.mark.slow]

@@ -22,7 +22,7 @@ from tests.ui.widgets import (
     view,
     wait_until,
 )
-from workbench.design_toml import design_from_toml
+from workbench.project.design_toml import design_from_toml
 
 pytestmark = [pytest.mark.ui, pytest.mark.slow]
 

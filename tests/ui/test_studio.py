@@ -14,6 +14,7 @@ from tests.ui.widgets import (
     button,
     choose,
     control,
+    looking,
     open_page,
     set_number,
     slider_value,
@@ -21,7 +22,7 @@ from tests.ui.widgets import (
     upload,
     wait_until,
 )
-from workbench.benchmarks.browser import arm, pixels
+from workbench.proof.benchmarks.browser import arm, pixels
 
 pytestmark = [pytest.mark.ui, pytest.mark.slow]
 
@@ -48,11 +49,13 @@ def test_dragging_the_handle_presses_there_at_once(
     """The object follows the handle along the skin; force and image follow, nothing is stored."""
     server = start_server(pressed_project)
     studio(page, server)
-    before = pixels(page)
+    with looking(page):
+        before = pixels(page)
     control(page, "Live").click(force=True)
     first = settled(page)
     time.sleep(3.0)
-    x, y = arm(before, pixels(page))
+    with looking(page):
+        x, y = arm(before, pixels(page))
     page.mouse.move(x, y)
     page.mouse.down()
     page.mouse.move(x, y + 60, steps=8)

@@ -1,6 +1,6 @@
 """Several tabs: one edits, the others follow; a reload and a restart in mid-job lose nothing.
 
-Most of it speaks viser's protocol without a browser (`workbench.benchmarks.tab`).
+Most of it speaks viser's protocol without a browser (`workbench.proof.benchmarks.tab`).
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ import pytest
 
 from tests.ui.conftest import Server
 from tests.ui.widgets import button, coarse_project, open_page, tab, wait_until
-from workbench.benchmarks.tab import Tab
+from workbench.proof.benchmarks.tab import Tab
 
 pytestmark = [pytest.mark.ui, pytest.mark.slow]
 
@@ -53,7 +53,7 @@ def saved(server: Server, *names: str) -> Any:
 
 FROZEN = """
 import sys, time
-from workbench.benchmarks.tab import Tab
+from workbench.proof.benchmarks.tab import Tab
 tab = Tab(sys.argv[1])
 tab.uuid("Straight length mm")
 print("here", flush=True)

@@ -12,9 +12,9 @@ import pytest
 from tests.made_indenters import on_a_foot, write_stl
 from tests.ui.conftest import Server
 from tests.ui.widgets import COARSE, button, coarse_project, open_page, tab, wait_until
-from workbench.core.turning import turn_matrix
-from workbench.project import Project
-from workbench.state import read_state
+from workbench.core.design.turning import turn_matrix
+from workbench.project.project import Project
+from workbench.project.state import read_state
 
 pytestmark = [pytest.mark.ui, pytest.mark.slow]
 

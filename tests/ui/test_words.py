@@ -14,10 +14,9 @@ import pytest
 from tests.ui.conftest import Server
 from tests.ui.inventory import HEADER, Control, controls, laid_out, names
 from tests.ui.widgets import coarse_project
-from ui.help import PANELS
-from ui.help import page as help_page
-from ui.tour import STEPS
-from workbench.benchmarks.tab import Tab
+from ui.page.tour import STEPS
+from ui.panels.page import pages
+from workbench.proof.benchmarks.tab import Tab
 
 pytestmark = [pytest.mark.ui, pytest.mark.slow]
 
@@ -47,12 +46,12 @@ def test_words_in_bold_are_names_and_all_names_are_helped(
     server = start_server(coarse_project(tmp_path))
     with Tab(server.url) as looking:
         there, found = names(laid_out(looking)), controls(looking)
-    texts = {panel: help_page(panel) for panel in PANELS}
+    texts = {label: folder.help for label, folder in pages().items()}
     texts |= {step.title: step.text for step in STEPS}
     texts["tutorial"] = TUTORIAL.read_text(encoding="utf-8")
     wrong = {name: bold(text) - there for name, text in texts.items()}
     assert {name: words for name, words in wrong.items() if words} == {}
-    helped = [c for c in found if page_of(c) in PANELS and not c.label.startswith("Help: ")]
+    helped = [c for c in found if page_of(c) in pages() and not c.label.startswith("Help: ")]
     # The sliders of a body are another family's tomorrow; each has its own hint.
     helped = [c for c in helped if not any(name.startswith("Body: ") for name in c.folders)]
     left_out = [f"{c.page}: {c.label}" for c in helped if c.label not in bold(texts[page_of(c)])]

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +29,21 @@ active_radius_mm = 9.0
 """
 VISIBLE_CHANGE = 24
 """Difference of grey values that an eye sees at once."""
+DRAW_WHEN_LOOKED_AT = """
+window.looked = false;
+window.draws = 0;
+const gl = WebGL2RenderingContext.prototype;
+for (const name of ["clear", "drawArrays", "drawElements", "drawRangeElements",
+                    "drawArraysInstanced", "drawElementsInstanced"]) {
+  const real = gl[name];
+  gl[name] = function (...given) {
+    if (!window.looked) return;
+    window.draws += 1;
+    return real.apply(this, given);
+  };
+}
+"""
+"""Leaves out what software rendering takes most of both cores for, and what few tests look at."""
 
 
 def wait_until(condition: Callable[[], Any], seconds: float, what: str) -> None:
@@ -144,6 +160,16 @@ def stop_first_press(page: Any) -> None:
     button(page, "Cancel").wait_for(state="hidden", timeout=15_000)
 
 
+@contextlib.contextmanager
+def looking(page: Any) -> Iterator[None]:
+    """Draws the 3D view of the fixture `page`, which else stays as it was when last looked at."""
+    page.evaluate("() => { window.draws = 0; window.looked = true; }")
+    # A whole frame is drawn at once; an idle view draws one a second.
+    wait_until(lambda: page.evaluate("window.draws"), 60, "the view is drawn")
+    yield
+    page.evaluate("window.looked = false")
+
+
 def view(page: Any) -> np.ndarray:
     """What the middle of the 3D view shows, shape (H, W) of grey values."""
     import cv2
@@ -155,7 +181,8 @@ def view(page: Any) -> np.ndarray:
         "width": 0.8 * box["width"],
         "height": 0.5 * box["height"],
     }
-    data = np.frombuffer(page.screenshot(clip=clip), dtype=np.uint8)
+    with looking(page):
+        data = np.frombuffer(page.screenshot(clip=clip), dtype=np.uint8)
     return np.asarray(cv2.imdecode(data, cv2.IMREAD_GRAYSCALE), dtype=np.int16)
 
 

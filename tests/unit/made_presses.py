@@ -11,8 +11,8 @@ import numpy as np
 
 from sim.forces.network.spec import NetworkSpec
 from sim.forces.training.settings import TrainingSettings
-from workbench.dataset.cases import Split
-from workbench.training.presses import Presses, SparseField, State
+from workbench.learning.dataset.cases import Split
+from workbench.learning.training.presses import Presses, SparseField, State
 
 SPEC = NetworkSpec(name="tiny", planes=(4, 4, 6, 6, 6, 4, 4, 4), stem_planes=4, stem_edge=3)
 SETTINGS = TrainingSettings(

@@ -1,15 +1,17 @@
-"""Stages that nap, do not listen, or die: imported by the lane tests in both processes."""
+"""Stages that nap, do not listen, die, or compile: imported by the lane tests in both processes."""
 
 from __future__ import annotations
 
 import os
 import time
+from dataclasses import dataclass
 
 import numpy as np
 
-from workbench.core.monitor import Monitor
-from workbench.core.results import Picture
-from workbench.stages import STAGES, Stage
+from workbench.core.base.monitor import Monitor
+from workbench.core.result.results import Picture
+from workbench.pipeline.stage import Call, Stage
+from workbench.planning.stage_table import STAGES
 
 
 def nap(seconds: float, *, monitor: Monitor) -> Picture:
@@ -33,7 +35,41 @@ def die(number: int, *, monitor: Monitor) -> Picture:
     return Picture(png=np.zeros(1, np.uint8))
 
 
-for function in (nap, deaf, die):
+def compile_one(number: int, *, monitor: Monitor) -> Picture:
+    """Run a kernel that no other process has compiled."""
+    from workbench.pipeline.devices import open_device
+
+    open_device()
+    import taichi as ti
+
+    values = ti.field(ti.i32, shape=1)
+
+    @ti.kernel
+    def fill():
+        values[0] = number
+
+    fill()
+    return Picture(png=np.full(1, values[0], np.uint8))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Inputs:
+    """What these stages read."""
+
+    value: float | str
+
+
+for function in (nap, deaf, die, compile_one):
     STAGES[function.__name__] = Stage(
-        name=function.__name__, version=1, lane="cad", function=function
+        name=function.__name__,
+        label=function.__name__,
+        version=1,
+        place=100,
+        lane="cad",
+        run=lambda given, *, monitor, function=function: function(given.value, monitor=monitor),
     )
+
+
+def call_of(name: str, value: float | str) -> Call:
+    """A call of one of them."""
+    return STAGES[name].call(Inputs(value=value))

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sim.optics.bake import bake_light
-from sim.optics.render import Studio
-from sim.optics.specimen import dent, finger
-from workbench.core.camera import Camera
-from workbench.core.lighting import LedMount, LedRing, LightModel
-from workbench.core.optics import Composition, Optics
-from workbench.core.results import MembraneMesh
+from sim.optics.field.bake import bake_light
+from sim.optics.proof.specimen import dent, finger
+from sim.optics.studio.render import Studio
+from workbench.core.design.camera import Camera
+from workbench.core.design.lighting import LedMount, LedRing, LightModel
+from workbench.core.design.optics import Composition, Optics
+from workbench.core.result.results import MembraneMesh
 
 pytestmark = pytest.mark.usefixtures("taichi_device")
 

@@ -10,15 +10,15 @@ import pytest
 
 from sim.forces.acquaintance import NEEDED, Acquaintance, Membrane, acquaintance
 from sim.forces.network.spec import Target
-from workbench.core.actuation import Actuation
-from workbench.core.design import Elastomer, Law
-from workbench.core.inclusion import Inclusion
-from workbench.core.indenter import Indenter, IndenterKind
-from workbench.core.motion import hold, press_stroke, release, slide, twist
-from workbench.core.press import ContactSettings, Method, Press
-from workbench.core.soft_body import SoftBody
-from workbench.core.texture import Pattern, Texture
-from workbench.core.trajectory import Trajectory
+from workbench.core.design.design import Elastomer, Law
+from workbench.core.design.inclusion import Inclusion
+from workbench.core.press.actuation import Actuation
+from workbench.core.press.indenter import Indenter, IndenterKind
+from workbench.core.press.motion import hold, press_stroke, release, slide, twist
+from workbench.core.press.press import ContactSettings, Method, Press
+from workbench.core.press.soft_body import SoftBody
+from workbench.core.press.texture import Pattern, Texture
+from workbench.core.press.trajectory import Trajectory
 
 DENSE_MM = np.array([[0.0, 0.0, 0.0], [20.0, 20.0, 40.0]] * 2)
 BOX_MM = np.array([[0.0, 0.0, 0.0], [20.0, 20.0, 40.0]])

@@ -7,10 +7,10 @@ import pytest
 
 from sim.contact.motion.approach import plan_approach
 from sim.contact.objects.collider import make_collider
-from sim.contact.specimens import finger
-from workbench.algorithms import finger_algorithm, finger_points_mm, pad_algorithm
-from workbench.core.errors import DesignError
-from workbench.core.indenter import Indenter
+from sim.contact.studies.specimens import finger
+from workbench.core.base.errors import DesignError
+from workbench.core.press.indenter import Indenter
+from workbench.learning.dataset.algorithms import finger_algorithm, finger_points_mm, pad_algorithm
 
 SHAPES = 14
 """Indenters of the paper."""

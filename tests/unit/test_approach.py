@@ -6,13 +6,13 @@ import pytest
 from sim.contact.motion.approach import plan_approach
 from sim.contact.motion.touch import first_touch
 from sim.contact.objects.collider import make_collider
-from sim.contact.specimens import finger, flat_block
 from sim.contact.studies.finger import at_45_degrees
-from workbench.core.errors import DesignError
-from workbench.core.frames import quaternion
-from workbench.core.indenter import Indenter, IndenterKind
-from workbench.core.press import Press
-from workbench.core.results import Skin
+from sim.contact.studies.specimens import finger, flat_block
+from workbench.core.base.errors import DesignError
+from workbench.core.base.frames import quaternion
+from workbench.core.press.indenter import Indenter, IndenterKind
+from workbench.core.press.press import Press
+from workbench.core.result.results import Skin
 
 BLOCK, _ = flat_block(width_mm=16.0, height_mm=4.0, grid_mm=1.0)
 FINGER, _ = finger(grid_mm=2.0, cylinder_mm=27.0)

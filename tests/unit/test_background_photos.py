@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from sim.optics.background import photo_radiance
-from sim.optics.display import encode
-from workbench.core.camera import Camera
-from workbench.core.errors import DesignError
-from workbench.core.photo import Photo, photo
+from sim.optics.raster.display import encode
+from sim.optics.studio.background import photo_radiance
+from workbench.core.base.errors import DesignError
+from workbench.core.design.camera import Camera
+from workbench.core.design.photo import Photo, photo
 
 CAMERA = Camera(width_px=64, height_px=48)
 

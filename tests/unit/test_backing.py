@@ -8,10 +8,10 @@ import math
 import numpy as np
 import pytest
 
-from sim.contact import specimens
 from sim.contact.region import backing
-from workbench.core.design import Elastomer
-from workbench.core.results import Label, MembraneMesh
+from sim.contact.studies import specimens
+from workbench.core.design.design import Elastomer
+from workbench.core.result.results import Label, MembraneMesh
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ import pytest
 from scipy.sparse import csr_matrix
 
 from sim.optics.transport.smoothing import smoothed_bins
-from workbench.core.light import AZIMUTHS, SINES
+from workbench.core.result.light import AZIMUTHS, SINES
 
 BINS = AZIMUTHS * (len(SINES) - 1)
 

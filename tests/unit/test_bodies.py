@@ -8,17 +8,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.export import stl_bytes
-from workbench.aim import default_target_mm
-from workbench.bodies import check_body, read_body_table
-from workbench.building import build_solid
-from workbench.core.design import Layers, SensorDesign
-from workbench.core.errors import DesignError
-from workbench.core.imported import FileKind, LengthUnit, Pick
-from workbench.design_toml import design_from_toml, design_to_toml
-from workbench.named_designs import load_design
-from workbench.pipeline import PressCase, plan
-from workbench.project import Project
+from geometry.workshop.export import stl_bytes
+from workbench.core.base.errors import DesignError
+from workbench.core.design.design import Layers, SensorDesign, check_body
+from workbench.core.design.imported import FileKind, LengthUnit, Pick
+from workbench.core.press.press_case import PressCase
+from workbench.pipeline.building import build_solid
+from workbench.planning.plan import plan
+from workbench.project.aim import default_target_mm
+from workbench.project.bodies import read_body_table
+from workbench.project.design_toml import design_from_toml, design_to_toml
+from workbench.project.named_designs import load_design
+from workbench.project.project import Project
 
 DATA = stl_bytes(
     np.array([[0.0, 0, 0], [9, 0, 0], [0, 9, 0], [0, 0, 9]]),

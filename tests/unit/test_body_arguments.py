@@ -7,11 +7,11 @@ from pathlib import Path
 import pytest
 import trimesh
 
-from workbench.body_arguments import placed_design
-from workbench.cli import _join_negative, parser
-from workbench.core.errors import DesignError
-from workbench.core.imported import LengthUnit
-from workbench.named_designs import load_design
+from workbench.cli.body_arguments import placed_design
+from workbench.cli.command_line import _join_negative, parser
+from workbench.core.base.errors import DesignError
+from workbench.core.design.imported import LengthUnit
+from workbench.project.named_designs import load_design
 
 COMMANDS = {
     "run": (),

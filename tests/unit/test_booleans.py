@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from workbench.core.booleans import cut, expect_volume, fillet, fuse, intersect
-from workbench.core.errors import GeometryError
+from workbench.core.base.booleans import cut, expect_volume, fillet, fuse, intersect
+from workbench.core.base.errors import GeometryError
 
 
 @dataclass

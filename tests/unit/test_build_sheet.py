@@ -5,10 +5,10 @@ from __future__ import annotations
 import csv
 import io
 
-from geometry.build_sheet import bom_csv, build_sheet_html
-from geometry.castability import Worst
-from geometry.mould_checks import check
-from workbench.core.fabrication import (
+from geometry.mould.castability import Worst
+from geometry.mould.mould_checks import check
+from geometry.workshop.build_sheet import bom_csv, build_sheet_html
+from workbench.core.result.fabrication import (
     FabricationCheck,
     HousingSet,
     MouldSet,

@@ -11,12 +11,12 @@ import pytest
 
 from designs.family import Family, families, family, resolve_shape
 from designs.finger import capped_cylinder_mm3
-from geometry.implicit import solid_from_fields, step_for
-from geometry.surface import is_watertight, mesh_volume
-from workbench.building import body_count, build_solid, check_solid, coarse_volume_mm3
-from workbench.core.design import Layers
-from workbench.core.errors import DesignError, GeometryError, MeshingError
-from workbench.core.results import BodyMethod, Label, Solid
+from geometry.body.implicit import solid_from_fields, step_for
+from geometry.surface.surface import is_watertight, mesh_volume
+from workbench.core.base.errors import DesignError, GeometryError, MeshingError
+from workbench.core.design.design import Layers
+from workbench.core.result.results import BodyMethod, Label, Solid
+from workbench.pipeline.building import body_count, build_solid, check_solid, coarse_volume_mm3
 
 PARAMETRIC = sorted(set(families()) - {"imported"})
 

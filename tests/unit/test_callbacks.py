@@ -7,7 +7,7 @@ from functools import partial
 from types import SimpleNamespace
 from typing import Any
 
-from ui.callbacks import put, run_in_order
+from ui.page.callbacks import put, run_in_order
 
 CLICKS = 40
 

@@ -15,21 +15,23 @@ import pytest
 from sim.forces.network.spec import Target
 from tests.made_weights import card_of, tiny_weights, write_tiny
 from tests.unit.test_learned_forces import contact, membrane
-from workbench import shipped
-from workbench.chosen_weights import FOLDER, about, chosen, offered, weights_files
-from workbench.core.errors import Cancelled, StoreError
-from workbench.core.force_field import Source
-from workbench.core.learned import NONE, LearnedSettings, WeightsFile
-from workbench.design_bundle import bundle, unbundle
-from workbench.design_toml import design_to_toml
-from workbench.known_membrane import membrane_differences
-from workbench.learned import foreknown, load_torch
-from workbench.named_designs import load_design
-from workbench.pipeline import PressCase, plan
-from workbench.project import Project
-from workbench.stages import run
-from workbench.state import State, case_table, read_state
-from workbench.store import Store
+from workbench.core.base.errors import Cancelled, StoreError
+from workbench.core.press.learned import NONE, LearnedSettings, WeightsFile
+from workbench.core.press.press_case import PressCase
+from workbench.core.result.force_field import Source
+from workbench.pipeline import shipped
+from workbench.pipeline.chosen_weights import FOLDER, about, chosen, offered, weights_files
+from workbench.pipeline.devices import load_torch
+from workbench.pipeline.known_membrane import membrane_differences
+from workbench.pipeline.stages.learned import foreknown
+from workbench.pipeline.store import Store
+from workbench.planning.plan import plan
+from workbench.planning.running import run
+from workbench.project.design_bundle import bundle, unbundle
+from workbench.project.design_toml import design_to_toml
+from workbench.project.named_designs import load_design
+from workbench.project.project import Project
+from workbench.project.state import State, case_table, read_state
 
 FINGER = load_design("finger")
 
@@ -130,7 +132,7 @@ def test_weights_that_cannot_be_read_are_told_when_they_are_used(
     path = force_file(tmp_path)
     spoil(path)
     call = plan(FINGER, case_with(path))["learned"]
-    (reason,) = foreknown(call)
+    (reason,) = foreknown(call.inputs)
     assert says in reason
     with pytest.raises(StoreError, match=says) as caught:
         run(Store(tmp_path / "store"), call)
@@ -252,11 +254,11 @@ def test_another_family_is_all_that_is_said() -> None:
 def test_what_is_known_beforehand_is_what_the_result_says(tmp_path: Path) -> None:
     """Nothing for the press of the training; each difference for another."""
     path = force_file(tmp_path)
-    assert foreknown(plan(FINGER, case_with(path))["learned"]) == ()
+    assert foreknown(plan(FINGER, case_with(path))["learned"].inputs) == ()
     deep = case_with(path)
     deep = dataclasses.replace(deep, press=dataclasses.replace(deep.press, depth_mm=1.5))
     thin = FINGER.replace("layers.elastomer_mm", 1.5)
-    assert foreknown(plan(thin, deep)["learned"]) == (
+    assert foreknown(plan(thin, deep)["learned"].inputs) == (
         "elastomer is 1.5 mm, trained with 2 mm",
         "the press is 1.5 mm deep, trained to 1 mm",
     )
@@ -267,8 +269,8 @@ def test_the_stage_stores_forces_on_the_design_s_skin(tmp_path: Path) -> None:
     path = force_file(tmp_path)
     store = Store(tmp_path / "store")
     call = plan(FINGER.replace("material.young_MPa", 0.29), case_with(path))["learned"]
-    mesh, build, pressed, *_ = call.inputs
-    (part,) = _parts(store, call)
+    mesh, build, pressed = call.inputs.mesh, call.inputs.solid, call.inputs.contact
+    part = _parts(store, call)["source"]
     fine, coarse = membrane(16), membrane(8)
     for ref, value in ((mesh, fine), (build, fine), (pressed, contact(fine)), (part, coarse)):
         store.save(ref.stage, ref.key, value, seconds=0.0, version=1)
@@ -282,11 +284,11 @@ def test_the_stage_stores_forces_on_the_design_s_skin(tmp_path: Path) -> None:
 
 
 def _parts(store: Store, call: Any) -> Any:
-    from workbench.stages import STAGES
+    from workbench.planning.stage_table import STAGES
 
     parts = STAGES["learned"].parts
     assert parts is not None
-    return parts(store, call.inputs)
+    return parts(call.inputs, store)
 
 
 def test_loading_can_be_stopped(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -18,18 +18,21 @@ from typing import Any
 import numpy as np
 import pytest
 
-from workbench import bench, doctor, outputs, validate
-from workbench.benchmarks.pipeline import rerun_row
-from workbench.cli import main, parser
-from workbench.core.design import Law, SensorDesign
-from workbench.core.errors import DesignError, SolveError
-from workbench.core.press import ContactSettings, Extent, Method, Press
-from workbench.core.trajectory import unit_pose
-from workbench.design_toml import design_to_toml
-from workbench.named_designs import load_design
-from workbench.pipeline import PressCase
-from workbench.press_options import press_case
-from workbench.rows import Row, as_json, as_text, bounded, compared, failed
+from workbench.cli import bench_rooms as bench
+from workbench.cli import diagnosis as doctor
+from workbench.cli import validate_rooms as validate
+from workbench.cli.command_line import main, parser
+from workbench.cli.press_options import press_case
+from workbench.core.base.errors import DesignError, SolveError
+from workbench.core.design.design import Law, SensorDesign
+from workbench.core.press.press import ContactSettings, Extent, Method, Press
+from workbench.core.press.press_case import PressCase
+from workbench.core.press.trajectory import unit_pose
+from workbench.project.design_toml import design_to_toml
+from workbench.project.named_designs import load_design
+from workbench.proof.benchmarks.pipeline import rerun_row
+from workbench.proof.row import Row, as_json, as_text, bounded, compared, failed
+from workbench.report import outputs
 
 
 def run(tmp_path: Path, *words: str) -> int:
@@ -89,7 +92,7 @@ def test_errors_are_json_when_asked(tmp_path: Path, capsys: pytest.CaptureFixtur
 
 def test_negative_coordinates_are_values() -> None:
     """`--target -3,0,35` and `--shear-mm -0.5,0` are read as numbers."""
-    from workbench.cli import _join_negative
+    from workbench.cli.command_line import _join_negative
 
     words = ["run", "geltip", "--target", "-3,0,35", "--shear-mm", "-.5,0", "--out", "x"]
     options = parser().parse_args(_join_negative(words))
@@ -184,7 +187,7 @@ def test_bug_leaves_a_crash_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     def broken() -> None:
         raise ZeroDivisionError("bug")
 
-    monkeypatch.setattr("workbench.named_designs.presets", broken)
+    monkeypatch.setattr("workbench.project.named_designs.presets", broken)
     assert run(tmp_path, "presets") == 1
     (crash,) = (tmp_path / "p" / "crash").iterdir()
     assert "ZeroDivisionError: bug" in crash.read_text()
@@ -196,7 +199,7 @@ def test_ctrl_c_exits_130(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     def interrupted() -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("workbench.named_designs.presets", interrupted)
+    monkeypatch.setattr("workbench.project.named_designs.presets", interrupted)
     assert run(tmp_path, "presets") == 130
     assert not (tmp_path / "p" / "crash").exists()
 
@@ -210,7 +213,7 @@ def test_crash_file_that_cannot_be_written_keeps_the_traceback(
         raise ZeroDivisionError("bug")
 
     (tmp_path / "p").write_text("a file")
-    monkeypatch.setattr("workbench.named_designs.presets", broken)
+    monkeypatch.setattr("workbench.project.named_designs.presets", broken)
     assert run(tmp_path, "presets") == 1
     assert "ZeroDivisionError: bug" in capsys.readouterr().err
 
@@ -229,7 +232,7 @@ def test_full_memory_and_disk_exit_3(
     def exhausted() -> None:
         raise problem
 
-    monkeypatch.setattr("workbench.named_designs.presets", exhausted)
+    monkeypatch.setattr("workbench.project.named_designs.presets", exhausted)
     assert run(tmp_path, "presets") == 3
     assert capsys.readouterr().err.startswith("error: ")
     assert not (tmp_path / "p" / "crash").exists()
@@ -239,7 +242,7 @@ def test_termination_exits_130(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
     """SIGTERM is Ctrl-C, and the handler of before is back afterwards."""
     before = signal.getsignal(signal.SIGTERM)
     monkeypatch.setattr(
-        "workbench.named_designs.presets", lambda: signal.raise_signal(signal.SIGTERM)
+        "workbench.project.named_designs.presets", lambda: signal.raise_signal(signal.SIGTERM)
     )
     assert run(tmp_path, "presets") == 130
     assert signal.getsignal(signal.SIGTERM) is before
@@ -249,10 +252,10 @@ def test_termination_exits_130(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
 def test_closed_reader_changes_no_exit_code(tmp_path: Path, ok: bool) -> None:
     """Rows printed to a closed pipe still exit 0 or 1, and Python adds no complaint at exit."""
     code = (
-        "import sys, workbench.validate; from workbench.cli import main;"
-        "from workbench.rows import bounded;"
+        "import sys, workbench.cli.validate_rooms; from workbench.cli import main;"
+        "from workbench.proof.row import bounded;"
         f"row = bounded('r', 'c', {0 if ok else 2}.0, unit='1', limit=1.0);"
-        "workbench.validate.ROOMS['one'] = lambda: [row];"
+        "workbench.cli.validate_rooms.ROOMS['one'] = lambda: [row];"
         f"sys.exit(main(['validate', '--project', {str(tmp_path)!r}, 'one', '--json']))"
     )
     reader, writer = os.pipe()
@@ -275,7 +278,7 @@ def test_output_folder_is_probed_before_anything_is_computed(
     def computed(*args: object, **keywords: object) -> None:
         raise AssertionError("a stage ran")
 
-    monkeypatch.setattr("workbench.pipeline.evaluate", computed)
+    monkeypatch.setattr("workbench.planning.plan.evaluate", computed)
     file = tmp_path / "file"
     file.write_text("mine")
     assert run(tmp_path, "run", "geltip", "--out", str(file)) == 2
@@ -293,7 +296,7 @@ def test_failed_run_leaves_nothing_of_an_earlier_one(
     def unsettled(*args: object, **keywords: object) -> None:
         raise SolveError("did not settle")
 
-    monkeypatch.setattr("workbench.pipeline.evaluate", unsettled)
+    monkeypatch.setattr("workbench.planning.plan.evaluate", unsettled)
     out = tmp_path / "out"
     (out / "moulds").mkdir(parents=True)
     old = ("summary.json", "report.html", "frame_003.png", "contact_003.vtp", "contact.npz")
@@ -422,7 +425,7 @@ def test_doctor_reports_a_missing_device(
 ) -> None:
     """WORKBENCH_DEVICE=cuda without one is a line of the report, exit 3."""
     monkeypatch.setenv("WORKBENCH_DEVICE", "cuda")
-    monkeypatch.setattr("workbench.devices.cuda_count", lambda: 0)
+    monkeypatch.setattr("workbench.pipeline.devices.cuda_count", lambda: 0)
     assert run(tmp_path, "doctor") == 3
     printed = capsys.readouterr().out
     assert "0 CUDA devices" in printed
@@ -447,8 +450,8 @@ def test_solver_import_prints_nothing_into_the_answer(tmp_path: Path) -> None:
     # The first call fails, but makes the rooms known: they may import Taichi themselves.
     code = (
         f"import sys; from workbench.cli import main; main([{command}, 'no such room']);"
-        "import workbench.validate;"
-        "workbench.validate.ROOMS['one'] = lambda: __import__('taichi') and [];"
+        "import workbench.cli.validate_rooms;"
+        "workbench.cli.validate_rooms.ROOMS['one'] = lambda: __import__('taichi') and [];"
         f"sys.exit(main([{command}, 'one', '--json']))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
@@ -465,7 +468,7 @@ def test_a_failed_export_leaves_nothing_of_an_earlier_one(
     def refused(*args: object, **keywords: object) -> None:
         raise DesignError("no body")
 
-    monkeypatch.setattr("workbench.pipeline.evaluate", refused)
+    monkeypatch.setattr("workbench.planning.plan.evaluate", refused)
     out = tmp_path / "out"
     old = ("moulds/core.stl", "parts/support.step", "recipe.json", "report.html", "membrane.stl")
     mine = ("bodies/0.stl", "mine.txt")

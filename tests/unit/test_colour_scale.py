@@ -9,9 +9,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ui.imaging import heat_colours
-from ui.sensor import SKIN_COLOUR
-from workbench.colour_scale import NOTHING_GREY, viridis
+from ui.page.imaging import heat_colours
+from ui.scene.sensor import SKIN_COLOUR
+from workbench.view.colour_scale import NOTHING_GREY, viridis
 
 SRGB_XYZ = np.array(
     [

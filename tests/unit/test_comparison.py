@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from sim.optics.comparison import Pair, Scores, compare, decibel, mse_grey2
+from sim.optics.proof.comparison import Pair, Scores, compare, decibel, mse_grey2
 
 SHAPE = (24, 32, 3)
 BOX = (slice(4, 20), slice(6, 26))

@@ -11,16 +11,16 @@ import numpy as np
 import pytest
 
 from tests.unit.test_sweeps import compute, finger, shot, walls
-from workbench.comparison_images import Moment, pair, side_by_side
-from workbench.comparison_report import Reported, comparison_page, point_state, sweep_page
-from workbench.core.errors import DesignError, SolveError
-from workbench.core.sensing import Shot
-from workbench.pipeline import plan
-from workbench.project import Project
-from workbench.sides import Side
-from workbench.state import State
-from workbench.sweep_plot import sweep_svg
-from workbench.sweeps import done, failed
+from workbench.core.base.errors import DesignError, SolveError
+from workbench.core.result.sensing import Shot
+from workbench.planning.plan import plan
+from workbench.project.project import Project
+from workbench.project.state import State
+from workbench.variants.comparison_images import Moment, pair, side_by_side
+from workbench.variants.comparison_report import Reported, comparison_page, point_state, sweep_page
+from workbench.variants.comparison_side import Side
+from workbench.variants.sweep_plot import sweep_svg
+from workbench.variants.sweeps import done, failed
 
 HOSTILE = "<script>alert(1)</script><img src=http://evil.example/x onerror=alert(2)>"
 VOID = {"meta", "img", "circle", "path", "br"}

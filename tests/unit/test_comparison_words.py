@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from workbench.comparison import changes
-from workbench.comparison_words import told
+from workbench.variants.comparison import changes
+from workbench.variants.comparison_words import told
 
 A = {"membrane_g": 8.0, "skin_seen_percent": 60.0, "stiffness_N_per_mm": 0.4, "glare_percent": 2.0}
 

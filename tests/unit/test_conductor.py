@@ -11,18 +11,18 @@ from typing import cast
 import numpy as np
 import pytest
 
-from workbench.conductor import Conductor
-from workbench.core.design import SensorDesign
-from workbench.core.errors import Cancelled, DamagedError, MeshingError
-from workbench.core.monitor import Monitor
-from workbench.core.press import Press
-from workbench.core.sensing import Contact
-from workbench.live_press import LiveCall, Preview
-from workbench.pipeline import PressCase
-from workbench.preview_call import PreviewCall
-from workbench.requests import LIVE, SHAPE, Finished, PreviewDone, StageDone
-from workbench.stages import Call, Outcome
-from workbench.store import Store
+from workbench.core.base.errors import Cancelled, DamagedError, MeshingError
+from workbench.core.base.monitor import Monitor
+from workbench.core.design.design import SensorDesign
+from workbench.core.press.press import Press
+from workbench.core.press.press_case import PressCase
+from workbench.core.result.sensing import Contact
+from workbench.live.conductor import Conductor
+from workbench.live.live_press import LiveCall, Preview
+from workbench.live.preview_call import PreviewCall
+from workbench.live.requests import LIVE, SHAPE, Finished, PreviewDone, StageDone
+from workbench.pipeline.stage import Call, Outcome
+from workbench.pipeline.store import Store
 
 WAIT_S = 5.0
 """Far beyond what a thread needs to wake."""
@@ -249,7 +249,7 @@ def test_what_follows_the_hand_gives_way_once_it_takes_long(
     conductor: Conductor, slow: Slow, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A shape under the patience goes on beside a newer request; beyond it, it is stopped."""
-    monkeypatch.setattr("workbench.topic.PATIENCE_S", 0.8)
+    monkeypatch.setattr("workbench.live.request_thread.PATIENCE_S", 0.8)
     conductor.submit(SHAPE, design("first"), PressCase(), ("build",))
     slow.begun.get(timeout=WAIT_S)
     began = time.monotonic()
@@ -271,7 +271,7 @@ def test_a_shape_that_nobody_waits_for_is_stopped(
     conductor: Conductor, slow: Slow, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """An edit taken back: its long build ends without a newer request."""
-    monkeypatch.setattr("workbench.topic.PATIENCE_S", 0.1)
+    monkeypatch.setattr("workbench.live.request_thread.PATIENCE_S", 0.1)
     conductor.submit(SHAPE, design("first"), PressCase(), ("build",))
     slow.begun.get(timeout=WAIT_S)
     conductor.give_up(SHAPE)

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from geometry import hexmesh
-from geometry.sheets import Sheets
-from workbench.core.design import Meshing
-from workbench.core.errors import MeshingError
-from workbench.core.results import Label
+from geometry.volume import hexmesh
+from geometry.volume.sheets import Sheets
+from workbench.core.base.errors import MeshingError
+from workbench.core.design.design import Meshing
+from workbench.core.result.results import Label
 
 
 def test_cell_whose_quality_is_not_a_number_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -9,18 +9,18 @@ from sim.contact.engine.batch import Case
 from sim.contact.engine.relaxation import Relaxation
 from sim.contact.motion.approach import Approach, plan_approach
 from sim.contact.objects.collider import Collider, make_collider
-from sim.contact.problem import Problem, prepare
 from sim.contact.readout.fields import volume_state
 from sim.contact.readout.frame import FrameOutcome
 from sim.contact.readout.outcome import _friction, frame_outcome
+from sim.contact.readout.problem import Problem, prepare
 from sim.contact.readout.verdict import check_depth, check_frame
 from sim.contact.region.quadrature import facets_of
 from sim.contact.region.refinement import refine
-from sim.contact.specimens import flat_block
-from workbench.core.design import Elastomer
-from workbench.core.errors import DesignError, SolveError
-from workbench.core.indenter import Indenter, IndenterKind
-from workbench.core.press import ContactSettings, Press
+from sim.contact.studies.specimens import flat_block
+from workbench.core.base.errors import DesignError, SolveError
+from workbench.core.design.design import Elastomer
+from workbench.core.press.indenter import Indenter, IndenterKind
+from workbench.core.press.press import ContactSettings, Press
 
 pytestmark = pytest.mark.usefixtures("taichi_device")
 

@@ -22,13 +22,13 @@ from sim.forces.training.frames import turn_matrix
 from sim.forces.training.settings import Numbers
 from tests.made_weights import SPEC, tiny_weights
 from tests.unit.made_presses import SETTINGS, made_presses
-from workbench.core.errors import DesignError, StoreError
-from workbench.dataset.cases import Split
-from workbench.training.beginning import begin
-from workbench.training.learn import train
-from workbench.training.plan import Plan
-from workbench.training.presses import Presses
-from workbench.training.results import score, single_predictor
+from workbench.core.base.errors import DesignError, StoreError
+from workbench.learning.dataset.cases import Split
+from workbench.learning.training.beginning import begin
+from workbench.learning.training.learn import train
+from workbench.learning.training.plan import Plan
+from workbench.learning.training.presses import Presses
+from workbench.learning.training.results import score, single_predictor
 
 PRESSES = made_presses(12)
 BOTH = dataclasses.replace(SETTINGS, takes_force=True, corrects=True)

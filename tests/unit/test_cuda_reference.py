@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from workbench.core.errors import DeviceError, LaneError, StoreError
-from workbench.validation import cuda_reference, repeat
+from workbench.core.base.errors import DeviceError, LaneError, StoreError
+from workbench.proof.validation.contact import cuda_reference, repeat
 
 CPU = {"finger_sheared_N": np.array([[0.0, 0.0, 2.0]]), "block_N": np.array([[0.0, 3.0, 4.0]])}
 
@@ -35,7 +35,7 @@ def test_without_cuda_and_file_there_is_no_difference(without_cuda: Path) -> Non
     """The message names the file, the hint the command that writes it."""
     with pytest.raises(StoreError, match=r"cuda_reference\.json is missing") as raised:
         cuda_reference.difference()
-    assert "python -m workbench.validation.cuda_reference" in raised.value.hint
+    assert "python -m workbench.proof.validation.contact.cuda_reference" in raised.value.hint
     assert "no figures" in cuda_reference.how()
     assert not without_cuda.exists()
 

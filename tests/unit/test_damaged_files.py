@@ -17,13 +17,13 @@ import numpy as np
 import pytest
 import trimesh
 
-from geometry import cad_file
-from geometry.indenters import load_mesh
-from geometry.intake import read_body
-from workbench.core.errors import Cancelled, DesignError, WorkbenchError
-from workbench.core.imported import ImportedBody, body_file
-from workbench.core.monitor import Monitor, silent
-from workbench.indenter_choice import of_mesh
+from geometry.intake import cad_file
+from geometry.intake.intake import read_body
+from geometry.objects.indenters import load_mesh
+from workbench.core.base.errors import Cancelled, DesignError, WorkbenchError
+from workbench.core.base.monitor import Monitor, silent
+from workbench.core.design.imported import ImportedBody, body_file
+from workbench.edit.indenter_choice import of_mesh
 
 BALL = trimesh.creation.icosphere(3, 15.0)
 
@@ -111,10 +111,12 @@ def test_a_kernel_that_spins_is_ended_within_seconds() -> None:
     """The processor's time counts, so that it is 10 s on a quiet machine and no less on a busy one;
     one that only waits has some times as long.
     """
-    spin = "from geometry.cad_child import _confine; _confine(0.3)\nwhile True: pass"
+    spin = "from geometry.intake.cad_child import _confine; _confine(0.3)\nwhile True: pass"
     ended = subprocess.run([sys.executable, "-c", spin], timeout=30, check=False)
     assert ended.returncode == -signal.SIGPROF
-    wait = "from geometry.cad_child import _confine; _confine(0.3)\nimport time; time.sleep(60)"
+    wait = (
+        "from geometry.intake.cad_child import _confine; _confine(0.3)\nimport time; time.sleep(60)"
+    )
     ended = subprocess.run([sys.executable, "-c", wait], timeout=30, check=False)
     assert ended.returncode == -signal.SIGALRM
     assert cad_file.LIMIT_S < 8.0
@@ -190,7 +192,7 @@ def test_a_coordinate_beyond_a_kilometre_is_refused(
     step: bytes, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A flipped bit of an exponent: 1e308 mm cost 19 GB before the system ended the command."""
-    from geometry import intake
+    from geometry.intake import intake
 
     found = cad_file.read_cad(body_file("body.step", step))
     found.points_mm[7] = 1e308

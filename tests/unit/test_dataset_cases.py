@@ -9,20 +9,20 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from workbench.algorithms import finger_algorithm
-from workbench.core.errors import DesignError
-from workbench.core.indenter import SEEN, UNSEEN, IndenterKind
-from workbench.core.results import Skin
-from workbench.dataset.cases import Split, cases_of, count_cases, positions_of
-from workbench.dataset.positions import Pattern, finger_positions, spread_positions
-from workbench.dataset.recipe import (
+from workbench.core.base.errors import DesignError
+from workbench.core.press.indenter import SEEN, UNSEEN, IndenterKind
+from workbench.core.result.results import Skin
+from workbench.learning.dataset.algorithms import finger_algorithm
+from workbench.learning.dataset.cases import Split, cases_of, count_cases, positions_of
+from workbench.learning.dataset.positions import Pattern, finger_positions, spread_positions
+from workbench.learning.dataset.recipe import (
     RECIPES,
     load_recipe,
     recipe_from_toml,
     recipe_to_toml,
     table_key,
 )
-from workbench.named_designs import load_design
+from workbench.project.named_designs import load_design
 
 
 def flat_skin(half_mm: float, spacing_mm: float) -> Skin:
@@ -76,7 +76,7 @@ def test_the_whole_of_algorithm_1_has_the_papers_states() -> None:
 
 
 def test_cases_are_the_presses_of_algorithm_1() -> None:
-    """The sheared presses of `workbench.algorithms`, each once for an object, in another order."""
+    """The sheared presses of `algorithms`, each once for an object, in another order."""
     recipe = dataclasses.replace(load_recipe("paper_finger"), indenters=(IndenterKind.SPHERE,))
     mine = [dataclasses.astuple(case.press) for case in cases_of(recipe)]
     theirs = [dataclasses.astuple(v.press) for v in finger_algorithm() if v.direction is not None]

@@ -17,25 +17,25 @@ import numpy as np
 import pytest
 
 from tests.unit.test_dataset_cases import flat_skin
-from workbench.core.errors import SolveError, StoreError
-from workbench.core.fem import DRAFT_MM
-from workbench.dataset.agreement import agreement
-from workbench.dataset.begin import begin
-from workbench.dataset.card import card_text
-from workbench.dataset.cases import Split, cases_of
-from workbench.dataset.collect import finish
-from workbench.dataset.estimate import estimate, estimate_text
-from workbench.dataset.folder import DataSet
-from workbench.dataset.lock import held
-from workbench.dataset.recipe import Recipe, load_recipe, recipe_from_toml
-from workbench.dataset.repair import repair
-from workbench.dataset.rows import append_row, read_rows
-from workbench.dataset.sample import Sample, Solved, from_bytes, to_bytes
-from workbench.dataset.solving import Report
-from workbench.dataset.watch import Told, Watch
-from workbench.image_files import png_bytes
-from workbench.lock_file import LOCK
-from workbench.whole_files import write_atomically
+from workbench.core.base.errors import SolveError, StoreError
+from workbench.core.press.fem import DRAFT_MM
+from workbench.learning.dataset.agreement import agreement
+from workbench.learning.dataset.begin import begin
+from workbench.learning.dataset.card import card_text
+from workbench.learning.dataset.cases import Split, cases_of
+from workbench.learning.dataset.collect import finish
+from workbench.learning.dataset.estimate import estimate, estimate_text
+from workbench.learning.dataset.folder import DataSet
+from workbench.learning.dataset.lock import held
+from workbench.learning.dataset.recipe import Recipe, load_recipe, recipe_from_toml
+from workbench.learning.dataset.repair import repair
+from workbench.learning.dataset.rows import append_row, read_rows
+from workbench.learning.dataset.sample import Sample, Solved, from_bytes, to_bytes
+from workbench.learning.dataset.solving import Report
+from workbench.learning.dataset.watch import Told, Watch
+from workbench.report.image_files import png_bytes
+from workbench.system.lock_file import LOCK
+from workbench.system.whole_files import write_atomically
 
 SKIN = flat_skin(5.0, 0.5)
 VERTICES = len(SKIN.points_mm)
@@ -398,12 +398,12 @@ def test_rows_survive_a_line_cut_off(tmp_path: Path) -> None:
         read_rows(path)
 
 
-def test_example_of_the_readme_reads_a_data_set(
+def test_example_of_the_page_reads_a_data_set(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Its loop comes to the sample of training, and its recipe is one."""
-    text = (Path(__file__).parents[2] / "README.md").read_text()
-    (code,) = re.findall(r"^```python\n(from workbench\.dataset.*?)^```$", text, re.M | re.S)
+    text = (Path(__file__).parents[2] / "docs" / "data-sets.md").read_text()
+    (code,) = re.findall(r"^```python\n([^`]*wb\.DataSet.*?)^```$", text, re.M | re.S)
     data = started(tmp_path / "sets" / "finger", 20)
     for number, case in enumerate(data.all_cases):
         if case.split is Split.TRAIN:

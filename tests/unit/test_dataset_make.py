@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from workbench.cli import main
-from workbench.dataset.folder import DataSet
-from workbench.dataset.recipe import load_recipe, recipe_to_toml
+from workbench.cli.command_line import main
+from workbench.learning.dataset.folder import DataSet
+from workbench.learning.dataset.recipe import load_recipe, recipe_to_toml
 
 pytestmark = pytest.mark.slow
 ROOT = Path(__file__).parents[2]

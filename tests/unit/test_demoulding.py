@@ -9,20 +9,25 @@ from typing import Any
 import numpy as np
 import pytest
 
-from geometry import csg
-from geometry.cast import Cast
-from geometry.core_release import bend_strain
-from geometry.csg_mesh import arrays, evaluate
-from geometry.demoulding import core_way, hardship
-from geometry.mould_checks import motion_checks, part_removal
-from geometry.opening_words import closing_steps, direction_words, opening_steps, recipe_json
-from geometry.parting import Parting
-from geometry.rays import RayCaster
-from geometry.squeezing import confined_strain, outer_strain
-from geometry.sweeping import swept, tolerance_mm3, touching_mm2, way_mm
-from ui.parts import PartsView
-from workbench.core.fabrication import FabricationPart, PartGroup, PartMotion, Severity
-from workbench.core.results import LabelledSurface
+from geometry.body import csg
+from geometry.body.csg_mesh import arrays, evaluate
+from geometry.mould.cast import Cast
+from geometry.mould.core_release import bend_strain
+from geometry.mould.demoulding import core_way, hardship
+from geometry.mould.mould_checks import motion_checks, part_removal
+from geometry.mould.parting import Parting
+from geometry.mould.squeezing import confined_strain, outer_strain
+from geometry.mould.sweeping import swept, tolerance_mm3, touching_mm2, way_mm
+from geometry.surface.rays import RayCaster
+from geometry.workshop.opening_words import (
+    closing_steps,
+    direction_words,
+    opening_steps,
+    recipe_json,
+)
+from ui.scene.parts import PartsView
+from workbench.core.result.fabrication import FabricationPart, PartGroup, PartMotion, Severity
+from workbench.core.result.results import LabelledSurface
 
 X = np.array([1.0, 0.0, 0.0])
 DOWN = np.array([0.0, 0.0, -1.0])
@@ -233,7 +238,7 @@ def test_what_is_in_the_way_is_bad_and_told_with_its_place() -> None:
 @pytest.mark.parametrize(("strain", "severity"), [(0.5, "good"), (1.0, "warning"), (2.5, "bad")])
 def test_the_silicone_decides_whether_a_part_comes_off(strain: float, severity: str) -> None:
     """Of an elongation of 2 a third is good, all of it the end."""
-    from geometry.castability import Worst
+    from geometry.mould.castability import Worst
 
     assert part_removal("half_a", Worst(strain, (0.0, 0.0, 0.0)), 2.0).severity == severity
 

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from workbench.core.design import Elastomer, Law, SensorDesign
-from workbench.core.errors import DesignError
-from workbench.core.inclusion import Inclusion, Where
-from workbench.design_toml import design_from_toml, design_to_toml
-from workbench.store import Store
+from workbench.core.base.errors import DesignError
+from workbench.core.design.design import Elastomer, Law, SensorDesign
+from workbench.core.design.inclusion import Inclusion, Where
+from workbench.pipeline.store import Store
+from workbench.project.design_toml import design_from_toml, design_to_toml
 
 HEAD = 'schema = 1\nname = "soft"\nfamily = "finger"\n[material]\n'
 

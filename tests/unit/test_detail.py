@@ -8,36 +8,49 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sim.optics.bake import bake_light
-from sim.optics.detail import Detail, open_detail, touched_pixels
-from sim.optics.detail_checks import (
+from sim.optics.field.bake import bake_light
+from sim.optics.field.table import look_up
+from sim.optics.proof.detail_checks import (
+    PATCH_MM,
     WAVES,
     PLANE_STRAIN_MPa,
     carried_contrast,
-    flat_patch_tilt_deg,
     tip_detail,
     wave_contrast,
 )
-from sim.optics.detail_kernels import shade_points
-from sim.optics.render import Studio
-from sim.optics.shading import relight, shade, take
-from sim.optics.specimen import dent, finger
-from sim.optics.table import look_up
+from sim.optics.proof.specimen import dent, finger
+from sim.optics.raster.imager import Imager
+from sim.optics.raster.shading import relight, shade, take
+from sim.optics.studio.detail import Detail, open_detail, touched_pixels
+from sim.optics.studio.detail_kernels import shade_points
+from sim.optics.studio.render import Studio
 from tests.synthetic_light import SHADED, lit
-from workbench.core.camera import Camera, ImageSensor
-from workbench.core.indenter import Indenter
-from workbench.core.lighting import LedRing, LightModel
-from workbench.core.optics import Markers, Optics
-from workbench.core.results import MembraneMesh
-from workbench.core.sensing import Contact
-from workbench.core.soft_body import SoftBody
-from workbench.core.texture import Pattern, Texture
+from workbench.core.design.camera import Camera, ImageSensor
+from workbench.core.design.lighting import LedRing, LightModel
+from workbench.core.design.optics import Markers, Optics
+from workbench.core.press.indenter import Indenter
+from workbench.core.press.soft_body import SoftBody
+from workbench.core.press.texture import Pattern, Texture
+from workbench.core.result.results import MembraneMesh
+from workbench.core.result.sensing import Contact
 
 pytestmark = pytest.mark.usefixtures("taichi_device")
 
 RING = LedRing(radius_mm=3.0)
 CLOSE = Camera(width_px=160, height_px=120, fov_x_deg=14.0)
 TIP_MM = 14.0
+
+
+def flat_patch_tilt_deg(imager: Imager, detail: Detail) -> float:
+    """Steepest angle [degree] between normals with and without detail near the patch's middle.
+
+    The imager must have looked at the frame; for waves that is atan(2 pi amplitude / period).
+    """
+    touched, fine = touched_pixels(imager, detail.pressure_MPa[0]), detail.seen(imager, 0)
+    assert fine is not None
+    near = np.linalg.norm(touched.place_mm[:, :2], axis=1) < 0.5 * PATCH_MM
+    cosine = -np.einsum("pc,pc->p", touched.normal, fine.normal)[near]
+    return float(np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))).max())
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sim.optics.device_arrays import on_device
+from sim.optics.light.device_arrays import on_device
 
 ARRAY = np.ones((500_000, 3), dtype=np.float32)
 TIMES = 40

@@ -9,9 +9,9 @@ import sys
 import numpy as np
 import pytest
 
-from workbench.core.camera import Camera
-from workbench.core.design import Elastomer, SensorDesign
-from workbench.core.digest import digest
+from workbench.core.base.digest import digest
+from workbench.core.design.camera import Camera
+from workbench.core.design.design import Elastomer, SensorDesign
 
 
 def test_equal_values_have_equal_keys() -> None:
@@ -56,8 +56,8 @@ def test_unknown_types_raise() -> None:
 def test_key_is_the_same_in_another_process() -> None:
     """Nothing of the process (hash seed, addresses) reaches the key."""
     code = (
-        "from workbench.core.digest import digest;"
-        "from workbench.core.design import SensorDesign; print(digest(SensorDesign()))"
+        "from workbench.core.base.digest import digest;"
+        "from workbench.core.design.design import SensorDesign; print(digest(SensorDesign()))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == digest(SensorDesign())

@@ -8,7 +8,8 @@ import pytest
 
 from sim.fem import linear_solver
 from tests.made_weights import tiny_weights, write_tiny
-from workbench import doctor, shipped
+from workbench.cli import diagnosis as doctor
+from workbench.pipeline import shipped
 
 
 def line_of(tmp_path: Path, title: str) -> tuple[str, bool]:
@@ -23,7 +24,7 @@ def test_the_solver_of_finite_elements_is_named(
 ) -> None:
     """With MKL its name; without, how much slower it is and what to install. Both are well."""
     monkeypatch.setattr(doctor, "solver_device", lambda: "cpu")
-    for there, says in ((True, "PARDISO of Intel MKL"), (False, "pip install .[mkl]")):
+    for there, says in ((True, "PARDISO of Intel MKL"), (False, "pip install pypardiso")):
         monkeypatch.setattr(linear_solver, "has_pardiso", lambda there=there: there)
         line, healthy = line_of(tmp_path, "finite elements")
         assert says in line and healthy

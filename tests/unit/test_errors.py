@@ -6,14 +6,14 @@ import pickle
 
 import pytest
 
-from workbench.core import errors
-from workbench.core.camera import Camera
-from workbench.core.design import Elastomer, Layers, Meshing, SensorDesign
-from workbench.core.errors import DesignError, SolveError, WorkbenchError
-from workbench.core.indenter import Indenter, IndenterKind
-from workbench.core.lighting import LedRing
-from workbench.core.optics import Optics
-from workbench.core.press import ContactSettings, Press
+from workbench.core.base import errors
+from workbench.core.base.errors import DesignError, SolveError, WorkbenchError
+from workbench.core.design.camera import Camera
+from workbench.core.design.design import Elastomer, Layers, Meshing, SensorDesign
+from workbench.core.design.lighting import LedRing
+from workbench.core.design.optics import Optics
+from workbench.core.press.indenter import Indenter, IndenterKind
+from workbench.core.press.press import ContactSettings, Press
 
 CLASSES = [
     value

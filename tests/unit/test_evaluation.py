@@ -11,20 +11,20 @@ import numpy as np
 import pytest
 
 from sim.forces.network.minkunet import arrays_of, new_network
-from sim.forces.network.spec import NetworkSpec, Target
+from sim.forces.network.spec import FIELDS, NetworkSpec, Target
 from sim.forces.network.weights import NetworkWeights
 from tests.synthetic_presses import made_up, made_up_sample
-from workbench.core.errors import Cancelled, DesignError, SolveError
-from workbench.dataset.cases import Split
-from workbench.dataset.folder import DataSet
-from workbench.dataset.sample import to_bytes
-from workbench.evaluation import evaluate, scoring
-from workbench.evaluation.evaluate import Named, evaluate_all, evaluate_field, tables
-from workbench.evaluation.groups import by_station, station_of
-from workbench.evaluation.leaks import expect_no_leak
-from workbench.evaluation.scoring import FIELDS, Learned, Way, compared, grouped, scored_states
-from workbench.evaluation.sources import expect_held_out, states
-from workbench.whole_files import write_atomically
+from workbench.core.base.errors import Cancelled, DesignError, SolveError
+from workbench.learning.dataset.cases import Split
+from workbench.learning.dataset.folder import DataSet
+from workbench.learning.dataset.sample import to_bytes
+from workbench.learning.evaluation import evaluate, scoring
+from workbench.learning.evaluation.evaluate import Named, evaluate_all, evaluate_field, tables
+from workbench.learning.evaluation.groups import by_station, station_of
+from workbench.learning.evaluation.leaks import expect_no_leak
+from workbench.learning.evaluation.scoring import Learned, Way, compared, grouped, scored_states
+from workbench.learning.evaluation.sources import expect_held_out, states
+from workbench.system.whole_files import write_atomically
 
 TINY = NetworkSpec(name="tiny", planes=(4, 4, 6, 6, 6, 4, 4, 4), stem_planes=4, stem_edge=3)
 SEEN = ["cross", "hexagon", "sphere"]
@@ -233,8 +233,13 @@ def test_test_cases_of_another_set_are_refused(data: DataSet) -> None:
 
 
 def test_several_sets_of_one_training_are_known(data: DataSet) -> None:
-    """The card of a joined training lists their keys; its own key is of their content."""
+    """The card of a joined training lists their keys; its own key is of their content.
+
+    A set that is not in the list is as good as unknown.
+    """
     leak(data, untrained(data, dataset={"key": "joined", "keys": ["a", data.key]}), Split.TEST)
+    with pytest.raises(DesignError, match="nothing says that W was not trained on"):
+        leak(data, untrained(data, dataset={"key": "joined", "keys": ["a", "b"]}), Split.TEST)
 
 
 def test_another_stiffness_has_the_same_split_and_another_seed_has_not(

@@ -16,18 +16,20 @@ from sim.forces.network.spec import Target
 from sim.forces.network.weights import Storage
 from tests.synthetic_presses import made_up
 from tests.unit.test_evaluation import untrained
-from workbench import shipped, validate
-from workbench.benchmarks.forces import shell
-from workbench.benchmarks.records import read_record, shipped_records, write_record
-from workbench.cli import main
-from workbench.core.errors import DesignError, DeviceError, StoreError
-from workbench.dataset.folder import DataSet
-from workbench.evaluation import charts, heat_maps, pictures
-from workbench.evaluation.published import MAE, over_peak
-from workbench.evaluation.speed import efficiency, efficiency_html
-from workbench.rows import failed, stated
-from workbench.validation import learned, learned_speed, learned_stiffness
-from workbench.weight_files import save_weights
+from workbench.cli import validate_rooms as validate
+from workbench.cli.command_line import main
+from workbench.core.base.errors import DesignError, DeviceError, StoreError
+from workbench.learning.dataset.folder import DataSet
+from workbench.learning.evaluation import charts, heat_maps, pictures
+from workbench.learning.evaluation.published import MAE, over_peak
+from workbench.learning.evaluation.speed import efficiency, efficiency_html
+from workbench.pipeline import shipped
+from workbench.pipeline.weight_files import save_weights
+from workbench.proof.benchmarks.forces import shell
+from workbench.proof.benchmarks.records import read_record, shipped_records, write_record
+from workbench.proof.row import failed, stated
+from workbench.proof.validation.learned import learned_speed, learned_stiffness
+from workbench.proof.validation.learned import room as learned
 
 
 @pytest.fixture(scope="module")
@@ -274,8 +276,8 @@ def test_sparse_equals_dense_within_the_promise() -> None:
 
 def record(place: Path, kind: str, fps: tuple[float, ...], monkeypatch: pytest.MonkeyPatch) -> None:
     """A record as if measured on such a device."""
-    from workbench import devices
-    from workbench.benchmarks import records
+    from workbench.pipeline import devices
+    from workbench.proof.benchmarks import records
 
     monkeypatch.setattr(devices, "chosen_device", lambda: kind)
     monkeypatch.setattr(records, "device_name", lambda kind: f"a {kind} device")

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from geometry import csg
-from geometry.csg_mesh import arrays, evaluate
-from geometry.export import stl_bytes
-from geometry.fabricate import APART_MM, durable
+from geometry.body import csg
+from geometry.body.csg_mesh import arrays, evaluate
+from geometry.mould.fabricate import APART_MM, durable
+from geometry.workshop.export import stl_bytes
 
 
 def reread(points_mm: np.ndarray, faces: np.ndarray) -> Any:

@@ -13,16 +13,16 @@ import numpy as np
 import pytest
 import trimesh
 
-from geometry import thinning
-from geometry.csg_mesh import arrays
-from geometry.export import step_file
-from geometry.faceted import faceted_step
-from geometry.isosurface import distance_mm
-from geometry.step_assembly import assembly_step
-from geometry.surface import mesh_volume
-from geometry.thinning import FARTHEST_MM, USUAL_FACETS, thinned
-from workbench.core.errors import GeometryError
-from workbench.core.fabrication import FabricationPart, PartGroup
+from geometry.body.csg_mesh import arrays
+from geometry.surface.isosurface import distance_mm
+from geometry.surface.surface import mesh_volume
+from geometry.workshop import thinning
+from geometry.workshop.export import step_file
+from geometry.workshop.faceted import faceted_step
+from geometry.workshop.step_assembly import assembly_step
+from geometry.workshop.thinning import FARTHEST_MM, USUAL_FACETS, thinned
+from workbench.core.base.errors import GeometryError
+from workbench.core.result.fabrication import FabricationPart, PartGroup
 
 
 def ball(subdivisions: int, waves_mm: float = 0.0) -> tuple[np.ndarray, np.ndarray]:

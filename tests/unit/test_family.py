@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from designs.family import Family, families, family, resolve_shape, sliders
-from workbench.core.design import Layers
-from workbench.core.errors import DesignError
+from workbench.core.base.errors import DesignError
+from workbench.core.design.design import Layers
 
 
 def test_every_family_keeps_the_protocol() -> None:

@@ -10,10 +10,11 @@ import pytest
 
 import designs
 from designs import family as registry
-from geometry.surface import is_watertight, mesh_volume
-from workbench.core.design import Layers
-from workbench.core.monitor import silent
-from workbench.stages import build
+from geometry.surface.surface import is_watertight, mesh_volume
+from workbench.core.base.monitor import silent
+from workbench.core.base.records import records
+from workbench.core.design.design import Layers
+from workbench.pipeline.stages.build import BuildInputs, build
 
 GUIDE = Path(__file__).parents[2] / "docs" / "new-family.md"
 
@@ -24,15 +25,17 @@ def block(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
     (code,) = re.findall(r"^```python\n(.*?)^```$", GUIDE.read_text(), re.MULTILINE | re.DOTALL)
     (tmp_path / "block.py").write_text(code)
     monkeypatch.setattr(designs, "__path__", [*designs.__path__, str(tmp_path)])
-    registry._registry.cache_clear()
+    records.cache_clear()
     yield "block"
-    registry._registry.cache_clear()
+    records.cache_clear()
 
 
 def test_the_guides_family_needs_nothing_but_its_file(block: str) -> None:
     """V = 24^2 30 - 20^2 28 = 6080 mm3, watertight, with sliders and no notice."""
     shape = registry.resolve_shape(block, {})
-    solid = build(block, shape, Layers(elastomer_mm=2.0), monitor=silent)
+    solid = build(
+        BuildInputs(family=block, shape=shape, layers=Layers(elastomer_mm=2.0)), monitor=silent
+    )
     assert is_watertight(solid.membrane.faces)
     # Planes only: the kernel and the triangles are exact.
     assert solid.volume_mm3 == pytest.approx(6080.0, rel=1e-9)
@@ -44,7 +47,7 @@ def test_the_guides_family_needs_nothing_but_its_file(block: str) -> None:
 
 def test_the_guides_family_has_a_fallback(block: str) -> None:
     """The same 6080 mm3 by signed distance; its edges are rounded by about 0.4 mm."""
-    from geometry.implicit import solid_from_fields
+    from geometry.body.implicit import solid_from_fields
 
     fields = registry.family(block).fields(registry.resolve_shape(block, {}), Layers())
     solid = solid_from_fields(fields, wall_mm=2.0, support_mm=1.0)

@@ -10,10 +10,10 @@ import pytest
 from sim.fem.body import face_weights, make_faces
 from sim.fem.studies.blocks import flat_membrane, irregular_block
 from sim.fem.submodel import Submodel, boundary, cut_out
-from workbench.core.design import Elastomer
-from workbench.core.errors import MeshingError
-from workbench.core.press import Press
-from workbench.core.results import MembraneMesh
+from workbench.core.base.errors import MeshingError
+from workbench.core.design.design import Elastomer
+from workbench.core.press.press import Press
+from workbench.core.result.results import MembraneMesh
 
 TOP_MM = np.array([0.0, 0.0, 2.0])
 

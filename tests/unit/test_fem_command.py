@@ -21,19 +21,19 @@ from sim.fem.press import solve_press
 from sim.fem.studies.blocks import flat_membrane
 from tests.unit.test_fem_deck import pad_case
 from tests.unit.test_fem_results import table_of
-from workbench.cli import main
-from workbench.core.design import Elastomer, SensorDesign
-from workbench.core.errors import StoreError
-from workbench.core.fem import DRAFT_MM, FemSettings
-from workbench.core.indenter import Indenter
-from workbench.core.press import Press
-from workbench.fem_case import carried, read_carried
-from workbench.fem_tables import beside
-from workbench.named_designs import load_design
-from workbench.pipeline import PressCase
-from workbench.project import Project
-from workbench.state import State
-from workbench.validation import calculix
+from workbench.cli.command_line import main
+from workbench.core.base.errors import StoreError
+from workbench.core.design.design import Elastomer, SensorDesign
+from workbench.core.press.fem import DRAFT_MM, FemSettings
+from workbench.core.press.indenter import Indenter
+from workbench.core.press.press import Press
+from workbench.core.press.press_case import PressCase
+from workbench.project.named_designs import load_design
+from workbench.project.project import Project
+from workbench.project.state import State
+from workbench.proof.validation.fem import calculix
+from workbench.report.fem_case import carried, read_carried
+from workbench.report.fem_tables import beside
 
 SHORT = ["--draft", "--radius-mm", "5", "--depth-mm", "0.2", "--frames", "2"]
 
@@ -135,7 +135,7 @@ def test_a_large_object_is_written_where_it_meets_the_skin(tmp_path: Path) -> No
 
 def their_table(deck: Path, found: Any, project: Project) -> str:
     """Our fields as the table of another program."""
-    from workbench.fem_case import deck_case
+    from workbench.report.fem_case import deck_case
 
     state, element = read_carried(carried_text(deck.read_text()), project, source="case.inp")
     skin = deck_case(state, element, project)[0].submodel.skin

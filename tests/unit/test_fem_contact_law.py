@@ -9,7 +9,7 @@ from sim.contact.objects.collider import make_collider
 from sim.fem.contact_law import SLIP_MM, SOFT_MM, Law, Touch, Traction, traction
 from sim.fem.obstacle import RigidPose, curvature, distance
 from sim.fem.studies.tangents import GRID_MM, POSE, rub, tangent_errors
-from workbench.core.indenter import Indenter, IndenterKind
+from workbench.core.press.indenter import Indenter, IndenterKind
 
 KINDS = [kind for kind in IndenterKind if kind is not IndenterKind.MESH]
 LAW = Law(penalty_MPa_mm=200.0, friction=0.3)

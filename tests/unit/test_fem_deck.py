@@ -8,24 +8,24 @@ import functools
 import numpy as np
 import pytest
 
-from geometry.surface import face_areas
+from geometry.surface.surface import face_areas
 from sim.contact.objects.collider import make_collider
 from sim.fem.deck import DeckCase, write_deck
 from sim.fem.deck_mesh import EDGES, FACE_CORNERS, Element
 from sim.fem.deck_object import NEAR_MM, near_box_mm
 from sim.fem.deck_text import DeckText, carried_text, read_deck
 from sim.fem.studies.blocks import flat_membrane
-from workbench.core.actuation import Actuation
-from workbench.core.design import Elastomer, SensorDesign
-from workbench.core.errors import DesignError, SolveError, StoreError
-from workbench.core.fem import FemSettings
-from workbench.core.inclusion import Inclusion
-from workbench.core.indenter import Indenter, IndenterKind
-from workbench.core.press import Press
-from workbench.core.results import Label
-from workbench.fem_case import make_deck_case
-from workbench.pipeline import PressCase
-from workbench.state import State
+from workbench.core.base.errors import DesignError, SolveError, StoreError
+from workbench.core.design.design import Elastomer, SensorDesign
+from workbench.core.design.inclusion import Inclusion
+from workbench.core.press.actuation import Actuation
+from workbench.core.press.fem import FemSettings
+from workbench.core.press.indenter import Indenter, IndenterKind
+from workbench.core.press.press import Press
+from workbench.core.press.press_case import PressCase
+from workbench.core.result.results import Label
+from workbench.project.state import State
+from workbench.report.fem_case import make_deck_case
 
 PRESS = Press(target_mm=(0.0, 0.0, 2.0), depth_mm=0.4, frames=2)
 

@@ -10,8 +10,8 @@ from sim.fem.elements import Elements, evaluate, make_elements
 from sim.fem.studies.blocks import block, irregular_block
 from sim.fem.studies.patch import STRETCH, solve_patch
 from sim.material import elastic_solid, first_piola
-from workbench.core.design import Elastomer, Law
-from workbench.core.errors import MeshingError
+from workbench.core.base.errors import MeshingError
+from workbench.core.design.design import Elastomer, Law
 
 LAWS = pytest.mark.parametrize("law", Law)
 SOLID = elastic_solid(Elastomer())

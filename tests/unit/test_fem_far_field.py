@@ -23,12 +23,12 @@ from sim.fem.press import set_up, solve_press
 from sim.fem.studies.blocks import flat_membrane
 from sim.fem.submodel import Submodel
 from sim.fem.tangent import Tangent
-from workbench.core.design import Elastomer
-from workbench.core.fem import FemSettings
-from workbench.core.force_field import ForceField
-from workbench.core.indenter import Indenter
-from workbench.core.motion import slide
-from workbench.core.press import Press
+from workbench.core.design.design import Elastomer
+from workbench.core.press.fem import FemSettings
+from workbench.core.press.indenter import Indenter
+from workbench.core.press.motion import slide
+from workbench.core.press.press import Press
+from workbench.core.result.force_field import ForceField
 
 SETTINGS = FemSettings(hex_mm=0.9, radius_mm=7.0)
 PRESS = Press(

@@ -10,10 +10,11 @@ import pytest
 
 from sim.fem.dense_solver import DenseSolver
 from sim.fem.elements import evaluate, make_elements
-from sim.fem.linear_solver import LinearSolver, Pardiso, SuperLU, has_pardiso, make_solver
+from sim.fem.factors import LinearSolver
+from sim.fem.linear_solver import Pardiso, SuperLU, has_pardiso, make_solver
 from sim.fem.sparse_system import System, freedoms_of, make_system
 from sim.fem.studies.blocks import irregular_block
-from workbench.core.errors import SolveError
+from workbench.core.base.errors import SolveError
 
 SOLVERS = [
     SuperLU,

@@ -17,14 +17,14 @@ from sim.fem.obstacle import RigidPose
 from sim.fem.press import set_up, solve_press
 from sim.fem.readout import FemFrame, _point_stress
 from sim.fem.studies.blocks import flat_membrane, irregular_block
-from workbench.core.design import Elastomer, Law
-from workbench.core.errors import Cancelled, DesignError, MeshingError, SolveError
-from workbench.core.fem import FemSettings
-from workbench.core.force_field import ForceField, Source
-from workbench.core.indenter import Indenter, IndenterKind
-from workbench.core.motion import release, slide
-from workbench.core.press import Press
-from workbench.core.soft_body import SoftBody
+from workbench.core.base.errors import Cancelled, DesignError, MeshingError, SolveError
+from workbench.core.design.design import Elastomer, Law
+from workbench.core.press.fem import FemSettings
+from workbench.core.press.indenter import Indenter, IndenterKind
+from workbench.core.press.motion import release, slide
+from workbench.core.press.press import Press
+from workbench.core.press.soft_body import SoftBody
+from workbench.core.result.force_field import ForceField, Source
 
 SETTINGS = FemSettings(hex_mm=0.9, radius_mm=4.0)
 PRESS = Press(target_mm=(0.0, 0.0, 2.0), depth_mm=0.3, frames=3)

@@ -13,7 +13,7 @@ from sim.fem.deck_results import force_field, read_table
 from sim.fem.elements import GAUSS
 from sim.fem.studies.blocks import block
 from tests.unit.test_fem_deck import pad_case
-from workbench.core.errors import SolveError, StoreError
+from workbench.core.base.errors import SolveError, StoreError
 
 PRESSURE_MPa = 0.03
 STRETCH = np.array([1.1, 0.9, 0.8])

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from sim.contact.objects.fine_surface import fine_surface
-from sim.optics.detail_filling import filling, followed_slope, full_pressure_MPa, gap_share
-from workbench.core.texture import SMOOTH, HeightImage, Pattern, Texture
+from sim.optics.studio.detail_filling import filling, followed_slope, full_pressure_MPa, gap_share
+from workbench.core.press.texture import SMOOTH, HeightImage, Pattern, Texture
 
 FINE = Texture(pattern=Pattern.WAVES, pitch_mm=0.5, height_mm=0.03)
 PLANE_STRAIN_MPa = 0.18

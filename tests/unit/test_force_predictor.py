@@ -16,9 +16,9 @@ from sim.forces.network.predictor import Precision, Predictor, maps_for_use, wor
 from sim.forces.network.spec import PAPER, SMALL, NetworkSpec, Target
 from sim.forces.network.voxels import voxel_edge_mm, voxelise
 from sim.forces.network.weights import NetworkWeights
-from workbench import devices
-from workbench.benchmarks.forces import shell
-from workbench.core.errors import DesignError, DeviceError, SolveError
+from workbench.core.base.errors import DesignError, DeviceError, SolveError
+from workbench.pipeline import devices
+from workbench.proof.benchmarks.forces import shell
 
 SPEC = NetworkSpec(name="tiny", planes=(8, 8, 12, 12, 12, 8, 8, 8), stem_planes=8)
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from sim.forces.scores import press_frame, ratio, score, summary
-from workbench.core.errors import SolveError
+from workbench.core.base.errors import SolveError
 
 UPRIGHT = np.eye(3)
 TRUTH = np.array([[0.0, 0.0, 2.0], [0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 0.0]])

@@ -7,10 +7,10 @@ import dataclasses
 import numpy as np
 import pytest
 
-from ui.imaging import legend
-from ui.panels.source_words import doubt_text, sources_text
-from workbench.core.force_field import ForceField, Source
-from workbench.force_sources import PAIRS, Forces, Shown, choices, disagreement, totals
+from ui.page.imaging import legend
+from ui.panels.results.source_words import doubt_text, sources_text
+from workbench.core.result.force_field import ForceField, Source
+from workbench.view.force_sources import PAIRS, Forces, Shown, choices, disagreement, totals
 
 
 def field(moved_mm: float, force_N: float, source: Source = Source.FEM) -> ForceField:

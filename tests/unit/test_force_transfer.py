@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sim.forces.transfer import barycentric, shares_on
-from workbench.core.results import Skin
+from workbench.core.result.results import Skin
 
 
 def patch(count: int) -> Skin:

@@ -26,9 +26,9 @@ from sim.forces.network.weights import (
     weights_from_bytes,
     weights_to_bytes,
 )
-from workbench.benchmarks.forces import shell
-from workbench.core.errors import StoreError
-from workbench.weight_files import save_weights
+from workbench.core.base.errors import StoreError
+from workbench.pipeline.weight_files import save_weights
+from workbench.proof.benchmarks.forces import shell
 
 SPEC = NetworkSpec(
     name="tiny", planes=(4, 6, 8, 8, 8, 6, 6, 4), stem_planes=4, output_channels=6, norm=Norm.ALL

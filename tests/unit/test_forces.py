@@ -9,13 +9,13 @@ import io
 import numpy as np
 import pytest
 
-from geometry.stress import von_mises_MPa
-from workbench.core.actuation import Actuation
-from workbench.core.errors import SolveError
-from workbench.core.press import Press
-from workbench.core.sensing import Contact
-from workbench.forces import check_finite, csv_bytes, force_columns, slip_columns, slip_curve
-from workbench.outputs import plain_numbers
+from geometry.surface.stress import von_mises_MPa
+from workbench.core.base.errors import SolveError
+from workbench.core.press.actuation import Actuation
+from workbench.core.press.press import Press
+from workbench.core.result.sensing import Contact
+from workbench.report.outputs import plain_numbers
+from workbench.view.forces import check_finite, csv_bytes, force_columns, slip_columns, slip_curve
 
 FRAMES, VERTICES = 3, 4
 

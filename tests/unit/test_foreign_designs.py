@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import io
 import struct
 import tracemalloc
@@ -13,11 +12,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from workbench.core.errors import DesignError, shown
-from workbench.design_bundle import unbundle, zipped
-from workbench.forms import load_design
-from workbench.named_designs import load_design as any_design
-from workbench.project import Project
+from workbench.core.base.errors import DesignError, shown
+from workbench.edit.forms import load_design
+from workbench.project.design_bundle import unbundle, zipped
+from workbench.project.named_designs import load_design as any_design
+from workbench.project.project import Project
 
 BODY = 'name = "x"\nfamily = "imported"\n[body]\nouter = "{}"\nouter_name = "x.stl"\n'
 PICTURE = 'name = "x"\nfamily = "finger"\n[optics]\nbackground = "{}"\n'
@@ -93,11 +92,16 @@ def test_a_zip_that_lies_about_its_size_takes_no_memory(method: int, tmp_path: P
 def test_every_broken_zip_is_told(method: int, tmp_path: Path) -> None:
     """Each byte of a zip turned over: it is read all the same, or a DesignError says why not."""
     content = packed(method, 50)
+    told = []
     for place in range(4, len(content)):
         broken = bytearray(content)
         broken[place] ^= 0x55
-        with contextlib.suppress(DesignError):
+        try:
             unbundle("d.zip", bytes(broken), Project(tmp_path))
+        except DesignError as error:
+            told.append(error)
+    assert told
+    assert all(error.message and error.hint for error in told)
 
 
 def meshed(data: bytes) -> bytes:

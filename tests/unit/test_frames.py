@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from workbench.core.frames import PARALLEL, quaternion, tangent
+from workbench.core.base.frames import PARALLEL, quaternion, tangent
 
 component = st.floats(-1.0, 1.0, allow_nan=False)
 LONG = 0.01

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from workbench.core import freed_memory
-from workbench.core.freed_memory import freed_memory_kept
+from workbench.core.base import freed_memory
+from workbench.core.base.freed_memory import freed_memory_kept
 
 pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="of GNU's C library")
 PAGES = 2000

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ui.gallery import shortened
+from ui.page.gallery import shortened
 
 
 def test_a_line_is_cut_behind_a_word() -> None:

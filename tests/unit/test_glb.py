@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 import trimesh
 
-from ui.imaging import coloured_glb
-from workbench.glb import MOST_SHORT, Topology, write_glb
-from workbench.section_cut import Axis, Plane
+from ui.page.imaging import coloured_glb
+from workbench.view.glb import MOST_SHORT, Topology, write_glb
+from workbench.view.section_cut import Axis, Plane
 
 
 def read(glb: bytes) -> Any:

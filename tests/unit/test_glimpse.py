@@ -11,19 +11,19 @@ from typing import Any
 import numpy as np
 import pytest
 
-from geometry.indenters import primitive_mesh
-from sim.optics.dents import SOFTNESS_MM
-from sim.optics.sketch import lower_face_mm, sketched
-from workbench import stages
-from workbench.core.indenter import Indenter, IndenterKind
-from workbench.core.lighting import LightModel
-from workbench.core.monitor import silent
-from workbench.core.results import Skin
-from workbench.glimpse import Glimpse, glimpse_call
-from workbench.named_designs import load_design
-from workbench.pipeline import plan
-from workbench.state import fresh_state
-from workbench.store import Store
+from geometry.objects.indenters import primitive_mesh
+from sim.optics.raster.dents import SOFTNESS_MM
+from sim.optics.studio.sketch import lower_face_mm, sketched
+from workbench.core.base.monitor import silent
+from workbench.core.design.lighting import LightModel
+from workbench.core.press.indenter import Indenter, IndenterKind
+from workbench.core.result.results import Skin
+from workbench.live.glimpse import Glimpse, glimpse_call
+from workbench.pipeline.store import Store
+from workbench.planning import running
+from workbench.planning.plan import plan
+from workbench.project.named_designs import load_design
+from workbench.project.state import fresh_state
 
 FACET_MM = 0.012
 """The drawn ball is a polyhedron, .0064 mm inside the sphere; 2.5 mm aside its face is steep, and
@@ -100,7 +100,7 @@ def test_a_glimpse_sees_the_dent_where_the_press_aims(tmp_path: Path) -> None:
     """The pad pressed at its middle changes in the middle of its image and not in the corners."""
     state = fresh_state(load_design("pad"))
     store, kept = Store(tmp_path), dict[str, Any]()
-    stages.run(store, plan(state.design, state.case)["build"])
+    running.run(store, plan(state.design, state.case)["build"])
     seen: Glimpse = glimpse_call(state.design, state.case).answer(store, kept, silent)
     change = np.abs(seen.images[1].astype(int) - seen.images[0]).max(axis=2)
     rows, columns = change.shape

@@ -7,11 +7,11 @@ from typing import Any
 
 import pytest
 
-from ui.glimpse import GlimpseFollower
-from workbench.core.design import SensorDesign
-from workbench.glimpse import glimpse_call
-from workbench.pipeline import PressCase
-from workbench.requests import GLIMPSE, Request
+from ui.desk.glimpse import GlimpseFollower
+from workbench.core.design.design import SensorDesign
+from workbench.core.press.press_case import PressCase
+from workbench.live.glimpse import glimpse_call
+from workbench.live.requests import GLIMPSE, Request
 
 SHORT = SensorDesign(name="short", family="finger", shape={"cylinder_mm": 18.0})
 LONG = SensorDesign(name="long", family="finger", shape={"cylinder_mm": 22.0})

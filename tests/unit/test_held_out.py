@@ -12,14 +12,14 @@ import pytest
 
 from tests.synthetic_presses import made_up
 from tests.unit.test_evaluation import untrained
-from workbench.core.errors import StoreError
-from workbench.dataset.cases import Split
-from workbench.dataset.folder import DataSet
-from workbench.evaluation.evaluate import Named, evaluate_field
-from workbench.evaluation.held_out import PARTS, STEPS, HeldOut
-from workbench.evaluation.packing import chosen_states, made_from
-from workbench.evaluation.scoring import Way, compared
-from workbench.evaluation.sources import open_source, states
+from workbench.core.base.errors import StoreError
+from workbench.learning.dataset.cases import Split
+from workbench.learning.dataset.folder import DataSet
+from workbench.learning.evaluation.evaluate import Named, evaluate_field
+from workbench.learning.evaluation.held_out import PARTS, STEPS, HeldOut
+from workbench.learning.evaluation.packing import chosen_states, made_from
+from workbench.learning.evaluation.scoring import Way, compared
+from workbench.learning.evaluation.sources import open_source, states
 
 
 @pytest.fixture(scope="module")

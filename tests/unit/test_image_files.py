@@ -11,8 +11,8 @@ import cv2
 import numpy as np
 import pytest
 
-from workbench.core.sensing import Metrics, Shot, TactileFrames
-from workbench.image_files import difference, field_bytes, png_bytes, write_images
+from workbench.core.result.sensing import Metrics, Shot, TactileFrames
+from workbench.report.image_files import difference, field_bytes, png_bytes, write_images
 
 HEIGHT, WIDTH, MARKERS = 12, 16, 2
 

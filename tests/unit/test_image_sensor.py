@@ -8,10 +8,10 @@ import math
 import numpy as np
 import pytest
 
-from sim.optics.camera import focal_px
-from sim.optics.display import choose_exposure, encode
-from sim.optics.image_sensor import blur_px, defocus, develop, fixed_exposure, noisy
-from workbench.core.camera import Camera, ImageSensor, LensModel
+from sim.optics.camera.camera import focal_px
+from sim.optics.raster.display import choose_exposure, encode
+from sim.optics.raster.image_sensor import blur_px, defocus, develop, fixed_exposure, noisy
+from workbench.core.design.camera import Camera, ImageSensor, LensModel
 
 WIDTH, HEIGHT = 160, 120
 
@@ -92,6 +92,20 @@ def test_defocus_spreads_a_point_by_its_disc() -> None:
         along = np.arange(101) - 50.0
         # The sampled kernels have the variance of their Gaussians to 1 %.
         assert (spread.sum(axis=0) @ along**2) == pytest.approx(diameter**2 / 16.0, rel=0.02)
+
+
+def test_a_developed_point_has_the_variance_of_its_disc() -> None:
+    """A point out of focus, as 8-bit grey: c^2 / 16 along each axis, by the camera's own disc."""
+    blurred = camera(ImageSensor(gamma=1.0), aperture_mm=1.5, focus_mm=25.0)
+    range_mm = np.full((HEIGHT, WIDTH), 12.5)
+    (disc_px,) = blur_px(blurred, range_mm[:1, 0])
+    point = np.zeros((HEIGHT, WIDTH, 3), np.float32)
+    point[60, 80] = 2.0 * np.pi * disc_px**2 / 16.0
+    grey = develop(point, blurred, exposure=0.9, range_mm=range_mm)[:, :, 0].astype(float)
+    along = np.arange(WIDTH) - 80.0
+    found = (grey.sum(axis=0) @ along**2) / grey.sum()
+    # Grey below half a step is cut off: 2 % of the variance.
+    assert found == pytest.approx(disc_px**2 / 16.0, rel=0.04)
 
 
 def test_defocus_loses_no_light() -> None:

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from workbench.cli import main
-from workbench.core.errors import DesignError
-from workbench.image_files import png_bytes
-from workbench.image_sets import compare_sets, page, pairs
+from workbench.cli.command_line import main
+from workbench.core.base.errors import DesignError
+from workbench.report.image_files import png_bytes
+from workbench.variants.image_sets import compare_sets, page, pairs
 
 HEIGHT, WIDTH = 40, 48
 SPOT = (slice(10, 26), slice(12, 30))

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from tests.unit.test_quantities import SQUARE
-from ui.imaging import scale_bar, table
-from workbench.colour_scale import NOTHING_GREY, YES, scale_colours, viridis
-from workbench.core.maps import DesignerMaps, SkinMap
-from workbench.core.sensing import TactileFrames
-from workbench.image_views import NO_CHANGE, OF_IMAGES, View, looked, views, visible_change
-from workbench.map_display import map_look, score_rows, scores, value_at, value_words
+from ui.page.imaging import scale_bar, table
+from workbench.core.result.maps import DesignerMaps, SkinMap
+from workbench.core.result.sensing import TactileFrames
+from workbench.view.colour_scale import NOTHING_GREY, YES, scale_colours, viridis
+from workbench.view.image_views import NO_CHANGE, OF_IMAGES, View, looked, views, visible_change
+from workbench.view.map_display import map_look, score_rows, scores, value_at, value_words
 
 HIGH, WIDE = 8, 12
 

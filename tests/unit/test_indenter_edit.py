@@ -7,10 +7,18 @@ import dataclasses
 import numpy as np
 import pytest
 
-from workbench.core.errors import DesignError
-from workbench.core.indenter import SEEN, UNSEEN, Indenter, IndenterKind
-from workbench.core.texture import Pattern, Texture
-from workbench.indenter_edit import another, edge_mm, gallery, pictured, resized, rounded, uploaded
+from workbench.core.base.errors import DesignError
+from workbench.core.press.indenter import SEEN, UNSEEN, Indenter, IndenterKind
+from workbench.core.press.texture import Pattern, Texture
+from workbench.edit.indenter_edit import (
+    another,
+    edge_mm,
+    gallery,
+    pictured,
+    resized,
+    rounded,
+    uploaded,
+)
 
 
 def test_gallery_holds_every_object_once() -> None:

@@ -8,23 +8,23 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.everyday import EVERYDAY, everyday
-from geometry.export import stl_bytes
-from geometry.indenters import load_mesh
-from geometry.primitives import rounded_box, sphere
-from geometry.surface import is_watertight, mesh_volume
+from geometry.objects.everyday import EVERYDAY, everyday
+from geometry.objects.indenters import load_mesh
+from geometry.surface.primitives import rounded_box, sphere
+from geometry.surface.surface import is_watertight, mesh_volume
+from geometry.workshop.export import stl_bytes
 from sim.contact.motion.approach import plan_approach
 from sim.contact.objects import sampling
 from sim.contact.objects.collider import make_collider
 from sim.contact.objects.sampling import kept_samples, sample_indenter
-from sim.contact.specimens import flat_block
-from workbench.core.errors import DesignError
-from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
-from workbench.core.press import Press
-from workbench.core.texture import HeightImage, Pattern, Texture
-from workbench.indenter_choice import choose_indenter
-from workbench.kept_indenters import indenter_table, read_indenter
-from workbench.project import Project
+from sim.contact.studies.specimens import flat_block
+from workbench.core.base.errors import DesignError
+from workbench.core.press.indenter import Indenter, IndenterKind, IndenterMesh
+from workbench.core.press.press import Press
+from workbench.core.press.texture import HeightImage, Pattern, Texture
+from workbench.edit.indenter_choice import choose_indenter
+from workbench.project.kept_indenters import indenter_table, read_indenter
+from workbench.project.project import Project
 
 BLOCK, _ = flat_block(width_mm=16.0, height_mm=4.0, grid_mm=1.0)
 
@@ -103,7 +103,7 @@ def test_step_file_comes_back_in_mm(tmp_path: Path) -> None:
 
 def test_inside_out_mesh_is_turned_and_said_so(tmp_path: Path) -> None:
     """The notice names the file; a mesh that is right has none; neither changes the key."""
-    from workbench.core.digest import digest
+    from workbench.core.base.digest import digest
 
     points, faces = rounded_box(2.0, 0.0)
     path = tmp_path / "tool.stl"
@@ -121,7 +121,7 @@ def test_scan_with_too_many_triangles_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Before it is welded: counts and limit are named. A scan of 5 million fails by its size."""
-    from geometry import indenters
+    from geometry.objects import indenters
 
     points, faces = sphere(3.0)
     path = tmp_path / "scan.stl"
@@ -278,7 +278,7 @@ def test_samples_are_computed_once(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_indenters_come_back_from_a_project(tmp_path: Path) -> None:
     """A rounded mesh of 215 mm with waves, and a cube with a picture: all fields, equal keys."""
-    from workbench.core.digest import digest
+    from workbench.core.base.digest import digest
 
     project = Project(tmp_path)
     image = HeightImage(heights=np.linspace(0.0, 1.0, 12).reshape(3, 4))

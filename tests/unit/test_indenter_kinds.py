@@ -2,29 +2,67 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
-from geometry.surface import is_watertight, mesh_volume
+from geometry.surface.surface import is_watertight, mesh_volume
 from sim.contact.motion.approach import plan_approach
 from sim.contact.objects.collider import make_collider
-from sim.contact.objects.profiles import area_mm2, inset, polygon
-from sim.contact.objects.shapes import SAMPLED
-from sim.contact.objects.solids import lowest_mm, sharp_volume_mm3, solid
-from sim.contact.specimens import flat_block
-from workbench.core.errors import DesignError
-from workbench.core.indenter import SEEN, UNSEEN, Indenter, IndenterKind, widest_edge_mm
-from workbench.core.press import Press
-from workbench.indenter_choice import choose_indenter
-from workbench.indenter_display import display_mesh
+from sim.contact.objects.solids import lowest_mm, solid
+from sim.contact.studies.specimens import flat_block
+from workbench.core.base.errors import DesignError
+from workbench.core.objects.kind import kind_of
+from workbench.core.objects.kinds import cross, hexagon, rhombus, triangle
+from workbench.core.objects.plane import inset, polygon
+from workbench.core.press.indenter import SEEN, UNSEEN, Indenter, IndenterKind, widest_edge_mm
+from workbench.core.press.press import Press
+from workbench.edit.indenter_choice import choose_indenter
+from workbench.live.indenter_display import display_mesh
 
-KINDS = [kind for kind in IndenterKind if kind is not IndenterKind.MESH]
-NEW = [kind for kind in SAMPLED if kind is not IndenterKind.MESH]
+KINDS = [kind for kind in IndenterKind if not kind_of(kind).of_triangles]
+NEW = [kind for kind in IndenterKind if kind_of(kind).distance is not None]
 BLOCK, _ = flat_block(width_mm=16.0, height_mm=4.0, grid_mm=1.0)
 
 
 def places(count: int = 3000, reach_mm: float = 4.5) -> np.ndarray:
     return np.random.default_rng(7).uniform(-reach_mm, reach_mm, (count, 3))
+
+
+def flower_share() -> float:
+    """Five times a kite from the middle to two notches and the sector of the petal's arc."""
+    radius, sector = 0.19, np.pi / 5
+    centre = 0.5 - radius
+    notch = centre * np.cos(sector) + np.sqrt(radius**2 - (centre * np.sin(sector)) ** 2)
+    half = np.arctan2(notch * np.sin(sector), notch * np.cos(sector) - centre)
+    return float(5 * (centre * notch * np.sin(sector) + half * radius**2))
+
+
+AREA_SHARES = {
+    IndenterKind.HEXAGON: 3 * 3**0.5 / 8,
+    IndenterKind.TRIANGLE: 3**0.5 / 4,
+    IndenterKind.RHOMBUS: 0.3,
+    IndenterKind.CROSS: 0.51,
+    IndenterKind.PACMAN: 5 / 6 * np.pi / 4,
+    IndenterKind.RING: np.pi / 4 * (1 - 0.25),
+    IndenterKind.DOUBLE_CYLINDER: np.pi / 2 * 0.45**2,
+    IndenterKind.FLOWER: flower_share(),
+}
+"""Sharp cross-sections over the square of the size: closed forms."""
+
+
+def sharp_volume_mm3(indenter: Indenter) -> float:
+    """Volume of a kind that is sampled, without rounding or texture [mm3]: a closed form."""
+    size_mm = indenter.size_mm
+    if indenter.kind is IndenterKind.ELLIPSOID:
+        return np.pi / 6.0 * size_mm**3 * 0.35
+    if indenter.kind is IndenterKind.TORUS:
+        tube = 0.15 * size_mm
+        return 2.0 * np.pi**2 * (0.5 * size_mm - tube) * tube**2
+    if indenter.kind is IndenterKind.DIAMOND:
+        return size_mm**3 / 6.0
+    return AREA_SHARES[indenter.kind] * size_mm**3
 
 
 def test_table_holds_the_papers_fourteen_in_order() -> None:
@@ -80,18 +118,13 @@ def test_volume_is_the_closed_form(kind: IndenterKind) -> None:
     assert mesh_volume(points, faces) == pytest.approx(sharp_volume_mm3(indenter), rel=0.015)
 
 
-def test_closed_forms_of_sections() -> None:
-    """Hexagon (3 sqrt 3 / 8) s^2, triangle (sqrt 3 / 4) s^2, rhombus 0.3 s^2, cross 0.51 s^2."""
-    exact = {
-        IndenterKind.HEXAGON: 3 * 3**0.5 / 8,
-        IndenterKind.TRIANGLE: 3**0.5 / 4,
-        IndenterKind.RHOMBUS: 0.3,
-        IndenterKind.CROSS: 0.51,
-        IndenterKind.PACMAN: 5 / 6 * np.pi / 4,
-        IndenterKind.RING: np.pi / 4 * (1 - 0.25),
-    }
-    for kind, share in exact.items():
-        assert area_mm2(kind, 6.0) == pytest.approx(36.0 * share, rel=1e-12)
+@pytest.mark.parametrize("module", [cross, hexagon, rhombus, triangle])
+def test_polygons_have_the_area_of_the_closed_form(module: Any) -> None:
+    """Shoelace of the corners: 0.51, 3 sqrt 3 / 8, 0.3 and sqrt 3 / 4 of the square of the size."""
+    x, y = module.corners_mm(6.0).T
+    shoelace_mm2 = 0.5 * float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
+    kind = IndenterKind(module.__name__.rpartition(".")[2])
+    assert shoelace_mm2 == pytest.approx(36.0 * AREA_SHARES[kind], rel=1e-12)
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -8,16 +8,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.export import stl_bytes
-from geometry.indenters import largest_width, load_stl, scaled
-from geometry.primitives import rounded_box, sphere
-from geometry.surface import is_watertight, mesh_volume
-from sim.contact.objects.shapes import SAMPLED
-from workbench.core.errors import DesignError
-from workbench.core.indenter import Indenter, IndenterKind
-from workbench.indenter_display import display_mesh
+from geometry.objects.indenters import largest_width, load_stl, scaled
+from geometry.surface.primitives import rounded_box, sphere
+from geometry.surface.surface import is_watertight, mesh_volume
+from geometry.workshop.export import stl_bytes
+from workbench.core.base.errors import DesignError
+from workbench.core.objects.kind import Shape, kind_of
+from workbench.core.press.indenter import Indenter, IndenterKind
+from workbench.live.indenter_display import display_mesh
 
-PRIMITIVES = [kind for kind in IndenterKind if kind not in SAMPLED]
+PRIMITIVES = [kind for kind in IndenterKind if kind_of(kind).shape is not Shape.GRID]
 
 
 def written(folder: Path, data: bytes) -> Path:
@@ -111,13 +111,13 @@ def test_bad_files_say_what_is_wrong(tmp_path: Path, case: str) -> None:
 @pytest.mark.parametrize("kind", PRIMITIVES)
 def test_display_meshes_are_closed_and_on_the_shape(kind: IndenterKind, edge_mm: float) -> None:
     """Vertices lie on the very surface that contact uses, to rounding."""
-    from sim.contact.objects.shapes import SHAPE_OF_KIND, analytic_size, evaluate
+    from sim.contact.objects.shapes import analytic_size, evaluate
 
     indenter = Indenter(kind=kind, edge_radius_mm=edge_mm)
     points, faces = display_mesh(indenter)
     assert is_watertight(faces)
     assert mesh_volume(points, faces) > 0.0
-    distance, _ = evaluate(points, SHAPE_OF_KIND[kind], analytic_size(indenter))
+    distance, _ = evaluate(points, kind_of(kind).shape, analytic_size(indenter))
     assert np.abs(distance).max() < 1e-12
 
 

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from geometry.intake import read_body, smooth_patches
-from geometry.surface import is_watertight, mesh_volume
-from workbench.core.errors import DesignError
-from workbench.core.imported import ImportedBody, LengthUnit, ReadBody, body_file
+from geometry.intake.intake import read_body, smooth_patches
+from geometry.surface.surface import is_watertight, mesh_volume
+from workbench.core.base.errors import DesignError
+from workbench.core.design.imported import ImportedBody, LengthUnit, ReadBody, body_file
 
 
 def drum(radius: float = 12.0, height: float = 20.0) -> tuple[np.ndarray, np.ndarray]:

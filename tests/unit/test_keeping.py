@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from geometry.primitives import rounded_box
-from ui.saving import QUIET_S, RETRY_S, Saving
-from ui.session import Session
-from workbench.core.errors import StoreError, WorkbenchError
-from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
-from workbench.project import Project
-from workbench.whole_files import write_atomically
+from geometry.surface.primitives import rounded_box
+from ui.desk.saving import QUIET_S, RETRY_S, Saving
+from ui.desk.session import Session
+from workbench.core.base.errors import StoreError, WorkbenchError
+from workbench.core.press.indenter import Indenter, IndenterKind, IndenterMesh
+from workbench.project.project import Project
+from workbench.system.whole_files import write_atomically
 
 
 class Desk:
@@ -179,8 +179,8 @@ def test_a_file_in_the_folders_place_is_told(tmp_path: Path) -> None:
 
 WRITER = """
 import sys
-from ui.session import Session
-from workbench.project import Project
+from ui.desk.session import Session
+from workbench.project.project import Project
 session = Session(Project(sys.argv[1]))
 for step in range(10_000):
     session.change("design.shape.cylinder_mm", 20.0 + step % 50 / 10)

@@ -12,16 +12,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from geometry import csg, csg_brep, export
-from geometry.cast import make_cast
-from geometry.export import step_body, step_file
-from geometry.fabricate import Made, fabricate
-from geometry.solid import brep_bytes
-from geometry.step import write_step
-from workbench.core.errors import GeometryError, StoreError
-from workbench.core.fabrication import PartGroup
-from workbench.core.making import MouldOptions
-from workbench.core.results import Solid
+from geometry.body import csg, csg_brep
+from geometry.body.solid import brep_bytes
+from geometry.mould.cast import make_cast
+from geometry.mould.fabricate import Made, fabricate
+from geometry.workshop import export
+from geometry.workshop.export import step_body, step_file
+from geometry.workshop.step import write_step
+from workbench.core.base.errors import GeometryError, StoreError
+from workbench.core.design.making import MouldOptions
+from workbench.core.result.fabrication import PartGroup
+from workbench.core.result.results import Solid
 
 BLOCK = csg.Box(low_mm=(0.0, 0.0, 0.0), high_mm=(4.0, 3.0, 2.0))
 
@@ -152,9 +153,9 @@ def test_lost_pieces_are_measured_and_end_the_exact_body() -> None:
 def test_every_error_of_the_kernel_leads_one_rung_down() -> None:
     """A family whose B-rep is refused is built by signed distance; the kernel's words are told."""
     from designs.family import family, resolve_shape
-    from workbench.building import build_solid
-    from workbench.core.design import Layers
-    from workbench.core.results import BodyMethod
+    from workbench.core.design.design import Layers
+    from workbench.core.result.results import BodyMethod
+    from workbench.pipeline.building import build_solid
 
     real = family("finger")
     for error in refusals():

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ui.keys import Command, by_task, keyboard_map
+from ui.page.keys import Command, by_task, keyboard_map
 
 COMMANDS = [
     Command(label=label, keys=keys)

@@ -8,16 +8,17 @@ import math
 import numpy as np
 import pytest
 
-from sim.optics.bake import bake_light, emitted
-from sim.optics.lights import place_leds
-from sim.optics.places import camera_field, check_camera, check_lenses, check_lights
-from sim.optics.specimen import finger
-from workbench.core.camera import Camera, LensModel
-from workbench.core.errors import DesignError
-from workbench.core.leds import lamp_points
-from workbench.core.lighting import Lamp, LampKind, LedMount, LedRing, LightModel
-from workbench.core.optics import Optics
-from workbench.core.results import MembraneMesh
+from sim.optics.field.bake import bake_light
+from sim.optics.field.lines import emitted
+from sim.optics.light.lights import place_leds
+from sim.optics.light.places import camera_field, check_camera, check_lenses, check_lights
+from sim.optics.proof.specimen import finger
+from workbench.core.base.errors import DesignError
+from workbench.core.design.camera import Camera, LensModel
+from workbench.core.design.leds import lamp_points
+from workbench.core.design.lighting import Lamp, LampKind, LedMount, LedRing, LightModel
+from workbench.core.design.optics import Optics
+from workbench.core.result.results import MembraneMesh
 
 NONE = LedRing(count=0)
 
@@ -158,8 +159,10 @@ def test_a_lamp_below_the_base_is_refused(mesh: MembraneMesh) -> None:
 
 
 def test_a_lamp_in_the_camera_is_fine(mesh: MembraneMesh) -> None:
-    """A ring light about the lens, as a point."""
-    check_lights(mesh, NONE, (Lamp(position_mm=Camera().position_mm),))
+    """A ring light about the lens, as a point; 100 mm below it there is no sensor."""
+    x, y, z = Camera().position_mm
+    check_lights(mesh, NONE, (Lamp(position_mm=(x, y, z)),))
+    assert "below the base" in refusal(mesh, NONE, Lamp(position_mm=(x, y, z - 100.0))).message
 
 
 @pytest.mark.parametrize(
@@ -210,12 +213,13 @@ def test_further_cameras_are_named(mesh: MembraneMesh) -> None:
 def test_a_fisheye_sees_the_skin_however_it_is_tilted(
     mesh: MembraneMesh, lens: LensModel, turn_deg: float
 ) -> None:
-    """180 degrees across from the middle of the cavity, tilted up to the wall."""
+    """180 degrees across from the middle of the cavity, tilted up to the wall; not from outside."""
     half = math.radians(turn_deg) / 2
     turned = (math.cos(half), math.sin(half), 0.0, 0.0)
-    check_camera(
-        mesh, Camera(lens=lens, fov_x_deg=180.0, position_mm=(0.0, 0.0, 10.0), wxyz=turned)
-    )
+    camera = Camera(lens=lens, fov_x_deg=180.0, position_mm=(0.0, 0.0, 10.0), wxyz=turned)
+    check_camera(mesh, camera)
+    with pytest.raises(DesignError, match="outside the sensor"):
+        check_camera(mesh, dataclasses.replace(camera, position_mm=(60.0, 0.0, 10.0)))
 
 
 @pytest.mark.parametrize("name", ["axis", "along"])

@@ -12,14 +12,17 @@ from typing import Any
 
 import pytest
 
-from workbench import lanes, stages
-from workbench.core.design import Layers
-from workbench.core.errors import Cancelled, DesignError, LaneError
-from workbench.core.monitor import silent
-from workbench.forms import resolve_shape
-from workbench.lanes import Lane
-from workbench.stages import Call
-from workbench.store import Store
+from sim.contact import press as contact
+from workbench.core.base.errors import Cancelled, DesignError, LaneError
+from workbench.core.base.monitor import silent
+from workbench.core.design.design import Layers
+from workbench.edit.forms import resolve_shape
+from workbench.live import lanes
+from workbench.live.lanes import Lane
+from workbench.pipeline.stage import Call
+from workbench.pipeline.stages import build
+from workbench.pipeline.store import Store
+from workbench.planning.stage_table import STAGES
 
 CANCEL_LIMIT_S = 3.0
 """The promise to the designer; the lane kills after 2 s."""
@@ -41,13 +44,25 @@ def lane(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Lane]:
     lane = Lane("cad", Store(folder))
     yield lane
     lane.close()
-    for name in ("nap", "deaf", "die"):
-        del stages.STAGES[name]
+    for name in ("nap", "deaf", "die", "compile_one"):
+        del STAGES[name]
     patch.undo()
 
 
+THICK = Layers(elastomer_mm=15.0)
+
+
+def call_of(name: str, value: float | str) -> Call:
+    """A call of a stage that the worker can import too."""
+    import slow_stages
+
+    return slow_stages.call_of(name, value)
+
+
 def finger() -> Call:
-    return Call("build", ("finger", resolve_shape("finger", {}), Layers()))
+    return build.STAGE.call(
+        build.BuildInputs(family="finger", shape=resolve_shape("finger", {}), layers=Layers())
+    )
 
 
 def test_result_arrives_through_the_store(lane: Lane) -> None:
@@ -62,7 +77,11 @@ def test_result_arrives_through_the_store(lane: Lane) -> None:
 
 def test_refused_input_raises_here(lane: Lane) -> None:
     """A DesignError of the worker keeps its field."""
-    call = Call("build", ("finger", resolve_shape("finger", {}), Layers(elastomer_mm=15.0)))
+    call = build.STAGE.call(
+        build.BuildInputs(
+            family="finger", shape=resolve_shape("finger", {}), layers=Layers(elastomer_mm=15.0)
+        )
+    )
     with pytest.raises(DesignError) as caught:
         lane.run(call, silent)
     assert caught.value.at == "layers.elastomer_mm"
@@ -79,23 +98,23 @@ def test_cancel_returns_within_3_seconds(lane: Lane, stage: str) -> None:
             raise Cancelled("stop")
 
     with pytest.raises(Cancelled):
-        lane.run(Call(stage, (60.0,)), monitor)
+        lane.run(call_of(stage, 60.0), monitor)
     assert time.monotonic() - asked[0] < CANCEL_LIMIT_S
-    assert not lane.store.has(stage, Call(stage, (60.0,)).key)
-    assert lane.run(Call("nap", (0.01,)), silent).stage == "nap"
+    assert not lane.store.has(stage, call_of(stage, 60.0).key)
+    assert lane.run(call_of("nap", 0.01), silent).stage == "nap"
 
 
 def test_dead_worker_is_an_error_and_is_replaced(lane: Lane) -> None:
     """Signal 11 in the worker is a LaneError that names it; the next call works."""
     with pytest.raises(LaneError, match="signal 11"):
-        lane.run(Call("die", (int(signal.SIGSEGV),)), silent)
-    assert lane.run(Call("nap", (0.02,)), silent).stage == "nap"
+        lane.run(call_of("die", int(signal.SIGSEGV)), silent)
+    assert lane.run(call_of("nap", 0.02), silent).stage == "nap"
 
 
 def test_bug_in_a_stage_brings_its_traceback(lane: Lane) -> None:
     """An unforeseen exception is a LaneError whose hint holds the traceback."""
     with pytest.raises(LaneError, match="TypeError") as caught:
-        lane.run(Call("nap", ("soon",)), silent)
+        lane.run(call_of("nap", "soon"), silent)
     assert "Traceback" in caught.value.hint
 
 
@@ -106,15 +125,15 @@ def test_monitor_that_breaks_frees_the_lane(lane: Lane) -> None:
         raise ZeroDivisionError("bug")
 
     with pytest.raises(ZeroDivisionError):
-        lane.run(Call("deaf", (60.0,)), broken)
+        lane.run(call_of("deaf", 60.0), broken)
     start = time.monotonic()
-    assert lane.run(Call("nap", (0.03,)), silent).key == Call("nap", (0.03,)).key
+    assert lane.run(call_of("nap", 0.03), silent).key == call_of("nap", 0.03).key
     assert time.monotonic() - start < START_LIMIT_S
 
 
 def test_reply_to_another_job_is_dropped(lane: Lane, monkeypatch: pytest.MonkeyPatch) -> None:
     """An answer that carries an older number is not taken for this job's."""
-    call = Call("nap", (0.04,))
+    call = call_of("nap", 0.04)
     pipe = lane._pipe
     replies = [(-7, "done", "foreign")]
 
@@ -142,8 +161,8 @@ def test_process_that_died_before_the_call_is_an_error(
     with monkeypatch.context() as patch:
         patch.setattr(lane._process, "is_alive", lambda: True)
         with pytest.raises(LaneError, match="signal 9"):
-            lane.run(Call("nap", (0.05,)), silent)
-    assert lane.run(Call("nap", (0.05,)), silent).stage == "nap"
+            lane.run(call_of("nap", 0.05), silent)
+    assert lane.run(call_of("nap", 0.05), silent).stage == "nap"
 
 
 def test_failed_warm_up_names_the_missing_module(tmp_path: Path) -> None:
@@ -184,13 +203,30 @@ def test_closing_ends_a_running_call(tmp_path: Path) -> None:
     assert len(caught) == 1
 
 
+def test_what_an_idle_worker_compiled_is_kept_when_the_workbench_closes(
+    lane: Lane, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Taichi writes its kernels when a process ends; who is killed has compiled for nothing."""
+    kernels = tmp_path / "kernels"
+    monkeypatch.setenv("TI_OFFLINE_CACHE_FILE_PATH", str(kernels))
+    monkeypatch.setattr(lanes, "WARM_UP", {"cad": ("slow_stages",)})
+    runner = lanes.LaneRunner(Store(tmp_path / "store"))
+    runner.run(call_of("compile_one", 7), silent)
+    assert not list(kernels.rglob("*.tic"))
+    runner.close()
+    assert list(kernels.rglob("*.tic"))
+    with pytest.raises(Cancelled):
+        runner.run(call_of("nap", 0.02), silent)
+
+
 def test_worker_follows_a_killed_parent(tmp_path: Path) -> None:
     """After kill -9 of the server no worker is left within a few seconds."""
     import subprocess
     import sys
 
     code = (
-        "import time; from workbench.lanes import Lane, WARM_UP; from workbench.store import Store;"
+        "import time; from workbench.live.lanes import Lane, WARM_UP;"
+        "from workbench.pipeline.store import Store;"
         f"WARM_UP['cad'] = (); lane = Lane('cad', Store({str(tmp_path)!r}));"
         "print(lane._process.pid, flush=True); time.sleep(60)"
     )
@@ -221,12 +257,12 @@ def _alive(pid: int) -> bool:
 def test_rehearsal_is_a_press_that_settles(monkeypatch: pytest.MonkeyPatch) -> None:
     """The block pushes back, so the kernels loaded are those of a real press."""
     pressed: list[Any] = []
-    real = stages.press
+    real = contact.press_membrane
 
-    def recorded(*inputs: Any, monitor: Any) -> Any:
-        pressed.append(real(*inputs, monitor=monitor))
+    def recorded(*inputs: Any) -> Any:
+        pressed.append(real(*inputs))
 
-    monkeypatch.setattr(stages, "press", recorded)
+    monkeypatch.setattr(contact, "press_membrane", recorded)
     lanes._rehearse()
-    (contact,) = pressed
-    assert contact.normal_N[-1] > 0
+    (found,) = pressed
+    assert found.normal_N[-1] > 0

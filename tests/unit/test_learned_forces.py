@@ -12,10 +12,10 @@ from sim.forces.learned import Known, learned_forces
 from sim.forces.network.predictor import Precision, Predictor
 from sim.forces.network.spec import Target
 from tests.made_weights import tiny_weights
-from workbench.core.errors import Cancelled, StoreError
-from workbench.core.force_field import ForceField, Source
-from workbench.core.results import MembraneMesh, Skin
-from workbench.core.sensing import Contact
+from workbench.core.base.errors import Cancelled, StoreError
+from workbench.core.result.force_field import ForceField, Source
+from workbench.core.result.results import MembraneMesh, Skin
+from workbench.core.result.sensing import Contact
 
 FRAMES = 3
 FORCE_N = np.array([1e-3, -2e-3, -5e-3])

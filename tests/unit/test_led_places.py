@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from geometry.leds import led_items
-from sim.optics.lights import place_leds
-from sim.optics.spectrum import linear_rgb
-from workbench.core.leds import led_places
-from workbench.core.lighting import LedRing
+from geometry.housing.leds import led_items
+from sim.optics.light.lights import place_leds
+from sim.optics.light.spectrum import linear_rgb
+from workbench.core.design.leds import led_places
+from workbench.core.design.lighting import LedRing
 
 RINGS = (
     LedRing(),

@@ -6,11 +6,11 @@ import dataclasses
 
 import pytest
 
-from workbench.core.errors import DesignError
-from workbench.core.lighting import LedRing
-from workbench.item_fields import with_field
-from workbench.led_table import factors_of, leds_of, with_colour, with_count, with_factor
-from workbench.named_designs import load_design
+from workbench.core.base.errors import DesignError
+from workbench.core.design.lighting import LedRing
+from workbench.edit.item_fields import with_field
+from workbench.edit.led_table import factors_of, leds_of, with_colour, with_count, with_factor
+from workbench.project.named_designs import load_design
 
 RING = LedRing(count=6, radius_mm=5.0, height_mm=2.0, phase_deg=0.0)
 

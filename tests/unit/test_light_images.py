@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from workbench.core.lighting import LightModel
-from workbench.validation import light_models
-from workbench.validation.light_images import (
+from workbench.core.design.lighting import LightModel
+from workbench.proof.validation.optics import light_models
+from workbench.proof.validation.optics.light_images import (
     Score,
     box_around,
     fitted_gain,
@@ -15,7 +15,7 @@ from workbench.validation.light_images import (
     reference,
     score,
 )
-from workbench.validation.light_scenes import SCENES
+from workbench.proof.validation.optics.light_scenes import SCENES
 
 WHOLE = (slice(None), slice(None))
 

@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from workbench.lock_file import LockFile
-from workbench.processes import started
+from workbench.system.lock_file import LockFile
+from workbench.system.processes import started
 
 
 def written(lock: LockFile, **changes: object) -> None:

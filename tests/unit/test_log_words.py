@@ -9,10 +9,10 @@ from typing import Any
 
 import pytest
 
-from ui.reports import Reports, in_full
-from workbench.core.errors import DesignError, LaneError
-from workbench.project import Project
-from workbench.variant_files import Shelf
+from ui.desk.reports import Reports, in_full
+from workbench.core.base.errors import DesignError, LaneError
+from workbench.project.project import Project
+from workbench.variants.variant_files import Shelf
 
 
 @pytest.fixture

@@ -10,11 +10,11 @@ from typing import Any
 
 import pytest
 
-from workbench.cli import main
-from workbench.core.design import SensorDesign
-from workbench.core.errors import DesignError, GeometryError, shown
-from workbench.core.mapping import from_table
-from workbench.pipeline import PressCase
+from workbench.cli.command_line import main
+from workbench.core.base.errors import DesignError, GeometryError, shown
+from workbench.core.base.mapping import from_table
+from workbench.core.design.design import SensorDesign
+from workbench.core.press.press_case import PressCase
 
 LONG = "x" * 100_000
 LONGEST_LINE = 600

@@ -7,12 +7,12 @@ import dataclasses
 import numpy as np
 import pytest
 
-from sim.optics.camera import project, refracted_rays
+from sim.optics.camera.camera import project, refracted_rays
 from sim.optics.maps import glare, lighting, seeing, signal
 from sim.optics.maps.judging import weighted_percentiles
-from workbench.core.camera import Camera, ImageSensor
-from workbench.core.light import LightField
-from workbench.core.results import Skin
+from workbench.core.design.camera import Camera, ImageSensor
+from workbench.core.result.light import LightField
+from workbench.core.result.results import Skin
 
 
 def plane(height_mm: float, half_mm: float = 10.0, count: int = 41) -> Skin:

@@ -7,15 +7,20 @@ import numpy as np
 import pytest
 from scipy.spatial import KDTree
 
-from sim.optics.marker_motion import draw_arrows, marker_motion
-from sim.optics.marker_patterns import grid_places, pattern_places, picture_places, ring_places
-from sim.optics.markers import place_markers
-from sim.optics.specimen import finger
-from workbench.core.errors import DesignError
-from workbench.core.optics import MarkerPattern, Markers
-from workbench.core.photo import Photo, photo
-from workbench.core.results import Skin
-from workbench.core.sensing import TactileFrames
+from sim.optics.proof.specimen import finger
+from sim.optics.raster.marker_motion import draw_arrows, marker_motion
+from sim.optics.raster.marker_patterns import (
+    grid_places,
+    pattern_places,
+    picture_places,
+    ring_places,
+)
+from sim.optics.raster.markers import place_markers
+from workbench.core.base.errors import DesignError
+from workbench.core.design.optics import MarkerPattern, Markers
+from workbench.core.design.photo import Photo, photo
+from workbench.core.result.results import Skin
+from workbench.core.result.sensing import TactileFrames
 
 RADIUS_MM, CYLINDER_MM = 15.0, 27.0
 HEAT_MM = 0.15

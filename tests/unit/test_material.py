@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from sim.material import elastic_solid, first_piola
-from workbench.core.design import Elastomer
+from workbench.core.design.design import Elastomer
 
 
 def random_gradients(scale: float) -> np.ndarray:

@@ -7,15 +7,16 @@ import sys
 import numpy as np
 import pytest
 
-from geometry import meshlab, tets
-from geometry.export import stl_bytes
-from geometry.intake import read_body
-from geometry.primitives import rounded_box
-from geometry.remesh import remesh
-from geometry.surface import face_areas, mesh_volume
-from workbench.core.errors import MeshingError
-from workbench.core.imported import ImportedBody, LengthUnit, body_file
-from workbench.core.results import Label, LabelledSurface
+from geometry.intake.intake import read_body
+from geometry.surface import meshlab
+from geometry.surface.primitives import rounded_box
+from geometry.surface.remesh import remesh
+from geometry.surface.surface import face_areas, mesh_volume
+from geometry.volume import tets
+from geometry.workshop.export import stl_bytes
+from workbench.core.base.errors import MeshingError
+from workbench.core.design.imported import ImportedBody, LengthUnit, body_file
+from workbench.core.result.results import Label, LabelledSurface
 
 
 def box() -> LabelledSurface:

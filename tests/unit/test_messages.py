@@ -7,14 +7,14 @@ from typing import Any
 
 import pytest
 
-from ui.panels.fields import Fields
-from workbench.core.camera import Camera
-from workbench.core.design import SensorDesign
-from workbench.core.errors import DesignError
-from workbench.core.lighting import Lamp
-from workbench.core.optics import Optics
-from workbench.item_fields import read_field
-from workbench.light_edit import colour_words, read_colours
+from ui.page.fields import Fields
+from workbench.core.base.errors import DesignError
+from workbench.core.design.camera import Camera
+from workbench.core.design.design import SensorDesign
+from workbench.core.design.lighting import Lamp
+from workbench.core.design.optics import Optics
+from workbench.edit.item_fields import read_field
+from workbench.edit.light_edit import colour_words, read_colours
 
 
 class Widget:

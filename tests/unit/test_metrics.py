@@ -7,14 +7,14 @@ import math
 import numpy as np
 import pytest
 
-from sim.metrics import contact_box, contact_pixels, mae_grey, measure, psnr_dB, ssim
-from sim.optics.bake import bake_light
-from sim.optics.render import shoot
-from sim.optics.specimen import dent, finger
-from workbench.core.camera import Camera
-from workbench.core.lighting import LightModel
-from workbench.core.optics import Optics
-from workbench.core.sensing import Contact, Metrics, TactileFrames
+from sim.optics.field.bake import bake_light
+from sim.optics.proof.specimen import dent, finger
+from sim.optics.studio.metrics import contact_box, contact_pixels, mae_grey, measure, psnr_dB, ssim
+from sim.optics.studio.render import shoot
+from workbench.core.design.camera import Camera
+from workbench.core.design.lighting import LightModel
+from workbench.core.design.optics import Optics
+from workbench.core.result.sensing import Contact, Metrics, TactileFrames
 
 
 def plain(level: int) -> np.ndarray:

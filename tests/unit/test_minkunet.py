@@ -19,8 +19,8 @@ from sim.forces.network.minkunet import (
 from sim.forces.network.spec import PAPER, SMALL, Activation, NetworkSpec, Norm, Target
 from sim.forces.network.voxels import join, voxel_edge_mm, voxelise
 from sim.forces.network.weights import NetworkWeights
-from workbench.benchmarks.forces import shell
-from workbench.core.errors import DesignError, StoreError
+from workbench.core.base.errors import DesignError, StoreError
+from workbench.proof.benchmarks.forces import shell
 
 TINY = NetworkSpec(name="tiny", planes=(4, 6, 8, 8, 8, 6, 6, 4), stem_planes=4)
 

@@ -10,19 +10,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sim.optics.camera import pixel_directions
-from sim.optics.lights import place_leds
-from sim.optics.mitsuba_scene import ply_bytes, write_scene
-from sim.optics.specimen import dent, finger
-from workbench.cli import main
-from workbench.core.camera import Camera, LensModel
-from workbench.core.design import SensorDesign
-from workbench.core.errors import DesignError
-from workbench.core.lighting import Baking, LedRing
-from workbench.core.optics import Coating, Transport
-from workbench.core.results import MembraneMesh
-from workbench.exports import scene_notice
-from workbench.photos import shipped_photos
+from sim.optics.camera.camera import pixel_directions
+from sim.optics.light.lights import place_leds
+from sim.optics.proof.mitsuba_scene import ply_bytes, write_scene
+from sim.optics.proof.specimen import dent, finger
+from workbench.cli.command_line import main
+from workbench.core.base.errors import DesignError
+from workbench.core.design.camera import Camera, LensModel
+from workbench.core.design.design import SensorDesign
+from workbench.core.design.lighting import Baking, LedRing
+from workbench.core.design.optics import Coating, Transport
+from workbench.core.result.results import MembraneMesh
+from workbench.project.photos import shipped_photos
+from workbench.report.exports.mitsuba import notice as scene_notice
 
 RING = LedRing(count=3, radius_mm=6.0, size_mm=4.0, height_mm=0.5, tilt_deg=30.0)
 TURNED = Camera(
@@ -166,7 +166,7 @@ def test_a_mesh_file_has_no_more_than_its_header_says() -> None:
 def test_mitsuba_reads_the_scene(tmp_path: Path, mesh: MembraneMesh) -> None:
     """Loaded and rendered with a few samples in a process of its own: light in each colour."""
     pytest.importorskip("mitsuba")
-    from workbench.validation.mitsuba_images import render
+    from workbench.proof.validation.optics.mitsuba_images import render
 
     scene(tmp_path, mesh, transport=dataclasses.replace(MATTE, refractive_index=1.0))
     image = render(tmp_path, samples=2, seed=1)

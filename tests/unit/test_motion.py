@@ -6,13 +6,13 @@ import pytest
 from sim.contact.motion.approach import Approach, plan_approach
 from sim.contact.objects.collider import Collider, make_collider
 from sim.contact.readout.verdict import check_depth
-from sim.contact.specimens import finger, flat_block
-from workbench.core.actuation import Actuation
-from workbench.core.digest import digest
-from workbench.core.errors import DesignError
-from workbench.core.indenter import Indenter, IndenterKind
-from workbench.core.mapping import from_table, to_table
-from workbench.core.motion import (
+from sim.contact.studies.specimens import finger, flat_block
+from workbench.core.base.digest import digest
+from workbench.core.base.errors import DesignError
+from workbench.core.base.mapping import from_table, to_table
+from workbench.core.press.actuation import Actuation
+from workbench.core.press.indenter import Indenter, IndenterKind
+from workbench.core.press.motion import (
     Stroke,
     StrokeKind,
     hold,
@@ -24,8 +24,8 @@ from workbench.core.motion import (
     slide,
     twist,
 )
-from workbench.core.press import Press
-from workbench.strokes import read_stroke
+from workbench.core.press.press import Press
+from workbench.edit.strokes import read_stroke
 
 BLOCK, _ = flat_block(width_mm=16.0, height_mm=4.0, grid_mm=1.0)
 FINGER, _ = finger(grid_mm=2.0)

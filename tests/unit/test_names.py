@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from workbench.names import LONGEST, is_name, numbered
-from workbench.whole_files import free_path
+from workbench.system.names import LONGEST, is_name, numbered
+from workbench.system.whole_files import free_path
 
 
 def test_copies_get_free_names() -> None:

@@ -10,12 +10,12 @@ import pytest
 
 from tests.made_weights import card_of, tiny_weights, write_tiny
 from tests.unit.test_messages import Widget
-from ui.panels.network import MOST_FRAMES, PREDICT, NetworkPart
-from ui.session import Session
-from workbench import shipped
-from workbench.chosen_weights import FOLDER
-from workbench.project import Project
-from workbench.requests import PREDICTION
+from ui.desk.session import Session
+from ui.panels.simulate.network import MOST_FRAMES, PREDICT, NetworkPart
+from workbench.live.requests import PREDICTION
+from workbench.pipeline import shipped
+from workbench.pipeline.chosen_weights import FOLDER
+from workbench.project.project import Project
 
 
 class Bench:

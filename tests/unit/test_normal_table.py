@@ -5,17 +5,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sim.optics.table import (
+from sim.optics.field.table import (
     bin_directions,
-    bin_shares,
     collapse,
     filled,
     look_up,
     mean_reflectance,
     tilted_normals,
 )
-from workbench.core.light import AZIMUTHS, SINES, TILT_SPAN, TILTS
-from workbench.core.optics import Coating
+from sim.optics.light.bins import bin_shares
+from workbench.core.design.optics import Coating
+from workbench.core.result.light import AZIMUTHS, SINES, TILT_SPAN, TILTS
 
 BINS = AZIMUTHS * (len(SINES) - 1)
 
@@ -26,7 +26,7 @@ def looked_up(taichi_device: str) -> Any:
     import taichi as ti
     import taichi.math as tm
 
-    from sim.optics import table_kernels
+    from sim.optics.field import table_kernels
 
     @ti.kernel
     def run(
@@ -75,7 +75,7 @@ def test_a_tabulated_normal_finds_its_entry() -> None:
 
 def test_collapse_equals_its_plain_twin(taichi_device: str) -> None:
     """The kernel's table = the twin's table, for glossy skin under random light."""
-    from sim.optics.table_kernels import collapse as collapse_nodes
+    from sim.optics.field.table_kernels import collapse as collapse_nodes
 
     rng = np.random.default_rng(5)
     count = len(bin_directions())

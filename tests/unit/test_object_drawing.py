@@ -12,19 +12,19 @@ from typing import Any
 import numpy as np
 import pytest
 
-import workbench.indenter_display as display
-from ui.object_follower import ObjectFollower
-from ui.object_view import ObjectView
-from workbench.aim import SkinPlace
-from workbench.core.design import SensorDesign
-from workbench.core.indenter import Indenter, IndenterKind
-from workbench.core.monitor import silent
-from workbench.core.press import Press
-from workbench.core.soft_body import SoftBody
-from workbench.object_drawing import Drawing, DrawingCall, shapes_of
-from workbench.pipeline import PressCase
-from workbench.requests import DRAWN, FOLLOWING, Request
-from workbench.store import Store
+import workbench.live.indenter_display as display
+from ui.desk.object_follower import ObjectFollower
+from ui.scene.object_view import ObjectView
+from workbench.core.base.monitor import silent
+from workbench.core.design.design import SensorDesign
+from workbench.core.press.indenter import Indenter, IndenterKind
+from workbench.core.press.press import Press
+from workbench.core.press.press_case import PressCase
+from workbench.core.press.soft_body import SoftBody
+from workbench.live.object_drawing import Drawing, DrawingCall, shapes_of
+from workbench.live.requests import DRAWN, FOLLOWING, Request
+from workbench.pipeline.store import Store
+from workbench.project.aim import SkinPlace
 
 CROSS = Indenter(kind=IndenterKind.CROSS)
 

@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from workbench.core.errors import DesignError
-from workbench.core.monitor import silent
-from workbench.object_file import ObjectFile
-from workbench.store import Store
-from workbench.uploads import MOST_BYTES
+from workbench.core.base.errors import DesignError
+from workbench.core.base.monitor import silent
+from workbench.live.object_file import ObjectFile
+from workbench.pipeline.store import Store
+from workbench.system.uploads import MOST_BYTES
 
 CUBE = b"""v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1
 f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n"""

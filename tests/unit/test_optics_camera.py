@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from sim.optics.camera import (
+from sim.optics.camera.camera import (
     depth_z,
     focal_px,
     pixel_centres,
@@ -16,9 +16,9 @@ from sim.optics.camera import (
     refracted_rays,
     unproject,
 )
-from sim.optics.refraction import refract
-from sim.optics.specimen import finger
-from workbench.core.camera import Camera, LensModel
+from sim.optics.camera.refraction import refract
+from sim.optics.proof.specimen import finger
+from workbench.core.design.camera import Camera, LensModel
 
 TURN_X_90 = (math.sqrt(0.5), math.sqrt(0.5), 0.0, 0.0)
 ROUNDING = 1e-12

@@ -8,19 +8,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sim.optics.camera import pixel_directions
-from ui.session import Session
-from workbench.camera_edit import LENSES, angles_of, further_camera, with_lens, wxyz_of
-from workbench.core.camera import Camera, LensModel
-from workbench.core.design import SensorDesign
-from workbench.core.errors import DesignError
-from workbench.core.leds import lamp_points
-from workbench.core.lighting import Lamp, LampKind, LedRing, LightModel
-from workbench.core.optics import Optics
-from workbench.design_toml import design_from_toml
-from workbench.item_fields import read_field, with_field, without_item
-from workbench.light_edit import (
-    MODEL_HINTS,
+from sim.optics.camera.camera import pixel_directions
+from sim.optics.field.model import models
+from ui.desk.session import Session
+from workbench.core.base.errors import DesignError
+from workbench.core.design.camera import Camera, LensModel
+from workbench.core.design.design import SensorDesign
+from workbench.core.design.leds import lamp_points
+from workbench.core.design.lighting import Lamp, LampKind, LedRing, LightModel
+from workbench.core.design.optics import Optics
+from workbench.edit.camera_edit import LENSES, angles_of, further_camera, with_lens, wxyz_of
+from workbench.edit.item_fields import read_field, with_field, without_item
+from workbench.edit.light_edit import (
     NAMED,
     colour_words,
     lamp_corners_mm,
@@ -29,7 +28,8 @@ from workbench.light_edit import (
     read_colours,
     read_numbers,
 )
-from workbench.project import Project
+from workbench.project.design_toml import design_from_toml
+from workbench.project.project import Project
 
 LAMPS = (Lamp(), Lamp(kind=LampKind.LINE, power=2.0))
 
@@ -118,8 +118,9 @@ def test_numbers_are_read_or_refused() -> None:
 
 def test_every_light_model_has_a_line() -> None:
     """All eight, each told in at most 80 characters."""
-    assert set(MODEL_HINTS) == set(LightModel)
-    assert max(map(len, MODEL_HINTS.values())) <= 80
+    assert set(models()) == set(LightModel)
+    assert max(len(model.hint) for model in models().values()) <= 80
+    assert len({model.place for model in models().values()}) == len(models())
 
 
 @pytest.mark.parametrize("kind", list(LampKind))

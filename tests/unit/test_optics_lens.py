@@ -8,11 +8,11 @@ import cv2
 import numpy as np
 import pytest
 
-from sim.optics.camera import focal_px, pixel_centres, pixel_directions, project, unproject
-from sim.optics.checks import edge_angle_error_deg, round_trip_px
-from sim.optics.lens import lens_of
-from workbench.core.camera import Camera, LensModel
-from workbench.core.errors import DesignError
+from sim.optics.camera.camera import focal_px, pixel_centres, pixel_directions, project, unproject
+from sim.optics.camera.lens import lens_of
+from sim.optics.proof.checks import edge_angle_error_deg, round_trip_px
+from workbench.core.base.errors import DesignError
+from workbench.core.design.camera import Camera, LensModel
 
 ORIGIN = (0.0, 0.0, 0.0)
 BARREL = (-0.12, 0.01, 0.0012, -0.0008, 0.001)
@@ -122,3 +122,20 @@ def test_wrong_count_of_coefficients_is_refused() -> None:
     assert caught.value.at == "optics.camera.distortion"
     with pytest.raises(DesignError, match="pinhole takes no distortion"):
         Camera(distortion=(0.1, 0.0, 0.0, 0.0))
+
+
+@pytest.mark.parametrize("camera", [c for c in CAMERAS if c.lens is LensModel.OPENCV])
+@pytest.mark.parametrize("share", [0.3, 0.9, 1.4])
+def test_the_jacobian_is_the_derivative_of_bend(camera: Camera, share: float) -> None:
+    """Central differences of 1e-6 about places within the limit, and beyond it."""
+    lens = lens_of(camera)
+    turn = np.linspace(0.1, 6.2, 17)
+    reach = min(lens.limit, 3.0)
+    ideal = share * reach * np.column_stack([np.cos(turn), np.sin(turn)])
+    found = lens.jacobian(ideal)
+    step = 1e-6
+    for axis in (0, 1):
+        aside = step * np.eye(2)[axis]
+        slope = (lens.bend(ideal + aside) - lens.bend(ideal - aside)) / (2.0 * step)
+        # Second differences of a fifth-order polynomial: 1e-9, rounding 1e-10.
+        np.testing.assert_allclose(found[:, :, axis], slope, atol=1e-7)

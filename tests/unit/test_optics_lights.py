@@ -7,15 +7,15 @@ import dataclasses
 import numpy as np
 import pytest
 
-from sim.optics.bake import bake_light
-from sim.optics.lights import place_leds
-from sim.optics.places import check_camera, check_lights
-from sim.optics.specimen import finger
-from sim.optics.within import inside
-from workbench.core.camera import Camera
-from workbench.core.errors import DesignError
-from workbench.core.lighting import LedMount, LedRing, LightModel
-from workbench.core.results import MembraneMesh
+from sim.optics.camera.within import inside
+from sim.optics.field.bake import bake_light
+from sim.optics.light.lights import place_leds
+from sim.optics.light.places import check_camera, check_lights
+from sim.optics.proof.specimen import finger
+from workbench.core.base.errors import DesignError
+from workbench.core.design.camera import Camera
+from workbench.core.design.lighting import LedMount, LedRing, LightModel
+from workbench.core.result.results import MembraneMesh
 
 
 @pytest.fixture(scope="module")
@@ -81,8 +81,11 @@ def test_misplaced_led_names_place_and_limit(
 
 
 def test_shell_leds_fit_in_the_support(mesh: MembraneMesh) -> None:
-    """12.5 mm lies between 12 and 13 mm."""
-    check_lights(mesh, LedRing(radius_mm=12.5, mount=LedMount.SHELL))
+    """12.5 mm lies between 12 and 13 mm; inside the cavity, which ends at 12, it does not."""
+    ring = LedRing(radius_mm=12.5, mount=LedMount.SHELL)
+    check_lights(mesh, ring)
+    inside = dataclasses.replace(ring, mount=LedMount.CAVITY)
+    assert _light_error(mesh, inside).at == "optics.ring.radius_mm"
 
 
 def test_led_above_the_tip_names_the_height(mesh: MembraneMesh) -> None:

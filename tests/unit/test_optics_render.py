@@ -9,19 +9,19 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sim.optics.bake import bake_light
-from sim.optics.camera import refracted_rays
-from sim.optics.gbuffer import open_view
-from sim.optics.markers import ink, no_ink, place_markers, print_dots
-from sim.optics.render import shoot
-from sim.optics.specimen import dent, finger
+from sim.optics.camera.camera import refracted_rays
+from sim.optics.field.bake import bake_light
+from sim.optics.proof.specimen import dent, finger
+from sim.optics.raster.gbuffer import open_view
+from sim.optics.raster.markers import ink, no_ink, place_markers, print_dots
+from sim.optics.studio.render import shoot
 from tests.synthetic_light import SHADED, lit
-from workbench.core.camera import Camera
-from workbench.core.errors import Cancelled, DesignError, OpticsError
-from workbench.core.lighting import LedMount, LedRing, LightModel
-from workbench.core.optics import Coating, Markers, Optics
-from workbench.core.results import MembraneMesh
-from workbench.core.sensing import TactileFrames
+from workbench.core.base.errors import Cancelled, DesignError, OpticsError
+from workbench.core.design.camera import Camera
+from workbench.core.design.lighting import LedMount, LedRing, LightModel
+from workbench.core.design.optics import Coating, Markers, Optics
+from workbench.core.result.results import MembraneMesh
+from workbench.core.result.sensing import TactileFrames
 
 pytestmark = pytest.mark.usefixtures("taichi_device")
 

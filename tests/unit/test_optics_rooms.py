@@ -9,16 +9,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sim.optics import map_checks, sensor_checks, view_checks
-from sim.optics.specimen import finger
-from workbench import validate
-from workbench.cli import main
-from workbench.core.camera import Camera
-from workbench.core.errors import DesignError, DeviceError
-from workbench.core.lighting import LightModel
-from workbench.core.results import MembraneMesh
-from workbench.validation import mitsuba_images, mitsuba_witness
-from workbench.validation.mitsuba_images import CAMERA, Case, Witness
+from sim.optics.proof import map_checks, sensor_checks, view_checks
+from sim.optics.proof.specimen import finger
+from workbench.cli import validate_rooms as validate
+from workbench.cli.command_line import main
+from workbench.core.base.errors import DesignError, DeviceError
+from workbench.core.design.camera import Camera
+from workbench.core.design.lighting import LightModel
+from workbench.core.result.results import MembraneMesh
+from workbench.proof.validation.optics import mitsuba_images, mitsuba_witness
+from workbench.proof.validation.optics.mitsuba_images import CAMERA, Case, Witness
 
 SMALL = Camera(width_px=160, height_px=120)
 

@@ -7,14 +7,16 @@ import math
 import numpy as np
 import pytest
 
-from sim.optics.bake import bake_light, emitted, tangential
-from sim.optics.checks import irradiance_error, tangency_error_deg
-from sim.optics.display import choose_exposure, encode, srgb_decode, srgb_encode
-from sim.optics.shading import glossy, phong, shade
-from sim.optics.specimen import finger
-from workbench.core.light import LightField
-from workbench.core.lighting import LedRing, LightModel
-from workbench.core.optics import Coating
+from sim.optics.field.bake import bake_light
+from sim.optics.field.lines import emitted, tangential
+from sim.optics.light.coating import glossy, phong
+from sim.optics.proof.checks import irradiance_error, tangency_error_deg
+from sim.optics.proof.specimen import finger
+from sim.optics.raster.display import choose_exposure, encode, srgb_decode, srgb_encode
+from sim.optics.raster.shading import shade
+from workbench.core.design.lighting import LedRing, LightModel
+from workbench.core.design.optics import Coating
+from workbench.core.result.light import LightField
 
 UP = np.array([[0.0, 0.0, 1.0]], dtype=np.float32)
 TOWARD_THE_LIGHT = (

@@ -27,7 +27,7 @@ if __name__ == "__main__":
 
 def compute(pipe: object) -> None:
     """One call that lasts a minute and gives no other thread a turn, as a CAD kernel's boolean."""
-    from workbench.lanes import follow_parent
+    from workbench.live.lanes import follow_parent
 
     follow_parent()
     pipe.send(os.getpid())  # type: ignore[attr-defined]
@@ -63,6 +63,6 @@ def test_a_worker_that_holds_the_lock_dies_with_its_server(tmp_path: Path) -> No
 
 def running(pid: int) -> bool:
     """Whether a process is there and has not ended."""
-    from workbench.processes import is_alive
+    from workbench.system.processes import is_alive
 
     return is_alive(pid)

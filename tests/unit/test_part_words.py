@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from workbench.part_words import part_label, part_words
+from workbench.view.part_words import part_label, part_words
 
 NAMES = (
     *("half_a", "half_b", "part_a", "part_b", "part_c", "part_d", "core"),

@@ -8,11 +8,11 @@ from typing import Any
 
 import pytest
 
-from workbench import partial
-from workbench.core.design import SensorDesign
-from workbench.core.errors import DeviceError, OpticsError, SolveError, StoreError
-from workbench.pipeline import PressCase
-from workbench.stages import Ref
+from workbench.core.base.errors import DeviceError, OpticsError, SolveError, StoreError
+from workbench.core.design.design import SensorDesign
+from workbench.core.press.press_case import PressCase
+from workbench.pipeline.stage import Ref
+from workbench.report import partial
 
 REASONS = (
     StoreError("cannot write summary.json: the disk is full", hint="free some space"),
@@ -55,7 +55,7 @@ def test_rendering_what_settled_is_told(
     heard: list[tuple[str, float, str]] = []
 
     def rendered(store: Any, call: Any, monitor: Any) -> Any:
-        assert Ref(stage="press_partial", key="key") in call.inputs
+        assert Ref(stage="press_partial", key="key") in call.values
         monitor(0.5, "frame 1")
         raise StoreError("enough")
 

@@ -7,10 +7,10 @@ from typing import Any
 
 import pytest
 
-from ui.desk import Desk
-from ui.panels.results import settled_note
-from workbench.core.errors import SolveError, WorkbenchError
-from workbench.stages import PARTIAL
+from ui.desk.desk import Desk
+from ui.panels.results.page import settled_note
+from workbench.core.base.errors import SolveError, WorkbenchError
+from workbench.planning.running import PARTIAL
 
 
 class FakeDesk:

@@ -19,16 +19,12 @@ from sim.forces.network.spec import Target
 from sim.forces.network.steady import steady_predictor
 from sim.forces.network.turns import any_turn, turn_matrix, value_matrix
 from sim.forces.network.voxels import Voxels, voxelise
-from sim.forces.network.weights import (
-    NetworkWeights,
-    weights_from_bytes,
-    weights_to_bytes,
-)
+from sim.forces.network.weights import NetworkWeights, weights_from_bytes, weights_to_bytes
 from sim.forces.training.feeds import PatchFeed, Scales
 from sim.forces.training.fields import Fields
 from sim.forces.training.scores import network_output
 from tests.unit.made_presses import SPEC, made_presses
-from workbench.core.errors import DesignError, SolveError, StoreError
+from workbench.core.base.errors import DesignError, SolveError, StoreError
 
 PRESSES = made_presses(6, edge=20)
 SCALES = Scales(input_mm=0.3, force_N=0.02, output=0.004)

@@ -8,14 +8,19 @@ import cv2
 import numpy as np
 import pytest
 
-from sim.optics.photo_file import read_rgb
-from workbench import photos
-from workbench.core.digest import digest
-from workbench.core.errors import DesignError
-from workbench.design_toml import check_design, design_from_toml, design_table, design_to_toml
-from workbench.named_designs import load_design
-from workbench.photos import design_photos, shipped_photos
-from workbench.project import Project
+from sim.optics.raster.photo_file import read_rgb
+from workbench.core.base.digest import digest
+from workbench.core.base.errors import DesignError
+from workbench.project import photos
+from workbench.project.design_toml import (
+    check_design,
+    design_from_toml,
+    design_table,
+    design_to_toml,
+)
+from workbench.project.named_designs import load_design
+from workbench.project.photos import design_photos, shipped_photos
+from workbench.project.project import Project
 
 HEAD = 'schema = 1\nname = "w"\nfamily = "finger"\n'
 GELTIP = "geltip_idle_640x480.png"

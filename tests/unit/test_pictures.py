@@ -9,14 +9,14 @@ import cv2
 import numpy as np
 import pytest
 
-from geometry import pictures, rendering
-from geometry.exploded import STACK, exploded
-from geometry.primitives import rounded_box, sphere
-from geometry.surface import vertex_normals
-from workbench import report
-from workbench.core.errors import DeviceError
-from workbench.core.fabrication import FabricationPart, HousingSet, MouldSet, PartGroup
-from workbench.core.results import Label, LabelledSurface, Skin, Solid
+from geometry.picture import pictures, rendering
+from geometry.picture.exploded import STACK, exploded
+from geometry.surface.primitives import rounded_box, sphere
+from geometry.surface.surface import vertex_normals
+from workbench.core.base.errors import DeviceError
+from workbench.core.result.fabrication import FabricationPart, HousingSet, MouldSet, PartGroup
+from workbench.core.result.results import Label, LabelledSurface, Skin, Solid
+from workbench.report import report
 
 SMALL = (240, 180)
 NOTHING = np.zeros(0, dtype=np.uint8)

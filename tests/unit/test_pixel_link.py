@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sim.optics.camera import refracted_rays
-from workbench.core.camera import Camera
-from workbench.core.optics import Optics
-from workbench.core.results import MembraneMesh, Skin
-from workbench.pixel_link import PixelLink, frame_link
-from workbench.previews import first_hit
+from sim.optics.camera.camera import refracted_rays
+from workbench.core.design.camera import Camera
+from workbench.core.design.optics import Optics
+from workbench.core.result.results import MembraneMesh, Skin
+from workbench.view.pixel_link import PixelLink, frame_link
+from workbench.view.previews import first_hit
 
 OPTICS = Optics(camera=Camera(width_px=64, height_px=48))
 
@@ -95,7 +95,7 @@ def test_a_look_casts_few_rays(dented: PixelLink, monkeypatch: pytest.MonkeyPatc
         rays += 1
         return first_hit(*words, **named)
 
-    monkeypatch.setattr("workbench.pixel_link.first_hit", counted)
+    monkeypatch.setattr("workbench.view.pixel_link.first_hit", counted)
     place = dented.skin_at(np.array([30.0, 20.0]))
     assert place is not None
     dented.mm_per_px(np.array([30.0, 20.0]))

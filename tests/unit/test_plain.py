@@ -6,9 +6,9 @@ import html
 
 import pytest
 
-from ui.panels.intake import _summary
-from ui.plain import plain
-from workbench.core.imported import ImportedBody, body_file
+from ui.page.plain import plain
+from ui.panels.shape.intake import _summary
+from workbench.core.design.imported import ImportedBody, body_file
 
 EVIL = "<iframe srcdoc=\"&lt;img onerror='x'\">[x](javascript:alert(1)) `a` **b** {c}\n# d"
 

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from ui.player import FRAME_S, Player, advanced
+from ui.page.player import FRAME_S, Player, advanced
 
 
 @pytest.mark.parametrize(

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from tests.unit.test_quantities import SQUARE, contact
-from ui.backstage import Backstage
-from ui.pressed import CUT_LINGER_S, LINGER_S, PressedView
-from workbench.core.sensing import Contact
-from workbench.quantities import Quantity
+from ui.page.background_thread import Backstage
+from ui.scene.pressed import CUT_LINGER_S, LINGER_S, PressedView
+from workbench.core.result.sensing import Contact
+from workbench.view.quantities import Quantity
 
 
 class Node:

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ui.panels.checks import amount, line, said
-from ui.panels.mesh import steps
-from workbench.core.fabrication import FabricationCheck, Severity
-from workbench.core.results import Label, LabelledSurface, Skin, VolumeMesh
-from workbench.forms import choices, purpose
-from workbench.previews import cell_edges, clear_view, first_hit, mesh_edges, skin_parts
+from ui.panels.make.checks import amount, line, said
+from ui.panels.mesh.page import steps
+from workbench.core.result.fabrication import FabricationCheck, Severity
+from workbench.core.result.results import Label, LabelledSurface, Skin, VolumeMesh
+from workbench.edit.forms import choices, purpose
+from workbench.view.previews import cell_edges, clear_view, first_hit, mesh_edges, skin_parts
 
 
 def cube(edge_mm: float = 2.0) -> tuple[np.ndarray, np.ndarray]:

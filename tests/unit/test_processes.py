@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from workbench.processes import is_alive
+from workbench.system.processes import is_alive
 
 
 def test_a_process_is_alive_until_it_has_ended() -> None:

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from workbench.core.errors import DesignError, StoreError
-from workbench.design_toml import design_from_toml, design_to_toml
-from workbench.named_designs import load_design, presets
-from workbench.project import Project
-from workbench.whole_files import write_atomically
+from workbench.core.base.errors import DesignError, StoreError
+from workbench.project.design_toml import design_from_toml, design_to_toml
+from workbench.project.named_designs import load_design, presets
+from workbench.project.project import Project
+from workbench.system.whole_files import write_atomically
 
 
 @pytest.mark.parametrize("name", [*presets(), "finger"])

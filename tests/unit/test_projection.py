@@ -7,15 +7,15 @@ import dataclasses
 import numpy as np
 import pytest
 
-from sim.optics.camera import project, refracted_rays
-from sim.optics.projection import FOUND_MM, open_map, project_points, seeds
-from sim.optics.refraction import refract
-from sim.optics.specimen import finger
-from sim.optics.walls import last_segments
+from sim.optics.camera.camera import project, refracted_rays
+from sim.optics.camera.projection import FOUND_MM, open_map, project_points, seeds
+from sim.optics.camera.refraction import refract
+from sim.optics.camera.walls import last_segments
+from sim.optics.proof.specimen import finger
 from sim.specimens import skins_only
 from tests.unit.test_raster import TILTED, grooved
-from workbench.core.camera import Camera, LensModel
-from workbench.core.results import MembraneMesh, Skin
+from workbench.core.design.camera import Camera, LensModel
+from workbench.core.result.results import MembraneMesh, Skin
 
 SMALL = Camera(width_px=160, height_px=120)
 HUNDREDTH_PX = 0.01

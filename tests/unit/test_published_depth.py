@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sim.optics.camera import pixel_centres, pixel_directions
-from sim.optics.published_depth import published_depth_z
-from sim.optics.transport_scenes import plane
-from workbench.core.camera import Camera, LensModel
-from workbench.core.results import Skin
+from sim.optics.camera.camera import pixel_centres, pixel_directions
+from sim.optics.proof.published_depth import published_depth_z
+from sim.optics.proof.transport_scenes import plane
+from workbench.core.design.camera import Camera, LensModel
+from workbench.core.result.results import Skin
 
 CAMERA = Camera(width_px=48, height_px=36, fov_x_deg=60.0, position_mm=(0.0, 0.0, 0.0))
 

@@ -7,16 +7,16 @@ import dataclasses
 import numpy as np
 import pytest
 
-from ui.panels.forces import tangential_force_N
-from workbench.core.motion import release, slide
-from workbench.core.press import Press
-from workbench.core.results import Skin
-from workbench.core.sensing import Contact
-from workbench.core.trajectory import Trajectory
-from workbench.forces import slip_curve
-from workbench.path_template import template_csv
-from workbench.phases import number, phase
-from workbench.quantities import (
+from ui.panels.results.forces import tangential_force_N
+from workbench.core.press.motion import release, slide
+from workbench.core.press.press import Press
+from workbench.core.press.trajectory import Trajectory
+from workbench.core.result.results import Skin
+from workbench.core.result.sensing import Contact
+from workbench.edit.path_template import template_csv
+from workbench.view.forces import slip_curve
+from workbench.view.frame_words import number, phase
+from workbench.view.quantities import (
     LONGEST_ARROW_MM,
     Quantity,
     force_arrows,

@@ -7,21 +7,21 @@ import dataclasses
 import numpy as np
 import pytest
 
-from sim.optics.camera import depth_z, rotation_camera_to_sensor
-from sim.optics.gbuffer import look, open_view
-from sim.optics.imager import Imager
-from sim.optics.raster import Raster
-from sim.optics.raster_kernels import SAME
-from sim.optics.render import Studio
-from sim.optics.skin_view import SkinView, open_skin_view
-from sim.optics.specimen import dent, finger
+from sim.optics.camera.camera import depth_z, rotation_camera_to_sensor
+from sim.optics.proof.specimen import dent, finger
+from sim.optics.raster.gbuffer import look, open_view
+from sim.optics.raster.imager import Imager
+from sim.optics.raster.raster import Raster
+from sim.optics.raster.raster_kernels import SAME
+from sim.optics.raster.skin_view import SkinView, open_skin_view
+from sim.optics.studio.render import Studio
 from sim.specimens import skins_only
 from tests.synthetic_light import lit
-from workbench.core.camera import Camera, LensModel
-from workbench.core.lighting import LightModel
-from workbench.core.optics import Markers, Optics
-from workbench.core.results import MembraneMesh, Skin
-from workbench.core.sensing import TactileFrames
+from workbench.core.design.camera import Camera, LensModel
+from workbench.core.design.lighting import LightModel
+from workbench.core.design.optics import Markers, Optics
+from workbench.core.result.results import MembraneMesh, Skin
+from workbench.core.result.sensing import TactileFrames
 
 pytestmark = pytest.mark.usefixtures("taichi_device")
 
@@ -212,7 +212,7 @@ def test_a_batch_is_bitwise_its_frames(smooth: MembraneMesh) -> None:
 
 
 def _with_room(imager: Imager, frames: int) -> Imager:
-    from sim.optics.shader import Shader
+    from sim.optics.raster.shader import Shader
 
     raster = Raster(imager.raster.view, frames=frames)
     return Imager(raster, Shader(raster, imager.shader.lit), imager.backdrop)
@@ -220,7 +220,7 @@ def _with_room(imager: Imager, frames: int) -> Imager:
 
 def test_linear_light_encodes_to_the_images(smooth: MembraneMesh) -> None:
     """Encoding `linear` by the plain twin gives `images` to one grey level."""
-    from sim.optics.display import encode
+    from sim.optics.raster.display import encode
 
     studio = studio_of(smooth, LightModel.DIRECT, markers=Markers(visible=True))
     frames = press(smooth)

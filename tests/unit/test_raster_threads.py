@@ -11,12 +11,12 @@ import hashlib, sys
 import numpy as np
 import taichi as ti
 ti.init(arch=ti.cpu, cpu_max_num_threads=int(sys.argv[1]), default_fp=ti.f32, log_level=ti.ERROR)
-from sim.optics.render import Studio
-from sim.optics.specimen import dent, finger
+from sim.optics.studio.render import Studio
+from sim.optics.proof.specimen import dent, finger
 from tests.synthetic_light import lit
-from workbench.core.camera import Camera
-from workbench.core.lighting import LightModel
-from workbench.core.optics import Markers, Optics
+from workbench.core.design.camera import Camera
+from workbench.core.design.lighting import LightModel
+from workbench.core.design.optics import Markers, Optics
 mesh = finger(edge_mm=0.8)
 light, table = lit(mesh, LightModel.HYBRID)
 camera = Camera(width_px=160, height_px=120)

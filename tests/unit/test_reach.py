@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from ui.reach import Reach
-from workbench.section_cut import Axis
+from ui.scene.reach import Reach
+from workbench.view.section_cut import Axis
 
 
 @pytest.fixture

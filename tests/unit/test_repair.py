@@ -9,18 +9,24 @@ import numpy as np
 import pytest
 import trimesh
 
-from geometry.deviation import BETWEEN_STEPS, deviation
-from geometry.intake import read_body
-from geometry.isosurface import distance_mm
-from geometry.meshlab import crossing_faces
-from geometry.repair import remeshed
-from geometry.solid_angles import WindingNumber
-from geometry.surface import is_watertight, mesh_volume
-from geometry.winding import grid_around, sampled, samples_of, winding_number
+from geometry.intake.deviation import BETWEEN_STEPS, deviation
+from geometry.intake.intake import read_body
+from geometry.intake.repair import remeshed
+from geometry.intake.solid_angles import WindingNumber
+from geometry.intake.winding import grid_around, sampled, samples_of, winding_number
+from geometry.surface.isosurface import distance_mm
+from geometry.surface.meshlab import crossing_faces
+from geometry.surface.surface import is_watertight, mesh_volume
 from tests.foreign_bodies import FORTY, Foreign, cup, double_walled, written
-from workbench.bodies import body_table, read_body_table
-from workbench.core.errors import DesignError
-from workbench.core.imported import ImportedBody, ReadBody, RepairOffer, body_file
+from workbench.core.base.errors import DesignError
+from workbench.core.design.imported import (
+    ImportedBody,
+    ReadBody,
+    RepairOffer,
+    body_file,
+    body_table,
+)
+from workbench.project.bodies import read_body_table
 
 BALL = trimesh.creation.icosphere(4, 15.0)
 BALL_MM3 = float(BALL.volume)
@@ -250,7 +256,7 @@ def test_acceptance_is_kept_in_the_design_file(tmp_path: object) -> None:
     """`repair` goes through the table, refuses other types, and makes another key."""
     from pathlib import Path
 
-    from workbench.core.digest import digest
+    from workbench.core.base.digest import digest
 
     folder = Path(str(tmp_path))
     (folder / "a.stl").write_bytes(exported(cup()))

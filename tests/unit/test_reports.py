@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from geometry.surface_place import SkinPlace
-from ui.aiming import Aiming
-from ui.desk import Desk
-from ui.ghost import Ghost, GhostView
-from ui.portraits import Portraits
-from ui.reports import Reports
-from workbench.core.errors import StoreError
-from workbench.project import Project
+from geometry.surface.surface_place import SkinPlace
+from ui.desk.aiming import Aiming
+from ui.desk.desk import Desk
+from ui.desk.portraits import Portraits
+from ui.desk.reports import Reports
+from ui.scene.ghost import Ghost, GhostView
+from workbench.core.base.errors import StoreError
+from workbench.project.project import Project
 
 
 @pytest.fixture

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from ui.rig import RigView
-from workbench.core.camera import Camera
-from workbench.core.lighting import LedRing
-from workbench.core.optics import Optics
+from ui.scene.rig import RigView
+from workbench.core.design.camera import Camera
+from workbench.core.design.lighting import LedRing
+from workbench.core.design.optics import Optics
 
 
 def node(*_: Any, **values: Any) -> SimpleNamespace:

@@ -11,14 +11,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from workbench import saved_designs as saved_module
-from workbench.core.digest import digest
-from workbench.core.errors import DesignError
-from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
-from workbench.design_bundle import MOST_FILES, bundle, unbundle, zipped
-from workbench.named_designs import load_design
-from workbench.project import Project
-from workbench.saved_designs import (
+from workbench.core.base.digest import digest
+from workbench.core.base.errors import DesignError
+from workbench.core.press.indenter import Indenter, IndenterKind, IndenterMesh
+from workbench.project import saved_designs as saved_module
+from workbench.project.design_bundle import MOST_FILES, bundle, unbundle, zipped
+from workbench.project.named_designs import load_design
+from workbench.project.project import Project
+from workbench.project.saved_designs import (
     MOST_VERSIONS,
     SavedShelf,
     delete_design,
@@ -28,7 +28,7 @@ from workbench.saved_designs import (
     saved_names,
     versions,
 )
-from workbench.state import State, fresh_state
+from workbench.project.state import State, fresh_state
 
 
 def named(name: str) -> State:

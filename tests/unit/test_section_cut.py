@@ -7,17 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from workbench.core.results import MembraneMesh, Solid
-from workbench.core.sensing import Contact
-from workbench.section_cut import (
-    Axis,
-    Plane,
-    PressedBody,
-    cap,
-    clip,
-    closed_loops,
-    packed,
-)
+from workbench.core.result.results import MembraneMesh, Solid
+from workbench.core.result.sensing import Contact
+from workbench.view.section_cut import Axis, Plane, PressedBody, cap, clip, closed_loops, packed
 
 
 def cube(edge_mm: float = 2.0) -> tuple[np.ndarray, np.ndarray]:

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from designs.family import resolve_shape, sequences
-from workbench.core.errors import DesignError
-from workbench.core.indenter import Indenter
-from workbench.core.mapping import from_table, to_table
-from workbench.core.motion import StrokeKind
-from workbench.core.press import Press
-from workbench.named_designs import load_design
-from workbench.sequences import sequence, titles
+from workbench.core.base.errors import DesignError
+from workbench.core.base.mapping import from_table, to_table
+from workbench.core.press.indenter import Indenter
+from workbench.core.press.motion import StrokeKind
+from workbench.core.press.press import Press
+from workbench.edit.sequences import sequence, titles
+from workbench.project.named_designs import load_design
 
 
 def test_the_trunk_has_a_grip_and_the_finger_has_none() -> None:

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from geometry.primitives import rounded_box
-from ui.session import Session
-from workbench.core.errors import DesignError
-from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
-from workbench.design_toml import design_to_toml
-from workbench.project import Project
+from geometry.surface.primitives import rounded_box
+from ui.desk.session import Session
+from workbench.core.base.errors import DesignError
+from workbench.core.press.indenter import Indenter, IndenterKind, IndenterMesh
+from workbench.project.design_toml import design_to_toml
+from workbench.project.project import Project
 
 
 class Clock:

@@ -7,19 +7,20 @@ import dataclasses
 import numpy as np
 import pytest
 
-from sim.optics.gbuffer import look, open_view
-from sim.optics.render import Studio
-from sim.optics.shading import relight, shade, take
-from sim.optics.specimen import dent, finger
-from sim.optics.table import look_up
+from sim.optics.field.model import model_of
+from sim.optics.field.table import look_up
+from sim.optics.proof.specimen import dent, finger
+from sim.optics.raster.gbuffer import look, open_view
+from sim.optics.raster.shading import relight, shade, take
+from sim.optics.studio.render import Studio
 from tests.synthetic_light import SHADED, lit
-from workbench.core.camera import Camera, ImageSensor
-from workbench.core.errors import OpticsError
-from workbench.core.light import LightField, NormalTable
-from workbench.core.lighting import PAPER, TABULATED, LedMount, LedRing, LightModel
-from workbench.core.optics import Optics
-from workbench.core.photo import photo
-from workbench.core.results import MembraneMesh
+from workbench.core.base.errors import OpticsError
+from workbench.core.design.camera import Camera, ImageSensor
+from workbench.core.design.lighting import LedMount, LedRing, LightModel
+from workbench.core.design.optics import Optics
+from workbench.core.design.photo import photo
+from workbench.core.result.light import LightField, NormalTable
+from workbench.core.result.results import MembraneMesh
 
 pytestmark = pytest.mark.usefixtures("taichi_device")
 
@@ -57,11 +58,11 @@ def twin(
     normals = seen.normals[rows]
     total = np.zeros((len(rows), 3))
     if model is not LightModel.TABLE:
-        if model not in PAPER:
+        if not model_of(model).paper:
             still = mesh.seen.points_mm[rows]
             here = relight(here, still, seen.points_mm[rows], normals, patch=seen.patch)
         total += shade(model, here, Optics().coating, -normals, to_camera[rows])
-    if model in TABULATED and table is not None and light.scattered is not None:
+    if model_of(model).tabulated and table is not None and light.scattered is not None:
         known = light.scattered
         total += look_up(
             table.values[0], known.nodes[rows], known.weights[rows], known.frame, -normals

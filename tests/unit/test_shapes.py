@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from sim.contact.objects.collider import make_collider
-from sim.contact.objects.shapes import SAMPLED
-from workbench.core.errors import DesignError
-from workbench.core.indenter import Indenter, IndenterKind
+from workbench.core.base.errors import DesignError
+from workbench.core.objects.kind import Shape, kind_of
+from workbench.core.press.indenter import Indenter, IndenterKind
 
-ANALYTIC = [kind for kind in IndenterKind if kind not in SAMPLED]
+ANALYTIC = [kind for kind in IndenterKind if kind_of(kind).shape is not Shape.GRID]
 
 
 def random_places(count: int = 400) -> np.ndarray:

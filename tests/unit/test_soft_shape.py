@@ -5,15 +5,15 @@ from pathlib import Path
 
 import numpy as np
 
-from workbench.cli import parser
-from workbench.core.indenter import Indenter
-from workbench.core.sensing import Contact
-from workbench.core.soft_body import SoftBody
-from workbench.indenter_choice import choose_indenter
-from workbench.kept_indenters import indenter_table, read_indenter
-from workbench.press_options import _indenter
-from workbench.project import Project
-from workbench.soft_shape import deformed_mm, is_soft
+from workbench.cli.command_line import parser
+from workbench.cli.press_options import _indenter
+from workbench.core.press.indenter import Indenter
+from workbench.core.press.soft_body import SoftBody
+from workbench.core.result.sensing import Contact
+from workbench.edit.indenter_choice import choose_indenter
+from workbench.project.kept_indenters import indenter_table, read_indenter
+from workbench.project.project import Project
+from workbench.view.soft_shape import deformed_mm, is_soft
 
 
 def contact(**fields: object) -> Contact:

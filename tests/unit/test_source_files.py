@@ -11,11 +11,11 @@ import pytest
 from sim.forces.network.spec import Target
 from tests.made_weights import tiny_weights, write_tiny
 from tests.unit.test_force_sources import field
-from workbench import shipped
-from workbench.core.errors import DesignError, StoreError
-from workbench.core.force_field import Source
-from workbench.pipeline import PressCase
-from workbench.source_files import asked_sources, last_frame, source_columns, with_weights
+from workbench.core.base.errors import DesignError, StoreError
+from workbench.core.press.press_case import PressCase
+from workbench.core.result.force_field import Source
+from workbench.pipeline import shipped
+from workbench.report.source_files import asked_sources, last_frame, source_columns, with_weights
 
 MPM, FEM = field(1.0, 1.8, Source.MPM), field(1.0, 2.0)
 LEARNED = dataclasses.replace(field(1.1, 2.1, Source.LEARNED), notice="deep", note="E doubled")

@@ -8,7 +8,7 @@ import torch
 
 from sim.forces.network.segments import segment_sum, segments
 from sim.forces.network.voxels import join, spacing_mm, voxel_edge_mm, voxelise
-from workbench.core.errors import DesignError
+from workbench.core.base.errors import DesignError
 
 
 def test_points_of_a_voxel_are_averaged_and_each_gets_the_mean_back() -> None:
@@ -75,7 +75,7 @@ def test_spacing_of_a_square_grid_is_its_edge() -> None:
 def test_voxels_keep_nearly_all_points_apart_and_join_them_with_neighbours() -> None:
     """On a finger's skin: 99 % of the points alone, and 4 to 9 neighbours at the finest level."""
     from sim.forces.network.levels import neighbours
-    from workbench.benchmarks.forces import shell
+    from workbench.proof.benchmarks.forces import shell
 
     points_mm = shell(3000)
     voxels = voxelise(points_mm, voxel_mm=voxel_edge_mm(points_mm))

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sim.optics.spectrum import chromaticity, linear_rgb
-from workbench.core.errors import DesignError
-from workbench.core.lighting import check_colour
+from sim.optics.light.spectrum import chromaticity, linear_rgb
+from workbench.core.base.errors import DesignError
+from workbench.core.design.lighting import check_colour
 
 
 def test_codes_are_linear_power() -> None:

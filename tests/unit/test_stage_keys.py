@@ -8,20 +8,21 @@ from typing import Any
 
 import pytest
 
-from geometry.primitives import rounded_box
+from geometry.surface.primitives import rounded_box
 from tests.made_weights import card_of, tiny_weights, write_tiny
-from workbench import shipped
-from workbench.core.errors import DesignError
-from workbench.core.fem import DRAFT_MM, FemSettings
-from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
-from workbench.core.lighting import LightModel
-from workbench.core.motion import Mover
-from workbench.core.press import ContactSettings, Method, Press
-from workbench.core.soft_body import SoftBody
-from workbench.core.texture import Pattern, Texture
-from workbench.live_press import live_design
-from workbench.named_designs import load_design
-from workbench.pipeline import PressCase, needed, plan
+from workbench.core.base.errors import DesignError
+from workbench.core.design.lighting import LightModel
+from workbench.core.press.fem import DRAFT_MM, FemSettings
+from workbench.core.press.indenter import Indenter, IndenterKind, IndenterMesh
+from workbench.core.press.motion import Mover
+from workbench.core.press.press import ContactSettings, Method, Press
+from workbench.core.press.press_case import PressCase
+from workbench.core.press.soft_body import SoftBody
+from workbench.core.press.texture import Pattern, Texture
+from workbench.live.live_press import live_design
+from workbench.pipeline import shipped
+from workbench.planning.plan import needed, plan
+from workbench.project.named_designs import load_design
 
 FILES = {"recipe", "package"}
 SEEN = {"bake", "table", "shoot", "maps"}
@@ -106,7 +107,7 @@ def test_an_object_of_triangles_is_sampled_once_for_all_its_presses() -> None:
     finer = plan(design, PressCase(indenter=box(), settings=ContactSettings(grid_mm=0.4)))
     keys = {calls["object"].key for calls in (plan(design, case), rounded, finer)}
     assert len(keys) == 3
-    assert call.ref in plan(design, case)["press"].inputs
+    assert call.ref in plan(design, case)["press"].values
     names = needed(plan(design, case), ("shoot",))
     assert names == ["build", "mesh", "lattice", "bake", "object", "press", "shoot"]
 
@@ -160,10 +161,10 @@ def test_images_read_an_object_only_for_its_texture() -> None:
     dotted = PressCase(indenter=DOTTED)
     shown, hidden = (plan(d, dotted) for d in (design, plain))
     assert {name for name, call in shown.items() if hidden[name].key != call.key} == {"shoot"}
-    assert [i for i in shown["shoot"].inputs if isinstance(i, Indenter)] == [
+    assert [i for i in shown["shoot"].values if isinstance(i, Indenter)] == [
         dataclasses.replace(DOTTED, edge_radius_mm=Indenter().edge_radius_mm)
     ]
-    assert not [i for i in hidden["shoot"].inputs if isinstance(i, Indenter)]
+    assert not [i for i in hidden["shoot"].values if isinstance(i, Indenter)]
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from sim.contact.region.stencil import (
+from sim.contact.grid.stencil import (
     gather_gradient,
     gradient_table,
     point_offsets,

@@ -9,17 +9,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sim.forces.network.spec import Target
+from sim.forces.network.spec import FIELDS, Target
 from sim.forces.network.weights import NetworkWeights
 from tests.synthetic_presses import made_up
 from tests.unit.test_evaluation import untrained
-from workbench.core.errors import DesignError
-from workbench.dataset.folder import DataSet
-from workbench.evaluation import stiffness
-from workbench.evaluation.evaluate import Named
-from workbench.evaluation.scoring import FIELDS, Way
-from workbench.evaluation.sources import Source, states
-from workbench.evaluation.stiffness import Tuning, evaluate_stiffness, stiffness_table
+from workbench.core.base.errors import DesignError
+from workbench.learning.dataset.folder import DataSet
+from workbench.learning.evaluation import stiffness
+from workbench.learning.evaluation.evaluate import Named
+from workbench.learning.evaluation.scoring import Way
+from workbench.learning.evaluation.sources import Source, states
+from workbench.learning.evaluation.stiffness import Tuning, evaluate_stiffness, stiffness_table
 
 SOFT_MPa = 0.0725
 
@@ -116,9 +116,9 @@ def test_a_set_of_another_stiffness_has_the_same_cases(tmp_path: Path) -> None:
     """`--young` changes the key and the modulus, neither the cases nor their split."""
     import argparse
 
-    from workbench.dataset.cases import cases_of
-    from workbench.dataset_command import chosen_recipe
-    from workbench.project import Project
+    from workbench.cli.commands.dataset_make import chosen_recipe
+    from workbench.learning.dataset.cases import cases_of
+    from workbench.project.project import Project
 
     def recipe(young: float | None):
         names = ("cases", "seed", "solver", "draft", "no_images")

@@ -11,13 +11,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from workbench.core.design import SensorDesign
-from workbench.core.errors import DamagedError, StoreError
-from workbench.core.lighting import LightModel
-from workbench.core.results import Bundle, Picture
-from workbench.core.sensing import Metrics, Shot, TactileFrames
-from workbench.pipeline import InlineRunner, PressCase, evaluate, plan
-from workbench.store import DAMAGED, META, Store
+from workbench.core.base.errors import DamagedError, StoreError
+from workbench.core.design.design import SensorDesign
+from workbench.core.design.lighting import LightModel
+from workbench.core.press.press_case import PressCase
+from workbench.core.result.results import Bundle, Picture
+from workbench.core.result.sensing import Metrics, Shot, TactileFrames
+from workbench.pipeline.store import DAMAGED, META, Store
+from workbench.planning.plan import InlineRunner, evaluate, plan
 
 
 def picture(value: int = 1) -> Picture:

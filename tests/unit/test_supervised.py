@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from workbench.supervised import GRACE_S
+from workbench.cli.supervised import GRACE_S
 
 SLACK_S = 4.0
 """Of a busy machine, over the time that a command is given."""
@@ -23,7 +23,7 @@ def start(body: str, tmp_path: Path) -> subprocess.Popen[str]:
     text = f"""
         import os, signal, sys, time
         from pathlib import Path
-        from workbench.supervised import supervised
+        from workbench.cli.supervised import supervised
 
         def command():
             Path({str(tmp_path / "child")!r}).write_text(str(os.getpid()))

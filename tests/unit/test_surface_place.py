@@ -10,16 +10,16 @@ import numpy as np
 import pytest
 import trimesh
 
-from geometry.surface import vertex_normals
-from geometry.surface_place import place_near
-from ui.aiming import Aiming
-from ui.object_view import ObjectView
-from ui.sensor import SensorView
-from workbench.aim import skin_place, target_notice
-from workbench.core.design import SensorDesign
-from workbench.core.press import Press
-from workbench.core.results import Skin, Solid
-from workbench.object_drawing import Drawing
+from geometry.surface.surface import vertex_normals
+from geometry.surface.surface_place import place_near
+from ui.desk.aiming import Aiming
+from ui.scene.object_view import ObjectView
+from ui.scene.sensor import SensorView
+from workbench.core.design.design import SensorDesign
+from workbench.core.press.press import Press
+from workbench.core.result.results import Skin, Solid
+from workbench.live.object_drawing import Drawing
+from workbench.project.aim import skin_place, target_notice
 
 BOX = trimesh.creation.box((20.0, 20.0, 60.0))
 
@@ -110,7 +110,7 @@ def test_a_chosen_target_well_off_the_skin_is_named(build_finger: Callable[..., 
 
 def test_the_place_of_a_mesh_is_that_of_a_search_tree() -> None:
     """All triangles looked at, or those of a tree: the same place within rounding."""
-    from geometry.surface import closest_point
+    from geometry.surface.surface import closest_point
 
     ball = trimesh.creation.icosphere(subdivisions=2, radius=5.0)
     points, faces = np.asarray(ball.vertices), np.asarray(ball.faces)

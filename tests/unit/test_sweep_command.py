@@ -11,19 +11,20 @@ from typing import Any
 import pytest
 
 from tests.unit.test_sweeps import shot
-from workbench.cli import main, parser
-from workbench.core.errors import DesignError
-from workbench.core.indenter import Indenter, IndenterKind
-from workbench.core.press import ContactSettings, Press
-from workbench.named_designs import load_design
-from workbench.pipeline import PressCase, plan
-from workbench.project import Project
-from workbench.state import State, fresh_state
-from workbench.strokes import read_stroke
-from workbench.sweep_command import base_state
-from workbench.sweep_fields import find_field, with_value
-from workbench.terminal import Progress
-from workbench.variants import save_variant
+from workbench.cli.command_line import main, parser
+from workbench.cli.held_state import base_state
+from workbench.core.base.errors import DesignError
+from workbench.core.press.indenter import Indenter, IndenterKind
+from workbench.core.press.press import ContactSettings, Press
+from workbench.core.press.press_case import PressCase
+from workbench.edit.strokes import read_stroke
+from workbench.planning.plan import plan
+from workbench.project.named_designs import load_design
+from workbench.project.project import Project
+from workbench.project.state import State, fresh_state
+from workbench.system.terminal import Progress
+from workbench.variants.sweep_fields import find_field, with_value
+from workbench.variants.variants import save_variant
 
 WALL = "design.layers.elastomer_mm"
 
@@ -40,7 +41,7 @@ def test_a_sweep_writes_plot_data_and_report(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Any
 ) -> None:
     """Walls of 1 and 2 mm, whose images are stored: figures in JSON and CSV, a plot in HTML."""
-    monkeypatch.setattr("workbench.sweep_command.evaluate", lambda *a, **k: iter(()))
+    monkeypatch.setattr("workbench.variants.sweep_computing.evaluate", lambda *a, **k: iter(()))
     project = Project(tmp_path / "project")
     store_point(project, 1.0)
     store_point(project, 2.0)

@@ -12,16 +12,16 @@ import pytest
 from tests.unit.test_conductor import WAIT_S, Previewing
 from tests.unit.test_jobs import Told
 from tests.unit.test_sweeps import walls
-from ui.jobs import Jobs
-from ui.sweep_run import TOPIC, SweepRun
-from workbench.conductor import Conductor
-from workbench.core.errors import MeshingError
-from workbench.core.monitor import Monitor
-from workbench.project import Project
-from workbench.requests import Finished
-from workbench.stages import Call, Outcome
-from workbench.sweep_files import load_sweep, save_sweep
-from workbench.sweeps import Status
+from ui.desk.jobs import Jobs
+from ui.desk.sweep_run import TOPIC, SweepRun
+from workbench.core.base.errors import MeshingError
+from workbench.core.base.monitor import Monitor
+from workbench.live.conductor import Conductor
+from workbench.live.requests import Finished
+from workbench.pipeline.stage import Call, Outcome
+from workbench.project.project import Project
+from workbench.variants.sweep_files import load_sweep, save_sweep
+from workbench.variants.sweeps import Status
 
 
 class Quick(Previewing):

@@ -8,22 +8,22 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from workbench.core.errors import DesignError, SolveError
-from workbench.core.sensing import Metrics, Shot, TactileFrames
-from workbench.named_designs import load_design
-from workbench.names import numbered
-from workbench.pipeline import plan
-from workbench.project import Project
-from workbench.state import State, fresh_state
-from workbench.sweep_fields import field_value, find_field, sweep_fields, with_value
-from workbench.sweep_files import (
+from workbench.core.base.errors import DesignError, SolveError
+from workbench.core.result.sensing import Metrics, Shot, TactileFrames
+from workbench.planning.plan import plan
+from workbench.project.named_designs import load_design
+from workbench.project.project import Project
+from workbench.project.state import State, fresh_state
+from workbench.system.names import numbered
+from workbench.variants.sweep_fields import field_value, find_field, sweep_fields, with_value
+from workbench.variants.sweep_files import (
     delete_sweep,
     list_sweeps,
     load_sweep,
     restore_sweep,
     save_sweep,
 )
-from workbench.sweeps import (
+from workbench.variants.sweeps import (
     Status,
     Sweep,
     curve,

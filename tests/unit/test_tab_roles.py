@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 from viser import _messages as messages
 
-from ui.editor import Editor
-from ui.gallery import Card, Galleries
-from ui.gizmo import Gizmo
-from ui.incoming import PART_BYTES, TRANSFERS, Incoming
+from ui.page.editor import Editor
+from ui.page.gallery import Card, Galleries
+from ui.page.incoming import PART_BYTES, TRANSFERS, Incoming
+from ui.scene.gizmo import Gizmo
 
 FIRST, SECOND = 1, 2
 

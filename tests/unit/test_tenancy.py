@@ -9,11 +9,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import cast
 
-from ui.editor import Editor
-from ui.session import Session
+from ui.desk.session import Session
+from ui.page.editor import Editor
 from ui.tenancy import LOCK, Tenancy
-from workbench.names import AUTOSAVE
-from workbench.project import Project
+from workbench.project.project import Project
+from workbench.system.names import AUTOSAVE
 
 
 class Door:

@@ -8,16 +8,16 @@ import cv2
 import numpy as np
 import pytest
 
-from geometry.primitives import rounded_box
-from geometry.surface import is_watertight, mesh_volume
+from geometry.surface.primitives import rounded_box
+from geometry.surface.surface import is_watertight, mesh_volume
 from sim.contact.objects import textures
 from sim.contact.objects.collider import make_collider
 from sim.contact.objects.solids import solid
-from workbench.core.errors import DesignError
-from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
-from workbench.core.texture import STEEPEST, HeightImage, Pattern, Texture
-from workbench.indenter_choice import choose_texture
-from workbench.indenter_display import display_mesh
+from workbench.core.base.errors import DesignError
+from workbench.core.press.indenter import Indenter, IndenterKind, IndenterMesh
+from workbench.core.press.texture import STEEPEST, HeightImage, Pattern, Texture
+from workbench.edit.indenter_choice import choose_texture
+from workbench.live.indenter_display import display_mesh
 
 SPACING_MM = 0.2
 STEPS = HeightImage(heights=np.kron([[0.0, 1.0], [1.0, 0.0]], np.ones((20, 20))))

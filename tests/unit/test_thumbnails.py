@@ -6,9 +6,9 @@ import cv2
 import numpy as np
 import pytest
 
-from workbench.forms import choices
-from workbench.indenter_edit import gallery
-from workbench.thumbnails import object_key, shipped_keys, start_key, thumbnail_png
+from workbench.edit.forms import choices
+from workbench.edit.indenter_edit import gallery
+from workbench.edit.thumbnails import object_key, shipped_keys, start_key, thumbnail_png
 
 STARTS = tuple(f"start-{name}" for name in choices())
 OBJECTS = tuple(f"object-{name}" for name in gallery().values())

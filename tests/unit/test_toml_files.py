@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from workbench.core.errors import DesignError
-from workbench.dataset.recipe import recipe_from_toml
-from workbench.design_toml import design_from_toml
-from workbench.project import Project
-from workbench.sweep_files import load_sweep
-from workbench.variants import load_variant
+from workbench.core.base.errors import DesignError
+from workbench.learning.dataset.recipe import recipe_from_toml
+from workbench.project.design_toml import design_from_toml
+from workbench.project.project import Project
+from workbench.variants.sweep_files import load_sweep
+from workbench.variants.variants import load_variant
 
 BAD = {
     "brackets": (f"name = {'[' * 4000}{']' * 4000}", "nested too deeply"),

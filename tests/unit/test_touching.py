@@ -9,16 +9,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.everyday import EVERYDAY
-from geometry.touching import meant_side, touching_patch
-from sim.optics.sketch import lower_face_mm
+from geometry.objects.everyday import EVERYDAY
+from geometry.objects.touching import meant_side, touching_patch
+from sim.optics.studio.sketch import lower_face_mm
 from tests.made_indenters import HEADS, M, on_a_foot, write_stl
-from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
-from workbench.core.texture import Pattern, Texture
-from workbench.core.turning import AS_IT_CAME
-from workbench.indenter_choice import choose_indenter, of_mesh
-from workbench.indenter_display import display_mesh
-from workbench.touching_side import meant_turn, touching_notice
+from workbench.core.design.turning import AS_IT_CAME
+from workbench.core.press.indenter import Indenter, IndenterKind, IndenterMesh
+from workbench.core.press.texture import Pattern, Texture
+from workbench.edit.indenter_choice import choose_indenter, of_mesh
+from workbench.live.indenter_display import display_mesh
+from workbench.pipeline.touching_side import meant_turn, touching_notice
 
 STEP_MM, DEEP_MM = 0.2, 1.0
 LINE = np.arange(-9.9, 10.0, STEP_MM)

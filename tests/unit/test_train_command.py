@@ -11,9 +11,9 @@ import pytest
 
 from sim.forces.network.weights import load_weights
 from tests.unit.made_presses import made_presses
-from workbench.cli import main
-from workbench.training.packed import write_packed
-from workbench.training.presses import Presses
+from workbench.cli.command_line import main
+from workbench.learning.training.packed import write_packed
+from workbench.learning.training.presses import Presses
 
 TINY = ("--preset", "tiny", "--epochs", "1")
 ROOT = Path(__file__).parents[2]

@@ -20,8 +20,8 @@ from sim.forces.training.feeds import Batch, Scales, feeds
 from sim.forces.training.settings import Numbers, TrainingSettings
 from sim.forces.training.trainer import Trainer
 from tests.unit.made_presses import SETTINGS, SPEC, made_presses
-from workbench.core.errors import DeviceError, SolveError
-from workbench.dataset.cases import Split
+from workbench.core.base.errors import DeviceError, SolveError
+from workbench.learning.dataset.cases import Split
 
 PRESSES = made_presses(12)
 

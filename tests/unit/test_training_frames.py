@@ -13,8 +13,8 @@ from sim.forces.training.fields import Fields, mean_size, rms_of_nonzero
 from sim.forces.training.frames import frames_of
 from sim.forces.training.settings import OUR_VOXEL, PRESETS, TrainingSettings, rate_factor
 from tests.unit.made_presses import SPEC, dent, force_of, made_presses, sheet
-from workbench.core.errors import DesignError, SolveError
-from workbench.dataset.cases import Split
+from workbench.core.base.errors import DesignError, SolveError
+from workbench.learning.dataset.cases import Split
 
 
 def whole(six: np.ndarray) -> np.ndarray:

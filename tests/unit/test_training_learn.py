@@ -22,15 +22,15 @@ from sim.forces.network.weights import load_weights
 from sim.forces.training.settings import Numbers, TrainingSettings
 from sim.forces.training.trainer import Trainer
 from tests.unit.made_presses import SETTINGS, made_presses
-from workbench.core.errors import DesignError, DeviceError, SolveError, StoreError
-from workbench.dataset.cases import Split
-from workbench.training.beginning import begin, best_factor
-from workbench.training.checkpoint import CHECKPOINT, read_checkpoint
-from workbench.training.curves import COLUMNS
-from workbench.training.learn import train
-from workbench.training.learning_curve import learning_curve
-from workbench.training.plan import Plan, Trained
-from workbench.training.presses import Presses
+from workbench.core.base.errors import DesignError, DeviceError, SolveError, StoreError
+from workbench.learning.dataset.cases import Split
+from workbench.learning.training.beginning import begin, best_factor
+from workbench.learning.training.checkpoint import CHECKPOINT, read_checkpoint
+from workbench.learning.training.curves import COLUMNS
+from workbench.learning.training.learn import train
+from workbench.learning.training.learning_curve import learning_curve
+from workbench.learning.training.plan import Plan, Trained
+from workbench.learning.training.presses import Presses
 
 PRESSES = made_presses(12)
 PLAN = Plan(settings=SETTINGS, target=Target.FORCE, seed=4)

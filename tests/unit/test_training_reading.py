@@ -15,16 +15,16 @@ from sim.forces.network.spec import Target
 from tests.unit.made_presses import made_presses
 from tests.unit.test_dataset_cases import flat_skin
 from tests.unit.test_dataset_folder import SKIN, a_sample, damage, started, write
-from workbench.core.errors import DesignError, StoreError
-from workbench.dataset.begin import begin
-from workbench.dataset.cases import Split, cases_of
-from workbench.dataset.folder import DataSet
-from workbench.dataset.recipe import Recipe, load_recipe
-from workbench.dataset.sample import Sample, to_bytes
-from workbench.training.packed import read_packed, write_packed
-from workbench.training.presses import Presses
-from workbench.training.reading import read_presses
-from workbench.whole_files import write_atomically
+from workbench.core.base.errors import DesignError, StoreError
+from workbench.learning.dataset.begin import begin
+from workbench.learning.dataset.cases import Split, cases_of
+from workbench.learning.dataset.folder import DataSet
+from workbench.learning.dataset.recipe import Recipe, load_recipe
+from workbench.learning.dataset.sample import Sample, to_bytes
+from workbench.learning.training.packed import read_packed, write_packed
+from workbench.learning.training.presses import Presses
+from workbench.learning.training.reading import read_presses
+from workbench.system.whole_files import write_atomically
 
 
 def put(data: DataSet, sample: Sample, number: int, frame: int) -> Path:

@@ -8,18 +8,25 @@ import pytest
 from sim.contact.motion.approach import plan_approach
 from sim.contact.objects.collider import make_collider
 from sim.contact.readout.verdict import check_depth
-from sim.contact.specimens import finger, flat_block
-from workbench.core.digest import digest
-from workbench.core.errors import DesignError
-from workbench.core.frames import quaternion
-from workbench.core.indenter import Indenter
-from workbench.core.mapping import from_table, to_table
-from workbench.core.motion import Mover, release, roll, slide
-from workbench.core.poses import between, composed, inverses, pose_rows, rotations, sensor_poses
-from workbench.core.press import Press
-from workbench.core.sensing import Contact
-from workbench.core.trajectory import COLUMNS, Trajectory
-from workbench.trajectories import pose_csv, press_poses, read_trajectory
+from sim.contact.studies.specimens import finger, flat_block
+from workbench.core.base.digest import digest
+from workbench.core.base.errors import DesignError
+from workbench.core.base.frames import quaternion
+from workbench.core.base.mapping import from_table, to_table
+from workbench.core.base.poses import (
+    between,
+    composed,
+    inverses,
+    pose_rows,
+    rotations,
+    sensor_poses,
+)
+from workbench.core.press.indenter import Indenter
+from workbench.core.press.motion import Mover, release, roll, slide
+from workbench.core.press.press import Press
+from workbench.core.press.trajectory import COLUMNS, Trajectory
+from workbench.core.result.sensing import Contact
+from workbench.edit.trajectories import pose_csv, press_poses, read_trajectory
 
 BLOCK, _ = flat_block(width_mm=16.0, height_mm=4.0, grid_mm=1.0)
 FINGER, _ = finger(grid_mm=2.0)

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sim.optics.lights import Leds
-from sim.optics.specimen import finger
+from sim.optics.light.lights import Leds
+from sim.optics.proof.specimen import finger
+from sim.optics.proof.transport_scenes import plane
 from sim.optics.transport import reference
 from sim.optics.transport.constants import AT_NODES, FIXED_POINT, FLYING
 from sim.optics.transport.gather import gather_light
@@ -20,13 +21,12 @@ from sim.optics.transport.scene import Scene, build_scene, open_scene
 from sim.optics.transport.sources import open_sources
 from sim.optics.transport.tally import Tally, ledger_only, tally_at_nodes
 from sim.optics.transport.view import directions_to_camera
-from sim.optics.transport_scenes import plane
 from sim.specimens import finger_skin
-from workbench.core.camera import Camera
-from workbench.core.light import AZIMUTHS
-from workbench.core.lighting import Baking
-from workbench.core.optics import Coating, Transport
-from workbench.core.results import MembraneMesh
+from workbench.core.design.camera import Camera
+from workbench.core.design.lighting import Baking
+from workbench.core.design.optics import Coating, Transport
+from workbench.core.result.light import AZIMUTHS
+from workbench.core.result.results import MembraneMesh
 
 PHOTONS = 60_000
 TRANSPORT = Transport(
@@ -260,7 +260,7 @@ def test_a_shell_led_sends_no_unscattered_light_through_the_cavity(
     Its virtual LED is lit only where a straight line from it misses the cavity.
     """
     direction, irradiance, scattered = gather_light(mesh, lights(in_shell=True), TRANSPORT)
-    from geometry.rays import RayCaster
+    from geometry.surface.rays import RayCaster
 
     leds, points = lights(in_shell=True), mesh.seen.points_mm
     line = points - leds.position_mm[0]
@@ -307,7 +307,7 @@ def test_nodes_never_mix_two_sides_of_a_thin_fin() -> None:
         part.ravel() for part in (cell[:-1, :-1], cell[:-1, 1:], cell[1:, 1:], cell[1:, :-1])
     )
     faces = np.concatenate([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
-    from workbench.core.results import Skin
+    from workbench.core.result.results import Skin
 
     skin = Skin(points_mm=points, faces=faces.astype(np.int32), normals=normals)
     nodes = coarse_nodes(skin, 150)
@@ -329,7 +329,7 @@ def test_a_node_without_area_takes_the_light_of_its_neighbours(mesh: MembraneMes
 
 def test_the_bent_way_to_the_camera_meets_the_rays_of_the_camera(mesh: MembraneMesh) -> None:
     """A point on a pixel's refracted ray sees the camera along that ray."""
-    from sim.optics.camera import refracted_rays
+    from sim.optics.camera.camera import refracted_rays
 
     camera = dataclasses.replace(CAMERA, width_px=64, height_px=48)
     rays = refracted_rays(camera, mesh.cavity, 1.41)

@@ -13,20 +13,20 @@ from hypothesis import strategies as st
 
 from sim.contact.objects.collider import make_collider
 from sim.contact.objects.sampling import box_mm
-from sim.contact.objects.shapes import Shape
 from sim.contact.objects.solids import lowest_mm, solid
-from workbench.cli import parser
-from workbench.core.digest import digest
-from workbench.core.errors import DesignError
-from workbench.core.indenter import Indenter, IndenterKind, IndenterMesh
-from workbench.core.soft_body import SoftBody
-from workbench.core.texture import Pattern, Texture
-from workbench.core.turning import touching_with, turn_angles, turn_matrix
-from workbench.dataset.recipe import load_recipe, recipe_from_toml, recipe_to_toml
-from workbench.dataset_command import chosen_recipe
-from workbench.indenter_display import display_mesh
-from workbench.kept_indenters import indenter_table, read_indenter
-from workbench.project import Project
+from workbench.cli.command_line import parser
+from workbench.cli.commands.dataset_make import chosen_recipe
+from workbench.core.base.digest import digest
+from workbench.core.base.errors import DesignError
+from workbench.core.design.turning import touching_with, turn_angles, turn_matrix
+from workbench.core.objects.kind import Shape
+from workbench.core.press.indenter import Indenter, IndenterKind, IndenterMesh
+from workbench.core.press.soft_body import SoftBody
+from workbench.core.press.texture import Pattern, Texture
+from workbench.learning.dataset.recipe import load_recipe, recipe_from_toml, recipe_to_toml
+from workbench.live.indenter_display import display_mesh
+from workbench.project.kept_indenters import indenter_table, read_indenter
+from workbench.project.project import Project
 
 KINDS = [kind for kind in IndenterKind if kind is not IndenterKind.MESH]
 ODD = (25.0, -40.0, 70.0)

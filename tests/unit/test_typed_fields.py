@@ -7,13 +7,13 @@ from typing import Any
 
 import pytest
 
-from workbench.cli import main
-from workbench.core.design import Law, SensorDesign
-from workbench.core.errors import DesignError
-from workbench.core.lighting import Lamp, LampKind, LightModel
-from workbench.item_fields import read_field
-from workbench.named_designs import load_design, presets
-from workbench.typed_fields import sets, with_typed
+from workbench.cli.command_line import main
+from workbench.core.base.errors import DesignError
+from workbench.core.design.design import Law, SensorDesign
+from workbench.core.design.lighting import Lamp, LampKind, LightModel
+from workbench.edit.item_fields import read_field
+from workbench.edit.typed_fields import sets, with_typed
+from workbench.project.named_designs import load_design, presets
 
 FINGER = SensorDesign(name="finger")
 
@@ -43,7 +43,7 @@ FINGER = SensorDesign(name="finger")
 def test_a_field_is_read_by_its_type(typed: str, path: str, value: Any) -> None:
     """Numbers, texts without quotes, lists without brackets, members of enumerations."""
     if value is None:
-        from geometry.silicones import SILICONES
+        from geometry.body.silicones import SILICONES
 
         value = sorted(SILICONES)[-1]
         typed = f"{path}={value}"
@@ -102,7 +102,7 @@ def test_a_picture_is_named_by_its_file(tmp_path: Path) -> None:
     """A file that is not there is refused by name; nothing typed takes the picture away."""
     with pytest.raises(DesignError, match=r"idle\.png"):
         with_typed(FINGER, [f"optics.background={tmp_path / 'idle.png'}"])
-    from workbench.photos import shipped_photos
+    from workbench.project.photos import shipped_photos
 
     name, picture = next(iter(shipped_photos().items()))
     camera = FINGER.optics.camera

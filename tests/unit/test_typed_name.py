@@ -9,10 +9,10 @@ from typing import Any
 
 import pytest
 
-from ui.panels.design_files import SAVE, DesignFiles
-from ui.session import Session
-from workbench.project import Project
-from workbench.saved_designs import open_design, saved_names
+from ui.desk.session import Session
+from ui.panels.shape.design_files import SAVE, DesignFiles
+from workbench.project.project import Project
+from workbench.project.saved_designs import open_design, saved_names
 
 
 @pytest.fixture

@@ -5,7 +5,7 @@ from __future__ import annotations
 from types import SimpleNamespace
 from typing import Any
 
-from ui.upkeep import SETTLED_S, Upkeep
+from ui.desk.auto_update import SETTLED_S, Upkeep
 
 
 class Widget:

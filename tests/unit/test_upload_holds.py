@@ -13,14 +13,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-import workbench.indenter_edit
-import workbench.object_file
-from ui.panels.intake import IntakeFolder
-from ui.panels.objects import ObjectFolder
-from ui.reports import Reports
-from workbench.core.errors import DesignError
-from workbench.object_file import ObjectFile
-from workbench.uploads import MOST_BYTES
+import workbench.edit.indenter_edit
+import workbench.live.object_file
+from ui.desk.reports import Reports
+from ui.panels.shape.intake import IntakeFolder
+from ui.panels.simulate.objects import ObjectFolder
+from workbench.core.base.errors import DesignError
+from workbench.live.object_file import ObjectFile
+from workbench.system.uploads import MOST_BYTES
 
 
 class FakeDesk:
@@ -82,7 +82,7 @@ def digested(desk: FakeDesk, monkeypatch: pytest.MonkeyPatch) -> dict[bool, int]
         found[held._is_owned()] += len(data)
         return real(data)
 
-    monkeypatch.setattr("workbench.core.imported.hashlib.sha256", counted)
+    monkeypatch.setattr("workbench.core.design.imported.hashlib.sha256", counted)
     return found
 
 
@@ -102,8 +102,10 @@ def test_an_stl_object_is_read_by_the_worker_alone(
 ) -> None:
     """Its triangles take seconds: the server hands the bytes on as they came, uncopied."""
     read: list[str] = []
-    monkeypatch.setattr(workbench.object_file, "uploaded", lambda name, content: read.append(name))
-    monkeypatch.setattr(workbench.indenter_edit, "choose_indenter", read.append)
+    monkeypatch.setattr(
+        workbench.live.object_file, "uploaded", lambda name, content: read.append(name)
+    )
+    monkeypatch.setattr(workbench.edit.indenter_edit, "choose_indenter", read.append)
     button = sent("object.stl", MOST_BYTES)
     objects(desk, button)(None)
     (call,) = desk.asked

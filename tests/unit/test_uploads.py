@@ -11,19 +11,20 @@ from typing import Any
 import numpy as np
 import pytest
 
-from geometry.primitives import rounded_box
-from ui.panels.objects import ObjectFolder
-from workbench.core.errors import DesignError
-from workbench.core.imported import ReadBody, ReadSurface
-from workbench.core.indenter import Indenter
-from workbench.indenter_choice import MOST_PIXELS, load_heights
-from workbench.indenter_edit import cad_object, cad_trial, needs_cad, pictured, uploaded
-from workbench.picture_size import picture_size
-from workbench.pipeline import PressCase, plan
-from workbench.requests import Finished, Request
-from workbench.store import Store
-from workbench.trajectories import uploaded_trajectory
-from workbench.uploads import own_name, uploaded_file
+from geometry.surface.primitives import rounded_box
+from ui.panels.simulate.objects import ObjectFolder
+from workbench.core.base.errors import DesignError
+from workbench.core.design.imported import ReadBody, ReadSurface
+from workbench.core.press.indenter import Indenter
+from workbench.core.press.press_case import PressCase
+from workbench.edit.indenter_choice import MOST_PIXELS, load_heights
+from workbench.edit.indenter_edit import cad_object, cad_trial, needs_cad, pictured, uploaded
+from workbench.edit.trajectories import uploaded_trajectory
+from workbench.live.requests import Finished, Request
+from workbench.pipeline.store import Store
+from workbench.planning.plan import plan
+from workbench.system.picture_size import picture_size
+from workbench.system.uploads import own_name, uploaded_file
 
 OPEN = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
 

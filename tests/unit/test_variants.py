@@ -8,15 +8,15 @@ from pathlib import Path
 
 import pytest
 
-from workbench.comparison import changes, parameter_differences, press_notice, tally
-from workbench.comparison_tables import card_table, change_table, parameter_table, remedies
-from workbench.core.errors import DesignError
-from workbench.metric_rules import RULES, Better
-from workbench.named_designs import load_design
-from workbench.project import Project
-from workbench.score_card import card, figures, sorted_by
-from workbench.state import State, fresh_state
-from workbench.variant_files import (
+from sim.optics.maps.map_kind import map_kinds
+from workbench.core.base.errors import DesignError
+from workbench.project.named_designs import load_design
+from workbench.project.project import Project
+from workbench.project.state import State, fresh_state
+from workbench.variants.comparison import changes, parameter_differences, press_notice, tally
+from workbench.variants.comparison_tables import card_table, change_table, parameter_table, remedies
+from workbench.variants.score_card import card, figures, sorted_by
+from workbench.variants.variant_files import (
     Shelf,
     delete_variant,
     duplicate_variant,
@@ -25,7 +25,8 @@ from workbench.variant_files import (
     rename_variant,
     restore_variant,
 )
-from workbench.variants import load_variant, planned_keys, save_variant
+from workbench.variants.variants import load_variant, planned_keys, save_variant
+from workbench.view.metric_rules import RULES, Better
 
 
 @pytest.fixture
@@ -143,7 +144,7 @@ def test_a_list_plans_what_changed_alone(project: Project, monkeypatch: pytest.M
         planned.append(state.design.layers.elastomer_mm)
         return planned_keys(state)
 
-    monkeypatch.setattr("workbench.variant_files.planned_keys", counted)
+    monkeypatch.setattr("workbench.variants.variant_files.planned_keys", counted)
     shelf = Shelf(project)
     first = shelf.entries()
     assert shelf.entries() == first
@@ -168,20 +169,13 @@ def test_figures_of_results_that_are_gone_are_left_out(project: Project) -> None
 
 
 def test_every_score_of_the_maps_has_a_rule_of_the_same_direction() -> None:
-    """The maps declare more or less; the score card says the same."""
-    import inspect
-    import re
-
-    from sim.optics.maps import measure
-
-    source = inspect.getsource(measure)
-    found = re.findall(r'score_name=f?"([^"]+)".*?better="(more|less)"', source, re.DOTALL)
-    names = {name: better for name, better in found if "{" not in name}
-    assert len(names) >= 9
-    for name, better in names.items():
-        wanted = Better.HIGHER if better == "more" else Better.LOWER
-        assert RULES[name].better is wanted, name
-        assert RULES[name].stage == "maps"
+    """The maps declare more or less; the score card says the same, and none has a name twice."""
+    kinds = map_kinds()
+    assert len(kinds) >= 9 and len({kind.figure for kind in kinds.values()}) == len(kinds)
+    for kind in kinds.values():
+        wanted = Better.HIGHER if kind.more_is_better else Better.LOWER
+        assert RULES[kind.figure].better is wanted
+        assert RULES[kind.figure].stage == "maps"
 
 
 def test_best_is_marked_by_the_rule_and_missing_says_what_to_run() -> None:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ui.views import RAISED, Views
+from ui.scene.views import RAISED, Views
 
 LOW, HIGH = np.array([-10.0, -10.0, 0.0]), np.array([10.0, 10.0, 40.0])
 MIDDLE = (LOW + HIGH) / 2

@@ -10,13 +10,20 @@ import numpy as np
 import pytest
 import pyvista
 
-from geometry.primitives import rounded_box, sphere
-from geometry.stress import von_mises_MPa
-from geometry.surface import mesh_volume, vertex_normals
-from geometry.vtk import contact_files, membrane_file, volume_file
-from workbench.core.results import Label, LabelledSurface, MembraneMesh, Skin, Solid, VolumeMesh
-from workbench.core.sensing import Contact
-from workbench.vtkfiles import write_vtk
+from geometry.surface.primitives import rounded_box, sphere
+from geometry.surface.stress import von_mises_MPa
+from geometry.surface.surface import mesh_volume, vertex_normals
+from geometry.workshop.vtk import contact_files, membrane_file, volume_file
+from workbench.core.result.results import (
+    Label,
+    LabelledSurface,
+    MembraneMesh,
+    Skin,
+    Solid,
+    VolumeMesh,
+)
+from workbench.core.result.sensing import Contact
+from workbench.report.vtkfiles import write_vtk
 
 FRAMES = 2
 DEPTHS_MM = (0.25, 0.5)

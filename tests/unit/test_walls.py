@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from geometry import csg
-from geometry.csg_mesh import arrays, evaluate
-from geometry.mould_checks import MOULD_LIMITS, wall_check
-from geometry.primitives import sphere
-from geometry.walls import thinnest_wall
-from workbench.core.fabrication import Severity
+from geometry.body import csg
+from geometry.body.csg_mesh import arrays, evaluate
+from geometry.mould.mould_checks import MOULD_LIMITS, wall_check
+from geometry.mould.walls import thinnest_wall
+from geometry.surface.primitives import sphere
+from workbench.core.result.fabrication import Severity
 
 Mesh = tuple[np.ndarray, np.ndarray]
 
@@ -98,7 +98,7 @@ def test_walls_that_no_printer_makes_are_bad(
     wall_mm: float, feature_mm: float, severity: Severity
 ) -> None:
     """Below 0.4 mm, or below what the printer does, red; up to 2 mm, which bends, amber."""
-    from geometry.castability import Worst
+    from geometry.mould.castability import Worst
 
     wall = Worst(wall_mm, (0.0, 0.0, 0.0))
     assert wall_check("half_a", wall, MOULD_LIMITS, feature_mm).severity is severity

@@ -15,7 +15,8 @@ from typing import Any
 import numpy as np
 import taichi as ti
 
-from sim.contact.engine import layout, sum_kernels
+from sim.contact.engine import sum_kernels
+from sim.contact.grid import layout
 from sim.contact.objects.collider import Collider
 from sim.contact.region.domain import BLOCK, NO_SLOT, Domain
 

@@ -9,10 +9,10 @@ Taichi function; its plain twins are `reference.stress_forces` and `reference.su
 import taichi as ti
 from taichi.lang.impl import expr_init
 
-from sim.contact.engine.layout import CHOICES, IDLE, INVERSE_EDGE, LOCAL, MODE, NUMBERS, POINT
 from sim.contact.engine.point_functions import line_weights, point_force
+from sim.contact.grid.layout import CHOICES, IDLE, INVERSE_EDGE, LOCAL, MODE, NUMBERS, POINT
+from sim.contact.grid.stencil import gather_gradient, scatter_gradient
 from sim.contact.region.domain import BLOCK
-from sim.contact.region.stencil import gather_gradient, scatter_gradient
 from sim.material import SMALLEST_VOLUME_RATIO, first_piola_rows
 
 

@@ -20,7 +20,14 @@ The plain twin of each kernel is in `reference`. Layouts are described in `domai
 import taichi as ti
 
 from sim.contact.engine.cell_kernel import cell_pass, entry
-from sim.contact.engine.layout import (
+from sim.contact.engine.point_functions import (
+    body_rotation,
+    line_weights,
+    object_distance,
+    place_in_body,
+    tangent_slip,
+)
+from sim.contact.grid.layout import (
     CHOICES,
     DAMPING,
     FREE,
@@ -35,13 +42,6 @@ from sim.contact.engine.layout import (
     MOVING,
     NUMBERS,
     POINT,
-)
-from sim.contact.engine.point_functions import (
-    body_rotation,
-    line_weights,
-    object_distance,
-    place_in_body,
-    tangent_slip,
 )
 from sim.contact.region.domain import BLOCK
 

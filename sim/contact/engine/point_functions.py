@@ -8,7 +8,7 @@ Their plain twins are in `reference`.
 
 import taichi as ti
 
-from sim.contact.engine.layout import (
+from sim.contact.grid.layout import (
     AXIS,
     CHOICES,
     COUNTS,

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim.contact.engine.layout import FREE, HELD, LIFTED, TOUCHED
+from sim.contact.grid.layout import FREE, HELD, LIFTED, TOUCHED
+from sim.contact.grid.stencil import gradient_table, point_weights
 from sim.contact.objects.collider import Collider
 from sim.contact.region.domain import Domain, stencil_nodes
-from sim.contact.region.stencil import gradient_table, point_weights
 from sim.material import stress_of
 
 Pose = tuple[np.ndarray, np.ndarray]

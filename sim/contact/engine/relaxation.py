@@ -16,8 +16,9 @@ from typing import Any
 import numpy as np
 import taichi as ti
 
-from sim.contact.engine import kernels, layout, sum_kernels
+from sim.contact.engine import kernels, sum_kernels
 from sim.contact.engine.batch import Batch, Case
+from sim.contact.grid import layout
 
 STEP_CAP = 0.1
 """Largest displacement of a node in one substep and axis, in cells."""

@@ -14,20 +14,20 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from geometry.surface import closest_point
-from geometry.surface_place import smooth_normal
+from geometry.surface.surface import closest_point
+from geometry.surface.surface_place import smooth_normal
 from sim.contact.motion.covering import clear_way_mm, cover, overlaps_along
 from sim.contact.motion.path import Leg, State, Track, current, legs_of, straight_counts, track_of
 from sim.contact.motion.touch import first_touch
 from sim.contact.objects.collider import Collider
-from workbench.core.errors import DesignError
-from workbench.core.frames import tangent
-from workbench.core.motion import Mover
-from workbench.core.poses import composed, pose_rows, sensor_poses
-from workbench.core.press import Press
-from workbench.core.results import Skin
-from workbench.core.trajectory import Trajectory
-from workbench.core.units import radians
+from workbench.core.base.errors import DesignError
+from workbench.core.base.frames import tangent
+from workbench.core.base.poses import composed, pose_rows, sensor_poses
+from workbench.core.base.units import radians
+from workbench.core.press.motion import Mover
+from workbench.core.press.press import Press
+from workbench.core.press.trajectory import Trajectory
+from workbench.core.result.results import Skin
 
 FARTHEST_TARGET_MM = 5.0
 """Largest distance of a target from the skin."""

@@ -10,11 +10,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.surface import closest_point
+from geometry.surface.surface import closest_point
 from sim.contact.motion.touch import least_distance_mm
 from sim.contact.objects.collider import Collider
-from workbench.core.errors import DesignError
-from workbench.core.results import Skin
+from workbench.core.base.errors import DesignError
+from workbench.core.result.results import Skin
 
 DEEPEST_START_MM = 0.01
 """Overlap of the first pose that still counts as touching: a press begins at first touch."""

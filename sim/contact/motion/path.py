@@ -16,12 +16,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from workbench.core.frames import quaternion
-from workbench.core.motion import Stroke, StrokeKind
-from workbench.core.poses import rotations
-from workbench.core.press import Press
-from workbench.core.trajectory import Trajectory, poses_at
-from workbench.core.units import radians
+from workbench.core.base.frames import quaternion
+from workbench.core.base.poses import rotations
+from workbench.core.base.units import radians
+from workbench.core.press.motion import Stroke, StrokeKind
+from workbench.core.press.press import Press
+from workbench.core.press.trajectory import Trajectory, poses_at
 
 SAME_STEP = 0.1
 """Relative change of a step that still counts as going straight on."""

@@ -11,8 +11,8 @@ from __future__ import annotations
 import numpy as np
 
 from sim.contact.objects.collider import Collider
-from workbench.core.errors import DesignError, SolveError
-from workbench.core.results import Skin
+from workbench.core.base.errors import DesignError, SolveError
+from workbench.core.result.results import Skin
 
 TOUCH_MM = 1e-5
 """Gap that counts as touching."""

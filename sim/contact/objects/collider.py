@@ -10,10 +10,11 @@ import numpy as np
 from sim.contact.objects import textures
 from sim.contact.objects.samples import Window
 from sim.contact.objects.sampling import box_mm, kept_samples
-from sim.contact.objects.shapes import SHAPE_OF_KIND, Shape, analytic_size, evaluate
+from sim.contact.objects.shapes import analytic_size, evaluate
 from sim.contact.objects.solids import lowest_mm, sharpest_mm
-from workbench.core.indenter import Indenter
-from workbench.core.sampled import SampledDistance
+from workbench.core.objects.kind import Shape
+from workbench.core.press.indenter import Indenter
+from workbench.core.result.sampled import SampledDistance
 
 SHARPEST_MESH_CELLS = 2.4
 """Least radius taken for a mesh, whose edges are not known, in cells."""
@@ -79,7 +80,7 @@ def make_collider(
     Raises:
         DesignError: If the shape cannot be made.
     """
-    shape = SHAPE_OF_KIND[indenter.kind]
+    shape = indenter.record.shape
     if shape is Shape.GRID or indenter.texture.raised or indenter.turned:
         return _sampled(indenter, grid_mm, window_mm, whole)
     ball = shape is Shape.SPHERE

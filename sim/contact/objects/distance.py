@@ -13,11 +13,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from geometry.surface import closest_point, face_areas
+from geometry.surface.surface import closest_point, face_areas
 from sim.contact.objects.redistance import Exact, redistanced
 from sim.contact.objects.samples import SampleGrid, read_spline, spline
-from workbench.core.errors import DesignError
-from workbench.core.indenter import IndenterMesh
+from workbench.core.base.errors import DesignError
+from workbench.core.press.indenter import IndenterMesh
 
 BAND_SAMPLES = 5.0
 OUTER_SAMPLES = 2.5

@@ -26,7 +26,7 @@ import numpy as np
 
 from sim.contact.objects import textures
 from sim.contact.objects.sampling import SAMPLES_PER_CELL
-from workbench.core.texture import Pattern, Texture
+from workbench.core.press.texture import Pattern, Texture
 
 STEP_MM = 0.02
 """Distance of the raster's points, and half the span of its slopes [mm]."""

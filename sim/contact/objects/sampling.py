@@ -22,10 +22,10 @@ from sim.contact.objects.samples import (
     spline,
 )
 from sim.contact.objects.solids import smooth_box_mm, solid
-from workbench.core.digest import digest
-from workbench.core.errors import DesignError
-from workbench.core.indenter import Indenter
-from workbench.core.sampled import SampledDistance
+from workbench.core.base.digest import digest
+from workbench.core.base.errors import DesignError
+from workbench.core.press.indenter import Indenter
+from workbench.core.result.sampled import SampledDistance
 
 SAMPLES_PER_CELL = 2.5
 """Distance samples per grid cell: h = 0.4 cell loses 0.12 % of the force."""

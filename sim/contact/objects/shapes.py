@@ -1,6 +1,6 @@
 """Rigid indenter shapes: numbers, dimensions and signed distances in plain NumPy.
 
-Body frame as in `workbench.core.press`: origin at the shape's centre, +Z away from the skin.
+Body frame as in `workbench.core.press.press`: origin at the shape's centre, +Z away from the skin.
 A cylinder is as long as it is wide. The cone has a right apex angle: its base diameter is
 `size_mm` and its sharp height half of that, apex toward -Z. Edges, rim and apex are rounded by
 `edge_radius_mm`: a smaller sharp shape, offset outwards.
@@ -10,92 +10,26 @@ A cylinder is as long as it is wide. The cone has a right apex angle: its base d
 
 from __future__ import annotations
 
-import enum
-
 import numpy as np
 
-from sim.contact.region.stencil import line_slopes, line_weights
-from workbench.core.errors import DesignError
-from workbench.core.indenter import Indenter, IndenterKind
+from sim.contact.grid.stencil import line_slopes, line_weights
+from workbench.core.objects.kind import Shape
+from workbench.core.press.indenter import Indenter
 
 ROOT_HALF = 0.5**0.5
 TINY_MM = 1e-9
 
 
-class Shape(enum.IntEnum):
-    """Number of a shape in the kernels."""
-
-    SPHERE = 0
-    CYLINDER_Z = 1
-    CYLINDER_Y = 2
-    CUBE = 3
-    CONE = 4
-    GRID = 5
-
-
-SAMPLED = (
-    IndenterKind.CROSS,
-    IndenterKind.TRIANGLE,
-    IndenterKind.PACMAN,
-    IndenterKind.HEXAGON,
-    IndenterKind.ELLIPSOID,
-    IndenterKind.DOUBLE_CYLINDER,
-    IndenterKind.DIAMOND,
-    IndenterKind.FLOWER,
-    IndenterKind.RING,
-    IndenterKind.RHOMBUS,
-    IndenterKind.TORUS,
-    IndenterKind.MESH,
-)
-"""Kinds that the kernels know by samples only, as any kind with a texture."""
-
-SHAPE_OF_KIND = {
-    IndenterKind.SPHERE: Shape.SPHERE,
-    IndenterKind.CYLINDER_END: Shape.CYLINDER_Z,
-    IndenterKind.CYLINDER_SIDE: Shape.CYLINDER_Y,
-    IndenterKind.CUBE: Shape.CUBE,
-    IndenterKind.CONE: Shape.CONE,
-} | dict.fromkeys(SAMPLED, Shape.GRID)
-
-
 def analytic_size(indenter: Indenter) -> np.ndarray:
-    """The `size` numbers of an analytic shape [mm], shape (8,), float64.
-
-    Sphere: radius. Cylinder and cube: half width, half length, edge radius. Cone: rim radius,
-    top, edge radius, apex, all but the edge radius of the sharp inner shape.
+    """The `size` numbers of an analytic shape [mm], shape (8,), float64; zeros of a sampled one.
 
     Raises:
-        DesignError: If a cone is too small for its edge radius.
+        DesignError: If a body is too small for its edge radius.
     """
-    half, edge = 0.5 * indenter.size_mm, indenter.edge_radius_mm
-    size = np.zeros(8)
-    if indenter.kind is IndenterKind.SPHERE:
-        size[0] = half
-    elif indenter.kind is IndenterKind.CONE:
-        apex = -0.5 * half + edge / ROOT_HALF
-        top = 0.5 * half - edge
-        if top - apex <= 0.0:
-            largest = half / (1.0 + 1.0 / ROOT_HALF)
-            raise DesignError(
-                f"edge radius {edge:g} mm leaves nothing of a cone {indenter.size_mm:g} mm wide; "
-                f"the limit is {largest:.2f} mm",
-                hint="lower indenter.edge_radius_mm or raise indenter.size_mm",
-                at="indenter.edge_radius_mm",
-            )
-        size[:4] = top - apex, top, edge, apex
-    else:
-        size[:3] = half - edge, half - edge, edge
-    return size
-
-
-def half_height_mm(indenter: Indenter) -> float:
-    """Distance from the body origin to the plane that bounds the unturned shape toward -Z."""
-    if indenter.mesh is not None:
-        return -float(indenter.mesh.points_mm[:, 2].min())
-    if indenter.kind is IndenterKind.CONE:
-        apex, edge = analytic_size(indenter)[3], indenter.edge_radius_mm
-        return -float(apex) + edge
-    return 0.5 * indenter.size_mm
+    numbers = indenter.record.numbers
+    if numbers is None:
+        return np.zeros(8)
+    return numbers(indenter.size_mm, indenter.edge_radius_mm)
 
 
 def evaluate(

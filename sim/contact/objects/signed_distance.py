@@ -9,7 +9,7 @@ Rounded shapes are a smaller sharp shape, offset outwards by the edge radius.
 
 import taichi as ti
 
-from sim.contact.objects.shapes import Shape
+from workbench.core.objects.kind import Shape
 
 SPHERE = int(Shape.SPHERE)
 CYLINDER_Z = int(Shape.CYLINDER_Z)

@@ -7,8 +7,8 @@ more, which `redistance` cures.
 Letters are drawn by OpenCV (Hershey's strokes) once, and their flanks by the distance to a stroke.
 
 What is too fine for the samples of a distance is left to the image (`fine_surface`,
-`sim.optics.detail`): contact then feels repeated patterns as a layer of their mean height, letters
-and pictures through a Gaussian filter.
+`sim.optics.studio.detail`): contact then feels repeated patterns as a layer of their mean height,
+letters and pictures through a Gaussian filter.
 Left out: the displacement is along Z also where the smooth surface is steep.
 """
 
@@ -18,8 +18,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from workbench.core.errors import DesignError
-from workbench.core.texture import STEEPEST, Pattern, Texture
+from workbench.core.base.errors import DesignError
+from workbench.core.press.texture import STEEPEST, Pattern, Texture
 
 Heights = Callable[[np.ndarray], np.ndarray]
 """Heights [mm], shape (N,), at body places (N, 2)."""

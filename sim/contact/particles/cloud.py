@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sim.contact.grid.stencil import point_offsets
 from sim.contact.motion.approach import Approach
 from sim.contact.objects.collider import Collider
 from sim.contact.particles import kernels
-from sim.contact.region.stencil import point_offsets
-from workbench.core.results import MaterialPoints, MembraneMesh
+from workbench.core.result.results import MaterialPoints, MembraneMesh
 
 SHELL_CELLS = 3.0
 """Depth of the object that is filled, in cells: points farther inside meet no node of the skin."""

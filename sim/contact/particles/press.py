@@ -33,14 +33,14 @@ from sim.contact.particles.state import TABLE, State
 from sim.contact.readout.verdict import check_depth
 from sim.contact.region.backing import support_points_mm
 from sim.contact.region.radius import region_radius_mm
-from workbench.core.design import Elastomer, Law
-from workbench.core.errors import DesignError, SolveError
-from workbench.core.frames import quaternion
-from workbench.core.indenter import Indenter
-from workbench.core.monitor import Monitor, silent
-from workbench.core.press import ContactSettings, Press
-from workbench.core.results import MaterialPoints, MembraneMesh
-from workbench.core.sensing import Contact
+from workbench.core.base.errors import DesignError, SolveError
+from workbench.core.base.frames import quaternion
+from workbench.core.base.monitor import Monitor, silent
+from workbench.core.design.design import Elastomer, Law
+from workbench.core.press.indenter import Indenter
+from workbench.core.press.press import ContactSettings, Press
+from workbench.core.result.results import MaterialPoints, MembraneMesh
+from workbench.core.result.sensing import Contact
 
 SUBSTEPS_PER_MM = 200.0
 """Substeps in which the object moves 1 mm: 3 % of the wave speed at a grid of 0.5 mm."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim.contact.region.stencil import line_weights
+from sim.contact.grid.stencil import line_weights
 
 FREE = 3
 

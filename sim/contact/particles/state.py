@@ -11,7 +11,7 @@ import taichi as ti
 from sim.contact.particles import kernels
 from sim.contact.particles.cloud import Cloud
 from sim.material import elastic_solid
-from workbench.core.design import Elastomer
+from workbench.core.design.design import Elastomer
 
 COURANT = 0.3
 """Cells that a pressure wave crosses in a substep."""

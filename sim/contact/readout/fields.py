@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sim.contact.grid.stencil import gradient_table
 from sim.contact.region.domain import Domain, stencil_nodes
-from sim.contact.region.stencil import gradient_table
 from sim.material import energy_density_MPa, stress_of
 
 VOIGT = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))

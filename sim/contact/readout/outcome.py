@@ -10,14 +10,14 @@ import taichi as ti
 from taichi.lang.impl import current_cfg
 
 from sim.contact.engine.relaxation import Balance, Relaxation
-from sim.contact.problem import Problem
+from sim.contact.grid.stencil import point_weights
 from sim.contact.readout.fields import skin_stress, volume_state
 from sim.contact.readout.frame import FrameOutcome, deepest_overlap_mm
+from sim.contact.readout.problem import Problem
 from sim.contact.region.domain import Domain, stencil_nodes
 from sim.contact.region.quadrature import SurfacePoints
-from sim.contact.region.stencil import point_weights
-from workbench.core.frames import quaternion
-from workbench.core.sensing import Contact
+from workbench.core.base.frames import quaternion
+from workbench.core.result.sensing import Contact
 
 SLIDING_SHARE = 0.999
 """Share of the friction cone at which a point counts as sliding."""

@@ -10,8 +10,8 @@ import numpy as np
 from sim.contact.motion.approach import SHALLOW_MM, Approach
 from sim.contact.objects.collider import Collider
 from sim.contact.readout.frame import FrameOutcome, deepest_overlap_mm
-from workbench.core.errors import DesignError, SolveError
-from workbench.core.press import Press
+from workbench.core.base.errors import DesignError, SolveError
+from workbench.core.press.press import Press
 
 POSES = 12
 """Least number of poses of shear and twist at which the support is looked at."""

@@ -19,8 +19,8 @@ import math
 
 import numpy as np
 
-from workbench.core.design import Elastomer
-from workbench.core.results import Label, MembraneMesh
+from workbench.core.design.design import Elastomer
+from workbench.core.result.results import Label, MembraneMesh
 
 SIDEWAYS = 1.0 / 3.0
 """Shear over Young's modulus of gel, 1 / (2 (1 + nu)) at nu = 0.5."""
@@ -61,7 +61,7 @@ def support_points_mm(mesh: MembraneMesh) -> np.ndarray:
     Bonded vertices lie on it; backed ones are a gap away from it along the normals of the skin
     without its pins: the sides of a pin would tilt the normals at its root.
     """
-    from geometry.surface import vertex_normals
+    from geometry.surface.surface import vertex_normals
 
     inner = mesh.inner
     bonded = np.unique(inner.faces[bonded_faces(mesh)])

@@ -20,12 +20,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sim.contact.grid.stencil import gradient_table, point_slopes, point_weights, weight_table
 from sim.contact.region.materials import moduli_MPa_at
 from sim.contact.region.quadrature import SurfacePoints
-from sim.contact.region.stencil import gradient_table, point_slopes, point_weights, weight_table
-from workbench.core.design import Elastomer, Law
-from workbench.core.errors import DesignError
-from workbench.core.results import MaterialPoints, MembraneMesh
+from workbench.core.base.errors import DesignError
+from workbench.core.design.design import Elastomer, Law
+from workbench.core.result.results import MaterialPoints, MembraneMesh
 
 EIGENVALUE = 3.0
 """Largest eigenvalue aimed at; below 4 by a margin for stiffening under load."""

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from sim.contact.region.quadrature import SurfacePoints
-from workbench.core.actuation import Actuation
-from workbench.core.errors import DesignError, shown
-from workbench.core.press import Press
-from workbench.core.results import MembraneMesh, Skin, region_masks
+from workbench.core.base.errors import DesignError, shown
+from workbench.core.press.actuation import Actuation
+from workbench.core.press.press import Press
+from workbench.core.result.results import MembraneMesh, Skin, region_masks
 
 UNDRIVEN = -1
 

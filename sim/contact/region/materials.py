@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from geometry.surface import closest_point
+from geometry.surface.surface import closest_point
 from sim.material import moduli_MPa
-from workbench.core.design import Elastomer
-from workbench.core.inclusion import Inclusion, Where
-from workbench.core.results import Skin
+from workbench.core.design.design import Elastomer
+from workbench.core.design.inclusion import Inclusion, Where
+from workbench.core.result.results import Skin
 
 
 def stiffest_MPa(material: Elastomer) -> float:

@@ -12,12 +12,12 @@ from sim.contact.motion.approach import Approach, plan_approach
 from sim.contact.objects.collider import Collider, make_collider
 from sim.contact.objects.samples import Window
 from sim.contact.objects.sampling import SAMPLES_PER_CELL
-from sim.contact.objects.shapes import Shape
 from sim.contact.region.refinement import path_samples
-from workbench.core.indenter import Indenter
-from workbench.core.press import Press
-from workbench.core.results import Skin
-from workbench.core.sampled import SampledDistance
+from workbench.core.objects.kind import Shape
+from workbench.core.press.indenter import Indenter
+from workbench.core.press.press import Press
+from workbench.core.result.results import Skin
+from workbench.core.result.sampled import SampledDistance
 
 COARSER = 1.05
 """Samples farther apart than asked for by this factor call for a window."""

@@ -12,7 +12,7 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from workbench.core.results import Skin
+from workbench.core.result.results import Skin
 
 UNDRIVEN = -1
 """Drive of a point that no actuation moves."""

@@ -17,10 +17,10 @@ from sim.contact.objects.collider import Collider
 from sim.contact.region.backing import decay_mm
 from sim.contact.region.materials import stiffest_MPa
 from sim.contact.region.refinement import path_samples
-from workbench.core.design import Elastomer
-from workbench.core.errors import DesignError
-from workbench.core.press import ContactSettings, Extent
-from workbench.core.results import MembraneMesh
+from workbench.core.base.errors import DesignError
+from workbench.core.design.design import Elastomer
+from workbench.core.press.press import ContactSettings, Extent
+from workbench.core.result.results import MembraneMesh
 
 MARGIN_WALLS = 3.1
 """Margin around the patch, over the thickness of the wall, that costs `MARGIN_ERROR`."""

@@ -15,18 +15,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sim.contact.grid.stencil import point_weights
 from sim.contact.objects.collider import Collider
 from sim.contact.objects.sampling import box_mm
-from sim.contact.problem import BOND_PENALTY, Problem
+from sim.contact.readout.problem import BOND_PENALTY, Problem
 from sim.contact.region.domain import EIGENVALUE, Domain, build_domain, stencil_nodes
+from sim.contact.region.filling import fill
 from sim.contact.region.materials import stiffest_MPa
 from sim.contact.region.quadrature import SurfacePoints
-from sim.contact.region.stencil import point_weights
-from sim.contact.specimens import fill
-from workbench.core.design import Elastomer
-from workbench.core.errors import DesignError
-from workbench.core.indenter import Indenter
-from workbench.core.results import MaterialPoints, MembraneMesh, Skin
+from workbench.core.base.errors import DesignError
+from workbench.core.design.design import Elastomer
+from workbench.core.press.indenter import Indenter
+from workbench.core.result.results import MaterialPoints, MembraneMesh, Skin
 
 EVERYTHING_MM = 1e6
 """Radius of a region that leaves nothing out."""

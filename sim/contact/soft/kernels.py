@@ -22,7 +22,8 @@ import taichi as ti
 
 from sim.contact.engine.cell_kernel import cell_pass, entry
 from sim.contact.engine.kernels import Floats, Integers, node_pass, point_displacement
-from sim.contact.engine.layout import (
+from sim.contact.engine.point_functions import body_rotation, line_weights, object_distance
+from sim.contact.grid.layout import (
     FREE,
     FRICTION,
     HELD,
@@ -35,7 +36,6 @@ from sim.contact.engine.layout import (
     STIFFNESS,
     TOUCHED,
 )
-from sim.contact.engine.point_functions import body_rotation, line_weights, object_distance
 from sim.contact.region.domain import BLOCK
 
 MEMBRANE, OBJECT = 0, 1

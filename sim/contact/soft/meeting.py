@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sim.contact.grid.stencil import point_slopes, point_weights
 from sim.contact.objects.collider import Collider
 from sim.contact.region.domain import stencil_nodes
-from sim.contact.region.stencil import point_slopes, point_weights
 from sim.contact.soft.body import SoftObject
 
 NEWTON = 4

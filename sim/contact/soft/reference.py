@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from sim.contact.engine.layout import FREE, HELD, TOUCHED
 from sim.contact.engine.reference import ContactHistory
+from sim.contact.grid.layout import FREE, HELD, TOUCHED
+from sim.contact.grid.stencil import point_weights
 from sim.contact.region.domain import stencil_nodes
-from sim.contact.region.stencil import point_weights
 from sim.contact.soft.body import SoftObject
 from sim.contact.soft.meeting import Meeting
 

@@ -13,20 +13,20 @@ import taichi as ti
 
 from sim.contact.engine.batch import Case, floats, integers
 from sim.contact.engine.kernels import SUBSTEP_ARRAYS
-from sim.contact.engine.layout import MEETS_SOFT
 from sim.contact.engine.relaxation import Balance, Balances, Launcher, Relaxation
-from sim.contact.problem import Problem
+from sim.contact.grid.layout import MEETS_SOFT
 from sim.contact.readout.frame import FrameOutcome
 from sim.contact.readout.outcome import frame_outcome, point_displacement
-from sim.contact.run import Run
+from sim.contact.readout.problem import Problem
 from sim.contact.soft import kernels as soft_kernels
 from sim.contact.soft.body import SoftObject, make_soft_object
 from sim.contact.soft.meeting import cells_at, deformed, meet
-from sim.contact.solver import Solver, least_load_N
-from workbench.core.errors import SolveError
-from workbench.core.indenter import Indenter
-from workbench.core.monitor import Monitor
-from workbench.core.sensing import Contact
+from sim.contact.solver.run import Run
+from sim.contact.solver.solver import Solver, least_load_N
+from workbench.core.base.errors import SolveError
+from workbench.core.base.monitor import Monitor
+from workbench.core.press.indenter import Indenter
+from workbench.core.result.sensing import Contact
 
 MEMBRANE, OBJECT = soft_kernels.MEMBRANE, soft_kernels.OBJECT
 

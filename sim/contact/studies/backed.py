@@ -6,13 +6,13 @@ import dataclasses
 
 import numpy as np
 
-from sim.contact import specimens
-from sim.contact.solver import press_membrane
-from workbench.core.design import Elastomer
-from workbench.core.indenter import Indenter, IndenterKind
-from workbench.core.press import ContactSettings, Press
-from workbench.core.results import Label
-from workbench.core.sensing import Contact
+from sim.contact.press import press_membrane
+from sim.contact.studies import specimens
+from workbench.core.design.design import Elastomer
+from workbench.core.press.indenter import Indenter, IndenterKind
+from workbench.core.press.press import ContactSettings, Press
+from workbench.core.result.results import Label
+from workbench.core.result.sensing import Contact
 
 BACKED_MM = 6.0
 """Width of the block on gel [mm]."""
@@ -51,7 +51,7 @@ def _press_backed_block(backing_MPa: float, *, shear_mm: float) -> Contact:
         dataclasses.replace(bonded, inner=inner, backing_mm=BACKED_GAP_MM),
         points,
         dataclasses.replace(BACKED_MATERIAL, backing_MPa=backing_MPa, friction=friction),
-        Indenter(kind=IndenterKind.CUBE, size_mm=3.0 * BACKED_MM),
+        Indenter(kind=IndenterKind("cube"), size_mm=3.0 * BACKED_MM),
         Press(
             target_mm=(0.0, 0.0, BACKED_HEIGHT_MM),
             depth_mm=BACKED_DEPTH_MM,

@@ -23,7 +23,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from workbench.core.design import Elastomer
+from workbench.core.design.design import Elastomer
 
 ORDER = 64
 """Gauss points of the contact: 1e-6 for contacts up to some 5 thicknesses wide."""

@@ -11,13 +11,13 @@ import math
 
 import numpy as np
 
-from sim.contact import specimens
 from sim.contact.particles.press import press_particles
-from sim.contact.solver import press_membrane
-from workbench.core.design import Elastomer
-from workbench.core.indenter import Indenter
-from workbench.core.press import ContactSettings, Extent, Press
-from workbench.core.sensing import Contact
+from sim.contact.press import press_membrane
+from sim.contact.studies import specimens
+from workbench.core.design.design import Elastomer
+from workbench.core.press.indenter import Indenter
+from workbench.core.press.press import ContactSettings, Extent, Press
+from workbench.core.result.sensing import Contact
 
 BALL_MM = 6.0
 """Diameter of the ball [mm]."""

@@ -12,21 +12,21 @@ import math
 
 import numpy as np
 
-from sim.contact import specimens
 from sim.contact.engine import reference
 from sim.contact.engine.batch import Case
 from sim.contact.engine.relaxation import Relaxation
+from sim.contact.grid.stencil import gradient_table
 from sim.contact.motion.approach import plan_approach
 from sim.contact.objects.collider import make_collider
-from sim.contact.problem import prepare
+from sim.contact.readout.problem import prepare
 from sim.contact.region.domain import Domain, stencil_nodes
-from sim.contact.region.stencil import gradient_table
+from sim.contact.studies import specimens
 from sim.contact.studies.finger import at_45_degrees, press_finger
 from sim.material import elastic_solid, first_piola
-from workbench.core.design import Elastomer
-from workbench.core.indenter import Indenter
-from workbench.core.press import ContactSettings, Press
-from workbench.core.results import Label
+from workbench.core.design.design import Elastomer
+from workbench.core.press.indenter import Indenter
+from workbench.core.press.press import ContactSettings, Press
+from workbench.core.result.results import Label
 
 MATERIAL = Elastomer(backing_MPa=0.0)
 GRID_MM = 0.5

@@ -13,14 +13,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim.contact import specimens
-from sim.contact.solver import press_membrane
-from sim.contact.studies import closed_forms
+from sim.contact.press import press_membrane
+from sim.contact.studies import closed_forms, specimens
 from sim.contact.studies.closed_forms import LayerContact
-from workbench.core.design import Elastomer, Law
-from workbench.core.indenter import Indenter, IndenterKind
-from workbench.core.press import ContactSettings, Press
-from workbench.core.sensing import Contact
+from workbench.core.design.design import Elastomer, Law
+from workbench.core.press.indenter import Indenter, IndenterKind
+from workbench.core.press.press import ContactSettings, Press
+from workbench.core.result.sensing import Contact
 
 HEIGHT_MM = 4.0
 FLATNESS = 10.0
@@ -153,7 +152,7 @@ def press_flat_end(*, poisson: float = 0.45) -> LayerPress:
         mesh,
         points,
         material,
-        Indenter(kind=IndenterKind.CYLINDER_END, size_mm=END_MM, edge_radius_mm=END_EDGE_MM),
+        Indenter(kind=IndenterKind("cylinder_end"), size_mm=END_MM, edge_radius_mm=END_EDGE_MM),
         Press(target_mm=(0.0, 0.0, HEIGHT_MM), depth_mm=END_DEPTH_MM, frames=1),
         ContactSettings(grid_mm=END_GRID_MM, active_radius_mm=radius_mm),
     )
@@ -195,7 +194,7 @@ def press_line() -> LayerPress:
         mesh,
         points,
         LINE_MATERIAL,
-        Indenter(kind=IndenterKind.CYLINDER_SIDE, size_mm=LINE_MM, edge_radius_mm=LINE_EDGE_MM),
+        Indenter(kind=IndenterKind("cylinder_side"), size_mm=LINE_MM, edge_radius_mm=LINE_EDGE_MM),
         Press(target_mm=(0.0, 0.0, LINE_HEIGHT_MM), depth_mm=LINE_DEPTH_MM, frames=1),
         ContactSettings(grid_mm=LINE_GRID_MM, active_radius_mm=width_mm),
     )

@@ -11,13 +11,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim.contact import specimens
-from sim.contact.solver import press_membrane
-from workbench.core.design import Elastomer
-from workbench.core.indenter import Indenter
-from workbench.core.motion import Stroke, release, slide
-from workbench.core.press import ContactSettings, Press
-from workbench.core.sensing import Contact
+from sim.contact.press import press_membrane
+from sim.contact.studies import specimens
+from workbench.core.design.design import Elastomer
+from workbench.core.press.indenter import Indenter
+from workbench.core.press.motion import Stroke, release, slide
+from workbench.core.press.press import ContactSettings, Press
+from workbench.core.result.sensing import Contact
 
 FRICTION = 0.3
 BALL_MM = 6.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from sim.fem.submodel import boundary
-from workbench.core.results import Label, MembraneMesh, Skin, VolumeMesh
+from workbench.core.result.results import Label, MembraneMesh, Skin, VolumeMesh
 
 SEED = 7
 """Of the irregular block: the same nodes every time."""

@@ -29,8 +29,8 @@ from sim.fem.studies.blocks import block, graded
 from sim.fem.submodel import boundary
 from sim.fem.tangent import Tangent
 from sim.material import elastic_solid
-from workbench.core.design import Elastomer, Law
-from workbench.core.indenter import Indenter
+from workbench.core.design.design import Elastomer, Law
+from workbench.core.press.indenter import Indenter
 
 RADIUS_MM = 10.0
 CONTACT_MM = 1.0

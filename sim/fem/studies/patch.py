@@ -17,7 +17,7 @@ from sim.fem.sparse_system import make_system
 from sim.fem.studies.blocks import SEED, irregular_block
 from sim.fem.submodel import boundary
 from sim.material import elastic_solid, first_piola
-from workbench.core.design import Elastomer, Law
+from workbench.core.design.design import Elastomer, Law
 
 STRETCH = np.array([[0.35, 0.25, -0.1], [0.1, -0.2, 0.15], [-0.05, 0.3, 0.1]])
 """F - I of the finite strain: a third of stretch, a quarter of shear and 25 degrees of turning."""

@@ -14,8 +14,8 @@ from sim.contact.motion.path import turn
 from sim.contact.objects.collider import Collider, make_collider
 from sim.fem.contact_law import PENALTY, SLIP_MM, Lag, Law, Touch, Traction, traction
 from sim.fem.obstacle import RigidPose, curvature, distance
-from workbench.core.design import Elastomer
-from workbench.core.indenter import Indenter
+from workbench.core.design.design import Elastomer
+from workbench.core.press.indenter import Indenter
 
 SEED = 3
 TRIED = 200_000

@@ -12,8 +12,8 @@ import numpy as np
 
 from sim.forces.network.spec import Target
 from sim.forces.network.weights import NetworkWeights
-from workbench.core.check import expect
-from workbench.core.errors import SolveError
+from workbench.core.base.check import expect
+from workbench.core.base.errors import SolveError
 
 FORCE = slice(3, 6)
 """Channels of the force among those that enter; the displacement comes first."""

@@ -17,7 +17,7 @@ from sim.forces.network.kernel_maps import KernelMaps
 from sim.forces.network.layers import Block, Down, Stem, Up, activated, norm
 from sim.forces.network.spec import DEPTH, NetworkSpec, Norm
 from sim.forces.network.weights import NetworkWeights
-from workbench.core.errors import StoreError, shown
+from workbench.core.base.errors import StoreError, shown
 
 
 class MinkUNet(nn.Module):

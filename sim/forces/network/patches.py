@@ -28,8 +28,8 @@ from sim.forces.network.spec import Target
 from sim.forces.network.turns import turn_matrix, value_matrix
 from sim.forces.network.voxels import join, spacing_mm, voxelise
 from sim.forces.network.weights import NetworkWeights
-from workbench.core.check import expect
-from workbench.core.errors import DesignError, SolveError
+from workbench.core.base.check import expect
+from workbench.core.base.errors import DesignError, SolveError
 
 FAINT = 0.01
 """Share of a field's largest value below which a point is taken for one without any."""

@@ -37,7 +37,7 @@ from sim.forces.network.minkunet import network_of
 from sim.forces.network.spec import DEPTH, NetworkSpec
 from sim.forces.network.voxels import Voxels, spacing_mm, voxelise
 from sim.forces.network.weights import NetworkWeights
-from workbench.core.errors import DesignError, DeviceError, SolveError
+from workbench.core.base.errors import DesignError, DeviceError, SolveError
 
 HALF_PAIRS_FROM = 20_000_000
 """Voxels times width squared of a level from which pairs pay in bfloat16 on a CPU. What they save

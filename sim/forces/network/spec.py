@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
-from workbench.core.errors import DesignError
+from workbench.core.base.errors import DesignError
 
 DEPTH = 4
 """Halvings of the resolution: levels 0 to 4."""
@@ -91,3 +91,5 @@ sets the time: 32 channels in place of 96 there. The coarse levels, which see th
 hold most parameters, narrow by four: 0.87 million parameters suit the thousands of samples that a
 workstation can solve."""
 SPECS = {spec.name: spec for spec in (PAPER, SMALL)}
+FIELDS = {Target.FORCE: "contact_force_N", Target.DISPLACEMENT: "displacement_mm"}
+"""What of a solver's answer each target is."""

@@ -20,8 +20,8 @@ import torch
 from torch import Tensor
 
 from sim.forces.network.segments import Segments, segment_sum, segments
-from workbench.core.check import expect
-from workbench.core.errors import DesignError
+from workbench.core.base.check import expect
+from workbench.core.base.errors import DesignError
 
 VOXEL_PER_SPACING = 0.75
 """Voxel edge over the spacing of the points. The published 0.11 mm for points 0.9 mm apart leaves

@@ -25,7 +25,7 @@ from typing import Any
 import numpy as np
 
 from sim.forces.network.spec import Activation, NetworkSpec, Norm, Target
-from workbench.core.errors import StoreError, WorkbenchError
+from workbench.core.base.errors import StoreError, WorkbenchError
 
 FORMAT = b"sensor-workbench force network "
 VERSION = 2

@@ -9,7 +9,7 @@ import torch
 from torch import nn
 
 from sim.forces.training.settings import Numbers, TrainingSettings
-from workbench.core.errors import DeviceError
+from workbench.core.base.errors import DeviceError
 
 FULL = ("out of memory", "can't allocate memory", "ALLOC_FAILED")
 """In messages of errors that have no type of their own: of the CPU, and of libraries on a GPU."""

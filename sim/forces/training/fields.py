@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from workbench.core.check import expect
-from workbench.core.errors import SolveError
+from workbench.core.base.check import expect
+from workbench.core.base.errors import SolveError
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

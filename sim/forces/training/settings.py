@@ -15,8 +15,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from sim.forces.network.spec import PAPER, SMALL, NetworkSpec
-from workbench.core.check import within
-from workbench.core.errors import DesignError
+from workbench.core.base.check import within
+from workbench.core.base.errors import DesignError
 
 OUR_VOXEL = 0.75
 """`sim.forces.network.voxels.VOXEL_PER_SPACING`, which cannot be imported without PyTorch."""

@@ -36,8 +36,8 @@ from sim.forces.training.averages import Average
 from sim.forces.training.feeds import Batch, Feed
 from sim.forces.training.scores import network_output, sample_errors
 from sim.forces.training.settings import Numbers, TrainingSettings, rate_factor
-from workbench.core.errors import SolveError
-from workbench.core.monitor import Monitor, silent
+from workbench.core.base.errors import SolveError
+from workbench.core.base.monitor import Monitor, silent
 
 _Result = TypeVar("_Result")
 

@@ -17,11 +17,11 @@ import dataclasses
 
 import numpy as np
 
-from sim.optics.camera import Rays, pixel_centres, pixel_directions
-from sim.optics.refraction import refract
-from workbench.core.camera import Camera
-from workbench.core.light import LightField
-from workbench.core.results import Skin
+from sim.optics.camera.camera import Rays, pixel_centres, pixel_directions
+from sim.optics.camera.refraction import refract
+from workbench.core.design.camera import Camera
+from workbench.core.result.light import LightField
+from workbench.core.result.results import Skin
 
 WIDEST_PX = 320
 """Glare is looked for on an image this wide: an LED of 1.5 mm at 20 mm then spans 15 pixels."""
@@ -77,7 +77,7 @@ def glare_radiance(
         light: Gives the LEDs.
         refractive_index: Of the solid.
     """
-    from geometry.rays import RayCaster
+    from geometry.surface.rays import RayCaster
 
     straight = pixel_directions(camera, pixel_centres(camera))
     eye = np.broadcast_to(np.asarray(camera.position_mm, dtype=np.float64), straight.shape)

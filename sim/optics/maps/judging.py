@@ -1,50 +1,20 @@
-"""From values on the skin to a map: area-weighted percentiles, and the score card's scalar."""
+"""From values on the skin to a figure: area-weighted percentiles, and the score card's scalar."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
 
 import numpy as np
 
-from workbench.core.maps import PERCENTILES, SkinMap
+from workbench.core.result.maps import PERCENTILES
 
 WASHED_OUT = 1.0
 """Glare over the skin's own radiance from which a place counts as washed out [1]."""
 REACHED = 0.1
 """Light of an LED over its brightest from which a place counts as reached [1]."""
 
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Draft:
-    """A map before its percentiles are taken."""
-
-    name: str
-    label: str
-    unit: str
-    values: np.ndarray
-    score_name: str
-    score: str
-    """How the scalar comes from the values: see `_score`."""
-    better: str
-    meaning: str
-
-
-def judged(draft: Draft, areas: np.ndarray) -> SkinMap:
-    """The map of a draft; `areas` [mm2] of the vertices, shape (V,)."""
-    known = np.isfinite(draft.values)
-    values, weights = draft.values[known].astype(np.float64), areas[known]
-    marks = weighted_percentiles(values, weights)
-    return SkinMap(
-        name=draft.name,
-        label=draft.label,
-        unit=draft.unit,
-        values=draft.values,
-        percentiles=marks,
-        score_name=draft.score_name,
-        score=_score(draft.score, values, weights, marks),
-        better=draft.better,
-        meaning=draft.meaning,
-    )
+Score = Callable[[np.ndarray, np.ndarray, np.ndarray], float]
+"""Of known values (N,), their areas (N,) and `PERCENTILES` of them: the figure."""
 
 
 def weighted_percentiles(values: np.ndarray, weights: np.ndarray) -> np.ndarray:
@@ -56,14 +26,30 @@ def weighted_percentiles(values: np.ndarray, weights: np.ndarray) -> np.ndarray:
     return np.interp(np.array(PERCENTILES) / 100.0 * weights.sum(), share, values[order])
 
 
-def _score(kind: str, values: np.ndarray, weights: np.ndarray, marks: np.ndarray) -> float:
-    total = max(float(weights.sum()), 1e-300)
-    if kind == "percent":
-        return 100.0 * float((values * weights).sum()) / total
-    if kind == "share_over_1":
-        return 100.0 * float(weights[values > WASHED_OUT].sum()) / total
-    if kind == "reach":
-        return 100.0 * float(weights[values >= REACHED].sum()) / total
-    if kind == "evenness":
-        return float(marks[1] / marks[5]) if marks[5] > 0.0 else 0.0
+def median(values: np.ndarray, areas: np.ndarray, marks: np.ndarray) -> float:
+    """Half the skin is better, half worse."""
     return float(marks[3])
+
+
+def evenness(values: np.ndarray, areas: np.ndarray, marks: np.ndarray) -> float:
+    """The 5th over the 95th percentile."""
+    return float(marks[1] / marks[5]) if marks[5] > 0.0 else 0.0
+
+
+def mean_percent(values: np.ndarray, areas: np.ndarray, marks: np.ndarray) -> float:
+    """Of values from 0 to 1."""
+    return 100.0 * float((values * areas).sum()) / _whole(areas)
+
+
+def washed_out_percent(values: np.ndarray, areas: np.ndarray, marks: np.ndarray) -> float:
+    """Share of the skin above `WASHED_OUT`."""
+    return 100.0 * float(areas[values > WASHED_OUT].sum()) / _whole(areas)
+
+
+def reached_percent(values: np.ndarray, areas: np.ndarray, marks: np.ndarray) -> float:
+    """Share of the skin from `REACHED`."""
+    return 100.0 * float(areas[values >= REACHED].sum()) / _whole(areas)
+
+
+def _whole(areas: np.ndarray) -> float:
+    return max(float(areas.sum()), 1e-300)

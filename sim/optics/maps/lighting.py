@@ -12,8 +12,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from sim.optics.table import bin_directions
-from workbench.core.light import AZIMUTHS, SINES, LightField, Scattered
+from sim.optics.field.table import bin_directions
+from workbench.core.result.light import AZIMUTHS, SINES, LightField, Scattered
 
 LEAST = 1e-12
 """Light vectors shorter than this times the longest are dark."""

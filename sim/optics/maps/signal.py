@@ -20,8 +20,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from sim.optics.display import srgb_encode
-from workbench.core.camera import ImageSensor
+from sim.optics.raster.display import srgb_encode
+from workbench.core.design.camera import ImageSensor
 
 TILT_DEG = 2.0
 BALL_RADIUS_MM = 3.0

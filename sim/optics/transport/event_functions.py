@@ -12,8 +12,8 @@ vertices. Sums are whole numbers of `FIXED_POINT`, so no order of the threads ch
 import taichi as ti
 import taichi.math as tm
 
-from sim.optics.coating_kernels import reflected
-from sim.optics.table import bin_cosines
+from sim.optics.light.bins import bin_cosines
+from sim.optics.light.coating_kernels import reflected
 from sim.optics.transport.constants import (
     ABSORBED,
     AT_NODES,
@@ -31,7 +31,7 @@ from sim.optics.transport.constants import (
 )
 from sim.optics.transport.emission_functions import Photon, emitted, lattice4, random4
 from sim.optics.transport.scatter_functions import Surface, meet, surface_at
-from workbench.core.light import AZIMUTHS
+from workbench.core.result.light import AZIMUTHS
 
 COSINES = tuple(float(cosine) for cosine in bin_cosines())
 JITTER = 1 << 16

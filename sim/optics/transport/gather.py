@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sim.optics.lights import Leds
+from sim.optics.light.lights import Leds
 from sim.optics.transport.constants import FIXED_POINT
 from sim.optics.transport.nodes import Nodes, coarse_nodes, neighbours
 from sim.optics.transport.paths import Driver, trace_paths
@@ -19,10 +19,10 @@ from sim.optics.transport.scene import open_scene
 from sim.optics.transport.smoothing import smoothed_bins
 from sim.optics.transport.sources import Sources, open_sources
 from sim.optics.transport.tally import Tally, tally_at_nodes
-from workbench.core.light import Scattered
-from workbench.core.monitor import Monitor, part, silent
-from workbench.core.optics import Transport
-from workbench.core.results import MembraneMesh
+from workbench.core.base.monitor import Monitor, part, silent
+from workbench.core.design.optics import Transport
+from workbench.core.result.light import Scattered
+from workbench.core.result.results import MembraneMesh
 
 SMOOTHINGS = 1
 """Times that the virtual LEDs are averaged with their neighbours. Against photons, 1 is as good as

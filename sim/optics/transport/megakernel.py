@@ -28,7 +28,7 @@ class Megakernel:
     def __init__(self, scene: Scene, sources: Sources, tally: Tally) -> None:
         import taichi.math as tm
 
-        from sim.optics.device_arrays import on_device
+        from sim.optics.light.device_arrays import on_device
 
         def vectors(array: np.ndarray) -> Any:
             return on_device(array, vector=3)

@@ -18,8 +18,8 @@ from typing import Any
 
 import numpy as np
 
-from geometry.surface import face_areas
-from workbench.core.results import Skin
+from geometry.surface.surface import face_areas
+from workbench.core.result.results import Skin
 
 ROUNDS = 5
 """Times that the centres move."""

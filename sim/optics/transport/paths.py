@@ -8,7 +8,7 @@ from typing import Protocol
 from sim.optics.transport.scene import Scene
 from sim.optics.transport.sources import Sources
 from sim.optics.transport.tally import Tally
-from workbench.core.monitor import Monitor, silent
+from workbench.core.base.monitor import Monitor, silent
 
 
 class Driver(enum.StrEnum):
@@ -67,7 +67,7 @@ def trace_paths(
 
 def driver_of_device() -> Driver:
     """The driver for the device that Taichi was opened on."""
-    from sim.optics.device_arrays import computes_on_gpu
+    from sim.optics.light.device_arrays import computes_on_gpu
 
     return Driver.MEGAKERNEL if computes_on_gpu() else Driver.WAVEFRONT
 

@@ -12,19 +12,19 @@ from __future__ import annotations
 
 import numpy as np
 
-from geometry.surface import face_areas
-from sim.optics.lights import Leds
+from geometry.surface.surface import face_areas
+from sim.optics.light.lights import Leds
 from sim.optics.transport.constants import FIXED_POINT
 from sim.optics.transport.paths import Driver, trace_paths
 from sim.optics.transport.scene import open_scene
 from sim.optics.transport.sources import open_sources
 from sim.optics.transport.tally import tally_toward_camera
 from sim.optics.transport.view import directions_to_camera
-from workbench.core.camera import Camera
-from workbench.core.light import VertexRadiance
-from workbench.core.monitor import Monitor, silent
-from workbench.core.optics import Transport
-from workbench.core.results import MembraneMesh
+from workbench.core.base.monitor import Monitor, silent
+from workbench.core.design.camera import Camera
+from workbench.core.design.optics import Transport
+from workbench.core.result.light import VertexRadiance
+from workbench.core.result.results import MembraneMesh
 
 
 def trace_radiance(

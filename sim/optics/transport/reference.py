@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sim.optics.table import bin_shares
+from sim.optics.light.bins import bin_shares
 from sim.optics.transport.constants import (
     ABSORBED,
     FLYING,
@@ -22,7 +22,7 @@ from sim.optics.transport.constants import (
     SURVIVAL,
 )
 from sim.optics.transport.scene import Scene
-from workbench.core.light import AZIMUTHS, SINES
+from workbench.core.result.light import AZIMUTHS, SINES
 
 FLOOR = 1e-3
 """As in `coating_kernels`."""

@@ -18,15 +18,8 @@ section 5.3. Plain twin: `reference`.
 import taichi as ti
 import taichi.math as tm
 
-from sim.optics.coating_kernels import FLOOR, schlick
-from sim.optics.transport.constants import (
-    ABSORBED,
-    GRAZING,
-    LEAKED,
-    OFFSET_MM,
-    STEEPEST,
-    SURVIVAL,
-)
+from sim.optics.light.coating_kernels import FLOOR, schlick
+from sim.optics.transport.constants import ABSORBED, GRAZING, LEAKED, OFFSET_MM, STEEPEST, SURVIVAL
 from sim.optics.transport.emission_functions import Photon, across
 
 

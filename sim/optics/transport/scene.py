@@ -12,10 +12,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.surface import vertex_normals
-from workbench.core.check import expect
-from workbench.core.optics import Coating, Transport
-from workbench.core.results import MembraneMesh
+from geometry.surface.surface import vertex_normals
+from workbench.core.base.check import expect
+from workbench.core.design.optics import Coating, Transport
+from workbench.core.result.results import MembraneMesh
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from workbench.core.light import AZIMUTHS
+from workbench.core.result.light import AZIMUTHS
 
 
 def smoothed_bins(bins: np.ndarray, frames: np.ndarray, links: Any) -> np.ndarray:

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.surface import closest_point
-from sim.optics.lights import Leds
+from geometry.surface.surface import closest_point
+from sim.optics.light.lights import Leds
 from sim.optics.transport.scene import Scene
 
 CLEARANCE = 0.95

@@ -19,7 +19,7 @@ from sim.optics.transport.constants import (
 )
 from sim.optics.transport.nodes import Nodes
 from sim.optics.transport.scene import Scene
-from workbench.core.light import AZIMUTHS, SINES
+from workbench.core.result.light import AZIMUTHS, SINES
 
 
 def _none(*shape: int, kind: type = np.float32) -> np.ndarray:

@@ -11,10 +11,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from geometry.rays import RayCaster
-from sim.optics.refraction import refract
-from workbench.core.camera import Camera
-from workbench.core.results import MembraneMesh, Skin
+from geometry.surface.rays import RayCaster
+from sim.optics.camera.refraction import refract
+from workbench.core.design.camera import Camera
+from workbench.core.result.results import MembraneMesh, Skin
 
 STEPS = (1.0,) * 6 + (0.5,) * 6 + (0.25,) * 6
 """Share of the miss that the aim moves by, time after time: where the wall's curvature jumps, from

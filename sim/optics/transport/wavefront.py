@@ -7,17 +7,17 @@ of the rays; photons that ended are dropped from the arrays after each event.
 from __future__ import annotations
 
 import itertools
-import os
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import numpy as np
 
-from geometry.rays import RayCaster
+from geometry.surface.rays import RayCaster
 from sim.optics.transport.constants import EVENTS
 from sim.optics.transport.scene import Scene
 from sim.optics.transport.sources import Sources
 from sim.optics.transport.tally import Tally
+from workbench.system.processes import cores
 
 BATCH = 120_000
 """Photons that fly together: 5 MB, and under a second between two reports of progress."""
@@ -36,7 +36,7 @@ class Wavefront:
         coating = scene.coating
         lobes = coating.albedo, coating.specular, coating.roughness
         self._optics = np.array([*lobes, scene.refractive_index], dtype=np.float32)
-        self._threads = ThreadPoolExecutor(len(os.sched_getaffinity(0)))
+        self._threads = ThreadPoolExecutor(cores())
 
     def close(self) -> None:
         """End the threads."""

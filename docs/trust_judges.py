@@ -1,0 +1,92 @@
+"""What each row of `workbench validate` is judged by: an exact answer, others, or ourselves.
+
+A comparison of the product with itself says that it is consistent, not that it is right; it is
+called so. Where the cases of a row differ, a part of the case decides.
+"""
+
+from __future__ import annotations
+
+import enum
+
+
+class Judge(enum.StrEnum):
+    """By what a row is judged."""
+
+    EXACT = "closed form"
+    """An exact answer: a formula, a law of nature, a definition."""
+    OUTSIDE = "outside reference"
+    """Another program or a publication: CalculiX, Mitsuba, an independent finite-element solver."""
+    LIMIT = "converged limit"
+    """What our own values tend to on ever finer meshes."""
+    ITSELF = "itself"
+    """The product another way: mirrored, divided more finely, by another of its solvers."""
+    NONE = "target"
+    """A number that the project set itself: a count, a time, a rate."""
+
+
+_EXACT = """
+bonded_block_force contact_radius flat_punch cylinder_line bonded_layer_reference backed_block_force
+backed_block_shear force_balance moment_balance coulomb_limit slip_ratio slip_ratio_global
+release_force patch_test rigid_rotation stiffness_tripled moment_of_smooth_sphere friction_cone
+projection field_of_view snell fresnel optical_axis plane_tangency irradiance depth_z energy furnace
+flat_furnace reciprocity plane_irradiance slab total_reflection sensor_noise defocus spectrum
+hertz_force hertz_radius hertz_force_order hertz_radius_order release virtual_leds
+learned_sparse_equals_dense exact_background cad_volume outer_area skin_on_surface
+"""
+_OUTSIDE = """
+finger_45 published_mode sheared_sphere shear_force finger_45_normal_force refinement
+refinement_calculix calculix calculix_same_mesh mitsuba mitsuba_product mitsuba_octant
+"""
+_LIMIT = "mpm_against_fem_limit mpm_refinement fem_refinement"
+_ITSELF = """
+region_error residual frame_size mirror mirror_symmetry rotation increments submodel submodel_worst
+determinism cpu_gpu mpm_against_fem plane_closed_form direct_table table_brightness contact_tangent
+friction_tangent contact_energy raster newton_projection frame_depth published_depth map_sensitivity
+surface_detail ceiling hybrid table direct linear plane_target plane_source geodesic rest_image gain
+gain_value fem_matrix_repeated surface_volume hex_volume lattice_volume
+"""
+_NONE = """
+release_substeps penetration dent_change fem_matrix fem_matrix_cpu fem_matrix_residual watertight
+hex_scaled_jacobian mould_overlap mould_watertight mould_thinnest_wall memory_growth
+"""
+JUDGES = {
+    **dict.fromkeys(_EXACT.split(), Judge.EXACT),
+    **dict.fromkeys(_OUTSIDE.split(), Judge.OUTSIDE),
+    **dict.fromkeys(_LIMIT.split(), Judge.LIMIT),
+    **dict.fromkeys(_ITSELF.split(), Judge.ITSELF),
+    **dict.fromkeys(_NONE.split(), Judge.NONE),
+}
+"""By name of the row."""
+BEGINNINGS = {
+    "learned_inference_": Judge.NONE,
+    "learned_": Judge.ITSELF,
+    "labels_": Judge.ITSELF,
+    "hex_": Judge.NONE,
+    "mould_": Judge.NONE,
+    "parts_": Judge.NONE,
+    "sweep_": Judge.NONE,
+    "robustness_": Judge.NONE,
+}
+"""By the beginning of names of which there is one for each family, split or size."""
+BY_CASE = {
+    ("finger_45", "no finite-element figure is recorded"): Judge.LIMIT,
+    ("rotation", "moment that resists"): Judge.EXACT,
+    ("rotation", "every point sliding"): Judge.EXACT,
+}
+"""By name and a part of the case, before the others."""
+
+
+def judge(name: str, case: str = "") -> Judge:
+    """By what a row is judged.
+
+    Raises:
+        KeyError: If nobody said so; a new row is entered above.
+    """
+    for (row, part), found in BY_CASE.items():
+        if row == name and part in case:
+            return found
+    if name not in JUDGES:
+        for beginning, found in BEGINNINGS.items():
+            if name.startswith(beginning):
+                return found
+    return JUDGES[name]

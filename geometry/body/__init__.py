@@ -1,0 +1,1 @@
+"""Solid bodies: constructive geometry, signed distance, the layers of a sensor."""

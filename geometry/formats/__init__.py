@@ -1,0 +1,1 @@
+"""Mesh files as bytes: OBJ, STL and 3MF."""

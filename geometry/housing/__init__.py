@@ -1,0 +1,1 @@
+"""What carries the membrane: camera mount, LED holder, base and actuators."""

@@ -1,0 +1,1 @@
+"""Bodies from files: read, mended or remeshed, and made a sensor's layers."""

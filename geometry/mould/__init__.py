@@ -1,0 +1,1 @@
+"""Moulds: parting, parts, channels, how they open, and what a printer cannot make of them."""

@@ -1,0 +1,321 @@
+"""The checks of a mould: each a number, its limit, where it is worst, and what to do about it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from geometry.body.csg import Body
+from geometry.mould.cast import Cast
+from geometry.mould.castability import Worst, bed_ratio, draft_deg, undercut
+from geometry.mould.channels import Channels
+from geometry.mould.core_release import bend_strain, core_strain, pin_strain
+from geometry.mould.parting import Parting
+from geometry.mould.trapped import POCKET_VENT_MM
+from geometry.mould.walls import thinnest_wall
+from geometry.surface.spread import Spread, spread
+from workbench.core.design.making import MouldOptions
+from workbench.core.result.fabrication import (
+    FabricationCheck,
+    FabricationPart,
+    PartMotion,
+    Severity,
+)
+from workbench.core.result.results import LabelledSurface
+
+UNDERCUT_SHARE = 0.02
+"""Silicone peels off undercuts that small without a thought."""
+LOCKED_SHARE = 0.35
+"""A part that holds more than a third of its surface tears the skin or does not come off."""
+LEAST_DRAFT_DEG = -0.5
+"""Silicone needs no draft, only no lean against the pull; half a degree is facets."""
+WALL_MM = 2.0
+"""Printed walls thinner than this bend under the bolts."""
+LEAST_PRINT_MM = 0.4
+"""Walls thinner than one line of the usual nozzle are not there once printed [mm]."""
+STRAIN_SAFETY = 3.0
+"""Share of the elongation at break that demoulding may take, as 1 / 3: data sheets give the
+elongation of flawless strips (ASTM D412), and cast skins tear at nicks and seams first."""
+DECIMALS = 4
+"""Of a measure: the rest is rounding."""
+ROUNDING = 1e-6
+"""A value that misses its limit by less meets it."""
+
+
+def check(
+    name: str,
+    part: str,
+    worst: Worst,
+    *,
+    unit: str,
+    limit: float,
+    message: str,
+    sense: str = "max",
+    bad: float | None = None,
+    title: str = "",
+) -> FabricationCheck:
+    """A check; a warning beyond the limit, bad beyond `bad` (never, when None).
+
+    Args:
+        title: What is measured, in words; made of the name when empty.
+        message: What to do about it, added when it is not good.
+    """
+    sign = 1.0 if sense == "max" else -1.0
+    over = sign * (worst.value - limit) > ROUNDING
+    severity = Severity.WARNING if over else Severity.GOOD
+    if over and bad is not None and sign * worst.value > sign * bad:
+        severity = Severity.BAD
+    bound = "at most" if sense == "max" else "at least"
+    title = title or name.replace("_", " ")
+    value = legible(worst.value)
+    text = f"{part}: {title} {value} {unit}, {bound} {limit:.3g} {unit} is good"
+    if tolerated(worst.value, limit, sense=sense) and not over:
+        text = f"{part}: {title} {value} {unit} is within tolerance, {limit:.3g} {unit}"
+    return FabricationCheck(
+        name=name,
+        part=part,
+        value=worst.value,
+        unit=unit,
+        limit=limit,
+        sense=sense,
+        severity=severity,
+        place_mm=worst.place_mm,
+        message=f"{text}; {message}." if over else f"{text}.",
+    )
+
+
+def legible(value: float) -> str:
+    """Three digits of a measure; what is only rounding of the computer is 0."""
+    return f"{round(value, DECIMALS) + 0.0:.3g}"
+
+
+def tolerated(value: float, limit: float, *, sense: str) -> bool:
+    """Whether a measure that should not be negative is, and its limit lets it."""
+    return sense == "min" and limit < 0.0 and round(value, DECIMALS) < 0.0
+
+
+def mould_checks(
+    parts: Sequence[FabricationPart],
+    cast: Cast,
+    parting: Parting,
+    channels: Channels,
+    options: MouldOptions,
+    *,
+    way: np.ndarray,
+) -> tuple[FabricationCheck, ...]:
+    """Checks of a mould's parts and channels that hold for every silicone.
+
+    Args:
+        way: Unit direction in which the core leaves, shape (3,).
+    """
+    checks = [*_release(cast, parting), *_core(cast, way)]
+    for part in parts:
+        wall = thinnest_wall(part.points_mm, part.faces)
+        checks.append(wall_check(part.name, wall, MOULD_LIMITS, options.feature_mm))
+        checks.append(bed_check(part, options.bed_mm, MOULD_LIMITS))
+    return (*checks, _trapped(channels), _feature(channels, options))
+
+
+class PrintLimits(NamedTuple):
+    """What a printed part must keep, and what to do where it does not."""
+
+    wall_mm: float
+    thin: str
+    """Remedy for a wall that is too thin."""
+    large: str
+    """Remedy for a part that is too large for the printer."""
+
+
+MOULD_LIMITS = PrintLimits(
+    WALL_MM,
+    thin="raise mould.wall_mm or the shape's own sizes there, or print in tough resin",
+    large="lower mould.wall_mm, raise mould.outer_parts or use a larger printer",
+)
+
+
+def wall_check(
+    name: str, wall: Worst, limits: PrintLimits, feature_mm: float | None
+) -> FabricationCheck:
+    """Thinnest wall of a part: bad where the printer leaves nothing of it.
+
+    Args:
+        feature_mm: Smallest feature that the printer does; None if the place is an edge, which it
+            rounds.
+    """
+    return check(
+        "minimum_wall",
+        name,
+        wall,
+        unit="mm",
+        limit=limits.wall_mm,
+        sense="min",
+        bad=None if feature_mm is None else max(LEAST_PRINT_MM, feature_mm),
+        message=limits.thin,
+    )
+
+
+def bed_check(
+    part: FabricationPart, bed_mm: tuple[float, float, float], limits: PrintLimits
+) -> FabricationCheck:
+    """Room on the printer for one part."""
+    x, y, z = (part.points_mm.min(axis=0) + part.points_mm.max(axis=0)) / 2
+    return check(
+        "bed",
+        part.name,
+        Worst(100.0 * bed_ratio(part.points_mm, bed_mm), (float(x), float(y), float(z))),
+        unit="%",
+        title="share of the bed",
+        limit=100.0,
+        bad=100.0,
+        message=limits.large,
+    )
+
+
+def _release(cast: Cast, parting: Parting) -> Iterator[FabricationCheck]:
+    """Undercut and draft of each outer part."""
+    places = spread(cast.sensing.points_mm, cast.sensing.faces)
+    owner = parting.part_of(places.points_mm)
+    for number, name in enumerate(parting.names):
+        mine = owner == number
+        part = Spread(places.points_mm[mine], places.normals[mine], places.area_mm2)
+        held = undercut(cast.outer.points_mm, cast.outer.faces, parting.pulls[number], part)
+        yield check(
+            "undercut",
+            name,
+            held,
+            unit="of its surface",
+            limit=UNDERCUT_SHARE,
+            bad=LOCKED_SHARE,
+            message="the skin must be peeled over it: use a silicone that stretches, "
+            "raise mould.outer_parts or round the shape",
+        )
+        yield check(
+            "draft",
+            name,
+            draft_deg(part, parting.pulls[number]),
+            unit="degree",
+            limit=LEAST_DRAFT_DEG,
+            sense="min",
+            message="the surface leans against the pull there",
+        )
+
+
+def motion_checks(motions: Sequence[PartMotion]) -> Iterator[FabricationCheck]:
+    """Whether rigid parts are in each other's way when the mould is opened."""
+    for motion in motions:
+        yield check(
+            "demoulding",
+            motion.part,
+            Worst(motion.overlap_mm3, motion.overlap_at_mm),
+            unit="mm3",
+            title="overlap with other parts on its way out",
+            limit=motion.tolerance_mm3,
+            bad=motion.tolerance_mm3,
+            message="no order of pulling the parts apart is free: choose another "
+            "mould.outer_parts, or bend or undercut the shape less",
+        )
+
+
+def _core(cast: Cast, way: np.ndarray) -> Iterator[FabricationCheck]:
+    """How the core leaves the cast."""
+    if cast.core is None:
+        return
+    places = spread(cast.core.points_mm, cast.core.faces)
+    sides = places.points_mm[:, 2] > cast.base_mm + 1e-3
+    part = Spread(places.points_mm[sides], places.normals[sides], places.area_mm2)
+    # The core leaves downward inside the silicone: its facets must look up, away from the pull.
+    draft = draft_deg(part, -way)
+    yield check(
+        "draft",
+        "core",
+        draft,
+        unit="degree",
+        limit=LEAST_DRAFT_DEG,
+        sense="min",
+        message="the core is wider above than below: raise mould.draft_deg or stretch the skin",
+    )
+
+
+def release_strain(core: Body, membrane: LabelledSurface, way: np.ndarray) -> Worst:
+    """Strain of the silicone when the core leaves: of its sections, its bend or the pins.
+
+    Args:
+        way: Unit direction in which the core leaves, shape (3,).
+    """
+    strains = core_strain(core), bend_strain(core, membrane, way), pin_strain(membrane)
+    return max(strains, key=lambda worst: worst.value)
+
+
+def part_removal(part: str, strain: Worst, elongation: float) -> FabricationCheck:
+    """Whether a silicone bears to make way for an outer part that is pulled off it.
+
+    Args:
+        elongation: Its strain at break [1].
+    """
+    return check(
+        "part_removal",
+        part,
+        strain,
+        unit="strain",
+        title="stretch of the skin that it is pulled over",
+        limit=elongation / STRAIN_SAFETY,
+        bad=elongation,
+        message="choose a silicone with more elongation, raise mould.outer_parts or round the "
+        "shape",
+    )
+
+
+def core_removal(strain: Worst, elongation: float) -> FabricationCheck:
+    """Whether a silicone bears to be pulled off its core.
+
+    Args:
+        elongation: Its strain at break [1].
+    """
+    return check(
+        "core_removal",
+        "core",
+        strain,
+        unit="strain",
+        limit=elongation / STRAIN_SAFETY,
+        bad=elongation,
+        message="choose a silicone with more elongation, bend the shape less, or raise "
+        "mould.draft_deg",
+    )
+
+
+def _trapped(channels: Channels) -> FabricationCheck:
+    places = channels.trapped_mm
+    spot = places[0] if len(places) else np.zeros(3)
+    vented = len(channels.pockets_mm)
+    return check(
+        "trapped_air",
+        "cast",
+        Worst(float(len(places)), (float(spot[0]), float(spot[1]), float(spot[2]))),
+        unit="pockets",
+        limit=0.0,
+        message=f"the highest holds {channels.trapped_height_mm:.1f} mm of air; {vented} others "
+        "are vented; tilt the mould while pouring and degas it under vacuum",
+    )
+
+
+def _feature(channels: Channels, options: MouldOptions) -> FabricationCheck:
+    gate, vent = channels.gate_mm, channels.vents_mm[0]
+    features = [
+        Worst(2 * channels.throat_mm, (float(gate[0]), float(gate[1]), 0.0)),
+        Worst(2 * channels.vent_mm, (float(vent[0]), float(vent[1]), 0.0)),
+    ]
+    if len(channels.pockets_mm):
+        spot = channels.pockets_mm[0]
+        place = (float(spot[0]), float(spot[1]), float(spot[2]))
+        features.append(Worst(2 * POCKET_VENT_MM, place))
+    return check(
+        "smallest_feature",
+        "core",
+        min(features, key=lambda feature: feature.value),
+        unit="mm",
+        limit=options.feature_mm,
+        sense="min",
+        message="the printer closes holes this small: drill them, or lower mould.feature_mm",
+    )

@@ -1,0 +1,1 @@
+"""Pictures of bodies and parts, drawn off screen."""

@@ -1,0 +1,1 @@
+"""Surfaces of triangles: nearest places, rays, sections, holes, regions, offsets and remeshing."""

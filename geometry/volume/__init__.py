@@ -1,0 +1,1 @@
+"""Volume meshes: hexahedra, tetrahedra, the lattice of material points, and their quality."""

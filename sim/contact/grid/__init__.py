@@ -1,0 +1,1 @@
+"""The background grid: how its nodes lie in memory, and the stencil around one."""

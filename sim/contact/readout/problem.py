@@ -1,0 +1,190 @@
+"""A press made ready to be solved: object, path, surface points and active region."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sim.contact.engine.memory import check_memory
+from sim.contact.motion.approach import Approach
+from sim.contact.objects.collider import Collider
+from sim.contact.readout.verdict import check_depth
+from sim.contact.region.backing import (
+    SIDEWAYS,
+    backed_faces,
+    bonded_faces,
+    foundation_N_mm3,
+    support_points_mm,
+)
+from sim.contact.region.domain import Domain, build_domain
+from sim.contact.region.drives import driven_faces, drives_inner, farthest_drive_mm
+from sim.contact.region.materials import stiffest_MPa, young_MPa_at
+from sim.contact.region.placing import place_object
+from sim.contact.region.quadrature import SurfacePoints, corner_points, facets_of, join, merge
+from sim.contact.region.radius import region_radius_mm
+from sim.contact.region.refinement import LONGEST_EDGE, path_distance_mm, reach_mm, refine
+from workbench.core.design.design import Elastomer
+from workbench.core.press.indenter import Indenter
+from workbench.core.press.press import ContactSettings, Press
+from workbench.core.result.results import MaterialPoints, MembraneMesh
+from workbench.core.result.sampled import SampledDistance
+
+BOND_PENALTY = 100.0
+"""Stiffness of the bond to the support per area, in units of E / grid."""
+DRIVE_PENALTY = 20.0
+"""The same for driven faces: an actuator's pad gives a little, and large turns stay stable."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Problem:
+    """One press, ready."""
+
+    mesh: MembraneMesh
+    material: Elastomer
+    settings: ContactSettings
+    approach: Approach
+    collider: Collider
+    domain: Domain
+    radius_mm: float
+
+    @property
+    def press(self) -> Press:
+        """The path."""
+        return self.approach.press
+
+
+def make_problem(
+    mesh: MembraneMesh,
+    points: MaterialPoints,
+    material: Elastomer,
+    indenter: Indenter,
+    press: Press,
+    settings: ContactSettings,
+    sampled: SampledDistance | None = None,
+) -> Problem:
+    """Place the object and number the region.
+
+    Args:
+        mesh: Skins and gap.
+        points: Material points.
+        material: The elastomer.
+        indenter: The object.
+        press: Its path.
+        settings: Region and penalty.
+        sampled: The object's distance on this grid where a store has it; else it is sampled here.
+
+    Raises:
+        DesignError: If the target is off the skin, the object cannot be made or would reach the
+            support, the region is too small, a driven region does not exist, or memory is short.
+        SolveError: If the first touch cannot be found.
+    """
+    collider, approach = place_object(
+        mesh.outer, indenter, press, grid_mm=points.grid_mm, sampled=sampled
+    )
+    check_depth(support_points_mm(mesh), approach, collider)
+    radius_mm = region_radius_mm(mesh, material, approach, collider, settings)
+    return Problem(
+        mesh=mesh,
+        material=material,
+        settings=settings,
+        approach=approach,
+        collider=collider,
+        domain=prepare(mesh, points, material, approach, collider, settings, radius_mm=radius_mm),
+        radius_mm=radius_mm,
+    )
+
+
+def prepare(
+    mesh: MembraneMesh,
+    points: MaterialPoints,
+    material: Elastomer,
+    approach: Approach,
+    collider: Collider,
+    settings: ContactSettings,
+    *,
+    radius_mm: float,
+) -> Domain:
+    """Surface points that may take part, and the active region around them."""
+    check_memory(points, approach.target_mm, radius_mm)
+    held = contact_points(
+        mesh, material, approach, collider, settings, points.grid_mm, radius_mm=radius_mm
+    )
+    for group in held_points(mesh, material, approach, points.grid_mm, radius_mm=radius_mm):
+        held = join(held, group)
+    return build_domain(
+        mesh,
+        points,
+        held,
+        material,
+        target_mm=approach.target_mm,
+        active_radius_mm=radius_mm,
+        inner_moves=mesh.backing_mm > 0.0 or drives_inner(mesh, approach.press),
+    )
+
+
+def contact_points(
+    mesh: MembraneMesh,
+    material: Elastomer,
+    approach: Approach,
+    collider: Collider,
+    settings: ContactSettings,
+    grid_mm: float,
+    *,
+    radius_mm: float,
+) -> SurfacePoints:
+    """Points of the outer skin that the object comes near: others get no spring and no mass."""
+    centre = mesh.outer.points_mm[mesh.outer.faces].mean(axis=1)
+    near = np.flatnonzero(_near(centre, approach, radius_mm, grid_mm))
+    facets = facets_of(mesh.outer, near, spacing_mm=LONGEST_EDGE * grid_mm)
+    facets = refine(facets, approach, collider, grid_mm=grid_mm)
+    unit = settings.penalty / grid_mm
+    points = corner_points(facets, stiffness_N_mm3=unit, bonded=False)
+    gap_mm = path_distance_mm(points.position_mm, approach, collider)
+    reached_mm = reach_mm(approach, grid_mm) + farthest_drive_mm(mesh, approach.press)
+    points = points.take(gap_mm < reached_mm)
+    return points.scaled(young_MPa_at(material, mesh.outer, points.position_mm))
+
+
+def held_points(
+    mesh: MembraneMesh,
+    material: Elastomer,
+    approach: Approach,
+    grid_mm: float,
+    *,
+    radius_mm: float,
+) -> list[SurfacePoints]:
+    """Points bonded to the support, resting on gel, or driven by an actuation of the press."""
+    unit = stiffest_MPa(material) / grid_mm
+    spacing_mm = LONGEST_EDGE * grid_mm
+    outer_drives, inner_drives = driven_faces(mesh, approach.press)
+    free = inner_drives < 0
+    groups = [
+        (mesh.inner, bonded_faces(mesh) & free, BOND_PENALTY * unit, 1.0, -1),
+        (mesh.inner, backed_faces(mesh) & free, foundation_N_mm3(mesh, material), SIDEWAYS, -1),
+    ]
+    for drive in range(len(approach.press.actuations)):
+        for skin, drives in ((mesh.outer, outer_drives), (mesh.inner, inner_drives)):
+            groups.append((skin, drives == drive, DRIVE_PENALTY * unit, 1.0, drive))
+    found = []
+    for skin, chosen, stiffness_N_mm3, sideways, drive in groups:
+        centre = skin.points_mm[skin.faces].mean(axis=1)
+        members = np.flatnonzero(chosen & _near(centre, approach, radius_mm, grid_mm))
+        if stiffness_N_mm3 > 0.0 and len(members):
+            facets = facets_of(skin, members, spacing_mm=spacing_mm)
+            points = corner_points(
+                facets,
+                stiffness_N_mm3=stiffness_N_mm3,
+                bonded=True,
+                sideways=sideways,
+                drive=drive,
+            )
+            found.append(merge(points, grid_mm))
+    return found
+
+
+def _near(
+    places_mm: np.ndarray, approach: Approach, radius_mm: float, grid_mm: float
+) -> np.ndarray:
+    distance = np.linalg.norm(places_mm - approach.target_mm, axis=1)
+    return distance < radius_mm + 2.0 * grid_mm

@@ -1,0 +1,1 @@
+"""Presses relaxed to equilibrium, frame by frame, one or many at once."""

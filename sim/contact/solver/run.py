@@ -1,0 +1,193 @@
+"""One press on its way through the frames: ramps, predictions, drives, and what settled."""
+
+from __future__ import annotations
+
+import math
+import time
+
+import numpy as np
+
+from sim.contact.engine.relaxation import STEPS, Relaxation
+from sim.contact.grid.layout import POSE
+from sim.contact.readout.frame import FrameOutcome
+from sim.contact.readout.problem import Problem
+from sim.contact.region.drives import driven_displacement_mm
+from workbench.core.base.errors import SolveError
+
+RAMP_SUBSTEPS_PER_MM = 100.0
+"""Substeps for the object to move 1 mm without a prediction."""
+LEAVING = 0.5
+"""Share of those substeps for an object that leaves: it cannot push the skin too far."""
+SHORTEST_RAMP = 10
+ARM_CELLS = 10.0
+"""Distance from its origin at which a turn of the object counts as travel, in cells."""
+FORCE_CHANGE = 2e-4
+"""Largest relative change of the reaction between two looks of a settled frame."""
+NET_FORCE = 5e-3
+"""Largest sum of the forces on free nodes over the load: what the support would miss."""
+MOST_KEPT = 3
+"""Settled displacements kept to extrapolate from."""
+STILL_MM = 1e-9
+"""Travel below which nothing moves."""
+
+
+class Run:
+    """State of one press; `number` is its case in the relaxation."""
+
+    def __init__(
+        self, problem: Problem, relaxation: Relaxation, number: int, *, frame: int = 0
+    ) -> None:
+        self.problem = problem
+        self.relaxation = relaxation
+        self.number = number
+        self.frame = frame
+        self.attempt = 0
+        self.outcomes: list[FrameOutcome] = []
+        self.error: SolveError | None = None
+        self._settled = [relaxation.snapshot(number)]
+        self._ramp = np.zeros((0, POSE))
+        self._fed = 0
+        self._driven_mm = 0.0
+        """Farthest way of a driven point in the present frame [mm]."""
+        self._begun_s = time.perf_counter()
+
+    @property
+    def arrived(self) -> bool:
+        """Whether the object is where the frame wants it."""
+        return self._fed >= len(self._ramp)
+
+    @property
+    def label(self) -> str:
+        """The frame as people count it."""
+        return f"frame {self.frame + 1} of {self.problem.approach.frame_count}"
+
+    def progress(self, share: float) -> float:
+        """Share of the frames that are done; `share` is that of the present one."""
+        return min(1.0, (self.frame + share) / self.problem.approach.frame_count)
+
+    def begin(self) -> None:
+        """Start the present frame, or its next attempt, from the last settled displacement."""
+        if self.attempt == 0:
+            self._begun_s = time.perf_counter()
+        predicted = self.attempt == 0 and self._predict()
+        if self.attempt:
+            self.relaxation.restart(self.number, self._settled[-1])
+        self.drive()
+        count = 0 if predicted else self._ramp_length()
+        steps = (np.arange(count) + 1.0) / max(count, 1)
+        self._ramp = self._rows(steps) if count else np.zeros((0, POSE))
+        self._fed = 0
+        if not count:
+            self.stay()
+
+    def feed(self) -> None:
+        """Hand the next poses of the ramp to the relaxation."""
+        rows = self._ramp[self._fed : self._fed + STEPS]
+        self.relaxation.set_poses(self.number, rows)
+        self._fed += STEPS
+
+    def stay(self) -> None:
+        """Leave the object where the frame wants it."""
+        self.relaxation.set_poses(self.number, self._rows(np.ones(1)))
+
+    def finish(self, outcome: FrameOutcome) -> None:
+        """Close the settled frame."""
+        self.outcomes.append(outcome)
+        self._settled = [*self._settled, self.relaxation.snapshot(self.number)][-MOST_KEPT:]
+        self.relaxation.commit(self.number)
+        self.frame += 1
+        self.attempt = 0
+
+    @property
+    def seconds(self) -> float:
+        """Time spent on the present frame [s]."""
+        return time.perf_counter() - self._begun_s
+
+    def driving_N(self) -> float:
+        """Sum of the magnitudes of the driven points' forces [N]; a twist has no resultant."""
+        actuations = self.problem.press.actuations
+        if not actuations:
+            return 0.0
+        drive = self.problem.domain.points.drive
+        forces = self.relaxation.point_forces(self.number)
+        return float(np.linalg.norm(forces[drive >= 0], axis=1).sum())
+
+    def unsettled(self, residual: float, net: float, change: float) -> SolveError:
+        """The error of a frame that ran out of substeps: the first measure over its limit."""
+        settings = self.problem.settings
+        measures = (
+            ("a residual", residual, settings.tolerance),
+            ("a net force on the free nodes, over the load,", net, NET_FORCE),
+            ("a change of the reaction between two looks, over the load,", change, FORCE_CHANGE),
+        )
+        over = (measure for measure in measures if not measure[1] < measure[2])
+        what, value, limit = next(over, measures[0])
+        remedy = " or contact.tolerance" if what == "a residual" else ""
+        return SolveError(
+            f"{self.label} has {what} of {value:.1e} after {settings.max_substeps} substeps; the "
+            f"limit is {limit:.1e}",
+            hint=f"raise contact.max_substeps{remedy}, or press less deep",
+            at="contact.max_substeps",
+            frame=self.frame,
+            residual=residual,
+            last_good=self.frame - 1,
+        )
+
+    def unstable(self) -> SolveError:
+        """The error of a frame whose forces overflowed in every attempt."""
+        return SolveError(
+            f"{self.label} became unstable {self.attempt + 1} times",
+            hint="lower press.depth_mm or raise press.frames",
+            frame=self.frame,
+            last_good=self.frame - 1,
+        )
+
+    def _predict(self) -> bool:
+        """Extrapolate the displacement of the last frames; False where that would mislead.
+
+        A skin that rubs must be moved, not set: points that the object reaches on the way are
+        anchored where they meet it. Extrapolated, four frames at mu 0.5 read 3 % too little force
+        and 50 % too much friction. Without friction only the path must go straight on.
+        """
+        known = min(len(self._settled), self.problem.approach.continues(self.frame))
+        if known < 2 or self.problem.press.actuations or self.problem.material.friction > 0.0:
+            return False
+        *older, before, last = self._settled
+        guess = 2.0 * last - before
+        if known >= MOST_KEPT:
+            guess = 3.0 * last - 3.0 * before + older[-1]
+        self.relaxation.restart(self.number, guess)
+        return True
+
+    def drive(self) -> None:
+        """Tell held points where they go in this frame."""
+        press, points = self.problem.press, self.problem.domain.points
+        if press.actuations:
+            start_mm, end_mm = (
+                driven_displacement_mm(points, press, self.frame + share) for share in (0.0, 1.0)
+            )
+            self.relaxation.drive(self.number, start_mm, end_mm)
+            way_mm = np.linalg.norm(end_mm - start_mm, axis=1)
+            self._driven_mm = float(way_mm.max(initial=0.0))
+
+    def _ramp_length(self) -> int:
+        """Substeps of the ramp, a multiple of `STEPS`; 0 where nothing moves."""
+        arm_mm = ARM_CELLS * self.problem.domain.grid_mm
+        travel_mm = max(self.problem.approach.travel_mm(self.frame, arm_mm), self._driven_mm)
+        if travel_mm < STILL_MM:
+            return 0
+        per_mm = RAMP_SUBSTEPS_PER_MM * (LEAVING if self._leaves() else 1.0)
+        count = max(SHORTEST_RAMP, math.ceil(per_mm * travel_mm)) * 2**self.attempt
+        return -(-count // STEPS) * STEPS
+
+    def _leaves(self) -> bool:
+        """Whether the object moves straight outward in this frame."""
+        approach = self.problem.approach
+        (start, _), (end, _) = (approach.pose(self.frame + share) for share in (0.0, 1.0))
+        way = end - start
+        return bool(way @ approach.normal > np.linalg.norm(way) - STILL_MM)
+
+    def _rows(self, steps: np.ndarray) -> np.ndarray:
+        """Rows of the pose table at shares of the frame, (n,), shape (n, POSE)."""
+        origins, turned = self.problem.approach.poses(self.frame + steps)
+        return np.concatenate([origins, turned.reshape(-1, 9), steps[:, None]], axis=1)

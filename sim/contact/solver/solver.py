@@ -1,0 +1,307 @@
+"""Quasi-static presses, frame by frame, one or many at once.
+
+Each frame moves the object along its path in a short ramp and then relaxes until the forces
+balance. Where the path goes straight on, the displacement is first extrapolated along it. A frame
+has settled when the out-of-balance force is below `tolerance` of the load, its sum below half a
+percent, and the reaction has stopped changing; at nearly zero load 2 % of the peak stands in for
+the load. The load is the reaction, plus the forces of driven regions.
+Many presses are relaxed in one launch; each settles, moves on and fails by itself.
+Left out: self-contact, inertia, viscosity; speed enters nowhere.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from sim.contact.engine.batch import Case
+from sim.contact.engine.relaxation import STEPS, Balance, Balances, Relaxation
+from sim.contact.readout.frame import FrameOutcome
+from sim.contact.readout.outcome import collect, frame_outcome
+from sim.contact.readout.problem import Problem
+from sim.contact.readout.verdict import check_frame
+from sim.contact.solver.run import FORCE_CHANGE, NET_FORCE, Run
+from workbench.core.base.errors import SolveError, Stopped
+from workbench.core.base.monitor import Monitor, silent
+from workbench.core.result.sensing import Contact
+
+LEAST_LOAD_N = 1e-12
+"""Stands in for a load that vanishes altogether."""
+LEAST_STRAIN = 0.2
+"""Where bodies are carried about, a load of this strain on one cell stands in for a smaller one:
+carried by millimetres they have forces of rounding, in single precision, that would never fall
+below a share of nothing."""
+LEAST_OF_LOAD = 0.05
+"""Share of the load that stands in for a smaller reaction."""
+LEAST_OF_PEAK = 0.02
+"""Share of the peak load that stands in for a vanishing one."""
+PATIENCE = 300
+"""Substeps without a lower residual before the fictitious masses are doubled."""
+MOST_RETRIES = 4
+
+
+def solve(problems: Sequence[Problem], *, monitor: Monitor = silent) -> list[Contact | SolveError]:
+    """Solve presses side by side; the result of each is what it would be alone, bit by bit."""
+    solver = Solver(problems, monitor)
+    solver.run()
+    return solver.results()
+
+
+def relaxation_of(problems: Sequence[Problem]) -> Relaxation:
+    """Device arrays of presses, at rest."""
+    return Relaxation(
+        [Case(domain=p.domain, collider=p.collider, friction=p.material.friction) for p in problems]
+    )
+
+
+def resume(
+    problem: Problem, relaxation: Relaxation, *, frame: int = 0, monitor: Monitor = silent
+) -> Contact:
+    """Solve the frames of one press from `frame` on, from where its arrays stand.
+
+    Args:
+        problem: The press; `relaxation` has the arrays of its region.
+        relaxation: Displacement and contact history at the end of the frame before.
+        frame: First frame that is solved.
+        monitor: As for `press_membrane`.
+
+    Raises:
+        SolveError: If a frame does not settle or is not sound.
+    """
+    solver = Solver([problem], monitor, relaxation=relaxation, frame=frame)
+    solver.run()
+    (result,) = solver.results()
+    if isinstance(result, SolveError):
+        raise result
+    return result
+
+
+def least_load_N(young_MPa: float, grid_mm: float) -> float:
+    """Force that stands in for the load of a body that is carried about [N]."""
+    return LEAST_STRAIN * young_MPa * grid_mm**2
+
+
+class Solver:
+    """Presses under way; arrays have an entry for each."""
+
+    def __init__(
+        self,
+        problems: Sequence[Problem],
+        monitor: Monitor,
+        *,
+        relaxation: Relaxation | None = None,
+        frame: int = 0,
+    ) -> None:
+        self.monitor = monitor
+        self.relaxation = relaxation or relaxation_of(problems)
+        self.runs = [
+            self.make_run(problem, number, frame) for number, problem in enumerate(problems)
+        ]
+        count = len(problems)
+        self.tolerance = np.array([p.settings.tolerance for p in problems])
+        self.most = np.array([p.settings.max_substeps for p in problems])
+        self.settling = np.zeros(count, bool)
+        self.active = np.ones(count, bool)
+        self.substeps = np.zeros(count, int)
+        self.spent = np.zeros(count, int)
+        self.lowest = np.full(count, np.inf)
+        self.lowest_at = np.zeros(count, int)
+        self.before_N = np.full((count, 3), np.inf)
+        self.peak_N = np.zeros(count)
+        """Largest load of a settled frame."""
+        self.least_N = np.array(
+            [
+                least_load_N(p.material.young_MPa, p.domain.grid_mm)
+                if p.press.actuations
+                else LEAST_LOAD_N
+                for p in problems
+            ]
+        )
+        self.retries = np.zeros(count, int)
+        self.residual = np.full(count, np.inf)
+        for case in range(count):
+            self._begin(case)
+
+    def make_run(self, problem: Problem, number: int, frame: int) -> Run:
+        """The way of one press through its frames."""
+        return Run(problem, self.relaxation, number, frame=frame)
+
+    def run(self) -> None:
+        """Relax until every press has ended.
+
+        Raises:
+            Stopped: If Ctrl-C came after frames of a single press had settled; it holds them.
+        """
+        try:
+            self._relax()
+        except KeyboardInterrupt as asked:
+            first = self.runs[0]
+            if len(self.runs) > 1 or not first.outcomes:
+                raise
+            partial = collect(first.outcomes, first.problem, substeps=int(self.substeps[0]))
+            raise Stopped("cancelled", partial=partial) from asked
+
+    def _relax(self) -> None:
+        while self.active.any():
+            for case in np.flatnonzero(self.active & ~self.settling).tolist():
+                self.runs[case].feed()
+            self.relaxation.advance(self.active)
+            self.substeps[self.active] += STEPS
+            if self.settling.any():
+                self._look()
+            for case in np.flatnonzero(self.active & ~self.settling).tolist():
+                if self.runs[case].arrived:
+                    self.runs[case].stay()
+                    self.settling[case] = True
+            self._tell()
+        self.monitor(1.0, "settled")
+
+    def results(self) -> list[Contact | SolveError]:
+        """What each press came to."""
+        return [
+            run.error or collect(run.outcomes, run.problem, substeps=int(self.substeps[run.number]))
+            for run in self.runs
+        ]
+
+    def _begin(self, case: int) -> None:
+        """Start the next frame of a press, or an attempt at the same one."""
+        self.runs[case].begin()
+        self.settling[case] = self.runs[case].arrived
+        self.spent[case] = 0
+        self.lowest[case] = np.inf
+        self.lowest_at[case] = 0
+        self.before_N[case] = np.inf
+
+    def _look(self) -> None:
+        """Judge the settling presses by the forces of the last substep."""
+        looked = self.settling.copy()
+        self.spent[looked] += STEPS
+        balances = self.relaxation.balances(looked)
+        for case in np.flatnonzero(looked & ~balances.finite).tolist():
+            self._unstable(case)
+        looked &= balances.finite
+        load_N = self._load_N(balances, looked)
+        with np.errstate(invalid="ignore", over="ignore"):
+            self.residual = np.where(looked, balances.unbalanced_N / load_N, self.residual)
+            change_N = np.linalg.norm(balances.reaction_N - self.before_N, axis=1)
+            change = change_N / self._share_of_reaction_N(balances, load_N)
+        self.before_N[looked] = balances.reaction_N[looked]
+        still = looked & (change < FORCE_CHANGE) & self._balanced(balances, load_N)
+        if still.any():
+            looked &= ~self._close(still)
+        lower = looked & (self.residual < self.lowest)
+        self.lowest[lower] = self.residual[lower]
+        self.lowest_at[lower] = self.spent[lower]
+        stalled = looked & (self.spent - self.lowest_at > PATIENCE) & (self.retries < MOST_RETRIES)
+        # A residual that will not fall is an oscillation at the limit of stability.
+        self.relaxation.burden(stalled)
+        self.retries[stalled] += 1
+        self.lowest_at[stalled] = self.spent[stalled]
+        for case in np.flatnonzero(looked & (self.spent >= self.most)).tolist():
+            net = float(np.linalg.norm(balances.net_N[case]) / load_N[case])
+            error = self.runs[case].unsettled(float(self.residual[case]), net, float(change[case]))
+            self.end(case, error)
+
+    def _close(self, still: np.ndarray) -> np.ndarray:
+        """End the frame of presses whose forces balance where the nodes are now; which did."""
+        # The balance was from before the last move.
+        final = self.relaxation.evaluate(still)
+        load_N = self._load_N(final, still & final.finite)
+        settled = still & final.finite & self._balanced(final, load_N)
+        for case in np.flatnonzero(still).tolist():
+            if not final.finite[case]:
+                self._unstable(case)
+            elif settled[case]:
+                self.close_frame(case, final.of(case), float(load_N[case]))
+        return settled | (still & ~final.finite)
+
+    def close_frame(self, case: int, balance: Balance, load_N: float) -> None:
+        """Read a settled frame and go on to the next, or end the press."""
+        run = self.runs[case]
+        problem, frame = run.problem, run.frame
+        if not np.isfinite(self.relaxation.snapshot(case)).all():
+            self._unstable(case)
+            return
+        outcome = self.read_frame(case, balance, load_N)
+        try:
+            check_frame(outcome, problem.approach, frame, grid_mm=problem.domain.grid_mm)
+        except SolveError as error:
+            self.end(case, error)
+            return
+        run.finish(outcome)
+        self.peak_N[case] = max(self.peak_N[case], load_N)
+        self.retries[case] = 0
+        self.relaxation.relieve(case)
+        if run.frame < problem.approach.frame_count:
+            self._begin(case)
+        else:
+            self.end(case, None)
+
+    def read_frame(self, case: int, balance: Balance, load_N: float) -> FrameOutcome:
+        """What the settled frame of a press says."""
+        run = self.runs[case]
+        return frame_outcome(
+            self.relaxation,
+            case,
+            run.problem,
+            balance,
+            run.frame,
+            load_N=load_N,
+            seconds=run.seconds,
+        )
+
+    def _load_N(self, balances: Balances, looked: np.ndarray) -> np.ndarray:
+        """Force against which residual and change are measured, shape (B,)."""
+        load_N = np.linalg.norm(balances.reaction_N, axis=1)
+        for case in np.flatnonzero(looked).tolist():
+            load_N[case] += self.runs[case].driving_N()
+        return np.maximum(np.maximum(load_N, LEAST_OF_PEAK * self.peak_N), self.least_N)
+
+    def _share_of_reaction_N(self, balances: Balances, load_N: np.ndarray) -> np.ndarray:
+        """Force against which a change of the reaction is measured, shape (B,).
+
+        Drives may push far harder than the object: its own reaction must have come to rest too.
+        """
+        reaction_N = np.linalg.norm(balances.reaction_N, axis=1)
+        least_N = np.maximum(LEAST_OF_LOAD * load_N, LEAST_OF_PEAK * self.peak_N)
+        return np.maximum(reaction_N, least_N)
+
+    def _balanced(self, balances: Balances, load_N: np.ndarray) -> np.ndarray:
+        """Whether residual and net force are within their tolerances, shape (B,), bool."""
+        net_N = np.linalg.norm(balances.net_N, axis=1)
+        small = balances.unbalanced_N < self.tolerance * load_N
+        return small & (net_N < NET_FORCE * load_N)
+
+    def _unstable(self, case: int) -> None:
+        """Try the frame again with heavier nodes and a gentler ramp, or give up."""
+        run = self.runs[case]
+        if run.attempt >= MOST_RETRIES:
+            self.end(case, run.unstable())
+            return
+        run.attempt += 1
+        self.relaxation.burden(np.arange(len(self.runs)) == case)
+        self._begin(case)
+
+    def end(self, case: int, error: SolveError | None) -> None:
+        """Take a press out of the batch, with its error if it has one."""
+        run = self.runs[case]
+        if error is not None and run.outcomes:
+            error.partial = collect(
+                run.outcomes, run.problem, substeps=int(self.substeps[run.number])
+            )
+        run.error = error
+        self.active[case] = self.settling[case] = False
+
+    def _tell(self) -> None:
+        """Report the progress of all presses, and which frame the slowest is at."""
+        share = np.where(self.settling, np.minimum(1.0, self.spent / 200.0), 0.0)
+        done = [run.progress(float(s)) for run, s in zip(self.runs, share, strict=True)]
+        case = int(np.argmin(np.where(self.active, done, 2.0)))
+        run = self.runs[case]
+        note = run.label
+        if self.settling[case]:
+            note += f", residual {self.residual[case]:.0e}"
+        if len(self.runs) > 1:
+            note = f"{int(self.active.sum())} of {len(self.runs)} presses under way; {note}"
+        self.monitor(min(1.0, float(np.mean(done))), note)

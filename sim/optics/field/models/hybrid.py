@@ -1,0 +1,13 @@
+"""Unscattered photons as one virtual LED each, with shadows, and a table of the rest."""
+
+from __future__ import annotations
+
+from sim.optics.field.gathered import gathered
+from sim.optics.field.model import Model, Shading
+
+MODEL = Model(
+    place=6,
+    hint="traced photons, with sharp shadows of each LED; the best quick images",
+    shading=Shading.HYBRID,
+    bake=gathered,
+)

@@ -1,0 +1,1 @@
+"""Lights and what reflects them: LEDs, spectra, the coating, bins by direction, ways along skin."""

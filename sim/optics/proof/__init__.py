@@ -1,0 +1,1 @@
+"""Checks of the optics against closed forms and other programs."""

@@ -1,0 +1,227 @@
+"""Validation of the optics room: each function measures one thing and returns its number(s).
+
+Projection, Snell, Fresnel, irradiance and depth are compared with closed forms, the fields with the
+properties that define them. `view_checks`, `sensor_checks`, `map_checks` and `transport_checks`
+have the rest.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+
+from sim.optics.camera.camera import focal_px, pixel_centres, project, refracted_rays, unproject
+from sim.optics.camera.refraction import refract
+from sim.optics.field.bake import bake_light
+from sim.optics.field.lines import normal_at
+from sim.optics.light.lights import place_leds
+from sim.optics.light.section_curve import plane_section, tangent_toward
+from sim.optics.proof.specimen import finger
+from sim.optics.raster.gbuffer import open_view
+from workbench.core.design.camera import Camera, LensModel
+from workbench.core.design.lighting import LedRing, LightModel
+from workbench.core.result.results import MembraneMesh
+
+ANGLES_DEG = np.linspace(0.0, 89.0, 90)
+SILICONE_INDEX = 1.41
+NEAREST_MM = 2.0
+"""Distance from the light below which no section curve is compared [mm]."""
+LEAST_PLANE = 0.1
+"""Sine of light and normal below which a plane is too ill defined to compare on a mesh [1]."""
+TURN = (0.9, 0.3, -0.3, 0.1)
+"""Quaternion of the round trip's camera, before it is made a unit one."""
+DISTORTIONS: dict[LensModel, tuple[tuple[float, ...], ...]] = {
+    LensModel.OPENCV: ((), (-0.12, 0.01, 0.0012, -0.0008, 0.001)),
+    LensModel.OPENCV_FISHEYE: ((), (0.05, -0.02, 0.004, -0.0005)),
+}
+"""None, and one of the size that small wide-angle lenses have; our choice."""
+
+
+def round_trip_px(lens: LensModel) -> float:
+    """Largest error [px] of pixel to point to pixel, over the image of a turned camera."""
+    length = np.linalg.norm(TURN)
+    w, x, y, z = (float(q / length) for q in TURN)
+    worst = 0.0
+    for distortion in DISTORTIONS.get(lens, ((),)):
+        camera = Camera(
+            lens=lens, distortion=distortion, position_mm=(1.0, -2.0, 3.0), wxyz=(w, x, y, z)
+        )
+        centres = pixel_centres(camera)
+        range_mm = np.linspace(5.0, 50.0, len(centres))
+        points = unproject(camera, centres, range_mm=range_mm)
+        worst = max(worst, float(np.abs(project(camera, points) - centres).max()))
+    return worst
+
+
+def edge_angle_error_deg(lens: LensModel) -> float:
+    """Error [degree] of the angle between the image's left and right edge, against fov_x_deg.
+
+    Of a distorted lens without its tangential terms, which do not enter the field of view.
+    """
+    worst = 0.0
+    for distortion in DISTORTIONS.get(lens, ((),)):
+        if lens is LensModel.OPENCV and distortion:
+            k1, k2, _, _, k3 = distortion
+            distortion = (k1, k2, 0.0, 0.0, k3)
+        camera = Camera(lens=lens, distortion=distortion)
+        row = camera.height_px / 2.0
+        edges = np.array([[0.0, row], [camera.width_px, row]])
+        points = unproject(camera, edges, range_mm=np.ones(2))
+        left, right = points - np.asarray(camera.position_mm)
+        between = float(np.degrees(np.arccos(left @ right)))
+        worst = max(worst, abs(between - camera.fov_x_deg))
+    return worst
+
+
+def snell_error() -> float:
+    """Largest error [1] of n1 sin a = n2 sin b from 0 to 89 degrees, into and out of silicone."""
+    worst = 0.0
+    for index_from, index_to in ((1.0, SILICONE_INDEX), (SILICONE_INDEX, 1.0)):
+        sine = np.sin(np.radians(ANGLES_DEG))
+        passes = index_from * sine < index_to
+        bent, _ = _at_angles(index_from, index_to)
+        error = index_from * sine[passes] - index_to * bent[passes, 0]
+        worst = max(worst, float(np.abs(error).max()))
+    return worst
+
+
+def fresnel_error() -> float:
+    """Largest error [1] of the transmittance against the trigonometric form of Fresnel.
+
+    Rs = (sin(a - b) / sin(a + b))^2, Rp = (tan(a - b) / tan(a + b))^2, and at normal incidence
+    T = 4 n / (1 + n)^2.
+    """
+    _, transmittance = _at_angles(1.0, SILICONE_INDEX)
+    normal = 4.0 * SILICONE_INDEX / (1.0 + SILICONE_INDEX) ** 2
+    inside = np.radians(ANGLES_DEG[1:])
+    bent = np.arcsin(np.sin(inside) / SILICONE_INDEX)
+    reflect_s = (np.sin(inside - bent) / np.sin(inside + bent)) ** 2
+    reflect_p = (np.tan(inside - bent) / np.tan(inside + bent)) ** 2
+    exact = np.append(normal, 1.0 - 0.5 * (reflect_s + reflect_p))
+    return float(np.abs(transmittance - exact).max())
+
+
+def _at_angles(index_from: float, index_to: float) -> tuple[np.ndarray, np.ndarray]:
+    angle = np.radians(ANGLES_DEG)
+    direction = np.column_stack([np.sin(angle), np.zeros_like(angle), np.cos(angle)])
+    normal = np.broadcast_to([0.0, 0.0, 1.0], direction.shape)
+    return refract(direction, normal, index_from=index_from, index_to=index_to)
+
+
+def tangency_error_deg(mesh: MembraneMesh, ring: LedRing) -> float:
+    """Largest angle [degree] between the `plane_target` field and the skin's tangent plane."""
+    light = bake_light(mesh, ring, model=LightModel("plane_target"))
+    sine = np.einsum("lvi,vi->lv", light.direction, mesh.outer.normals)
+    straight = bake_light(mesh, ring, model=LightModel("linear"))
+    # Where the light falls along the normal there is no plane and the field is the straight line.
+    fallback = (light.direction == straight.direction).all(axis=2)
+    return float(np.degrees(np.arcsin(np.abs(sine[~fallback]).max())))
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class PlaneCheck:
+    """The closed form of a plane field against the curve in which the plane cuts the mesh."""
+
+    median_deg: float
+    """Median angle between closed form and cut curve as lines, without their sense [degree]."""
+    percentile_95_deg: float
+    straight_deg: float
+    """The null: the median of the straight line to the light [degree]."""
+    other_sense_1: float
+    """Share of targets at which the shorter way along the curve to where it comes nearest to the
+    light sets out the other way [1]. A light on the far side is then reached over the tip, so this
+    is not small on a convex skin either."""
+    targets: int
+
+
+def plane_closed_form(
+    model: LightModel, mesh: MembraneMesh, ring: LedRing, *, targets: int = 300, seed: int = 7
+) -> PlaneCheck:
+    """`plane_target` or `plane_source` against the cut mesh, the published way, at random targets.
+
+    Targets nearer than 2 mm to the light have no curve to speak of and are left out, as are those
+    at which the plane is not defined, and those within a step of the skin's border.
+    """
+    skin, light = mesh.seen, bake_light(mesh, ring, model=model)
+    edges = skin.points_mm[skin.faces[:, 0]] - skin.points_mm[skin.faces[:, 1]]
+    step_mm = 1.5 * float(np.linalg.norm(edges, axis=1).mean())
+    random = np.random.default_rng(seed)
+    angles, straight, turned = [], [], 0
+    for vertex in random.choice(len(skin.points_mm), targets, replace=False):
+        led = int(random.integers(len(light.led_mm)))
+        target, source = skin.points_mm[vertex], light.led_mm[led]
+        normal = (
+            skin.normals[vertex] if model is LightModel("plane_target") else normal_at(skin, source)
+        )
+        across = np.cross(normal, source - target)
+        away = float(np.linalg.norm(source - target))
+        if away < NEAREST_MM or np.linalg.norm(across) < LEAST_PLANE * away:
+            continue
+        curve = plane_section(skin, target, across / np.linalg.norm(across))
+        cut = None if curve is None else tangent_toward(curve, target, source, step_mm=step_mm)
+        if cut is None:
+            continue
+        cosine = float(cut @ light.direction[led, vertex])
+        angles.append(np.degrees(np.arccos(min(1.0, abs(cosine)))))
+        along = abs(float(cut @ (source - target))) / away
+        straight.append(np.degrees(np.arccos(min(1.0, along))))
+        turned += cosine < 0.0
+    median, high = np.percentile(angles, (50.0, 95.0))
+    return PlaneCheck(
+        median_deg=float(median),
+        percentile_95_deg=float(high),
+        straight_deg=float(np.median(straight)),
+        other_sense_1=turned / len(angles),
+        targets=len(angles),
+    )
+
+
+def irradiance_error(mesh: MembraneMesh, ring: LedRing) -> float:
+    """Largest relative error of the `direct` field against (m + 1) / (2 pi) cos^m / r^2.
+
+    Valid on convex skins, where no vertex is in shadow; points behind the LED receive nothing.
+    """
+    light = bake_light(mesh, ring, model=LightModel("direct"))
+    leds, exponent = place_leds(ring), ring.emission_exponent
+    line = mesh.outer.points_mm[None] - leds.position_mm[:, None]
+    square = np.einsum("lvi,lvi->lv", line, line)
+    cosine = np.einsum("lvi,li->lv", line, leds.axis) / np.sqrt(square)
+    exact = (exponent + 1.0) / (2.0 * np.pi) * np.maximum(cosine, 0.0) ** exponent / square
+    # Within half a degree of the LED's own plane the cosine is rounding.
+    lit = cosine > 0.01
+    return float((np.abs(light.irradiance[lit] / exact[lit] - 1.0)).max())
+
+
+def depth_error_mm(mesh: MembraneMesh, *, radius_mm: float, cylinder_mm: float) -> float:
+    """Largest error [mm] of depth_z against the closed form of cylinder and sphere, unrefracted.
+
+    A ray o + t d meets the sphere at t^2 + 2 t (o - c).d + |o - c|^2 - R^2 = 0, and the cylinder
+    likewise in x and y; the sphere counts above the cylinder's end.
+    """
+    camera = Camera(width_px=160, height_px=120)
+    rays = refracted_rays(camera, mesh.cavity, 1.0)
+    seen = open_view(mesh.outer, camera, rays).background
+    direction = rays.direction[seen.pixel].astype(np.float64)
+    origin = np.asarray(camera.position_mm)
+    flat = np.array([1.0, 1.0, 0.0])
+    along = _far_root(direction * flat, origin * flat, radius_mm)
+    on_tip = origin[2] + along * direction[:, 2] > cylinder_mm
+    tip = _far_root(direction, origin - [0.0, 0.0, cylinder_mm], radius_mm)
+    exact = np.where(on_tip, tip, along) * direction[:, 2]
+    return float(np.abs(seen.depth_z_mm - exact).max())
+
+
+def _far_root(direction: np.ndarray, offset: np.ndarray, radius_mm: float) -> np.ndarray:
+    square = np.einsum("ij,ij->i", direction, direction)
+    middle = direction @ offset / square
+    # Rays from below may miss the whole sphere; the caller takes the cylinder for those.
+    return -middle + np.sqrt(np.maximum(middle**2 - (offset @ offset - radius_mm**2) / square, 0.0))
+
+
+def axis_error_px() -> float:
+    """Distance [px] of the centre pixel's bent ray from the optical axis on a centred finger."""
+    camera = Camera(width_px=161, height_px=121)
+    rays = refracted_rays(camera, finger(edge_mm=0.5).cavity, SILICONE_INDEX)
+    middle = rays.direction[(camera.height_px // 2) * camera.width_px + camera.width_px // 2]
+    return float(np.hypot(middle[0], middle[1]) / middle[2] * focal_px(camera))

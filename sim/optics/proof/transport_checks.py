@@ -1,0 +1,305 @@
+"""Traced light against closed forms: each check returns what was found, and what is exact.
+
+Each scene is small enough for a closed form. Differences are relative unless a unit says
+otherwise. With N photons counted the standard error of a share p is sqrt(p (1 - p) / N); the
+emission's lattice mostly stays well below that.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+
+from sim.optics.camera.refraction import refract
+from sim.optics.field.bake import light_field
+from sim.optics.field.gathered import gathered
+from sim.optics.field.lines import emitted, toward
+from sim.optics.field.model import Baked, Lights
+from sim.optics.field.table import look_up, tabulate
+from sim.optics.light.bins import bin_cosines
+from sim.optics.light.coating import glossy
+from sim.optics.light.lights import Leds, place_leds
+from sim.optics.proof.specimen import finger
+from sim.optics.proof.transport_scenes import beam, disc, disc_source, one_light, plane, sphere
+from sim.optics.transport.constants import FIXED_POINT
+from sim.optics.transport.gather import gather_light, scattered_light, virtual_lights
+from sim.optics.transport.nodes import coarse_nodes, vertex_areas
+from sim.optics.transport.paths import trace_paths
+from sim.optics.transport.radiance import trace_radiance
+from sim.optics.transport.scene import Scene, build_scene
+from sim.optics.transport.sources import open_sources
+from sim.optics.transport.tally import ledger_only, tally_at_nodes
+from sim.optics.transport.view import directions_to_camera
+from workbench.core.base.monitor import silent
+from workbench.core.design.camera import Camera
+from workbench.core.design.lighting import Baking, LedMount, LedRing, LightModel
+from workbench.core.design.optics import Coating, Transport
+from workbench.core.result.light import AZIMUTHS, Scattered
+from workbench.core.result.results import Skin
+
+BLACK = Coating(albedo=0.0, specular=0.0)
+
+
+def furnace_error(*, albedo: float = 0.5, photons: int = 1_000_000) -> float:
+    """Closed matte sphere with a light off its centre: worst irradiance of scattered light.
+
+    Whatever a Lambertian sphere scatters falls evenly on all of it, so the light of all orders but
+    the first gives E = P albedo / (A (1 - albedo)) everywhere: together with the first, the mean
+    is (P / A) / (1 - albedo). Measured on eight octants. Nodes on a curved skin lose the cosine of
+    the angle between their own normal and its surroundings', 0.1 % here.
+    """
+    skin = sphere(10.0, 4)
+    scene = build_scene(_raw(skin), None, coating=Coating(albedo=albedo, specular=0.0))
+    leds = one_light(position_mm=(3.0, 2.0, -1.0), exponent=0.0, size_mm=0.5)
+    scattered, nodes_mm, area_mm2 = _gathered(scene, skin, leds, photons, count=len(skin.points_mm))
+    cosines = np.repeat(bin_cosines(), AZIMUTHS)
+    received = scattered.rest[:, 0] @ cosines * area_mm2
+    octant = (nodes_mm > 0.0) @ np.array([1, 2, 4])
+    found = np.bincount(octant, received, 8) / np.bincount(octant, area_mm2, 8)
+    exact = albedo / (1.0 - albedo) / area_mm2.sum()
+    return float(np.abs(found / exact - 1.0).max())
+
+
+def flat_furnace(coating: Coating, *, photons: int = 200_000) -> tuple[float, float]:
+    """Share of even hemispherical light that a flat patch returns: traced, and exact.
+
+    Exact is the quadrature of the coating over all pairs of directions; of a matte one its albedo.
+    """
+    skin = plane(1.0, 1000.0, 2)
+    scene = build_scene(_raw(skin), None, coating=coating)
+    balance = _ledger(scene, one_light(exponent=1.0), photons)
+    return 1.0 - balance["absorbed"], _returned(coating)
+
+
+def _returned(coating: Coating, steps: int = 64) -> float:
+    """Double hemisphere integral of f cos cos / pi, by the midpoint rule in squared sines."""
+    squared = (np.arange(steps) + 0.5) / steps
+    azimuth = np.pi * (np.arange(steps) + 0.5) / steps
+    sine = np.sqrt(squared)
+    total = 0.0
+    for incoming in squared:
+        light = np.array([math.sqrt(incoming), 0.0, math.sqrt(1.0 - incoming)])
+        x = sine[:, None] * np.cos(azimuth)
+        y = sine[:, None] * np.sin(azimuth)
+        z = np.broadcast_to(np.sqrt(1.0 - squared)[:, None], x.shape)
+        view = np.stack([x, y, z], axis=-1).reshape(-1, 3)
+        normal = np.broadcast_to([0.0, 0.0, 1.0], view.shape)
+        lobe = glossy(coating, np.broadcast_to(light, view.shape).copy(), normal, view) / light[2]
+        total += float(np.mean(lobe)) * math.pi / steps
+    return total
+
+
+def reciprocity(
+    *,
+    radii_mm: tuple[float, float] = (3.0, 5.0),
+    distance_mm: float = 4.0,
+    photons: int = 400_000,
+) -> tuple[float, float, float]:
+    """Two coaxial discs: A1 F12 and A2 F21 traced, and A1 F12 exact [mm2].
+
+    F12 = (x - sqrt(x^2 - 4 (R2 / R1)^2)) / 2, x = 1 + (1 + R2^2) / R1^2, Ri = ri / distance.
+    Source: Howell, catalog of radiation configuration factors, C-41.
+    """
+    found = []
+    for near_mm, far_mm in (radii_mm, radii_mm[::-1]):
+        scene = build_scene(_raw(disc(distance_mm, far_mm)), None, coating=BLACK)
+        source = disc_source(near_mm)
+        tally = ledger_only()
+        trace_paths(scene, source, tally, photons=photons, seed=1)
+        found.append(tally.balance["absorbed"] * math.pi * near_mm**2)
+    one, two = (radius / distance_mm for radius in radii_mm)
+    x = 1.0 + (1.0 + two**2) / one**2
+    factor = 0.5 * (x - math.sqrt(x**2 - 4.0 * (two / one) ** 2))
+    return found[0], found[1], factor * math.pi * radii_mm[0] ** 2
+
+
+def plane_irradiance_error(*, exponent: float = 1.0, photons: int = 1_000_000) -> float:
+    """An LED straight under a plane: rms difference of irradiance over its mean, within 45 degrees.
+
+    E = (m + 1) / (2 pi) cos^(m + 1) / r^2.
+    """
+    skin = plane(5.0, 12.0, 24)
+    scene = build_scene(_raw(skin), None, coating=BLACK)
+    leds = one_light(exponent=exponent)
+    direction, irradiance = _virtual(scene, skin, leds, photons)
+    points = skin.points_mm
+    near = np.hypot(points[:, 0], points[:, 1]) < 5.0
+    found = irradiance[near] * direction[near, 2] * -1.0
+    line, distance = toward(leds.position_mm[0], points[near])
+    exact = emitted(line, distance, axis=leds.axis[0], exponent=exponent, cone=0.0) * -line[:, 2]
+    return float(np.sqrt(np.mean((found - exact) ** 2)) / exact.mean())
+
+
+def refraction_errors(
+    *, refractive_index: float = 1.41, photons: int = 100_000
+) -> tuple[float, float]:
+    """Light into a slab at 0 to 80 degrees: worst differences from Fresnel and from Snell.
+
+    Of the transmittance [1], and of the direction inside [degree].
+    """
+    skin, wall = plane(5.0, 200.0, 40), plane(1.0, 200.0, 2)
+    scene = build_scene(_raw(skin), _raw(wall), coating=BLACK, refractive_index=refractive_index)
+    worst_share, worst_deg = 0.0, 0.0
+    up = np.array([[0.0, 0.0, 1.0]])
+    for angle_deg in (0.0, 30.0, 60.0, 80.0):
+        leds = beam(angle_deg)
+        bent, share = refract(leds.axis, up, index_from=1.0, index_to=refractive_index)
+        balance, mean = _ledger_and_mean(scene, skin, leds, photons)
+        worst_share = max(worst_share, abs(balance["absorbed"] - float(share[0])))
+        cosine = float(np.clip(-mean @ bent[0], -1.0, 1.0))
+        worst_deg = max(worst_deg, math.degrees(math.acos(cosine)))
+    return worst_share, worst_deg
+
+
+def total_reflection_error(*, refractive_index: float = 1.41, photons: int = 100_000) -> float:
+    """From the solid to air at 20, 40 and 60 degrees: worst difference of the reflectance [1].
+
+    Beyond the critical angle, 45.2 degrees at index 1.41, all light must return.
+    """
+    skin, wall = plane(5.0, 200.0, 2), plane(1.0, 200.0, 2)
+    scene = build_scene(_raw(skin), _raw(wall), coating=BLACK, refractive_index=refractive_index)
+    worst = 0.0
+    down = np.array([[0.0, 0.0, -1.0]])
+    for angle_deg in (20.0, 40.0, 60.0):
+        leds = dataclasses.replace(
+            beam(angle_deg), position_mm=np.array([[0.0, 0.0, 2.0]]), in_shell=np.array([True])
+        )
+        leds = dataclasses.replace(leds, axis=leds.axis * [1.0, 1.0, -1.0])
+        _, share = refract(leds.axis, down, index_from=refractive_index, index_to=1.0)
+        reflected = _ledger(scene, leds, photons)["absorbed"]
+        worst = max(worst, abs(reflected - (1.0 - float(share[0]))))
+    return worst
+
+
+def virtual_light_errors(*, photons: int = 1_000_000) -> tuple[float, float]:
+    """Virtual LEDs of cavity lights at index 1 against the straight line.
+
+    Median relative difference of irradiance, and median angle [degree], where the skin is lit by
+    at least a tenth of the mean.
+    """
+    mesh = finger(edge_mm=1.0)
+    ring = LedRing(count=3, size_mm=0.2, tilt_deg=20.0)
+    leds = place_leds(ring)
+    transport = Transport(
+        coating=BLACK, refractive_index=1.0, baking=Baking(photons=photons, nodes=1500)
+    )
+    direction, irradiance, _ = gather_light(mesh, leds, transport)
+    differences, angles = [], []
+    for number, place in enumerate(leds.position_mm):
+        line, distance = toward(place, mesh.seen.points_mm)
+        cone, exponent = float(leds.cone[number]), float(leds.exponent[number])
+        exact = emitted(line, distance, axis=leds.axis[number], exponent=exponent, cone=cone)
+        lit = exact > 0.1 * exact.mean()
+        differences.append(np.abs(irradiance[number, lit] / exact[lit] - 1.0))
+        cosine = np.einsum("ij,ij->i", direction[number, lit], line[lit])
+        angles.append(np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))))
+    return float(np.median(np.concatenate(differences))), float(np.median(np.concatenate(angles)))
+
+
+def direct_table_errors(*, photons: int = 1_000_000) -> tuple[float, float]:
+    """The table of unscattered light at index 1 and the undeformed normal against direct shading.
+
+    Root mean square difference of radiance over its root mean square, which is mostly noise of the
+    photons at each node, and the relative difference of the means, which is not. Where the skin is
+    lit, for a matte coating (the table's bins widen a glossy lobe) and nodes as fine as the skin:
+    nodes 2 mm apart alone make 6 % beside an LED.
+    """
+    mesh, camera = finger(edge_mm=1.0), Camera()
+    coating = Coating(specular=0.0)
+    leds = place_leds(LedRing(count=3, size_mm=0.2, tilt_deg=20.0))
+    transport = Transport(
+        coating=coating, refractive_index=1.0, baking=Baking(photons=photons, nodes=5000)
+    )
+    direction, irradiance, scattered = gather_light(mesh, leds, transport)
+    alone = dataclasses.replace(scattered, rest=np.zeros_like(scattered.rest))
+    light = light_field(
+        leds,
+        LightModel("table"),
+        Baked(direction=direction, irradiance=irradiance, scattered=alone),
+    )
+    table = tabulate(light, mesh, (camera,), transport, model=LightModel("table"))
+    normals = -mesh.seen.normals
+    found = look_up(table.values[0], alone.nodes, alone.weights, alone.frame, normals)
+    points = mesh.seen.points_mm
+    view = directions_to_camera(points, mesh, camera, 1.0)
+    exact = np.zeros_like(found)
+    for number, place in enumerate(leds.position_mm):
+        line, distance = toward(place, points)
+        cone, exponent = float(leds.cone[number]), float(leds.exponent[number])
+        received = emitted(line, distance, axis=leds.axis[number], exponent=exponent, cone=cone)
+        share = glossy(coating, line, normals, view) * received
+        exact += share[:, None] * leds.rgb[number]
+    # The base's last row and the shadow's edge lie between lit and unlit nodes.
+    lit = (points[:, 2] > 3.0) & (exact.sum(axis=1) > 0.1 * exact.sum(axis=1).mean())
+    rms = np.sqrt(np.mean((found - exact)[lit] ** 2) / np.mean(exact[lit] ** 2))
+    return float(rms), float(abs(found[lit].mean() / exact[lit].mean() - 1.0))
+
+
+def table_error(*, in_shell: bool, photons: int = 1_000_000) -> float:
+    """The table of all light at rest against photons gathered toward the camera.
+
+    Relative difference of the mean radiance above the base, refraction and all orders of scattering
+    included.
+    """
+    mesh, camera = finger(edge_mm=1.0), Camera()
+    mount, radius_mm = (LedMount.SHELL, 12.5) if in_shell else (LedMount.CAVITY, 9.0)
+    leds = place_leds(LedRing(count=3, mount=mount, radius_mm=radius_mm))
+    transport = Transport(
+        coating=Coating(), refractive_index=1.41, baking=Baking(photons=photons, nodes=5000)
+    )
+    lights = Lights(mesh=mesh, leds=leds, fields=(), transport=transport)
+    light = light_field(leds, LightModel("table"), gathered(lights, silent))
+    table = tabulate(light, mesh, (camera,), transport, model=LightModel("table"))
+    scattered = light.scattered
+    assert scattered is not None
+    places = scattered.nodes, scattered.weights, scattered.frame
+    found = look_up(table.values[0], *places, -mesh.seen.normals)
+    traced = trace_radiance(mesh, leds, camera, transport, photons=photons, first_photon=photons)
+    exact = traced.radiance * (len(leds.rgb) / traced.photons)
+    share = vertex_areas(mesh.seen) * (mesh.seen.points_mm[:, 2] > 3.0)
+    return float(abs(share @ found.sum(axis=1) / (share @ exact.sum(axis=1)) - 1.0))
+
+
+def _raw(skin: Skin) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    return skin.points_mm, skin.normals, skin.faces
+
+
+def _ledger(scene: Scene, leds: Leds, photons: int) -> dict[str, float]:
+    tally = ledger_only()
+    trace_paths(scene, open_sources(leds, scene), tally, photons=photons, seed=1)
+    return tally.balance
+
+
+def _gathered(
+    scene: Scene, skin: Skin, leds: Leds, photons: int, *, count: int
+) -> tuple[Scattered, np.ndarray, np.ndarray]:
+    """Scattered light at about `count` nodes, their places [mm] and areas [mm2]."""
+    nodes = coarse_nodes(skin, count)
+    sources = open_sources(leds, scene)
+    tally = tally_at_nodes(nodes, sources.count)
+    trace_paths(scene, sources, tally, photons=photons, seed=1)
+    return scattered_light(nodes, sources, tally), nodes.points_mm, nodes.area_mm2
+
+
+def _virtual(scene: Scene, skin: Skin, leds: Leds, photons: int) -> tuple[np.ndarray, np.ndarray]:
+    """Direction (V, 3) and irradiance (V,) of the one virtual light at the vertices, unsmoothed."""
+    nodes = coarse_nodes(skin, len(skin.points_mm))
+    sources = open_sources(leds, scene)
+    tally = tally_at_nodes(nodes, sources.count)
+    trace_paths(scene, sources, tally, photons=photons, seed=1)
+    direction, irradiance = virtual_lights(nodes, sources, tally, skin.points_mm, smoothings=0)
+    return direction[0], irradiance[0]
+
+
+def _ledger_and_mean(
+    scene: Scene, skin: Skin, leds: Leds, photons: int
+) -> tuple[dict[str, float], np.ndarray]:
+    """Balance, and the mean unit direction to where unscattered light comes from."""
+    nodes = coarse_nodes(skin, len(skin.points_mm))
+    sources = open_sources(leds, scene)
+    tally = tally_at_nodes(nodes, sources.count)
+    trace_paths(scene, sources, tally, photons=photons, seed=1)
+    mean = tally.lamps[:, 0, :3].sum(axis=0) / FIXED_POINT
+    return tally.balance, mean / np.linalg.norm(mean)

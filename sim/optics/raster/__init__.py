@@ -1,0 +1,1 @@
+"""Images: depth, visibility, shading, markers, and the image sensor."""

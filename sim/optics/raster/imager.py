@@ -1,0 +1,189 @@
+"""Images at video rate: view, light and backdrop of one design on the compute device.
+
+Everything an `Imager` needs are the plain arrays of `SkinView`, `VertexLight` and `Backdrop`, so it
+can be saved on a machine with ray casting and opened on one that only has a device.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import taichi as ti
+
+from sim.optics.light.device_arrays import empty, on_device
+from sim.optics.raster import compose_kernels
+from sim.optics.raster.backdrop import Backdrop
+from sim.optics.raster.display import LUT_STEPS, srgb_table
+from sim.optics.raster.markers import LEAST_COSINE
+from sim.optics.raster.raster import Raster
+from sim.optics.raster.shader import Shader
+from sim.optics.raster.skin_view import SkinView
+from sim.optics.raster.vertex_light import VertexLight
+
+PARTS = {"view": SkinView, "lit": VertexLight, "backdrop": Backdrop}
+
+
+class Imager:
+    """Deformed skin to images, in batches."""
+
+    def __init__(self, raster: Raster, shader: Shader, backdrop: Backdrop) -> None:
+        self.raster, self.shader, self.backdrop = raster, shader, backdrop
+        self.whole_shadows = False
+        """Whether shadows do not fade toward skin that did not move: for absolute images."""
+        self._undeformed = on_device(backdrop.undeformed, vector=3)
+        self._remainder = on_device(backdrop.remainder, vector=3)
+        self._curve = on_device(srgb_table())
+        self._dots = on_device(backdrop.dots_mm, vector=3)
+        self._dot_start, self._dot_of = on_device(backdrop.dot_start), on_device(backdrop.dot_of)
+        inked = raster.frames * raster.pixels if len(backdrop.dots_mm) else 0
+        self._ink, self._marker = empty(ti.f32, inked), empty(ti.i32, inked)
+
+    @classmethod
+    def from_state(cls, state: dict[str, np.ndarray]) -> Imager:
+        """An imager from saved arrays; the device must be open."""
+        parts: dict[str, Any] = {}
+        for name, kind in PARTS.items():
+            values = {}
+            for field in dataclasses.fields(kind):
+                value = np.asarray(state[f"{name}.{field.name}"])
+                values[field.name] = value if value.ndim else value.item()
+            parts[name] = kind(**values)
+        raster = Raster(parts["view"])
+        return cls(raster, Shader(raster, parts["lit"]), parts["backdrop"])
+
+    def state(self) -> dict[str, np.ndarray]:
+        """All plain arrays and numbers by name, ready for `numpy.savez`."""
+        parts = {"view": self.raster.view, "lit": self.shader.lit, "backdrop": self.backdrop}
+        return {
+            f"{name}.{field.name}": np.asarray(getattr(part, field.name))
+            for name, part in parts.items()
+            for field in dataclasses.fields(part)
+        }
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns of an image."""
+        return self.raster.view.height_px, self.raster.view.width_px
+
+    def images(self, displacement_mm: np.ndarray, radiance: np.ndarray | None = None) -> np.ndarray:
+        """Images of frames of displacement [mm], shape (K, V, 3): (K, H, W, 3), uint8."""
+        found = np.empty((len(displacement_mm), self.raster.pixels, 3), dtype=np.uint8)
+        for rows in self._batches(displacement_mm, radiance):
+            self.expose(found[rows])
+        return found.reshape(-1, *self.shape, 3)
+
+    def linear(self, displacement_mm: np.ndarray, radiance: np.ndarray | None = None) -> np.ndarray:
+        """Linear radiance with ink, before exposure: (K, H, W, 3), float32."""
+        found = np.empty((len(displacement_mm), self.raster.pixels, 3), dtype=np.float32)
+        for rows in self._batches(displacement_mm, radiance):
+            self.gather_light(found[rows])
+        return found.reshape(-1, *self.shape, 3)
+
+    def _batches(self, displacement_mm: np.ndarray, radiance: np.ndarray | None) -> Iterator[slice]:
+        for first in range(0, len(displacement_mm), self.raster.frames):
+            rows = slice(first, min(first + self.raster.frames, len(displacement_mm)))
+            self.look(displacement_mm[rows], None if radiance is None else radiance[rows])
+            yield rows
+
+    def look(self, displacement_mm: np.ndarray, radiance: np.ndarray | None = None) -> None:
+        """Find, shade and ink what the pixels of at most one batch of frames see."""
+        moved = np.ascontiguousarray(displacement_mm, dtype=np.float32)
+        self.raster.look(moved)
+        self.shader.shade(radiance, whole=self.whole_shadows)
+        if len(self.backdrop.dots_mm):
+            self._spread_ink(len(moved))
+
+    def _spread_ink(self, frames: int) -> None:
+        raster, back = self.raster, self.backdrop
+        compose_kernels.spread_ink(
+            frames,
+            raster.pixels,
+            raster.vertices,
+            raster.seen_face,
+            raster.seen_weights,
+            raster.on_patch,
+            raster.faces,
+            raster.points,
+            raster.normals,
+            raster.turned,
+            raster.origin,
+            raster.direction,
+            raster.seen_mm,
+            ti.math.vec3(*back.camera_mm.tolist()),
+            ti.math.vec3(*back.axis.tolist()),
+            back.angular,
+            back.focal_px,
+            LEAST_COSINE,
+            back.dot_radius_mm,
+            self._dot_start,
+            self._dot_of,
+            self._dots,
+            self._ink,
+            self._marker,
+        )
+
+    def expose(self, images: np.ndarray) -> None:
+        """Write the grey levels of the frames looked at, shape (k, N, 3), uint8."""
+        gain = self.backdrop.exposure * (LUT_STEPS - 1)
+        images[:] = self.backdrop.background_rgb
+        arguments = (*self._seen(len(images)), gain, self._curve, images)
+        compose_kernels.expose(*arguments)  # pyright: ignore[reportCallIssue]
+
+    def gather_light(self, linear: np.ndarray) -> None:
+        """Write the linear light of the frames looked at, shape (k, N, 3), float32."""
+        linear[:] = self.backdrop.background
+        arguments = (*self._seen(len(linear)), linear)
+        compose_kernels.gather_light(*arguments)  # pyright: ignore[reportCallIssue]
+
+    def _seen(self, frames: int) -> tuple[Any, ...]:
+        raster, back = self.raster, self.backdrop
+        return (
+            frames,
+            raster.pixels,
+            raster.vertices,
+            raster.seen_face,
+            raster.seen_weights,
+            raster.on_patch,
+            raster.faces,
+            raster.radiance,
+            self._undeformed,
+            raster.transmittance,
+            self._remainder,
+            self._ink,
+            int(len(back.dots_mm) > 0),
+            back.ink_gain,
+            back.inked_background,
+        )
+
+    def describe(self, normal: np.ndarray, depth_z_mm: np.ndarray) -> None:
+        """Write what the first frame's changed pixels see: normals (N, 3), depths (N,), float32."""
+        raster, back = self.raster, self.backdrop
+        compose_kernels.describe(
+            1,
+            raster.pixels,
+            raster.vertices,
+            raster.seen_face,
+            raster.seen_weights,
+            raster.seen_mm,
+            raster.on_patch,
+            raster.faces,
+            raster.normals,
+            raster.turned,
+            raster.origin,
+            raster.direction,
+            ti.math.vec3(*back.camera_mm.tolist()),
+            ti.math.vec3(*back.axis.tolist()),
+            normal,
+            depth_z_mm,
+        )
+
+    def ink(self) -> tuple[np.ndarray, np.ndarray]:
+        """Nearest dot and covered share of the first frame's pixels, each (N,).
+
+        Right only where `raster.seen_face` says that the pixel changed.
+        """
+        count = self.raster.pixels
+        return self._marker.to_numpy()[:count], self._ink.to_numpy()[:count]

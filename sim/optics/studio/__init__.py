@@ -1,0 +1,1 @@
+"""The studio: everything that turns a pressed skin into tactile images, and their scores."""

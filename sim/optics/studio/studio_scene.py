@@ -1,0 +1,258 @@
+"""Opening a studio: rays, light on the undeformed skin, background, exposure and ink."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+
+import numpy as np
+
+from sim.optics.camera.camera import focal_px, rotation_camera_to_sensor
+from sim.optics.camera.lens import ANGULAR
+from sim.optics.field.model import model_of
+from sim.optics.light.places import camera_field, check_camera
+from sim.optics.raster.backdrop import Backdrop, at_pixels, dots_of_faces
+from sim.optics.raster.display import choose_exposure, encode
+from sim.optics.raster.gbuffer import GBuffer, Hits, describe
+from sim.optics.raster.image_sensor import develop, fixed_exposure
+from sim.optics.raster.imager import Imager
+from sim.optics.raster.markers import TIP_REFLECTANCE, Dots, dots_at, ink, no_ink, print_dots
+from sim.optics.raster.raster import Raster
+from sim.optics.raster.shader import Shader
+from sim.optics.raster.shading import straight
+from sim.optics.raster.skin_view import SkinView, open_skin_view
+from sim.optics.raster.vertex_light import vertex_light
+from workbench.core.base.errors import OpticsError
+from workbench.core.base.monitor import Monitor
+from workbench.core.design.camera import Camera
+from workbench.core.design.lighting import LightModel
+from workbench.core.design.optics import Optics
+from workbench.core.result.light import LightField, NormalTable
+from workbench.core.result.results import MembraneMesh
+
+LEAST_ALBEDO = 0.01
+"""Darkest skin that white tips are compared with [1]: carbon-black silicone returns 2 to 5 %."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class StudioScene:
+    """What all frames of one studio share."""
+
+    camera: Camera
+    imager: Imager
+    seen: GBuffer
+    """What the pixels see of the undeformed skin; faces numbered as in the tree."""
+    range_mm: np.ndarray
+    """Length of each pixel's line of sight to the undeformed skin [mm], shape (N,); NaN."""
+    dots_mm: np.ndarray
+    """Reference places of dots or tips [mm], shape (M, 3), float64."""
+
+    def develop(self, linear: np.ndarray, range_mm: np.ndarray, number: int) -> np.ndarray:
+        """Grey levels of linear light (N, 3) behind the image sensor, shape (H, W, 3), uint8."""
+        rows, columns = self.imager.shape
+        return develop(
+            linear.reshape(rows, columns, 3),
+            self.camera,
+            exposure=self.imager.backdrop.exposure,
+            range_mm=range_mm.reshape(rows, columns),
+            frame=number,
+        )
+
+
+def develops_plainly(camera: Camera) -> bool:
+    """Whether the image sensor adds nothing: sRGB, no noise, no fall-off, no blur."""
+    sensor = camera.sensor
+    added = sensor.noise or sensor.vignetting > 0.0 or sensor.gamma != 0.0
+    return not added and camera.aperture_mm == 0.0
+
+
+def behind_photo(camera: Camera) -> Camera:
+    """The camera whose blur, fall-off and noise a photograph of its own holds already."""
+    sensor = dataclasses.replace(camera.sensor, vignetting=0.0, noise=False)
+    return dataclasses.replace(camera, aperture_mm=0.0, sensor=sensor)
+
+
+def open_scene(
+    mesh: MembraneMesh,
+    light: LightField,
+    optics: Optics,
+    table: NormalTable | None,
+    camera: Camera,
+    radiance: np.ndarray | None,
+    monitor: Monitor,
+) -> StudioScene:
+    """Everything a studio needs, in plain arrays and on the device.
+
+    Raises:
+        DesignError: If the camera is outside the cavity or sees nothing of the skin.
+        OpticsError: If the image would be black, saying why.
+    """
+    monitor(0.0, "camera rays")
+    check_camera(mesh, camera, at=camera_field(optics, camera))
+    view = open_skin_view(mesh, camera, index=optics.refractive_index)
+    monitor(0.2, "light on the skin")
+    raster = Raster(view)
+    number = _number_of(camera, optics, table)
+    shader = Shader(raster, vertex_light(light, table, optics.coating, camera=number))
+    if shader.given:
+        if radiance is None:
+            raise OpticsError(
+                "the light model photons needs the radiance of the undeformed skin",
+                hint="trace its photons first",
+                at="optics.light_model",
+            )
+        undeformed = radiance.astype(np.float32)
+    else:
+        undeformed = shader.undeformed()
+    behind = _background_radiance(mesh, light, optics, raster, undeformed)
+    monitor(0.25, "background")
+    seen = _background_buffer(mesh, camera, view)
+    dots, gain = _dots(mesh, LightModel(light.model), optics, camera)
+    # The photograph is what the first camera saw; the others' backgrounds are rendered.
+    if camera != optics.camera:
+        optics = dataclasses.replace(optics, background=None)
+    backdrop = _backdrop(mesh, optics, camera, view, seen, undeformed, behind, dots, gain)
+    range_mm = np.full(len(view.direction), np.nan, dtype=np.float32)
+    first = view.layer_start[seen.pixel]
+    range_mm[seen.pixel] = view.travelled_mm[seen.pixel] + view.layer_mm[first]
+    if optics.background is not None:
+        camera = behind_photo(camera)
+    scene = StudioScene(
+        camera=camera,
+        imager=Imager(raster, shader, backdrop),
+        seen=seen,
+        range_mm=range_mm,
+        dots_mm=dots.centres_mm,
+    )
+    if develops_plainly(camera):
+        return scene
+    # The background passes through the image sensor like every other frame.
+    developed = scene.develop(backdrop.background, range_mm, 0).reshape(-1, 3)
+    shown = dataclasses.replace(backdrop, background_rgb=developed)
+    return dataclasses.replace(scene, imager=Imager(raster, shader, shown))
+
+
+def _number_of(camera: Camera, optics: Optics, table: NormalTable | None) -> int:
+    """Number of a camera in the table."""
+    if table is None or len(table.values) == 1:
+        return 0
+    return optics.all_cameras.index(camera)
+
+
+def _background_radiance(
+    mesh: MembraneMesh, light: LightField, optics: Optics, raster: Raster, undeformed: np.ndarray
+) -> np.ndarray:
+    """Radiance of the background per undeformed vertex, shape (V, 3), float32."""
+    model = model_of(light.model)
+    if not model.paper or model.straight:
+        return undeformed
+    lines = straight(light, mesh.seen.points_mm)
+    return Shader(raster, vertex_light(lines, None, optics.coating, camera=0)).undeformed()
+
+
+def _background_buffer(mesh: MembraneMesh, camera: Camera, view: SkinView) -> GBuffer:
+    pixel = np.flatnonzero(np.diff(view.layer_start) > 0)
+    layer = view.layer_start[pixel]
+    found = Hits(
+        pixel=pixel,
+        distance_mm=view.layer_mm[layer],
+        face=view.layer_face[layer],
+        weights=view.layer_weights[layer],
+    )
+    return describe(found, view.faces, mesh.seen.normals, camera, view.rays)
+
+
+def _dots(
+    mesh: MembraneMesh, model: LightModel, optics: Optics, camera: Camera
+) -> tuple[Dots, float]:
+    """What is printed on the seen skin: tips of pins, else markers; and its gain."""
+    if len(mesh.tips_mm):
+        coating = optics.coating
+        albedo = coating.phong_diffuse if model_of(model).paper else coating.albedo
+        dots = dots_at(mesh.seen, mesh.tips_mm, mesh.tip_radius_mm, camera)
+        return dots, TIP_REFLECTANCE / max(albedo, LEAST_ALBEDO)
+    return print_dots(mesh.seen, optics.markers, camera), optics.markers.reflectance
+
+
+def _backdrop(
+    mesh: MembraneMesh,
+    optics: Optics,
+    camera: Camera,
+    view: SkinView,
+    seen: GBuffer,
+    undeformed: np.ndarray,
+    behind: np.ndarray,
+    dots: Dots,
+    gain: float,
+) -> Backdrop:
+    by_number = np.empty_like(dots.inked)
+    by_number[:] = dots.inked[view.face_number]
+    coverage = ink(
+        no_ink(len(view.direction)),
+        seen.pixel,
+        seen,
+        dots=dataclasses.replace(dots, inked=by_number),
+        skin=dataclasses.replace(mesh.seen, faces=view.faces),
+        camera=camera,
+        rays=view.rays,
+    )
+    factor = (1.0 + (gain - 1.0) * coverage.ink)[:, None].astype(np.float32)
+    bare, foreground = at_pixels(view, behind), at_pixels(view, undeformed)
+    # White tips on black skin are what must not be overexposed; black dots never are.
+    bright = bare * factor if gain > 1.0 else bare
+    exposure = fixed_exposure(camera, bright[seen.pixel])
+    _expect_light(bright[seen.pixel], view.transmittance[seen.pixel], exposure)
+    background, remainder, inked = bare * factor, bare - foreground, 1
+    if optics.background is not None:
+        from sim.optics.studio.background import photo_radiance
+
+        photo = photo_radiance(optics.background, camera, exposure)
+        background = np.ascontiguousarray(photo.reshape(-1, 3), dtype=np.float32)
+        remainder, inked = background - foreground * factor, 0
+    start, of = dots_of_faces(dots, mesh.seen, view)
+    return Backdrop(
+        undeformed=undeformed,
+        background=background,
+        remainder=remainder,
+        inked_background=inked,
+        background_rgb=encode(background, exposure),
+        exposure=float(exposure),
+        ink=coverage.ink,
+        marker=coverage.marker,
+        ink_gain=gain,
+        dot_radius_mm=dots.radius_mm,
+        dots_mm=dots.centres_mm.astype(np.float32),
+        dot_start=start,
+        dot_of=of,
+        camera_mm=np.array(camera.position_mm, dtype=np.float32),
+        axis=rotation_camera_to_sensor(camera)[:, 2].astype(np.float32),
+        focal_px=focal_px(camera),
+        angular=int(camera.lens in ANGULAR),
+    )
+
+
+def _expect_light(shown: np.ndarray, transmittance: np.ndarray, exposure: float) -> None:
+    """Refuse a background that would be black.
+
+    Raises:
+        OpticsError: Saying whether walls, lights or the exposure are the cause.
+    """
+    if not transmittance.any():
+        raise OpticsError(
+            "the cavity's wall reflects every line of sight back: the image would be black",
+            hint="turn the camera so that it looks at the wall less flatly",
+            at="optics.camera.wxyz",
+        )
+    if not shown.any() or exposure == 0.0:
+        raise OpticsError(
+            "no light reaches the part of the skin that the camera sees: the image would be black",
+            hint="tilt or move the LEDs so that they shine on the skin (tilt_deg 0 is up)",
+            at="optics.ring.tilt_deg",
+        )
+    if not encode(shown, exposure).any():
+        chosen = choose_exposure(shown)
+        raise OpticsError(
+            f"exposure {exposure:g} leaves the whole image black",
+            hint=f"set exposure to 0, which chooses {chosen:.3g} here",
+            at="optics.camera.sensor.exposure",
+        )

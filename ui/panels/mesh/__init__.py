@@ -1,0 +1,1 @@
+"""The tab Mesh: how finely the body is divided, and how good the cells are."""

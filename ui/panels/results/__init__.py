@@ -1,0 +1,1 @@
+"""The right dock: image, forces, maps, log and timeline."""

@@ -1,0 +1,167 @@
+"""The tab of the tactile image: which camera, what is shown of it, its change, and measures.
+
+Blinking between the frame and the rest shows small changes better than two pictures do.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ui.desk.desk import Desk
+from ui.page.blink import Blink
+from ui.page.imaging import placeholder, scale_bar, table
+from ui.page.offer import offer
+from ui.panels.results.probe import Probe
+from workbench.core.result.sensing import Shot, TactileFrames
+from workbench.view.image_views import View, crossed, looked, unseen_words, views, visible_change
+from workbench.view.map_display import scores
+from workbench.view.metric_rules import rule
+
+BLINK_S = 0.5
+"""How long each of the two blinking pictures is shown [s]."""
+NO_IMAGE = "No press of this sensor yet: *Run press* makes an image."
+IMAGE_COMES = (
+    "The tactile image appears here.",
+    "Run press (R) computes it;",
+    "a sketch comes first.",
+)
+CHANGE_COMES = ("Its change against the untouched skin", "appears here.")
+"""What empty places say."""
+
+
+class ImageTab:
+    """Widgets of the tab."""
+
+    def __init__(self, desk: Desk) -> None:
+        self.desk = desk
+        gui = desk.server.gui
+        self.cameras: tuple[tuple[np.ndarray, TactileFrames | None], ...] = ()
+        """Of each camera the background and frames, (1 + K, H, W, 3) uint8, and their fields."""
+        self.number = 0
+        """Frame on show."""
+        self.caption = gui.add_markdown(NO_IMAGE)
+        self.camera = gui.add_dropdown(
+            "Camera", ("camera 1",), visible=False, hint="Whose image is shown"
+        )
+        hint = "What the first picture is; below it stands its change"
+        self.view = gui.add_dropdown("Show", (View.IMAGE.value,), visible=False, hint=hint)
+        for handle in (self.camera, self.view):
+            handle.on_update(desk.guarded(lambda event: self.show(self.number)))
+        hint = "Show the untouched skin every other half second"
+        self.blink = gui.add_checkbox("Blink with rest", False, visible=False, hint=hint)
+        self.blink.on_update(desk.guarded(lambda event: self._blinks()))
+        clicks = gui.add_html("")
+        self.image = gui.add_image(placeholder(*IMAGE_COMES), format="jpeg")
+        self.rest = gui.add_image(placeholder(), format="jpeg", visible=False)
+        self.turns = Blink(desk.server, self.image, self.rest, period_s=BLINK_S)
+        self.legend = gui.add_html("")
+        self.change_text = gui.add_markdown("")
+        self.change = gui.add_image(placeholder(*CHANGE_COMES), format="jpeg")
+        self.measures = gui.add_folder("Measures", expand_by_default=False, visible=False)
+        with self.measures:
+            self.numbers = gui.add_html("")
+        self.probe = Probe(desk, clicks)
+        self.probe.on_moved = lambda: self.show(self.number)
+
+    @property
+    def last(self) -> int | None:
+        """Number of the last frame; None without images."""
+        return len(self.cameras[0][0]) - 1 if self.cameras else None
+
+    def load(self, shot: Shot) -> None:
+        """Take the images of a press."""
+        all_frames = (shot.frames, *shot.others)
+        self.cameras = tuple((np.asarray(frames.rgb), frames) for frames in all_frames)
+        self._offer()
+
+    def load_live(self, images: np.ndarray) -> None:
+        """Take the images of a live press, which has nothing else."""
+        self.cameras = ((images, None),)
+        self._offer()
+
+    def forget(self) -> None:
+        """There are no images; what was last on show stays."""
+        self.cameras = ()
+        self.say(NO_IMAGE)
+
+    def clear(self) -> None:
+        """Show no image."""
+        self.forget()
+        self.change_text.content = self.legend.content = ""
+        self.image.image = placeholder(*IMAGE_COMES)
+        self.change.image = placeholder(*CHANGE_COMES)
+        self.camera.visible = self.view.visible = self.measures.visible = False
+        self.blink.visible = self.blink.value = False
+
+    def say(self, text: str) -> None:
+        """Write above the picture."""
+        if self.caption.content != text:
+            self.caption.content = text
+
+    def _offer(self) -> None:
+        """Offer the cameras and views that there are."""
+        names = tuple(f"camera {k}" for k in range(1, len(self.cameras) + 1))
+        offer(self.camera, names)
+        offer(self.view, tuple(view.value for view in views(self.cameras[0][1])))
+        self.camera.visible, self.view.visible = len(names) > 1, True
+        self.blink.visible = True
+
+    def chosen(self) -> tuple[np.ndarray, TactileFrames | None]:
+        """Images and fields of the chosen camera."""
+        return self.cameras[self.camera.options.index(self.camera.value)]
+
+    def show(self, number: int) -> None:
+        """Show a frame, the last one where there are not so many."""
+        if not self.cameras:
+            return
+        images, frames = self.chosen()
+        self.number = number = min(number, len(images) - 1)
+        self.probe.follow(self.camera.options.index(self.camera.value), number)
+        what = View(self.view.value)
+        found = looked(what, images, number, frames)
+        change, gain = visible_change(np.asarray(images[number]), np.asarray(images[0]))
+        nothing = unseen_words(np.asarray(images[number]), np.asarray(images[0])) if number else ""
+        unseen = f" · **{nothing}**" if nothing else ""
+        bar = found.bar
+        words = f"<div style='font-size:12px;margin:2px 12px'>{found.words}</div>"
+        scale = "" if bar is None else scale_bar(bar.low, bar.high, bar.unit)
+        with self.desk.server.atomic():
+            self.image.image = self._crossed(found.rgb)
+            if self.blink.value:
+                rest = looked(what, images, 0, frames, beside=number)
+                self.rest.image = self._crossed(rest.rgb)
+            self.legend.content = scale + words if found.words else ""
+            # Once is enough.
+            self.change.visible = self.change_text.visible = what is not View.DIFFERENCE
+            self.change_text.content = f"Difference to the background, × {gain}{unseen}"
+            self.change.image = change
+
+    def _crossed(self, image: np.ndarray) -> np.ndarray:
+        """The picture with a cross at the chosen pixel, of the camera's or of fewer pixels."""
+        uv_px, cameras = self.probe.uv_px, self.desk.session.design.optics.all_cameras
+        if uv_px is None or self.probe.camera >= len(cameras):
+            return image
+        return crossed(image, uv_px * (image.shape[1] / cameras[self.probe.camera].width_px))
+
+    def _blinks(self) -> None:
+        if self.blink.value:
+            self.show(self.number)
+            self.turns.start()
+        else:
+            self.turns.stop()
+
+    def show_in_frusta(self, number: int) -> None:
+        """Show in the 3D view what each camera sees."""
+        for camera, (images, _) in enumerate(self.cameras):
+            self.desk.scene.rig.show_image(camera, np.asarray(images[number]))
+
+    def measure(self) -> None:
+        """List the measures that are stored of the state: of the image, and the maps' scores."""
+        session = self.desk.session
+        shot, maps = session.result("shoot"), session.result("maps")
+        values = {} if shot is None else dict(shot.metrics.values)
+        if maps is not None:
+            values |= scores(maps)
+        rows = [(rule(name).label, f"{v:.4g} {rule(name).unit}") for name, v in values.items()]
+        self.numbers.content = table(("measure", "value"), rows)
+        self.measures.visible = bool(rows)

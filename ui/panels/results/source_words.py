@@ -1,0 +1,92 @@
+"""The sources of one press in words and numbers: a table of totals, and how far they are apart."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping
+
+from ui.page.colours import AMBER
+from ui.page.plain import plain
+from workbench.core.press.fem import DRAFT_MM, QUALITY_MM
+from workbench.core.result.force_field import ForceField, Source
+from workbench.view.force_sources import WORDS, Forces, disagreement, totals
+from workbench.view.frame_words import number
+
+NONE = (
+    "Finite elements are the ground truth: the same press, on hexahedra of their own. A press of "
+    "ten frames takes a minute or two as a draft, and ten times that at the quality mesh."
+)
+COARSE = (
+    "**A mesh of {:g} mm is a draft**: finite elements read 10 % too much force at "
+    f"{DRAFT_MM:g} mm; {QUALITY_MM:g} mm is to be trusted"
+)
+STALE = "**stale**: {} of an earlier design or press; {} again"
+AGAIN = {
+    Source.FEM: ("finite elements are", "solve"),
+    Source.LEARNED: ("learned forces are", "predict"),
+}
+WHOSE = {
+    Source.MPM: "The contact solver's",
+    Source.FEM: "Finite elements'",
+    Source.LEARNED: "The network's",
+}
+HEAD = ("| source | normal N | tangential N | peak mN |", "|---|---|---|---|")
+
+
+def sources_text(
+    found: Mapping[Source, Forces], frame: int, *, stale: Collection[Source] = ()
+) -> str:
+    """What is said of all sources in a frame, counted from 0, as Markdown.
+
+    Args:
+        found: The sources that there are, the contact solver among them.
+        frame: Which.
+        stale: Those of an earlier design or press.
+    """
+    rows = [
+        f"| {WORDS[row.source].value} | {number(row.normal_N, '.3f')} | "
+        f"{number(row.tangential_N, '.3f')} | {number(1e3 * row.peak_N, '.1f')} |"
+        for row in (totals(source, forces, frame) for source, forces in found.items())
+    ]
+    parts = [
+        *(STALE.format(*AGAIN[source]) for source in stale),
+        "\n".join((*HEAD, *rows)),
+        *_apart(found, frame),
+        *_solvers(found),
+    ]
+    return "\n\n".join(parts)
+
+
+def _apart(found: Mapping[Source, Forces], frame: int) -> Iterator[str]:
+    """How far each source is from the best there is."""
+    truth = Source.FEM if Source.FEM in found else Source.MPM
+    other = "that of finite elements" if truth is Source.FEM else "that of the contact solver"
+    for source, forces in found.items():
+        if source is truth:
+            continue
+        apart = disagreement(forces, found[truth], frame)
+        moved = (
+            f"its displacement {number(1e3 * apart.displacement_mm, '.0f')} µm (rms) of "
+            f"{number(1e3 * apart.farthest_mm, '.0f')}"
+        )
+        if source is Source.LEARNED and apart.displacement_mm == 0.0 and truth is Source.MPM:
+            moved = "its displacement is the contact solver's"
+        share = number(100 * apart.normal_share, "+.1f")
+        yield f"{WHOSE[source]} normal force is {share} % from {other}, {moved}."
+
+
+def _solvers(found: Mapping[Source, Forces]) -> Iterator[str]:
+    """What solved or predicted each, and what one should know of it."""
+    solved, learned = found.get(Source.FEM), found.get(Source.LEARNED)
+    if isinstance(solved, ForceField):
+        text = f"{plain(solved.solver)}, residual {number(solved.residual.max(), '.0e')}"
+        coarse = solved.spacing_mm > QUALITY_MM
+        yield f"{text}. {COARSE.format(solved.spacing_mm)}" if coarse else text
+    if isinstance(learned, ForceField):
+        yield f"<small>{plain(learned.solver)}</small>"
+        if learned.note:
+            yield f"<small>Note: {plain(learned.note)}</small>"
+
+
+def doubt_text(notice: str) -> str:
+    """Why not to trust learned forces, to be seen before their numbers."""
+    return f"<span style='color:{AMBER}'>**Not known to the network:** {plain(notice)}</span>"

@@ -1,0 +1,1 @@
+"""The 3D view: body, lights, cameras, parts, maps, pressed frames."""

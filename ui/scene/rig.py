@@ -1,0 +1,134 @@
+"""LEDs, lamps and cameras in the 3D view."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from ui.scene.lamps import LampsView
+from workbench.core.design.camera import Camera, LensModel
+from workbench.core.design.leds import colour_sectors, led_places
+from workbench.core.design.lighting import LedRing
+from workbench.core.design.optics import Optics
+from workbench.edit.led_colours import shown_colour
+
+FRUSTUM_MM = 4.0
+"""Size of a frustum; viser gives all of one size the same volume."""
+WIDEST_DEG = 150.0
+"""A fisheye is drawn at most so wide."""
+USUAL_DEG = 100.0
+"""Wider frusta are smaller, so that they hide no more than one of this angle."""
+PICTURE_PX = 160
+"""Width at most of the picture in a frustum."""
+LENS_COLOURS = {
+    LensModel.PINHOLE: (255, 200, 0),
+    LensModel.OPENCV: (255, 200, 0),
+    LensModel.EQUIDISTANT: (255, 150, 0),
+    LensModel.OPENCV_FISHEYE: (255, 150, 0),
+}
+
+
+class RigView:
+    """Nodes of one ring, the lamps and the cameras."""
+
+    def __init__(self, server: Any) -> None:
+        self.server = server
+        self.api = server.scene
+        self.leds: list[Any] = []
+        self.lamps = LampsView(self.api)
+        self.cameras: list[Any] = []
+        self.lights_allowed = True
+        """Whether the designer wants to see LEDs and lamps at all."""
+        self.cameras_allowed = True
+        self._opacity: float | None = None
+        """Of the LEDs, if the designer chose one."""
+        self._shown = True
+
+    def show_optics(self, optics: Optics) -> None:
+        """Show all lights and cameras of a design."""
+        with self.server.atomic():
+            self.show_lights(optics.ring)
+            self.lamps.show_lamps(optics.lamps)
+            if len(self.cameras) != len(optics.all_cameras):
+                # Pictures are told apart by the numbers of cameras, and these have moved up.
+                self.forget_image()
+            while len(self.cameras) > len(optics.all_cameras):
+                self.cameras.pop().remove()
+            for number, camera in enumerate(optics.all_cameras):
+                self._show_camera(number, camera)
+            self.show(self._shown)
+
+    def show_lights(self, ring: LedRing) -> None:
+        """Show the LEDs of a ring in their colours."""
+        places, _ = led_places(ring)
+        sectors = colour_sectors(ring)
+        while len(self.leds) > ring.count:
+            self.leds.pop().remove()
+        for i, place in enumerate(places):
+            colour = shown_colour(ring.colours[sectors[i]])
+            if i == len(self.leds):
+                led = self.api.add_icosphere(f"/leds/{i}", radius=0.7, subdivisions=2)
+                led.opacity = self._opacity
+                self.leds.append(led)
+            self.leds[i].position = place
+            self.leds[i].color = colour
+
+    def _show_camera(self, number: int, camera: Camera) -> None:
+        """Show a camera as a frustum."""
+        high, aspect, scale_mm = frustum(camera)
+        colour = LENS_COLOURS[camera.lens]
+        if number == len(self.cameras):
+            name = "/camera" if number == 0 else f"/camera_{number + 1}"
+            node = self.api.add_camera_frustum(
+                name, fov=high, aspect=aspect, scale=scale_mm, color=colour
+            )
+            self.cameras.append(node)
+        node = self.cameras[number]
+        node.fov = high
+        node.aspect = aspect
+        node.scale = scale_mm
+        node.position = camera.position_mm
+        node.wxyz = camera.wxyz
+        node.color = colour
+
+    def show_image(self, number: int, image: np.ndarray) -> None:
+        """Show in a frustum what its camera sees, shape (H, W, 3), uint8."""
+        if number < len(self.cameras):
+            step = max(1, image.shape[1] // PICTURE_PX)
+            self.cameras[number].image = image[::step, ::step]
+
+    def forget_image(self) -> None:
+        """Take away what the cameras of another sensor, or another list of cameras, saw."""
+        for node in self.cameras:
+            node.image = None
+
+    def show(self, visible: bool) -> None:
+        """Show or hide lights and cameras, as far as the designer wants to see them."""
+        self._shown = visible
+        self.lamps.show(visible and self.lights_allowed)
+        for node in self.leds:
+            node.visible = visible and self.lights_allowed
+        for node in self.cameras:
+            node.visible = visible and self.cameras_allowed
+
+    def fade_lights(self, opacity: float) -> None:
+        """Draw the LEDs with an opacity in [0, 1]."""
+        self._opacity = opacity
+        for node in self.leds:
+            node.opacity = opacity
+
+    def allow(self, *, lights: bool, cameras: bool) -> None:
+        """Let them be seen, or hide them whatever else is shown."""
+        self.lights_allowed, self.cameras_allowed = lights, cameras
+        self.show(self._shown)
+
+
+def frustum(camera: Camera) -> tuple[float, float, float]:
+    """Vertical angle [rad], aspect and size [mm] of a frustum that stands for a camera."""
+    half = math.tan(math.radians(min(camera.fov_x_deg, WIDEST_DEG)) / 2)
+    high = 2 * math.atan(half * camera.height_px / camera.width_px)
+    # At equal volume the far side of a frustum is as wide as the cube root of its tangent.
+    smaller = min(1.0, math.tan(math.radians(USUAL_DEG) / 2) / half) ** (1 / 3)
+    return high, camera.width_px / camera.height_px, FRUSTUM_MM * smaller

@@ -1,0 +1,78 @@
+"""`workbench export`: write bodies, mould and meshes of a design."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+
+from workbench.cli.body_arguments import add_body_options, placed_design
+from workbench.cli.command import Command
+from workbench.cli.options import DESIGN, OUT
+from workbench.cli.press_arguments import (
+    add_fit_option,
+    add_set_option,
+)
+from workbench.cli.started import started
+from workbench.project.project import Project
+from workbench.report.export import chosen_exports, clear_exports, export_design, exports
+from workbench.system.terminal import Progress, complain, say
+
+
+def options(sub: argparse.ArgumentParser) -> None:
+    """What may be typed behind it."""
+    sub.add_argument("design", metavar="NAME|FILE", help=DESIGN)
+    add_body_options(sub)
+    add_set_option(sub)
+    add_fit_option(sub)
+    sub.add_argument("--out", required=True, type=Path, metavar="DIR", help=OUT)
+    for option, text in _options().items():
+        sub.add_argument(f"--{option}", action="store_true", help=text)
+    sub.add_argument(
+        "--json",
+        action="store_true",
+        help="one JSON object per line; the last has the checks and the parts",
+    )
+
+
+def _options() -> dict[str, str]:
+    """Kinds of export that are asked for, and what each adds."""
+    return {kind.option: kind.help for kind in exports().values() if kind.option}
+
+
+def run(options: argparse.Namespace, project: Project) -> int:
+    """Write a design's bodies, mould and meshes; 1 where a check says they cannot be made."""
+    from workbench.cli.verdict import check_line, complain_of_red
+    from workbench.core.press.press_case import PressCase
+    from workbench.edit.typed_fields import with_typed
+    from workbench.planning.foresight import optical_misfits
+    from workbench.planning.plan import plan, results
+    from workbench.project.named_designs import load_design
+    from workbench.report.outputs import all_checks, check_rows, part_rows
+
+    printer = Progress(as_json=options.json)
+    design = placed_design(options, load_design(options.design, project=project))
+    design = with_typed(design, options.set)
+    asked = [option for option in _options() if getattr(options, option)]
+    for notice in filter(None, (kind.notice(design) for kind in chosen_exports(asked))):
+        complain(f"notice: {notice}")
+    clear_exports(options.out, but=Path(options.design))
+    start = started(design, options, project, printer)
+    for misfit in optical_misfits(start.solid, start.design.optics):
+        complain(f"notice: {misfit}")
+    where = (options.out, project.store, printer)
+    for path in export_design(start.design, *where, asked):
+        say(json.dumps({"file": str(path)}) if options.json else path)
+    calls = plan(start.design, PressCase())
+    made = results(project.store, calls, ("mould", "housing", "recipe", "package"))
+    checks = all_checks(made["mould"], made["housing"], made["recipe"])
+    if options.json:
+        parts = part_rows(made["mould"], made["housing"], made["package"])
+        say(json.dumps({"checks": check_rows(checks), "parts": parts}, allow_nan=False))
+    else:
+        for check in checks:
+            say(check_line(check))
+    return complain_of_red(checks)
+
+
+COMMAND = Command(place=3, run=run, options=options)

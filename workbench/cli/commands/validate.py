@@ -1,0 +1,40 @@
+"""`workbench validate`: numbers beside closed forms, limits and nulls."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from workbench.cli.command import Command
+from workbench.cli.measured_rows import print_rows
+from workbench.project.project import Project
+
+ROOMS = (
+    "geometry, parts, contact, optics, fem, fem_fine, fem_calculix, forces, robustness, "
+    "robustness_sample, optics_mitsuba"
+)
+"""Named here too, because finding them imports the whole program; a test compares."""
+
+
+def options(sub: argparse.ArgumentParser) -> None:
+    """What may be typed behind it."""
+    sub.add_argument("room", metavar="ROOM", help=f"one of {ROOMS}")
+    sub.add_argument("--json", action="store_true", help="the rows as a JSON list")
+    text = "an independent program to compare with: mitsuba for optics, calculix for fem"
+    sub.add_argument("--reference", metavar="NAME", help=text)
+    text = "for forces: a data set to score learned forces on, instead of what ships"
+    sub.add_argument("--data", type=Path, metavar="DATA", help=text)
+
+
+def run(options: argparse.Namespace, project: Project) -> int:
+    """Compare with closed forms."""
+    from workbench.cli.validate_rooms import ROOMS as ALL
+    from workbench.cli.validate_rooms import room_of, with_data
+
+    if options.reference:
+        options.room = room_of(options.room, options.reference)
+    rooms = ALL if options.data is None else with_data(options.room, options.data)
+    return print_rows(options, rooms)
+
+
+COMMAND = Command(place=5, run=run, options=options)

@@ -1,0 +1,1 @@
+"""Ground of everything: errors, units, keys, tables, poses, progress."""

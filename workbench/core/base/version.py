@@ -1,0 +1,3 @@
+"""The version of the workbench, which kept designs and reports name."""
+
+VERSION = "0.1.0"

@@ -1,0 +1,1 @@
+"""What a designer decides: shape, layers, material, lights, cameras, how it is made."""

@@ -1,0 +1,1 @@
+"""What stages return: bodies, meshes, light, contact, forces, images, maps, parts."""

@@ -1,0 +1,1 @@
+"""What `import workbench` offers: designs, presses, results, sweeps and comparisons from Python."""

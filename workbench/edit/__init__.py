@@ -1,0 +1,1 @@
+"""Edits: fields as typed, forms, tables of LEDs, strokes, and their undo."""

@@ -1,0 +1,1 @@
+"""Learned forces: data sets, training and evaluation."""

@@ -1,0 +1,238 @@
+"""The cases of a recipe in the order in which they are made, and which split each is in.
+
+A *case* is one press path, a *sample* one recorded state (one frame). Each case presses anew and
+then shears one way, so its frames in order are a tactile sequence.
+
+The order is ours, the paper does not say which states it kept. Cases are dealt like cards: the
+k-th takes object k mod I and, of the shuffled positions, the k-th mod P (moved on by one whenever
+both have come round together), so that any first N cases hold every object and every position
+equally often, to within one. Each pair of position and object comes once with one way of
+pressing before any comes with a second. A data set of N cases is the beginning of a larger one.
+
+Training, validation and test share pairs of position and object 3:1:1: in every five pairs, in
+dealt order, three, one and one at random. All ways of pressing one pair stay together, so no frame
+of one press, and no repeated approach, is in two splits. Objects that the paper's networks did not
+see are in a split of their own.
+"""
+
+from __future__ import annotations
+
+import enum
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from workbench.core.base.mapping import to_table
+from workbench.core.press.indenter import UNSEEN, IndenterKind
+from workbench.core.press.motion import slide
+from workbench.core.press.press import Press
+from workbench.core.result.results import Skin
+from workbench.learning.dataset.algorithms import shear_way_mm
+from workbench.learning.dataset.positions import (
+    Pattern,
+    Position,
+    finger_positions,
+    pad_positions,
+    spread_positions,
+)
+from workbench.learning.dataset.recipe import Recipe
+
+
+class Split(enum.StrEnum):
+    """What a case is for."""
+
+    TRAIN = "train"
+    VALIDATION = "validation"
+    TEST = "test"
+    UNSEEN = "unseen"
+    """Objects that training never shows."""
+
+
+SHARES = (Split.TRAIN, Split.TRAIN, Split.TRAIN, Split.VALIDATION, Split.TEST)
+"""3:1:1. Source: SimTac."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Case:
+    """One press path."""
+
+    id: str
+    """Stable, readable, a folder's name: `sphere_tip40_az090_shear3`."""
+    split: Split
+    indenter: IndenterKind
+    position: Position
+    depth_mm: float
+    press_frames: int
+    shear: int = -1
+    """Direction of the shear, counted from U toward V; -1 for none."""
+    shear_mm: tuple[float, float] = (0.0, 0.0)
+    """Way along U and V at its end [mm]."""
+    shear_frames: int = 0
+    first_new: int = 0
+    """Frames before this one repeat states of an earlier case: the approach of the same pair."""
+
+    @property
+    def frames(self) -> int:
+        """Samples of the case."""
+        return self.press_frames + self.shear_frames
+
+    @property
+    def pair(self) -> str:
+        """Position and object, which never are in two splits."""
+        return f"{self.indenter.value}_{self.position.name}"
+
+    @property
+    def press(self) -> Press:
+        """The path."""
+        strokes = ()
+        if self.shear_frames:
+            strokes = (slide(*self.shear_mm, frames=self.shear_frames),)
+        return Press(
+            target_mm=self.position.target_mm,
+            depth_mm=self.depth_mm,
+            frames=self.press_frames,
+            strokes=strokes,
+        )
+
+    def depth_at(self, frame: int) -> float:
+        """Depth of a frame from first touch [mm]."""
+        return self.depth_mm * min(1.0, (frame + 1) / self.press_frames)
+
+    def shear_at(self, frame: int) -> tuple[float, float]:
+        """Way along U and V of a frame [mm]."""
+        done = max(0, frame + 1 - self.press_frames) / max(1, self.shear_frames)
+        return done * self.shear_mm[0] + 0.0, done * self.shear_mm[1] + 0.0
+
+
+def case_row(case: Case) -> dict[str, Any]:
+    """A case as a plain table."""
+    return to_table(case)
+
+
+def case_of_row(row: Mapping[str, Any]) -> Case:
+    """The case that a table holds; by hand, as there may be a hundred thousand of them.
+
+    Raises:
+        KeyError, TypeError, ValueError: If it is none.
+    """
+    place = row["position"]
+    x, y, z = place["target_mm"]
+    u, v = row["shear_mm"]
+    position = Position(
+        name=str(place["name"]), target_mm=(float(x), float(y), float(z)), labels=place["labels"]
+    )
+    given = {"split", "indenter", "position", "shear_mm"}
+    return Case(
+        **{name: value for name, value in row.items() if name not in given},
+        split=Split(row["split"]),
+        indenter=IndenterKind(row["indenter"]),
+        position=position,
+        shear_mm=(float(u), float(v)),
+    )
+
+
+def positions_of(recipe: Recipe, skin: Skin | None = None) -> list[Position]:
+    """The positions of a recipe; only the pattern `spread` looks at the skin.
+
+    Raises:
+        DesignError: If the pattern does not suit the design.
+    """
+    if recipe.pattern is Pattern.FINGER:
+        return finger_positions(recipe.design)
+    if recipe.pattern is Pattern.PAD:
+        return pad_positions(recipe.design)
+    assert skin is not None, "points are spread over a skin"
+    return spread_positions(skin, recipe.points, seed=recipe.seed, margin_mm=recipe.margin_mm)
+
+
+def cases_of(recipe: Recipe, skin: Skin | None = None) -> list[Case]:
+    """The cases that a recipe asks for, in order.
+
+    Raises:
+        DesignError: If the pattern does not suit the design.
+    """
+    return deal(recipe, positions_of(recipe, skin))
+
+
+def ways_of(recipe: Recipe) -> list[tuple[int, int]]:
+    """Depth steps and shear direction of each way of pressing one pair; direction -1 is none."""
+    full = recipe.depth_steps
+    depths = range(1, full + 1) if recipe.shear_every_depth else (full,)
+    if not recipe.shear_directions:
+        return [(full, -1)]
+    return [(steps, way) for steps in depths for way in range(recipe.shear_directions)]
+
+
+def count_cases(recipe: Recipe, positions: int) -> int:
+    """Cases of a recipe with that many positions."""
+    every = positions * len(recipe.indenters) * len(ways_of(recipe))
+    return min(recipe.cases, every) if recipe.cases else every
+
+
+def deal(recipe: Recipe, positions: Sequence[Position]) -> list[Case]:
+    """Deal the cases of a recipe over its positions: the module says how."""
+    kinds, ways = recipe.indenters, ways_of(recipe)
+    rng = np.random.default_rng(recipe.seed)
+    places = [positions[k] for k in rng.permutation(len(positions))]
+    ways = [ways[k] for k in rng.permutation(len(ways))]
+    pairs = len(kinds) * len(places)
+    together = math.lcm(len(kinds), len(places))
+    splits = _splits(recipe, pairs, rng)
+    pressed = np.zeros(pairs, np.int64)
+    found = []
+    for k in range(count_cases(recipe, len(positions))):
+        turn, pair = divmod(k, pairs)
+        kind = kinds[pair % len(kinds)]
+        place = places[(pair + pair // together) % len(places)]
+        steps, way = ways[(pair // len(kinds) + pair % len(kinds) + turn) % len(ways)]
+        found.append(_case(recipe, kind, place, steps, way, splits[pair], int(pressed[pair])))
+        pressed[pair] = max(pressed[pair], steps)
+    return found
+
+
+def _splits(recipe: Recipe, pairs: int, rng: np.random.Generator) -> list[Split]:
+    """The split of each pair in dealt order."""
+    kinds, seen, found = recipe.indenters, 0, []
+    block: list[Split] = []
+    for pair in range(pairs):
+        if kinds[pair % len(kinds)] in UNSEEN:
+            found.append(Split.UNSEEN)
+            continue
+        if seen % len(SHARES) == 0:
+            block = [SHARES[k] for k in rng.permutation(len(SHARES))]
+        found.append(block[seen % len(SHARES)])
+        seen += 1
+    return found
+
+
+def _case(
+    recipe: Recipe,
+    kind: IndenterKind,
+    place: Position,
+    steps: int,
+    way: int,
+    split: Split,
+    pressed: int,
+) -> Case:
+    name = f"{kind.value}_{place.name}"
+    depth_mm = recipe.depth_mm * steps / recipe.depth_steps
+    if recipe.shear_every_depth and recipe.shear_directions:
+        name += f"_depth{depth_mm:.3g}"
+    name += f"_shear{way}" if way >= 0 else "_press"
+    return Case(
+        id=name,
+        split=split,
+        indenter=kind,
+        position=place,
+        depth_mm=depth_mm,
+        press_frames=steps,
+        shear=way,
+        shear_mm=(0.0, 0.0)
+        if way < 0
+        else shear_way_mm(way, recipe.shear_directions, recipe.shear_mm),
+        shear_frames=recipe.shear_steps if way >= 0 else 0,
+        first_new=min(steps, pressed),
+    )

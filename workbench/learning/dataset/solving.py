@@ -1,0 +1,265 @@
+"""One worker of a data set: opens the device and the cameras once, then solves case after case.
+
+A case is pressed by the contact solver first, as a whole; the finite elements then hand over each
+frame as it converges, and its sample is written at once, so a killed process loses one frame of
+theirs and the press before it. Both solvers press on the same skin, that of the hexahedra, so they
+share vertices, first touch and path. Images show the displacement of the contact solver, as in the
+paper, or of the finite elements where they are alone.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from workbench.core.base.errors import Cancelled, DeviceError, LaneError, StoreError, WorkbenchError
+from workbench.core.press.fem import FemSettings
+from workbench.core.press.press import ContactSettings
+from workbench.core.result.force_field import ForceField, Source, from_contact
+from workbench.core.result.results import MembraneMesh
+from workbench.learning.dataset.cases import Case
+from workbench.learning.dataset.folder import SAMPLES, sample_name
+from workbench.learning.dataset.images import Cameras
+from workbench.learning.dataset.recipe import Recipe, Solvers
+from workbench.learning.dataset.sample import Sample, Solved, to_bytes
+from workbench.pipeline.seen_optics import seen_optics
+from workbench.pipeline.stage import Call
+from workbench.pipeline.store import Store
+from workbench.system.whole_files import write_atomically
+
+if TYPE_CHECKING:
+    # Its linear solver is loaded when the first case needs it.
+    from sim.fem.readout import FemFrame
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Setup:
+    """What every worker of a data set needs to know; small, as it is sent to each."""
+
+    recipe: Recipe
+    key: str
+    """Key of the recipe: each sample carries it."""
+    folder: Path
+    store: Path
+    """Root of the store that holds mesh, material points and light."""
+    calls: dict[str, Call]
+    """Their calls by stage."""
+
+
+@dataclass(kw_only=True, slots=True)
+class Report:
+    """How a case ended."""
+
+    id: str
+    written: int = 0
+    """Samples that were not there before."""
+    mpm_s: float = 0.0
+    """Time of the contact solver [s]."""
+    fem_s: float = 0.0
+    """Time of the finite elements [s]."""
+    image_s: float = 0.0
+    """Time of images [s]."""
+    cpu_s: float = 0.0
+    """Processor time of the whole case [s]."""
+    seconds: float = 0.0
+    """Time of the whole case [s]."""
+    error: dict[str, Any] = field(default_factory=dict[str, Any])
+    """What went wrong; empty when nothing did."""
+
+
+class Bench:
+    """Mesh, material points and cameras of one process."""
+
+    def __init__(self, setup: Setup, stop: Any) -> None:
+        from workbench.pipeline.devices import open_device
+
+        open_device()
+        store = Store(setup.store)
+        self.setup = setup
+        self.stop = stop
+        self.recipe = setup.recipe
+        self.mesh: MembraneMesh = self._load(store, "mesh")
+        self.points = self._load(store, "lattice") if self.recipe.solvers != Solvers.FEM else None
+        self.cameras: Cameras | None = None
+        if self.recipe.images:
+            table = self._load(store, "table") if "table" in setup.calls else None
+            optics = seen_optics(self.recipe.design.optics)
+            self.cameras = Cameras(self.mesh, self._load(store, "bake"), optics, table)
+
+    def _load(self, store: Store, stage: str) -> Any:
+        return store.load(stage, self.setup.calls[stage].key)
+
+    def solve(self, case: Case) -> Report:
+        """Make the samples of a case; what goes wrong is in the report.
+
+        Raises:
+            Cancelled: If this data set is to stop.
+            StoreError: If a sample cannot be written: the disk is full, not the case at fault.
+            DeviceError: If the device gave out, likewise.
+            LaneError: If memory did.
+        """
+        report = Report(id=case.id)
+        begun, cpu = time.perf_counter(), time.process_time()
+        try:
+            contact = None if self.recipe.solvers is Solvers.FEM else self._press(case, report)
+            if self.recipe.solvers is Solvers.MPM:
+                assert contact is not None
+                for frame in range(case.frames):
+                    self._write(case, frame, contact, None, report)
+            else:
+                self._converge(case, contact, report)
+        except (Cancelled, StoreError, DeviceError):
+            raise
+        except MemoryError as error:
+            raise LaneError(
+                f"{case.id} ran out of memory",
+                hint="finished samples are kept; make it again with fewer --jobs",
+                at="dataset",
+            ) from error
+        except WorkbenchError as error:
+            report.error = {**error.as_dict(), "frame": getattr(error, "frame", -1)}
+        except (RuntimeError, ArithmeticError, ValueError, LookupError) as error:
+            # A bug in one case must not cost the others; it is kept with its name.
+            report.error = {"error": type(error).__name__, "message": str(error), "frame": -1}
+        report.seconds, report.cpu_s = time.perf_counter() - begun, time.process_time() - cpu
+        return report
+
+    def _press(self, case: Case, report: Report) -> ForceField:
+        from workbench.pipeline.stages.press import PressInputs, press
+
+        begun = time.perf_counter()
+        assert self.points is not None
+        contact = press(
+            PressInputs(
+                mesh=self.mesh,
+                points=self.points,
+                material=self.recipe.design.material,
+                indenter=self.recipe.indenter(case.indenter),
+                path=case.press,
+                settings=ContactSettings(grid_mm=self.recipe.grid_mm),
+            ),
+            monitor=self._watch,
+        )
+        report.mpm_s = time.perf_counter() - begun
+        return from_contact(contact)
+
+    def _converge(self, case: Case, contact: ForceField | None, report: Report) -> None:
+        """Solve by finite elements and write each frame as it converges."""
+        from sim.contact.region.placing import place_object
+        from sim.fem.press import sampling_grid_mm, solve_press
+        from workbench.pipeline.devices import solver_device
+
+        begun, aside_s = time.perf_counter(), 0.0
+        settings = FemSettings(hex_mm=self.recipe.hex_mm)
+        indenter = self.recipe.indenter(case.indenter)
+        frame_of: Any = contact
+        if contact is None:
+            _, frame_of = place_object(
+                self.mesh.outer, indenter, case.press, grid_mm=sampling_grid_mm(settings)
+            )
+
+        def converged(frame: int, outcome: FemFrame) -> None:
+            nonlocal aside_s
+            started = time.perf_counter()
+            self._write(case, frame, contact, _one_frame(outcome, frame_of), report)
+            aside_s += time.perf_counter() - started
+
+        try:
+            solve_press(
+                self.mesh,
+                self.recipe.design.material,
+                indenter,
+                case.press,
+                settings,
+                device=solver_device(),
+                monitor=self._watch,
+                on_frame=converged,
+            )
+        finally:
+            report.fem_s = time.perf_counter() - begun - aside_s
+
+    def _watch(self, fraction: float, note: str = "") -> None:
+        if self.stop.value:
+            raise Cancelled("stopped", hint="make goes on where it was")
+
+    def _write(
+        self,
+        case: Case,
+        frame: int,
+        contact: ForceField | None,
+        solved: ForceField | None,
+        report: Report,
+    ) -> None:
+        """Write one sample unless it is there.
+
+        Args:
+            case: Whose it is.
+            frame: Its frame.
+            contact: All frames by the contact solver.
+            solved: This frame alone by the finite elements.
+            report: Told the time of images, and that it was written.
+        """
+        path = self.setup.folder / SAMPLES / case.id / sample_name(frame)
+        if path.exists():
+            return
+        found = [
+            (field, row) for field, row in ((contact, frame), (solved, 0)) if field is not None
+        ]
+        posed, row = found[0]
+        begun = time.perf_counter()
+        png, marked = self.cameras.images(posed, row) if self.cameras else (b"", b"")
+        report.image_s += time.perf_counter() - begun
+        sample = Sample(
+            case=case.id,
+            frame=frame,
+            recipe=self.setup.key,
+            indenter=case.indenter.value,
+            depth_mm=case.depth_at(frame),
+            shear_mm=case.shear_at(frame),
+            pose=posed.indenter_pose[row],
+            target_mm=posed.target_mm,
+            normal=posed.normal,
+            tangent_u=posed.tangent_u,
+            mpm=None if contact is None else _solved(contact, frame, stress=False),
+            fem=None if solved is None else _solved(solved, 0, stress=True),
+            png=png,
+            png_markers=marked,
+        )
+        write_atomically(path, to_bytes(sample))
+        report.written += 1
+
+
+def _one_frame(outcome: FemFrame, frame_of: Any) -> ForceField:
+    """A converged frame as a result of one frame; `frame_of` knows target, normal and U."""
+    fields: dict[str, Any] = {
+        item.name: np.asarray(getattr(outcome, item.name))[None]
+        for item in dataclasses.fields(outcome)
+    }
+    return ForceField(
+        source=Source.FEM,
+        **fields,
+        target_mm=frame_of.target_mm,
+        normal=frame_of.normal,
+        tangent_u=frame_of.tangent_u,
+    )
+
+
+def _solved(field: ForceField, frame: int, *, stress: bool) -> Solved:
+    cauchy = {"cauchy_MPa": field.cauchy_MPa[frame]} if stress else {}
+    return Solved(
+        displacement_mm=field.displacement_mm[frame],
+        contact_force_N=field.contact_force_N[frame],
+        sliding=field.sliding[frame],
+        reaction_N=field.reaction_N[frame],
+        tangential_N=float(field.tangential_N[frame]),
+        residual=float(field.residual[frame]),
+        balance=float(field.balance[frame]),
+        converged=bool(field.converged[frame]),
+        seconds=float(field.frame_seconds[frame]),
+        **cauchy,
+    )

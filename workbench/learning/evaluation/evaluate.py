@@ -1,0 +1,133 @@
+"""One evaluation: weights on a source of held-out samples, as tables."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from sim.forces.network.spec import FIELDS, Target
+from sim.forces.network.weights import NetworkWeights
+from workbench.core.base.errors import SolveError
+from workbench.core.base.monitor import Monitor, part, silent
+from workbench.learning.dataset.cases import Split
+from workbench.learning.evaluation.groups import by_station, depth_of, shear_of, station_of
+from workbench.learning.evaluation.leaks import expect_no_leak
+from workbench.learning.evaluation.scoring import (
+    Scored,
+    as_table,
+    compared,
+    field_target,
+    grouped,
+    learned_by,
+    predictor_for,
+    scored_states,
+)
+from workbench.learning.evaluation.sources import Source, expect_held_out
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Named:
+    """Weights and the name of their file."""
+
+    name: str
+    weights: NetworkWeights
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FieldResult:
+    """All samples of one field."""
+
+    target: Target
+    weights: str
+    """Name of the file."""
+    rows: tuple[Scored, ...]
+    notes: tuple[str, ...] = field(default=())
+    """What the reader must know beside the numbers."""
+
+    def of(self, *splits: Split) -> list[Scored]:
+        """Samples of some splits."""
+        return [row for row in self.rows if row.case.split in splits]
+
+
+def evaluate_field(
+    source: Source, named: Named, *, name: str, monitor: Monitor = silent
+) -> FieldResult:
+    """Score weights on everything held out of a source.
+
+    Args:
+        source: Of the samples.
+        named: The weights.
+        name: Of the source, for messages.
+        monitor: Told after each sample.
+
+    Raises:
+        DesignError: If nothing is held out, or a case was trained on.
+        StoreError: If a sample is damaged.
+        SolveError: If a prediction is not finite.
+    """
+    target = field_target(named.weights)
+    chosen = expect_held_out(source, name)
+    cases = {case.id: case for case, _ in chosen}
+    expect_no_leak(named.weights, source, cases.values(), name=named.name)
+    predictor = predictor_for(named.weights, source)
+    learned = learned_by(named.weights, predictor)
+    rows = scored_states(source, chosen, target, learned, monitor=monitor)
+    if not rows:
+        raise SolveError(
+            f"no held-out sample of {name} was settled by both solvers",
+            hint="make the data set again with smaller depths",
+            at=name,
+        )
+    notes = _notes(named.weights, source, predictor.notes)
+    if len(rows) < len(chosen):
+        notes += (f"{len(chosen) - len(rows)} samples that a solver did not settle: left out",)
+    return FieldResult(target=target, weights=named.name, rows=tuple(rows), notes=notes)
+
+
+def evaluate_all(
+    source: Source, weights: Sequence[Named], *, name: str, monitor: Monitor = silent
+) -> dict[Target, FieldResult]:
+    """Score several weights, by target; the last of a target counts."""
+    found = {}
+    for number, named in enumerate(weights):
+        step = part(monitor, number / len(weights), (number + 1) / len(weights))
+        one = evaluate_field(source, named, name=name, monitor=step)
+        found[one.target] = one
+    return {target: found[target] for target in FIELDS if target in found}
+
+
+def tables(found: FieldResult) -> dict[str, Any]:
+    """All tables of a field for JSON: presses and shears apart wherever places and ways count."""
+    pressed = [row for row in found.rows if not row.sheared]
+    sheared = [row for row in found.rows if row.sheared]
+    return {
+        "unit": found.target.unit,
+        "weights": found.weights,
+        "notes": list(found.notes),
+        "splits": _tables(found.rows, lambda row: row.case.split.value),
+        "all": as_table(compared(found.rows)),
+        "motions": _tables(found.rows, lambda row: "shear" if row.sheared else "press"),
+        "indenters": _tables(found.rows, lambda row: row.case.indenter.value),
+        "press_stations": _tables(by_station(pressed), station_of),
+        "shear_stations": _tables(by_station(sheared), station_of),
+        "press_depths_mm": _tables(sorted(pressed, key=lambda row: row.depth_mm), depth_of),
+        "shear_ways_mm": _tables(sorted(sheared, key=lambda row: row.shear_mm), shear_of),
+    }
+
+
+def _tables(rows: Iterable[Scored], name: Callable[[Scored], str]) -> dict[str, Any]:
+    return {group: as_table(one) for group, one in grouped(rows, name).items()}
+
+
+def _notes(weights: NetworkWeights, source: Source, notes: tuple[str, ...]) -> tuple[str, ...]:
+    from sim.forces.network.voxels import spacing_mm
+
+    found = list(notes)
+    spacing = spacing_mm(source.skin.points_mm, source.skin.faces)
+    if abs(spacing / weights.spacing_mm - 1.0) > 0.02:
+        found.append(
+            f"trained on points {weights.spacing_mm:.2f} mm apart, scored on {spacing:.2f} mm: "
+            "nodal forces grow with the area of a point"
+        )
+    return tuple(found)

@@ -1,0 +1,79 @@
+"""The charts of an evaluation: errors by object, place, depth and way aside, and the data's spread.
+
+Presses and shears stand apart. The paper's Fig. 14 has places and depths.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+
+from workbench.learning.evaluation import charts
+from workbench.learning.evaluation.evaluate import FieldResult
+from workbench.learning.evaluation.groups import (
+    by_station,
+    depth_of,
+    shear_of,
+    station_of,
+    station_words,
+)
+from workbench.learning.evaluation.html_tables import FIELD_WORDS
+from workbench.learning.evaluation.pictures import Spread
+from workbench.learning.evaluation.scoring import Compared, Scored, Way, grouped
+
+
+def field_charts(found: FieldResult) -> list[str]:
+    """By object, station, depth and way aside; presses and shears apart."""
+    what = f"mean error of {FIELD_WORDS[found.target]} [{found.target.unit}]"
+    pressed = [row for row in found.rows if not row.sheared]
+    sheared = [row for row in found.rows if row.sheared]
+    places = station_words(found.rows[0].case)
+    drawn = [_bars(found.rows, f"By object: {what}")]
+    for words, rows in (("Presses", pressed), ("Shears", sheared)):
+        if rows:
+            title = f"{words} by place: {what}"
+            drawn.append(_lines(by_station(rows), station_of, title, places))
+    if pressed:
+        by_depth = sorted(pressed, key=lambda row: row.depth_mm)
+        title = f"Presses by depth: {what}"
+        drawn.append(_lines(by_depth, depth_of, title, "depth from first touch [mm]"))
+    if sheared:
+        by_way = sorted(sheared, key=lambda row: row.shear_mm)
+        title = f"Shears by way aside: {what}"
+        drawn.append(_lines(by_way, shear_of, title, "way aside along U or V, the larger [mm]"))
+    return drawn
+
+
+def _series(groups: Mapping[str, Compared]) -> dict[str, list[float]]:
+    return {way.value: [one.ways[way].mae for one in groups.values()] for way in Way}
+
+
+def _lines(rows: list[Scored], name: Callable[[Scored], str], title: str, below: str) -> str:
+    groups = grouped(rows, name)
+    return charts.lines(title, list(groups), _series(groups), below=below)
+
+
+def _bars(rows: Sequence[Scored], title: str) -> str:
+    groups = grouped(rows, lambda row: row.case.indenter.value.replace("_", " "))
+    return charts.bars(title, list(groups), _series(groups), below="")
+
+
+def spread_charts(found: Spread) -> str:
+    """How many samples press how deep and how hard; depths are steps, so each has its own bar."""
+    count = len(found.depths_mm)
+    depths, each = np.unique(found.depths_mm.round(6), return_counts=True)
+    drawn = [
+        charts.bars(
+            f"Depth of {count:,} samples",
+            [f"{depth:.3g}" for depth in depths],
+            {"samples": each.astype(float).tolist()},
+            below="depth from first touch [mm]; shears stay at theirs",
+        ),
+        charts.histogram(
+            f"Total force of {count:,} samples",
+            found.forces_N.tolist(),
+            below="length of the total force by finite elements [N]",
+        ),
+    ]
+    return f"<div class='images'>{''.join(drawn)}</div>"

@@ -1,0 +1,143 @@
+"""The data card of trained weights: what they know, how they learned it, how good they are."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from sim.forces.network.spec import Target
+from sim.forces.training.settings import TrainingSettings
+from workbench.core.base.version import VERSION
+from workbench.learning.dataset.cases import Split
+from workbench.learning.training.presses import INPUT, Presses
+
+NAMED = 20
+"""States that are named where they were left out."""
+
+
+def data_card(
+    presses: Presses,
+    states: Sequence[int],
+    target: Target,
+    spacing_mm: float,
+    shown: Iterable[str] = (),
+) -> dict[str, Any]:
+    """What the weights were made of.
+
+    Args:
+        presses: All data.
+        states: What was trained on.
+        target: What is predicted.
+        spacing_mm: Of the skin's vertices.
+        shown: Objects that weights which were tuned had seen before.
+    """
+    about = presses.about
+    recipes = about["recipes"]
+    recipe, design = recipes[0], recipes[0]["design"]
+    material = design["material"]
+    moved_mm = _largest_moves(presses, states)
+    points_mm = presses.points_mm
+    return {
+        "target": target.value,
+        "dataset": {
+            "key": presses.key,
+            "keys": list(about["keys"]),
+            "sets": list(about["sets"]),
+            "design": design,
+            "cases": len({state.case for state in presses.states}),
+            "samples": len(presses.states),
+            "per_split": _per_split(presses),
+            "program": about["program"],
+            "stages": dict(about["stages"]),
+            "left_out": len(about["left_out"]),
+            "left_out_names": list(about["left_out"][:NAMED]),
+        },
+        "hex_mm": recipe["hex_mm"],
+        "grid_mm": recipe["grid_mm"],
+        "solver_input": "mpm",
+        "young_MPa": material["young_MPa"],
+        "poisson": material["poisson"],
+        "friction": material["friction"],
+        "law": material["law"],
+        "indenters": sorted({*shown, *(presses.states[number].indenter for number in states)}),
+        "size_mm": sorted({float(each["size_mm"]) for each in recipes}),
+        "edge_radius_mm": max(float(each["edge_radius_mm"]) for each in recipes),
+        "depth_mm": max(presses.states[number].depth_mm for number in states),
+        "shear_mm": max(_shear_mm(each) for each in recipes),
+        "membrane": {
+            "vertices": len(points_mm),
+            "spacing_mm": spacing_mm,
+            "mesh_key": about["mesh"],
+            "bounds_mm": [points_mm.min(axis=0).tolist(), points_mm.max(axis=0).tolist()],
+            "area_mm2": _area_mm2(points_mm, presses.faces),
+        },
+        "displacement_p95_mm": float(np.percentile(moved_mm, 95.0)),
+        "max_displacement_mm": float(moved_mm.max()),
+    }
+
+
+def training_card(
+    settings: TrainingSettings,
+    *,
+    seed: int,
+    rows: Sequence[Mapping[str, Any]],
+    best_epoch: int,
+    samples: int,
+    cases: int,
+    parameters: int,
+    device: str,
+    seconds: float,
+    tuned_from: str,
+    patch_spacings: float,
+    finished: bool,
+) -> dict[str, Any]:
+    """How the weights were made."""
+    return {
+        "preset": settings.name,
+        "seed": seed,
+        "epochs": len(rows),
+        "epochs_planned": settings.epochs,
+        "finished": finished,
+        "best_epoch": best_epoch,
+        "cases": cases,
+        "samples": samples,
+        "parameters": parameters,
+        "seconds": seconds,
+        "device": device,
+        "rate": settings.rate,
+        "batch": settings.batch,
+        "turns": "any" if patch_spacings else settings.turns,
+        "patch_spacings": patch_spacings,
+        "tuned_from": tuned_from,
+        "program": VERSION,
+    }
+
+
+def _per_split(presses: Presses) -> dict[str, dict[str, int]]:
+    return {
+        split.value: {
+            "cases": len(presses.cases(split)),
+            "samples": len(presses.of_split(split)),
+        }
+        for split in Split
+    }
+
+
+def _largest_moves(presses: Presses, states: Sequence[int]) -> np.ndarray:
+    """Largest displacement of each state's input [mm], shape (S,)."""
+    field = presses.parts[INPUT]
+    sizes = np.linalg.norm(field.values, axis=1)
+    spans = [sizes[field.starts[n] : field.starts[n + 1]] for n in states]
+    return np.array([float(own.max(initial=0.0)) for own in spans])
+
+
+def _shear_mm(recipe: Mapping[str, Any]) -> float:
+    return float(recipe["shear_mm"]) if recipe["shear_directions"] else 0.0
+
+
+def _area_mm2(points_mm: np.ndarray, faces: np.ndarray) -> float:
+    corners = points_mm[faces]
+    crossed = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return float(0.5 * np.linalg.norm(crossed, axis=1).sum())

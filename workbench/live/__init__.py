@@ -1,0 +1,1 @@
+"""Work for the browser: worker processes, requests that follow the hand, previews."""

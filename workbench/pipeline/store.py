@@ -1,0 +1,322 @@
+"""Results on disk: write-once folders `<root>/<stage>/<key>/*.npy` with a `meta.json`.
+
+A result is written into a `.part-<pid>-...` folder, synced, and renamed: whoever sees the folder
+sees all of it, and of two writers the first one wins. Arrays are memory-mapped when loaded, so the
+browser process never reads what it does not show; those that are mostly zeros are packed
+(`workbench.pipeline.sparse`), and unpacked when loaded.
+
+A result that cannot be read (a torn disk, an editor in the wrong folder) is moved to `damaged/`
+and is then as good as none: whoever needs it computes it again.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import json
+import os
+import secrets
+import shutil
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from workbench.core.base.codec import pack, unpack
+from workbench.core.base.errors import DamagedError, StoreError, shortened
+from workbench.pipeline.sparse import PARTS, mostly_zeros, pack_zeros, unpack_zeros
+from workbench.system.processes import is_alive
+from workbench.system.terminal import complain
+
+META = "meta.json"
+DAMAGED = "damaged"
+"""Folder of what could not be read, for whoever wants to know why."""
+DAMAGED_KEPT = 10
+"""So many of them, the newest."""
+TORN = (errno.ENOENT, errno.EIO)
+"""What the system says of a result that is not whole; anything else is no fault of the result."""
+DEFAULT_LIMIT_BYTES = 20 * 2**30
+"""Size at which the least recently used results go."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Entry:
+    """One stored result."""
+
+    stage: str
+    key: str
+    seconds: float
+    """Time the computation took [s]."""
+    bytes: int
+
+
+class Store:
+    """A folder of results, shared by all processes of a project."""
+
+    def __init__(self, root: Path | str, *, limit_bytes: int = DEFAULT_LIMIT_BYTES) -> None:
+        self.root = Path(root)
+        self.limit_bytes = limit_bytes
+        self.told: Callable[[str], None] = complain
+        """Who hears that a result was set aside."""
+        self._sound: dict[Path, int] = {}
+        """When the results that were looked into had been written [ns]."""
+
+    def path(self, stage: str, key: str) -> Path:
+        """Folder of a result, whether it exists or not."""
+        return self.root / stage / key
+
+    def has(self, stage: str, key: str) -> bool:
+        """Whether the whole result is there; a damaged one is set aside, and is not.
+
+        Every array's header and length are looked at, once for each result.
+        """
+        meta = self.path(stage, key) / META
+        try:
+            written_ns = meta.stat().st_mtime_ns
+        except OSError:
+            return False
+        if self._sound.get(meta.parent) == written_ns:
+            return True
+        try:
+            self._arrays(stage, key, self._meta(stage, key))
+        except StoreError:
+            return False
+        self._sound[meta.parent] = written_ns
+        return True
+
+    def entry(self, stage: str, key: str) -> Entry:
+        """What is known of a stored result."""
+        meta = self._meta(stage, key)
+        return Entry(stage=stage, key=key, seconds=meta["seconds"], bytes=meta["bytes"])
+
+    def load(self, stage: str, key: str) -> Any:
+        """The stored dataclass, arrays read-only and memory-mapped unless packed.
+
+        Raises:
+            DamagedError: If it cannot be read; it is set aside then, and said.
+            StoreError: If it is missing.
+        """
+        meta = self._meta(stage, key)
+        arrays = self._arrays(stage, key, meta)
+        try:
+            value = unpack(arrays, meta["tree"])
+        except (ValueError, LookupError, TypeError, AttributeError, RecursionError) as error:
+            raise self._set_aside(stage, key, error) from error
+        with contextlib.suppress(OSError):
+            self._touch(self.path(stage, key) / META)
+        return value
+
+    def save(self, stage: str, key: str, value: Any, *, seconds: float, version: int) -> None:
+        """Write a result once; a second writer of the same key is ignored.
+
+        Raises:
+            StoreError: If the disk is full or read-only; nothing half-written is left.
+        """
+        arrays, tree = pack(value)
+        packed = {name: pack_zeros(a) for name, a in arrays.items() if mostly_zeros(a)}
+        files = {
+            **{f"{name}.npy": a for name, a in arrays.items() if name not in packed},
+            **{f"{name}.{end}.npy": a for name, both in packed.items() for end, a in both.items()},
+        }
+        size = sum(a.nbytes for a in files.values())
+        meta = {
+            "stage": stage,
+            "version": version,
+            "seconds": seconds,
+            "bytes": size,
+            "arrays": sorted(arrays),
+            "packed": {name: list(arrays[name].shape) for name in sorted(packed)},
+            "tree": tree,
+        }
+        with self._writing(stage) as part:
+            for name, array in files.items():
+                _write(part / name, lambda file, a=array: np.save(file, a))
+            _write(part / META, lambda file: file.write(json.dumps(meta).encode()))
+            _publish(part, self.path(stage, key))
+
+    @contextlib.contextmanager
+    def _writing(self, stage: str) -> Iterator[Path]:
+        part: Path | None = None
+        try:
+            folder = self.root / stage
+            folder.mkdir(parents=True, exist_ok=True)
+            part = Path(tempfile.mkdtemp(dir=folder, prefix=f".part-{os.getpid()}-"))
+            yield part
+        except OSError as error:
+            raise _disk_error(error, self.root) from error
+        finally:
+            if part is not None:
+                shutil.rmtree(part, ignore_errors=True)
+
+    def _meta(self, stage: str, key: str) -> dict[str, Any]:
+        try:
+            meta = json.loads((self.path(stage, key) / META).read_bytes())
+            whole = {"seconds", "bytes", "arrays", "tree"} <= set(meta)
+            if not (whole and isinstance(meta["bytes"], int)):
+                raise ValueError("its description is not whole")
+            return meta
+        except FileNotFoundError as error:
+            raise StoreError(
+                f"there is no stored result {stage}/{key}",
+                hint="run the stage again; it will be computed anew",
+                at=stage,
+            ) from error
+        except (OSError, ValueError, TypeError) as error:
+            raise self._set_aside(stage, key, error) from error
+
+    def _arrays(self, stage: str, key: str, meta: dict[str, Any]) -> dict[str, np.ndarray]:
+        """The arrays of a result, mapped unless packed."""
+        folder = self.path(stage, key)
+        try:
+            return {name: _read(folder, name, meta) for name in meta["arrays"]}
+        except (OSError, EOFError, ValueError, KeyError, TypeError) as error:
+            raise self._set_aside(stage, key, error) from error
+
+    def _set_aside(self, stage: str, key: str, error: Exception) -> StoreError:
+        """Move a result that cannot be read out of the way, say so, and return what to raise."""
+        if isinstance(error, OSError) and error.errno not in TORN:
+            return StoreError(
+                f"the stored result {stage}/{key} cannot be read: {error.strerror}",
+                hint="close other programs, or check the permissions of the project folder",
+                at=stage,
+            )
+        folder = self.path(stage, key)
+        aside = self.root / DAMAGED / f"{stage}-{key}-{secrets.token_hex(3)}"
+        self._sound.pop(folder, None)
+        try:
+            aside.parent.mkdir(exist_ok=True)
+            folder.rename(aside)
+        except FileNotFoundError:
+            # Another process was faster: it has said so.
+            pass
+        except OSError as stuck:
+            return StoreError(
+                f"the stored result {stage}/{key} is damaged ({shortened(str(error))}) and cannot "
+                f"be moved away: {stuck.strerror}",
+                hint=f"check the permissions of {self.root}, or choose another project",
+                at=stage,
+            )
+        else:
+            self.told(
+                f"notice: the stored result {stage}/{key[:12]} was damaged "
+                f"({shortened(str(error))}); it is now in {aside} and is computed again"
+            )
+        return DamagedError(
+            f"the stored result {stage}/{key} was damaged and has been set aside",
+            hint="run again: it is then computed anew",
+            at=stage,
+        )
+
+    def _touch(self, meta: Path) -> None:
+        """Note that a result was used, without looking into it again for that."""
+        os.utime(meta)
+        if meta.parent in self._sound:
+            self._sound[meta.parent] = meta.stat().st_mtime_ns
+
+    def sweep(self) -> int:
+        """Remove what dead writers left behind, then the oldest results beyond the size limit.
+
+        Returns:
+            Folders removed.
+        """
+        removed = 0
+        for part in self.root.glob("*/.part-*"):
+            pid = part.name.split("-")[1]
+            if not (pid.isdecimal() and is_alive(int(pid))):
+                shutil.rmtree(part, ignore_errors=True)
+                removed += 1
+        entries: list[tuple[float, int, Path]] = []
+        for meta in self.root.glob(f"*/*/{META}"):
+            if meta.parent.parent.name == DAMAGED:
+                continue
+            # What is damaged is set aside, with a word, by whoever asks for it.
+            with contextlib.suppress(OSError, ValueError, KeyError, TypeError):
+                size = int(json.loads(meta.read_bytes())["bytes"])
+                entries.append((meta.stat().st_mtime, size, meta.parent))
+        aside = sorted((self.root / DAMAGED).glob("*"), key=lambda folder: folder.stat().st_mtime)
+        for folder in aside[:-DAMAGED_KEPT]:
+            shutil.rmtree(folder, ignore_errors=True)
+            removed += 1
+        total = sum(size for _, size, _ in entries)
+        for _, size, folder in sorted(entries, key=lambda item: item[0]):
+            if total <= self.limit_bytes:
+                break
+            with contextlib.suppress(OSError):
+                _discard(folder)
+                total -= size
+                removed += 1
+        return removed
+
+
+def timed(function: Any, *args: Any, **keywords: Any) -> tuple[Any, float]:
+    """The result of a call and the seconds it took."""
+    start = time.perf_counter()
+    value = function(*args, **keywords)
+    return value, time.perf_counter() - start
+
+
+def _read(folder: Path, name: str, meta: dict[str, Any]) -> np.ndarray:
+    """One array of a result; results from before arrays were packed have none that are."""
+    shape = meta.get("packed", {}).get(name)
+    if shape is None:
+        return np.load(folder / f"{name}.npy", mmap_mode="r")
+    parts = {end: np.load(folder / f"{name}.{end}.npy") for end in PARTS}
+    return unpack_zeros(parts, tuple(shape))
+
+
+def _write(path: Path, write: Any) -> None:
+    with path.open("wb") as file:
+        write(file)
+        file.flush()
+        os.fsync(file.fileno())
+
+
+def _publish(part: Path, final: Path) -> None:
+    """Give a finished folder its name; of two writers the first one wins."""
+    try:
+        _rename(part, final)
+    except FileExistsError:
+        # Contents are equal by construction, unless an interrupted removal left a husk.
+        if not (final / META).exists():
+            with contextlib.suppress(FileNotFoundError):
+                _discard(final)
+            with contextlib.suppress(FileExistsError):
+                _rename(part, final)
+
+
+def _discard(folder: Path) -> None:
+    """Remove a result: one rename makes it absent, whatever interrupts the rest."""
+    aside = folder.with_name(f".part-{os.getpid()}-{secrets.token_hex(6)}")
+    folder.rename(aside)
+    shutil.rmtree(aside, ignore_errors=True)
+
+
+def _rename(part: Path, final: Path) -> None:
+    try:
+        part.rename(final)
+    except OSError as error:
+        if error.errno not in (errno.ENOTEMPTY, errno.EEXIST):
+            raise
+        raise FileExistsError(str(final)) from error
+
+
+def _disk_error(error: OSError, root: Path) -> StoreError:
+    # NumPy tells of an array that was written in part without a number.
+    if error.errno in (errno.ENOSPC, errno.EDQUOT, None):
+        with contextlib.suppress(OSError):
+            free_mb = shutil.disk_usage(root).free / 2**20
+            return StoreError(
+                f"the disk of {root} is full ({free_mb:.0f} MB free)",
+                hint="free some space, or choose another folder with --project; "
+                "finished results are kept",
+                at="store",
+            )
+    return StoreError(
+        f"cannot write to {root}: {error.strerror or error}",
+        hint="check the folder's permissions, or choose another one with --project",
+        at="store",
+    )

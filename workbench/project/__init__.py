@@ -1,0 +1,1 @@
+"""Project folders: designs and their files, kept objects and photos, the last state."""

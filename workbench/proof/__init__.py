@@ -1,0 +1,1 @@
+"""What is measured: validation against references, and benchmarks."""

@@ -1,0 +1,229 @@
+"""The browser front in headless Chromium: start, first use, slider to screen."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import shutil
+import signal
+import socket
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+import urllib.error
+import urllib.request
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from workbench.project.design_toml import design_to_toml
+from workbench.project.named_designs import load_design
+from workbench.proof.benchmarks.playback import WATCH_DRAWS, frame_s
+from workbench.proof.benchmarks.tabs import blocked_s, key_to_server_s
+from workbench.proof.row import Row, bounded, failed
+
+FLAGS = (
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--ignore-gpu-blocklist",
+    "--no-sandbox",
+    "--disable-dev-shm-usage",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--no-first-run",
+)
+"""How Chromium runs without a display, a GPU or a network, here and in the browser tests."""
+ROWS = {
+    "healthz": ("finger cached", 10.0),
+    "gui_usable": ("finger cached, software rendering", 20.0),
+    "slider_to_membrane": ("key press to the new skin in graphics memory, software rendering", 0.5),
+    "slider_to_callback": ("key press to the server's callback, another tab watching", 0.1),
+    "other_tab_blocked": ("longest wait of a second tab while a press runs", 0.2),
+    "playback_20k": ("frame to frame of a skin of 20 000 vertices, software rendering", 0.1),
+    "drag_to_settled": ("release of the handle to the settled skin, software rendering", 2.0),
+}
+"""Case and limit [s] of each row, in the order they are measured."""
+HEX_MM = 0.456
+"""Edge of the cells at which the skin of the finger has 20 073 vertices."""
+EDITS = 5
+DRAGS = 3
+DRAG_PX = 40
+SETTLED_UPLOAD = """
+() => {
+  const large = window.uploads.filter(([when, size]) => size > 200000);
+  return large.length ? large[large.length - 1][0] - window.key : 1e9;
+}
+"""
+"""Time of the last upload of a whole pressed skin after the release [ms]; one has 241 kB."""
+LEFT_DOCK_PX, RIGHT_DOCK_PX = 390, 355
+BLUE_MARGIN = 50
+"""How much more blue than red and green the upright arm of the handle is."""
+WATCH_UPLOADS = """
+window.uploads = [];
+const forget = () => { window.uploads = []; window.key = performance.now(); };
+for (const name of ["keydown", "pointerup"]) window.addEventListener(name, forget, true);
+for (const name of ["bufferData", "bufferSubData"]) {
+  const real = WebGL2RenderingContext.prototype[name];
+  WebGL2RenderingContext.prototype[name] = function (...given) {
+    const size = Math.max(0, ...given.map(x => (x && x.byteLength) || 0));
+    window.uploads.push([performance.now(), size]);
+    return real.apply(this, given);
+  };
+}
+"""
+"""Notes vertices handed to the graphics driver, and when a key went down or a button up."""
+FIRST_UPLOAD = """
+() => {
+  const large = window.uploads.filter(([when, size]) => size > 20000);
+  return large.length ? large[0][0] - window.key : 1e9;
+}
+"""
+"""Time of the first large upload after the key [ms]; the skin has 27 kB of vertices."""
+
+
+def rows() -> list[Row]:
+    """All rows of the room; not ok where no browser can be driven."""
+    program = os.environ.get("CHROMIUM") or shutil.which("chromium")
+    figures_s: dict[str, float] = {}
+    why = "needs playwright and Chromium: make bench brings them"
+    if program is not None:
+        with contextlib.suppress(ImportError):
+            why = _measure(program, figures_s)
+    return [
+        bounded(name, case, figures_s[name], unit="s", limit=limit_s)
+        if name in figures_s
+        else failed(name, case, unit="s", why=why)
+        for name, (case, limit_s) in ROWS.items()
+    ]
+
+
+def _measure(program: str, figures_s: dict[str, float]) -> str:
+    """Fill in the figures one after the other; returns what stopped it, empty when nothing."""
+    from playwright.sync_api import Error, sync_playwright
+
+    with tempfile.TemporaryDirectory() as text:
+        project = Path(text) / "project"
+        finger = Path(text) / "geltip.toml"
+        design = load_design("geltip")
+        meshing = replace(design.meshing, hex_mm=HEX_MM)
+        finger.write_text(design_to_toml(replace(design, meshing=meshing)), encoding="utf-8")
+        command = [sys.executable, "-m", "workbench.cli", "run", str(finger)]
+        command += ["--project", str(project), "--out", str(Path(text) / "out")]
+        try:
+            subprocess.run(command, check=True, capture_output=True)
+            with _server(finger, project) as (url, healthy_s), sync_playwright() as playwright:
+                figures_s["healthz"] = healthy_s
+                opened = playwright.chromium.launch(executable_path=program, args=list(FLAGS))
+                page = opened.new_page(viewport={"width": 1280, "height": 900})
+                start = time.perf_counter()
+                page.add_init_script(WATCH_UPLOADS)
+                page.add_init_script(WATCH_DRAWS)
+                page.goto(f"{url}/?fixedDpr=0.4")
+                page.locator('[role="tab"]').filter(has_text="Optics").wait_for(timeout=60_000)
+                figures_s["gui_usable"] = healthy_s + time.perf_counter() - start
+                figures_s["playback_20k"] = frame_s(page)[0]
+                figures_s["drag_to_settled"] = drag_s(page)
+                page.locator('[role="tab"]').filter(has_text="Shape").click()
+                figures_s["slider_to_membrane"] = _slider_s(page)
+                figures_s["slider_to_callback"] = key_to_server_s(page, url)
+                opened.close()
+                figures_s["other_tab_blocked"] = blocked_s(url)
+        except (Error, TimeoutError, subprocess.SubprocessError) as error:
+            return str(error)[:300]
+    return ""
+
+
+@contextlib.contextmanager
+def _server(design: Path, project: Path) -> Iterator[tuple[str, float]]:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    command = [
+        sys.executable,
+        "-m",
+        "workbench.cli",
+        "serve",
+        str(design),
+        "--fast-scene",
+        "--no-tour",
+    ]
+    command += ["--project", str(project), "--port", str(port)]
+    start = time.perf_counter()
+    with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as server:
+        url = f"http://127.0.0.1:{port}"
+        while time.perf_counter() - start < 60:
+            with contextlib.suppress(urllib.error.URLError, OSError):
+                urllib.request.urlopen(f"{url}/healthz", timeout=1).close()
+                break
+            time.sleep(0.05)
+        healthy_s = time.perf_counter() - start
+        try:
+            yield url, healthy_s
+        finally:
+            server.send_signal(signal.SIGINT)
+            server.wait(20)
+
+
+def _slider_s(page: Any) -> float:
+    """Median time from a key on the length slider to the new skin in the graphics memory [s]."""
+    # Until the lanes are warm and the page is quiet.
+    page.wait_for_timeout(15_000)
+    label = page.locator("label[for]").filter(has_text="Straight length mm").first
+    thumb = page.locator(f'[id="{label.get_attribute("for")}"]').locator('[role="slider"]')
+    thumb.focus()
+    times = []
+    for _ in range(EDITS):
+        page.keyboard.press("ArrowLeft")
+        page.wait_for_timeout(3_000)
+        times.append(page.evaluate(FIRST_UPLOAD) / 1000)
+    return statistics.median(times)
+
+
+def drag_s(page: Any) -> float:
+    """Median time from letting the handle go to the settled skin in the graphics memory [s]."""
+    page.locator('[role="tab"]').filter(has_text="Simulate").click()
+    label = page.locator("label[for]").filter(has_text="Live").first
+    before = pixels(page)
+    page.locator(f'[id="{label.get_attribute("for")}"]').click(force=True)
+    page.get_by_text("settled in").wait_for()
+    # The lane loads kernels and the page its first skin.
+    page.wait_for_timeout(6_000)
+    times = []
+    for drag in range(DRAGS):
+        x, y = arm(before, pixels(page))
+        page.mouse.move(x, y)
+        page.mouse.down()
+        page.mouse.move(x, y + DRAG_PX * (-1) ** drag, steps=8)
+        page.mouse.up()
+        page.wait_for_timeout(6_000)
+        times.append(page.evaluate(SETTLED_UPLOAD) / 1000)
+    page.locator(f'[id="{label.get_attribute("for")}"]').click(force=True)
+    return statistics.median(times)
+
+
+def pixels(page: Any) -> np.ndarray:
+    """The page as shown, shape (H, W, 3) of blue, green, red."""
+    import cv2
+
+    data = np.frombuffer(page.screenshot(), dtype=np.uint8)
+    return np.asarray(cv2.imdecode(data, cv2.IMREAD_COLOR), dtype=np.int16)
+
+
+def arm(before: np.ndarray, after: np.ndarray) -> tuple[int, int]:
+    """Pixel of the tip of the handle's upright arm: the highest blue that was not there before."""
+    blue, green, red = np.moveaxis(after, -1, 0)
+    found = (np.abs(after - before).sum(axis=2) > 60) & (blue > red + BLUE_MARGIN)
+    found &= blue > green + BLUE_MARGIN // 2
+    # The docks are blue too.
+    found[:, :LEFT_DOCK_PX] = found[:, -RIGHT_DOCK_PX:] = False
+    rows, columns = np.nonzero(found)
+    if not len(rows):
+        raise ValueError("the handle is not on screen")
+    top = int(rows.min())
+    return int(np.median(columns[rows < top + 10])), top + 7

@@ -1,0 +1,1 @@
+"""`workbench validate contact`: the contact solver beside closed forms and itself."""

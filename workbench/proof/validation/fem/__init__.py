@@ -1,0 +1,1 @@
+"""`workbench validate fem`: finite elements beside exact answers and other programs."""

@@ -1,0 +1,166 @@
+"""The contact solver beside finite elements: the same presses on the same skin.
+
+Both find the force of an object 1 mm deep in the finger's tip; the skin is that of the hexahedra,
+so displacements are compared vertex by vertex. Neither is the limit of its own refinement: linear
+hexahedra of 0.45 mm read 3 % too much force of a sphere and more of a flat punch, whose edge they
+do not resolve; what the contact solver reads on its default grid lies nearer to their limit. The
+table of refinements says where both go; the limit of the finite elements is extrapolated from its
+two finest meshes (Richardson, order 2: the square of the edge is what their error falls with).
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Iterator
+
+import numpy as np
+
+from workbench.core.base.monitor import silent
+from workbench.core.design.design import Elastomer
+from workbench.core.press.fem import DRAFT_MM, QUALITY_MM
+from workbench.core.press.indenter import Indenter, IndenterKind
+from workbench.core.press.press import ContactSettings, Press
+from workbench.core.result.force_field import ForceField, from_contact
+from workbench.pipeline.devices import open_device
+from workbench.pipeline.stages.press import PressInputs, press
+from workbench.proof.row import Row, bounded, compared, stated
+from workbench.proof.specimens import finger_points
+from workbench.proof.validation.contact.presses import tip_target
+from workbench.proof.validation.fem.fem_presses import FRAMES, Case, finger, solved
+
+KINDS = (IndenterKind("sphere"), IndenterKind("cylinder_end"))
+FORCE_LIMIT = 0.04
+SHAPE_LIMIT = 0.03
+MOVED_MM = 0.1
+DEPTH_MM = 1.0
+GRID_MM = 0.5
+FINE_GRIDS_MM = (0.7, 0.5, 0.36)
+FINE_EDGES_MM = (DRAFT_MM, QUALITY_MM, 0.3)
+PATCH_MM = 9.0
+"""Radius of the submodels of the table: enough for totals [mm]."""
+
+
+def rows() -> list[Row]:
+    """Force and displacement at the default settings of both."""
+    return [row for kind in KINDS for row in _kind_rows(kind)]
+
+
+def fine_rows() -> list[Row]:
+    """The table of refinements, which takes many minutes."""
+    return [row for kind in KINDS for row in (*_grids(kind), *_edges(kind), _converged(kind))]
+
+
+def _kind_rows(kind: IndenterKind) -> Iterator[Row]:
+    case = f"{kind} at 45 degrees, {DEPTH_MM:g} mm deep: grid {GRID_MM:g} mm against "
+    case += f"{QUALITY_MM:g} mm hexahedra"
+    yield compared(
+        "mpm_against_fem",
+        f"{case}: normal force; null: without friction",
+        lambda: float(pressed(kind).normal_N[-1]),
+        lambda: float(_truth(kind).normal_N[-1]),
+        unit="N",
+        limit=FORCE_LIMIT,
+        null=lambda: float(pressed(kind, friction=0.0).normal_N[-1]),
+    )
+    yield bounded(
+        "mpm_against_fem",
+        f"{case}: root mean square error of the displacement where it is {MOVED_MM:g} mm or more, "
+        "over the depth; null: no displacement",
+        lambda: _shape_error(kind)[0],
+        unit="1",
+        limit=SHAPE_LIMIT,
+        null=lambda: _shape_error(kind)[1],
+    )
+
+
+def _shape_error(kind: IndenterKind) -> tuple[float, float]:
+    """Error of the displacement over the depth, and the displacement's own size over it."""
+    here, there = (
+        found.displacement_mm[-1].astype(np.float64) for found in (pressed(kind), _truth(kind))
+    )
+    size_mm = np.linalg.norm(there, axis=1)
+    moved = size_mm >= MOVED_MM
+    away_mm = np.linalg.norm(here - there, axis=1)[moved]
+    return (
+        float(np.sqrt((away_mm**2).mean())) / DEPTH_MM,
+        float(np.sqrt((size_mm[moved] ** 2).mean())) / DEPTH_MM,
+    )
+
+
+def _truth(kind: IndenterKind) -> ForceField:
+    return solved(Case(kind=kind, hex_mm=QUALITY_MM))
+
+
+@functools.cache
+def pressed(
+    kind: IndenterKind,
+    *,
+    grid_mm: float = GRID_MM,
+    friction: float = 0.3,
+    hex_mm: float = QUALITY_MM,
+) -> ForceField:
+    """The press of `fem_presses.solved` by the contact solver, on the skin of its hexahedra."""
+    open_device()
+    found = press(
+        PressInputs(
+            mesh=finger(hex_mm),
+            points=finger_points(grid_mm),
+            material=Elastomer(friction=friction),
+            indenter=Indenter(kind=kind),
+            path=Press(target_mm=tip_target(45.0, 0.0), depth_mm=DEPTH_MM, frames=FRAMES),
+            settings=ContactSettings(grid_mm=grid_mm),
+        ),
+        monitor=silent,
+    )
+    return from_contact(found)
+
+
+def _force_N(kind: IndenterKind, edge_mm: float) -> float:
+    return float(solved(Case(kind=kind, hex_mm=edge_mm, radius_mm=PATCH_MM)).normal_N[-1])
+
+
+def _limit_N(kind: IndenterKind) -> float:
+    """Force at edge 0, from the two finest meshes."""
+    coarse_mm, fine_mm = FINE_EDGES_MM[-2:]
+    coarse_N, fine_N = _force_N(kind, coarse_mm), _force_N(kind, fine_mm)
+    share = fine_mm**2 / (coarse_mm**2 - fine_mm**2)
+    return fine_N - share * (coarse_N - fine_N)
+
+
+def _grid_N(kind: IndenterKind, grid_mm: float) -> float:
+    return float(pressed(kind, grid_mm=grid_mm).normal_N[-1])
+
+
+def _grids(kind: IndenterKind) -> Iterator[Row]:
+    for grid_mm in FINE_GRIDS_MM:
+        yield stated(
+            "mpm_refinement",
+            f"{kind}, contact solver on a grid of {grid_mm:g} mm; null: finite elements at edge 0",
+            functools.partial(_grid_N, kind, grid_mm),
+            unit="N",
+            null=functools.partial(_limit_N, kind),
+        )
+
+
+def _edges(kind: IndenterKind) -> Iterator[Row]:
+    for edge_mm in FINE_EDGES_MM:
+        yield stated(
+            "fem_refinement",
+            f"{kind}, hexahedra of {edge_mm:g} mm; null: extrapolated to edge 0",
+            functools.partial(_force_N, kind, edge_mm),
+            unit="N",
+            null=functools.partial(_limit_N, kind),
+        )
+
+
+def _converged(kind: IndenterKind) -> Row:
+    return compared(
+        "mpm_against_fem_limit",
+        f"{kind}: grid {FINE_GRIDS_MM[-1]:g} mm against finite elements extrapolated to edge 0; "
+        "null: the default grid",
+        functools.partial(_grid_N, kind, FINE_GRIDS_MM[-1]),
+        functools.partial(_limit_N, kind),
+        unit="N",
+        limit=FORCE_LIMIT,
+        null=functools.partial(_grid_N, kind, GRID_MM),
+    )

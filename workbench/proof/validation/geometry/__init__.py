@@ -1,0 +1,1 @@
+"""`workbench validate geometry`, `meshes`, `moulds`, `parts` and random sensors."""

@@ -1,0 +1,1 @@
+"""`workbench validate learned` and `forces`: the networks."""

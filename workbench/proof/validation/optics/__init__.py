@@ -1,0 +1,1 @@
+"""`workbench validate optics`: light and images beside closed forms, photons and Mitsuba."""

@@ -1,0 +1,1 @@
+"""What `run` and `export` leave in a folder: images, tables, meshes, summary, report."""

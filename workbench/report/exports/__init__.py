@@ -1,0 +1,1 @@
+"""What `workbench export` writes, one file each: its files, their stages, the option."""

@@ -1,0 +1,1 @@
+"""Variants, score cards, sweeps, and how two sensors differ."""
