@@ -22,6 +22,8 @@ from tests.ui.widgets import DRAW_WHEN_LOOKED_AT, coarse_project, open_page, wai
 from workbench.proof.benchmarks.browser import FLAGS
 
 START_LIMIT_S = 60
+SOFTWARE = (*FLAGS, "--disable-gpu-compositing")
+"""The page is put together without the software GPU: that took more time than all workers."""
 
 
 def free_port() -> int:
@@ -97,7 +99,7 @@ def browser() -> Iterator[Any]:
         pytest.fail("no Chromium: run `make test`, or set CHROMIUM to the path of one")
     with sync_api.sync_playwright() as playwright:
         opened = playwright.chromium.launch(
-            executable_path=program, args=list(FLAGS), headless=True
+            executable_path=program, args=list(SOFTWARE), headless=True
         )
         yield opened
         opened.close()

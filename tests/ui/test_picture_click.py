@@ -11,7 +11,16 @@ import numpy as np
 import pytest
 
 from tests.ui.conftest import Server
-from tests.ui.widgets import VISIBLE_CHANGE, button, control, open_page, slider_value, wait_until
+from tests.ui.widgets import (
+    DRAW_WHEN_LOOKED_AT,
+    VISIBLE_CHANGE,
+    button,
+    control,
+    looking,
+    open_page,
+    slider_value,
+    wait_until,
+)
 
 pytestmark = [pytest.mark.ui, pytest.mark.slow]
 
@@ -69,7 +78,8 @@ def scene(page: Any) -> np.ndarray:
     import cv2
 
     clip = {"x": 400, "y": 100, "width": 520, "height": 500}
-    data = np.frombuffer(page.screenshot(clip=clip), dtype=np.uint8)
+    with looking(page):
+        data = np.frombuffer(page.screenshot(clip=clip), dtype=np.uint8)
     return np.asarray(cv2.imdecode(data, cv2.IMREAD_GRAYSCALE), dtype=np.int16)
 
 
@@ -87,6 +97,7 @@ def test_a_click_on_the_picture_finds_what_a_click_on_the_skin_had_there(
     """
     server = start_server(pressed_project)
     context = browser.new_context(viewport={"width": 1280, "height": 1000}, device_scale_factor=1.5)
+    context.add_init_script(DRAW_WHEN_LOOKED_AT)
     page = context.new_page()
     page.set_default_timeout(60_000)
     open_page(page, server.url)

@@ -11,6 +11,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Protocol
 
 from workbench.core.base.digest import digest
@@ -91,7 +92,7 @@ class Ref:
     key: str
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
+@dataclass(frozen=True, kw_only=True)
 class Call:
     """A stage with its inputs; upstream results stand as `Ref`, so keys need no computing."""
 
@@ -105,9 +106,9 @@ class Call:
         """The inputs that are in the key, in their order."""
         return tuple(_keyed(self.inputs))
 
-    @property
+    @cached_property
     def key(self) -> str:
-        """Key of the result in the store."""
+        """Key of the result in the store; found once, since the browser asks at every event."""
         return digest((self.stage, self.version, self.values))
 
     @property
