@@ -41,9 +41,10 @@ demo: setup ## The whole chain without a browser, into out/demo
 		--frames 10 --out out/demo
 
 test: .venv/dev.stamp browser ## Install what tests need and pass every test
-	@# A browser draws in software and wants all cores: those tests run after the others, one by one.
+	@# A server and a browser want more than a core: those tests run after the others.
 	$(ALONE) $(BIN)/python -m pytest $(PARALLEL) -m "not ui" --durations=15; others=$$?; \
-	CHROMIUM="$$(bash .ci/chromium)" $(BIN)/python -m pytest -m ui --durations=15 && exit $$others
+	CHROMIUM="$$(bash .ci/chromium)" $(BIN)/python -m pytest $(PARALLEL) -m ui --durations=15 \
+		&& exit $$others
 
 check: .venv/dev.stamp ## Lint, format, types, fast tests
 	$(BIN)/ruff check

@@ -8,9 +8,8 @@ from __future__ import annotations
 import contextlib
 import re
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Iterator
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -22,7 +21,6 @@ from workbench.proof.benchmarks.tab import Tab
 
 pytestmark = [pytest.mark.ui, pytest.mark.slow]
 
-Start = Callable[..., Server]
 MORE = """
 [[optics.lamps]]
 kind = "area"
@@ -49,15 +47,17 @@ NUMBERS = ("Slider", "MultiSlider", "Number", "Vector2", "Vector3")
 PARTS_S = 240
 
 
-@pytest.fixture
-def server(tmp_path: Path, start_server: Start) -> Server:
+@pytest.fixture(scope="module")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
     """A server with a lamp, two cameras, noise and markers."""
-    project = tmp_path / "project"
+    project = tmp_path_factory.mktemp("labels") / "project"
     (project / "designs").mkdir(parents=True)
     head, rest = COARSE.split("[press_case.press]")
     text = f"{head}{MORE}[press_case.press]{rest}"
     (project / "designs" / "autosave.toml").write_text(text)
-    return start_server(project)
+    running = Server(project)
+    yield running
+    running.stop()
 
 
 def listed(server: Server) -> list[Control]:

@@ -74,10 +74,12 @@ def refused(server: Server, headers: dict[str, str]) -> int:
     return caught.value.response.status_code
 
 
-@pytest.fixture
-def server(tmp_path: Path, start_server: Start) -> Server:
-    """A server on loopback."""
-    return start_server(coarse_project(tmp_path))
+@pytest.fixture(scope="module")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    """A server on loopback; what it refuses leaves it as it was."""
+    running = Server(coarse_project(tmp_path_factory.mktemp("safety")))
+    yield running
+    running.stop()
 
 
 @pytest.fixture

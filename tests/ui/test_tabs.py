@@ -27,19 +27,28 @@ Start = Callable[..., Server]
 LENGTH, RADIUS = "Straight length mm", "Outer radius mm"
 
 
-@pytest.fixture
-def server(tmp_path: Path, start_server: Start) -> Server:
-    """A server whose first press is over or stopped."""
-    return start_server(coarse_project(tmp_path))
+@pytest.fixture(scope="module")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    """A server that no tab is open on when a test begins."""
+    running = Server(coarse_project(tmp_path_factory.mktemp("tabs")))
+    yield running
+    running.stop()
 
 
 @pytest.fixture
 def two(server: Server) -> Iterator[tuple[Tab, Tab]]:
-    """The editor and a follower."""
+    """The editor and a follower; the finger has its first length and radius."""
     with Tab(server.url) as editor:
         editor.uuid(LENGTH)
+        editor.wait(lambda: not editor.find("Edit here"), 10, "it edits")
+        editor.set(LENGTH, 27.0)
+        editor.set(RADIUS, 15.0)
         with Tab(server.url) as follower:
             follower.uuid("Edit here")
+            first = (27.0, 15.0)
+            follower.wait(
+                lambda: (follower.value(LENGTH), follower.value(RADIUS)) == first, 30, "as at first"
+            )
             yield editor, follower
 
 
@@ -81,10 +90,11 @@ def test_a_tab_edits_in_place_of_one_that_is_gone_without_a_word(server: Server)
             process.kill()
 
 
-def test_of_two_servers_on_a_project_one_writes(server: Server, start_server: Start) -> None:
+def test_of_two_servers_on_a_project_one_writes(tmp_path: Path, start_server: Start) -> None:
     """The second shows, names the first and writes nothing, until it takes over; a dead one's
     project is free.
     """
+    server = start_server(coarse_project(tmp_path))
     with Tab(server.url) as first:
         first.set(LENGTH, 21.0)
         wait_until(lambda: saved(server, "shape", "cylinder_mm") == 21.0, 10, "the first saves")
