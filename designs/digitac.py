@@ -27,9 +27,9 @@ A TacTip in the body of a DIGIT: the camera does not read shading but the motion
 | `base_lip_mm`    | how far the foot stands out beyond the skin                     |
 
 The loaf is half an ellipse, extruded along Y and revolved at both ends. Between skin and window is
-the gap, filled with gel of `material.backing_MPa` (0: air). Pins
-(`designs/pins.py`) are parallel to Z and not normal to the skin, so that the core pulls out of a
-cast. The window is the support of the other families.
+the gap, filled with gel of `material.backing_MPa` (0: air). Pins (`designs/pins.py`) are parallel
+to Z and not normal to the skin, so that the core pulls out of a cast. The window is the support of
+the other families.
 
 Sources: DigiTac (Lepora and others, RA-L 2022): about 20 x 26 mm of skin on a DIGIT, pins of about
 1 mm on a regular grid with white tips. Counts, gap and clamp are our choice.

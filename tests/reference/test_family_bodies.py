@@ -11,7 +11,7 @@ import pytest
 from designs import paw, saddle, suckers, tentacle, thumb, trunk
 from designs.column import Column, column_body, column_field
 from designs.family import family
-from designs.paw import PawShape, pads_mm3
+from designs.paw import PawShape
 from designs.prisms import rounded_prism_mm3
 from designs.tentacle import TentacleShape
 from designs.thumb import ThumbShape, nail_mm3
@@ -149,7 +149,7 @@ def test_pads_add_what_the_closed_form_says() -> None:
     ball = (4.5**2 + 4.0) / 4.0
     segment = ball**2 * math.acos((ball - 2.0) / ball) - (ball - 2.0) * 4.5
     large = math.pi * 2.0 * (3 * 4.5**2 + 4.0) / 6 + 4.5 * segment
-    assert pads_mm3(shape) == pytest.approx(caps + large, rel=1e-12)
+    assert shape.pads.volume_mm3 == pytest.approx(caps + large, rel=1e-12)
     top = family("paw").build(shape, Layers()).outer.bounding_box().max.Z
     assert top == pytest.approx(26.0, abs=1e-3)
 
