@@ -14,10 +14,12 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from designs import distance
 from workbench.core.base.booleans import expect_volume, fillet
 
 CORNER = 1.0 - math.pi / 4.0
@@ -99,6 +101,36 @@ def ellipse_edges(half_x_mm: float, half_y_mm: float, *, pieces: int = 1) -> lis
         axes = (half_y_mm, half_x_mm)
     turns = np.linspace(0.0, 360.0, pieces + 1).tolist()
     return [Edge.make_ellipse(*axes, plane, a, b) for a, b in itertools.pairwise(turns)]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class EllipticPrism:
+    """An elliptic prism on z = 0 with a rounded top rim."""
+
+    half_mm: tuple[float, float]
+    """Half axes along X and Y [mm]."""
+    top_mm: float
+    rim_mm: float
+
+    def body(self, *, what: str) -> Any:
+        """The prism as a B-rep body.
+
+        Raises:
+            GeometryError: If the kernel could not round the rim.
+        """
+        return rounded_prism(
+            ellipse_edges(*self.half_mm),
+            area_mm2=ellipse_area_mm2(*self.half_mm),
+            perimeter_mm=ellipse_perimeter_mm(*self.half_mm),
+            top_mm=self.top_mm,
+            rim_mm=self.rim_mm,
+            what=what,
+        )
+
+    def distance(self, points_mm: np.ndarray) -> np.ndarray:
+        """Signed distance to the prism [mm], first order, shape (N,)."""
+        beside = distance.ellipse(points_mm, *self.half_mm)
+        return distance.rounded_both(beside, points_mm[:, 2] - self.top_mm, self.rim_mm)
 
 
 def elliptic_foot(

@@ -27,8 +27,9 @@ It feels what lies in the saddle while the lobes close on it from both sides.
 | `base_lip_mm`    | how far the foot stands out beyond the skin                   |
 
 An upright elliptic prism under the roof z(y) = valley + lobe (1 - cos(pi y / peak)) / 2, with
-peak = lobe_ratio depth / 2, its rim rounded. The core is an elliptic prism with a flat top, less
-by the wall all around. The upper halves of the lobes are the actuators 0 (+Y) and 1 (-Y).
+peak = lobe_ratio depth / 2, its rim rounded: `designs/saddle.py`. The core is an elliptic prism
+with a flat top, less by the wall all around. The upper halves of the lobes are the actuators
+0 (+Y) and 1 (-Y).
 
 Source of the defaults: SimTac, trunk sensor, 34 x 26 x 50 mm overall with its housing; heights of
 valley and lobes read off its figures. Leaves out: wrinkles, nostrils, screw holes in the foot.
@@ -36,27 +37,17 @@ valley and lobes read off its figures. Leaves out: wrinkles, nostrils, screw hol
 
 from __future__ import annotations
 
-import itertools
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from designs import distance
 from designs.bodies import WALL_SHARE, Bodies, Fields
-from designs.prisms import (
-    CORNER,
-    ellipse_area_mm2,
-    ellipse_edges,
-    ellipse_perimeter_mm,
-    elliptic_foot,
-    prism,
-    rounded_prism,
-)
+from designs.prisms import EllipticPrism, elliptic_foot
+from designs.saddle import Saddle, saddle_body, saddle_field
 from designs.sequence import Lobe, Sequence
 from designs.shells import hollow
 from designs.sliders import slider
-from workbench.core.base.booleans import cut, expect_volume, fillet
 from workbench.core.base.errors import DesignError
 from workbench.core.design.design import Layers
 from workbench.core.press.indenter import BALL
@@ -71,11 +62,6 @@ ACTUATED_SHARE = 0.5
 """Height above the saddle from which a lobe is driven, over the lobe's height."""
 CORE_RIM_SHARE = 0.3
 """Most of the core's smallest bend that its rim radius may take."""
-ROOF_POINTS = 41
-"""Points through which the roof's cosine is drawn: good to 1e-5 of the volume."""
-PIECES = 2
-"""Pieces of the outline under the roof: with one the kernel's volume is off by 2e-3, with two by
-4e-4."""
 CLOSE_DEG = 20.0
 """How far the lobes close [degree]: 2 mm at the top of a lobe of 6 mm. Measured, least J: at 20
 degrees 0.76, 0.61 and 0.37 on grids of 1, 0.8 and 0.6 mm; on 1 mm 0.46 at 30 and 0.13 at 45."""
@@ -117,23 +103,35 @@ class TrunkShape:
         0.0, (0.0, 15.0, 0.5), "mm", "Foot lip", "How far the foot stands out beyond the skin"
     )
 
-    def half_mm(self, inset_mm: float) -> tuple[float, float]:
-        """Half axes of the ellipse less by an inset [mm]."""
-        return self.width_mm / 2 - inset_mm, self.depth_mm / 2 - inset_mm
-
-    def roof_mm(self, y_mm: np.ndarray) -> np.ndarray:
-        """Height of the roof over y [mm]."""
-        return self.valley_mm + self.lobe_mm / 2 * (1.0 - np.cos(np.pi * y_mm / self.peak_mm))
-
-    def roof_slope(self, y_mm: np.ndarray) -> np.ndarray:
-        """Slope dz/dy of the roof."""
-        turn = np.pi / self.peak_mm
-        return self.lobe_mm / 2 * turn * np.sin(turn * y_mm)
-
     @property
     def peak_mm(self) -> float:
         """Distance of the lobes' highest points from the plane between them [mm]."""
         return self.lobe_ratio * self.depth_mm / 2
+
+    @property
+    def saddle(self) -> Saddle:
+        """The body with its two lobes."""
+        return Saddle(
+            half_mm=self.half_mm(0.0),
+            valley_mm=self.valley_mm,
+            lobe_mm=self.lobe_mm,
+            peak_mm=self.peak_mm,
+            rim_mm=self.rim_mm,
+        )
+
+    def half_mm(self, inset_mm: float) -> tuple[float, float]:
+        """Half axes of the ellipse less by an inset [mm]."""
+        return self.width_mm / 2 - inset_mm, self.depth_mm / 2 - inset_mm
+
+    def core(self, inset_mm: float) -> EllipticPrism:
+        """What is inside a wall; its rim is the trunk's, as far as its narrow ends allow."""
+        half_x, half_y = self.half_mm(inset_mm)
+        bend_mm = min(half_x, half_y) ** 2 / max(half_x, half_y)
+        return EllipticPrism(
+            half_mm=(half_x, half_y),
+            top_mm=self.valley_mm - inset_mm,
+            rim_mm=min(self.rim_mm, CORE_RIM_SHARE * bend_mm),
+        )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -218,9 +216,9 @@ class Trunk:
         """
         self.check(shape, layers)
         both_mm = layers.elastomer_mm + layers.support_mm
-        outer = _saddle(shape)
-        core = _core(shape, layers.elastomer_mm, what="core")
-        cavity = _core(shape, both_mm, what="cavity")
+        outer = saddle_body(shape.saddle)
+        core = shape.core(layers.elastomer_mm).body(what="core")
+        cavity = shape.core(both_mm).body(what="cavity")
         return Bodies(
             membrane=hollow(outer, core, what="elastomer"),
             outer=outer,
@@ -235,9 +233,9 @@ class Trunk:
         self.check(shape, layers)
         half_x, half_y = shape.half_mm(0.0)
         return Fields(
-            outer=_outer_field(shape),
-            core=_core_field(shape, layers.elastomer_mm),
-            cavity=_core_field(shape, layers.elastomer_mm + layers.support_mm),
+            outer=saddle_field(shape.saddle),
+            core=shape.core(layers.elastomer_mm).distance,
+            cavity=shape.core(layers.elastomer_mm + layers.support_mm).distance,
             base=_foot(shape, layers),
             wall_mm=layers.elastomer_mm,
             low_mm=(-half_x, -half_y, 0.0),
@@ -253,111 +251,22 @@ def least_wall_mm(shape: TrunkShape, layers: Layers) -> float:
     sqrt(2) t - (sqrt(2) - 1) (R - r) thick. Where the lobes' ridge, of radius
     2 peak^2 / (pi^2 lobe), is sharper than the rim, the edge is not square and more is lost.
     """
-    skin_mm = layers.elastomer_mm
-    half, rim_mm = shape.half_mm(skin_mm), _rim_mm(shape, skin_mm)
+    core = shape.core(layers.elastomer_mm)
+    half, rim_mm = core.half_mm, core.rim_mm
     around, up = (np.linspace(0.0, np.pi / 2, count) for count in RIM_GRID)
     edge = np.column_stack([half[0] * np.cos(around), half[1] * np.sin(around)])
     normal = edge / np.square(half)
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)
     plan = edge[:, None] - rim_mm * (1.0 - np.cos(up))[None, :, None] * normal[:, None]
-    height = shape.valley_mm - skin_mm - rim_mm * (1.0 - np.sin(up))
+    height = core.top_mm - rim_mm * (1.0 - np.sin(up))
     places = np.concatenate([plan, np.broadcast_to(height[:, None], (*plan.shape[:2], 1))], axis=2)
-    return float(-_outer_field(shape)(places.reshape(-1, 3)).max())
-
-
-def saddle_mm3(shape: TrunkShape) -> float:
-    """Volume of the outer body before its rim is rounded [mm3]: the roof over the ellipse.
-
-    Gauss quadrature of z(y) 2 a sqrt(1 - y^2 / b^2) over y = b sin t, which is smooth in t.
-    """
-    half_x, half_y = shape.half_mm(0.0)
-    node, weight = np.polynomial.legendre.leggauss(60)
-    turn = np.pi / 2 * node
-    strip = shape.roof_mm(half_y * np.sin(turn)) * 2 * half_x * np.cos(turn)
-    return float(weight @ (strip * half_y * np.cos(turn))) * np.pi / 2
-
-
-def _saddle(shape: TrunkShape) -> Any:
-    """The elliptic prism cut by what is above the roof, its rim rounded."""
-    from build123d import Edge, Face, Solid, Vector, Wire
-
-    half_x, half_y = shape.half_mm(0.0)
-    top_mm = shape.valley_mm + shape.lobe_mm + 2.0
-    reach, side = half_y + 1.0, -half_x - 2.0
-    y = np.linspace(-reach, reach, ROOF_POINTS)
-    slope = float(shape.roof_slope(np.array([reach]))[0])
-    roof = Edge.make_spline(
-        [(side, *spot) for spot in zip(y.tolist(), shape.roof_mm(y).tolist(), strict=True)],
-        tangents=[(0.0, 1.0, -slope), (0.0, 1.0, slope)],
-    )
-    corners = [(side, reach, top_mm), (side, -reach, top_mm)]
-    ends = [roof.position_at(1), *corners, roof.position_at(0)]
-    lines = [Edge.make_line(a, b) for a, b in itertools.pairwise(ends)]
-    above = Solid.extrude(Face(Wire([roof, *lines])), Vector(2 * half_x + 4.0, 0, 0))
-    block = prism(ellipse_edges(half_x, half_y, pieces=PIECES), top_mm - 1.0)
-    body = cut(block, above, what="saddle")
-    # The kernel integrates faces with curved borders to some 4e-4 here; the saddle is 20 %.
-    expect_volume(body, saddle_mm3(shape), what="saddle", relative=1e-3)
-    edges = [edge for edge in body.edges() if edge.bounding_box().min.Z > shape.valley_mm / 2]
-    length_mm = sum(edge.length for edge in edges)
-    right_mm3 = CORNER * shape.rim_mm**2 * length_mm
-    # Over a slope the corner is sharper or blunter than square: by at most these factors here.
-    return fillet(
-        body, shape.rim_mm, edges, what="top rim", removes_mm3=(0.3 * right_mm3, 3 * right_mm3)
-    )
-
-
-def _rim_mm(shape: TrunkShape, inset_mm: float) -> float:
-    """Rim radius of an inset core: the trunk's, as far as its narrow ends allow."""
-    half_x, half_y = shape.half_mm(inset_mm)
-    bend_mm = min(half_x, half_y) ** 2 / max(half_x, half_y)
-    return min(shape.rim_mm, CORE_RIM_SHARE * bend_mm)
-
-
-def _core(shape: TrunkShape, inset_mm: float, *, what: str) -> Any:
-    half = shape.half_mm(inset_mm)
-    return rounded_prism(
-        ellipse_edges(*half),
-        area_mm2=ellipse_area_mm2(*half),
-        perimeter_mm=ellipse_perimeter_mm(*half),
-        top_mm=shape.valley_mm - inset_mm,
-        rim_mm=_rim_mm(shape, inset_mm),
-        what=what,
-    )
+    return float(-saddle_field(shape.saddle)(places.reshape(-1, 3)).max())
 
 
 def _foot(shape: TrunkShape, layers: Layers) -> Any:
     half = shape.half_mm(0.0)
     cavity_mm = min(half) - layers.elastomer_mm - layers.support_mm
     return elliptic_foot(half, cavity_mm, shape.base_height_mm, shape.base_lip_mm)
-
-
-def _outer_field(shape: TrunkShape) -> Field:
-    half = shape.half_mm(0.0)
-
-    def outer(points_mm: np.ndarray) -> np.ndarray:
-        y = points_mm[:, 1]
-        slope = shape.roof_slope(y)
-        steep = np.sqrt(1.0 + slope**2)
-        above = (points_mm[:, 2] - shape.roof_mm(y)) / steep
-        aside = points_mm[:, :2] / np.square(half)
-        aside /= np.maximum(np.linalg.norm(aside, axis=1, keepdims=True), 1e-9)
-        cosine = -aside[:, 1] * slope / steep
-        beside = distance.ellipse(points_mm, *half)
-        return distance.rounded_both(beside, above, shape.rim_mm, cosine)
-
-    return outer
-
-
-def _core_field(shape: TrunkShape, inset_mm: float) -> Field:
-    half, rim_mm = shape.half_mm(inset_mm), _rim_mm(shape, inset_mm)
-    top_mm = shape.valley_mm - inset_mm
-
-    def core(points_mm: np.ndarray) -> np.ndarray:
-        beside = distance.ellipse(points_mm, *half)
-        return distance.rounded_both(beside, points_mm[:, 2] - top_mm, rim_mm)
-
-    return core
 
 
 def _marks(shape: TrunkShape) -> Marks:

@@ -11,7 +11,7 @@ from geometry.body.csg import Node
 from geometry.body.csg_mesh import closed, evaluate
 from geometry.housing.holder_seat import seat_gap
 from geometry.mould.castability import Worst
-from geometry.mould.mould_checks import PrintLimits, bed_check, check, wall_check
+from geometry.mould.print_checks import PrintLimits, bed_check, check, wall_check
 from geometry.mould.walls import thinnest_wall
 from geometry.surface.rays import RayCaster
 from geometry.surface.surface import closest_point

@@ -1,9 +1,9 @@
 """A body from a file to a sensor: placed, cut flat, hollowed, given a support and a foot.
 
-Booleans are manifold3d's, which carry the number of the source face on every triangle, so labels
-and picked faces survive them. Without an inner file the core is the set of points farther than the
-wall from the skin: marching cubes on the exact distance to its triangles. Near the base the skin
-is continued straight down, so that the wall meets the base at right angles.
+Labels and picked faces survive all booleans (`labelling`). Without an inner file the core is the
+set of points farther than the wall from the skin: marching cubes on the exact distance to its
+triangles. Near the base the skin is continued straight down, so that the wall meets the base at
+right angles.
 """
 
 from __future__ import annotations
@@ -13,8 +13,17 @@ from typing import Any
 
 import numpy as np
 
-from geometry.body.csg_mesh import arrays, closed
 from geometry.body.wall_between import Wall, wall_between
+from geometry.intake.foot import foot
+from geometry.intake.labelling import (
+    FLAT_MM,
+    expect_one_body,
+    flat_arrays,
+    labelled,
+    manifold_of,
+    patches,
+    renumbered,
+)
 from geometry.intake.shell import two_sides
 from geometry.surface.offset import inset_surface
 from geometry.surface.surface import face_areas, mesh_volume
@@ -22,12 +31,9 @@ from workbench.core.base.errors import DesignError
 from workbench.core.base.monitor import Monitor, silent
 from workbench.core.design.design import Layers
 from workbench.core.design.imported import Pick, ReadBody, ReadSurface
-from workbench.core.result.results import BodyMethod, Label, LabelledSurface, Solid
+from workbench.core.result.results import BodyMethod, Solid
 
 NO_BREP = np.zeros(0, dtype=np.uint8)
-CORE_FACE = 1_000_000
-"""Face number of every triangle of the core; patches of the outer file stay below."""
-FLAT_MM = 1e-6
 LEAST_BASE_MM2 = 10.0
 """Smallest base that can carry a sensor [mm2]."""
 SETTLE_MM = (0.0, 0.1, 0.2, 0.4, 0.8)
@@ -38,12 +44,6 @@ LARGEST_MM = 400.0
 """Longest body that is offset: twice the largest likely sensor; grids grow with its cube [mm]."""
 LEAST_WALL_MM = 0.2
 """Thinnest elastomer that can be cast [mm]."""
-BORE_SHARE = 0.6
-FIN_MM = 0.1
-"""What of the foot's outline is thinner than twice this is left out: a remeshed body has burrs."""
-LEAST_OPENING_MM = 6.0
-"""Narrowest way into the cavity about the middle of the base: the smallest camera modules are
-about 4 mm wide."""
 
 
 def build_imported(
@@ -85,17 +85,17 @@ def build_imported(
         monitor(0.5, "offsetting the support")
         cavity = _offset(outer, inset_mm, at="layers.support_mm")
     else:
-        core = _solid(body.inner.points_mm @ turn.T - shift, body.inner.faces, None)
+        core = manifold_of(body.inner.points_mm @ turn.T - shift, body.inner.faces, None)
         core = core.trim_by_plane((0.0, 0.0, 1.0), 0.0)
         _expect_inside(outer, core)
         cavity = _offset(core, layers.support_mm, at="layers.support_mm")
     monitor(0.8, "labelling")
-    membrane = _labelled(outer - _renumbered(core), picks)
-    _expect_one_body(membrane, from_file=body.inner is not None)
+    membrane = labelled(outer - renumbered(core), picks)
+    expect_one_body(membrane, from_file=body.inner is not None)
     return Solid(
         membrane=membrane,
-        support=_labelled(_renumbered(core, 0) - _renumbered(cavity), ()),
-        base=_foot(outer, cavity, shape),
+        support=labelled(renumbered(core, 0) - renumbered(cavity), ()),
+        base=foot(outer, cavity, shape),
         outer_brep=NO_BREP,
         core_brep=NO_BREP,
         membrane_brep=NO_BREP,
@@ -103,7 +103,7 @@ def build_imported(
         base_brep=NO_BREP,
         volume_mm3=mesh_volume(membrane.points_mm, membrane.faces),
         method=BodyMethod.IMPORTED,
-        patches=_patches(outer, core),
+        patches=patches(outer, core),
         notice=notice,
     )
 
@@ -137,7 +137,7 @@ def _placed(surface: ReadSurface, turn: np.ndarray, cut_mm: float) -> tuple[Any,
             hint="lower shape.cut_mm, or turn the body",
             at="shape.cut_mm",
         )
-    whole = _solid(points, surface.faces, surface.patch)
+    whole = manifold_of(points, surface.faces, surface.patch)
     for rise_mm in SETTLE_MM:
         shift_mm = low + cut_mm + rise_mm
         body = whole.translate((0.0, 0.0, -shift_mm)).trim_by_plane((0.0, 0.0, 1.0), 0.0)
@@ -161,7 +161,7 @@ def _placed(surface: ReadSurface, turn: np.ndarray, cut_mm: float) -> tuple[Any,
 
 def _flat_mm2(body: Any) -> float:
     """Area of the faces on z = 0."""
-    points, faces, _ = _arrays(body)
+    points, faces, _ = flat_arrays(body)
     flat = np.abs(points[faces][:, :, 2]).max(axis=1) < FLAT_MM
     return float(face_areas(points, faces[flat]).sum())
 
@@ -172,7 +172,7 @@ def _offset(outer: Any, inset_mm: float, *, at: str) -> Any:
     Raises:
         DesignError: If there are none, or they do not reach the base.
     """
-    points, faces, _ = _arrays(outer)
+    points, faces, _ = flat_arrays(outer)
     found, deepest_mm = inset_surface(points, faces, inset_mm)
     if found is None:
         raise DesignError(
@@ -181,7 +181,7 @@ def _offset(outer: Any, inset_mm: float, *, at: str) -> Any:
             hint="lower layers.elastomer_mm or layers.support_mm, or scale the body",
             at=at,
         )
-    inner = _solid(*found, None).trim_by_plane((0.0, 0.0, 1.0), 0.0)
+    inner = manifold_of(*found, None).trim_by_plane((0.0, 0.0, 1.0), 0.0)
     pieces = sorted(inner.decompose(), key=lambda piece: -piece.volume())
     kept = pieces[0] if pieces else inner
     if kept.is_empty() or kept.bounding_box()[2] > FLAT_MM:
@@ -212,107 +212,3 @@ def _expect_inside(outer: Any, core: Any) -> Wall:
             at="body.inner",
         )
     return wall
-
-
-def _labelled(body: Any, picks: Sequence[Pick]) -> LabelledSurface:
-    points, faces, source = _arrays(body)
-    labels = np.where(source >= CORE_FACE, Label.INNER, Label.OUTER).astype(np.uint8)
-    flat = np.abs(points[faces][:, :, 2]).max(axis=1) < FLAT_MM
-    labels[flat] = Label.BASE
-    numbers = np.full(len(faces), -1, dtype=np.int16)
-    for pick in picks:
-        members = (source == pick.patch) & (labels == Label.OUTER)
-        if not members.any():
-            raise DesignError(
-                f"the picked face {pick.patch} is not on the sensing side of this body",
-                hint="remove it from the picks, or pick again",
-                at="body.picks",
-            )
-        kind, _, number = pick.region.partition("_")
-        if kind == "base":
-            labels[members] = Label.BASE
-        else:
-            labels[members] |= np.uint8(Label.ACTUATOR)
-            numbers[members] = int(number)
-    return LabelledSurface(points_mm=points, faces=faces, labels=labels, numbers=numbers)
-
-
-def _patches(outer: Any, core: Any) -> np.ndarray:
-    """Face of the outer file of each membrane triangle, -1 on the core and the cut, (M,)."""
-    points, faces, source = _arrays(outer - _renumbered(core))
-    flat = np.abs(points[faces][:, :, 2]).max(axis=1) < FLAT_MM
-    return np.where(flat | (source >= CORE_FACE), -1, source).astype(np.int32)
-
-
-def _expect_one_body(membrane: LabelledSurface, *, from_file: bool) -> None:
-    if not membrane.has(Label.OUTER).any():
-        raise DesignError(
-            "the labels leave no face on the sensing side: at least one face must stay sensing",
-            hint="take back the label base of one face",
-            at="body.picks",
-        )
-    if not membrane.has(Label.INNER).any():
-        raise DesignError(
-            "the membrane has no inner side",
-            hint="check the inner file" if from_file else "lower layers.elastomer_mm",
-            at="body.inner" if from_file else "layers.elastomer_mm",
-        )
-
-
-def _foot(outer: Any, cavity: Any, shape: Any) -> LabelledSurface:
-    """The outline of the base, wider by the lip, with a bore for the camera."""
-    import manifold3d
-
-    outline = outer.slice(0.01).offset(-FIN_MM, manifold3d.JoinType.Round)
-    outline = outline.offset(shape.base_lip_mm + FIN_MM, manifold3d.JoinType.Round)
-    height = shape.base_height_mm
-    plate = manifold3d.Manifold.extrude(outline, height).translate((0.0, 0.0, -height))
-    radius = BORE_SHARE * _opening_mm(cavity) / 2
-    bore = manifold3d.Manifold.cylinder(height + 2.0, radius, radius, 64)
-    points, faces, _ = _arrays(plate - bore.translate((0.0, 0.0, -height - 1.0)))
-    flat = np.abs(points[faces][:, :, 2]).max(axis=1) < FLAT_MM
-    labels = np.where(flat, Label.BASE, Label.OUTER).astype(np.uint8)
-    return LabelledSurface(points_mm=points, faces=faces, labels=labels)
-
-
-def _opening_mm(cavity: Any) -> float:
-    """Width of the way into the cavity about the middle of the base.
-
-    Raises:
-        DesignError: If a camera does not pass.
-    """
-    import manifold3d
-    import shapely
-
-    section = cavity.slice(0.01)
-    # To the edges of the outline: it has corners only where it bends.
-    outlines = [shapely.LinearRing(outline) for outline in section.to_polygons()]
-    rim_mm = min(outline.distance(shapely.Point(0.0, 0.0)) for outline in outlines)
-    open_there = not (section ^ manifold3d.CrossSection.circle(FLAT_MM, 8)).is_empty()
-    width_mm = 2.0 * rim_mm if open_there else 0.0
-    if width_mm < LEAST_OPENING_MM:
-        raise DesignError(
-            f"the way into the cavity is {width_mm:.2g} mm wide about the middle of the base, a "
-            f"camera needs {LEAST_OPENING_MM:g} mm",
-            hint="lower layers.elastomer_mm or layers.support_mm, or change shape.cut_mm",
-            at="layers.support_mm",
-        )
-    return width_mm
-
-
-def _solid(points: np.ndarray, faces: np.ndarray, source: np.ndarray | None) -> Any:
-    numbers = np.full(len(faces), CORE_FACE) if source is None else source
-    return closed("the imported body", points, faces, numbers)
-
-
-def _renumbered(solid: Any, number: int = CORE_FACE) -> Any:
-    points, faces, _ = _arrays(solid)
-    return _solid(points, faces, np.full(len(faces), number))
-
-
-def _arrays(solid: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Vertices (N, 3), triangles (M, 3) and source faces (M,) of a manifold."""
-    points, faces = arrays(solid)
-    # Cuts land on the plane to rounding; the base must lie on it exactly.
-    points[np.abs(points[:, 2]) < FLAT_MM, 2] = 0.0
-    return points, faces, np.array(solid.to_mesh64().face_id).astype(np.int64)

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from workbench.core.result.results import MembraneMesh, MeshQuality, QualityReport, Skin, VolumeMesh
+from workbench.core.result.quality import MeshQuality, QualityReport
+from workbench.core.result.results import MembraneMesh, Skin, VolumeMesh
 
 BINS = 20
 PERCENT = (0.0, 1.0, 5.0, 50.0, 95.0, 100.0)

@@ -7,7 +7,7 @@ import html
 import io
 from collections.abc import Iterable, Sequence
 
-from geometry.mould.mould_checks import tolerated
+from geometry.mould.print_checks import tolerated
 from workbench.core.result.fabrication import (
     FabricationCheck,
     HousingSet,

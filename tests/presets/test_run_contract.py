@@ -393,7 +393,7 @@ def test_full_disk_during_a_stage_keeps_the_stages_before(
     wider = tmp_path / "wider.toml"
     wider.write_text(coarse.read_text() + "fov_x_deg = 90.0\n")
     with monkeypatch.context() as patch:
-        patch.setattr("workbench.pipeline.store._write", full)
+        patch.setattr("workbench.pipeline.store.write_file", full)
         failed = workbench("run", wider, *OPTIONS, "--out", tmp_path / "out")
     assert failed.code == 3
     assert "is full" in failed.stderr.splitlines()[0]

@@ -10,15 +10,9 @@ import pytest
 
 from workbench.proof.validation.geometry import sweep as sweeps
 from workbench.proof.validation.geometry.meshes import family_names
-from workbench.proof.validation.geometry.sweep import (
-    Finding,
-    Trial,
-    Workers,
-    draw,
-    judge,
-    sweep,
-    sweep_row,
-)
+from workbench.proof.validation.geometry.sweep import judge, sweep, sweep_row
+from workbench.proof.validation.geometry.trial_workers import Workers
+from workbench.proof.validation.geometry.trials import Finding, Trial, draw
 
 
 @pytest.mark.parametrize("name", family_names())

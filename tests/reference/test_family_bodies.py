@@ -8,14 +8,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from designs import paw, tentacle, thumb, trunk
+from designs import paw, saddle, suckers, tentacle, thumb, trunk
 from designs.column import Column, column_body, column_field
 from designs.family import family
-from designs.paw import PawShape, pads_mm3
+from designs.paw import PawShape
 from designs.prisms import rounded_prism_mm3
 from designs.tentacle import TentacleShape
 from designs.thumb import ThumbShape, nail_mm3
-from designs.trunk import TrunkShape, saddle_mm3
+from designs.trunk import TrunkShape
 from tests.families import expect_found_out, expect_refusal
 from workbench.core.base.errors import GeometryError
 from workbench.core.design.design import Layers
@@ -102,11 +102,11 @@ def test_rounded_prism_volume() -> None:
 def test_trunk_without_lobes_is_an_elliptic_prism() -> None:
     """V = pi a b h with lobe 0; a lobe adds its mean over the ellipse, checked by a fine sum."""
     flat = TrunkShape(lobe_mm=0.0)
-    assert saddle_mm3(flat) == pytest.approx(math.pi * 17.0 * 13.0 * 30.0, rel=1e-12)
+    assert flat.saddle.sharp_mm3 == pytest.approx(math.pi * 17.0 * 13.0 * 30.0, rel=1e-12)
     y = np.linspace(-13.0, 13.0, 200001)
     shape = TrunkShape()
-    fine = np.trapezoid(shape.roof_mm(y) * 34.0 * np.sqrt(1.0 - (y / 13.0) ** 2), y)
-    assert saddle_mm3(shape) == pytest.approx(float(fine), rel=1e-6)
+    fine = np.trapezoid(shape.saddle.roof_mm(y) * 34.0 * np.sqrt(1.0 - (y / 13.0) ** 2), y)
+    assert shape.saddle.sharp_mm3 == pytest.approx(float(fine), rel=1e-6)
 
 
 def test_published_trunk_is_34_by_26_by_50_mm() -> None:
@@ -149,7 +149,7 @@ def test_pads_add_what_the_closed_form_says() -> None:
     ball = (4.5**2 + 4.0) / 4.0
     segment = ball**2 * math.acos((ball - 2.0) / ball) - (ball - 2.0) * 4.5
     large = math.pi * 2.0 * (3 * 4.5**2 + 4.0) / 6 + 4.5 * segment
-    assert pads_mm3(shape) == pytest.approx(caps + large, rel=1e-12)
+    assert shape.pads.volume_mm3 == pytest.approx(caps + large, rel=1e-12)
     top = family("paw").build(shape, Layers()).outer.bounding_box().max.Z
     assert top == pytest.approx(26.0, abs=1e-3)
 
@@ -159,9 +159,9 @@ def test_pads_add_what_the_closed_form_says() -> None:
     [
         (thumb, "thumb", "cut", "nail", "nail"),
         (tentacle, "tentacle", "fuse", "sucker", "rim of sucker 1"),
-        (tentacle, "tentacle", "cut", "cup", "rim of sucker 1"),
+        (suckers, "tentacle", "cut", "cup", "rim of sucker 1"),
         (paw, "paw", "fuse", "pads", "pads: expected"),
-        (trunk, "trunk", "cut", "saddle", "saddle: expected"),
+        (saddle, "trunk", "cut", "saddle", "saddle: expected"),
     ],
 )
 def test_a_kernel_that_returns_the_uncut_body_is_found_out(
@@ -174,12 +174,12 @@ def test_a_kernel_that_returns_the_uncut_body_is_found_out(
 def test_one_lost_sucker_is_named() -> None:
     """A body without its second sucker fails as sucker 2."""
     shape = TentacleShape()
-    first, _, third = tentacle._suckers(shape)
+    first, _, third = shape.suckers
     body = column_body(shape.column, what="arm")
     for sucker in (first, third):
-        body = body + tentacle._tube(shape, sucker)
+        body = body + suckers.sucker_body(sucker)
     with pytest.raises(GeometryError, match="rim of sucker 2"):
-        tentacle._expect_suckers(body, shape)
+        suckers.expect_suckers(body, shape.suckers)
 
 
 @pytest.mark.parametrize(

@@ -119,7 +119,7 @@ def test_digitac_pins_are_marked_one_by_one() -> None:
 def test_corner_pins_are_left_out() -> None:
     """Of 5 x 7 pins those beyond 80 % of the dome are missing; none stands near the rim."""
     shape, layers = DigitacShape(), Layers(elastomer_mm=1.2)
-    pins = np.array(digitac._pins(shape, layers))
+    pins = np.array(shape.pins(layers).tips_mm)
     inside = shape.loaf(1.2)
     assert 0 < len(pins) < 35
     assert inside.share(pins[:, :2]).max() <= 0.8
@@ -189,7 +189,7 @@ def test_every_accepted_pin_is_clear_of_window_and_skin() -> None:
         except DesignError:
             continue
         accepted += 1
-        tips = np.array(digitac._pins(shape, layers))
+        tips = np.array(shape.pins(layers).tips_mm)
         places = (tips[:, None] + shape.pin_radius_mm * disc).reshape(-1, 3)
         window = shape.loaf(layers.elastomer_mm + shape.gap_mm)
         height = np.where(window.share(places) < 1.0, places[:, 2] - window.roof_mm(places), 9.0)

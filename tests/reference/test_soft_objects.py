@@ -9,8 +9,8 @@ from sim.contact.engine import reference
 from sim.contact.press import press_membrane
 from sim.contact.readout.problem import make_problem
 from sim.contact.soft.body import SoftObject, make_soft_object
-from sim.contact.soft.kernels import MEMBRANE, OBJECT
 from sim.contact.soft.meeting import meet
+from sim.contact.soft.meeting_functions import MEMBRANE, OBJECT
 from sim.contact.soft.reference import commit_history, contact_forces
 from sim.contact.soft.solver import SoftRelaxation
 from sim.contact.studies.specimens import flat_block

@@ -22,7 +22,8 @@ from workbench.core.base.errors import GeometryError
 from workbench.core.design.design import Layers
 from workbench.core.result.fabrication import PartGroup
 from workbench.proof.validation.geometry import sweep as sweeps
-from workbench.proof.validation.geometry.sweep import Trial, judge
+from workbench.proof.validation.geometry.sweep import judge
+from workbench.proof.validation.geometry.trials import Trial
 
 BLOCK = csg.Box(low_mm=(0.0, 0.0, 0.0), high_mm=(4.0, 3.0, 2.0))
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from sim.optics.light.lights import place_leds
+from sim.optics.proof import baked_light_checks
 from sim.optics.proof import transport_checks as checks
 from sim.optics.proof.specimen import finger
 from sim.optics.transport.gather import gather_light
@@ -98,7 +99,7 @@ def test_light_beyond_the_critical_angle_stays_in_the_solid() -> None:
 
 def test_virtual_leds_stand_where_the_leds_are_at_index_1() -> None:
     """Without refraction direction and irradiance are those of the straight line."""
-    difference, angle_deg = checks.virtual_light_errors(photons=400_000)
+    difference, angle_deg = baked_light_checks.virtual_light_errors(photons=400_000)
     # 90 photons at each node and light, smoothed over 30 nodes: 2 %; and nodes are 1.6 mm apart.
     assert difference < 0.04
     assert angle_deg < 1.5
@@ -106,7 +107,7 @@ def test_virtual_leds_stand_where_the_leds_are_at_index_1() -> None:
 
 def test_the_table_of_direct_light_shades_as_direct_light_does() -> None:
     """At index 1 and the undeformed normal: mean radiance the same, the rest is noise."""
-    rms, mean = checks.direct_table_errors(photons=600_000)
+    rms, mean = baked_light_checks.direct_table_errors(photons=600_000)
     # 50 photons and more at each node and light would be 14 %; the lattice halves that.
     assert rms < 0.12
     assert mean < 0.004
@@ -116,4 +117,4 @@ def test_the_table_of_direct_light_shades_as_direct_light_does() -> None:
 def test_the_table_at_rest_is_as_bright_as_photons_are(in_shell: bool) -> None:
     """Radiance from the bake's table and from photons gathered at the vertices: the same mean."""
     # 150,000 photons make 0.3 %; bins widen the coating's lobe and nodes 2 mm apart blur.
-    assert checks.table_error(in_shell=in_shell, photons=150_000) < 0.03
+    assert baked_light_checks.table_error(in_shell=in_shell, photons=150_000) < 0.03

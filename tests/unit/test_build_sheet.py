@@ -6,7 +6,7 @@ import csv
 import io
 
 from geometry.mould.castability import Worst
-from geometry.mould.mould_checks import check
+from geometry.mould.print_checks import check
 from geometry.workshop.build_sheet import bom_csv, build_sheet_html
 from workbench.core.result.fabrication import (
     FabricationCheck,

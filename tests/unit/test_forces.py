@@ -14,7 +14,7 @@ from workbench.core.base.errors import SolveError
 from workbench.core.press.actuation import Actuation
 from workbench.core.press.press import Press
 from workbench.core.result.sensing import Contact
-from workbench.report.outputs import plain_numbers
+from workbench.report.fabrication_tables import plain_numbers
 from workbench.view.forces import check_finite, csv_bytes, force_columns, slip_columns, slip_curve
 
 FRAMES, VERTICES = 3, 4

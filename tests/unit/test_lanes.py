@@ -17,7 +17,7 @@ from workbench.core.base.errors import Cancelled, DesignError, LaneError
 from workbench.core.base.monitor import silent
 from workbench.core.design.design import Layers
 from workbench.edit.forms import resolve_shape
-from workbench.live import lanes
+from workbench.live import lane_process, lanes
 from workbench.live.lanes import Lane
 from workbench.pipeline.stage import Call
 from workbench.pipeline.stages import build
@@ -263,6 +263,6 @@ def test_rehearsal_is_a_press_that_settles(monkeypatch: pytest.MonkeyPatch) -> N
         pressed.append(real(*inputs))
 
     monkeypatch.setattr(contact, "press_membrane", recorded)
-    lanes._rehearse()
+    lane_process._rehearse()
     (found,) = pressed
     assert found.normal_N[-1] > 0

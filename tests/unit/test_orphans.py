@@ -27,7 +27,7 @@ if __name__ == "__main__":
 
 def compute(pipe: object) -> None:
     """One call that lasts a minute and gives no other thread a turn, as a CAD kernel's boolean."""
-    from workbench.live.lanes import follow_parent
+    from workbench.system.processes import follow_parent
 
     follow_parent()
     pipe.send(os.getpid())  # type: ignore[attr-defined]

@@ -42,13 +42,12 @@ for module, names in (
 STARTED = """
 from geometry.intake import cad_child, cad_file
 from workbench.cli import command_line
-from workbench.live import lanes
-from workbench.system.processes import cores
+from workbench.system.processes import cores, follow_parent
 import ui.app, workbench.learning.dataset.collect, workbench.project.project
 from sim.optics.transport import wavefront
 
 cad_child._confine(1.0)
-lanes.follow_parent()
+follow_parent()
 assert cores() >= 1
 assert "more than 7 s" in cad_file._died("a.step", -14, 7.0).message
 assert "exit status 1" in cad_file._died("a.step", 1, 7.0).message

@@ -17,7 +17,8 @@ from workbench.core.design.lighting import LightModel
 from workbench.core.press.press_case import PressCase
 from workbench.core.result.results import Bundle, Picture
 from workbench.core.result.sensing import Metrics, Shot, TactileFrames
-from workbench.pipeline.store import DAMAGED, META, Store
+from workbench.pipeline.store import DAMAGED, Store
+from workbench.pipeline.write_once import META
 from workbench.planning.plan import InlineRunner, evaluate, plan
 
 

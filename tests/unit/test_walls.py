@@ -7,7 +7,8 @@ import pytest
 
 from geometry.body import csg
 from geometry.body.csg_mesh import arrays, evaluate
-from geometry.mould.mould_checks import MOULD_LIMITS, wall_check
+from geometry.mould.mould_checks import MOULD_LIMITS
+from geometry.mould.print_checks import wall_check
 from geometry.mould.walls import thinnest_wall
 from geometry.surface.primitives import sphere
 from workbench.core.result.fabrication import Severity

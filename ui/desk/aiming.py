@@ -48,7 +48,7 @@ class Aiming:
 
     def show_body(self, solid: Solid) -> None:
         """Show another body, with the object on it."""
-        desk, origin = self.desk, self.desk.origin()
+        desk, origin = self.desk, self.desk.session.origin()
         desk.scene.show_solid(solid)
         if origin != self._framed:
             # Another kind of body; within a family the designer's own view is kept.

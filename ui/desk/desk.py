@@ -42,9 +42,7 @@ from workbench.live.requests import (
     PREDICTION,
     SHAPE,
     Finished,
-    Request,
 )
-from workbench.planning.plan import plan
 from workbench.planning.running import PARTIAL
 
 OF_A_SENSOR = ("press", "image", "maps", "forces", "learned", PREDICTION)
@@ -112,7 +110,7 @@ class Desk:
         self.reports.banner = self.header.banner
         self.jobs = Jobs(conductor, self.reports, self.header)
         self.jobs.on_done = self.showing.stage_done
-        self.jobs.asked_now = self._asked_now
+        self.jobs.asked_now = session.asks_now
         self.jobs.on_events = self.refresh_header
         self.jobs.on_idle = self._idle
         self.jobs.on_failed = self._failed
@@ -208,7 +206,7 @@ class Desk:
 
     def _follow_sensor(self) -> None:
         """Take away what was pressed and rendered of another family or another file."""
-        sensor = self.origin()
+        sensor = self.session.origin()
         if self._sensor not in (None, sensor):
             self.showing.forget_all()
             for topic in OF_A_SENSOR:
@@ -219,11 +217,6 @@ class Desk:
             self.tell("sensor", None)
             self.refresh_header()
         self._sensor = sensor
-
-    def origin(self) -> tuple[str, str]:
-        """What kind of sensor the design is: its family, and the file of its body."""
-        design = self.session.design
-        return design.family, design.body.outer.sha256 if design.body is not None else ""
 
     def replaced(self) -> None:
         """Follow a change of many fields at once: undo, a preset, an upload."""
@@ -256,15 +249,6 @@ class Desk:
         """Hand a result, or another piece of news, to all panels."""
         for panel in self.panels:
             panel.show(stage, result)
-
-    def _asked_now(self, request: Request, failed: str) -> bool:
-        """Whether the stage of a request that failed is a stage of the state as it stands."""
-        if request.preview is not None and request.case.indenter != self.session.case.indenter:
-            return False
-        if not failed:
-            return request.design == self.session.design
-        now = self.session.calls().get(failed)
-        return now is not None and now.key == plan(request.design, request.case)[failed].key
 
     def _failed(self, error: WorkbenchError, topic: str) -> None:
         """Show the frames that settled before a press failed."""

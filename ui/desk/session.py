@@ -19,6 +19,7 @@ from workbench.core.design.optics import Optics
 from workbench.core.press.indenter import Indenter
 from workbench.core.press.press_case import PressCase
 from workbench.edit.item_fields import with_field
+from workbench.live.requests import Request
 from workbench.pipeline.stage import Call
 from workbench.planning.plan import plan
 from workbench.project.design_toml import check_design, design_from_toml
@@ -60,6 +61,11 @@ class Session:
     def case(self) -> PressCase:
         """The press as it stands."""
         return self.state.case
+
+    def origin(self) -> tuple[str, str]:
+        """What kind of sensor the design is: its family, and the file of its body."""
+        body = self.design.body
+        return self.design.family, body.outer.sha256 if body is not None else ""
 
     def open(self, name: str | None, *, unit: str = "auto") -> None:
         """Start from a named design, else from where the last session stopped; nothing to undo.
@@ -193,6 +199,15 @@ class Session:
         """Whether each stage's result is stored for the state; stages it has not are left out."""
         calls = self.calls()
         return {name: self.store.has(name, calls[name].key) for name in calls}
+
+    def asks_now(self, request: Request, failed: str) -> bool:
+        """Whether the stage of a request that failed is a stage of the state as it stands."""
+        if request.preview is not None and request.case.indenter != self.case.indenter:
+            return False
+        if not failed:
+            return request.design == self.design
+        now = self.calls().get(failed)
+        return now is not None and now.key == plan(request.design, request.case)[failed].key
 
     def result(self, stage: str) -> Any:
         """The stored result of a stage for the state as it stands; None where none is readable."""

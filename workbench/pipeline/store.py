@@ -1,7 +1,7 @@
 """Results on disk: write-once folders `<root>/<stage>/<key>/*.npy` with a `meta.json`.
 
-A result is written into a `.part-<pid>-...` folder, synced, and renamed: whoever sees the folder
-sees all of it, and of two writers the first one wins. Arrays are memory-mapped when loaded, so the
+Whoever sees the folder of a result sees all of it (`workbench.pipeline.write_once`), and of two
+writers the first one wins. Arrays are memory-mapped when loaded, so the
 browser process never reads what it does not show; those that are mostly zeros are packed
 (`workbench.pipeline.sparse`), and unpacked when loaded.
 
@@ -17,9 +17,8 @@ import json
 import os
 import secrets
 import shutil
-import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -29,10 +28,10 @@ import numpy as np
 from workbench.core.base.codec import pack, unpack
 from workbench.core.base.errors import DamagedError, StoreError, shortened
 from workbench.pipeline.sparse import PARTS, mostly_zeros, pack_zeros, unpack_zeros
+from workbench.pipeline.write_once import META, discard, part_of, publish, write_file
 from workbench.system.processes import is_alive
 from workbench.system.terminal import complain
 
-META = "meta.json"
 DAMAGED = "damaged"
 """Folder of what could not be read, for whoever wants to know why."""
 DAMAGED_KEPT = 10
@@ -132,25 +131,11 @@ class Store:
             "packed": {name: list(arrays[name].shape) for name in sorted(packed)},
             "tree": tree,
         }
-        with self._writing(stage) as part:
+        with part_of(self.root, stage) as part:
             for name, array in files.items():
-                _write(part / name, lambda file, a=array: np.save(file, a))
-            _write(part / META, lambda file: file.write(json.dumps(meta).encode()))
-            _publish(part, self.path(stage, key))
-
-    @contextlib.contextmanager
-    def _writing(self, stage: str) -> Iterator[Path]:
-        part: Path | None = None
-        try:
-            folder = self.root / stage
-            folder.mkdir(parents=True, exist_ok=True)
-            part = Path(tempfile.mkdtemp(dir=folder, prefix=f".part-{os.getpid()}-"))
-            yield part
-        except OSError as error:
-            raise _disk_error(error, self.root) from error
-        finally:
-            if part is not None:
-                shutil.rmtree(part, ignore_errors=True)
+                write_file(part / name, lambda file, a=array: np.save(file, a))
+            write_file(part / META, lambda file: file.write(json.dumps(meta).encode()))
+            publish(part, self.path(stage, key))
 
     def _meta(self, stage: str, key: str) -> dict[str, Any]:
         try:
@@ -246,7 +231,7 @@ class Store:
             if total <= self.limit_bytes:
                 break
             with contextlib.suppress(OSError):
-                _discard(folder)
+                discard(folder)
                 total -= size
                 removed += 1
         return removed
@@ -266,57 +251,3 @@ def _read(folder: Path, name: str, meta: dict[str, Any]) -> np.ndarray:
         return np.load(folder / f"{name}.npy", mmap_mode="r")
     parts = {end: np.load(folder / f"{name}.{end}.npy") for end in PARTS}
     return unpack_zeros(parts, tuple(shape))
-
-
-def _write(path: Path, write: Any) -> None:
-    with path.open("wb") as file:
-        write(file)
-        file.flush()
-        os.fsync(file.fileno())
-
-
-def _publish(part: Path, final: Path) -> None:
-    """Give a finished folder its name; of two writers the first one wins."""
-    try:
-        _rename(part, final)
-    except FileExistsError:
-        # Contents are equal by construction, unless an interrupted removal left a husk.
-        if not (final / META).exists():
-            with contextlib.suppress(FileNotFoundError):
-                _discard(final)
-            with contextlib.suppress(FileExistsError):
-                _rename(part, final)
-
-
-def _discard(folder: Path) -> None:
-    """Remove a result: one rename makes it absent, whatever interrupts the rest."""
-    aside = folder.with_name(f".part-{os.getpid()}-{secrets.token_hex(6)}")
-    folder.rename(aside)
-    shutil.rmtree(aside, ignore_errors=True)
-
-
-def _rename(part: Path, final: Path) -> None:
-    try:
-        part.rename(final)
-    except OSError as error:
-        if error.errno not in (errno.ENOTEMPTY, errno.EEXIST):
-            raise
-        raise FileExistsError(str(final)) from error
-
-
-def _disk_error(error: OSError, root: Path) -> StoreError:
-    # NumPy tells of an array that was written in part without a number.
-    if error.errno in (errno.ENOSPC, errno.EDQUOT, None):
-        with contextlib.suppress(OSError):
-            free_mb = shutil.disk_usage(root).free / 2**20
-            return StoreError(
-                f"the disk of {root} is full ({free_mb:.0f} MB free)",
-                hint="free some space, or choose another folder with --project; "
-                "finished results are kept",
-                at="store",
-            )
-    return StoreError(
-        f"cannot write to {root}: {error.strerror or error}",
-        hint="check the folder's permissions, or choose another one with --project",
-        at="store",
-    )

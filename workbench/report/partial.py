@@ -23,8 +23,9 @@ from workbench.pipeline.stage import Outcome, Ref
 from workbench.pipeline.store import Store
 from workbench.planning.plan import StageMonitor, plan, results, stage_monitor
 from workbench.planning.running import PARTIAL, run
+from workbench.report.fabrication_tables import plain_numbers
 from workbench.report.image_files import write_images
-from workbench.report.outputs import plain_numbers, summary_table, write_press
+from workbench.report.outputs import summary_table, write_press
 from workbench.system.whole_files import write_atomically
 
 

@@ -20,7 +20,7 @@ from workbench.pipeline.chosen_weights import chosen
 from workbench.pipeline.shipped import shipped_weights
 from workbench.pipeline.store import Store
 from workbench.planning.plan import InlineRunner, evaluate, plan
-from workbench.report.outputs import plain_numbers
+from workbench.report.fabrication_tables import plain_numbers
 from workbench.system.terminal import Progress, complain, say
 from workbench.system.whole_files import write_atomically
 from workbench.view.force_sources import Forces, disagreement, totals

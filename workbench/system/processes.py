@@ -1,10 +1,14 @@
-"""Processes of this machine: whether one is still there, and how many may compute at once."""
+"""Processes of this machine: whether one is still there, how many may compute, how one ends."""
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
+import multiprocessing
 import os
+import signal
 import sys
+import threading
 from pathlib import Path
 from typing import Any
 
@@ -76,3 +80,28 @@ def _stat(pid: int, number: int) -> str:
     except (OSError, UnicodeDecodeError):
         return ""
     return fields[number]
+
+
+def follow_parent() -> None:
+    """Leave no orphan: end this process when the server dies, whatever it is doing.
+
+    The kernel's own signal ends it where that can be had: a thread gets no turn while a CAD kernel
+    computes with Python's lock held.
+    """
+    parent = multiprocessing.parent_process()
+    if parent is None:
+        return
+    with contextlib.suppress(ImportError, AttributeError, OSError, ValueError):
+        import fcntl
+
+        # What nobody writes to any more tells its reader, by SIGIO, whose default action is to end.
+        signal.signal(signal.SIGIO, signal.SIG_DFL)
+        fcntl.fcntl(parent.sentinel, fcntl.F_SETOWN, os.getpid())
+        flags = fcntl.fcntl(parent.sentinel, fcntl.F_GETFL)
+        fcntl.fcntl(parent.sentinel, fcntl.F_SETFL, flags | os.O_ASYNC)
+
+    def watch() -> None:
+        parent.join()
+        os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()

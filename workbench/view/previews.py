@@ -12,14 +12,8 @@ import numpy as np
 from geometry.surface.surface_place import SkinPlace
 from geometry.volume.quality import CELL_EDGES, volume_quality
 from workbench.core.base.frames import quaternion, tangent
-from workbench.core.result.results import (
-    Label,
-    LabelledSurface,
-    MeshQuality,
-    Skin,
-    VolumeMesh,
-    region_masks,
-)
+from workbench.core.result.quality import MeshQuality
+from workbench.core.result.results import Label, LabelledSurface, Skin, VolumeMesh, region_masks
 
 LEAST_SINE = 1e-12
 """Rays flatter to a triangle than this do not meet it."""

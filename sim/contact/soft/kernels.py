@@ -21,8 +21,8 @@ sensor by rows, and 1 / cell edge: 13 floats. The plain twins are in `meeting` a
 import taichi as ti
 
 from sim.contact.engine.cell_kernel import cell_pass, entry
-from sim.contact.engine.kernels import Floats, Integers, node_pass, point_displacement
-from sim.contact.engine.point_functions import body_rotation, line_weights, object_distance
+from sim.contact.engine.kernels import Floats, Integers, node_pass
+from sim.contact.engine.point_functions import line_weights
 from sim.contact.grid.layout import (
     FREE,
     FRICTION,
@@ -32,131 +32,22 @@ from sim.contact.grid.layout import (
     MEETS_SOFT,
     MODE,
     POINT,
-    POSE,
     STIFFNESS,
     TOUCHED,
 )
 from sim.contact.region.domain import BLOCK
+from sim.contact.soft.meeting_functions import (
+    MEMBRANE,
+    NOWHERE,
+    OBJECT,
+    friction_slip,
+    meet,
+    point_place,
+)
 
-MEMBRANE, OBJECT = 0, 1
-"""Cases of the batch."""
-NEWTON = 4
-"""Iterations for the place in the undeformed object: the last changes it by less than 1e-6 mm."""
 QUANTUM_N = 2.0**-36
 """Unit in which forces on the object are summed."""
-NOWHERE = -1
-"""Entry of the cell map where the object has no cell."""
 Sums = ti.types.ndarray(dtype=ti.i64, ndim=1)
-
-
-@ti.func
-def _line_slopes(local):
-    """Slopes of `line_weights` by the place in cells."""
-    return ti.Vector([local - 0.5, -2.0 * local, local + 0.5])
-
-
-@ti.func
-def _cell_at(place, cell_map: ti.template(), extents: ti.template()):
-    """Cell of the object around a place [cells], or NOWHERE."""
-    found = NOWHERE
-    index = ti.Vector([0, 0, 0])
-    inside = True
-    for c in ti.static(range(3)):
-        index[c] = ti.cast(ti.floor(place[c] + 0.5), ti.i32) - extents[c]
-        inside = inside and index[c] >= 0 and index[c] < extents[3 + c]
-    if inside:
-        found = cell_map[(index[0] * extents[4] + index[1]) * extents[5] + index[2]]
-    return found
-
-
-@ti.func
-def _deformed(place, cell, displacement: ti.template(), rows: ti.template(), inverse_edge):
-    """Displacement [mm] and its gradient at a place [cells] of the object."""
-    local = place - ti.floor(place + 0.5)
-    x, y, z = line_weights(local[0]), line_weights(local[1]), line_weights(local[2])
-    dx, dy, dz = _line_slopes(local[0]), _line_slopes(local[1]), _line_slopes(local[2])
-    moved = ti.Vector([0.0, 0.0, 0.0])
-    gradient = ti.Matrix.zero(ti.f32, 3, 3)
-    for n in ti.static(range(27)):
-        i, j, k = ti.static(n // 9, n // 3 % 3, n % 3)
-        base = 3 * (rows[entry(cell, n // 3, 9)] + k)
-        nodal = ti.Vector([displacement[base + c] for c in range(3)])
-        moved += x[i] * y[j] * z[k] * nodal
-        slope = ti.Vector([dx[i] * y[j] * z[k], x[i] * dy[j] * z[k], x[i] * y[j] * dz[k]])
-        gradient += nodal.outer_product(slope) * inverse_edge
-    return moved, gradient
-
-
-@ti.func
-def _start_place(point_mm, rotation, poses: ti.template(), row):
-    """Where the rigid object would have a point [mm from the target], in its body frame."""
-    place = point_mm
-    for c in ti.static(range(3)):
-        place[c] -= poses[POSE * row + c]
-    return rotation.transpose() @ place
-
-
-@ti.func
-def _meet(
-    point_mm,
-    row,
-    displacement: ti.template(),
-    rows: ti.template(),
-    poses: ti.template(),
-    numbers: ti.template(),
-    choices: ti.template(),
-    coefficients: ti.template(),
-    partner: ti.template(),
-    cell_map: ti.template(),
-    extents: ti.template(),
-):
-    """Where a point of the membrane [mm from the target] meets the object.
-
-    Returns place [mm], cell or NOWHERE, deformation gradient, distance and its gradient.
-    """
-    inverse_edge = partner[12]
-    turned = ti.Matrix([[partner[3 + 3 * r + c] for c in range(3)] for r in range(3)])
-    origin = ti.Vector([partner[c] for c in range(3)])
-    wanted = turned.transpose() @ (point_mm - origin)
-    place = _start_place(point_mm, body_rotation(poses, row), poses, row)
-    distance, gradient = object_distance(place, numbers, choices, coefficients, MEMBRANE)
-    if distance > 0.0:
-        # A point that only the deformed object has reached is sought from the skin inward.
-        place -= distance * gradient
-    cell = _cell_at(place * inverse_edge, cell_map, extents)
-    deformation = ti.Matrix.identity(ti.f32, 3)
-    for _ in range(NEWTON):
-        if cell != NOWHERE:
-            moved, slope = _deformed(place * inverse_edge, cell, displacement, rows, inverse_edge)
-            deformation = ti.Matrix.identity(ti.f32, 3) + slope
-            place -= deformation.inverse() @ (place + moved - wanted)
-            cell = _cell_at(place * inverse_edge, cell_map, extents)
-    distance, gradient = object_distance(place, numbers, choices, coefficients, MEMBRANE)
-    return place, cell, deformation, distance, gradient
-
-
-@ti.func
-def _friction_slip(place, anchor, deformation, gradient, limit):
-    """Tangential slip in the undeformed object, returned to the friction cone [mm]."""
-    normal = gradient / ti.max(gradient.norm(), 1e-9)
-    slip = place - anchor
-    slip -= slip.dot(normal) * normal
-    length = (deformation @ slip).norm()
-    if length > limit:
-        slip *= limit / length
-    return slip
-
-
-@ti.func
-def _point_place(
-    displacement: ti.template(), rows: ti.template(),
-    points: ti.template(), cell, point,
-):  # fmt: skip
-    """Deformed place of a surface point of the membrane [mm from the target]."""
-    place = point_displacement(displacement, rows, points, cell, point)
-    for c in ti.static(range(3)):
-        place[c] += points[POINT * point + c]
-    return place
 
 
 @ti.func
@@ -173,8 +64,8 @@ def soft_pass(
         if cell_cases[cell] == MEMBRANE and choices[MODE] != IDLE:
             for point in range(starts[cell], starts[cell + 1]):
                 if held[point] == MEETS_SOFT:
-                    at = _point_place(displacement, rows, points, cell, point)
-                    place, hit, deformation, distance, gradient = _meet(
+                    at = point_place(displacement, rows, points, cell, point)
+                    place, hit, deformation, distance, gradient = meet(
                         at, row, displacement, rows, poses, numbers, choices, coefficients,
                         partner, cell_map, extents,
                     )  # fmt: skip
@@ -186,7 +77,7 @@ def soft_pass(
                         anchor = ti.Vector([anchors[3 * point + c] for c in range(3)])
                         steep = deformation.inverse().transpose() @ gradient
                         limit = -numbers[FRICTION] * distance * steep.norm()
-                        slip = _friction_slip(place, anchor, deformation, gradient, limit)
+                        slip = friction_slip(place, anchor, deformation, gradient, limit)
                         push = -points[POINT * point + STIFFNESS] * (
                             distance * steep + deformation @ slip
                         )
@@ -302,8 +193,8 @@ def commit_soft_anchors(
         if cell_cases[cell] == MEMBRANE:
             for point in range(starts[cell], starts[cell + 1]):
                 if held[point] == MEETS_SOFT:
-                    at = _point_place(displacement, rows, points, cell, point)
-                    place, hit, deformation, distance, gradient = _meet(
+                    at = point_place(displacement, rows, points, cell, point)
+                    place, hit, deformation, distance, gradient = meet(
                         at, MEMBRANE, displacement, rows, poses, numbers, choices, coefficients,
                         partner, cell_map, extents,
                     )  # fmt: skip
@@ -311,7 +202,7 @@ def commit_soft_anchors(
                         anchor = ti.Vector([anchors[3 * point + c] for c in range(3)])
                         steep = deformation.inverse().transpose() @ gradient
                         limit = -numbers[FRICTION] * distance * steep.norm()
-                        slip = _friction_slip(place, anchor, deformation, gradient, limit)
+                        slip = friction_slip(place, anchor, deformation, gradient, limit)
                         normal = gradient / ti.max(gradient.norm(), 1e-9)
                         way = place - slip - anchor
                         slips[point] += (deformation @ (way - way.dot(normal) * normal)).norm()

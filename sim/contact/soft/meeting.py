@@ -1,6 +1,6 @@
 """Where points meet a soft object, in plain NumPy and double precision: reads a settled frame.
 
-The same as `_meet` of `soft.kernels`; forces and friction are in `reference`.
+The twin of `meeting_functions`; forces and friction are in `reference`.
 """
 
 from __future__ import annotations

@@ -21,14 +21,14 @@ from sim.contact.readout.problem import Problem
 from sim.contact.soft import kernels as soft_kernels
 from sim.contact.soft.body import SoftObject, make_soft_object
 from sim.contact.soft.meeting import cells_at, deformed, meet
+from sim.contact.soft.meeting_functions import MEMBRANE, NOWHERE, OBJECT
+from sim.contact.solver.load import least_load_N
 from sim.contact.solver.run import Run
-from sim.contact.solver.solver import Solver, least_load_N
+from sim.contact.solver.solver import Solver
 from workbench.core.base.errors import SolveError
 from workbench.core.base.monitor import Monitor
 from workbench.core.press.indenter import Indenter
 from workbench.core.result.sensing import Contact
-
-MEMBRANE, OBJECT = soft_kernels.MEMBRANE, soft_kernels.OBJECT
 
 
 def press_soft(problem: Problem, indenter: Indenter, monitor: Monitor) -> Contact | SolveError:
@@ -62,7 +62,7 @@ class SoftRelaxation(Relaxation):
         edge = [1.0 / soft.domain.grid_mm]
         origin_mm = soft.origin_mm - membrane.target_mm
         first_cell = -(-len(membrane.rows) // soft_kernels.BLOCK) * soft_kernels.BLOCK
-        cells = np.where(soft.cell_map < 0, soft_kernels.NOWHERE, soft.cell_map + first_cell)
+        cells = np.where(soft.cell_map < 0, NOWHERE, soft.cell_map + first_cell)
         self._arrays = {
             "partner": floats(np.concatenate([origin_mm, soft.rotation.ravel(), edge])),
             "cell_map": integers(cells),
@@ -160,7 +160,7 @@ class SoftSolver(Solver):
         self.soft = soft
         self.shapes: list[np.ndarray] = []
         super().__init__([problem], monitor, relaxation=SoftRelaxation(problem, soft))
-        self.least_N[:] = least_load_N(soft.young_MPa, soft.domain.grid_mm)
+        self.load.least_N[:] = least_load_N(soft.young_MPa, soft.domain.grid_mm)
 
     def make_run(self, problem: Problem, number: int, frame: int) -> Run:
         """The way of the press through its frames."""

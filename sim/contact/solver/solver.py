@@ -3,8 +3,7 @@
 Each frame moves the object along its path in a short ramp and then relaxes until the forces
 balance. Where the path goes straight on, the displacement is first extrapolated along it. A frame
 has settled when the out-of-balance force is below `tolerance` of the load, its sum below half a
-percent, and the reaction has stopped changing; at nearly zero load 2 % of the peak stands in for
-the load. The load is the reaction, plus the forces of driven regions.
+percent, and the reaction has stopped changing (`load`).
 Many presses are relaxed in one launch; each settles, moves on and fails by itself.
 Left out: self-contact, inertia, viscosity; speed enters nowhere.
 """
@@ -21,21 +20,12 @@ from sim.contact.readout.frame import FrameOutcome
 from sim.contact.readout.outcome import collect, frame_outcome
 from sim.contact.readout.problem import Problem
 from sim.contact.readout.verdict import check_frame
-from sim.contact.solver.run import FORCE_CHANGE, NET_FORCE, Run
+from sim.contact.solver.load import Load
+from sim.contact.solver.run import FORCE_CHANGE, Run
 from workbench.core.base.errors import SolveError, Stopped
 from workbench.core.base.monitor import Monitor, silent
 from workbench.core.result.sensing import Contact
 
-LEAST_LOAD_N = 1e-12
-"""Stands in for a load that vanishes altogether."""
-LEAST_STRAIN = 0.2
-"""Where bodies are carried about, a load of this strain on one cell stands in for a smaller one:
-carried by millimetres they have forces of rounding, in single precision, that would never fall
-below a share of nothing."""
-LEAST_OF_LOAD = 0.05
-"""Share of the load that stands in for a smaller reaction."""
-LEAST_OF_PEAK = 0.02
-"""Share of the peak load that stands in for a vanishing one."""
 PATIENCE = 300
 """Substeps without a lower residual before the fictitious masses are doubled."""
 MOST_RETRIES = 4
@@ -77,11 +67,6 @@ def resume(
     return result
 
 
-def least_load_N(young_MPa: float, grid_mm: float) -> float:
-    """Force that stands in for the load of a body that is carried about [N]."""
-    return LEAST_STRAIN * young_MPa * grid_mm**2
-
-
 class Solver:
     """Presses under way; arrays have an entry for each."""
 
@@ -99,7 +84,7 @@ class Solver:
             self.make_run(problem, number, frame) for number, problem in enumerate(problems)
         ]
         count = len(problems)
-        self.tolerance = np.array([p.settings.tolerance for p in problems])
+        self.load = Load(problems)
         self.most = np.array([p.settings.max_substeps for p in problems])
         self.settling = np.zeros(count, bool)
         self.active = np.ones(count, bool)
@@ -108,16 +93,6 @@ class Solver:
         self.lowest = np.full(count, np.inf)
         self.lowest_at = np.zeros(count, int)
         self.before_N = np.full((count, 3), np.inf)
-        self.peak_N = np.zeros(count)
-        """Largest load of a settled frame."""
-        self.least_N = np.array(
-            [
-                least_load_N(p.material.young_MPa, p.domain.grid_mm)
-                if p.press.actuations
-                else LEAST_LOAD_N
-                for p in problems
-            ]
-        )
         self.retries = np.zeros(count, int)
         self.residual = np.full(count, np.inf)
         for case in range(count):
@@ -185,9 +160,9 @@ class Solver:
         with np.errstate(invalid="ignore", over="ignore"):
             self.residual = np.where(looked, balances.unbalanced_N / load_N, self.residual)
             change_N = np.linalg.norm(balances.reaction_N - self.before_N, axis=1)
-            change = change_N / self._share_of_reaction_N(balances, load_N)
+            change = change_N / self.load.of_reaction(balances, load_N)
         self.before_N[looked] = balances.reaction_N[looked]
-        still = looked & (change < FORCE_CHANGE) & self._balanced(balances, load_N)
+        still = looked & (change < FORCE_CHANGE) & self.load.balanced(balances, load_N)
         if still.any():
             looked &= ~self._close(still)
         lower = looked & (self.residual < self.lowest)
@@ -208,7 +183,7 @@ class Solver:
         # The balance was from before the last move.
         final = self.relaxation.evaluate(still)
         load_N = self._load_N(final, still & final.finite)
-        settled = still & final.finite & self._balanced(final, load_N)
+        settled = still & final.finite & self.load.balanced(final, load_N)
         for case in np.flatnonzero(still).tolist():
             if not final.finite[case]:
                 self._unstable(case)
@@ -230,7 +205,7 @@ class Solver:
             self.end(case, error)
             return
         run.finish(outcome)
-        self.peak_N[case] = max(self.peak_N[case], load_N)
+        self.load.peak_N[case] = max(self.load.peak_N[case], load_N)
         self.retries[case] = 0
         self.relaxation.relieve(case)
         if run.frame < problem.approach.frame_count:
@@ -252,26 +227,9 @@ class Solver:
         )
 
     def _load_N(self, balances: Balances, looked: np.ndarray) -> np.ndarray:
-        """Force against which residual and change are measured, shape (B,)."""
-        load_N = np.linalg.norm(balances.reaction_N, axis=1)
-        for case in np.flatnonzero(looked).tolist():
-            load_N[case] += self.runs[case].driving_N()
-        return np.maximum(np.maximum(load_N, LEAST_OF_PEAK * self.peak_N), self.least_N)
-
-    def _share_of_reaction_N(self, balances: Balances, load_N: np.ndarray) -> np.ndarray:
-        """Force against which a change of the reaction is measured, shape (B,).
-
-        Drives may push far harder than the object: its own reaction must have come to rest too.
-        """
-        reaction_N = np.linalg.norm(balances.reaction_N, axis=1)
-        least_N = np.maximum(LEAST_OF_LOAD * load_N, LEAST_OF_PEAK * self.peak_N)
-        return np.maximum(reaction_N, least_N)
-
-    def _balanced(self, balances: Balances, load_N: np.ndarray) -> np.ndarray:
-        """Whether residual and net force are within their tolerances, shape (B,), bool."""
-        net_N = np.linalg.norm(balances.net_N, axis=1)
-        small = balances.unbalanced_N < self.tolerance * load_N
-        return small & (net_N < NET_FORCE * load_N)
+        """Load of the presses that are looked at, shape (B,)."""
+        driving_N = [run.driving_N() if looked[run.number] else 0.0 for run in self.runs]
+        return self.load.of(balances, np.array(driving_N))
 
     def _unstable(self, case: int) -> None:
         """Try the frame again with heavier nodes and a gentler ramp, or give up."""

@@ -1,8 +1,8 @@
 """Validation of the optics room: each function measures one thing and returns its number(s).
 
 Projection, Snell, Fresnel, irradiance and depth are compared with closed forms, the fields with the
-properties that define them. `view_checks`, `sensor_checks`, `map_checks` and `transport_checks`
-have the rest.
+properties that define them. `view_checks`, `sensor_checks`, `map_checks`, `transport_checks`
+and `baked_light_checks` have the rest.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Bodies with closed forms, as raw triangles: what the checks of traced light shine on."""
+"""Bodies with closed forms, as raw triangles, and lights: what checks of traced light work on."""
 
 from __future__ import annotations
 
@@ -8,7 +8,11 @@ import numpy as np
 
 from sim.optics.light.lights import Leds
 from sim.optics.transport.sources import Sources
+from workbench.core.design.optics import Coating
 from workbench.core.result.results import Skin
+
+BLACK = Coating(albedo=0.0, specular=0.0)
+"""Takes all light at its first hit."""
 
 
 def sphere(radius_mm: float, halvings: int) -> Skin:

@@ -31,6 +31,31 @@ def blend(values: ti.template(), first, faces: ti.template(), face, weights):
     return total + values[first + faces[face, 2]] * weights.y
 
 
+@ti.func
+def facing_way(
+    way,
+    turned: ti.template(),
+    normals: ti.template(),
+    first,
+    at,
+    face,
+    seen_weights: ti.template(),
+    on_patch: ti.template(),
+    faces: ti.template(),
+):
+    """The inward normal where a pixel looks, turned to face its line of sight; any length.
+
+    `first` is the frame's first vertex of `turned`, the normals of the moved patch.
+    """
+    facing = tm.vec3(0.0)
+    if on_patch[at]:
+        facing = -blend(turned, first, faces, face, seen_weights[at])
+    else:
+        facing = -blend(normals, 0, faces, face, seen_weights[at])
+    facing -= ti.max(facing.dot(way), 0.0) * way
+    return facing
+
+
 @ti.kernel
 def describe(
     frames: ti.i32,
@@ -58,11 +83,10 @@ def describe(
             facing, away = tm.vec3(0.0), tm.nan
             if face >= 0:
                 way = direction[number]
-                if on_patch[at]:
-                    facing = -blend(turned, frame * vertices, faces, face, seen_weights[at])
-                else:
-                    facing = -blend(normals, 0, faces, face, seen_weights[at])
-                facing -= ti.max(facing.dot(way), 0.0) * way
+                first = frame * vertices
+                facing = facing_way(
+                    way, turned, normals, first, at, face, seen_weights, on_patch, faces
+                )
                 facing /= ti.max(facing.norm(), 1e-12)
                 away = (origin[number] + seen_mm[at] * way - camera).dot(axis)
             normal[at] = facing
@@ -109,12 +133,10 @@ def spread_ink(
                     if distance < gap:
                         gap, nearest = distance, dot_of[entry]
                 way = direction[number]
-                facing = tm.vec3(0.0)
-                if on_patch[at]:
-                    facing = -blend(turned, frame * vertices, faces, face, seen_weights[at])
-                else:
-                    facing = -blend(normals, 0, faces, face, seen_weights[at])
-                facing -= ti.max(facing.dot(way), 0.0) * way
+                first = frame * vertices
+                facing = facing_way(
+                    way, turned, normals, first, at, face, seen_weights, on_patch, faces
+                )
                 cosine = -facing.dot(way) / ti.max(facing.norm(), 1e-12)
                 away = ti.abs((origin[number] + seen_mm[at] * way - camera).dot(axis))
                 if angular:

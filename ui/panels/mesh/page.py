@@ -13,7 +13,7 @@ from ui.page.colours import BLUE, GREEN
 from ui.page.plain import plain
 from ui.panels.page import Page
 from workbench.core.base.units import volume_ml
-from workbench.core.result.results import MeshQuality, QualityReport
+from workbench.core.result.quality import MeshQuality, QualityReport
 from workbench.system.names import NONE
 from workbench.view.previews import clear_view, judged, mesh_edges
 

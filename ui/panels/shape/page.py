@@ -1,4 +1,4 @@
-"""Shape: where to start from, the family's own parameters, the layers and the material."""
+"""Shape: where to start from, undo, the family's own parameters, the layers and the material."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from ui.desk.desk import Desk
 from ui.page.callbacks import put
 from ui.panels.page import Page
 from ui.panels.shape.design_files import DesignFiles
-from ui.panels.shape.history import History
 from ui.panels.shape.intake import IntakeFolder
 from ui.panels.shape.material import MaterialFolder
 from workbench.edit.forms import choices, family, load_design, purpose, sliders
@@ -34,7 +33,7 @@ class ShapePanel:
         self.files = DesignFiles(desk)
         self.files.gallery_button()
         self.files.name_widgets()
-        History(desk)
+        self._history()
         self.folder = gui.add_folder("Body")
         self.family = ""
         self._fill()
@@ -45,6 +44,24 @@ class ShapePanel:
             self.intake = IntakeFolder(desk)
         self.files.file_widgets()
         self._tell_about()
+
+    def _history(self) -> None:
+        desk, gui = self.desk, self.desk.server.gui
+        steps = gui.add_button_group(
+            "History", ("Undo", "Redo"), hint="Ctrl+Z and Ctrl+Shift+Z; a drag is one step"
+        )
+        steps.on_click(desk.guarded(lambda event: self._step(steps.value)))
+        undo = gui.add_command("Undo", hotkey="Z", modifier="cmd/ctrl")
+        undo.on_trigger(desk.guarded(lambda event: self._step("Undo")))
+        redo = gui.add_command("Redo", hotkey="Z", modifier="cmd/ctrl+shift")
+        redo.on_trigger(desk.guarded(lambda event: self._step("Redo")))
+
+    def _step(self, direction: str) -> None:
+        session = self.desk.session
+        moved = session.undo() if direction == "Undo" else session.redo()
+        if moved:
+            self.desk.log(direction.lower())
+            self.desk.replaced()
 
     def _layers(self) -> None:
         fields = self.desk.fields

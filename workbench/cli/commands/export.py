@@ -9,10 +9,7 @@ from pathlib import Path
 from workbench.cli.body_arguments import add_body_options, placed_design
 from workbench.cli.command import Command
 from workbench.cli.options import DESIGN, OUT
-from workbench.cli.press_arguments import (
-    add_fit_option,
-    add_set_option,
-)
+from workbench.cli.press_arguments import add_fit_option, add_set_option
 from workbench.cli.started import started
 from workbench.project.project import Project
 from workbench.report.export import chosen_exports, clear_exports, export_design, exports
@@ -48,7 +45,7 @@ def run(options: argparse.Namespace, project: Project) -> int:
     from workbench.planning.foresight import optical_misfits
     from workbench.planning.plan import plan, results
     from workbench.project.named_designs import load_design
-    from workbench.report.outputs import all_checks, check_rows, part_rows
+    from workbench.report.fabrication_tables import all_checks, check_rows, part_rows
 
     printer = Progress(as_json=options.json)
     design = placed_design(options, load_design(options.design, project=project))

@@ -14,9 +14,9 @@ from workbench.core.base.errors import StoreError
 from workbench.core.result.force_field import ForceField
 from workbench.project.project import Project
 from workbench.project.state import State
+from workbench.report.fabrication_tables import plain_numbers
 from workbench.report.fem_case import deck_case, read_carried, solved
 from workbench.report.fem_tables import beside
-from workbench.report.outputs import plain_numbers
 from workbench.system.terminal import Progress, say
 
 

@@ -9,9 +9,9 @@ from pathlib import Path
 from workbench.cli.command import Command
 from workbench.cli.fem_state import add_case_options, fem_state
 from workbench.project.project import Project
+from workbench.report.fabrication_tables import plain_numbers
 from workbench.report.fem_case import solved
 from workbench.report.fem_tables import columns, frame_rows, npz_bytes
-from workbench.report.outputs import plain_numbers
 from workbench.system.terminal import Progress, say
 from workbench.system.whole_files import write_atomically
 from workbench.view.forces import csv_bytes

@@ -9,16 +9,10 @@ from pathlib import Path
 from workbench.cli.body_arguments import add_body_options, placed_design
 from workbench.cli.command import Command
 from workbench.cli.options import DESIGN, OUT
-from workbench.cli.press_arguments import (
-    add_fit_option,
-    add_press_options,
-    changed_design,
-)
+from workbench.cli.press_arguments import add_fit_option, add_press_options, changed_design
 from workbench.cli.press_options import press_case
 from workbench.cli.started import started
-from workbench.core.base.errors import (
-    DeviceError,
-)
+from workbench.core.base.errors import DeviceError
 from workbench.project.project import Project
 from workbench.system.terminal import Progress, complain, say
 
@@ -49,7 +43,8 @@ def run(options: argparse.Namespace, project: Project) -> int:
     from workbench.planning.plan import InlineRunner, evaluate, plan, results
     from workbench.project.aim import default_target_mm
     from workbench.project.named_designs import load_design
-    from workbench.report.outputs import all_checks, write_all
+    from workbench.report.fabrication_tables import all_checks
+    from workbench.report.outputs import write_all
     from workbench.report.partial import keeping_partial
     from workbench.report.source_files import asked_sources, with_weights, write_sources
     from workbench.system.folder import RUN_FILES, prepare

@@ -16,6 +16,7 @@ import numpy as np
 
 _MODULES = (
     "workbench.core.result.results",
+    "workbench.core.result.quality",
     "workbench.core.result.sensing",
     "workbench.core.result.light",
     "workbench.core.result.maps",

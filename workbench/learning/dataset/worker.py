@@ -8,7 +8,7 @@ from typing import Any
 from workbench.core.base.errors import WorkbenchError
 from workbench.learning.dataset.cases import Case
 from workbench.learning.dataset.solving import Bench, Report, Setup
-from workbench.live.lanes import follow_parent
+from workbench.system.processes import follow_parent
 
 _bench: Bench | WorkbenchError | None = None
 """Of this worker process, or why it has none; a pool has no other place to keep it."""

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from workbench.core.base.monitor import Monitor
-from workbench.core.result.results import MembraneMesh, QualityReport, Solid
+from workbench.core.result.quality import QualityReport
+from workbench.core.result.results import MembraneMesh, Solid
 from workbench.pipeline.stage import Chain, Stage
 
 

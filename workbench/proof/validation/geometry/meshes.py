@@ -10,14 +10,8 @@ import numpy as np
 from workbench.core.base.errors import MeshingError, WorkbenchError
 from workbench.core.base.monitor import silent
 from workbench.core.design.design import Layers, Meshing
-from workbench.core.result.results import (
-    LabelledSurface,
-    MembraneMesh,
-    MeshQuality,
-    Skin,
-    Solid,
-    region_masks,
-)
+from workbench.core.result.quality import MeshQuality
+from workbench.core.result.results import LabelledSurface, MembraneMesh, Skin, Solid, region_masks
 from workbench.pipeline.stages.build import BuildInputs, build
 from workbench.pipeline.stages.mesh import MeshInputs, mesh
 from workbench.pipeline.stages.quality import QualityInputs, quality

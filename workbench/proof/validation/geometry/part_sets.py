@@ -23,7 +23,8 @@ from workbench.core.result.fabrication import MouldSet, Severity
 from workbench.core.result.results import Bundle
 from workbench.proof.row import Row, bounded, failed
 from workbench.proof.validation.geometry.meshes import family_names
-from workbench.proof.validation.geometry.sweep import Finding, Trial, Workers, draw
+from workbench.proof.validation.geometry.trial_workers import Workers
+from workbench.proof.validation.geometry.trials import Finding, Trial, draw
 
 SETS = 20
 SEED = 20261123

@@ -236,7 +236,7 @@ def _walls() -> list[Row]:
 
 
 def _tables() -> list[Row]:
-    from sim.optics.proof import transport_checks as checks
+    from sim.optics.proof import baked_light_checks as checks
 
     virtual = functools.cache(functools.partial(checks.virtual_light_errors, photons=400_000))
     direct = functools.cache(functools.partial(checks.direct_table_errors, photons=600_000))
