@@ -29,7 +29,7 @@ def gallery(page: Any) -> None:
 
 
 def preview(page: Any) -> None:
-    """Body and sketch of the image while a slider moves; then back."""
+    """Body and preview of the image while a slider moves; then back."""
     tab(page, "Shape").click()
     quiet(page)
     box = control(page, "Outer radius mm").bounding_box()

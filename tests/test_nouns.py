@@ -58,7 +58,7 @@ NOUNS = {
             "workbench/report/portraits.py",
             "workbench/report/fem_case.py",
             "workbench/learning/dataset/solving.py",
-            "workbench/live/glimpse.py",
+            "workbench/live/image_preview.py",
             "ui/panels/simulate/network.py",
         ),
     ),

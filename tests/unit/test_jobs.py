@@ -14,7 +14,7 @@ from ui.desk.jobs import Jobs
 from workbench.core.base.errors import Cancelled, DesignError
 from workbench.core.design.design import SensorDesign
 from workbench.core.press.press_case import PressCase
-from workbench.live.requests import GLIMPSE, PREDICTION, SHAPE, Finished, Request
+from workbench.live.requests import IMAGE_PREVIEW, PREDICTION, SHAPE, Finished, Request
 from workbench.planning.stage_table import STAGES
 
 
@@ -120,16 +120,16 @@ def test_nobody_is_told_of_a_request_that_was_replaced(jobs: Jobs) -> None:
     assert ends == ["second"]
 
 
-def test_a_failed_glimpse_takes_the_one_before_away(jobs: Jobs, told: Told) -> None:
+def test_a_failed_image_preview_takes_the_one_before_away(jobs: Jobs, told: Told) -> None:
     """The designer reads one line in the log; none where the shape fails, which tells itself."""
     shown = []
     jobs.on_failed = lambda error, topic: shown.append(topic)
-    jobs.pump([failed(GLIMPSE)])
+    jobs.pump([failed(IMAGE_PREVIEW)])
     assert told.lines == []
-    jobs.pump([dataclasses.replace(failed(GLIMPSE), failed="")])
-    assert shown == [GLIMPSE, GLIMPSE]
+    jobs.pump([dataclasses.replace(failed(IMAGE_PREVIEW), failed="")])
+    assert shown == [IMAGE_PREVIEW, IMAGE_PREVIEW]
     assert told.errors == []
-    assert told.lines == ["glimpse: no face is sensing. Name one."]
+    assert told.lines == ["image preview: no face is sensing. Name one."]
 
 
 def test_every_stage_has_a_name_for_people() -> None:

@@ -135,7 +135,7 @@ OFF = SkinPlace(np.ones(3), 9.0, 0, np.array([0.0, 0.0, 1.0]))
 
 @pytest.mark.parametrize("live", [False, True])
 def test_all_who_follow_the_target_hear_that_it_moved(live: bool) -> None:
-    """Saving, Auto update and the sketch; the live press where it is on."""
+    """Saving, Auto update and the preview; the live press where it is on."""
     told: list[str] = []
 
     def tells(name: str) -> Any:
@@ -147,7 +147,7 @@ def test_all_who_follow_the_target_hear_that_it_moved(live: bool) -> None:
         fields=SimpleNamespace(refresh=tells("fields")),
         log=tells("log"),
         live=SimpleNamespace(on=live, follow=tells("live")),
-        glimpse=SimpleNamespace(follow=tells("glimpse")),
+        image_preview=SimpleNamespace(follow=tells("image_preview")),
         scene=SimpleNamespace(body=SimpleNamespace(place_near=lambda point: OFF)),
         session=SimpleNamespace(
             case=SimpleNamespace(press=SimpleNamespace(target_mm=(0.0, 0.0, 0.0))),
@@ -158,4 +158,4 @@ def test_all_who_follow_the_target_hear_that_it_moved(live: bool) -> None:
     desk.scene.body.solid = None
     Aiming(desk).keep_aim()
     follow = {"live"} if live else set()
-    assert set(told) == {"amend", "saving", "upkeep", "fields", "log", "glimpse"} | follow
+    assert set(told) == {"amend", "saving", "upkeep", "fields", "log", "image_preview"} | follow

@@ -64,7 +64,7 @@ def aiming_at(solid: Solid, target_mm: tuple[float, float, float]) -> Any:
     for name in ("saving", "upkeep"):
         setattr(desk, name, SimpleNamespace(edited=lambda: None))
     desk.fields = SimpleNamespace(refresh=lambda: None)
-    desk.glimpse = SimpleNamespace(follow=lambda: None)
+    desk.image_preview = SimpleNamespace(follow=lambda: None)
     desk.log = lambda words: None
     return desk
 

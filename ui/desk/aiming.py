@@ -94,4 +94,4 @@ class Aiming:
         desk.log(words)
         if desk.live.on:
             desk.live.follow()
-        desk.glimpse.follow()
+        desk.image_preview.follow()

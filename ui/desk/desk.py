@@ -13,7 +13,7 @@ import numpy as np
 from ui.desk.aiming import Aiming
 from ui.desk.auto_update import Upkeep
 from ui.desk.foresight import Foresight
-from ui.desk.glimpse import GlimpseFollower
+from ui.desk.image_preview import ImagePreviewFollower
 from ui.desk.jobs import Jobs
 from ui.desk.live import LivePress
 from ui.desk.object_follower import ObjectFollower
@@ -37,7 +37,7 @@ from workbench.live.conductor import Conductor
 from workbench.live.requests import (
     DRAWN,
     FORESIGHT,
-    GLIMPSE,
+    IMAGE_PREVIEW,
     LIVE,
     PREDICTION,
     SHAPE,
@@ -124,7 +124,7 @@ class Desk:
         self.gizmos.append(self.live.gizmo)
         self.jobs.on_preview[LIVE] = self.live.show
         self.foresight = Foresight(self)
-        self.glimpse = GlimpseFollower(self)
+        self.image_preview = ImagePreviewFollower(self)
         self.object = ObjectFollower(self)
         self.saving = Saving(session, self.reports, self.header.unsaved)
         self._sensor: tuple[str, str] | None = None
@@ -180,7 +180,7 @@ class Desk:
             self.live.follow()
         for panel in self.panels:
             panel.refresh()
-        self.glimpse.follow()
+        self.image_preview.follow()
         self.refresh_header()
 
     def _begin(self) -> None:
@@ -272,8 +272,8 @@ class Desk:
             self.live.failed()
         elif topic == FORESIGHT:
             self.foresight.failed()
-        elif topic == GLIMPSE:
-            self.glimpse.failed()
+        elif topic == IMAGE_PREVIEW:
+            self.image_preview.failed()
         elif topic == DRAWN:
             self.object.failed()
         kept = error.kept if isinstance(error, SolveError) else ""

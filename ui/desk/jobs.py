@@ -21,7 +21,7 @@ from workbench.live.requests import (
     CUT,
     DRAWN,
     FORESIGHT,
-    GLIMPSE,
+    IMAGE_PREVIEW,
     LIVE,
     PREDICTION,
     QUIET,
@@ -144,7 +144,7 @@ class Jobs:
                 then(event)
         elif then is not None:
             then(event)
-        elif error is not None and event.topic in (FORESIGHT, GLIMPSE, CUT):
+        elif error is not None and event.topic in (FORESIGHT, IMAGE_PREVIEW, CUT):
             # What was wrong with the design itself is told, once, by the topic of its shape.
             if not event.failed:
                 log(f"{event.topic}: {in_full(error.message, error.hint)}")

@@ -26,7 +26,7 @@ class ObjectFollower:
     def follow(self) -> None:
         """Ask for the object of the state, unless it was asked last.
 
-        Before there is a body, too: the first sketch of the image keeps the lane busy for seconds.
+        Before there is a body, too: the first preview of the image keeps the lane busy for seconds.
         """
         desk, session = self.desk, self.desk.session
         indenter = session.case.indenter

@@ -23,7 +23,7 @@ NO_IMAGE = "No press of this sensor yet: *Run press* makes an image."
 IMAGE_COMES = (
     "The tactile image appears here.",
     "Run press (R) computes it;",
-    "a sketch comes first.",
+    "a preview comes first.",
 )
 CHANGE_COMES = ("Its change against the untouched skin", "appears here.")
 """What empty places say."""

@@ -26,7 +26,7 @@ MARGIN_MM = 3.0
 """Added to that, for the foot of the dent."""
 
 
-def sketched(
+def geometric_dent(
     skin: Skin, points_mm: np.ndarray, faces: np.ndarray, *, target_mm: np.ndarray, depth_mm: float
 ) -> np.ndarray:
     """Displacement of the skin's vertices [mm], shape (V, 3), float32; zero where none is below.
