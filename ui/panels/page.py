@@ -1,5 +1,7 @@
-"""A page of the browser: a folder of `ui.panels` with `page.py`, whose `PAGE` says what it is, and
-`help.md`, the sheet behind its help button."""
+"""A page of the browser: a folder of `ui.panels` with `page.py` and `help.md`.
+
+`PAGE` in `page.py` says what it is; `help.md` is the sheet behind its help button.
+"""
 
 from __future__ import annotations
 
