@@ -18,7 +18,7 @@ from workbench.core.press.press import Press
 from workbench.core.press.press_case import PressCase
 from workbench.core.result.sensing import Contact
 from workbench.live.conductor import Conductor
-from workbench.live.live_press import LiveCall, Preview
+from workbench.live.live_press import LiveCall, PressPreview
 from workbench.live.preview_call import PreviewCall
 from workbench.live.requests import LIVE, SHAPE, Finished, PreviewDone, StageDone
 from workbench.pipeline.stage import Call, Outcome
@@ -41,7 +41,7 @@ class Slow:
             monitor(0.1)
         return Outcome(stage=call.stage, key=call.key, cached=False, seconds=0.0)
 
-    def preview(self, call: PreviewCall, monitor: Monitor) -> Preview:
+    def preview(self, call: PreviewCall, monitor: Monitor) -> PressPreview:
         raise AssertionError("no live press was asked for")
 
     def close(self) -> None:
@@ -205,12 +205,12 @@ class Previewing(Slow):
     def run(self, call: Call, monitor: Monitor) -> Outcome:
         return Outcome(stage=call.stage, key=call.key, cached=True, seconds=0.0)
 
-    def preview(self, call: PreviewCall, monitor: Monitor) -> Preview:
+    def preview(self, call: PreviewCall, monitor: Monitor) -> PressPreview:
         assert isinstance(call, LiveCall)
         self.depths_mm.put(call.press.depth_mm)
         while not self.release.wait(0.005):
             monitor(0.1)
-        return Preview(
+        return PressPreview(
             contact=cast("Contact", None),
             images=np.zeros((2, 1, 1, 3), np.uint8),
             way=f"{call.press.depth_mm}",

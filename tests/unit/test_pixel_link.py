@@ -15,7 +15,7 @@ from workbench.core.design.camera import Camera
 from workbench.core.design.optics import Optics
 from workbench.core.result.results import MembraneMesh, Skin
 from workbench.view.pixel_link import PixelLink, frame_link
-from workbench.view.previews import first_hit
+from workbench.view.scene_shapes import first_hit
 
 OPTICS = Optics(camera=Camera(width_px=64, height_px=48))
 

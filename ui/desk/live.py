@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ui.scene.gizmo import Gizmo
-from workbench.live.live_press import LiveCall, Preview, live_call
+from workbench.live.live_press import LiveCall, PressPreview, live_call
 from workbench.live.requests import Request
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ class LivePress:
             self.told("solving")
             self.desk.conductor.press_live(session.design, session.case)
 
-    def show(self, preview: Preview, request: Request) -> None:
+    def show(self, preview: PressPreview, request: Request) -> None:
         """Show a frame that settled, unless the sensor is another by now."""
         desk = self.desk
         if not self.on or request.design != desk.session.design:

@@ -9,7 +9,7 @@ import numpy as np
 
 from ui.scene.nodes import Meshes
 from ui.scene.scene import Scene
-from workbench.view.previews import first_hit
+from workbench.view.scene_shapes import first_hit
 from workbench.view.section_cut import clip
 
 COLOUR = (255, 45, 85)

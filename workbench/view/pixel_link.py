@@ -22,7 +22,7 @@ from workbench.core.design.camera import Camera
 from workbench.core.design.optics import Optics
 from workbench.core.result.results import MembraneMesh, Skin
 from workbench.core.result.sensing import Contact
-from workbench.view.previews import first_hit
+from workbench.view.scene_shapes import first_hit
 
 HALF_PX = 0.5
 STEPS = 20

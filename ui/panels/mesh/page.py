@@ -15,7 +15,7 @@ from ui.panels.page import Page
 from workbench.core.base.units import volume_ml
 from workbench.core.result.results import MeshQuality, QualityReport
 from workbench.system.names import NONE
-from workbench.view.previews import clear_view, judged, mesh_edges
+from workbench.view.scene_shapes import clear_view, judged, mesh_edges
 
 NOTHING = "No numbers yet: press *Check mesh*."
 TOPICS = ("mesh", "tetrahedra")

@@ -16,7 +16,7 @@ from workbench.core.base.errors import SolveError
 from workbench.core.press.press import Press
 from workbench.core.result.sensing import Contact, Shot
 from workbench.live.image_preview import ImagePreview
-from workbench.live.live_press import Preview, live_press
+from workbench.live.live_press import PressPreview, live_press
 from workbench.view.frame_words import phase
 
 LOG_ROWS = 60
@@ -150,7 +150,7 @@ class ResultsPanel:
             self.play_next = False
             self.timeline.player.start()
 
-    def _show_live(self, preview: Preview) -> None:
+    def _show_live(self, preview: PressPreview) -> None:
         """Show a live frame and its image; the scene has its skin already."""
         self.timeline.player.stop()
         self.preview_note = ""

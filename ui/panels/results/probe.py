@@ -16,7 +16,7 @@ from ui.page.picture_click import COLUMN, ROW, picture_clicks
 from workbench.core.result.results import MembraneMesh
 from workbench.view.frame_words import number as written
 from workbench.view.pixel_link import PixelLink, SkinPoint, frame_link
-from workbench.view.previews import first_hit
+from workbench.view.scene_shapes import first_hit
 
 COLOUR = (255, 45, 85)
 BALL_MM = 0.6

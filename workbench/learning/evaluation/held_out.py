@@ -27,7 +27,7 @@ from workbench.learning.dataset.cases import Case, Split, case_of_row
 from workbench.learning.dataset.folder import SkinData
 from workbench.learning.dataset.recipe import table_key
 from workbench.learning.dataset.sample import Sample, Solved
-from workbench.view.previews import corner_normals
+from workbench.view.scene_shapes import corner_normals
 
 FORMAT = 1
 STEPS = 32767
