@@ -17,7 +17,7 @@ import cv2  # noqa: TID253 (a program of its own, not part of the package)
 import numpy as np
 
 from designs.family import family
-from geometry.picture.pictures import exploded_sensor, thumbnail
+from geometry.drawing.sensor_drawings import exploded_sensor, membrane_drawing
 from workbench.core.design.design import SensorDesign
 from workbench.core.press.indenter import Indenter
 from workbench.core.press.press import Press
@@ -79,7 +79,11 @@ def row(design: SensorDesign, found: Mapping[str, Any]) -> np.ndarray:
     solid, rgb = found["build"], found["shoot"].frames.rgb
     picture = blank(ROW_PX)
     write(picture, family(design.family).title, (MARGIN_PX, 32), 22, INK, weight=600)
-    paste(picture, drawn(thumbnail, (solid,), MEMBRANE_PX, clear=False), (MARGIN_PX, TITLE_PX + 4))
+    paste(
+        picture,
+        drawn(membrane_drawing, (solid,), MEMBRANE_PX, clear=False),
+        (MARGIN_PX, TITLE_PX + 4),
+    )
     x = MARGIN_PX + MEMBRANE_PX[0] + GUTTER_PX
     parts = drawn(exploded_sensor, (solid, found["mould"], found["housing"]), PARTS_PX)
     paste(picture, parts, (x, (ROW_PX[1] - PARTS_PX[1]) // 2))

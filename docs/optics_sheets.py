@@ -19,7 +19,7 @@ import numpy as np
 from gallery import FAINT, FRAME, GROUND, GUTTER_PX, INK, blank, paste, save, window, write
 
 from designs.family import family
-from geometry.picture.rendering import canvas, look, png, surface
+from geometry.drawing.rendering import canvas, look, png, surface
 from workbench.core.design.design import SensorDesign
 from workbench.core.design.lighting import LightModel
 from workbench.core.press.indenter import Indenter

@@ -19,7 +19,7 @@ RANKS = """
     workbench.core.design  workbench.core.result  workbench.core.press
     workbench.system
 
-    geometry  geometry.formats  geometry.picture  geometry.surface  geometry.body
+    geometry  geometry.formats  geometry.drawing  geometry.surface  geometry.body
     designs
     geometry.intake  geometry.objects  geometry.volume  geometry.mould  geometry.housing
     geometry.workshop

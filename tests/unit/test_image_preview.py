@@ -1,4 +1,4 @@
-"""The small picture that follows the sliders: its geometry, and what it asks for."""
+"""The image preview that follows the sliders: its geometry, and what it asks for."""
 
 from __future__ import annotations
 

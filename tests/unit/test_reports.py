@@ -13,8 +13,8 @@ import pytest
 from geometry.surface.surface_place import SkinPlace
 from ui.desk.aiming import Aiming
 from ui.desk.desk import Desk
-from ui.desk.portraits import Portraits
 from ui.desk.reports import Reports
+from ui.desk.thumbnails import ThumbnailQueue
 from ui.scene.ghost import Ghost, GhostView
 from workbench.core.base.errors import StoreError
 from workbench.project.project import Project
@@ -97,10 +97,10 @@ def test_a_step_that_fails_stops_no_other(reports: Reports) -> None:
 
 def test_a_thumbnail_is_told_under_the_lock(reports: Reports, project: Project) -> None:
     """The list of variants is redrawn by nobody while a widget's handler runs."""
-    portraits, drawn = Portraits(project, SimpleNamespace(), reports), threading.Event()  # pyright: ignore[reportArgumentType]
-    portraits.on_drawn = drawn.set
+    thumbnails, drawn = ThumbnailQueue(project, SimpleNamespace(), reports), threading.Event()  # pyright: ignore[reportArgumentType]
+    thumbnails.on_drawn = drawn.set
     with reports.lock:
-        portraits.draw("missing")
+        thumbnails.draw("missing")
         assert not drawn.wait(0.3)
     assert drawn.wait(5)
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from workbench.core.result.sensing import Shot
-from workbench.report.portraits import framed
+from workbench.report.thumbnails import framed
 from workbench.view.image_views import visible_change
 
 GAP_PX = 8

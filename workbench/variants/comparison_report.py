@@ -20,7 +20,7 @@ from workbench.pipeline.store import Store
 from workbench.planning.stage_table import STAGES
 from workbench.project.state import State
 from workbench.report.html_page import figure, page, photograph, table
-from workbench.report.portraits import framed, thumbnail_png
+from workbench.report.thumbnails import framed, thumbnail_png
 from workbench.variants.comparison import (
     changes,
     number_text,
@@ -102,11 +102,11 @@ def _who(store: Store, side: Side, letter: str) -> str:
     kept = f", kept {side.saved}" if side.saved else ""
     head = html.escape(f"{letter}: {called(side)} ({side.state.design.family}{kept})")
     note = f"<p style='white-space:pre-wrap'>{html.escape(side.note)}</p>" if side.note else ""
-    picture = thumbnail_png(store, side.keys)
-    drawn = "<p>No result of it is stored, so there is no picture.</p>"
-    if picture is not None:
+    thumbnail = thumbnail_png(store, side.keys)
+    drawn = "<p>No result of it is stored, so there is no thumbnail.</p>"
+    if thumbnail is not None:
         caption = "Membrane at rest and pressed (darker moved farther), and its tactile image"
-        drawn = figure(picture, caption, width=IMAGE_PX)
+        drawn = figure(thumbnail, caption, width=IMAGE_PX)
     return f"<section style='max-width:{IMAGE_PX}px'><h2>{head}</h2>{note}{drawn}</section>"
 
 

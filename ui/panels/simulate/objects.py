@@ -30,7 +30,7 @@ from workbench.edit.indenter_edit import (
     rounded,
     textured,
 )
-from workbench.edit.thumbnails import thumbnail_png
+from workbench.edit.shipped_thumbnails import shipped_thumbnail
 from workbench.live.object_file import ObjectFile
 from workbench.live.requests import Finished
 
@@ -130,7 +130,7 @@ class ObjectFolder:
         cards = []
         for label, name in self.names.items():
             group, _, words = label.partition(": ")
-            png = thumbnail_png(f"object-{name}")
+            png = shipped_thumbnail(f"object-{name}")
             cards.append(Card(name=words, png=png, group=GROUPS.get(group, group)))
         labels = {label.partition(": ")[2]: label for label in self.names}
 

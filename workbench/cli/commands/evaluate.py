@@ -96,8 +96,8 @@ def _pack(options: argparse.Namespace, printer: Progress) -> int:
 
 def _evaluated(options: argparse.Namespace, printer: Progress) -> Evaluation:
     from workbench.learning.evaluation.evaluate import evaluate_all
-    from workbench.learning.evaluation.pictures import spread
     from workbench.learning.evaluation.report import Evaluation
+    from workbench.learning.evaluation.sheets import spread
     from workbench.learning.evaluation.sources import open_source
     from workbench.learning.evaluation.speed import efficiency, measured_here
     from workbench.learning.evaluation.stiffness import evaluate_stiffness
@@ -133,7 +133,7 @@ def _drawn(
     results: dict[Target, FieldResult],
     monitor: Monitor,
 ) -> list[Any]:
-    from workbench.learning.evaluation.pictures import sheets
+    from workbench.learning.evaluation.sheets import sheets
 
     drawn = []
     for number, named in enumerate(weights):

@@ -19,8 +19,8 @@ from workbench.learning.evaluation.groups import (
     station_words,
 )
 from workbench.learning.evaluation.html_tables import FIELD_WORDS
-from workbench.learning.evaluation.pictures import Spread
 from workbench.learning.evaluation.scoring import Compared, Scored, Way, grouped
+from workbench.learning.evaluation.sheets import Spread
 
 
 def field_charts(found: FieldResult) -> list[str]:

@@ -24,8 +24,8 @@ from workbench.learning.evaluation.html_tables import (
     totals_table,
 )
 from workbench.learning.evaluation.leaks import dataset_keys
-from workbench.learning.evaluation.pictures import Sheet, Spread
 from workbench.learning.evaluation.scoring import Way, compared
+from workbench.learning.evaluation.sheets import Sheet, Spread
 from workbench.learning.evaluation.sources import Source, young_MPa
 from workbench.learning.evaluation.speed import efficiency_html
 from workbench.learning.evaluation.stiffness import StiffnessResult, stiffness_table
