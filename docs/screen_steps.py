@@ -1,4 +1,4 @@
-"""What is done on the page before each picture of README and tutorial, in their order."""
+"""What is done on the page before each screenshot of README and tutorial, in their order."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def first(page: Any) -> None:
 
 
 def gallery(page: Any) -> None:
-    """All designs as pictures."""
+    """All designs as thumbnails."""
     tab(page, "Shape").click()
     press(page, "Gallery of designs")
     shoot(page, "gallery")

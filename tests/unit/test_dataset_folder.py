@@ -74,7 +74,7 @@ def solved(rng: np.random.Generator, *, stress: bool) -> Solved:
 def a_sample(data: DataSet, number: int = 0, frame: int = 0) -> Sample:
     """A made-up sample of a case."""
     case, rng = data.all_cases[number], np.random.default_rng([number, frame])
-    picture = rng.integers(0, 256, (6, 8, 3), dtype=np.uint8)
+    pixels = rng.integers(0, 256, (6, 8, 3), dtype=np.uint8)
     return Sample(
         case=case.id,
         frame=frame,
@@ -88,8 +88,8 @@ def a_sample(data: DataSet, number: int = 0, frame: int = 0) -> Sample:
         tangent_u=np.array([1.0, 0.0, 0.0]),
         mpm=solved(rng, stress=False),
         fem=solved(rng, stress=True),
-        png=png_bytes(picture),
-        png_markers=png_bytes(255 - picture),
+        png=png_bytes(pixels),
+        png_markers=png_bytes(255 - pixels),
     )
 
 

@@ -57,7 +57,7 @@ def options(folder: Path) -> list[str]:
 
 
 @pytest.mark.usefixtures("undrawn")
-def test_the_command_writes_scores_report_and_pictures(
+def test_the_command_writes_scores_report_and_sheets(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """From data set to page; every number of the JSON is finite or null."""

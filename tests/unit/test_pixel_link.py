@@ -79,7 +79,7 @@ def test_the_round_tip_has_pixels_of_equal_sides(dented: PixelLink) -> None:
 
 
 def test_what_no_pixel_sees_says_why(dented: PixelLink) -> None:
-    """A place beside the camera, low on the skin, is not in the picture of a narrow lens."""
+    """A place beside the camera, low on the skin, is not in the image of a narrow lens."""
     low = dented.points_mm[np.argmin(dented.points_mm[:, 2])]
     found = dented.pixel_of(low)
     assert found.why

@@ -1,4 +1,4 @@
-"""A dent by geometry alone: the skin gives way to a rigid object, for pictures within a moment.
+"""A dent by geometry alone: the skin gives way to a rigid object, for previews within a moment.
 
 In the tangent frame of the target, with the skin's height k = q . n over the tangent plane and the
 object's lower face at p(u, w) over its lowest point, the object touches first where k - p is

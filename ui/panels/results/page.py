@@ -61,7 +61,7 @@ class ResultsPanel:
         self.timeline = Timeline(desk, self._show_frame)
 
     def _show_frame(self, number: int) -> None:
-        # Or the page draws the view once for the skin and once for the picture.
+        # Or the page draws the view once for the skin and once for the image.
         with self.desk.server.atomic():
             self.desk.scene.show_frame(number)
             self._show_image(number)

@@ -113,7 +113,7 @@ def _draw(out: Path, rows: Sequence[dict[str, Any]]) -> None:
     try:
         from workbench.report.image_files import png_bytes
 
-        picture = png_bytes(chart(series, "Error over the zero predictor's, by training cases"))
+        drawn_png = png_bytes(chart(series, "Error over the zero predictor's, by training cases"))
     except ImportError:
         return
-    write_atomically(out / PNG, picture)
+    write_atomically(out / PNG, drawn_png)
