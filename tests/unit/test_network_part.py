@@ -40,7 +40,7 @@ class Bench:
 
         class Desk:
             server = SimpleNamespace(gui=gui)
-            reports = SimpleNamespace(beside=lambda *topics: None)
+            reports = SimpleNamespace(beside=lambda *jobs: None)
             session = bench.session
             conductor = SimpleNamespace(stop=bench.stopped.append)
             jobs = SimpleNamespace(submit=lambda *words: bench.asked.append(words))

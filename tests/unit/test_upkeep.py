@@ -35,8 +35,8 @@ class StubDesk:
     def guarded(self, handler: Any) -> Any:
         return handler
 
-    def run(self, topic: str, wanted: tuple[str, ...]) -> None:
-        self.asked.append((topic, wanted))
+    def run(self, job: str, wanted: tuple[str, ...]) -> None:
+        self.asked.append((job, wanted))
 
 
 def test_an_update_waits_until_the_last_edit_has_settled() -> None:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 SETTLED_S = 1.5
 """Quiet time after an edit before results are computed by themselves [s]."""
 WANTED = ("press", "shoot")
-TOPIC = "press"
+JOB = "press"
 
 
 class Upkeep:
@@ -48,7 +48,7 @@ class Upkeep:
             return
         self._edited = None
         if self.auto.value and not self.desk.live.on and self.stale:
-            self.desk.run(TOPIC, WANTED)
+            self.desk.run(JOB, WANTED)
 
     @property
     def stale(self) -> bool:
@@ -64,4 +64,4 @@ class Upkeep:
     def _update(self, event: Any) -> None:
         self._edited = None
         if self.stale:
-            self.desk.run(TOPIC, WANTED)
+            self.desk.run(JOB, WANTED)

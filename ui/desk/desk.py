@@ -48,7 +48,7 @@ from workbench.planning.plan import plan
 from workbench.planning.running import PARTIAL
 
 OF_A_SENSOR = ("press", "image", "maps", "forces", "learned", PREDICTION)
-"""Topics that nobody waits for once another sensor has been chosen."""
+"""Jobs that nobody waits for once another sensor has been chosen."""
 
 
 class Panel(Protocol):
@@ -211,9 +211,9 @@ class Desk:
         sensor = self.origin()
         if self._sensor not in (None, sensor):
             self.showing.forget_all()
-            for topic in OF_A_SENSOR:
+            for job in OF_A_SENSOR:
                 # What was asked of the sensor before must not hold up this one.
-                self.conductor.stop(topic)
+                self.conductor.stop(job)
             self.scene.rig.forget_image()
             self.scene.body.dim(True)
             self.tell("sensor", None)
@@ -237,20 +237,20 @@ class Desk:
             self.put_parts_away()
             self.changed()
 
-    def run(self, topic: str, wanted: tuple[str, ...]) -> None:
+    def run(self, job: str, wanted: tuple[str, ...]) -> None:
         """Compute stages for the state as it stands."""
         self.reports.begin()
         self.fields.read_typed(now=True)
-        if topic != "parts":
+        if job != "parts":
             self.put_parts_away()
-        self.tell("run", topic)
-        self.jobs.submit(topic, self.session.design, self.session.case, wanted)
+        self.tell("run", job)
+        self.jobs.submit(job, self.session.design, self.session.case, wanted)
 
     def trial(
-        self, topic: str, design: SensorDesign, wanted: str, then: Callable[[Finished], None]
+        self, job: str, design: SensorDesign, wanted: str, then: Callable[[Finished], None]
     ) -> None:
         """Compute a stage of a design that is not the state; `then` decides by how it ended."""
-        self.jobs.submit(topic, design, self.session.case, (wanted,), then)
+        self.jobs.submit(job, design, self.session.case, (wanted,), then)
 
     def tell(self, stage: str, result: Any) -> None:
         """Hand a result, or another piece of news, to all panels."""
@@ -266,18 +266,18 @@ class Desk:
         now = self.session.calls().get(failed)
         return now is not None and now.key == plan(request.design, request.case)[failed].key
 
-    def _failed(self, error: WorkbenchError, topic: str) -> None:
+    def _failed(self, error: WorkbenchError, job: str) -> None:
         """Show the frames that settled before a press failed."""
-        if topic == LIVE:
+        if job == LIVE:
             self.live.failed()
-        elif topic == FORESIGHT:
+        elif job == FORESIGHT:
             self.foresight.failed()
-        elif topic == IMAGE_PREVIEW:
+        elif job == IMAGE_PREVIEW:
             self.image_preview.failed()
-        elif topic == DRAWN:
+        elif job == DRAWN:
             self.object.failed()
         kept = error.kept if isinstance(error, SolveError) else ""
-        if kept and topic != LIVE and kept == self.session.calls()["press"].key:
+        if kept and job != LIVE and kept == self.session.calls()["press"].key:
             if self.session.store.has(PARTIAL, kept):
                 self.showing.fetch(PARTIAL, kept, lambda contact: self._settled(contact, error))
 

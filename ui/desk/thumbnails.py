@@ -15,7 +15,7 @@ from typing import Any
 from ui.desk.reports import Reports
 from workbench.core.base.errors import Cancelled, WorkbenchError
 from workbench.core.base.monitor import silent
-from workbench.live.request_thread import Runner
+from workbench.live.job_thread import Runner
 from workbench.project.project import Project
 from workbench.report.thumbnails import thumbnail_calls, thumbnail_png
 from workbench.system.whole_files import write_atomically

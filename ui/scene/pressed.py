@@ -35,7 +35,7 @@ CUT_LINGER_S = 0.25
 QUIET_S = 0.4
 """A plane that has not moved for so long is where the other frames are cut [s]."""
 MEASURE, FRAMES = "colours of a press", "frames of a press"
-"""Topics of the work backstage."""
+"""Jobs of the background thread."""
 
 
 class PressedView:

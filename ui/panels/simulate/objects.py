@@ -34,7 +34,7 @@ from workbench.edit.shipped_thumbnails import shipped_thumbnail
 from workbench.live.object_file import ObjectFile
 from workbench.live.requests import Finished
 
-TOPIC = "object"
+JOB = "object"
 LOADED = "loaded mesh"
 PLAIN = tuple(p.value for p in Pattern if p is not Pattern.IMAGE)
 GROUPS = {"seen": "The paper's, seen in training", "unseen": "The paper's, unseen in training"}
@@ -53,7 +53,7 @@ class ObjectFolder:
         self.chosen = ""
         """Label of the last choice, to name an everyday object, which is a mesh by now."""
         self.chosen_mesh: Any = None
-        desk.jobs.on_preview[TOPIC] = lambda found, request: self._take(found)
+        desk.jobs.on_preview[JOB] = lambda found, request: self._take(found)
         gui, guarded = desk.server.gui, desk.guarded
         now = desk.session.case.indenter
         with gui.add_folder("Object"):
@@ -207,9 +207,9 @@ class ObjectFolder:
         desk = self.desk
         desk.reports.settle()
         if isinstance(sent, SensorDesign):
-            desk.trial(TOPIC, sent, "intake", self._read)
+            desk.trial(JOB, sent, "intake", self._read)
         else:
-            desk.jobs.ask(TOPIC, sent, desk.session.state, self._read)
+            desk.jobs.ask(JOB, sent, desk.session.state, self._read)
 
     def _read(self, event: Finished) -> None:
         """Take the object that the worker has read."""
