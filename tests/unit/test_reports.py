@@ -87,12 +87,12 @@ def test_a_step_that_fails_stops_no_other(reports: Reports) -> None:
         gizmos=[SimpleNamespace(turn=fail), step("gizmo")],
         backstage=step("backstage"),
         scene=SimpleNamespace(pressed=step("pressed")),
-        upkeep=step("upkeep"),
+        auto_update=step("auto_update"),
         saving=step("saving"),
         on_turn=[lambda: turned.append("tenancy")],
     )
     Desk._idle(desk)  # pyright: ignore[reportPrivateUsage]
-    assert turned == ["saving", "gizmo", "backstage", "pressed", "upkeep", "tenancy"]
+    assert turned == ["saving", "gizmo", "backstage", "pressed", "auto_update", "tenancy"]
 
 
 def test_a_thumbnail_is_told_under_the_lock(reports: Reports, project: Project) -> None:
@@ -143,7 +143,7 @@ def test_all_who_follow_the_target_hear_that_it_moved(live: bool) -> None:
 
     desk: Any = SimpleNamespace(
         saving=SimpleNamespace(edited=tells("saving")),
-        upkeep=SimpleNamespace(edited=tells("upkeep")),
+        auto_update=SimpleNamespace(edited=tells("auto_update")),
         fields=SimpleNamespace(refresh=tells("fields")),
         log=tells("log"),
         live=SimpleNamespace(on=live, follow=tells("live")),
@@ -158,4 +158,6 @@ def test_all_who_follow_the_target_hear_that_it_moved(live: bool) -> None:
     desk.scene.body.solid = None
     Aiming(desk).keep_aim()
     follow = {"live"} if live else set()
-    assert set(told) == {"amend", "saving", "upkeep", "fields", "log", "image_preview"} | follow
+    assert (
+        set(told) == {"amend", "saving", "auto_update", "fields", "log", "image_preview"} | follow
+    )

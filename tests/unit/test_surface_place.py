@@ -61,7 +61,7 @@ def aiming_at(solid: Solid, target_mm: tuple[float, float, float]) -> Any:
     desk.session = SimpleNamespace(
         case=case, design=design, amend=lambda path, value: desk.amended.append(value)
     )
-    for name in ("saving", "upkeep"):
+    for name in ("saving", "auto_update"):
         setattr(desk, name, SimpleNamespace(edited=lambda: None))
     desk.fields = SimpleNamespace(refresh=lambda: None)
     desk.image_preview = SimpleNamespace(follow=lambda: None)

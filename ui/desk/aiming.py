@@ -89,7 +89,7 @@ class Aiming:
         """Let all follow who follow an edit: what runs was asked for at the old place."""
         desk = self.desk
         desk.saving.edited()
-        desk.upkeep.edited()
+        desk.auto_update.edited()
         desk.fields.refresh()
         desk.log(words)
         if desk.live.on:

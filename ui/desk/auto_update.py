@@ -21,7 +21,7 @@ WANTED = ("press", "shoot")
 JOB = "press"
 
 
-class Upkeep:
+class AutoUpdate:
     """Two widgets above the tabs."""
 
     def __init__(self, desk: Desk, clock: Callable[[], float] = time.monotonic) -> None:

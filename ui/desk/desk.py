@@ -11,7 +11,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from ui.desk.aiming import Aiming
-from ui.desk.auto_update import Upkeep
+from ui.desk.auto_update import AutoUpdate
 from ui.desk.foresight import Foresight
 from ui.desk.image_preview import ImagePreviewFollower
 from ui.desk.jobs import Jobs
@@ -108,7 +108,7 @@ class Desk:
             server.gui,
             on_cancel=self.guarded(lambda event: conductor.cancel()),
         )
-        self.upkeep = Upkeep(self)
+        self.auto_update = AutoUpdate(self)
         self.reports.banner = self.header.banner
         self.jobs = Jobs(conductor, self.reports, self.header)
         self.jobs.on_done = self.showing.stage_done
@@ -161,7 +161,7 @@ class Desk:
     def changed(self) -> None:
         """Follow a change of state: live view, stage strip, autosave."""
         self.saving.edited()
-        self.upkeep.edited()
+        self.auto_update.edited()
         session = self.session
         self._begin()
         self.foresight.follow()
@@ -297,7 +297,7 @@ class Desk:
             *(gizmo.turn for gizmo in self.gizmos),
             self.backstage.turn,
             self.scene.pressed.turn,
-            self.upkeep.turn,
+            self.auto_update.turn,
             *self.on_turn,
         )
         for step in steps:
@@ -309,4 +309,4 @@ class Desk:
         building = {} if fresh["build"] or not self.conductor.works_on(SHAPE) else {"build"}
         self.header.show_stages(fresh, self.jobs.running, begun=building)
         self.header.show_design(self.session.design)
-        self.upkeep.refresh()
+        self.auto_update.refresh()
