@@ -27,7 +27,7 @@ class FakeDesk:
         self.live = SimpleNamespace(on=False)
         self.jobs = SimpleNamespace(on_preview={})
         self.conductor = SimpleNamespace(ask=lambda *words: None, give_up=lambda *words: None)
-        self.showing = SimpleNamespace(forget=lambda *words: None)
+        self.shown_results = SimpleNamespace(forget=lambda *words: None)
 
     def current(self, stage: str) -> bool:
         return self.rendered

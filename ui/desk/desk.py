@@ -20,7 +20,7 @@ from ui.desk.object_follower import ObjectFollower
 from ui.desk.reports import Reports
 from ui.desk.saving import Saving
 from ui.desk.session import Session
-from ui.desk.shown_results import Showing
+from ui.desk.shown_results import ShownResults
 from ui.page.background_thread import Backstage
 from ui.page.editor import Editor
 from ui.page.fields import Fields
@@ -90,8 +90,8 @@ class Desk:
         self.backstage = Backstage(on_error=self.reports.tell)
         on_click = self.guarded(self.aiming.clicked)
         self.scene = Scene(server, fast=fast, on_click=on_click, backstage=self.backstage)
-        self.showing = Showing(self)
-        self.current = self.showing.current
+        self.shown_results = ShownResults(self)
+        self.current = self.shown_results.current
         self.panels: list[Panel] = []
         self.put_parts_away: Callable[[], None] = lambda: None
         """Set by the panel that shows the parts."""
@@ -111,7 +111,7 @@ class Desk:
         self.auto_update = AutoUpdate(self)
         self.reports.banner = self.header.banner
         self.jobs = Jobs(conductor, self.reports, self.header)
-        self.jobs.on_done = self.showing.stage_done
+        self.jobs.on_done = self.shown_results.stage_done
         self.jobs.asked_now = self._asked_now
         self.jobs.on_events = self.refresh_header
         self.jobs.on_idle = self._idle
@@ -166,13 +166,13 @@ class Desk:
         self._begin()
         self.foresight.follow()
         self.scene.rig.show_optics(session.design.optics)
-        self.showing.show_stored()
+        self.shown_results.show_stored()
         if self.current("build"):
             self.aiming.keep_aim()
         self.object.follow()
         if not self.current("press"):
             # What was pressed was another press: the skin is at rest again, or follows live.
-            self.showing.forget("press")
+            self.shown_results.forget("press")
             if not self.live.on:
                 self.scene.clear_frames()
             self.scene.object.place(session.case.press)
@@ -210,7 +210,7 @@ class Desk:
         """Take away what was pressed and rendered of another family or another file."""
         sensor = self.origin()
         if self._sensor not in (None, sensor):
-            self.showing.forget_all()
+            self.shown_results.forget_all()
             for job in OF_A_SENSOR:
                 # What was asked of the sensor before must not hold up this one.
                 self.conductor.stop(job)
@@ -279,7 +279,9 @@ class Desk:
         kept = error.kept if isinstance(error, SolveError) else ""
         if kept and job != LIVE and kept == self.session.calls()["press"].key:
             if self.session.store.has(PARTIAL, kept):
-                self.showing.fetch(PARTIAL, kept, lambda contact: self._settled(contact, error))
+                self.shown_results.fetch(
+                    PARTIAL, kept, lambda contact: self._settled(contact, error)
+                )
 
     def _settled(self, contact: Contact, error: WorkbenchError) -> None:
         if isinstance(error, SolveError) and error.kept == self.session.calls()["press"].key:

@@ -52,7 +52,7 @@ class ImagePreviewFollower:
         if other or desk.live.on or desk.current("shoot"):
             return
         # A step back to a state that has images shows them again.
-        desk.showing.forget("shoot")
+        desk.shown_results.forget("shoot")
         desk.tell("image_preview", preview)
         if isinstance(request.preview, ImagePreviewCall):
             self._shown = request.preview

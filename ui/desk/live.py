@@ -42,7 +42,7 @@ class LivePress:
         self.told("")
         self.desk.conductor.stop_live()
         self.desk.scene.clear_frames()
-        self.desk.showing.forget("press", "shoot")
+        self.desk.shown_results.forget("press", "shoot")
         self.desk.changed()
 
     def follow(self) -> None:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from ui.desk.desk import Desk
 
 
-class Showing:
+class ShownResults:
     """Results of one desk."""
 
     def __init__(self, desk: Desk) -> None:
