@@ -85,14 +85,14 @@ def test_a_step_that_fails_stops_no_other(reports: Reports) -> None:
         reports=reports,
         fields=SimpleNamespace(read_typed=fail),
         gizmos=[SimpleNamespace(turn=fail), step("gizmo")],
-        backstage=step("backstage"),
+        background=step("background"),
         scene=SimpleNamespace(pressed=step("pressed")),
         auto_update=step("auto_update"),
         saving=step("saving"),
         on_turn=[lambda: turned.append("tenancy")],
     )
     Desk._idle(desk)  # pyright: ignore[reportPrivateUsage]
-    assert turned == ["saving", "gizmo", "backstage", "pressed", "auto_update", "tenancy"]
+    assert turned == ["saving", "gizmo", "background", "pressed", "auto_update", "tenancy"]
 
 
 def test_a_thumbnail_is_told_under_the_lock(reports: Reports, project: Project) -> None:

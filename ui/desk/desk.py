@@ -21,7 +21,7 @@ from ui.desk.reports import Reports
 from ui.desk.saving import Saving
 from ui.desk.session import Session
 from ui.desk.shown_results import ShownResults
-from ui.page.background_thread import Backstage
+from ui.page.background_thread import BackgroundThread
 from ui.page.editor import Editor
 from ui.page.fields import Fields
 from ui.page.gallery import Galleries
@@ -87,9 +87,9 @@ class Desk:
         self.log = self.reports.log
         self.galleries = Galleries(server, editor)
         self.aiming = Aiming(self)
-        self.backstage = Backstage(on_error=self.reports.tell)
+        self.background = BackgroundThread(on_error=self.reports.tell)
         on_click = self.guarded(self.aiming.clicked)
-        self.scene = Scene(server, fast=fast, on_click=on_click, backstage=self.backstage)
+        self.scene = Scene(server, fast=fast, on_click=on_click, background=self.background)
         self.shown_results = ShownResults(self)
         self.current = self.shown_results.current
         self.panels: list[Panel] = []
@@ -297,7 +297,7 @@ class Desk:
             self.reports.turn,
             self.fields.read_typed,
             *(gizmo.turn for gizmo in self.gizmos),
-            self.backstage.turn,
+            self.background.turn,
             self.scene.pressed.turn,
             self.auto_update.turn,
             *self.on_turn,

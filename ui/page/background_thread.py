@@ -33,14 +33,14 @@ class _Request:
     ended: bool = False
 
 
-class Backstage:
+class BackgroundThread:
     """The thread of one desk, and what waits for its lock."""
 
     def __init__(self, on_error: Callable[[Exception], None]) -> None:
         self.on_error = on_error
         self._requests: dict[str, _Request] = {}
         self._change = threading.Condition()
-        threading.Thread(target=self._work_forever, name="backstage", daemon=True).start()
+        threading.Thread(target=self._work_forever, name="background", daemon=True).start()
 
     def ask(self, job: str, pieces: Iterator[Any], take: Callable[[Any], None]) -> None:
         """Make pieces in place of what this job asked for before, and hand each to `take`."""
