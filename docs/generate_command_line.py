@@ -62,8 +62,8 @@ def _exit_codes() -> str:
 def _shared(title: str) -> str:
     scratch = argparse.ArgumentParser(add_help=False)
     SHARED[title](scratch)
-    takers = [name for name, found in commands().items() if _options(scratch) <= _options(found)]
-    named = ", ".join(f"`{name}`" for name in takers)
+    accepting = [name for name, found in commands().items() if _options(scratch) <= _options(found)]
+    named = ", ".join(f"`{name}`" for name in accepting)
     return f"## {title}\n\nOptions of {named}.\n\n{_table(scratch._actions)}"
 
 

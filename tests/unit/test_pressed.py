@@ -1,5 +1,4 @@
-"""The pressed skin: frames come from the background, and one that is replaced goes a moment
-later."""
+"""The pressed skin: frames are made in the background, a replaced one goes a moment later."""
 
 from __future__ import annotations
 

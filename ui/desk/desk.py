@@ -99,7 +99,7 @@ class Desk:
         """Set by the panel that labels faces: whether it took a click on this membrane face."""
         self.probe: Callable[[np.ndarray, np.ndarray], bool] = lambda origin, direction: False
         """Set by the panel of maps: whether it told the value where a click's ray meets the map."""
-        self.takers: list[Callable[[np.ndarray, np.ndarray], bool]] = []
+        self.click_handlers: list[Callable[[np.ndarray, np.ndarray], bool]] = []
         """Asked in turn, with a click's ray, before the click aims: the first that takes it has it.
 
         Panels add themselves, for example while two points are being measured.

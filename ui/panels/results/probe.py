@@ -44,7 +44,7 @@ class Probe:
         self._big: tuple[Any, Any] = (None, None)
         """What was last looked through: camera and frame; press and mesh."""
         self._nodes: list[Any] = []
-        desk.takers.append(self.takes)
+        desk.click_handlers.append(self.takes)
         gui, guarded = desk.server.gui, desk.guarded
         self.folder = gui.add_folder("Pixel and skin", expand_by_default=False, visible=False)
         with self.folder:

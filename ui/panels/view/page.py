@@ -30,7 +30,7 @@ class ViewPanel:
         self.desk = desk
         self.look = Look(desk.scene)
         self.measure = Measure(desk.scene, desk.scene.on_click)
-        desk.takers.append(self.measure.takes)
+        desk.click_handlers.append(self.measure.takes)
         gui = desk.server.gui
         with dock.add_tab("View"):
             self._sides()
