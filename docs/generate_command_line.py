@@ -55,8 +55,8 @@ def _below(top: argparse.ArgumentParser) -> dict[str, argparse.ArgumentParser]:
 
 
 def _exit_codes() -> str:
-    told = (command_line.__doc__ or "").partition("\n\n")[2]
-    return f"{told.strip()}\n"
+    introduction = (command_line.__doc__ or "").partition("\n\n")[2]
+    return f"{introduction.strip()}\n"
 
 
 def _shared(title: str) -> str:

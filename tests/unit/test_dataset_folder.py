@@ -32,7 +32,7 @@ from workbench.learning.dataset.repair import repair
 from workbench.learning.dataset.rows import append_row, read_rows
 from workbench.learning.dataset.sample import Sample, Solved, from_bytes, to_bytes
 from workbench.learning.dataset.solving import Report
-from workbench.learning.dataset.watch import Told, Watch
+from workbench.learning.dataset.watch import SetProgress, Watch
 from workbench.report.image_files import png_bytes
 from workbench.system.lock_file import LOCK
 from workbench.system.whole_files import write_atomically
@@ -322,7 +322,7 @@ def test_a_second_process_is_refused(tmp_path: Path) -> None:
 def test_failures_are_counted_and_told(tmp_path: Path) -> None:
     """A case that failed is in the file, the counts and the card, and its samples not awaited."""
     data = started(tmp_path, 3)
-    told: list[Told] = []
+    told: list[SetProgress] = []
     watch = Watch(data, data.all_cases, {case.id: 0 for case in data.all_cases}, 0, told.append)
     for frame in range(4):
         write(data, 0, frame)

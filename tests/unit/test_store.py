@@ -238,7 +238,7 @@ HARMS = [cut_short, without_header, gone, garbled, emptied, nothing_said, no_siz
 def test_a_sweep_passes_by_what_is_damaged(harm: Callable[[Path], None], tmp_path: Path) -> None:
     """It is for whoever asks for the result to find; what was set aside is kept, the newest ten."""
     store = Store(tmp_path)
-    store.told = lambda text: None
+    store.on_message = lambda text: None
     store.save("s", "k", picture(), seconds=0.0, version=1)
     harm(store.path("s", "k"))
     assert store.sweep() == 0
@@ -254,7 +254,7 @@ def test_a_sweep_passes_by_what_is_damaged(harm: Callable[[Path], None], tmp_pat
 def test_a_description_of_something_else_is_set_aside(tree: object, tmp_path: Path) -> None:
     """Whole arrays under a tree that no result has."""
     store = Store(tmp_path)
-    store.told = lambda text: None
+    store.on_message = lambda text: None
     store.save("s", "k", picture(), seconds=0.0, version=1)
     meta = json.loads((store.path("s", "k") / META).read_text())
     (store.path("s", "k") / META).write_text(json.dumps({**meta, "tree": tree}))
@@ -270,7 +270,7 @@ def test_a_damaged_result_is_set_aside_once(
 ) -> None:
     """It is not there any more, is said once, is kept for the curious, and is computed again."""
     store, told = Store(tmp_path), []
-    store.told = told.append
+    store.on_message = told.append
     store.save("s", "k", picture(), seconds=0.0, version=1)
     if known:
         assert store.has("s", "k")
@@ -309,7 +309,7 @@ def test_a_chain_computes_what_is_damaged_again(tmp_path: Path) -> None:
     """Body and mesh are torn: a run that wants the mesh makes both anew, and one notice each."""
     design = SensorDesign(shape={"outer_radius_mm": 8.0, "cylinder_mm": 8.0})
     store, told = Store(tmp_path), []
-    store.told = told.append
+    store.on_message = told.append
     runner, case = InlineRunner(store), PressCase()
     for _ in evaluate(design, case, runner, wanted=("mesh",)):
         pass
@@ -327,7 +327,7 @@ def test_damage_found_while_a_stage_reads_is_healed_too(tmp_path: Path) -> None:
     """The body is torn after it was looked into: the mesh fails, the body is built, the mesh is."""
     design = SensorDesign(shape={"outer_radius_mm": 8.0, "cylinder_mm": 8.0})
     store = Store(tmp_path)
-    store.told = lambda text: None
+    store.on_message = lambda text: None
     runner, case = InlineRunner(store), PressCase()
     (built,) = evaluate(design, case, runner, wanted=("build",))
     assert store.has("build", built.key)

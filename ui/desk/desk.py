@@ -82,7 +82,7 @@ class Desk:
         self.fields = Fields(server, self.read, self.edit)
         self.reports = Reports(server, session, self.fields)
         self.reports.on_log = lambda lines: self.tell("log", lines)
-        session.store.told = self.reports.log_soon
+        session.store.on_message = self.reports.log_soon
         self.guarded = self.reports.guarded
         self.log = self.reports.log
         self.galleries = Galleries(server, editor)

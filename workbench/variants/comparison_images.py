@@ -66,7 +66,7 @@ def pair(a: Shot, b: Shot, moment: Moment) -> Pair:
     if same_proportions(image_a, image_b):
         difference, gain = visible_change(raw_b, raw_a)
         of = f"B − A ({source}) about mid grey, × {gain}"
-    words, of = ("; ".join(part for part in (told, note) if part) for told in (words, of))
+    words, of = ("; ".join(part for part in (text, note) if part) for text in (words, of))
     return Pair(a=shown_a, b=shown_b, difference=difference, words=words, change_words=of)
 
 

@@ -31,7 +31,7 @@ from workbench.variants.comparison import (
 from workbench.variants.comparison_images import Moment, pair
 from workbench.variants.comparison_side import NOW, Side
 from workbench.variants.comparison_tables import card_table, change_table, parameter_table, remedies
-from workbench.variants.comparison_words import told
+from workbench.variants.comparison_words import sentences
 from workbench.variants.score_card import Figures, card
 from workbench.variants.sweep_plot import sweep_svg
 from workbench.variants.sweeps import Status, Sweep, metrics_of, state_at
@@ -72,7 +72,7 @@ def comparison_page(store: Store, a: Side, b: Side, more: Reported | None = None
     full = card(designs)
     sections = [
         f"<h1>{html.escape(title)}</h1><p>{words}</p>",
-        *(f"<p>{html.escape(line)}</p>" for line in told(rows)),
+        *(f"<p>{html.escape(line)}</p>" for line in sentences(rows)),
         f"<div class='images'>{_who(store, a, 'A')}{_who(store, b, 'B')}</div>",
         "<h2>Parameters that differ</h2>"
         + parameter_table(parameter_differences(a.state, b.state), *names),

@@ -21,7 +21,7 @@ from workbench.variants.comparison import changes, parameter_differences, press_
 from workbench.variants.comparison_images import Moment, Pair, pair, side_by_side
 from workbench.variants.comparison_side import NOW, Side
 from workbench.variants.comparison_tables import change_table, parameter_table, scrolled
-from workbench.variants.comparison_words import told
+from workbench.variants.comparison_words import sentences
 
 BESIDE, BLINK, DIFFERENCE = "side by side", "blink", "difference"
 BLINK_S = 0.6
@@ -147,7 +147,7 @@ class VersusFolder:
     def _tell(self, a: Side, b: Side) -> None:
         rows = changes(a.figures, b.figures)
         words = summary(rows, press_notice(a.state, b.state))
-        heads = (line.partition(": ") for line in told(rows))
+        heads = (line.partition(": ") for line in sentences(rows))
         items = [f"- **{plain(head)}**: {plain(figures)}" for head, _, figures in heads]
         self.words.content = "\n".join([f"**{plain(words)}**", "", *items])
         differing = parameter_differences(a.state, b.state)
@@ -186,9 +186,9 @@ class VersusFolder:
                 if self.a is None or self.b is None:
                     self.caption.content = ""
                 return
-            told = both.change_words if mode == DIFFERENCE else both.words
-            sides = "A left, B right: " if mode == BESIDE else ""
-            self.caption.content = f"<small>{plain(sides + told)}</small>"
+            words = both.change_words if mode == DIFFERENCE else both.words
+            order = "A left, B right: " if mode == BESIDE else ""
+            self.caption.content = f"<small>{plain(order + words)}</small>"
             if mode == BESIDE:
                 self.image.image = side_by_side(both)
             elif mode == DIFFERENCE and both.difference is not None:

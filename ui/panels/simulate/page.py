@@ -69,7 +69,7 @@ class SimulatePanel:
         fields.slider("Friction", "design.material.friction", span=(0.0, 1.5, 0.05), hint=hint)
         # Last, so that nothing moves under the mouse when it comes.
         self.live_text = gui.add_markdown("", visible=False)
-        desk.live.told = self._tell_live
+        desk.live.on_message = self._tell_live
 
     def _solver_widgets(self) -> None:
         fields = self.desk.fields

@@ -89,8 +89,8 @@ def _pack(options: argparse.Namespace, printer: Progress) -> int:
         monitor=_stage(printer, "pack"),
     )
     write_atomically(options.pack, content)
-    told = {"file": str(options.pack), "bytes": len(content), "key": source.key}
-    say(json.dumps(told) if options.json else f"{options.pack}: {len(content) / 1e6:.2f} MB")
+    answer = {"file": str(options.pack), "bytes": len(content), "key": source.key}
+    say(json.dumps(answer) if options.json else f"{options.pack}: {len(content) / 1e6:.2f} MB")
     return 0
 
 

@@ -57,7 +57,7 @@ def make(
     project: Project,
     *,
     jobs: int = 1,
-    tell: Tell = lambda told: None,
+    tell: Tell = lambda progress: None,
     monitor: StageMonitor | None = None,
 ) -> DataSet:
     """Make a data set, or the rest of it.

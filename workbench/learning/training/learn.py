@@ -30,7 +30,7 @@ from workbench.learning.training.beginning import Beginning, begin
 from workbench.learning.training.card import data_card, training_card
 from workbench.learning.training.checkpoint import read_checkpoint, write_checkpoint
 from workbench.learning.training.curves import write_chart, write_curves
-from workbench.learning.training.plan import Plan, Tell, Told, Trained
+from workbench.learning.training.plan import Plan, Tell, Trained, TrainingProgress
 from workbench.learning.training.presses import Presses
 from workbench.learning.training.results import final_weights
 from workbench.pipeline.weight_files import save_weights
@@ -52,7 +52,7 @@ def train(
     device: str,
     numbers: Numbers = Numbers.AUTO,
     minutes: float = 0.0,
-    tell: Tell = lambda told: None,
+    tell: Tell = lambda progress: None,
     monitor: Monitor = silent,
 ) -> Trained:
     """Train, or go on where it was.
@@ -118,7 +118,7 @@ class _Training:
             left = settings.epochs - self.trainer.epoch
             pace_s = float(np.median([row["seconds"] for row in self.rows[-9:]]))
             self._tell(
-                Told(
+                TrainingProgress(
                     row=self.rows[-1],
                     epochs=settings.epochs,
                     eta_s=left * pace_s,

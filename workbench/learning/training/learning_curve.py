@@ -36,7 +36,7 @@ def learning_curve(
     device: str,
     numbers: Numbers = Numbers.AUTO,
     minutes: float = 0.0,
-    tell: Tell = lambda told: None,
+    tell: Tell = lambda progress: None,
     monitor: Monitor = silent,
 ) -> dict[str, Any]:
     """Train on each share and write `learning_curve.json` and `.png`.
