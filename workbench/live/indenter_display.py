@@ -44,9 +44,9 @@ def display_mesh(indenter: Indenter) -> tuple[np.ndarray, np.ndarray]:
 def _contoured(indenter: Indenter) -> tuple[np.ndarray, np.ndarray]:
     from geometry.surface.isosurface import isosurface
     from sim.contact.objects import textures
+    from sim.contact.objects.object_measures import sharpest_mm, solid
     from sim.contact.objects.samples import make_grid
     from sim.contact.objects.sampling import box_mm
-    from sim.contact.objects.solids import sharpest_mm, solid
 
     sharpest = min(sharpest_mm(indenter), textures.sharpest_mm(indenter.texture))
     step_mm = max(sharpest / STEPS_PER_RADIUS, FINEST_MM)
