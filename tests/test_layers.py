@@ -57,7 +57,7 @@ DOOR = ("workbench.cli.commands.serve", "ui.app")
 """The command line starts the front here, and touches it nowhere else."""
 CIRCLES = (
     {
-        *("aiming", "auto_update", "desk", "foresight", "image_preview", "live"),
+        *("aiming", "auto_update", "desk", "foresight", "image_preview", "live_press"),
         *("object_follower", "shown_results"),
     },
 )

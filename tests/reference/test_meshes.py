@@ -13,7 +13,7 @@ from geometry.volume.hexmesh import mesh_membrane
 from geometry.volume.lattice import material_points
 from geometry.volume.quality import quality_report, skin_quality, tetrahedron_quality
 from geometry.volume.tets import boundary_faces, tetrahedra
-from sim.optics.camera.within import inside
+from sim.optics.camera.inside_skin import inside
 from workbench.core.design.design import Meshing
 from workbench.core.result.results import Label, MembraneMesh, Skin, Solid, VolumeMesh, region_masks
 from workbench.proof.validation.geometry.meshes import default_solid, family_names, worst_area_error

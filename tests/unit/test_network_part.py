@@ -46,7 +46,7 @@ class Bench:
             jobs = SimpleNamespace(submit=lambda *words: bench.asked.append(words))
 
             @property
-            def live(self) -> Any:
+            def live_press(self) -> Any:
                 return SimpleNamespace(on=bench.live)
 
             def guarded(self, handler: Any) -> Any:

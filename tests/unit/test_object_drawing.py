@@ -60,7 +60,7 @@ class FakeDesk:
         self.conductor = SimpleNamespace(ask=lambda job, d, c, call: self.asked.append(call))
         shown = object_view()
         self.scene = SimpleNamespace(object=shown, body=shown.body)
-        self.live = SimpleNamespace(on=False)
+        self.live_press = SimpleNamespace(on=False)
         self.told: list[str] = []
 
     def tell(self, stage: str, result: Any) -> None:

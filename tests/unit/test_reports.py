@@ -146,7 +146,7 @@ def test_all_who_follow_the_target_hear_that_it_moved(live: bool) -> None:
         auto_update=SimpleNamespace(edited=tells("auto_update")),
         fields=SimpleNamespace(refresh=tells("fields")),
         log=tells("log"),
-        live=SimpleNamespace(on=live, follow=tells("live")),
+        live_press=SimpleNamespace(on=live, follow=tells("live")),
         image_preview=SimpleNamespace(follow=tells("image_preview")),
         scene=SimpleNamespace(body=SimpleNamespace(place_near=lambda point: OFF)),
         session=SimpleNamespace(

@@ -54,7 +54,9 @@ def aiming_at(solid: Solid, target_mm: tuple[float, float, float]) -> Any:
     view.skin = view.inside = view.support = view.foot = nothing  # pyright: ignore[reportAttributeAccessIssue]
     view.show = lambda visible: None
     view.show_solid(solid)
-    desk: Any = SimpleNamespace(scene=SimpleNamespace(body=view), live=SimpleNamespace(on=False))
+    desk: Any = SimpleNamespace(
+        scene=SimpleNamespace(body=view), live_press=SimpleNamespace(on=False)
+    )
     case = SimpleNamespace(press=Press(target_mm=target_mm))
     design = SensorDesign(name="finger")
     desk.amended = []

@@ -93,6 +93,6 @@ class Aiming:
         desk.auto_update.edited()
         desk.fields.refresh()
         desk.log(words)
-        if desk.live.on:
-            desk.live.follow()
+        if desk.live_press.on:
+            desk.live_press.follow()
         desk.image_preview.follow()

@@ -47,7 +47,7 @@ class AutoUpdate:
         if self._edited is None or self._clock() - self._edited < SETTLED_S:
             return
         self._edited = None
-        if self.auto.value and not self.desk.live.on and self.stale:
+        if self.auto.value and not self.desk.live_press.on and self.stale:
             self.desk.run(JOB, WANTED)
 
     @property

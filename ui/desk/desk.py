@@ -15,7 +15,7 @@ from ui.desk.auto_update import AutoUpdate
 from ui.desk.foresight import Foresight
 from ui.desk.image_preview import ImagePreviewFollower
 from ui.desk.jobs import Jobs
-from ui.desk.live import LivePress
+from ui.desk.live_press import LivePressFollower
 from ui.desk.object_follower import ObjectFollower
 from ui.desk.reports import Reports
 from ui.desk.saving import Saving
@@ -120,9 +120,9 @@ class Desk:
         """What else is looked after each time the pump turns."""
         self.gizmos: list[Gizmo] = []
         """Handles in the 3D view, asked each time the pump turns."""
-        self.live = LivePress(self)
-        self.gizmos.append(self.live.gizmo)
-        self.jobs.on_preview[LIVE] = self.live.show
+        self.live_press = LivePressFollower(self)
+        self.gizmos.append(self.live_press.gizmo)
+        self.jobs.on_preview[LIVE] = self.live_press.show
         self.foresight = Foresight(self)
         self.image_preview = ImagePreviewFollower(self)
         self.object = ObjectFollower(self)
@@ -154,7 +154,7 @@ class Desk:
             if not path.startswith(("design.mould", "design.housing", "design.casting")):
                 self.put_parts_away()
             self.changed()
-            if path.startswith("design.optics") and not self.live.on:
+            if path.startswith("design.optics") and not self.live_press.on:
                 # The pressed skin is opaque; the one at rest shows LEDs and camera.
                 self.scene.show_frame(0)
 
@@ -173,11 +173,11 @@ class Desk:
         if not self.current("press"):
             # What was pressed was another press: the skin is at rest again, or follows live.
             self.shown_results.forget("press")
-            if not self.live.on:
+            if not self.live_press.on:
                 self.scene.clear_frames()
             self.scene.object.place(session.case.press)
-        if self.live.on:
-            self.live.follow()
+        if self.live_press.on:
+            self.live_press.follow()
         for panel in self.panels:
             panel.refresh()
         self.image_preview.follow()
@@ -269,7 +269,7 @@ class Desk:
     def _failed(self, error: WorkbenchError, job: str) -> None:
         """Show the frames that settled before a press failed."""
         if job == LIVE:
-            self.live.failed()
+            self.live_press.failed()
         elif job == FORESIGHT:
             self.foresight.failed()
         elif job == IMAGE_PREVIEW:

@@ -30,7 +30,7 @@ class ImagePreviewFollower:
     def follow(self) -> None:
         """Ask for the state as it stands, unless it has images or was asked last."""
         desk, session = self.desk, self.desk.session
-        if desk.live.on or desk.current("shoot"):
+        if desk.live_press.on or desk.current("shoot"):
             self._asked = self._shown = None
             desk.conductor.give_up(IMAGE_PREVIEW)
             return
@@ -49,7 +49,7 @@ class ImagePreviewFollower:
         """Show what came, unless images have come meanwhile or the design is another one."""
         desk = self.desk
         other = request.design.family != desk.session.design.family
-        if other or desk.live.on or desk.current("shoot"):
+        if other or desk.live_press.on or desk.current("shoot"):
             return
         # A step back to a state that has images shows them again.
         desk.shown_results.forget("shoot")
@@ -61,5 +61,5 @@ class ImagePreviewFollower:
     def failed(self) -> None:
         """Take the preview of an earlier state away: it would pass for one of this state."""
         self._asked = self._shown = None
-        if not self.desk.live.on and not self.desk.current("shoot"):
+        if not self.desk.live_press.on and not self.desk.current("shoot"):
             self.desk.tell("image_preview", None)

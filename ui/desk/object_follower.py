@@ -43,8 +43,8 @@ class ObjectFollower:
             shown.show(drawing, case.press)
             if request.case.indenter == case.indenter:
                 self.desk.tell("object", drawing)
-            if self.desk.live.on:
-                self.desk.live.gizmo.place(shown.standing[:3])
+            if self.desk.live_press.on:
+                self.desk.live_press.gizmo.place(shown.standing[:3])
 
     def failed(self) -> None:
         """Ask again at the next change: the worker may have been lost."""

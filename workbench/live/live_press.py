@@ -1,7 +1,7 @@
 """What is shown while the designer drags: one settled frame and its image, computed in a lane.
 
-A `LiveCall` is a `workbench.live.preview_call`. The lane keeps the last press (`sim.contact.live`)
-and the scene of the last image, for requests like the one before.
+A `LiveCall` is a `workbench.live.preview_call`. The lane keeps the last press
+(`sim.contact.live_contact`) and the scene of the last image, for requests like the one before.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from workbench.pipeline.surface_detail import detailed
 from workbench.planning.plan import plan
 
 if TYPE_CHECKING:
-    from sim.contact.live import LiveContact
+    from sim.contact.live_contact import LiveContact
     from sim.optics.studio.render import Studio
 
 NEEDED = ("mesh", "lattice", "bake", "table")
@@ -158,7 +158,7 @@ class PressPreviewer:
 
         begun = time.perf_counter()
         open_device()
-        from sim.contact.live import LiveContact
+        from sim.contact.live_contact import LiveContact
         from sim.optics.studio.detail import open_detail
 
         if self._live is None:

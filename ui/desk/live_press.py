@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from ui.desk.desk import Desk
 
 
-class LivePress:
+class LivePressFollower:
     """The live press of one desk."""
 
     def __init__(self, desk: Desk) -> None:
