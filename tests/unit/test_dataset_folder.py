@@ -26,10 +26,10 @@ from workbench.learning.dataset.cases import Split, cases_of
 from workbench.learning.dataset.collect import finish
 from workbench.learning.dataset.estimate import estimate, estimate_text
 from workbench.learning.dataset.folder import DataSet
+from workbench.learning.dataset.json_lines import append_row, read_rows
 from workbench.learning.dataset.lock import held
 from workbench.learning.dataset.recipe import Recipe, load_recipe, recipe_from_toml
 from workbench.learning.dataset.repair import repair
-from workbench.learning.dataset.rows import append_row, read_rows
 from workbench.learning.dataset.sample import Sample, Solved, from_bytes, to_bytes
 from workbench.learning.dataset.solving import Report
 from workbench.learning.dataset.watch import SetProgress, Watch
