@@ -63,8 +63,8 @@ class ObjectFolder:
             )
             self.kind.on_update(guarded(self._choose))
             hint = "All objects as pictures of the face that touches"
-            pictures = gui.add_button("Gallery of objects", icon=viser.Icon.LAYOUT_GRID, hint=hint)
-            pictures.on_click(guarded(self._open_gallery))
+            button = gui.add_button("Gallery of objects", icon=viser.Icon.LAYOUT_GRID, hint=hint)
+            button.on_click(guarded(self._open_gallery))
             hint = "Diameter, else the largest width"
             size_mm = min(now.size_mm, MESH_SPAN_MM)
             self.size = gui.add_slider("Size mm", 0.5, MESH_SPAN_MM, 0.5, size_mm, hint=hint)
