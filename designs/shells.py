@@ -28,10 +28,10 @@ def hollow(outer: Any, core: Any, *, what: str) -> Any:
     """
     from build123d import Face
 
-    sides, base = _base_apart(outer, what)
-    walls, opening = _base_apart(core, what)
+    outer_walls, base = _base_apart(outer, what)
+    core_walls, opening = _base_apart(core, what)
     ring = Face(base.outer_wire(), [opening.outer_wire()])
-    body = sewn([*sides, *walls, ring], what=what)
+    body = sewn([*outer_walls, *core_walls, ring], what=what)
     return expect_volume(body, volume(outer) - volume(core), what=what, relative=VOLUME_ERROR)
 
 

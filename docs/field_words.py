@@ -23,7 +23,7 @@ FILES: dict[Any, str] = {
 
 
 @functools.cache
-def told(cls: type) -> dict[str, str]:
+def field_docs(cls: type) -> dict[str, str]:
     """The docstring below each field or choice, as one line; those without one are left out."""
     (body,) = (
         node.body
@@ -62,7 +62,7 @@ def of_files(package: str) -> dict[str, str]:
 
 def choices(kind: Any) -> str:
     """The choices of an enum, each with what it means where that is said."""
-    words = of_files(FILES[kind]) if kind in FILES else told(kind)
+    words = of_files(FILES[kind]) if kind in FILES else field_docs(kind)
     shown = []
     for member in kind:
         text = words.get(member.name, "")

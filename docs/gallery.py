@@ -17,7 +17,7 @@ import cv2  # noqa: TID253 (a program of its own, not part of the package)
 import numpy as np
 
 from designs.family import family
-from geometry.picture.pictures import exploded_sensor, thumbnail
+from geometry.drawing.sensor_drawings import exploded_sensor, membrane_drawing
 from workbench.core.design.design import SensorDesign
 from workbench.core.press.indenter import Indenter
 from workbench.core.press.press import Press
@@ -77,12 +77,16 @@ def computed(name: str, project: Project) -> tuple[SensorDesign, dict[str, Any]]
 def row(design: SensorDesign, found: Mapping[str, Any]) -> np.ndarray:
     """One family: membrane, parts, tactile image and its change; shape (H, W, 3), BGR."""
     solid, rgb = found["build"], found["shoot"].frames.rgb
-    picture = blank(ROW_PX)
-    write(picture, family(design.family).title, (MARGIN_PX, 32), 22, INK, weight=600)
-    paste(picture, drawn(thumbnail, (solid,), MEMBRANE_PX, clear=False), (MARGIN_PX, TITLE_PX + 4))
+    canvas = blank(ROW_PX)
+    write(canvas, family(design.family).title, (MARGIN_PX, 32), 22, INK, weight=600)
+    paste(
+        canvas,
+        drawn(membrane_drawing, (solid,), MEMBRANE_PX, clear=False),
+        (MARGIN_PX, TITLE_PX + 4),
+    )
     x = MARGIN_PX + MEMBRANE_PX[0] + GUTTER_PX
     parts = drawn(exploded_sensor, (solid, found["mould"], found["housing"]), PARTS_PX)
-    paste(picture, parts, (x, (ROW_PX[1] - PARTS_PX[1]) // 2))
+    paste(canvas, parts, (x, (ROW_PX[1] - PARTS_PX[1]) // 2))
     difference, gain = change(rgb)
     low, high = window(difference)
     framed = cv2.rectangle(rgb[-1].copy(), low, high, FRAME, round(rgb.shape[2] / IMAGE_PX[0]))
@@ -91,10 +95,10 @@ def row(design: SensorDesign, found: Mapping[str, Any]) -> np.ndarray:
     x += PARTS_PX[0] + GUTTER_PX
     for image, text in ((framed, force), (close, f"Change in the frame, x {gain}")):
         fitted = fit(image)
-        paste(picture, fitted, (x, 20 + (IMAGE_PX[1] - fitted.shape[0]) // 2))
-        write(picture, text, (x, ROW_PX[1] - 18), 16, FAINT)
+        paste(canvas, fitted, (x, 20 + (IMAGE_PX[1] - fitted.shape[0]) // 2))
+        write(canvas, text, (x, ROW_PX[1] - 18), 16, FAINT)
         x += IMAGE_PX[0] + GUTTER_PX
-    return picture
+    return canvas
 
 
 def change(rgb: np.ndarray) -> tuple[np.ndarray, int]:
@@ -123,14 +127,14 @@ def window(difference: np.ndarray) -> tuple[tuple[int, int], tuple[int, int]]:
 def legend() -> np.ndarray:
     """The last row: what the colours mean."""
     columns = 4
-    picture = blank((ROW_PX[0], 88))
+    canvas = blank((ROW_PX[0], 88))
     for number, (text, colour) in enumerate(LEGEND):
         line, column = divmod(number, columns)
         x = MARGIN_PX + column * (ROW_PX[0] - MARGIN_PX) // columns
         y = 35 + 34 * line
-        cv2.rectangle(picture, (x, y - 15), (x + 24, y + 3), bgr(colour), cv2.FILLED)
-        write(picture, text, (x + 36, y), 17, INK)
-    return picture
+        cv2.rectangle(canvas, (x, y - 15), (x + 24, y + 3), bgr(colour), cv2.FILLED)
+        write(canvas, text, (x + 36, y), 17, INK)
+    return canvas
 
 
 def drawn(
@@ -156,20 +160,20 @@ def blank(size_px: tuple[int, int]) -> np.ndarray:
     return np.full((size_px[1], size_px[0], 3), 255, dtype=np.uint8)
 
 
-def paste(picture: np.ndarray, part: np.ndarray, corner: tuple[int, int]) -> None:
+def paste(canvas: np.ndarray, part: np.ndarray, corner: tuple[int, int]) -> None:
     x, y = corner
-    picture[y : y + part.shape[0], x : x + part.shape[1]] = part
+    canvas[y : y + part.shape[0], x : x + part.shape[1]] = part
 
 
 def write(
-    picture: np.ndarray,
+    canvas: np.ndarray,
     text: str,
     corner: tuple[int, int],
     size_px: int,
     colour: tuple[int, int, int],
     weight: int = 400,
 ) -> None:
-    cv2.putText(picture, text, corner, colour, cv2.FontFace("sans"), size_px, weight)
+    cv2.putText(canvas, text, corner, colour, cv2.FontFace("sans"), size_px, weight)
 
 
 def bgr(colour: str) -> tuple[int, int, int]:
@@ -180,19 +184,19 @@ def bgr(colour: str) -> tuple[int, int, int]:
 def page(rows: Sequence[np.ndarray]) -> np.ndarray:
     """The rows below each other on a grey ground."""
     height = sum(row.shape[0] + GUTTER_PX for row in rows) + GUTTER_PX
-    picture = np.full((height, ROW_PX[0] + 2 * GUTTER_PX, 3), GROUND, dtype=np.uint8)
+    canvas = np.full((height, ROW_PX[0] + 2 * GUTTER_PX, 3), GROUND, dtype=np.uint8)
     y = GUTTER_PX
     for each in rows:
-        paste(picture, each, (GUTTER_PX, y))
+        paste(canvas, each, (GUTTER_PX, y))
         y += each.shape[0] + GUTTER_PX
-    return picture
+    return canvas
 
 
-def save(picture: np.ndarray, path: Path) -> None:
-    """Write a picture as a small PNG, and say how small."""
+def save(canvas: np.ndarray, path: Path) -> None:
+    """Write an image as a small PNG, and say how small."""
     compact = [cv2.IMWRITE_PNG_COMPRESSION, 9]
     compact += [cv2.IMWRITE_PNG_STRATEGY, cv2.IMWRITE_PNG_STRATEGY_FILTERED]
-    path.write_bytes(cv2.imencode(".png", picture, compact)[1].tobytes())
+    path.write_bytes(cv2.imencode(".png", canvas, compact)[1].tobytes())
     print(f"{path}: {path.stat().st_size / 1000:.0f} kB")
 
 

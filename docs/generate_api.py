@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import workbench as wb
-from docs.field_words import choices, told
+from docs.field_words import choices, field_docs
 
 HEAD = """# From Python
 
@@ -102,7 +102,10 @@ def _fields(cls: Any) -> list[str]:
     for item in dataclasses.fields(cls):
         if item.name.startswith("_"):
             continue
-        kind, words = hints[item.name], told(cls).get(item.name) or item.metadata.get("hint", "")
+        kind, words = (
+            hints[item.name],
+            field_docs(cls).get(item.name) or item.metadata.get("hint", ""),
+        )
         if isinstance(kind, type) and issubclass(kind, enum.Enum):
             words = " ".join(filter(None, (words, f"{choices(kind)}.")))
         rows.append(f"| `{item.name}` | {_default(item)} | {words} |")

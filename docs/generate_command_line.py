@@ -55,15 +55,15 @@ def _below(top: argparse.ArgumentParser) -> dict[str, argparse.ArgumentParser]:
 
 
 def _exit_codes() -> str:
-    told = (command_line.__doc__ or "").partition("\n\n")[2]
-    return f"{told.strip()}\n"
+    introduction = (command_line.__doc__ or "").partition("\n\n")[2]
+    return f"{introduction.strip()}\n"
 
 
 def _shared(title: str) -> str:
     scratch = argparse.ArgumentParser(add_help=False)
     SHARED[title](scratch)
-    takers = [name for name, found in commands().items() if _options(scratch) <= _options(found)]
-    named = ", ".join(f"`{name}`" for name in takers)
+    accepting = [name for name, found in commands().items() if _options(scratch) <= _options(found)]
+    named = ", ".join(f"`{name}`" for name in accepting)
     return f"## {title}\n\nOptions of {named}.\n\n{_table(scratch._actions)}"
 
 

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from designs.family import families, sliders
-from docs.field_words import choices, one_line, told
+from docs.field_words import choices, field_docs, one_line
 from workbench.core.design.design import SensorDesign
 from workbench.core.design.imported import IMPORTED, ImportedBody
 from workbench.core.design.photo import Photo
@@ -76,7 +76,7 @@ def _part(hint: Any) -> tuple[Any, bool]:
 
 
 def _row(cls: Any, item: Any, part: Any) -> str:
-    meaning = told(cls).get(item.name) or item.metadata.get("hint", "")
+    meaning = field_docs(cls).get(item.name) or item.metadata.get("hint", "")
     if isinstance(part, type) and issubclass(part, enum.Enum):
         meaning = " ".join(filter(None, (meaning, f"{choices(part)}.")))
     return f"| `{item.name}` | {_default(item.default)} | {meaning} |"

@@ -88,8 +88,8 @@ def _missed(known: Sequence[Record]) -> str:
         for row in record.rows:
             if not row["ok"]:
                 measured, asked = _measured(row, row["unit"]), _asked(row)
-                told = f"- `{row['name']}` of `{record.room}`: {measured}, asked {asked}"
-                lines.append(f"{told}; {row['case']}".replace("|", "\\|"))
+                line = f"- `{row['name']}` of `{record.room}`: {measured}, asked {asked}"
+                lines.append(f"{line}; {row['case']}".replace("|", "\\|"))
     return "\n".join([*lines, ""])
 
 
@@ -97,12 +97,12 @@ def _rooms(known: Sequence[Record]) -> str:
     made = {record.room: record for record in known}
     rows = []
     for room, (words, takes) in ROOMS.items():
-        told = "not recorded"
+        state = "not recorded"
         if room in made:
             record = made[room]
             good = sum(row["ok"] for row in record.rows)
-            told = f"[{good} of {len(record.rows)} rows met](#room-{room})"
-        rows.append(f"| `{room}` | {words} | {takes} | {told} |")
+            state = f"[{good} of {len(record.rows)} rows met](#room-{room})"
+        rows.append(f"| `{room}` | {words} | {takes} | {state} |")
     head = ["## Rooms", "", "| room | what it measures | takes | record |", "|---|---|---|---|"]
     return "\n".join([*head, *rows, ""])
 

@@ -1,7 +1,7 @@
-"""Draw the pictures of the pages about light: what each family sees, and the maps of one design.
+"""Draw the sheets of the pages about light: what each family sees, and the maps of one design.
 
 `.venv/bin/python docs/optics_sheets.py` runs each preset through the pipeline (about five minutes;
-the project folder keeps the results, so again takes seconds) and writes two pictures.
+the project folder keeps the results, so again takes seconds) and writes two sheets.
 `docs/contact_sheet.png` has for each preset the image at rest, with a ball of 6 mm pressed 1 mm
 deep where the family aims, a close-up of the change, and the normals that the camera sees.
 `docs/maps.png` has the maps of one design on its skin.
@@ -19,7 +19,7 @@ import numpy as np
 from gallery import FAINT, FRAME, GROUND, GUTTER_PX, INK, blank, paste, save, window, write
 
 from designs.family import family
-from geometry.picture.rendering import canvas, look, png, surface
+from geometry.drawing.rendering import canvas, look, png, surface
 from workbench.core.design.design import SensorDesign
 from workbench.core.design.lighting import LightModel
 from workbench.core.press.indenter import Indenter
@@ -89,12 +89,12 @@ def contact_row(design: SensorDesign, frames: TactileFrames, force_N: float) -> 
     low, high = window(np.abs(pressed.astype(np.int16) - frames.rgb[0]))
     close = change.rgb[low[1] : high[1], low[0] : high[0]]
     cv2.rectangle(pressed, low, high, FRAME, round(pressed.shape[1] / PHOTO_PX[0]))
-    pictures = (frames.rgb[0], pressed, close, normals.rgb)
-    width = len(pictures) * (PHOTO_PX[0] + GUTTER_PX) - GUTTER_PX
+    images = (frames.rgb[0], pressed, close, normals.rgb)
+    width = len(images) * (PHOTO_PX[0] + GUTTER_PX) - GUTTER_PX
     row = blank((width, LINE_PX + PHOTO_PX[1]))
     write(row, f"{family(design.family).title} ({design.name})", (4, 24), 19, INK, weight=600)
     for column, (rgb, text) in enumerate(
-        zip(pictures, ("", f"{force_N:.2f} N", change.words.split(", ")[-1], ""), strict=True)
+        zip(images, ("", f"{force_N:.2f} N", change.words.split(", ")[-1], ""), strict=True)
     ):
         x = column * (PHOTO_PX[0] + GUTTER_PX)
         write(row, text, (x + 4, 24), 17, FAINT)
@@ -125,12 +125,12 @@ def contact_sheet(rows: Sequence[np.ndarray]) -> np.ndarray:
 def framed(parts: Sequence[np.ndarray]) -> np.ndarray:
     """Parts below each other on white, with a margin."""
     height = sum(part.shape[0] + GUTTER_PX for part in parts) + GUTTER_PX
-    picture = blank((parts[0].shape[1] + 2 * GUTTER_PX, height))
+    canvas = blank((parts[0].shape[1] + 2 * GUTTER_PX, height))
     y = GUTTER_PX
     for part in parts:
-        paste(picture, part, (GUTTER_PX, y))
+        paste(canvas, part, (GUTTER_PX, y))
         y += part.shape[0] + GUTTER_PX
-    return picture
+    return canvas
 
 
 def map_sheet(design: SensorDesign, maps: DesignerMaps, skin: Skin) -> np.ndarray:
@@ -210,7 +210,7 @@ def unit(found: SkinMap) -> str:
 
 
 def main() -> None:
-    """Write both pictures."""
+    """Write both sheets."""
     # Taichi greets on stdout when it is imported.
     os.environ.setdefault("ENABLE_TAICHI_HEADER_PRINT", "0")
     project = Project()

@@ -1,4 +1,4 @@
-"""Pictures of the workbench's page, and the hands that its tests do not need."""
+"""Screenshots of the workbench's page, and the hands that its tests do not need."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ ASIDE = (720, 60)
 
 
 def shoot(page: Any, name: str, *, aside: bool = True) -> None:
-    """One picture, once the 3D view has caught up, in the best quality that is small enough."""
+    """One screenshot, once the 3D view has caught up, in the best quality that is small enough."""
     page.wait_for_timeout(5_000)
     if aside:
         # Neither notifications nor the hint of the widget that was clicked last.
@@ -28,10 +28,10 @@ def shoot(page: Any, name: str, *, aside: bool = True) -> None:
         page.mouse.move(*ASIDE)
         page.wait_for_timeout(1_000)
     data = np.frombuffer(page.screenshot(), dtype=np.uint8)
-    picture = cv2.imdecode(data, cv2.IMREAD_COLOR)
-    assert picture is not None
+    image = cv2.imdecode(data, cv2.IMREAD_COLOR)
+    assert image is not None
     for quality in QUALITIES:
-        done, encoded = cv2.imencode(".webp", picture, [cv2.IMWRITE_WEBP_QUALITY, quality])
+        done, encoded = cv2.imencode(".webp", image, [cv2.IMWRITE_WEBP_QUALITY, quality])
         if done and len(encoded) < MOST_BYTES:
             break
     else:

@@ -1,4 +1,4 @@
-"""What is done on the page before each picture of README and tutorial, in their order."""
+"""What is done on the page before each screenshot of README and tutorial, in their order."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def first(page: Any) -> None:
 
 
 def gallery(page: Any) -> None:
-    """All designs as pictures."""
+    """All designs as thumbnails."""
     tab(page, "Shape").click()
     press(page, "Gallery of designs")
     shoot(page, "gallery")
@@ -29,7 +29,7 @@ def gallery(page: Any) -> None:
 
 
 def preview(page: Any) -> None:
-    """Body and sketch of the image while a slider moves; then back."""
+    """Body and preview of the image while a slider moves; then back."""
     tab(page, "Shape").click()
     quiet(page)
     box = control(page, "Outer radius mm").bounding_box()

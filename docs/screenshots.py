@@ -1,4 +1,4 @@
-"""Take the pictures of README and tutorial from the running workbench.
+"""Take the screenshots of README and tutorial from the running workbench.
 
 `.venv/bin/python -m docs.screenshots` in the root of the repository starts a server in a fresh
 project, does what the tutorial says, and writes `docs/screens/*.webp`. Needs what `make test`
@@ -31,11 +31,11 @@ depth_mm = 1.0
 [press_case.settings]
 grid_mm = 0.7
 """
-"""A coarser press than the program's own: the pictures shall not take an hour."""
+"""A coarser press than the program's own: the screenshots shall not take an hour."""
 
 
 def main(wanted: list[str]) -> None:
-    """Write the pictures that are wanted, all of them without a word."""
+    """Write the screenshots that are wanted, all of them without a word."""
     program = os.environ.get("CHROMIUM") or shutil.which("chromium")
     FOLDER.mkdir(exist_ok=True)
     with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:

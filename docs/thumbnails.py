@@ -1,4 +1,4 @@
-"""Draw the small pictures of the galleries: every preset and family, every object of the studio.
+"""Draw the thumbnails of the galleries: every preset and family, every object of the studio.
 
 `.venv/bin/python docs/thumbnails.py` writes `designs/thumbnails/*.png` and `keys.toml`, which says
 what each was drawn of, so that a test can tell when one is out of date. Takes about a minute.
@@ -13,14 +13,14 @@ import cv2  # noqa: TID253 (a program of its own, not part of the package)
 import numpy as np
 import tomli_w
 
-from geometry.picture.pictures import thumbnail
-from geometry.picture.rendering import canvas, draw, look, png
+from geometry.drawing.rendering import canvas, draw, look, png
+from geometry.drawing.sensor_drawings import membrane_drawing
 from workbench.core.base.monitor import silent
 from workbench.core.press.indenter import Indenter
 from workbench.core.press.press_case import PressCase
 from workbench.edit.forms import choices
 from workbench.edit.indenter_edit import another, gallery
-from workbench.edit.thumbnails import FOLDER, KEYS, object_key, start_key
+from workbench.edit.shipped_thumbnails import FOLDER, KEYS, object_key, start_key
 from workbench.live.indenter_display import display_mesh
 from workbench.pipeline.stages.build import build
 from workbench.planning.plan import plan
@@ -32,12 +32,12 @@ FROM_BELOW = np.array([1.0, -1.6, -1.1])
 """Toward the eye: objects are told apart by the face that touches."""
 
 
-def pictures() -> Iterator[tuple[str, str, np.ndarray]]:
+def thumbnails() -> Iterator[tuple[str, str, np.ndarray]]:
     """Name, key and PNG bytes of each, at `FINER` times the size."""
     size = (FINER * SIZE_PX, FINER * SIZE_PX)
     for name in choices():
         solid = build(plan(load_design(name), PressCase())["build"].inputs, monitor=silent)
-        yield f"start-{name}", start_key(name), thumbnail(solid, size)
+        yield f"start-{name}", start_key(name), membrane_drawing(solid, size)
     for name in gallery().values():
         points, faces = display_mesh(another(name, Indenter()))
         plotter = canvas(size)
@@ -50,7 +50,7 @@ def main() -> None:
     """Write all of them."""
     folder = Path(__file__).parent.parent / FOLDER
     keys = {}
-    for name, key, data in pictures():
+    for name, key, data in thumbnails():
         large = cv2.imdecode(data, cv2.IMREAD_UNCHANGED)
         assert large is not None
         small = cv2.resize(large, (SIZE_PX, SIZE_PX), interpolation=cv2.INTER_AREA)

@@ -53,9 +53,9 @@ def test_shared_options_name_the_commands_that_take_them(title: str) -> None:
     """Exactly those that have them all."""
     scratch = argparse.ArgumentParser(add_help=False)
     SHARED[title](scratch)
-    takers = {n for n, c in commands().items() if long_options(scratch) <= long_options(c)}
+    accepting = {n for n, c in commands().items() if long_options(scratch) <= long_options(c)}
     (named,) = re.findall(r"^Options of (.*)\.$", chapter(title), re.MULTILINE)
-    assert set(re.findall(r"`([^`]+)`", named)) == takers
+    assert set(re.findall(r"`([^`]+)`", named)) == accepting
 
 
 def test_the_project_folder_is_documented_once_for_all_commands() -> None:

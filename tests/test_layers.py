@@ -19,7 +19,7 @@ RANKS = """
     workbench.core.design  workbench.core.result  workbench.core.press
     workbench.system
 
-    geometry  geometry.formats  geometry.picture  geometry.surface  geometry.body
+    geometry  geometry.formats  geometry.drawing  geometry.surface  geometry.body
     designs
     geometry.intake  geometry.objects  geometry.volume  geometry.mould  geometry.housing
     geometry.workshop
@@ -57,7 +57,7 @@ DOOR = ("workbench.cli.commands.serve", "ui.app")
 """The command line starts the front here, and touches it nowhere else."""
 CIRCLES = (
     {
-        *("aiming", "auto_update", "desk", "foresight", "glimpse", "live"),
+        *("aiming", "auto_update", "desk", "foresight", "image_preview", "live_press"),
         *("object_follower", "shown_results"),
     },
 )

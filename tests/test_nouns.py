@@ -55,10 +55,10 @@ NOUNS = {
         record="STAGE",
         # These make calls that no plan has: drawings for lists, the parts of a deck.
         readers=(
-            "workbench/report/portraits.py",
+            "workbench/report/thumbnails.py",
             "workbench/report/fem_case.py",
             "workbench/learning/dataset/solving.py",
-            "workbench/live/glimpse.py",
+            "workbench/live/image_preview.py",
             "ui/panels/simulate/network.py",
         ),
     ),

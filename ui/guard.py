@@ -21,7 +21,7 @@ COOKIE = "workbench_token"
 """Begin of the cookie's name; the port follows, since browsers share cookies among ports."""
 HEALTH_PATH = "/healthz"
 MOST_MESSAGE_BYTES = 16 * 2**20
-"""Of one message: a file comes in parts of half a megabyte, a picture of the view in one."""
+"""Of one message: a file comes in parts of half a megabyte, an image of the view in one."""
 PING_S, PONG_S = 5.0, 15.0
 """Time between two questions whether a tab is there, and what it has to answer [s]: a connection
 that was cut without a word would hold its place for minutes."""
@@ -33,7 +33,7 @@ POLICY = (
     "connect-src 'self' data: blob:"
 )
 """What the page may load and reach: itself alone. viser's page is one file with scripts in it, that
-unpacks its pictures and workers from data and blobs."""
+unpacks its images and workers from data and blobs."""
 SAFE_HEADERS = {
     "Content-Security-Policy": POLICY,
     "X-Content-Type-Options": "nosniff",

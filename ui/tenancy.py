@@ -108,12 +108,12 @@ class Tenancy:
 
 def _words(holder: Holder | None) -> str:
     if holder is None or not holder.living:
-        told = "**Only shown here:** the workbench that had this project has ended."
-        return f"<span style='color:{AMBER}'>{told}</span>"
+        words = "**Only shown here:** the workbench that had this project has ended."
+        return f"<span style='color:{AMBER}'>{words}</span>"
     where = f" on {holder.host}" if holder.elsewhere else ""
-    told = f"process {holder.pid}{where}, since {holder.since}"
+    words = f"process {holder.pid}{where}, since {holder.since}"
     link = f" [Open it there]({holder.link})." if holder.link.startswith("http") else ""
     return (
         f"<span style='color:{AMBER}'>**Only shown here:** another workbench has this project "
-        f"({plain(told)}).</span>{link}"
+        f"({plain(words)}).</span>{link}"
     )

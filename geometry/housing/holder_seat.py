@@ -127,9 +127,9 @@ def centred(support: Any, others: Sequence[Any]) -> bool:
         support: Manifold of the support.
         others: Manifolds of holder and base.
     """
-    sides = ((PLAY_MM, 0.0), (-PLAY_MM, 0.0), (0.0, PLAY_MM), (0.0, -PLAY_MM))
+    shifts = ((PLAY_MM, 0.0), (-PLAY_MM, 0.0), (0.0, PLAY_MM), (0.0, -PLAY_MM))
     # Lifted off the base by a hair: faces in one plane may share slivers.
-    moved = [support.translate((x, y, LIFT_MM)) for x, y in sides]
+    moved = [support.translate((x, y, LIFT_MM)) for x, y in shifts]
     return all(any((one ^ other).volume() > TOUCH_MM3 for other in others) for one in moved)
 
 

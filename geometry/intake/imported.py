@@ -24,7 +24,7 @@ from geometry.intake.labelling import (
     patches,
     renumbered,
 )
-from geometry.intake.shell import two_sides
+from geometry.intake.shell import outer_and_inner
 from geometry.surface.offset import inset_surface
 from geometry.surface.surface import face_areas, mesh_volume
 from workbench.core.base.errors import DesignError
@@ -68,9 +68,9 @@ def build_imported(
     turn = _rotation(shape)
     outer, shift = _placed(body.outer, turn, shape.cut_mm)
     monitor(0.2, "offsetting the wall")
-    notice, sides = body.notice, two_sides(outer) if body.inner is None else None
-    if sides is not None:
-        outer, core = sides
+    notice, own_wall = body.notice, outer_and_inner(outer) if body.inner is None else None
+    if own_wall is not None:
+        outer, core = own_wall
         wall = _expect_inside(outer, core)
         thick = f"{wall.least_mm:.2g} to {wall.most_mm:.2g} mm thick"
         shell = (

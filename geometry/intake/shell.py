@@ -21,7 +21,7 @@ STRAY_SHARE = 1e-4
 """Pieces with less of the area than this are nothing."""
 
 
-def two_sides(body: Any) -> tuple[Any, Any] | None:
+def outer_and_inner(body: Any) -> tuple[Any, Any] | None:
     """The filled outer body and what hollows it, as manifolds; None where it is no shell.
 
     Args:
@@ -38,11 +38,11 @@ def two_sides(body: Any) -> tuple[Any, Any] | None:
     if len(kept) != 2:
         return None
     lidded = [_lidded(points, faces[piece == k], numbers[piece == k]) for k in kept]
-    sides = [side for side in lidded if side is not None]
-    if len(sides) != 2:
+    bodies = [found for found in lidded if found is not None]
+    if len(bodies) != 2:
         return None
-    sides.sort(key=lambda side: -abs(side[0]))
-    (outer_mm3, *outer), (inner_mm3, points, faces, numbers) = sides
+    bodies.sort(key=lambda found: -abs(found[0]))
+    (outer_mm3, *outer), (inner_mm3, points, faces, numbers) = bodies
     # Seen from the elastomer the inside faces into the cavity.
     if not (outer_mm3 > 0.0 > inner_mm3) or -inner_mm3 < LEAST_SHARE * outer_mm3:
         return None

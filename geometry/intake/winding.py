@@ -146,8 +146,8 @@ def _of_the_others(
     border, where the body is as good as a few hundred dipoles. Without an open hole it is nearly
     constant.
     """
-    sides = [np.linspace(0, n - 1, BORDER_PLACES) for n in grid.size]
-    where = np.stack(np.meshgrid(*sides, indexing="ij"), axis=-1).reshape(-1, 3)
+    axes = [np.linspace(0, n - 1, BORDER_PLACES) for n in grid.size]
+    where = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
     ends = np.array(grid.size) - 1.0
     where = where[((where == 0.0) | (where == ends)).any(axis=1)].round()
     middle = ends / 2

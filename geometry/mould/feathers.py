@@ -105,9 +105,9 @@ def _edges(faces: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 def _heights_mm(corners: np.ndarray) -> np.ndarray:
     """Least height of triangles, shape (M,), from their corners, shape (M, 3, 3)."""
-    sides = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2).max(axis=1)
+    longest_mm = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2).max(axis=1)
     cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    return np.linalg.norm(cross, axis=1) / np.maximum(sides, 1e-300)
+    return np.linalg.norm(cross, axis=1) / np.maximum(longest_mm, 1e-300)
 
 
 def _along(start_mm: np.ndarray, stop_mm: np.ndarray) -> np.ndarray:

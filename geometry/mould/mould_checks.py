@@ -112,8 +112,8 @@ def _core(cast: Cast, way: np.ndarray) -> Iterator[FabricationCheck]:
     if cast.core is None:
         return
     places = spread(cast.core.points_mm, cast.core.faces)
-    sides = places.points_mm[:, 2] > cast.base_mm + 1e-3
-    part = Spread(places.points_mm[sides], places.normals[sides], places.area_mm2)
+    above_base = places.points_mm[:, 2] > cast.base_mm + 1e-3
+    part = Spread(places.points_mm[above_base], places.normals[above_base], places.area_mm2)
     # The core leaves downward inside the silicone: its facets must look up, away from the pull.
     draft = draft_deg(part, -way)
     yield check(

@@ -70,8 +70,8 @@ def confined_strain(cast: Cast, pull: np.ndarray) -> Worst:
     if core is None:
         return Worst(0.0, (0.0, 0.0, 0.0))
     places = spread(core.points_mm, core.faces, SAMPLES)
-    sides = places.points_mm[:, 2] > cast.base_mm + LIFT_MM
-    start = (places.points_mm - LIFT_MM * places.normals)[sides]
+    above_base = places.points_mm[:, 2] > cast.base_mm + LIFT_MM
+    start = (places.points_mm - LIFT_MM * places.normals)[above_base]
     places_mm = _along(_through(core, start, pull, cast.base_mm))
     if not len(places_mm):
         return Worst(0.0, (0.0, 0.0, 0.0))

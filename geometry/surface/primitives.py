@@ -135,11 +135,11 @@ def _revolved(radius: np.ndarray, height: np.ndarray) -> tuple[np.ndarray, np.nd
     number = np.arange(inner * AROUND).reshape(inner, AROUND)
     beside = np.roll(number, -1, axis=1)
     low, low_beside, up, up_beside = number[:-1], beside[:-1], number[1:], beside[1:]
-    sides = [np.stack([low, low_beside, up_beside], -1), np.stack([low, up_beside, up], -1)]
+    mantle = [np.stack([low, low_beside, up_beside], -1), np.stack([low, up_beside, up], -1)]
     bottom, top = inner * AROUND, inner * AROUND + 1
     caps = [
         np.stack([beside[0], number[0], np.full(AROUND, bottom)], -1),
         np.stack([number[-1], beside[-1], np.full(AROUND, top)], -1),
     ]
-    faces = np.concatenate([part.reshape(-1, 3) for part in (*sides, *caps)])
+    faces = np.concatenate([part.reshape(-1, 3) for part in (*mantle, *caps)])
     return points, faces.astype(np.int32)

@@ -93,20 +93,20 @@ def _split(faces: np.ndarray, middle: np.ndarray) -> tuple[np.ndarray, np.ndarra
         3: ((0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)),
     }
     for cuts, pattern in patterns.items():
-        rows = np.flatnonzero(count == cuts)
-        if not len(rows):
+        cut = np.flatnonzero(count == cuts)
+        if not len(cut):
             continue
         # One cut: start there. Two: start at the first of the two in a row. Three: anywhere.
-        missing = np.argmin(middle[rows] >= 0, axis=1)
-        turn = {1: np.argmax(middle[rows] >= 0, axis=1), 2: (missing + 1) % 3, 3: 0 * missing}[cuts]
+        missing = np.argmin(middle[cut] >= 0, axis=1)
+        turn = {1: np.argmax(middle[cut] >= 0, axis=1), 2: (missing + 1) % 3, 3: 0 * missing}[cuts]
         order = (turn[:, None] + np.arange(3)) % 3
         corners = np.hstack(
             [
-                np.take_along_axis(faces[rows], order, axis=1),
-                np.take_along_axis(middle[rows], order, axis=1),
+                np.take_along_axis(faces[cut], order, axis=1),
+                np.take_along_axis(middle[cut], order, axis=1),
             ]
         )
         for piece in pattern:
             pieces.append(corners[:, piece])
-            owner.append(rows)
+            owner.append(cut)
     return np.concatenate(pieces), np.concatenate(owner)

@@ -171,8 +171,8 @@ def _boundary(sheets: Sheets, layers: int) -> dict[Label, np.ndarray]:
     if sheets.rim is Label.OUTER:
         lower = sheets.ring + sheet * np.arange(layers)[:, None]
         beside = np.roll(lower, -1, axis=1)
-        sides = np.stack([lower, beside, beside + sheet, lower + sheet], axis=-1)
-        outer = np.concatenate([outer, sides.reshape(-1, 4)])
+        rim_faces = np.stack([lower, beside, beside + sheet, lower + sheet], axis=-1)
+        outer = np.concatenate([outer, rim_faces.reshape(-1, 4)])
     return {Label.OUTER: outer, Label.INNER: sheets.quads}
 
 

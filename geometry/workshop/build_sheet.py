@@ -29,7 +29,7 @@ td,th{padding:3px 14px 3px 0;text-align:left;border-bottom:1px solid #e3e6ea;ver
 img{max-width:100%}
 @media print{body{margin:0}}
 """
-PICTURE = "exploded.png"
+DRAWING = "exploded.png"
 TOLERATED = "within tolerance"
 MARKS = {Severity.GOOD: "good", Severity.WARNING: "look", Severity.BAD: "BAD"}
 
@@ -51,7 +51,7 @@ def build_sheet_html(
     sections = [
         f"<h1>Build sheet of {html.escape(head.name)}</h1>",
         _table((), _head(head, recipe)),
-        f'<img src="{PICTURE}" alt="mould and sensor, drawn apart" onerror="this.remove()">',
+        f'<img src="{DRAWING}" alt="mould and sensor, drawn apart" onerror="this.remove()">',
         "".join(f"<p>{html.escape(text)}.</p>" for text in notices if text),
         "<h2>Silicone</h2>" + _table((), _silicone(recipe)),
         "<h2>Steps</h2><ol>"

@@ -54,7 +54,7 @@ class Balance:
     """Numbers of the contact points that touch, shape (T,)."""
     traction: Traction
     """At those points."""
-    rows: np.ndarray
+    touching_faces: np.ndarray
     """Faces that hold them, shape (F,)."""
     face_N_mm: np.ndarray | None
     """Stiffness of contact of those faces, shape (F, 12, 12)."""
@@ -108,8 +108,8 @@ def balance(
     )
     held = None if lag is None else lag.take(members)
     pull = traction(load.law, touch, lag=held, convex=convex)
-    rows, spots = _by_face(members, faces.areas_mm2.shape)
-    meeting = faces.take(rows)
+    touching_faces, spots = _by_face(members, faces.areas_mm2.shape)
+    meeting = faces.take(touching_faces)
     contact_N = body.system.gather(meeting.nodes, meeting.forces(_spread(pull.total_MPa, spots)))
     gel_N, gel_Nmm = body.spring_forces(displacement_mm)
     internal_N = body.system.gather(body.elements.cells, elements.force_N)
@@ -133,7 +133,7 @@ def balance(
         distance_mm=distance_mm,
         members=members,
         traction=pull,
-        rows=rows,
+        touching_faces=touching_faces,
         face_N_mm=None if bent is None else meeting.stiffness(_spread(bent, spots)),
     )
 
@@ -144,8 +144,8 @@ Spots = tuple[np.ndarray, np.ndarray, tuple[int, int]]
 def _by_face(members: np.ndarray, shape: tuple[int, ...]) -> tuple[np.ndarray, Spots]:
     """Faces that hold the points, and (row, point) of each among them."""
     face, point = np.divmod(members, shape[1])
-    rows, row = np.unique(face, return_inverse=True)
-    return rows, (row, point, (len(rows), shape[1]))
+    touching_faces, row = np.unique(face, return_inverse=True)
+    return touching_faces, (row, point, (len(touching_faces), shape[1]))
 
 
 def _spread(values: np.ndarray, spots: Spots) -> np.ndarray:

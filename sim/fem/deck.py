@@ -132,9 +132,9 @@ def _law_lines(shear_MPa: float, bulk_MPa: float, *, linear: bool) -> list[str]:
 
 def _contact(case: DeckCase, mesh: DeckMesh) -> list[str]:
     body, law = case.submodel.body, case.law
-    elements, sides = face_numbers(body.elements.cells, body.faces.nodes)
-    pairs = zip(elements.tolist(), sides.tolist(), strict=True)
-    lines = ["*SURFACE, NAME=SSKIN", *(f"{element + 1}, S{side}" for element, side in pairs)]
+    elements, numbers = face_numbers(body.elements.cells, body.faces.nodes)
+    pairs = zip(elements.tolist(), numbers.tolist(), strict=True)
+    lines = ["*SURFACE, NAME=SSKIN", *(f"{element + 1}, S{number}" for element, number in pairs)]
     first = len(mesh.cells) + 1
     lines += ["*SURFACE, NAME=SOBJ", *(f"{first + t}, S1" for t in range(len(case.shell.wedges)))]
     lines += ["*SURFACE INTERACTION, NAME=TOUCH"]

@@ -51,15 +51,15 @@ class Elements:
     linear: bool = False
     """Hooke's law instead of the neo-Hookean one."""
 
-    def take(self, rows: slice) -> Elements:
+    def take(self, part: slice) -> Elements:
         """Some of the elements."""
         return dataclasses.replace(
             self,
-            cells=self.cells[rows],
-            slopes=self.slopes[rows],
-            weights_mm3=self.weights_mm3[rows],
-            shear_MPa=self.shear_MPa[rows],
-            bulk_MPa=self.bulk_MPa[rows],
+            cells=self.cells[part],
+            slopes=self.slopes[part],
+            weights_mm3=self.weights_mm3[part],
+            shear_MPa=self.shear_MPa[part],
+            bulk_MPa=self.bulk_MPa[part],
         )
 
     @property

@@ -178,7 +178,7 @@ def _predicted(
     moved_mm = state.displacement_mm + held_mm
     known = balance(body, old, state.displacement_mm)
     assert known is not None and known.face_N_mm is not None
-    nodes = body.faces.nodes[known.rows]
+    nodes = body.faces.nodes[known.touching_faces]
     corners_mm = (body.points_mm + state.displacement_mm)[nodes]
     way_mm = new.pose.carried(corners_mm, old.pose) - corners_mm
     pushed = known.face_N_mm @ (way_mm - held_mm[nodes]).reshape(-1, 12, 1)

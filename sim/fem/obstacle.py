@@ -1,10 +1,10 @@
 """The rigid object as Newton's method needs it: distance, gradient and curvature, in float64.
 
-Distance and gradient are those of `sim.contact.objects.shapes`; the second derivatives are added
-here, in closed form for sphere, cylinders, cube and cone, and as those of the B-spline for
-objects that are sampled, where they are constant within a sample's cell.
-A shape of revolution has the distance d(rho, z), so H = d_rr r r^T + d_rz (r z^T + z r^T) +
-d_zz z z^T + (d_r / rho) t t^T with the unit vectors r, t, z of cylindrical coordinates.
+Distance and gradient are those of `sim.contact.objects.shape_distance`; the second derivatives are
+added here, in closed form for sphere, cylinders, cube and cone, and as those of the B-spline for
+objects that are sampled, where they are constant within a sample's cell. A shape of revolution has
+the distance d(rho, z), so H = d_rr r r^T + d_rz (r z^T + z r^T) + d_zz z z^T + (d_r / rho) t t^T
+with the unit vectors r, t, z of cylindrical coordinates.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 
 from sim.contact.grid.stencil import line_slopes, line_weights
 from sim.contact.objects.collider import Collider
-from sim.contact.objects.shapes import TINY_MM
+from sim.contact.objects.shape_distance import TINY_MM
 from workbench.core.objects.kind import Shape
 
 CURVES = np.array([1.0, -2.0, 1.0])

@@ -96,8 +96,8 @@ def cut_out(
     held = cut | (drive >= 0) | (bonded & free_base)
     moduli = moduli_MPa_at(material, mesh.outer, points_mm[nodes][cells].mean(axis=1))
     local_mm = points_mm[nodes]
-    sides = boundary(cells)
-    sides = sides[(outer[sides] >= 0).all(axis=1) & ~held[sides].all(axis=1)]
+    faces = boundary(cells)
+    faces = faces[(outer[faces] >= 0).all(axis=1) & ~held[faces].all(axis=1)]
     springs, stiffness = _gel(mesh, material, local_mm, boundary(cells), inner)
     rigid = math.isfinite(radius_mm) and not len(springs.nodes)
     near = int((away_mm[kept] < near_mm).sum())
@@ -113,7 +113,7 @@ def cut_out(
             linear=material.law is Law.LINEAR,
         ),
         near=near,
-        faces=make_faces(local_mm, sides),
+        faces=make_faces(local_mm, faces),
         held=held,
         driven=drive >= 0,
         springs=springs,
@@ -148,11 +148,11 @@ def hexahedra_of(mesh: MembraneMesh) -> VolumeMesh:
 
 def boundary(cells: np.ndarray) -> np.ndarray:
     """Faces that belong to one cell only, shape (Q, 4), counter-clockwise from outside."""
-    sides = cells[:, SIDES].reshape(-1, 4)
+    faces = cells[:, SIDES].reshape(-1, 4)
     _, first, count = np.unique(
-        np.sort(sides, axis=1), axis=0, return_index=True, return_counts=True
+        np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True
     )
-    return sides[np.sort(first[count == 1])]
+    return faces[np.sort(first[count == 1])]
 
 
 def _skin_vertices(mesh: MembraneMesh, points_mm: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -188,20 +188,20 @@ def _gel(
     mesh: MembraneMesh,
     material: Elastomer,
     points_mm: np.ndarray,
-    sides: np.ndarray,
+    faces: np.ndarray,
     inner: np.ndarray,
 ) -> tuple[Faces, np.ndarray]:
     """Faces that rest on gel, and their stiffness: k along the normal, a third of it sideways."""
     backed = np.unique(mesh.inner.faces[backed_faces(mesh)])
-    resting = sides[_members(inner, backed)[sides].all(axis=1)]
+    resting = faces[_members(inner, backed)[faces].all(axis=1)]
     unit = foundation_N_mm3(mesh, material)
     if unit == 0.0:
         resting = resting[:0]
-    faces = make_faces(points_mm, resting)
+    supported = make_faces(points_mm, resting)
     corners = points_mm[resting]
     normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
     pairs = normal[:, :, None] * normal[:, None, :]
     moduli = unit * (SIDEWAYS * np.eye(3) + (1.0 - SIDEWAYS) * pairs)
-    spread = np.repeat(moduli[:, None], faces.areas_mm2.shape[1], axis=1)
-    return faces, faces.stiffness(spread)
+    spread = np.repeat(moduli[:, None], supported.areas_mm2.shape[1], axis=1)
+    return supported, supported.stiffness(spread)

@@ -86,7 +86,8 @@ class Tangent:
             elements_N_mm = state.elements.tangent_N_mm
         assert elements_N_mm is not None and state.face_N_mm is not None
         found = self._system.matrix(
-            (self._cell_slots, elements_N_mm), (self._face_slots[state.rows], state.face_N_mm)
+            (self._cell_slots, elements_N_mm),
+            (self._face_slots[state.touching_faces], state.face_N_mm),
         )
         found.data += self._constant
         return found

@@ -13,7 +13,7 @@ from workbench.pipeline.store import Store
 from workbench.planning.plan import InlineRunner, evaluate, plan
 from workbench.project.aim import skin_place
 from workbench.project.named_designs import load_design, presets
-from workbench.view.previews import outer_faces
+from workbench.view.scene_shapes import outer_faces
 
 KEPT_MM = 0.1
 LARGEST = 40

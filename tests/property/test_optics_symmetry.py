@@ -24,7 +24,7 @@ ONE_LEVEL = 1
 """Float32 sums in another order can fall to the other side of a rounding border."""
 
 
-def picture(optics: Optics, at_mm: tuple[float, float, float] | None = None) -> TactileFrames:
+def rendered(optics: Optics, at_mm: tuple[float, float, float] | None = None) -> TactileFrames:
     mesh = finger(edge_mm=1.0)
     light = bake_light(mesh, optics.ring, model=optics.light_model)
     if at_mm is None:
@@ -58,7 +58,7 @@ def test_turning_the_camera_by_120_degrees_permutes_the_colours(model: LightMode
 
 def test_a_dent_at_plus_x_appears_on_the_right() -> None:
     """Camera +X is sensor +X: all changed pixels lie right of the centre, none of them left."""
-    frames = picture(Optics(camera=SMALL, light_model=LightModel.DIRECT), DENT_MM)
+    frames = rendered(Optics(camera=SMALL, light_model=LightModel.DIRECT), DENT_MM)
     columns = np.flatnonzero(frames.moved[1].any(axis=0))
     rows = np.flatnonzero(frames.moved[1].any(axis=1))
     assert columns.min() > 60
@@ -67,22 +67,22 @@ def test_a_dent_at_plus_x_appears_on_the_right() -> None:
 
 def test_a_dent_at_plus_y_appears_below() -> None:
     """Camera +Y is down: all changed pixels lie below the centre."""
-    frames = picture(Optics(camera=SMALL, light_model=LightModel.DIRECT), (0.0, 15.0, 22.0))
+    frames = rendered(Optics(camera=SMALL, light_model=LightModel.DIRECT), (0.0, 15.0, 22.0))
     assert np.flatnonzero(frames.moved[1].any(axis=1)).min() > 60
 
 
 def test_twice_the_power_is_the_same_image() -> None:
     """Exposure follows the power: half the gain and equal pixels."""
-    single = picture(Optics(camera=SMALL, light_model=LightModel.DIRECT))
-    double = picture(Optics(camera=SMALL, ring=LedRing(power=2.0), light_model=LightModel.DIRECT))
+    single = rendered(Optics(camera=SMALL, light_model=LightModel.DIRECT))
+    double = rendered(Optics(camera=SMALL, ring=LedRing(power=2.0), light_model=LightModel.DIRECT))
     assert double.exposure == pytest.approx(single.exposure / 2, rel=1e-5)
     assert np.abs(double.rgb.astype(int) - single.rgb).max() <= ONE_LEVEL
 
 
 def test_a_mirrored_dent_gives_the_mirrored_depth() -> None:
     """Reflecting y reflects the rows of depth_z; the mesh has the same symmetry."""
-    above = picture(Optics(camera=SMALL, light_model=LightModel.DIRECT), (0.0, -15.0, 22.0))
-    below = picture(Optics(camera=SMALL, light_model=LightModel.DIRECT), (0.0, 15.0, 22.0))
+    above = rendered(Optics(camera=SMALL, light_model=LightModel.DIRECT), (0.0, -15.0, 22.0))
+    below = rendered(Optics(camera=SMALL, light_model=LightModel.DIRECT), (0.0, 15.0, 22.0))
     difference = above.depth_z_mm[1] - below.depth_z_mm[1][::-1]
     # Diagonals of the quads do not mirror. The dent curves with radius r^2 / (4 depth) = 3.3 mm,
     # so that chords of 1 mm edges lie up to 1 / (8 x 3.3) = 0.04 mm beside it.

@@ -60,8 +60,8 @@ def test_draft_of_a_cone_is_its_half_angle() -> None:
     """Radius 10 to 5 over 20 mm: atan(1 / 4) = 14.04 degrees."""
     cone = body(csg.Cone(low_radius_mm=10, high_radius_mm=5, low_mm=0, high_mm=20))
     places = spread(cone.points_mm, cone.faces)
-    sides = np.abs(places.normals[:, 2]) < 0.9
-    part = places._replace(points_mm=places.points_mm[sides], normals=places.normals[sides])
+    upright = np.abs(places.normals[:, 2]) < 0.9
+    part = places._replace(points_mm=places.points_mm[upright], normals=places.normals[upright])
     # Facets of a 64-gon are steeper than the cone by 0.1 % at most.
     assert draft_deg(part, UP).value == pytest.approx(np.degrees(np.arctan(0.25)), abs=0.05)
 

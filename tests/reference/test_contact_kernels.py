@@ -287,7 +287,7 @@ def test_affine_field_has_no_interior_force(taichi_device: str) -> None:
 
 def test_mesh_distance_equals_the_twin(taichi_device: str) -> None:
     """The sampled distance of a box: band exact to 1e-5 mm, sign exact, at every sample."""
-    from sim.contact.objects.distance import BAND_SAMPLES, _distance, _inside
+    from sim.contact.objects.mesh_distance import BAND_SAMPLES, _distance, _inside
     from sim.contact.objects.samples import SampleGrid
 
     mesh, spacing = box_mesh(1.0), 0.25

@@ -13,7 +13,7 @@ from designs.imported import ImportedShape
 from geometry.body.csg_mesh import closed
 from geometry.intake.imported import build_imported
 from geometry.intake.intake import read_body
-from geometry.intake.shell import two_sides
+from geometry.intake.shell import outer_and_inner
 from geometry.surface.isosurface import distance_mm, isosurface
 from geometry.surface.offset import inset_surface, inside
 from geometry.surface.surface import face_areas, is_watertight, mesh_volume
@@ -285,7 +285,7 @@ def test_a_thick_block_with_a_bore_is_no_shell() -> None:
     bore = trimesh.creation.cylinder(4.0, 20.0)
     bore.apply_translation((0.0, 0.0, -15.0))
     made = trimesh.boolean.difference([block, bore], engine="manifold")
-    assert two_sides(closed("b", np.add(made.vertices, [0, 0, 15.0]), made.faces)) is None
+    assert outer_and_inner(closed("b", np.add(made.vertices, [0, 0, 15.0]), made.faces)) is None
 
 
 @pytest.mark.parametrize(("slot_mm", "said"), [(4.95, "is 0.05 mm at"), (7.0, "is -2 mm at")])

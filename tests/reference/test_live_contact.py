@@ -7,7 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from sim.contact.live import LiveContact, Way, one_frame
+from sim.contact.live_contact import LiveContact, Way, one_frame
 from sim.contact.press import press_membrane
 from sim.contact.studies.specimens import flat_block
 from workbench.core.base.errors import Cancelled

@@ -13,7 +13,7 @@ from geometry.volume.hexmesh import mesh_membrane
 from geometry.volume.lattice import material_points
 from geometry.volume.quality import quality_report, skin_quality, tetrahedron_quality
 from geometry.volume.tets import boundary_faces, tetrahedra
-from sim.optics.camera.within import inside
+from sim.optics.camera.inside_skin import inside
 from workbench.core.design.design import Meshing
 from workbench.core.result.results import Label, MembraneMesh, Skin, Solid, VolumeMesh, region_masks
 from workbench.proof.validation.geometry.meshes import default_solid, family_names, worst_area_error
@@ -36,12 +36,12 @@ def hexahedra(family: str) -> VolumeMesh:
 
 def free_quads(cells: np.ndarray) -> np.ndarray:
     """Sides of hexahedra that belong to one cell; every other must belong to exactly two."""
-    sides = cells[:, CELL_FACES].reshape(-1, 4)
+    faces = cells[:, CELL_FACES].reshape(-1, 4)
     _, first, count = np.unique(
-        np.sort(sides, axis=1), axis=0, return_index=True, return_counts=True
+        np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True
     )
     assert set(np.unique(count)) == {1, 2}
-    return sides[first[count == 1]]
+    return faces[first[count == 1]]
 
 
 def test_exactly_these_families_have_hexahedra() -> None:

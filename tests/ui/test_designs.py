@@ -1,4 +1,4 @@
-"""A designer starts from a picture, changes what it is made of, and keeps it under a name."""
+"""A designer starts from a thumbnail, changes what it is made of, and keeps it under a name."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ pytestmark = [pytest.mark.ui, pytest.mark.slow]
 Start = Callable[..., Server]
 
 
-def test_start_from_a_picture_and_keep_it(tmp_path: Path, page: Any, start_server: Start) -> None:
+def test_start_from_a_thumbnail_and_keep_it(tmp_path: Path, page: Any, start_server: Start) -> None:
     """Gallery, trunk, silicone, name, save, duplicate, open: files and widgets agree."""
     project = coarse_project(tmp_path)
     server = start_server(project)
@@ -61,7 +61,7 @@ def test_start_from_a_picture_and_keep_it(tmp_path: Path, page: Any, start_serve
     wait_until(lambda: slider_value(page, "Width mm") == 34, 20, "the kept design is open")
 
 
-def test_a_small_picture_follows_the_sliders(
+def test_an_image_preview_follows_the_sliders(
     pressed_project: Path, page: Any, start_server: Start
 ) -> None:
     """Shape, light and depth each change the preview; an undo brings the rendered image back."""
@@ -100,8 +100,8 @@ def test_results_follow_by_themselves_once_edits_settle(
     wait_until(lambda: page.get_by_text("Image ✓").count(), 180, "the image follows by itself")
 
 
-def test_objects_are_chosen_from_pictures(tmp_path: Path, page: Any, start_server: Start) -> None:
-    """A click on the cube's picture makes it the object, under its label."""
+def test_objects_are_chosen_from_thumbnails(tmp_path: Path, page: Any, start_server: Start) -> None:
+    """A click on the cube's thumbnail makes it the object, under its label."""
     server = start_server(coarse_project(tmp_path))
     open_page(page, server.url)
     stop_first_press(page)

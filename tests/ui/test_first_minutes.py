@@ -66,7 +66,7 @@ def test_help_opens_on_every_panel_also_in_a_tab_that_follows(
             for who in (editor, follower):
                 who.click(f"Help: {panel}")
                 words = pages()[panel].help.splitlines()[0]
-                who.wait(lambda w=who, t=words: w.told(t[:60]), 10, f"help on {panel}")
+                who.wait(lambda w=who, t=words: w.has_seen(t[:60]), 10, f"help on {panel}")
         shared = [
             Command(label=props["label"], keys=in_words(props["hotkey"], props["modifier"]))
             for props in editor.commands.values()
@@ -79,4 +79,4 @@ def test_help_opens_on_every_panel_also_in_a_tab_that_follows(
         editor.trigger("Keyboard map")
         for command in shared:
             row = f"| {command.label} | {command.keys} |"
-            editor.wait(lambda r=row: editor.told(r), 10, f"the map has {row}")
+            editor.wait(lambda r=row: editor.has_seen(r), 10, f"the map has {row}")

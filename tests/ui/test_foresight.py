@@ -99,7 +99,7 @@ def history(tab: Tab) -> list[str]:
 
 
 def test_empty_places_say_what_fills_them() -> None:
-    """Lines of text in the picture: it is not one grey."""
+    """Lines of text in the image: it is not one grey."""
     from ui.page.imaging import placeholder
     from ui.panels.results.image import CHANGE_COMES, IMAGE_COMES
 

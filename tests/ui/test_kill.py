@@ -89,8 +89,8 @@ class Designer:
             self.tab.wait(lambda: self.tab.closed, seconds, "a pause")
 
     def heard(self, words: str, seconds: float) -> None:
-        self.tab.wait(lambda: self.tab.closed or self.tab.told(words), seconds, words)
-        if not self.tab.told(words):
+        self.tab.wait(lambda: self.tab.closed or self.tab.has_seen(words), seconds, words)
+        if not self.tab.has_seen(words):
             raise TimeoutError(words)
 
     def edit(self) -> None:
@@ -218,7 +218,7 @@ def check_store(root: Path, promised: Promised) -> None:
     """Every result loads and is what it was; new ones are added to what is promised."""
     told: list[str] = []
     store = Store(root / "store")
-    store.told = told.append
+    store.on_message = told.append
     found = results(store.root)
     for folder in found:
         stage, key = folder.parent.name, folder.name

@@ -73,7 +73,7 @@ def test_light_model_lamp_lens_and_views(
     first = image_source(page)
     choose(page, "Show", "normals")
     page.get_by_text("normals toward the camera").wait_for()
-    wait_until(lambda: image_source(page) != first, 20, "the picture is another")
+    wait_until(lambda: image_source(page) != first, 20, "the image is another")
     choose(page, "Show", "depth_z")
     page.get_by_text("depth along the optical axis").wait_for()
     page.screenshot(path=str(tmp_path / "views.png"))

@@ -106,7 +106,9 @@ def test_a_file_of_100_mb_is_refused_before_it_is_kept(server: Server, editor: T
     """Told at its first message; 100 MB of parts leave the server's memory as it was."""
     before = settled_mb(server.process.pid)
     send_file(editor, size=100_000_000, parts=191, content=bytes(PART))
-    editor.wait(lambda: editor.told("big.toml has 100.0 MB, the browser takes 40 MB"), 20, "told")
+    editor.wait(
+        lambda: editor.has_seen("big.toml has 100.0 MB, the browser takes 40 MB"), 20, "told"
+    )
     answered(server, editor, 25.0)
     # A quarter of the file; parts in flight and Python's own habits need some.
     assert memory_mb(server.process.pid) - before < 25.0
@@ -140,7 +142,7 @@ def test_nobody_opens_the_tunnel_or_sets_attributes(server: Server, editor: Tab)
     uuid = editor.uuid(LENGTH)
     editor.send({"type": "GuiUpdateMessage", "uuid": uuid, "updates": {"removed": True}})
     answered(server, editor, 23.0)
-    assert not editor.told("ShareUrlUpdated")
+    assert not editor.has_seen("ShareUrlUpdated")
     log = server.log.read_text()
     assert "share" not in log.lower()
     assert "Traceback" not in log
@@ -244,7 +246,7 @@ def test_no_text_of_others_becomes_markup(tmp_path: Path, start_server: Start) -
     server = start_server(project)
     with Tab(server.url) as tab:
         # The file's name, the design's name and a refusal that quotes both.
-        tab.wait(lambda: tab.told("outer &lt;iframe"), 20, "the body is named")
+        tab.wait(lambda: tab.has_seen("outer &lt;iframe"), 20, "the body is named")
         send_file(
             tab,
             size=len(text := f"family = {named}".encode()),
@@ -252,7 +254,7 @@ def test_no_text_of_others_becomes_markup(tmp_path: Path, start_server: Start) -
             content=text,
             name=f"{MARKUP}.toml",
         )
-        tab.wait(lambda: tab.told("there is no sensor family"), 20, "the family is refused")
+        tab.wait(lambda: tab.has_seen("there is no sensor family"), 20, "the family is refused")
         shown = [
             (key, str(text))
             for _, message in list(tab.seen)

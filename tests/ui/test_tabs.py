@@ -104,14 +104,16 @@ def test_of_two_servers_on_a_project_one_writes(tmp_path: Path, start_server: St
             other.uuid("Take over")
             assert any(server.url in str(widget) for widget in other.widgets.values())
             other.set(LENGTH, 30.0)
-            other.wait(lambda: other.told("Another workbench has this project"), 5, "it is told")
+            other.wait(
+                lambda: other.has_seen("Another workbench has this project"), 5, "it is told"
+            )
             time.sleep(1.5)
             assert saved(server, "shape", "cylinder_mm") == 21.0
             first.set(LENGTH, 22.0)
             wait_until(lambda: saved(server, "shape", "cylinder_mm") == 22.0, 10, "it edits on")
             other.click("Take over")
             other.wait(lambda: other.value(LENGTH) == 22.0, 10, "it has what was edited meanwhile")
-            other.wait(lambda: other.told("This tab edits now"), 10, "it is told that it edits")
+            other.wait(lambda: other.has_seen("This tab edits now"), 10, "it is told that it edits")
             other.set(LENGTH, 30.0)
             wait_until(lambda: saved(server, "shape", "cylinder_mm") == 30.0, 10, "it writes")
             first.uuid("Take over")
@@ -147,7 +149,7 @@ def test_a_tab_that_follows_sees_all_and_changes_nothing(
     assert not editor.find("Edit here")
     follower.set(LENGTH, 20.0)
     follower.wait(lambda: follower.value(LENGTH) == 27.0, 5, "the slider snapped back")
-    follower.wait(lambda: follower.told("Another tab edits. Click"), 5, "it is told why")
+    follower.wait(lambda: follower.has_seen("Another tab edits. Click"), 5, "it is told why")
     follower.trigger("Undo")
     editor.set(LENGTH, 22.0)
     follower.wait(lambda: follower.value(LENGTH) == 22.0, 5, "it sees the edit")
@@ -160,7 +162,7 @@ def test_take_over_and_leave(server: Server, two: tuple[Tab, Tab]) -> None:
     editor, follower = two
     follower.click("Edit here")
     editor.wait(lambda: editor.find("Edit here"), 5, "the former editor follows")
-    assert editor.told("Another tab took over")
+    assert editor.has_seen("Another tab took over")
     follower.wait(lambda: not follower.find("Edit here"), 5, "the other edits")
     editor.set(LENGTH, 20.0)
     editor.wait(lambda: editor.value(LENGTH) == 27.0, 5, "its slider snaps back")
@@ -225,7 +227,7 @@ def test_an_edit_of_the_last_moment_survives_a_stop_in_mid_job(
     server = start_server(coarse_project(tmp_path))
     with Tab(server.url) as editor:
         editor.uuid(LENGTH)
-        wait_until(lambda: editor.told("press: started"), 30, "the example is being pressed")
+        wait_until(lambda: editor.has_seen("press: started"), 30, "the example is being pressed")
         with Tab(server.url) as follower:
             uuid = follower.uuid(LENGTH)
             editor.set(LENGTH, 20.0)

@@ -119,7 +119,7 @@ def test_probe_returns_to_its_pixel(page: Any, server: Server) -> None:
     page.wait_for_timeout(500)
     switch(page, "Probe on click")
     # A click that comes before the box's own message aims the press.
-    page.locator(".probe-picture").wait_for(state="attached")
+    page.locator(".probe-image").wait_for(state="attached")
     page.mouse.click(*MIDDLE)
     pattern = r"pixel (\d+), (\d+) sees (\S+), (\S+), (\S+) mm\s+(\S+) × (\S+) mm per pixel"
     numbers = [float(number) for number in said(page, pattern).groups()]

@@ -84,7 +84,7 @@ def side(name: str, state: State, project: Project, image: Shot | None, grey: fl
     )
 
 
-def picture(width: int, height: int, level: int) -> Shot:
+def made_shot(width: int, height: int, level: int) -> Shot:
     """A press whose last image is brighter than that at rest by `level`."""
     rgb = np.full((2, height, width, 3), 100, np.uint8)
     rgb[1] += np.uint8(level)
@@ -97,9 +97,9 @@ def test_a_comparison_is_self_contained_and_escaped(project: Project) -> None:
     sweep = failed(walls(project), 0, SolveError(HOSTILE))
     compute(project, sweep, 1)
     sweep = done(sweep, 1, project.store, 1.0)
-    a = side(HOSTILE, hostile(finger()), project, picture(40, 30, 5), 3.0)
+    a = side(HOSTILE, hostile(finger()), project, made_shot(40, 30, 5), 3.0)
     other = finger().design.replace("layers.elastomer_mm", 2.5)
-    b = side("b", State(design=other, case=finger().case), project, picture(40, 30, 9), 4.0)
+    b = side("b", State(design=other, case=finger().case), project, made_shot(40, 30, 9), 4.0)
     more = Reported(others=((HOSTILE, {}),), sweep=sweep, metric="contact_change_mean_grey")
     page = check(comparison_page(project.store, a, b, more))
     assert HOSTILE not in page and "&lt;script&gt;" in page
@@ -109,7 +109,7 @@ def test_a_comparison_is_self_contained_and_escaped(project: Project) -> None:
 
 
 def test_a_comparison_without_results_says_so(project: Project) -> None:
-    """Nothing is stored: no image, no picture, no error."""
+    """Nothing is stored: no image, no thumbnail, no error."""
     a, b = (side(name, finger(), project, None, 1.0) for name in "ab")
     page = check(comparison_page(project.store, a, b))
     assert "No image of a and b is stored" in page
@@ -146,21 +146,21 @@ def test_the_plot_has_round_ticks_that_hold_all_values(project: Project) -> None
 
 def test_images_of_other_sizes_are_brought_together_or_refused() -> None:
     """40 x 30 beside 80 x 60 is resampled; beside 40 x 40 there is no difference to show."""
-    same = pair(picture(40, 30, 5), picture(40, 30, 9), Moment.LAST)
+    same = pair(made_shot(40, 30, 5), made_shot(40, 30, 9), Moment.LAST)
     assert same.difference is not None
     # 9 - 5 = 4 grey levels, eight times as strong at most.
     assert np.unique(same.difference).tolist() == [128 + 8 * 4]
-    scaled = pair(picture(40, 30, 5), picture(80, 60, 9), Moment.LAST)
+    scaled = pair(made_shot(40, 30, 5), made_shot(80, 60, 9), Moment.LAST)
     assert scaled.a.shape == scaled.b.shape == (30, 40, 3)
     assert scaled.difference is not None and "resampled" in scaled.words
-    other = pair(picture(40, 30, 5), picture(40, 40, 9), Moment.LAST)
+    other = pair(made_shot(40, 30, 5), made_shot(40, 40, 9), Moment.LAST)
     assert other.difference is None and "proportions differ" in other.words
     assert side_by_side(other).shape == (40, 88, 3)
 
 
 def test_changes_are_strengthened_alike() -> None:
     """A change of 5 levels and one of 100: both by 1, for they are compared by eye."""
-    both = pair(picture(4, 4, 5), picture(4, 4, 100), Moment.CHANGE)
+    both = pair(made_shot(4, 4, 5), made_shot(4, 4, 100), Moment.CHANGE)
     assert np.unique(both.a).tolist() == [133]
     assert np.unique(both.b).tolist() == [228]
     assert "both × 1" in both.words

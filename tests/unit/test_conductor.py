@@ -18,7 +18,7 @@ from workbench.core.press.press import Press
 from workbench.core.press.press_case import PressCase
 from workbench.core.result.sensing import Contact
 from workbench.live.conductor import Conductor
-from workbench.live.live_press import LiveCall, Preview
+from workbench.live.live_press import LiveCall, PressPreview
 from workbench.live.preview_call import PreviewCall
 from workbench.live.requests import LIVE, SHAPE, Finished, PreviewDone, StageDone
 from workbench.pipeline.stage import Call, Outcome
@@ -41,7 +41,7 @@ class Slow:
             monitor(0.1)
         return Outcome(stage=call.stage, key=call.key, cached=False, seconds=0.0)
 
-    def preview(self, call: PreviewCall, monitor: Monitor) -> Preview:
+    def preview(self, call: PreviewCall, monitor: Monitor) -> PressPreview:
         raise AssertionError("no live press was asked for")
 
     def close(self) -> None:
@@ -62,8 +62,8 @@ def design(name: str) -> SensorDesign:
     return SensorDesign(name=name)
 
 
-def submit(conductor: Conductor, topic: str, name: str) -> None:
-    conductor.submit(topic, design(name), PressCase(), ("build",))
+def submit(conductor: Conductor, job: str, name: str) -> None:
+    conductor.submit(job, design(name), PressCase(), ("build",))
 
 
 def finished(conductor: Conductor) -> Finished:
@@ -95,7 +95,7 @@ def test_a_request_replaced_before_it_began_ends_too(conductor: Conductor, slow:
     """Of three the second never begins; whoever waits for it hears that a newer one came."""
     submit(conductor, "press", "first")
     slow.begun.get(timeout=WAIT_S)
-    with conductor._topics["press"]._wake:  # pyright: ignore[reportPrivateUsage]
+    with conductor._threads["press"]._wake:  # pyright: ignore[reportPrivateUsage]
         # The first cannot end meanwhile, so that the second has to wait.
         submit(conductor, "press", "second")
         submit(conductor, "press", "third")
@@ -165,11 +165,11 @@ def test_cancel_leaves_the_live_body_alone(conductor: Conductor, slow: Slow) -> 
         slow.begun.get(timeout=WAIT_S)
     conductor.cancel()
     end = finished(conductor)
-    assert (end.topic, end.superseded) == ("press", False)
+    assert (end.job, end.superseded) == ("press", False)
     assert isinstance(end.error, Cancelled)
     assert conductor.busy
     conductor.cancel(following=True)
-    assert finished(conductor).topic == SHAPE
+    assert finished(conductor).job == SHAPE
     assert not conductor.busy
 
 
@@ -184,7 +184,7 @@ def test_cancelled_waiting_request_is_told(conductor: Conductor, slow: Slow) -> 
     assert not conductor.busy
 
 
-def test_cancel_at_once_never_leaves_a_topic_busy(conductor: Conductor) -> None:
+def test_cancel_at_once_never_leaves_a_job_busy(conductor: Conductor) -> None:
     """Wherever the thread stands when Cancel comes, each request ends once and all is free."""
     for number in range(20):
         submit(conductor, "press", str(number))
@@ -205,12 +205,12 @@ class Previewing(Slow):
     def run(self, call: Call, monitor: Monitor) -> Outcome:
         return Outcome(stage=call.stage, key=call.key, cached=True, seconds=0.0)
 
-    def preview(self, call: PreviewCall, monitor: Monitor) -> Preview:
+    def preview(self, call: PreviewCall, monitor: Monitor) -> PressPreview:
         assert isinstance(call, LiveCall)
         self.depths_mm.put(call.press.depth_mm)
         while not self.release.wait(0.005):
             monitor(0.1)
-        return Preview(
+        return PressPreview(
             contact=cast("Contact", None),
             images=np.zeros((2, 1, 1, 3), np.uint8),
             way=f"{call.press.depth_mm}",
@@ -230,8 +230,8 @@ def test_of_many_drags_the_first_is_stopped_and_only_the_last_is_pressed(tmp_pat
     drag(1.0)
     assert runner.depths_mm.get(timeout=WAIT_S) == 1.0
     # Under the lock of the conductor, so that the thread sees them as one burst.
-    topic = conductor._topics[LIVE]  # pyright: ignore[reportPrivateUsage]
-    with topic._wake:  # pyright: ignore[reportPrivateUsage]
+    thread = conductor._threads[LIVE]  # pyright: ignore[reportPrivateUsage]
+    with thread._wake:  # pyright: ignore[reportPrivateUsage]
         for step in range(20):
             drag(1.0 + 0.01 * (step + 1))
     assert finished(conductor).superseded
@@ -249,7 +249,7 @@ def test_what_follows_the_hand_gives_way_once_it_takes_long(
     conductor: Conductor, slow: Slow, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A shape under the patience goes on beside a newer request; beyond it, it is stopped."""
-    monkeypatch.setattr("workbench.live.request_thread.PATIENCE_S", 0.8)
+    monkeypatch.setattr("workbench.live.job_thread.PATIENCE_S", 0.8)
     conductor.submit(SHAPE, design("first"), PressCase(), ("build",))
     slow.begun.get(timeout=WAIT_S)
     began = time.monotonic()
@@ -271,7 +271,7 @@ def test_a_shape_that_nobody_waits_for_is_stopped(
     conductor: Conductor, slow: Slow, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """An edit taken back: its long build ends without a newer request."""
-    monkeypatch.setattr("workbench.live.request_thread.PATIENCE_S", 0.1)
+    monkeypatch.setattr("workbench.live.job_thread.PATIENCE_S", 0.1)
     conductor.submit(SHAPE, design("first"), PressCase(), ("build",))
     slow.begun.get(timeout=WAIT_S)
     conductor.give_up(SHAPE)
@@ -279,7 +279,7 @@ def test_a_shape_that_nobody_waits_for_is_stopped(
 
 
 def test_cancels_are_counted_between_two_requests_too(conductor: Conductor, slow: Slow) -> None:
-    """One while a request runs, one while none does; a topic never asked for has none."""
+    """One while a request runs, one while none does; a job never asked for has none."""
     assert conductor.cancels("press") == 0
     submit(conductor, "press", "first")
     slow.begun.get(timeout=WAIT_S)

@@ -26,13 +26,13 @@ from workbench.learning.dataset.cases import Split, cases_of
 from workbench.learning.dataset.collect import finish
 from workbench.learning.dataset.estimate import estimate, estimate_text
 from workbench.learning.dataset.folder import DataSet
+from workbench.learning.dataset.json_lines import append_row, read_rows
 from workbench.learning.dataset.lock import held
 from workbench.learning.dataset.recipe import Recipe, load_recipe, recipe_from_toml
 from workbench.learning.dataset.repair import repair
-from workbench.learning.dataset.rows import append_row, read_rows
 from workbench.learning.dataset.sample import Sample, Solved, from_bytes, to_bytes
 from workbench.learning.dataset.solving import Report
-from workbench.learning.dataset.watch import Told, Watch
+from workbench.learning.dataset.watch import SetProgress, Watch
 from workbench.report.image_files import png_bytes
 from workbench.system.lock_file import LOCK
 from workbench.system.whole_files import write_atomically
@@ -74,7 +74,7 @@ def solved(rng: np.random.Generator, *, stress: bool) -> Solved:
 def a_sample(data: DataSet, number: int = 0, frame: int = 0) -> Sample:
     """A made-up sample of a case."""
     case, rng = data.all_cases[number], np.random.default_rng([number, frame])
-    picture = rng.integers(0, 256, (6, 8, 3), dtype=np.uint8)
+    pixels = rng.integers(0, 256, (6, 8, 3), dtype=np.uint8)
     return Sample(
         case=case.id,
         frame=frame,
@@ -88,8 +88,8 @@ def a_sample(data: DataSet, number: int = 0, frame: int = 0) -> Sample:
         tangent_u=np.array([1.0, 0.0, 0.0]),
         mpm=solved(rng, stress=False),
         fem=solved(rng, stress=True),
-        png=png_bytes(picture),
-        png_markers=png_bytes(255 - picture),
+        png=png_bytes(pixels),
+        png_markers=png_bytes(255 - pixels),
     )
 
 
@@ -322,7 +322,7 @@ def test_a_second_process_is_refused(tmp_path: Path) -> None:
 def test_failures_are_counted_and_told(tmp_path: Path) -> None:
     """A case that failed is in the file, the counts and the card, and its samples not awaited."""
     data = started(tmp_path, 3)
-    told: list[Told] = []
+    told: list[SetProgress] = []
     watch = Watch(data, data.all_cases, {case.id: 0 for case in data.all_cases}, 0, told.append)
     for frame in range(4):
         write(data, 0, frame)

@@ -113,7 +113,7 @@ def test_shears_stand_apart_from_presses(data: DataSet) -> None:
     """Two press frames by 0.2 mm, two shear frames by 0.1 mm, at full depth."""
     chosen = expect_held_out(data, "data")
     rows = scored_states(data, chosen, Target.FORCE, oracle(data, Target.FORCE))
-    result = evaluate.FieldResult(target=Target.FORCE, weights="w", rows=tuple(rows))
+    result = evaluate.FieldResult(target=Target.FORCE, weights="w", samples=tuple(rows))
     told = tables(result)
     assert list(told["press_depths_mm"]) == ["0.2", "0.4"]
     assert list(told["shear_ways_mm"]) == ["0.1", "0.2"]
@@ -176,7 +176,7 @@ def test_a_sample_that_was_not_settled_is_left_out_and_told(tmp_path: Path) -> N
     content = to_bytes(dataclasses.replace(sample, mpm=loose))
     write_atomically(data.path(case, frame), content)
     found = evaluate_field(data, Named(name="w", weights=untrained(data)), name="data")
-    assert len(found.rows) == len(states(data)) - 1
+    assert len(found.samples) == len(states(data)) - 1
     assert found.notes == ("1 samples that a solver did not settle: left out",)
 
 

@@ -20,7 +20,7 @@ from workbench.cli import validate_rooms as validate
 from workbench.cli.command_line import main
 from workbench.core.base.errors import DesignError, DeviceError, StoreError
 from workbench.learning.dataset.folder import DataSet
-from workbench.learning.evaluation import charts, heat_maps, pictures
+from workbench.learning.evaluation import charts, heat_maps, sheets
 from workbench.learning.evaluation.published import MAE, over_peak
 from workbench.learning.evaluation.speed import efficiency, efficiency_html
 from workbench.pipeline import shipped
@@ -48,7 +48,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
     """Heat maps in the time of a test."""
     sheet = np.zeros((8, 8, 3), np.uint8)
-    monkeypatch.setattr(pictures, "heat_map", lambda skin, pair: sheet)
+    monkeypatch.setattr(sheets, "heat_map", lambda skin, pair: sheet)
 
 
 def options(folder: Path) -> list[str]:
@@ -57,7 +57,7 @@ def options(folder: Path) -> list[str]:
 
 
 @pytest.mark.usefixtures("undrawn")
-def test_the_command_writes_scores_report_and_pictures(
+def test_the_command_writes_scores_report_and_sheets(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """From data set to page; every number of the JSON is finite or null."""
@@ -131,7 +131,7 @@ def test_a_machine_that_cannot_draw_still_reports(
     def unable(skin: object, pair: object) -> np.ndarray:
         raise DeviceError("no off-screen renderer works here")
 
-    monkeypatch.setattr(pictures, "heat_map", unable)
+    monkeypatch.setattr(sheets, "heat_map", unable)
     words = [str(folder / "base"), *options(folder)[:4], "--no-speed", "--out", str(tmp_path)]
     assert main(["evaluate", *words]) == 0
     assert "not drawn: no off-screen renderer" in (tmp_path / "report.html").read_text()

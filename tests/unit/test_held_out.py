@@ -77,9 +77,9 @@ def test_it_holds_three_frames_of_each_held_out_case(data: DataSet, packed: Path
 def test_scores_are_those_of_the_data_set(data: DataSet, packed: Path) -> None:
     """On the same frames, to the rounding: 1.5e-5 of the peak, against errors of a hundredth."""
     named = Named(name="w", weights=untrained(data))
-    small = compared(evaluate_field(open_source(packed), named, name="packed").rows)
+    small = compared(evaluate_field(open_source(packed), named, name="packed").samples)
     kept = {(case.id, frame) for case, frame in chosen_states(states(data))}
-    rows = evaluate_field(data, named, name="data").rows
+    rows = evaluate_field(data, named, name="data").samples
     full = compared([row for row in rows if (row.case.id, row.frame) in kept])
     for way in Way:
         assert small.ways[way].mae == pytest.approx(full.ways[way].mae, rel=1e-3)

@@ -145,7 +145,7 @@ def test_images_of_a_longer_run_before_go(tmp_path: Path) -> None:
 
 
 def test_a_background_alone_is_written(tmp_path: Path) -> None:
-    """No frames: one picture."""
+    """No frames: one image."""
     frames = frames_of(0, markers=0)
     assert write_images(tmp_path, shot_of(frames)) == ["background.png"]
     assert dataclasses.astuple(frames)[0].shape[0] == 1

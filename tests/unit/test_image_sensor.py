@@ -28,7 +28,7 @@ def scene() -> np.ndarray:
 
 
 def test_defaults_are_the_plain_display() -> None:
-    """Without blur, vignetting, noise and gamma the picture is `encode`, to the bit."""
+    """Without blur, vignetting, noise and gamma the image is `encode`, to the bit."""
     linear = scene()
     ranges = np.full((HEIGHT, WIDTH), 12.0)
     assert np.array_equal(
@@ -51,8 +51,8 @@ def test_noise_follows_the_photon_transfer_curve() -> None:
             assert got.mean() == pytest.approx(light, abs=5.0 * math.sqrt(exact / 480_000))
 
 
-def test_noise_is_seeded_by_picture() -> None:
-    """Equal seed and frame give equal pictures; another frame or seed another one."""
+def test_noise_is_seeded_by_image() -> None:
+    """Equal seed and frame give equal images; another frame or seed another one."""
     linear = scene()
     first, again, frame, seed = (
         develop(linear, camera(ImageSensor(noise=True, seed=number)), exposure=0.3, frame=of)
@@ -109,7 +109,7 @@ def test_a_developed_point_has_the_variance_of_its_disc() -> None:
 
 
 def test_defocus_loses_no_light() -> None:
-    """The sum over the picture is the same to single precision, whatever the blur."""
+    """The sum over the image is the same to single precision, whatever the blur."""
     linear = scene()
     sigma = np.abs(np.linspace(-6.0, 6.0, WIDTH))[None].repeat(HEIGHT, axis=0)
     assert defocus(linear, sigma).sum(dtype=np.float64) == pytest.approx(
@@ -118,7 +118,7 @@ def test_defocus_loses_no_light() -> None:
 
 
 def test_pixels_without_a_range_stay_sharp() -> None:
-    """Where the line of sight meets nothing the picture is that without blur."""
+    """Where the line of sight meets nothing the image is that without blur."""
     ranges = np.full((HEIGHT, WIDTH), np.nan)
     linear = scene()
     got = develop(linear, camera(aperture_mm=2.0), exposure=0.3, range_mm=ranges)

@@ -123,7 +123,7 @@ def test_runs_without_a_common_frame_are_refused(tmp_path: Path) -> None:
 def test_a_damaged_image_is_refused(tmp_path: Path) -> None:
     """It names the file."""
     ours, theirs = write_run(tmp_path / "ours", 9), write_run(tmp_path / "theirs", 9)
-    (ours / "frame_001.png").write_bytes(b"not a picture")
+    (ours / "frame_001.png").write_bytes(b"not an image")
     assert "frame_001.png cannot be read" in refused(ours, theirs).message
 
 
@@ -165,7 +165,7 @@ def test_a_summary_of_something_else_is_refused(
 
 
 def test_only_numbered_frames_are_compared(tmp_path: Path) -> None:
-    """A picture frame_x.png of the designer's own is passed over."""
+    """An image frame_x.png of the designer's own is passed over."""
     ours, theirs = write_run(tmp_path / "ours", 9), write_run(tmp_path / "theirs", 9)
     for run in (ours, theirs):
         (run / "frame_x.png").write_bytes((run / "frame_000.png").read_bytes())

@@ -10,7 +10,7 @@ import pytest
 from geometry.surface.surface import is_watertight, mesh_volume
 from sim.contact.motion.approach import plan_approach
 from sim.contact.objects.collider import make_collider
-from sim.contact.objects.solids import lowest_mm, solid
+from sim.contact.objects.object_measures import exact_distance, lowest_mm
 from sim.contact.studies.specimens import flat_block
 from workbench.core.base.errors import DesignError
 from workbench.core.objects.kind import kind_of
@@ -80,7 +80,7 @@ def test_table_holds_the_papers_fourteen_in_order() -> None:
 @pytest.mark.parametrize("kind", NEW)
 def test_exact_distance_has_slope_one(kind: IndenterKind) -> None:
     """Central differences of 1e-5 mm: 1, but for 1 place in 100 beside the medial axis."""
-    function, where = solid(Indenter(kind=kind)), places()
+    function, where = exact_distance(Indenter(kind=kind)), places()
     steps = 1e-5 * np.eye(3)
     rise = [(function(where + step) - function(where - step)) / 2e-5 for step in steps]
     slope = np.linalg.norm(rise, axis=0)
@@ -92,7 +92,7 @@ def test_exact_distance_has_slope_one(kind: IndenterKind) -> None:
 def test_sampled_distance_is_the_exact_one(kind: IndenterKind) -> None:
     """Within half a millimetre of the surface: 2 um in the median, a fifth of a sample at worst."""
     indenter, where = Indenter(kind=kind), places()
-    exact = solid(indenter)(where)
+    exact = exact_distance(indenter)(where)
     near = np.abs(exact) < 0.5
     error = np.abs(make_collider(indenter, grid_mm=0.5).distance(where)[0] - exact)[near]
     assert np.median(error) < 2e-3
@@ -104,7 +104,10 @@ def test_sampled_distance_is_the_exact_one(kind: IndenterKind) -> None:
 def test_far_away_the_distance_is_a_positive_lower_bound(kind: IndenterKind) -> None:
     """20 mm about a 6 mm object: never more than the exact distance, never below zero."""
     indenter, where = Indenter(kind=kind), places(reach_mm=20.0)
-    exact, found = solid(indenter)(where), make_collider(indenter, grid_mm=0.5).distance(where)[0]
+    exact, found = (
+        exact_distance(indenter)(where),
+        make_collider(indenter, grid_mm=0.5).distance(where)[0],
+    )
     outside = exact > 1.5
     assert (found[outside] > 0.0).all()
     assert (found[outside] < exact[outside] + 0.02).all()
@@ -165,7 +168,7 @@ def test_rounded_edge_has_its_radius() -> None:
 
     And on the rim of a face, 45 degrees to it, by r (sqrt 2 - 1).
     """
-    function = solid(Indenter(kind=IndenterKind.HEXAGON, edge_radius_mm=0.45))
+    function = exact_distance(Indenter(kind=IndenterKind.HEXAGON, edge_radius_mm=0.45))
     corner = function(np.array([[3.0, 0.0, 0.0]]))
     assert corner[0] == pytest.approx(0.45 * (2 / 3**0.5 - 1))
     flat = 3.0 * 3**0.5 / 2
@@ -191,7 +194,7 @@ def test_edge_radius_has_a_limit_by_kind(kind: IndenterKind) -> None:
     widest = widest_edge_mm(kind, 6.0)
     low = lowest_mm(Indenter(kind=kind, edge_radius_mm=widest))
     assert low > 1.0
-    function = solid(Indenter(kind=kind, edge_radius_mm=widest))
+    function = exact_distance(Indenter(kind=kind, edge_radius_mm=widest))
     assert (function(places()) < 0.0).any()
     with pytest.raises(DesignError, match="edge radius") as caught:
         Indenter(kind=kind, edge_radius_mm=1.01 * widest)

@@ -111,7 +111,7 @@ def test_bad_files_say_what_is_wrong(tmp_path: Path, case: str) -> None:
 @pytest.mark.parametrize("kind", PRIMITIVES)
 def test_display_meshes_are_closed_and_on_the_shape(kind: IndenterKind, edge_mm: float) -> None:
     """Vertices lie on the very surface that contact uses, to rounding."""
-    from sim.contact.objects.shapes import analytic_size, evaluate
+    from sim.contact.objects.shape_distance import analytic_size, evaluate
 
     indenter = Indenter(kind=kind, edge_radius_mm=edge_mm)
     points, faces = display_mesh(indenter)

@@ -14,7 +14,7 @@ from ui.desk.jobs import Jobs
 from workbench.core.base.errors import Cancelled, DesignError
 from workbench.core.design.design import SensorDesign
 from workbench.core.press.press_case import PressCase
-from workbench.live.requests import GLIMPSE, PREDICTION, SHAPE, Finished, Request
+from workbench.live.requests import IMAGE_PREVIEW, PREDICTION, SHAPE, Finished, Request
 from workbench.planning.stage_table import STAGES
 
 
@@ -30,15 +30,15 @@ class Told:
     def guarded(self, handler: Any) -> Any:
         return handler
 
-    def report(self, error: DesignError, *, topic: str) -> None:
-        self.errors.append((error.message, topic))
+    def report(self, error: DesignError, *, job: str) -> None:
+        self.errors.append((error.message, job))
 
 
-def failed(topic: str) -> Finished:
+def failed(job: str) -> Finished:
     """A request whose body could not be built."""
     request = Request(design=SensorDesign(name="any"), case=PressCase(), wanted=("press",))
     error = DesignError("no face is sensing", hint="name one")
-    return Finished(topic=topic, request=request, error=error, seconds=1.0, failed="build")
+    return Finished(job=job, request=request, error=error, seconds=1.0, failed="build")
 
 
 @pytest.fixture
@@ -53,17 +53,15 @@ def asked(design: SensorDesign, case: PressCase, wanted: tuple[str, ...]) -> Req
 @pytest.fixture
 def jobs(told: Told) -> Jobs:
     reports: Any = told
-    conductor: Any = SimpleNamespace(submit=lambda topic, *words: asked(*words))
+    conductor: Any = SimpleNamespace(submit=lambda job, *words: asked(*words))
     header: Any = SimpleNamespace(show_progress=lambda running: None)
     return Jobs(conductor, reports, header)
 
 
-@pytest.mark.parametrize(("topic", "place"), [("press", "press"), ("parts", "parts"), (SHAPE, "")])
-def test_a_failed_request_is_told_by_its_topic(
-    jobs: Jobs, told: Told, topic: str, place: str
-) -> None:
-    """The message goes to the button of its topic; the live body has none."""
-    jobs.pump([failed(topic)])
+@pytest.mark.parametrize(("job", "place"), [("press", "press"), ("parts", "parts"), (SHAPE, "")])
+def test_a_failed_request_is_told_by_its_job(jobs: Jobs, told: Told, job: str, place: str) -> None:
+    """The message goes to the button of its job; the live body has none."""
+    jobs.pump([failed(job)])
     assert told.errors == [("no face is sensing", place)]
 
 
@@ -98,7 +96,7 @@ def test_whoever_waits_is_told_of_their_own_request(jobs: Jobs) -> None:
         then = lambda event, name=name: ends.append((name, event.request))  # noqa: E731
         jobs.submit("variant", design, PressCase(), ("shoot",), then)
     for request in sent:
-        jobs.pump([Finished(topic="variant", request=request, error=None, seconds=1.0)])
+        jobs.pump([Finished(job="variant", request=request, error=None, seconds=1.0)])
     assert [name for name, _ in ends] == ["first", "second"]
     assert all(told is request for (_, told), request in zip(ends, sent, strict=True))
 
@@ -112,24 +110,24 @@ def test_nobody_is_told_of_a_request_that_was_replaced(jobs: Jobs) -> None:
         then = lambda event, name=name: ends.append(name)  # noqa: E731
         jobs.submit("import", design, PressCase(), ("intake",), then)
     stopped = Finished(
-        topic="import", request=sent[0], error=Cancelled("newer"), seconds=1.0, superseded=True
+        job="import", request=sent[0], error=Cancelled("newer"), seconds=1.0, superseded=True
     )
     jobs.pump([stopped])
     assert ends == []
-    jobs.pump([Finished(topic="import", request=sent[1], error=None, seconds=1.0)])
+    jobs.pump([Finished(job="import", request=sent[1], error=None, seconds=1.0)])
     assert ends == ["second"]
 
 
-def test_a_failed_glimpse_takes_the_one_before_away(jobs: Jobs, told: Told) -> None:
+def test_a_failed_image_preview_takes_the_one_before_away(jobs: Jobs, told: Told) -> None:
     """The designer reads one line in the log; none where the shape fails, which tells itself."""
     shown = []
-    jobs.on_failed = lambda error, topic: shown.append(topic)
-    jobs.pump([failed(GLIMPSE)])
+    jobs.on_failed = lambda error, job: shown.append(job)
+    jobs.pump([failed(IMAGE_PREVIEW)])
     assert told.lines == []
-    jobs.pump([dataclasses.replace(failed(GLIMPSE), failed="")])
-    assert shown == [GLIMPSE, GLIMPSE]
+    jobs.pump([dataclasses.replace(failed(IMAGE_PREVIEW), failed="")])
+    assert shown == [IMAGE_PREVIEW, IMAGE_PREVIEW]
     assert told.errors == []
-    assert told.lines == ["glimpse: no face is sensing. Name one."]
+    assert told.lines == ["image preview: no face is sensing. Name one."]
 
 
 def test_every_stage_has_a_name_for_people() -> None:

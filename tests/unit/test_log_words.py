@@ -73,7 +73,7 @@ def test_values_refused_along_a_drag_are_one_note(reports: Reports) -> None:
 def test_what_failed_is_no_note(reports: Reports) -> None:
     """The same message of a press that was asked for stands as it is, each time, in the banner."""
     for _ in range(2):
-        reports.report(DesignError("the wall is thin", hint="take 2 mm", at="wall"), topic="press")
+        reports.report(DesignError("the wall is thin", hint="take 2 mm", at="wall"), job="press")
     assert words(reports) == ["the wall is thin. Take 2 mm."] * 2
     assert reports.banner.visible
 

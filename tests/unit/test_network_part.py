@@ -40,13 +40,13 @@ class Bench:
 
         class Desk:
             server = SimpleNamespace(gui=gui)
-            reports = SimpleNamespace(beside=lambda *topics: None)
+            reports = SimpleNamespace(beside=lambda *jobs: None)
             session = bench.session
             conductor = SimpleNamespace(stop=bench.stopped.append)
             jobs = SimpleNamespace(submit=lambda *words: bench.asked.append(words))
 
             @property
-            def live(self) -> Any:
+            def live_press(self) -> Any:
                 return SimpleNamespace(on=bench.live)
 
             def guarded(self, handler: Any) -> Any:

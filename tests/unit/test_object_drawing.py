@@ -57,10 +57,10 @@ class FakeDesk:
         self.session = SimpleNamespace(design=SensorDesign(name="any"), case=PressCase())
         self.asked: list[DrawingCall] = []
         self.jobs = SimpleNamespace(on_preview={})
-        self.conductor = SimpleNamespace(ask=lambda topic, d, c, call: self.asked.append(call))
+        self.conductor = SimpleNamespace(ask=lambda job, d, c, call: self.asked.append(call))
         shown = object_view()
         self.scene = SimpleNamespace(object=shown, body=shown.body)
-        self.live = SimpleNamespace(on=False)
+        self.live_press = SimpleNamespace(on=False)
         self.told: list[str] = []
 
     def tell(self, stage: str, result: Any) -> None:

@@ -7,7 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from sim.optics.camera.within import inside
+from sim.optics.camera.inside_skin import inside
 from sim.optics.field.bake import bake_light
 from sim.optics.light.lights import place_leds
 from sim.optics.light.places import check_camera, check_lights

@@ -24,7 +24,9 @@ class FakeDesk:
         )
         calls = {"press": SimpleNamespace(key="asked")}
         self.session = SimpleNamespace(store=store, calls=lambda: calls)
-        self.showing = SimpleNamespace(fetch=lambda stage, key, then: then(store.load(stage, key)))
+        self.shown_results = SimpleNamespace(
+            fetch=lambda stage, key, then: then(store.load(stage, key))
+        )
 
     def _settled(self, contact: Any, error: Any) -> None:
         Desk._settled(self, contact, error)  # pyright: ignore

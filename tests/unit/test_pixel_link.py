@@ -15,7 +15,7 @@ from workbench.core.design.camera import Camera
 from workbench.core.design.optics import Optics
 from workbench.core.result.results import MembraneMesh, Skin
 from workbench.view.pixel_link import PixelLink, frame_link
-from workbench.view.previews import first_hit
+from workbench.view.scene_shapes import first_hit
 
 OPTICS = Optics(camera=Camera(width_px=64, height_px=48))
 
@@ -79,7 +79,7 @@ def test_the_round_tip_has_pixels_of_equal_sides(dented: PixelLink) -> None:
 
 
 def test_what_no_pixel_sees_says_why(dented: PixelLink) -> None:
-    """A place beside the camera, low on the skin, is not in the picture of a narrow lens."""
+    """A place beside the camera, low on the skin, is not in the image of a narrow lens."""
     low = dented.points_mm[np.argmin(dented.points_mm[:, 2])]
     found = dented.pixel_of(low)
     assert found.why

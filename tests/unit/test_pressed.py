@@ -1,4 +1,4 @@
-"""The pressed skin: frames come from backstage, and one that is replaced goes a moment later."""
+"""The pressed skin: frames are made in the background, a replaced one goes a moment later."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from tests.unit.test_quantities import SQUARE, contact
-from ui.page.background_thread import Backstage
+from ui.page.background_thread import BackgroundThread
 from ui.scene.pressed import CUT_LINGER_S, LINGER_S, PressedView
 from workbench.core.result.sensing import Contact
 from workbench.view.quantities import Quantity
@@ -57,16 +57,16 @@ def scene() -> Scene:
 
 
 @pytest.fixture
-def backstage() -> Backstage:
+def background() -> BackgroundThread:
     def fail(error: Exception) -> None:
         raise error
 
-    return Backstage(fail)
+    return BackgroundThread(fail)
 
 
 @pytest.fixture
-def view(scene: Scene, backstage: Backstage) -> PressedView:
-    return PressedView(scene, lambda event: None, backstage, scene.clock)
+def view(scene: Scene, background: BackgroundThread) -> PressedView:
+    return PressedView(scene, lambda event: None, background, scene.clock)
 
 
 def pump(view: PressedView, until: Callable[[], bool]) -> None:
@@ -74,7 +74,7 @@ def pump(view: PressedView, until: Callable[[], bool]) -> None:
     deadline = time.monotonic() + 10.0
     while not until():
         assert time.monotonic() < deadline, "it does not come"
-        view.backstage.turn()
+        view.background.turn()
         view.turn()
         time.sleep(0.005)
 
@@ -130,7 +130,7 @@ def test_a_press_that_was_replaced_never_shows(scene: Scene, view: PressedView) 
         view.show(1)
     pump(view, lambda: len(scene.nodes) == 2)
     for _ in range(20):
-        view.backstage.turn()
+        view.background.turn()
         time.sleep(0.005)
     assert len(scene.nodes) == 2
 

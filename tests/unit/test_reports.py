@@ -13,8 +13,8 @@ import pytest
 from geometry.surface.surface_place import SkinPlace
 from ui.desk.aiming import Aiming
 from ui.desk.desk import Desk
-from ui.desk.portraits import Portraits
 from ui.desk.reports import Reports
+from ui.desk.thumbnails import ThumbnailQueue
 from ui.scene.ghost import Ghost, GhostView
 from workbench.core.base.errors import StoreError
 from workbench.project.project import Project
@@ -85,22 +85,22 @@ def test_a_step_that_fails_stops_no_other(reports: Reports) -> None:
         reports=reports,
         fields=SimpleNamespace(read_typed=fail),
         gizmos=[SimpleNamespace(turn=fail), step("gizmo")],
-        backstage=step("backstage"),
+        background=step("background"),
         scene=SimpleNamespace(pressed=step("pressed")),
-        upkeep=step("upkeep"),
+        auto_update=step("auto_update"),
         saving=step("saving"),
         on_turn=[lambda: turned.append("tenancy")],
     )
     Desk._idle(desk)  # pyright: ignore[reportPrivateUsage]
-    assert turned == ["saving", "gizmo", "backstage", "pressed", "upkeep", "tenancy"]
+    assert turned == ["saving", "gizmo", "background", "pressed", "auto_update", "tenancy"]
 
 
 def test_a_thumbnail_is_told_under_the_lock(reports: Reports, project: Project) -> None:
     """The list of variants is redrawn by nobody while a widget's handler runs."""
-    portraits, drawn = Portraits(project, SimpleNamespace(), reports), threading.Event()  # pyright: ignore[reportArgumentType]
-    portraits.on_drawn = drawn.set
+    thumbnails, drawn = ThumbnailQueue(project, SimpleNamespace(), reports), threading.Event()  # pyright: ignore[reportArgumentType]
+    thumbnails.on_drawn = drawn.set
     with reports.lock:
-        portraits.draw("missing")
+        thumbnails.draw("missing")
         assert not drawn.wait(0.3)
     assert drawn.wait(5)
 
@@ -135,7 +135,7 @@ OFF = SkinPlace(np.ones(3), 9.0, 0, np.array([0.0, 0.0, 1.0]))
 
 @pytest.mark.parametrize("live", [False, True])
 def test_all_who_follow_the_target_hear_that_it_moved(live: bool) -> None:
-    """Saving, Auto update and the sketch; the live press where it is on."""
+    """Saving, Auto update and the preview; the live press where it is on."""
     told: list[str] = []
 
     def tells(name: str) -> Any:
@@ -143,11 +143,11 @@ def test_all_who_follow_the_target_hear_that_it_moved(live: bool) -> None:
 
     desk: Any = SimpleNamespace(
         saving=SimpleNamespace(edited=tells("saving")),
-        upkeep=SimpleNamespace(edited=tells("upkeep")),
+        auto_update=SimpleNamespace(edited=tells("auto_update")),
         fields=SimpleNamespace(refresh=tells("fields")),
         log=tells("log"),
-        live=SimpleNamespace(on=live, follow=tells("live")),
-        glimpse=SimpleNamespace(follow=tells("glimpse")),
+        live_press=SimpleNamespace(on=live, follow=tells("live")),
+        image_preview=SimpleNamespace(follow=tells("image_preview")),
         scene=SimpleNamespace(body=SimpleNamespace(place_near=lambda point: OFF)),
         session=SimpleNamespace(
             case=SimpleNamespace(press=SimpleNamespace(target_mm=(0.0, 0.0, 0.0))),
@@ -158,4 +158,6 @@ def test_all_who_follow_the_target_hear_that_it_moved(live: bool) -> None:
     desk.scene.body.solid = None
     Aiming(desk).keep_aim()
     follow = {"live"} if live else set()
-    assert set(told) == {"amend", "saving", "upkeep", "fields", "log", "glimpse"} | follow
+    assert (
+        set(told) == {"amend", "saving", "auto_update", "fields", "log", "image_preview"} | follow
+    )

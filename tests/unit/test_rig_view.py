@@ -19,8 +19,8 @@ def node(*_: Any, **values: Any) -> SimpleNamespace:
     return SimpleNamespace(image=None, remove=lambda: None, **values)
 
 
-def test_frusta_forget_pictures_when_cameras_come_or_go() -> None:
-    """Of cameras 1, 2, 3 the second goes: the third is number 2, whose picture was another's."""
+def test_frusta_forget_images_when_cameras_come_or_go() -> None:
+    """Of cameras 1, 2, 3 the second goes: the third is number 2, whose image was another's."""
     api = SimpleNamespace(add_icosphere=node, add_camera_frustum=node)
     rig = RigView(SimpleNamespace(scene=api, atomic=contextlib.nullcontext))
     further = (Camera(fov_x_deg=60.0), Camera(fov_x_deg=70.0))

@@ -22,7 +22,7 @@ from workbench.pipeline.write_once import META
 from workbench.planning.plan import InlineRunner, evaluate, plan
 
 
-def picture(value: int = 1) -> Picture:
+def drawing(value: int = 1) -> Picture:
     return Picture(png=np.full(8, value, np.uint8))
 
 
@@ -114,8 +114,8 @@ def test_damaged_packing_is_a_store_error(tmp_path: Path) -> None:
 def test_first_writer_wins(tmp_path: Path) -> None:
     """A second save of the same key changes nothing and raises nothing."""
     store = Store(tmp_path)
-    store.save("s", "k", picture(1), seconds=0.0, version=1)
-    store.save("s", "k", picture(2), seconds=0.0, version=1)
+    store.save("s", "k", drawing(1), seconds=0.0, version=1)
+    store.save("s", "k", drawing(2), seconds=0.0, version=1)
     assert store.load("s", "k").png[0] == 1
     assert [p.name for p in (tmp_path / "s").iterdir()] == ["k"]
 
@@ -126,14 +126,14 @@ def test_failed_write_leaves_nothing(
 ) -> None:
     """A full or read-only disk is a StoreError (exit 3); earlier results stay readable."""
     store = Store(tmp_path)
-    store.save("s", "old", picture(), seconds=0.0, version=1)
+    store.save("s", "old", drawing(), seconds=0.0, version=1)
 
     def full(*args: object, **keywords: object) -> None:
         raise OSError(number, os.strerror(number))
 
     monkeypatch.setattr(np, "save", full)
     with pytest.raises(StoreError) as caught:
-        store.save("s", "new", picture(), seconds=0.0, version=1)
+        store.save("s", "new", drawing(), seconds=0.0, version=1)
     assert caught.value.exit_code == 3
     assert caught.value.hint
     assert not store.has("s", "new")
@@ -151,7 +151,7 @@ def test_an_array_written_in_part_is_a_full_disk(
 
     monkeypatch.setattr(np, "save", short)
     with pytest.raises(StoreError, match="is full") as caught:
-        Store(tmp_path).save("s", "new", picture(), seconds=0.0, version=1)
+        Store(tmp_path).save("s", "new", drawing(), seconds=0.0, version=1)
     assert "free some space" in str(caught.value.hint)
 
 
@@ -166,7 +166,7 @@ def test_really_full_disk(tmp_path: Path) -> None:
         pytest.skip("needs the right to mount a small file system")
     try:
         store = Store(disk)
-        store.save("s", "small", picture(), seconds=0.0, version=1)
+        store.save("s", "small", drawing(), seconds=0.0, version=1)
         with pytest.raises(StoreError, match="full"):
             store.save("s", "big", Picture(png=np.ones(2**22, np.uint8)), seconds=0, version=1)
         assert store.load("s", "small").png.size == 8
@@ -239,12 +239,12 @@ HARMS = [cut_short, without_header, gone, garbled, emptied, nothing_said, no_siz
 def test_a_sweep_passes_by_what_is_damaged(harm: Callable[[Path], None], tmp_path: Path) -> None:
     """It is for whoever asks for the result to find; what was set aside is kept, the newest ten."""
     store = Store(tmp_path)
-    store.told = lambda text: None
-    store.save("s", "k", picture(), seconds=0.0, version=1)
+    store.on_message = lambda text: None
+    store.save("s", "k", drawing(), seconds=0.0, version=1)
     harm(store.path("s", "k"))
     assert store.sweep() == 0
     for number in range(12):
-        store.save("s", f"k{number}", picture(), seconds=0.0, version=1)
+        store.save("s", f"k{number}", drawing(), seconds=0.0, version=1)
         harm(store.path("s", f"k{number}"))
         assert not store.has("s", f"k{number}")
     assert store.sweep() == 2
@@ -255,8 +255,8 @@ def test_a_sweep_passes_by_what_is_damaged(harm: Callable[[Path], None], tmp_pat
 def test_a_description_of_something_else_is_set_aside(tree: object, tmp_path: Path) -> None:
     """Whole arrays under a tree that no result has."""
     store = Store(tmp_path)
-    store.told = lambda text: None
-    store.save("s", "k", picture(), seconds=0.0, version=1)
+    store.on_message = lambda text: None
+    store.save("s", "k", drawing(), seconds=0.0, version=1)
     meta = json.loads((store.path("s", "k") / META).read_text())
     (store.path("s", "k") / META).write_text(json.dumps({**meta, "tree": tree}))
     with pytest.raises(DamagedError):
@@ -271,8 +271,8 @@ def test_a_damaged_result_is_set_aside_once(
 ) -> None:
     """It is not there any more, is said once, is kept for the curious, and is computed again."""
     store, told = Store(tmp_path), []
-    store.told = told.append
-    store.save("s", "k", picture(), seconds=0.0, version=1)
+    store.on_message = told.append
+    store.save("s", "k", drawing(), seconds=0.0, version=1)
     if known:
         assert store.has("s", "k")
     harm(store.path("s", "k"))
@@ -284,8 +284,8 @@ def test_a_damaged_result_is_set_aside_once(
     assert len(told) == 1
     assert "s/k was damaged" in told[0]
     assert len(list((tmp_path / DAMAGED).iterdir())) == 1
-    store.save("s", "k", picture(), seconds=0.0, version=1)
-    np.testing.assert_array_equal(store.load("s", "k").png, picture().png)
+    store.save("s", "k", drawing(), seconds=0.0, version=1)
+    np.testing.assert_array_equal(store.load("s", "k").png, drawing().png)
 
 
 def test_a_result_that_the_system_denies_is_not_damaged(
@@ -293,7 +293,7 @@ def test_a_result_that_the_system_denies_is_not_damaged(
 ) -> None:
     """Too many open files: said, and the result stays where it is."""
     store = Store(tmp_path)
-    store.save("s", "k", picture(), seconds=0.0, version=1)
+    store.save("s", "k", drawing(), seconds=0.0, version=1)
 
     def refuse(*_: object, **__: object) -> None:
         raise OSError(errno.EMFILE, "Too many open files")
@@ -310,7 +310,7 @@ def test_a_chain_computes_what_is_damaged_again(tmp_path: Path) -> None:
     """Body and mesh are torn: a run that wants the mesh makes both anew, and one notice each."""
     design = SensorDesign(shape={"outer_radius_mm": 8.0, "cylinder_mm": 8.0})
     store, told = Store(tmp_path), []
-    store.told = told.append
+    store.on_message = told.append
     runner, case = InlineRunner(store), PressCase()
     for _ in evaluate(design, case, runner, wanted=("mesh",)):
         pass
@@ -328,7 +328,7 @@ def test_damage_found_while_a_stage_reads_is_healed_too(tmp_path: Path) -> None:
     """The body is torn after it was looked into: the mesh fails, the body is built, the mesh is."""
     design = SensorDesign(shape={"outer_radius_mm": 8.0, "cylinder_mm": 8.0})
     store = Store(tmp_path)
-    store.told = lambda text: None
+    store.on_message = lambda text: None
     runner, case = InlineRunner(store), PressCase()
     (built,) = evaluate(design, case, runner, wanted=("build",))
     assert store.has("build", built.key)
@@ -343,7 +343,7 @@ def test_sweep_removes_the_least_recently_used(tmp_path: Path) -> None:
     """Beyond the size limit the oldest result goes, the newer one stays."""
     store = Store(tmp_path, limit_bytes=10)
     for i, key in enumerate(("old", "new")):
-        store.save("s", key, picture(), seconds=0.0, version=1)
+        store.save("s", key, drawing(), seconds=0.0, version=1)
         os.utime(store.path("s", key) / META, (1000 + i, 1000 + i))
     assert store.sweep() == 1
     assert store.has("s", "new")
@@ -355,21 +355,21 @@ def test_interrupted_eviction_never_blocks_a_key(
 ) -> None:
     """An eviction whose removal is interrupted leaves the key free for the next save."""
     store = Store(tmp_path, limit_bytes=1)
-    store.save("s", "k", picture(1), seconds=0.0, version=1)
+    store.save("s", "k", drawing(1), seconds=0.0, version=1)
     with monkeypatch.context() as patch:
         patch.setattr("shutil.rmtree", lambda *args, **keywords: None)
         store.sweep()
     assert not store.path("s", "k").exists()
-    store.save("s", "k", picture(2), seconds=0.0, version=1)
+    store.save("s", "k", drawing(2), seconds=0.0, version=1)
     assert store.load("s", "k").png[0] == 2
 
 
 def test_husk_without_meta_is_replaced(tmp_path: Path) -> None:
     """A folder that lost its meta file does not keep its key from being stored again."""
     store = Store(tmp_path)
-    store.save("s", "k", picture(1), seconds=0.0, version=1)
+    store.save("s", "k", drawing(1), seconds=0.0, version=1)
     (store.path("s", "k") / META).unlink()
-    store.save("s", "k", picture(2), seconds=0.0, version=1)
+    store.save("s", "k", drawing(2), seconds=0.0, version=1)
     assert store.load("s", "k").png[0] == 2
     assert [p.name for p in (tmp_path / "s").iterdir()] == ["k"]
 
@@ -379,7 +379,7 @@ def test_result_that_cannot_be_evicted_stops_nothing(
 ) -> None:
     """A sweep that may not rename removes 0 results and raises nothing."""
     store = Store(tmp_path, limit_bytes=1)
-    store.save("s", "k", picture(), seconds=0.0, version=1)
+    store.save("s", "k", drawing(), seconds=0.0, version=1)
 
     def refused(self: Path, target: Path) -> None:
         raise PermissionError(errno.EACCES, "refused")

@@ -54,17 +54,19 @@ def aiming_at(solid: Solid, target_mm: tuple[float, float, float]) -> Any:
     view.skin = view.inside = view.support = view.foot = nothing  # pyright: ignore[reportAttributeAccessIssue]
     view.show = lambda visible: None
     view.show_solid(solid)
-    desk: Any = SimpleNamespace(scene=SimpleNamespace(body=view), live=SimpleNamespace(on=False))
+    desk: Any = SimpleNamespace(
+        scene=SimpleNamespace(body=view), live_press=SimpleNamespace(on=False)
+    )
     case = SimpleNamespace(press=Press(target_mm=target_mm))
     design = SensorDesign(name="finger")
     desk.amended = []
     desk.session = SimpleNamespace(
         case=case, design=design, amend=lambda path, value: desk.amended.append(value)
     )
-    for name in ("saving", "upkeep"):
+    for name in ("saving", "auto_update"):
         setattr(desk, name, SimpleNamespace(edited=lambda: None))
     desk.fields = SimpleNamespace(refresh=lambda: None)
-    desk.glimpse = SimpleNamespace(follow=lambda: None)
+    desk.image_preview = SimpleNamespace(follow=lambda: None)
     desk.log = lambda words: None
     return desk
 

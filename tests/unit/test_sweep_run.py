@@ -13,7 +13,7 @@ from tests.unit.test_conductor import WAIT_S, Previewing
 from tests.unit.test_jobs import Told
 from tests.unit.test_sweeps import walls
 from ui.desk.jobs import Jobs
-from ui.desk.sweep_run import TOPIC, SweepRun
+from ui.desk.sweep_run import JOB, SweepRun
 from workbench.core.base.errors import MeshingError
 from workbench.core.base.monitor import Monitor
 from workbench.live.conductor import Conductor
@@ -142,6 +142,6 @@ def test_words_tell_the_point(bench: Bench) -> None:
     bench.run.start()
     bench.pump_point()
     assert bench.run.words().startswith("**2 of 3**")
-    bench.conductor.stop(TOPIC)
+    bench.conductor.stop(JOB)
     bench.pump_point()
     assert bench.run.words() == ""

@@ -12,7 +12,7 @@ from geometry.surface.primitives import rounded_box
 from geometry.surface.surface import is_watertight, mesh_volume
 from sim.contact.objects import textures
 from sim.contact.objects.collider import make_collider
-from sim.contact.objects.solids import solid
+from sim.contact.objects.object_measures import exact_distance
 from workbench.core.base.errors import DesignError
 from workbench.core.press.indenter import Indenter, IndenterKind, IndenterMesh
 from workbench.core.press.texture import STEEPEST, HeightImage, Pattern, Texture
@@ -115,7 +115,7 @@ def test_mesh_takes_a_texture(taichi_device: str) -> None:
 def test_displaced_surface_is_the_zero_of_the_textured_function() -> None:
     """Places of a sphere, moved, lie on the textured sphere to 1e-12, the upper half included."""
     field = textures.heights(TEXTURES["dots"], SPACING_MM)
-    body = solid(Indenter())
+    body = exact_distance(Indenter())
     direction = np.random.default_rng(1).normal(size=(500, 3))
     surface = 3.0 * direction / np.linalg.norm(direction, axis=1, keepdims=True)
     moved = textures.displaced(surface, field, 3.0)

@@ -11,7 +11,7 @@ import pytest
 
 from geometry.objects.everyday import EVERYDAY
 from geometry.objects.touching import meant_side, touching_patch
-from sim.optics.studio.sketch import lower_face_mm
+from sim.optics.studio.geometric_dent import lower_face_mm
 from tests.made_indenters import HEADS, M, on_a_foot, write_stl
 from workbench.core.design.turning import AS_IT_CAME
 from workbench.core.press.indenter import Indenter, IndenterKind, IndenterMesh

@@ -153,7 +153,7 @@ HEAVY = (
 
 @pytest.mark.slow
 def test_it_trains_where_only_pytorch_and_numpy_are(tmp_path: Path, packed: Path) -> None:
-    """The other packages refused to load: weights as ever, and a note that no picture is drawn."""
+    """The other packages refused to load: weights as ever, and a note that no chart is drawn."""
     words = ["train", "make", str(packed), *TINY, "--out", str(tmp_path / "out")]
     done = subprocess.run(
         [sys.executable, "-c", BARE, HEAVY, *words],

@@ -70,7 +70,7 @@ def test_a_paused_training_goes_on_to_the_same_weights(tmp_path: Path, whole: Tr
 
 
 def test_files_say_what_the_rows_say(whole: Trained) -> None:
-    """A line per epoch as JSON and as CSV, a picture, and the summary."""
+    """A line per epoch as JSON and as CSV, a chart, and the summary."""
     folder = whole.weights.parent
     lines = (folder / "curves.jsonl").read_text().splitlines()
     assert [json.loads(line) for line in lines] == list(whole.rows)

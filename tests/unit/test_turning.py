@@ -12,8 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sim.contact.objects.collider import make_collider
+from sim.contact.objects.object_measures import exact_distance, lowest_mm
 from sim.contact.objects.sampling import box_mm
-from sim.contact.objects.solids import lowest_mm, solid
 from workbench.cli.command_line import parser
 from workbench.cli.commands.dataset_make import chosen_recipe
 from workbench.core.base.digest import digest
@@ -71,7 +71,7 @@ def test_every_kind_is_turned_as_its_drawing(kind: IndenterKind) -> None:
     points, _ = display_mesh(dataclasses.replace(indenter, turn_deg=(0.0, 0.0, 0.0)))
     turned = points @ turn_matrix(ODD).T
     # Contoured drawings lie within hundredths of the surface.
-    assert np.abs(solid(indenter)(turned)).max() < 0.04
+    assert np.abs(exact_distance(indenter)(turned)).max() < 0.04
     low, high = box_mm(indenter)
     assert low == pytest.approx(turned.min(axis=0), abs=0.03)
     assert high == pytest.approx(turned.max(axis=0), abs=0.03)
@@ -85,7 +85,7 @@ def test_contact_feels_the_turned_object(kind: IndenterKind) -> None:
     """The collider's distance is that of the object, asked at the place turned back."""
     here = make_collider(Indenter(kind=kind, turn_deg=ODD), grid_mm=0.5)
     places = np.random.default_rng(0).normal(scale=2.5, size=(200, 3))
-    before = solid(Indenter(kind=kind))(places @ turn_matrix(ODD))
+    before = exact_distance(Indenter(kind=kind))(places @ turn_matrix(ODD))
     near = np.abs(before) < 0.8
     # Sampled at 0.2 mm: edges of 0.45 mm are held to a few hundredths.
     assert np.abs(here.distance(places[near])[0] - before[near]).max() < 0.05

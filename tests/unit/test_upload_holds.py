@@ -38,9 +38,9 @@ class FakeDesk:
         self.session = session
         self.reports = Reports(server, session, fields)
         self.reports.banner = SimpleNamespace(content="", visible=False)
-        self.jobs = SimpleNamespace(ask=lambda topic, call, state, then: self.asked.append(call))
+        self.jobs = SimpleNamespace(ask=lambda job, call, state, then: self.asked.append(call))
 
-    def trial(self, topic: str, design: Any, wanted: str, then: Any) -> None:
+    def trial(self, job: str, design: Any, wanted: str, then: Any) -> None:
         self.asked.append(design)
 
 

@@ -152,13 +152,13 @@ def test_a_step_file_is_left_to_the_worker(tmp_path: Path) -> None:
     )
     sent = ObjectFolder._sent(folder)  # pyright: ignore[reportPrivateUsage]
     ObjectFolder._load_file(folder, sent)  # pyright: ignore[reportPrivateUsage]
-    ((topic, trial, wanted, then),) = asked
-    assert (topic, wanted, taken) == ("object", "intake", [])
+    ((job, trial, wanted, then),) = asked
+    assert (job, wanted, taken) == ("object", "intake", [])
     assert trial.body.outer.name == "box.STEP"
     call = plan(trial, PressCase())["intake"]
     store.save("intake", call.key, read_box(), seconds=0.0, version=1)
     request = Request(design=trial, case=PressCase(), wanted=("intake",))
-    then(Finished(topic="object", request=request, error=None, seconds=0.0))
+    then(Finished(job="object", request=request, error=None, seconds=0.0))
     (indenter,) = taken
     assert indenter.size_mm == pytest.approx(6.0)
     np.testing.assert_allclose(indenter.mesh.points_mm.max(axis=0), 3.0)
@@ -166,7 +166,7 @@ def test_a_step_file_is_left_to_the_worker(tmp_path: Path) -> None:
 
     refused = DesignError("two bodies", hint="keep one", at="body.outer")
     with pytest.raises(DesignError, match="two bodies") as caught:
-        then(Finished(topic="object", request=request, error=refused, seconds=0.0))
+        then(Finished(job="object", request=request, error=refused, seconds=0.0))
     assert caught.value.at == "indenter"
     assert [needs_cad(name) for name in ("a.stp", "a.STEP", "a.stl", "a.obj")] == [
         True,

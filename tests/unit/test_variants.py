@@ -102,10 +102,10 @@ def test_names_that_cannot_be_files_are_refused(project: Project, name: str) -> 
 
 
 def test_rename_copy_delete_and_restore_lose_nothing(project: Project) -> None:
-    """The picture goes along; a restored name that is taken meanwhile gets a number."""
+    """The thumbnail goes along; a restored name that is taken meanwhile gets a number."""
     save_variant(project, "v1.2", finger())
-    picture = project.folder / "variants" / "v1.2.png"
-    picture.write_bytes(b"picture")
+    thumbnail = project.folder / "variants" / "v1.2.png"
+    thumbnail.write_bytes(b"thumbnail")
     rename_variant(project, "v1.2", "v1.3")
     copy = duplicate_variant(project, "v1.3")
     assert list_variants(project) == ["v1.3", "v1.3 2"] and copy == "v1.3 2"
@@ -116,7 +116,7 @@ def test_rename_copy_delete_and_restore_lose_nothing(project: Project) -> None:
     assert restore_variant(project, kept) == "v1.3 3"
     assert load_variant(project, "v1.3 3").state.design.layers.elastomer_mm == 2.0
     assert load_variant(project, "v1.3").state.design.layers.elastomer_mm == 3.0
-    assert (project.folder / "variants" / "v1.3 3.png").read_bytes() == b"picture"
+    assert (project.folder / "variants" / "v1.3 3.png").read_bytes() == b"thumbnail"
     with pytest.raises(DesignError):
         delete_variant(project, "never")
 

@@ -33,7 +33,8 @@ class Aiming:
         """A click goes to who asked for it; else it labels a face, or moves the target there."""
         desk = self.desk
         origin, direction = np.asarray(event.ray_origin), np.asarray(event.ray_direction)
-        if any(takes(origin, direction) for takes in desk.takers) or desk.probe(origin, direction):
+        taken = any(takes(origin, direction) for takes in desk.click_handlers)
+        if taken or desk.probe(origin, direction):
             return
         hit = desk.scene.body.hit(origin, direction)
         if hit is None or desk.pick(hit[0]):
@@ -89,9 +90,9 @@ class Aiming:
         """Let all follow who follow an edit: what runs was asked for at the old place."""
         desk = self.desk
         desk.saving.edited()
-        desk.upkeep.edited()
+        desk.auto_update.edited()
         desk.fields.refresh()
         desk.log(words)
-        if desk.live.on:
-            desk.live.follow()
-        desk.glimpse.follow()
+        if desk.live_press.on:
+            desk.live_press.follow()
+        desk.image_preview.follow()

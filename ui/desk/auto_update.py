@@ -18,10 +18,10 @@ if TYPE_CHECKING:
 SETTLED_S = 1.5
 """Quiet time after an edit before results are computed by themselves [s]."""
 WANTED = ("press", "shoot")
-TOPIC = "press"
+JOB = "press"
 
 
-class Upkeep:
+class AutoUpdate:
     """Two widgets above the tabs."""
 
     def __init__(self, desk: Desk, clock: Callable[[], float] = time.monotonic) -> None:
@@ -47,8 +47,8 @@ class Upkeep:
         if self._edited is None or self._clock() - self._edited < SETTLED_S:
             return
         self._edited = None
-        if self.auto.value and not self.desk.live.on and self.stale:
-            self.desk.run(TOPIC, WANTED)
+        if self.auto.value and not self.desk.live_press.on and self.stale:
+            self.desk.run(JOB, WANTED)
 
     @property
     def stale(self) -> bool:
@@ -64,4 +64,4 @@ class Upkeep:
     def _update(self, event: Any) -> None:
         self._edited = None
         if self.stale:
-            self.desk.run(TOPIC, WANTED)
+            self.desk.run(JOB, WANTED)

@@ -11,17 +11,17 @@ from typing import Any, Protocol
 import numpy as np
 
 from ui.desk.aiming import Aiming
-from ui.desk.auto_update import Upkeep
+from ui.desk.auto_update import AutoUpdate
 from ui.desk.foresight import Foresight
-from ui.desk.glimpse import GlimpseFollower
+from ui.desk.image_preview import ImagePreviewFollower
 from ui.desk.jobs import Jobs
-from ui.desk.live import LivePress
+from ui.desk.live_press import LivePressFollower
 from ui.desk.object_follower import ObjectFollower
 from ui.desk.reports import Reports
 from ui.desk.saving import Saving
 from ui.desk.session import Session
-from ui.desk.shown_results import Showing
-from ui.page.background_thread import Backstage
+from ui.desk.shown_results import ShownResults
+from ui.page.background_thread import BackgroundThread
 from ui.page.editor import Editor
 from ui.page.fields import Fields
 from ui.page.gallery import Galleries
@@ -37,7 +37,7 @@ from workbench.live.conductor import Conductor
 from workbench.live.requests import (
     DRAWN,
     FORESIGHT,
-    GLIMPSE,
+    IMAGE_PREVIEW,
     LIVE,
     PREDICTION,
     SHAPE,
@@ -46,7 +46,7 @@ from workbench.live.requests import (
 from workbench.planning.running import PARTIAL
 
 OF_A_SENSOR = ("press", "image", "maps", "forces", "learned", PREDICTION)
-"""Topics that nobody waits for once another sensor has been chosen."""
+"""Jobs that nobody waits for once another sensor has been chosen."""
 
 
 class Panel(Protocol):
@@ -80,16 +80,16 @@ class Desk:
         self.fields = Fields(server, self.read, self.edit)
         self.reports = Reports(server, session, self.fields)
         self.reports.on_log = lambda lines: self.tell("log", lines)
-        session.store.told = self.reports.log_soon
+        session.store.on_message = self.reports.log_soon
         self.guarded = self.reports.guarded
         self.log = self.reports.log
         self.galleries = Galleries(server, editor)
         self.aiming = Aiming(self)
-        self.backstage = Backstage(on_error=self.reports.tell)
+        self.background = BackgroundThread(on_error=self.reports.tell)
         on_click = self.guarded(self.aiming.clicked)
-        self.scene = Scene(server, fast=fast, on_click=on_click, backstage=self.backstage)
-        self.showing = Showing(self)
-        self.current = self.showing.current
+        self.scene = Scene(server, fast=fast, on_click=on_click, background=self.background)
+        self.shown_results = ShownResults(self)
+        self.current = self.shown_results.current
         self.panels: list[Panel] = []
         self.put_parts_away: Callable[[], None] = lambda: None
         """Set by the panel that shows the parts."""
@@ -97,7 +97,7 @@ class Desk:
         """Set by the panel that labels faces: whether it took a click on this membrane face."""
         self.probe: Callable[[np.ndarray, np.ndarray], bool] = lambda origin, direction: False
         """Set by the panel of maps: whether it told the value where a click's ray meets the map."""
-        self.takers: list[Callable[[np.ndarray, np.ndarray], bool]] = []
+        self.click_handlers: list[Callable[[np.ndarray, np.ndarray], bool]] = []
         """Asked in turn, with a click's ray, before the click aims: the first that takes it has it.
 
         Panels add themselves, for example while two points are being measured.
@@ -106,10 +106,10 @@ class Desk:
             server.gui,
             on_cancel=self.guarded(lambda event: conductor.cancel()),
         )
-        self.upkeep = Upkeep(self)
+        self.auto_update = AutoUpdate(self)
         self.reports.banner = self.header.banner
         self.jobs = Jobs(conductor, self.reports, self.header)
-        self.jobs.on_done = self.showing.stage_done
+        self.jobs.on_done = self.shown_results.stage_done
         self.jobs.asked_now = session.asks_now
         self.jobs.on_events = self.refresh_header
         self.jobs.on_idle = self._idle
@@ -118,11 +118,11 @@ class Desk:
         """What else is looked after each time the pump turns."""
         self.gizmos: list[Gizmo] = []
         """Handles in the 3D view, asked each time the pump turns."""
-        self.live = LivePress(self)
-        self.gizmos.append(self.live.gizmo)
-        self.jobs.on_preview[LIVE] = self.live.show
+        self.live_press = LivePressFollower(self)
+        self.gizmos.append(self.live_press.gizmo)
+        self.jobs.on_preview[LIVE] = self.live_press.show
         self.foresight = Foresight(self)
-        self.glimpse = GlimpseFollower(self)
+        self.image_preview = ImagePreviewFollower(self)
         self.object = ObjectFollower(self)
         self.saving = Saving(session, self.reports, self.header.unsaved)
         self._sensor: tuple[str, str] | None = None
@@ -152,33 +152,33 @@ class Desk:
             if not path.startswith(("design.mould", "design.housing", "design.casting")):
                 self.put_parts_away()
             self.changed()
-            if path.startswith("design.optics") and not self.live.on:
+            if path.startswith("design.optics") and not self.live_press.on:
                 # The pressed skin is opaque; the one at rest shows LEDs and camera.
                 self.scene.show_frame(0)
 
     def changed(self) -> None:
         """Follow a change of state: live view, stage strip, autosave."""
         self.saving.edited()
-        self.upkeep.edited()
+        self.auto_update.edited()
         session = self.session
         self._begin()
         self.foresight.follow()
         self.scene.rig.show_optics(session.design.optics)
-        self.showing.show_stored()
+        self.shown_results.show_stored()
         if self.current("build"):
             self.aiming.keep_aim()
         self.object.follow()
         if not self.current("press"):
             # What was pressed was another press: the skin is at rest again, or follows live.
-            self.showing.forget("press")
-            if not self.live.on:
+            self.shown_results.forget("press")
+            if not self.live_press.on:
                 self.scene.clear_frames()
             self.scene.object.place(session.case.press)
-        if self.live.on:
-            self.live.follow()
+        if self.live_press.on:
+            self.live_press.follow()
         for panel in self.panels:
             panel.refresh()
-        self.glimpse.follow()
+        self.image_preview.follow()
         self.refresh_header()
 
     def _begin(self) -> None:
@@ -208,10 +208,10 @@ class Desk:
         """Take away what was pressed and rendered of another family or another file."""
         sensor = self.session.origin()
         if self._sensor not in (None, sensor):
-            self.showing.forget_all()
-            for topic in OF_A_SENSOR:
+            self.shown_results.forget_all()
+            for job in OF_A_SENSOR:
                 # What was asked of the sensor before must not hold up this one.
-                self.conductor.stop(topic)
+                self.conductor.stop(job)
             self.scene.rig.forget_image()
             self.scene.body.dim(True)
             self.tell("sensor", None)
@@ -230,40 +230,42 @@ class Desk:
             self.put_parts_away()
             self.changed()
 
-    def run(self, topic: str, wanted: tuple[str, ...]) -> None:
+    def run(self, job: str, wanted: tuple[str, ...]) -> None:
         """Compute stages for the state as it stands."""
         self.reports.begin()
         self.fields.read_typed(now=True)
-        if topic != "parts":
+        if job != "parts":
             self.put_parts_away()
-        self.tell("run", topic)
-        self.jobs.submit(topic, self.session.design, self.session.case, wanted)
+        self.tell("run", job)
+        self.jobs.submit(job, self.session.design, self.session.case, wanted)
 
     def trial(
-        self, topic: str, design: SensorDesign, wanted: str, then: Callable[[Finished], None]
+        self, job: str, design: SensorDesign, wanted: str, then: Callable[[Finished], None]
     ) -> None:
         """Compute a stage of a design that is not the state; `then` decides by how it ended."""
-        self.jobs.submit(topic, design, self.session.case, (wanted,), then)
+        self.jobs.submit(job, design, self.session.case, (wanted,), then)
 
     def tell(self, stage: str, result: Any) -> None:
         """Hand a result, or another piece of news, to all panels."""
         for panel in self.panels:
             panel.show(stage, result)
 
-    def _failed(self, error: WorkbenchError, topic: str) -> None:
+    def _failed(self, error: WorkbenchError, job: str) -> None:
         """Show the frames that settled before a press failed."""
-        if topic == LIVE:
-            self.live.failed()
-        elif topic == FORESIGHT:
+        if job == LIVE:
+            self.live_press.failed()
+        elif job == FORESIGHT:
             self.foresight.failed()
-        elif topic == GLIMPSE:
-            self.glimpse.failed()
-        elif topic == DRAWN:
+        elif job == IMAGE_PREVIEW:
+            self.image_preview.failed()
+        elif job == DRAWN:
             self.object.failed()
         kept = error.kept if isinstance(error, SolveError) else ""
-        if kept and topic != LIVE and kept == self.session.calls()["press"].key:
+        if kept and job != LIVE and kept == self.session.calls()["press"].key:
             if self.session.store.has(PARTIAL, kept):
-                self.showing.fetch(PARTIAL, kept, lambda contact: self._settled(contact, error))
+                self.shown_results.fetch(
+                    PARTIAL, kept, lambda contact: self._settled(contact, error)
+                )
 
     def _settled(self, contact: Contact, error: WorkbenchError) -> None:
         if isinstance(error, SolveError) and error.kept == self.session.calls()["press"].key:
@@ -279,9 +281,9 @@ class Desk:
             self.reports.turn,
             self.fields.read_typed,
             *(gizmo.turn for gizmo in self.gizmos),
-            self.backstage.turn,
+            self.background.turn,
             self.scene.pressed.turn,
-            self.upkeep.turn,
+            self.auto_update.turn,
             *self.on_turn,
         )
         for step in steps:
@@ -293,4 +295,4 @@ class Desk:
         building = {} if fresh["build"] or not self.conductor.works_on(SHAPE) else {"build"}
         self.header.show_stages(fresh, self.jobs.running, begun=building)
         self.header.show_design(self.session.design)
-        self.upkeep.refresh()
+        self.auto_update.refresh()

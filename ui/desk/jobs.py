@@ -21,7 +21,7 @@ from workbench.live.requests import (
     CUT,
     DRAWN,
     FORESIGHT,
-    GLIMPSE,
+    IMAGE_PREVIEW,
     LIVE,
     PREDICTION,
     QUIET,
@@ -58,35 +58,35 @@ class Jobs:
         self.asked_now: Callable[[Request, str], bool] = lambda request, failed: True
         """Set by the desk: whether a stage that failed still belongs to the state."""
         self.on_preview: dict[str, Callable[[Any, Request], None]] = {}
-        """Who shows the previews of a topic; filled by the desk and the panels."""
-        self.on_failed: Callable[[WorkbenchError, str], None] = lambda error, topic: None
+        """Who shows the previews of a job; filled by the desk and the panels."""
+        self.on_failed: Callable[[WorkbenchError, str], None] = lambda error, job: None
         """Set by the desk: shows what an error leaves to look at."""
         self._then: dict[int, tuple[Request, Then]] = {}
-        """Who waits for a request, by the identity of that: two of a topic may be equal."""
+        """Who waits for a request, by the identity of that: two of a job may be equal."""
 
     def submit(
         self,
-        topic: str,
+        job: str,
         design: SensorDesign,
         case: PressCase,
         wanted: tuple[str, ...],
         then: Then | None = None,
     ) -> None:
         """Ask for stages; `then` takes the place of reporting how it ended."""
-        if topic not in QUIET:
-            self.reports.log(f"{topic}: started")
+        if job not in QUIET:
+            self.reports.log(f"{job}: started")
         # Under the pump's lock, so that its end is not handled before it is known who waits.
         with self.reports.lock:
-            self._wait(self.conductor.submit(topic, design, case, wanted), then)
+            self._wait(self.conductor.submit(job, design, case, wanted), then)
 
-    def ask(self, topic: str, call: PreviewCall, state: State, then: Then) -> None:
+    def ask(self, job: str, call: PreviewCall, state: State, then: Then) -> None:
         """Ask for a preview that the designer waits for; `then` is told how it ended.
 
         The answer itself goes to `on_preview`, before.
         """
-        self.reports.log(f"{topic}: started")
+        self.reports.log(f"{job}: started")
         with self.reports.lock:
-            self._wait(self.conductor.ask(topic, state.design, state.case, call), then)
+            self._wait(self.conductor.ask(job, state.design, state.case, call), then)
 
     def _wait(self, request: Request, then: Then | None) -> None:
         if then is not None:
@@ -113,7 +113,7 @@ class Jobs:
 
     def _handle(self, event: Event) -> None:
         if isinstance(event, Progress):
-            self.running[event.topic] = event
+            self.running[event.job] = event
         elif isinstance(event, StageDone):
             outcome = event.outcome
             if not outcome.cached:
@@ -121,45 +121,45 @@ class Jobs:
                 self.reports.log(f"{name} done in {human_seconds(outcome.seconds)}")
             self.on_done(outcome)
         elif isinstance(event, PreviewDone):
-            self.on_preview[event.topic](event.preview, event.request)
+            self.on_preview[event.job](event.preview, event.request)
         else:
             self._finish(event)
 
     def _finish(self, event: Finished) -> None:
-        self.running.pop(event.topic, None)
+        self.running.pop(event.job, None)
         error = event.error
         _, then = self._then.pop(id(event.request), (None, None))
         log = self.reports.log
-        quiet = event.topic in QUIET
+        quiet = event.job in QUIET
         if event.superseded:
             if not quiet:
                 # Who waited for it is not told: the newer request has its own.
-                log(f"{event.topic}: replaced by a newer request")
+                log(f"{event.job}: replaced by a newer request")
         elif isinstance(error, Cancelled):
             if not quiet:
-                log(f"{event.topic}: cancelled")
-                text = f"{event.topic} was stopped; earlier results are kept"
+                log(f"{event.job}: cancelled")
+                text = f"{event.job} was stopped; earlier results are kept"
                 self.reports.notify("Cancelled", text)
             if then is not None:
                 then(event)
         elif then is not None:
             then(event)
-        elif error is not None and event.topic in (FORESIGHT, GLIMPSE, CUT):
-            # What was wrong with the design itself is told, once, by the topic of its shape.
+        elif error is not None and event.job in (FORESIGHT, IMAGE_PREVIEW, CUT):
+            # What was wrong with the design itself is told, once, by the job of its shape.
             if not event.failed:
-                log(f"{event.topic}: {in_full(error.message, error.hint)}")
-            self.on_failed(error, event.topic)
-        elif error is not None and event.topic == PREDICTION:
+                log(f"{event.job}: {in_full(error.message, error.hint)}")
+            self.on_failed(error, event.job)
+        elif error is not None and event.job == PREDICTION:
             # Nobody asked for it; who asks by the button is told.
-            log(f"{event.topic}: {in_full(error.message, error.hint)}")
-        elif error is not None and event.topic == LIVE:
+            log(f"{event.job}: {in_full(error.message, error.hint)}")
+        elif error is not None and event.job == LIVE:
             self.reports.report(error)
-            self.on_failed(error, event.topic)
+            self.on_failed(error, event.job)
         elif error is not None and not self.asked_now(event.request, event.failed):
             # Its message would stand above a design that it does not tell of.
-            log(f"{event.topic}, of an earlier design: {in_full(error.message, error.hint)}")
+            log(f"{event.job}, of an earlier design: {in_full(error.message, error.hint)}")
         elif error is not None:
-            self.reports.report(error, topic="" if event.topic in (SHAPE, DRAWN) else event.topic)
-            self.on_failed(error, event.topic)
+            self.reports.report(error, job="" if event.job in (SHAPE, DRAWN) else event.job)
+            self.on_failed(error, event.job)
         elif not quiet:
-            log(f"{event.topic}: finished in {human_seconds(event.seconds)}")
+            log(f"{event.job}: finished in {human_seconds(event.seconds)}")

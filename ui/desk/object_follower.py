@@ -26,7 +26,7 @@ class ObjectFollower:
     def follow(self) -> None:
         """Ask for the object of the state, unless it was asked last.
 
-        Before there is a body, too: the first sketch of the image keeps the lane busy for seconds.
+        Before there is a body, too: the first preview of the image keeps the lane busy for seconds.
         """
         desk, session = self.desk, self.desk.session
         indenter = session.case.indenter
@@ -43,8 +43,8 @@ class ObjectFollower:
             shown.show(drawing, case.press)
             if request.case.indenter == case.indenter:
                 self.desk.tell("object", drawing)
-            if self.desk.live.on:
-                self.desk.live.gizmo.place(shown.standing[:3])
+            if self.desk.live_press.on:
+                self.desk.live_press.gizmo.place(shown.standing[:3])
 
     def failed(self) -> None:
         """Ask again at the next change: the worker may have been lost."""

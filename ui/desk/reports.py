@@ -44,7 +44,7 @@ class Reports:
         self.banner: Any = None
         """Set by the header: stays until the next edit."""
         self.places: dict[str, Any] = {}
-        """Hidden markdown beside the button of each topic."""
+        """Hidden markdown beside the button of each job."""
         self._last = ""
         """What the last line is about, where a newer one about it takes its place."""
         self.notices: list[Any] = []
@@ -55,10 +55,10 @@ class Reports:
         self._soon: queue.SimpleQueue[str] = queue.SimpleQueue()
         """Lines of threads that may not wait for the lock."""
 
-    def beside(self, *topics: str) -> None:
-        """Make a place under the button just made, for what became of these topics' requests."""
+    def beside(self, *jobs: str) -> None:
+        """Make a place under the button just made, for what became of these jobs' requests."""
         handle = self.server.gui.add_markdown("", visible=False)
-        self.places.update(dict.fromkeys(topics, handle))
+        self.places.update(dict.fromkeys(jobs, handle))
 
     def guarded(self, handler: Callable[[Any], None]) -> Callable[[Any], None]:
         """A widget callback whose errors reach the designer instead of the terminal only."""
@@ -103,13 +103,13 @@ class Reports:
 
         self.guarded(again)(None)
 
-    def report(self, error: WorkbenchError, *, edited: str = "", topic: str = "") -> None:
+    def report(self, error: WorkbenchError, *, edited: str = "", job: str = "") -> None:
         """Show an error at its field, and where the designer looks.
 
         Args:
             error: What went wrong.
             edited: Field that was just edited: a message about itself needs no banner.
-            topic: Request that failed: it is told beside its button, and in a notification, since
+            job: Request that failed: it is told beside its button, and in a notification, since
                 the field may be on another page.
         """
         at_field = self.fields.complain(error)
@@ -122,11 +122,11 @@ class Reports:
         text = plain(words)
         if not noted:
             self._show_banner(text)
-        if topic in self.places:
-            self.places[topic].content = f"<span style='color:{RED}'>{text}</span>"
-            self.places[topic].visible = True
-        if topic or not at_field:
-            title = f"{topic.capitalize()} failed" if topic else "Not possible"
+        if job in self.places:
+            self.places[job].content = f"<span style='color:{RED}'>{text}</span>"
+            self.places[job].visible = True
+        if job or not at_field:
+            title = f"{job.capitalize()} failed" if job else "Not possible"
             self.notices += self.notify(title, words, color="red")
         self._crashes[error.hint] += 1
         if "\n" in error.hint and self._crashes[error.hint] == 1:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from ui.desk.desk import Desk
 
 
-class Showing:
+class ShownResults:
     """Results of one desk."""
 
     def __init__(self, desk: Desk) -> None:
@@ -22,7 +22,7 @@ class Showing:
         self._keys: dict[str, str] = {}
         """Key of what is on show, by stage."""
         self._fetched: dict[str, str] = {}
-        """Key of what is being read backstage, by stage."""
+        """Key of what is being read in the background, by stage."""
         self._notices: dict[str, str] = {}
         """What builder and mesher had to change."""
 
@@ -69,7 +69,7 @@ class Showing:
             self.fetch(stage, key, lambda result: self._arrived(stage, key, result))
 
     def fetch(self, stage: str, key: str, take: Callable[[Any], None]) -> None:
-        """Read a stored result backstage; a newer request of the stage takes its place."""
+        """Read a stored result in the background; a newer request of the stage takes its place."""
         self._fetched[stage] = key
         store = self.desk.session.store
 
@@ -77,7 +77,7 @@ class Showing:
             self._fetched.pop(stage, None)
             take(result)
 
-        self.desk.backstage.ask(
+        self.desk.background.ask(
             f"read {stage}", (store.load(stage, key) for _ in range(1)), arrived
         )
 

@@ -26,7 +26,7 @@ from workbench.variants.sweeps import (
     todo,
 )
 
-TOPIC = "sweep"
+JOB = "sweep"
 
 
 class SweepRun:
@@ -63,12 +63,12 @@ class SweepRun:
             return
         self.ending = ""
         self.left = todo(self.sweep, self.project.store)
-        self._cancels = self.jobs.conductor.cancels(TOPIC)
+        self._cancels = self.jobs.conductor.cancels(JOB)
         self._next()
 
     def stop(self) -> None:
         """Compute no more; points that are done are kept."""
-        self.jobs.conductor.stop(TOPIC)
+        self.jobs.conductor.stop(JOB)
 
     def _next(self) -> None:
         """Ask for the next point; values that the design refuses fail at once."""
@@ -79,7 +79,7 @@ class SweepRun:
                 self.running, self._began = number, time.monotonic()
                 state, wanted = state_at(self.sweep, number), self.sweep.wanted
                 self.on_change()
-                self.jobs.submit(TOPIC, state.design, state.case, wanted, self._ended)
+                self.jobs.submit(JOB, state.design, state.case, wanted, self._ended)
                 return
             self._take(failed(self.sweep, number, error))
         if self.sweep is not None:
@@ -98,7 +98,7 @@ class SweepRun:
         if not stopped:
             self._take(self._outcome(self.sweep, number, finished))
         # A Cancel that came after the point's end, before that was heard of, stopped nothing.
-        if self.left and (stopped or self._cancels != self.jobs.conductor.cancels(TOPIC)):
+        if self.left and (stopped or self._cancels != self.jobs.conductor.cancels(JOB)):
             self.left = []
             self.ending = "Stopped; *Resume sweep* goes on where it was."
             self.on_change()
@@ -124,7 +124,7 @@ class SweepRun:
             return ""
         eta_s = seconds_left(self.sweep, len(self.left), time.monotonic() - self._began)
         ends = f", about {human_seconds(eta_s)} left" if eta_s is not None else ""
-        now = self.jobs.running.get(TOPIC)
+        now = self.jobs.running.get(JOB)
         name = "" if now is None else label_of(now.stage)
         stage = "" if now is None else f" · {name} {100.0 * now.fraction:.0f} %"
         count = len(self.sweep.points)

@@ -1,8 +1,8 @@
 """Work that would hold all tabs up: done in one thread, handed over when the desk's pump turns.
 
 Whoever asks says what makes the pieces (a generator, run without the desk's lock) and who takes
-them (called under it). A newer request of the same topic replaces the one before: of that no
-further piece is made, and none that waits is handed over. Topics take turns, piece by piece, so
+them (called under it). A newer request of the same job replaces the one before: of that no
+further piece is made, and none that waits is handed over. Jobs take turns, piece by piece, so
 that a short one need not wait for the end of a long one.
 """
 
@@ -23,9 +23,9 @@ MOST_WAITING = 4
 
 @dataclass(eq=False, kw_only=True, slots=True)
 class _Request:
-    """What one topic has asked for."""
+    """What one job has asked for."""
 
-    topic: str
+    job: str
     pieces: Iterator[Any]
     take: Callable[[Any], None]
     done: deque[Any] = field(default_factory=deque)
@@ -33,28 +33,28 @@ class _Request:
     ended: bool = False
 
 
-class Backstage:
+class BackgroundThread:
     """The thread of one desk, and what waits for its lock."""
 
     def __init__(self, on_error: Callable[[Exception], None]) -> None:
         self.on_error = on_error
         self._requests: dict[str, _Request] = {}
         self._change = threading.Condition()
-        threading.Thread(target=self._work_forever, name="backstage", daemon=True).start()
+        threading.Thread(target=self._work_forever, name="background", daemon=True).start()
 
-    def ask(self, topic: str, pieces: Iterator[Any], take: Callable[[Any], None]) -> None:
-        """Make pieces in place of what this topic asked for before, and hand each to `take`."""
+    def ask(self, job: str, pieces: Iterator[Any], take: Callable[[Any], None]) -> None:
+        """Make pieces in place of what this job asked for before, and hand each to `take`."""
         with self._change:
-            # At the end of the row: other topics come first.
-            self._requests.pop(topic, None)
-            self._requests[topic] = _Request(topic=topic, pieces=pieces, take=take)
+            # At the end of the row: other jobs come first.
+            self._requests.pop(job, None)
+            self._requests[job] = _Request(job=job, pieces=pieces, take=take)
             self._change.notify()
 
-    def forget(self, *topics: str) -> None:
-        """Nothing that these topics asked for is wanted any more."""
+    def forget(self, *jobs: str) -> None:
+        """Nothing that these jobs asked for is wanted any more."""
         with self._change:
-            for topic in topics:
-                self._requests.pop(topic, None)
+            for job in jobs:
+                self._requests.pop(job, None)
 
     def turn(self) -> None:
         """Hand over what is there, for as long as nobody minds; called under the desk's lock."""
@@ -72,7 +72,7 @@ class Backstage:
                     self._change.notify()
                     return request.take, request.done.popleft()
                 if request.ended:
-                    del self._requests[request.topic]
+                    del self._requests[request.job]
         return None
 
     def _work_forever(self) -> None:
@@ -81,8 +81,8 @@ class Backstage:
                 self._change.wait_for(lambda: self._open() is not None)
                 request = self._open()
                 assert request is not None
-                # The next topic has the next turn.
-                self._requests[request.topic] = self._requests.pop(request.topic)
+                # The next job has the next turn.
+                self._requests[request.job] = self._requests.pop(request.job)
             self._make_one(request)
 
     def _open(self) -> _Request | None:

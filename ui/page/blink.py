@@ -1,4 +1,4 @@
-"""Two pictures that take each other's place at a steady pace; holds no lock of the desk.
+"""Two images that take each other's place at a steady pace; holds no lock of the desk.
 
 Only their visibility changes, which costs a page nothing, and nothing at all is sent while no page
 looks.

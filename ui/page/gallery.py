@@ -1,6 +1,6 @@
-"""A gallery: cards with pictures in a window of one tab, from which one is chosen.
+"""A gallery: cards with thumbnails in a window of one tab, from which one is chosen.
 
-viser has no clickable pictures, so the cards are HTML, and a click on one presses the button of the
+viser has no clickable images, so the cards are HTML, and a click on one presses the button of the
 same name below; those buttons are what a keyboard and a screen reader find.
 """
 
@@ -25,7 +25,7 @@ CARD = (
     "border:1px solid #8886;border-radius:8px;padding:6px;cursor:pointer;text-align:center;"
     "font-size:11px;line-height:1.25"
 )
-PICTURE = "width:100%;height:76px;object-fit:contain"
+THUMBNAIL = "width:100%;height:76px;object-fit:contain"
 IN_A_ROW = 5
 """Buttons of a row below the cards."""
 
@@ -122,14 +122,14 @@ def shortened(words: str, longest: int) -> str:
 
 def _card(card: Card) -> str:
     name = html.escape(card.name, quote=True)
-    picture = ""
+    thumbnail = ""
     if card.png is not None:
         data = base64.b64encode(card.png).decode()
-        picture = f"<img alt='' style='{PICTURE}' src='data:image/png;base64,{data}'>"
+        thumbnail = f"<img alt='' style='{THUMBNAIL}' src='data:image/png;base64,{data}'>"
     else:
-        picture = f"<div style='{PICTURE};font-size:48px;opacity:.4'>&#9633;</div>"
+        thumbnail = f"<div style='{THUMBNAIL};font-size:48px;opacity:.4'>&#9633;</div>"
     words = f"<br><span style='opacity:.7'>{html.escape(card.words)}</span>" if card.words else ""
     return (
         f'<div style=\'{CARD}\' data-name="{name}" title="{name}" onclick="{PRESS}">'
-        f"{picture}<b>{name}</b>{words}</div>"
+        f"{thumbnail}<b>{name}</b>{words}</div>"
     )

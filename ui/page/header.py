@@ -35,14 +35,14 @@ class Header:
         hint = "LEDs, lamps and cameras that are in a wall or outside move to where there is room"
         self.fit = gui.add_button("Fit LEDs and camera to the body", visible=False, hint=hint)
         # A panel of its own: widgets must not move under the mouse when a job starts or ends.
-        self.job = gui.add_panel(visible=False)
-        with self.job.add_tab("Running", viser.Icon.LOADER):
+        self.job_panel = gui.add_panel(visible=False)
+        with self.job_panel.add_tab("Running", viser.Icon.LOADER):
             self.progress = gui.add_progress_bar(0.0, animated=True)
             self.progress_text = gui.add_markdown("")
             gui.add_button("Cancel", color="red", hint="Stop what runs (X)").on_click(on_cancel)
         gui.add_command("Cancel what runs", hotkey="X").on_trigger(on_cancel)
         # Notifications come in at the left; on a narrow page both find place side by side.
-        self.job.float(x=-MARGIN_PX, y=15, width=WIDTH_PX)
+        self.job_panel.float(x=-MARGIN_PX, y=15, width=WIDTH_PX)
 
     def show_design(self, design: SensorDesign) -> None:
         """Name and family."""
@@ -72,9 +72,9 @@ class Header:
 
     def show_progress(self, running: Mapping[str, Progress]) -> None:
         """The newest job; what follows the hand is too quick to be worth a bar."""
-        shown = [progress for topic, progress in running.items() if _worth_a_bar(topic, progress)]
-        if self.job.visible != bool(shown):
-            self.job.visible = bool(shown)
+        shown = [progress for job, progress in running.items() if _worth_a_bar(job, progress)]
+        if self.job_panel.visible != bool(shown):
+            self.job_panel.visible = bool(shown)
         if shown:
             now = shown[-1]
             self.progress.value = 100.0 * now.fraction
@@ -90,7 +90,7 @@ class Header:
         self.notice.content = f"<span style='color:{AMBER}'>**Note:** {text}</span>"
 
 
-def _worth_a_bar(topic: str, progress: Progress) -> bool:
-    if topic == LIVE:
+def _worth_a_bar(job: str, progress: Progress) -> bool:
+    if job == LIVE:
         return progress.eta_s is not None and progress.eta_s > WAIT_S
-    return topic not in FOLLOWING or (topic == SHAPE and progress.seconds > PATIENCE_S)
+    return job not in FOLLOWING or (job == SHAPE and progress.seconds > PATIENCE_S)

@@ -1,6 +1,6 @@
-"""A page of the browser: a folder of `ui.panels` with a `page.py` and a sheet of help.
+"""A page of the browser: a folder of `ui.panels` with `page.py` and `help.md`.
 
-`PAGE` of `page.py` says what it is; `help.md` is the sheet behind its help button.
+`PAGE` in `page.py` says what it is; `help.md` is the sheet behind its help button.
 """
 
 from __future__ import annotations

@@ -18,7 +18,7 @@ from ui.scene.ghost_rig import ghost_rig
 from workbench.core.base.errors import StoreError
 from workbench.pipeline.store import Store
 from workbench.variants.comparison_side import Side
-from workbench.view.previews import outer_faces
+from workbench.view.scene_shapes import outer_faces
 
 COLOURS = ((64, 160, 255), (255, 140, 50))
 """Of A and B: seen apart by colour-blind people too."""

@@ -1,7 +1,7 @@
 """LEDs, lamps and cameras of another design in the 3D view: a few nodes, whatever their number.
 
 Lights are one cloud of round points in their colours, a lamp at its middle; cameras are frusta in
-the colour of the ghost, without pictures.
+the colour of the ghost, without images.
 """
 
 from __future__ import annotations

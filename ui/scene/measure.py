@@ -9,7 +9,7 @@ import numpy as np
 
 from ui.scene.nodes import Meshes
 from ui.scene.scene import Scene
-from workbench.view.previews import first_hit
+from workbench.view.scene_shapes import first_hit
 from workbench.view.section_cut import clip
 
 COLOUR = (255, 45, 85)
@@ -29,7 +29,7 @@ class Measure:
         self.click = click
         """What the scene's own meshes are clicked with."""
         self.on = False
-        self.told: Callable[[str], None] = lambda text: None
+        self.on_message: Callable[[str], None] = lambda text: None
         """Set by the panel: shows what was measured, or what to do."""
         self._ends: list[np.ndarray] = []
         self._nodes: list[Any] = []
@@ -45,7 +45,7 @@ class Measure:
         self._clear()
         for meshes in self._groups[1:]:
             meshes.take_clicks(self.click if on else None)
-        self.told(ASK if on else "")
+        self.on_message(ASK if on else "")
 
     def takes(self, origin: np.ndarray, direction: np.ndarray) -> bool:
         """Take a click while measuring, whether or not it meets anything."""
@@ -87,7 +87,7 @@ class Measure:
             api.add_icosphere(f"/measure/end_{number}", BALL_MM, color=COLOUR, position=end)
         )
         if number < 2:
-            self.told(ASK_NEXT)
+            self.on_message(ASK_NEXT)
             return
         line = np.stack(self._ends).astype(np.float32)[None]
         middle = np.mean(self._ends, axis=0) + np.array([0.0, 0.0, LIFT_MM])
@@ -96,7 +96,7 @@ class Measure:
             api.add_line_segments("/measure/line", line, colors=COLOUR, line_width=3.0),
             api.add_label("/measure/text", text, position=middle, anchor="bottom-center"),
         ]
-        self.told(f"**{text}**")
+        self.on_message(f"**{text}**")
 
     def _clear(self) -> None:
         for node in self._nodes:

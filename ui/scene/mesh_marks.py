@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ui.scene.views import Views
-from workbench.view.previews import cell_edges
+from workbench.view.scene_shapes import cell_edges
 
 CELL_COLOUR = (255, 45, 85)
 EDGE_COLOUR = (20, 60, 120)

@@ -13,7 +13,7 @@ from workbench.core.base.poses import rotations
 from workbench.core.press.press import Press
 from workbench.core.result.sensing import Contact
 from workbench.live.object_drawing import Drawing
-from workbench.view.previews import corner_normals, first_hit, standing_pose
+from workbench.view.scene_shapes import corner_normals, first_hit, standing_pose
 from workbench.view.soft_shape import deformed_mm, is_soft
 
 OBJECT_COLOUR = (232, 124, 44)

@@ -1,9 +1,9 @@
 """The pressed skin in the 3D view: a coloured mesh for every frame, and arrows of force.
 
-Stepping only shows and hides frames that are there. They are worked out backstage, the last one
-first, and put into the page a few at a time; one that is asked for before its turn is made at
-once. A frame that takes the place of another, live or cut elsewhere, does so only once the page
-has had time to read it, or the skin would flicker: `turn` removes what was replaced.
+Stepping only shows and hides frames that are there. They are worked out in the background, the last
+one first, and put into the page a few at a time; one that is asked for before its turn is made at
+once. A frame that takes the place of another, live or cut elsewhere, does so only once the page has
+had time to read it, or the skin would flicker: `turn` removes what was replaced.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from ui.page.background_thread import Backstage
+from ui.page.background_thread import BackgroundThread
 from ui.scene.pressed_frames import PressedFrames, pressed_frames
 from workbench.core.result.results import Skin
 from workbench.core.result.sensing import Contact
@@ -35,7 +35,7 @@ CUT_LINGER_S = 0.25
 QUIET_S = 0.4
 """A plane that has not moved for so long is where the other frames are cut [s]."""
 MEASURE, FRAMES = "colours of a press", "frames of a press"
-"""Topics of the work backstage."""
+"""Jobs of the background thread."""
 
 
 class PressedView:
@@ -45,12 +45,12 @@ class PressedView:
         self,
         api: Any,
         on_click: Callable[[Any], None],
-        backstage: Backstage,
+        background: BackgroundThread,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self.api = api
         self.on_click = on_click
-        self.backstage = backstage
+        self.background = background
         self._clock = clock
         self.on_painted: Callable[[], None] = lambda: None
         """Set by the scene: called once a press has its colours, and so its frames."""
@@ -93,7 +93,7 @@ class PressedView:
         return self._number > 0 and self._frames is not None
 
     def load(self, skin: Skin, contact: Contact) -> None:
-        """Take a press; nothing of it is on show until it has been measured backstage."""
+        """Take a press; nothing of it is on show until it has been measured in the background."""
         self.clear()
         self._skin, self.contact = skin, contact
         self.field, self.against = contact, None
@@ -101,7 +101,7 @@ class PressedView:
 
     def load_live(self, skin: Skin, contact: Contact) -> None:
         """Take a press of one frame, and show it in place of the one before."""
-        self.backstage.forget(MEASURE)
+        self.background.forget(MEASURE)
         self._let_linger(LINGER_S)
         self._skin, self.contact = skin, contact
         self.field, self.against = contact, None
@@ -109,7 +109,7 @@ class PressedView:
         self.show(1)
 
     def paint(self, quantity: Quantity) -> None:
-        """Colour the skin by another quantity, once that has been measured backstage."""
+        """Colour the skin by another quantity, once that has been measured in the background."""
         self.quantity = quantity
         self._measure()
 
@@ -123,7 +123,7 @@ class PressedView:
         against = self.against
         if skin is not None and field is not None:
             work = (pressed_frames(skin, field, quantity, before, against) for _ in range(1))
-            self.backstage.ask(MEASURE, work, self._painted)
+            self.background.ask(MEASURE, work, self._painted)
 
     def _painted(self, frames: PressedFrames) -> None:
         """Show what has been measured."""
@@ -144,7 +144,7 @@ class PressedView:
         self._forget_frames()
 
     def _forget_frames(self) -> None:
-        self.backstage.forget(FRAMES)
+        self.background.forget(FRAMES)
         self._nodes.clear()
         self._prepare_at_s = None
         self._series = self._free_series()
@@ -169,10 +169,10 @@ class PressedView:
             self._prepare_at_s = None
             numbers = [self.count, *range(1, min(self.count, MOST_PREPARED) + 1)]
             wanted = [k for k in dict.fromkeys(numbers) if k not in self._nodes]
-            self.backstage.ask(FRAMES, self._frames.files(wanted, self.plane), self._take)
+            self.background.ask(FRAMES, self._frames.files(wanted, self.plane), self._take)
 
     def _take(self, made: tuple[int, bytes]) -> None:
-        """Put a frame that was made backstage into the page, hidden."""
+        """Put a frame that was made in the background into the page, hidden."""
         number, glb = made
         if number not in self._nodes:
             self._add(number, glb)
@@ -220,7 +220,7 @@ class PressedView:
 
     def clear(self) -> None:
         """Forget the press."""
-        self.backstage.forget(MEASURE)
+        self.background.forget(MEASURE)
         for node in (*(node for _, node in self._lingering), *self._nodes.values()):
             node.remove()
         self._lingering.clear()

@@ -20,8 +20,8 @@ WIDEST_DEG = 150.0
 """A fisheye is drawn at most so wide."""
 USUAL_DEG = 100.0
 """Wider frusta are smaller, so that they hide no more than one of this angle."""
-PICTURE_PX = 160
-"""Width at most of the picture in a frustum."""
+IMAGE_PX = 160
+"""Width at most of the image in a frustum."""
 LENS_COLOURS = {
     LensModel.PINHOLE: (255, 200, 0),
     LensModel.OPENCV: (255, 200, 0),
@@ -52,7 +52,7 @@ class RigView:
             self.show_lights(optics.ring)
             self.lamps.show_lamps(optics.lamps)
             if len(self.cameras) != len(optics.all_cameras):
-                # Pictures are told apart by the numbers of cameras, and these have moved up.
+                # Images are told apart by the numbers of cameras, and these have moved up.
                 self.forget_image()
             while len(self.cameras) > len(optics.all_cameras):
                 self.cameras.pop().remove()
@@ -96,7 +96,7 @@ class RigView:
     def show_image(self, number: int, image: np.ndarray) -> None:
         """Show in a frustum what its camera sees, shape (H, W, 3), uint8."""
         if number < len(self.cameras):
-            step = max(1, image.shape[1] // PICTURE_PX)
+            step = max(1, image.shape[1] // IMAGE_PX)
             self.cameras[number].image = image[::step, ::step]
 
     def forget_image(self) -> None:

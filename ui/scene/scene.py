@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ui.page.background_thread import Backstage
+from ui.page.background_thread import BackgroundThread
 from ui.scene.map_view import MapView
 from ui.scene.mesh_marks import MeshMarks
 from ui.scene.object_view import ObjectView
@@ -30,7 +30,12 @@ class Scene:
     """The 3D view of one design. One node per kind; nodes are updated, not made anew."""
 
     def __init__(
-        self, server: Any, *, fast: bool, on_click: Callable[[Any], None], backstage: Backstage
+        self,
+        server: Any,
+        *,
+        fast: bool,
+        on_click: Callable[[Any], None],
+        background: BackgroundThread,
     ) -> None:
         self.server = server
         self.on_click = on_click
@@ -41,7 +46,7 @@ class Scene:
         self.views = Views(server)
         self.object = ObjectView(server, self.body)
         self.marks = MeshMarks(self.api, self.views)
-        self.pressed = PressedView(self.api, on_click, backstage)
+        self.pressed = PressedView(self.api, on_click, background)
         self.pressed.on_painted = self._painted
         self.on_painted: Callable[[], None] = lambda: None
         """Set by the timeline: called once the colours of a press are there."""

@@ -14,7 +14,7 @@ import numpy as np
 from ui.scene.nodes import Meshes
 from workbench.core.result.results import Label, Solid
 from workbench.project.aim import SkinPlace, skin_place
-from workbench.view.previews import first_hit, outer_faces, skin_parts
+from workbench.view.scene_shapes import first_hit, outer_faces, skin_parts
 from workbench.view.section_cut import Plane, clip
 
 SKIN_COLOUR = (196, 206, 220)

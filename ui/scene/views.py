@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from workbench.view.previews import USUAL_VIEW
+from workbench.view.scene_shapes import USUAL_VIEW
 
 FOV_RAD = 0.6
 """Vertical angle of view of every tab [rad]."""

@@ -24,14 +24,14 @@ class SampleLine:
         self._said_s = 0.0
         self._shown = ""
 
-    def tell(self, told: Any) -> None:
+    def tell(self, progress: Any) -> None:
         """Show how far it is."""
         if self.as_json:
-            line = json.dumps({"stage": "samples", **dataclasses.asdict(told)})
+            line = json.dumps({"stage": "samples", **dataclasses.asdict(progress)})
         else:
-            left = "" if told.eta_s is None else f", {human_seconds(told.eta_s)} left"
-            bad = f", {told.failed} cases failed" if told.failed else ""
-            line = f"{told.done} of {told.total} samples{left}{bad}"
+            left = "" if progress.eta_s is None else f", {human_seconds(progress.eta_s)} left"
+            bad = f", {progress.failed} cases failed" if progress.failed else ""
+            line = f"{progress.done} of {progress.total} samples{left}{bad}"
         now = time.monotonic()
         if line == self._shown or (not self.rewrites and now - self._said_s < TOLD_S):
             return

@@ -11,7 +11,7 @@ from workbench.core.base.units import human_seconds
 from workbench.system.terminal import complain, say
 
 if TYPE_CHECKING:
-    from workbench.learning.training.plan import Told
+    from workbench.learning.training.plan import TrainingProgress
 
 TOLD_S = 10.0
 """Time between two lines of progress where there is no terminal to rewrite one [s]."""
@@ -27,22 +27,22 @@ class TrainingLine:
         self._shown = ""
         self._notes = 0
 
-    def tell(self, told: Told) -> None:
+    def tell(self, progress: TrainingProgress) -> None:
         """Show an epoch that ended."""
-        for note in told.notes[self._notes :]:
+        for note in progress.notes[self._notes :]:
             self.end()
             complain(f"note: {note}")
-        self._notes = len(told.notes)
+        self._notes = len(progress.notes)
         if self.as_json:
-            say(json.dumps({"stage": "train", "eta_s": told.eta_s, **told.row}))
+            say(json.dumps({"stage": "train", "eta_s": progress.eta_s, **progress.row}))
             return
-        row = told.row
-        line = f"epoch {row['epoch']} of {told.epochs}: loss {row['train_loss']:.3f}"
+        row = progress.row
+        line = f"epoch {row['epoch']} of {progress.epochs}: loss {row['train_loss']:.3f}"
         if row["validation_mae"] is not None:
             line += f", validation {row['validation_mae']:.3g} (zero {row['zero_mae']:.3g}"
             line += f", contact solver {row['mpm_mae']:.3g})" if row["mpm_mae"] else ")"
-        line += f", {human_seconds(told.eta_s)} left"
-        now, last = time.monotonic(), row["epoch"] == told.epochs
+        line += f", {human_seconds(progress.eta_s)} left"
+        now, last = time.monotonic(), row["epoch"] == progress.epochs
         if self.rewrites:
             complain(f"\r\x1b[K{line}", end="")
             self._shown = line

@@ -140,7 +140,7 @@ class Results:
         out = Path(folder)
         prepare(out, clear=RUN_FILES)
         self.compute(*IN_RUN)
-        # The report does without the picture where nothing can be drawn off screen.
+        # The report does without the drawing where nothing can be drawn off screen.
         with contextlib.suppress(DeviceError):
             self.compute("picture")
         known = (self.project.store, self._calls, self.outcomes)

@@ -44,15 +44,15 @@ def display_mesh(indenter: Indenter) -> tuple[np.ndarray, np.ndarray]:
 def _contoured(indenter: Indenter) -> tuple[np.ndarray, np.ndarray]:
     from geometry.surface.isosurface import isosurface
     from sim.contact.objects import textures
+    from sim.contact.objects.object_measures import exact_distance, sharpest_mm
     from sim.contact.objects.samples import make_grid
     from sim.contact.objects.sampling import box_mm
-    from sim.contact.objects.solids import sharpest_mm, solid
 
     sharpest = min(sharpest_mm(indenter), textures.sharpest_mm(indenter.texture))
     step_mm = max(sharpest / STEPS_PER_RADIUS, FINEST_MM)
     step_mm = min(step_mm, COARSEST_SHARE * indenter.size_mm)
     grid = make_grid(*box_mm(indenter), spacing_mm=step_mm, most=MOST_SHOWN)
-    function = solid(indenter)
+    function = exact_distance(indenter)
     if indenter.texture.raised:
         field = textures.heights(indenter.texture, grid.spacing_mm)
         function = textures.textured(function, field, float(box_mm(indenter)[1][2]))

@@ -1,7 +1,7 @@
 """What is shown while the designer drags: one settled frame and its image, computed in a lane.
 
-A `LiveCall` is a `workbench.live.preview_call`. The lane keeps the last press (`sim.contact.live`)
-and the scene of the last image, for requests like the one before.
+A `LiveCall` is a `workbench.live.preview_call`. The lane keeps the last press
+(`sim.contact.live_contact`) and the scene of the last image, for requests like the one before.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from workbench.pipeline.surface_detail import detailed
 from workbench.planning.plan import plan
 
 if TYPE_CHECKING:
-    from sim.contact.live import LiveContact
+    from sim.contact.live_contact import LiveContact
     from sim.optics.studio.render import Studio
 
 NEEDED = ("mesh", "lattice", "bake", "table")
@@ -71,9 +71,9 @@ class LiveCall:
         """Stages that must be stored before."""
         return NEEDED
 
-    def answer(self, store: Store, kept: dict[str, Any], monitor: Monitor) -> Preview:
+    def answer(self, store: Store, kept: dict[str, Any], monitor: Monitor) -> PressPreview:
         """Press and look, going on from the last press of this process."""
-        previewer: Previewer = kept.setdefault(self.stage, Previewer())
+        previewer: PressPreviewer = kept.setdefault(self.stage, PressPreviewer())
         return previewer.answer(store, self, monitor)
 
     @property
@@ -83,7 +83,7 @@ class LiveCall:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Preview:
+class PressPreview:
     """The settled frame of a live press."""
 
     contact: Contact
@@ -141,14 +141,14 @@ def live_call(design: SensorDesign, case: PressCase) -> LiveCall:
     )
 
 
-class Previewer:
+class PressPreviewer:
     """Answers live calls in one process, and keeps what the next one may need."""
 
     def __init__(self) -> None:
         self._live: LiveContact | None = None
         self._studio: tuple[str, Studio] | None = None
 
-    def answer(self, store: Store, call: LiveCall, monitor: Monitor) -> Preview:
+    def answer(self, store: Store, call: LiveCall, monitor: Monitor) -> PressPreview:
         """Press and look.
 
         Raises:
@@ -158,7 +158,7 @@ class Previewer:
 
         begun = time.perf_counter()
         open_device()
-        from sim.contact.live import LiveContact
+        from sim.contact.live_contact import LiveContact
         from sim.optics.studio.detail import open_detail
 
         if self._live is None:
@@ -178,7 +178,7 @@ class Previewer:
         shown = detailed(call.optics, call.indenter, call.settings)
         young_MPa, poisson = call.material.young_MPa, call.material.poisson
         detail = open_detail(shown, mesh, contact, young_MPa=young_MPa, poisson=poisson)
-        return Preview(
+        return PressPreview(
             contact=contact,
             images=studio.shoot(mesh.seen_displacement_mm(contact), detail=detail).rgb,
             way=self._live.way.value,

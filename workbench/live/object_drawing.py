@@ -2,7 +2,7 @@
 
 Contouring a cross takes more than a second, for which the server would hold all tabs up. A
 `DrawingCall` is a `workbench.live.preview_call`; the lane keeps the last shapes, by their content,
-and its sketches of the tactile image take them from there too.
+and its previews of the tactile image take them from there too.
 """
 
 from __future__ import annotations

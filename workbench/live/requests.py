@@ -1,4 +1,4 @@
-"""What the browser asks of the pipeline, by topic, and the events that tell how it goes."""
+"""What the browser asks of the pipeline, by job, and the events that tell how it goes."""
 
 from __future__ import annotations
 
@@ -12,25 +12,25 @@ from workbench.live.preview_call import PreviewCall
 from workbench.pipeline.stage import Outcome
 
 SHAPE = "shape"
-"""The topic of the body that follows the sliders."""
+"""The job of the body that follows the sliders."""
 LIVE = "live"
-"""The topic of live presses: each request stops the one before."""
-GLIMPSE = "glimpse"
-"""The topic of the small picture that follows the sliders."""
+"""The job of live presses: each request stops the one before."""
+IMAGE_PREVIEW = "image preview"
+"""The job of the image preview that follows the sliders."""
 FORESIGHT = "foresight"
-"""The topic of what will be refused."""
+"""The job of what will be refused."""
 CUT = "cut"
-"""The topic of the section view."""
+"""The job of the section view."""
 DRAWN = "drawn object"
-"""The topic of the object's shape in the 3D view."""
+"""The job of the object's shape in the 3D view."""
 PREDICTION = "prediction"
-"""The topic of learned forces that nobody asked for: they follow a press that is done."""
-FOLLOWING = (SHAPE, FORESIGHT, GLIMPSE, CUT, DRAWN, PREDICTION)
-"""Topics too quick for a bar or a Cancel, unless one takes longer than `PATIENCE_S`."""
+"""The job of learned forces that nobody asked for: they follow a press that is done."""
+FOLLOWING = (SHAPE, FORESIGHT, IMAGE_PREVIEW, CUT, DRAWN, PREDICTION)
+"""Jobs too quick for a bar or a Cancel, unless one takes longer than `PATIENCE_S`."""
 PATIENCE_S = 4.0
 """What follows the hand and still runs after this gives way to a newer request [s]."""
 QUIET = (*FOLLOWING, LIVE)
-"""Topics that follow the designer's hand: nothing is logged of them."""
+"""Jobs that follow the designer's hand: nothing is logged of them."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -48,7 +48,7 @@ class Request:
 class Progress:
     """A running stage."""
 
-    topic: str
+    job: str
     stage: str
     fraction: float
     note: str
@@ -61,7 +61,7 @@ class Progress:
 class StageDone:
     """A stage that finished."""
 
-    topic: str
+    job: str
     outcome: Outcome
     request: Request
 
@@ -70,7 +70,7 @@ class StageDone:
 class PreviewDone:
     """A preview that was answered."""
 
-    topic: str
+    job: str
     preview: Any
     request: Request
 
@@ -79,7 +79,7 @@ class PreviewDone:
 class Finished:
     """A request that ended; `error` is None when all of it was computed."""
 
-    topic: str
+    job: str
     request: Request
     error: WorkbenchError | None
     seconds: float

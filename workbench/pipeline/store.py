@@ -59,7 +59,7 @@ class Store:
     def __init__(self, root: Path | str, *, limit_bytes: int = DEFAULT_LIMIT_BYTES) -> None:
         self.root = Path(root)
         self.limit_bytes = limit_bytes
-        self.told: Callable[[str], None] = complain
+        self.on_message: Callable[[str], None] = complain
         """Who hears that a result was set aside."""
         self._sound: dict[Path, int] = {}
         """When the results that were looked into had been written [ns]."""
@@ -186,7 +186,7 @@ class Store:
                 at=stage,
             )
         else:
-            self.told(
+            self.on_message(
                 f"notice: the stored result {stage}/{key[:12]} was damaged "
                 f"({shortened(str(error))}); it is now in {aside} and is computed again"
             )

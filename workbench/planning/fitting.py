@@ -119,7 +119,7 @@ def _rings(design: SensorDesign, solid: Solid, mesh: MembraneMesh) -> Iterator[L
 
 def _shell_radii(mesh: MembraneMesh, ring: LedRing) -> list[float]:
     """The middle of the support all around, where it has one radius for all LEDs."""
-    from sim.optics.camera.within import wall_radius
+    from sim.optics.camera.inside_skin import wall_radius
     from workbench.core.design.leds import led_places
 
     places, _ = led_places(ring)

@@ -121,7 +121,7 @@ def export_design(
         kind.fits(design, results(store, plan(design, PressCase()), ("mesh",))["mesh"])
     wanted = dict.fromkeys(stage for kind in chosen for stage in kind.stages)
     for kind in chosen:
-        # A machine without an off-screen renderer still gets all files but the picture.
+        # A machine without an off-screen renderer still gets all files but the drawing.
         with contextlib.suppress(*((DeviceError,) if kind.if_possible else ())):
             _compute(design, store, monitor, kind.stages)
     found = results(store, plan(design, PressCase()), tuple(wanted))

@@ -1,4 +1,4 @@
-"""The pictures of a run: backgrounds, frames, differences, marker motion, and fields of pixels."""
+"""The images of a run: backgrounds, frames, differences, marker motion, and fields of pixels."""
 
 from __future__ import annotations
 

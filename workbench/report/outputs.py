@@ -213,10 +213,10 @@ def write_all(
     summary["notices"] = {
         name: value.notice for name, value in load.items() if getattr(value, "notice", "")
     }
-    told = {"press": path.notice, "material": design.material.notice, "design": changed}
-    told["object"] = touching_notice(case.indenter)
-    told["target"] = target_notice(design, load["build"], path, load["press"])
-    summary["notices"] |= {name: notice for name, notice in told.items() if notice}
+    notices = {"press": path.notice, "material": design.material.notice, "design": changed}
+    notices["object"] = touching_notice(case.indenter)
+    notices["target"] = target_notice(design, load["build"], path, load["press"])
+    summary["notices"] |= {name: notice for name, notice in notices.items() if notice}
     summary |= fabrication_tables(load["mould"], load["housing"], load["recipe"])
     drawn = drawings(load["build"], load["mesh"], load["press"], load.get("picture"))
     html = report_html(design, path, summary, load["shoot"], load["press"], drawn)

@@ -21,7 +21,7 @@ from workbench.report.image_files import png_bytes
 from workbench.view.forces import slip_columns
 from workbench.view.press_figures import frame_depths_mm
 
-NO_RENDERER = "<p>No picture: this machine has no off-screen renderer (libegl1).</p>"
+NO_RENDERER = "<p>No drawing: this machine has no off-screen renderer (libegl1).</p>"
 EXPLODED = (
     "Exploded view. Left the mould: outer parts and core. Right the sensor, from the top: "
     "membrane, support, LED ring holder, base, camera mount."
@@ -128,12 +128,12 @@ def _images(shot: Shot) -> str:
     rgb = shot.frames.rgb
     change = np.abs(rgb[-1].astype(np.int16) - rgb[0].astype(np.int16)).astype(np.uint8)
     gain = 1 if change.max() == 0 else min(8, 255 // int(change.max()))
-    pictures = [
+    images = [
         (rgb[0], "Background: nothing touches"),
         (rgb[-1], f"Frame {len(rgb) - 1} of {len(rgb) - 1}"),
         (change * np.uint8(gain), f"Absolute difference, x {gain}"),
     ]
-    figures = (figure(png_bytes(p), text, width=310) for p, text in pictures)
+    figures = (figure(png_bytes(image), text, width=310) for image, text in images)
     return f"<div class='images'>{''.join(figures)}</div>"
 
 
@@ -142,14 +142,14 @@ def _drawn(png: bytes | None, caption: str, *, width: int = 640) -> str:
 
 
 def drawings(
-    solid: Solid, mesh: MembraneMesh, contact: Contact, picture: Picture | None
+    solid: Solid, mesh: MembraneMesh, contact: Contact, drawing: Picture | None
 ) -> Drawings:
     """Everything drawn for a report; the exploded view comes from its own stage."""
-    from geometry.picture.pictures import thumbnail
+    from geometry.drawing.sensor_drawings import membrane_drawing
 
-    parts = None if picture is None else picture.png.tobytes()
+    parts = None if drawing is None else drawing.png.tobytes()
     try:
-        membrane = thumbnail(solid).tobytes()
+        membrane = membrane_drawing(solid).tobytes()
         return Drawings(membrane=membrane, pressed=_displacement_png(mesh, contact), parts=parts)
     except DeviceError:
         return Drawings(membrane=None, pressed=None, parts=parts)
@@ -160,7 +160,7 @@ def _displacement_png(mesh: MembraneMesh, contact: Contact) -> bytes:
 
     Seen from 35 degrees beside the outward normal at the target.
     """
-    from geometry.picture.pictures import skin_field
+    from geometry.drawing.sensor_drawings import skin_field
 
     moved_mm = contact.displacement_mm[-1].astype(np.float64)
     skin = mesh.outer

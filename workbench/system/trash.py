@@ -1,7 +1,7 @@
 """Files that were deleted: moved into `trash/` beside the others, under names of their own.
 
 Nothing in it is ever overwritten: where a name is taken, the later file gets a number, and so does
-one that comes back to where another has its name by now. A file may have a picture beside it.
+one that comes back to where another has its name by now. A file may have a thumbnail beside it.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from workbench.system.names import numbered
 
 TRASH = "trash"
 ENDINGS = (".toml", ".png")
-"""A file and its picture."""
+"""A file and its thumbnail."""
 
 
 def trash_file(folder: Path, name: str, *, what: str) -> str:

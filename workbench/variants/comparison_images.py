@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from workbench.core.result.sensing import Shot
-from workbench.report.portraits import framed
+from workbench.report.thumbnails import framed
 from workbench.view.image_views import visible_change
 
 GAP_PX = 8
@@ -66,7 +66,7 @@ def pair(a: Shot, b: Shot, moment: Moment) -> Pair:
     if same_proportions(image_a, image_b):
         difference, gain = visible_change(raw_b, raw_a)
         of = f"B − A ({source}) about mid grey, × {gain}"
-    words, of = ("; ".join(part for part in (told, note) if part) for told in (words, of))
+    words, of = ("; ".join(part for part in (text, note) if part) for text in (words, of))
     return Pair(a=shown_a, b=shown_b, difference=difference, words=words, change_words=of)
 
 

@@ -20,7 +20,7 @@ from workbench.pipeline.store import Store
 from workbench.planning.stage_table import STAGES
 from workbench.project.state import State
 from workbench.report.html_page import figure, page, photograph, table
-from workbench.report.portraits import framed, thumbnail_png
+from workbench.report.thumbnails import framed, thumbnail_png
 from workbench.variants.comparison import (
     changes,
     number_text,
@@ -31,7 +31,7 @@ from workbench.variants.comparison import (
 from workbench.variants.comparison_images import Moment, pair
 from workbench.variants.comparison_side import NOW, Side
 from workbench.variants.comparison_tables import card_table, change_table, parameter_table, remedies
-from workbench.variants.comparison_words import told
+from workbench.variants.comparison_words import sentences
 from workbench.variants.score_card import Figures, card
 from workbench.variants.sweep_plot import sweep_svg
 from workbench.variants.sweeps import Status, Sweep, metrics_of, state_at
@@ -72,7 +72,7 @@ def comparison_page(store: Store, a: Side, b: Side, more: Reported | None = None
     full = card(designs)
     sections = [
         f"<h1>{html.escape(title)}</h1><p>{words}</p>",
-        *(f"<p>{html.escape(line)}</p>" for line in told(rows)),
+        *(f"<p>{html.escape(line)}</p>" for line in sentences(rows)),
         f"<div class='images'>{_who(store, a, 'A')}{_who(store, b, 'B')}</div>",
         "<h2>Parameters that differ</h2>"
         + parameter_table(parameter_differences(a.state, b.state), *names),
@@ -102,11 +102,11 @@ def _who(store: Store, side: Side, letter: str) -> str:
     kept = f", kept {side.saved}" if side.saved else ""
     head = html.escape(f"{letter}: {called(side)} ({side.state.design.family}{kept})")
     note = f"<p style='white-space:pre-wrap'>{html.escape(side.note)}</p>" if side.note else ""
-    picture = thumbnail_png(store, side.keys)
-    drawn = "<p>No result of it is stored, so there is no picture.</p>"
-    if picture is not None:
+    thumbnail = thumbnail_png(store, side.keys)
+    drawn = "<p>No result of it is stored, so there is no thumbnail.</p>"
+    if thumbnail is not None:
         caption = "Membrane at rest and pressed (darker moved farther), and its tactile image"
-        drawn = figure(picture, caption, width=IMAGE_PX)
+        drawn = figure(thumbnail, caption, width=IMAGE_PX)
     return f"<section style='max-width:{IMAGE_PX}px'><h2>{head}</h2>{note}{drawn}</section>"
 
 

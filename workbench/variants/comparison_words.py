@@ -16,7 +16,7 @@ VERDICTS = {"better": "B is better", "worse": "A is better", "": "A matter of ch
 """Verdicts on B, and how a line of each begins."""
 
 
-def told(found: Sequence[Change]) -> list[str]:
+def sentences(found: Sequence[Change]) -> list[str]:
     """A line for each verdict: what B is better in, what A is, and what is neither."""
     lines = []
     for verdict, head in VERDICTS.items():

@@ -36,7 +36,7 @@ class Entry:
     reason: str = ""
     planned: Mapping[str, str] = field(default_factory=dict[str, str])
     """Keys that its results have now, by stage."""
-    picture: Path | None = None
+    thumbnail: Path | None = None
     """PNG file of its thumbnail, if there is one."""
 
 
@@ -60,8 +60,8 @@ class Shelf:
         known = self._read.get(path.stem)
         if known is None or known[0] != stamp:
             known = self._read[path.stem] = (stamp, _entry(self.project, path.stem))
-        picture = path.with_suffix(".png")
-        return dataclasses.replace(known[1], picture=picture if picture.is_file() else None)
+        thumbnail = path.with_suffix(".png")
+        return dataclasses.replace(known[1], thumbnail=thumbnail if thumbnail.is_file() else None)
 
 
 def _entry(project: Project, name: str) -> Entry:
@@ -112,9 +112,9 @@ def duplicate_variant(project: Project, name: str) -> str:
     """
     copy = numbered(name, list_variants(project))
     _write_as(project, name, copy)
-    picture = variant_path(project, name).with_suffix(".png")
-    if picture.is_file():
-        write_atomically(variant_path(project, copy).with_suffix(".png"), picture.read_bytes())
+    thumbnail = variant_path(project, name).with_suffix(".png")
+    if thumbnail.is_file():
+        write_atomically(variant_path(project, copy).with_suffix(".png"), thumbnail.read_bytes())
     return copy
 
 

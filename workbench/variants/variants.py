@@ -1,6 +1,6 @@
 """Saved variants: a design with its press, tags, a note, its figures and the keys of its results.
 
-One TOML file each, `variants/NAME.toml`, and beside it `NAME.png`, its picture. The name is that
+One TOML file each, `variants/NAME.toml`, and beside it `NAME.png`, its thumbnail. The name is that
 of the file. `variant_files` lists, renames and deletes them.
 """
 

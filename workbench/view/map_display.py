@@ -14,7 +14,7 @@ from sim.optics.maps.map_kind import map_kinds
 from workbench.core.result.maps import PERCENTILES, DesignerMaps, SkinMap
 from workbench.view.colour_scale import scale_colours
 from workbench.view.metric_rules import RULES, rule
-from workbench.view.previews import first_hit
+from workbench.view.scene_shapes import first_hit
 
 BETTER = {"more": "high", "less": "low"}
 LEAST_SPAN = 1e-6

@@ -22,7 +22,7 @@ from workbench.core.design.camera import Camera
 from workbench.core.design.optics import Optics
 from workbench.core.result.results import MembraneMesh, Skin
 from workbench.core.result.sensing import Contact
-from workbench.view.previews import first_hit
+from workbench.view.scene_shapes import first_hit
 
 HALF_PX = 0.5
 STEPS = 20
@@ -59,7 +59,7 @@ class PixelFound:
     uv_px: np.ndarray
     """Column and row [px], shape (2,); NaN without one."""
     why: str = ""
-    """Why the place is not in the picture; empty where it is."""
+    """Why the place is not in the image; empty where it is."""
 
 
 class PixelLink:
@@ -158,7 +158,7 @@ class PixelLink:
             return PixelFound(uv_px=nowhere, why="no ray of this camera gets there")
         size = np.array([self.camera.width_px, self.camera.height_px])
         if (uv < 0.0).any() or (uv > size).any():
-            return PixelFound(uv_px=nowhere, why="it lies outside the picture")
+            return PixelFound(uv_px=nowhere, why="it lies outside the image")
         seen = self.skin_at(uv)
         origin, direction = self.ray(uv)
         if seen is not None and (place - seen.place_mm) @ direction > HIDDEN_MM:

@@ -28,7 +28,7 @@ from sim.contact.grid.layout import (
     STIFFNESS,
     TOUCHED,
 )
-from sim.contact.objects.signed_distance import signed_distance
+from sim.contact.objects.shape_distance_functions import signed_distance
 
 
 @ti.func

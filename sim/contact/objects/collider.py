@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim.contact.objects import textures
+from sim.contact.objects.object_measures import lowest_mm, sharpest_mm
 from sim.contact.objects.samples import Window
 from sim.contact.objects.sampling import box_mm, kept_samples
-from sim.contact.objects.shapes import analytic_size, evaluate
-from sim.contact.objects.solids import lowest_mm, sharpest_mm
+from sim.contact.objects.shape_distance import analytic_size, evaluate
 from workbench.core.objects.kind import Shape
 from workbench.core.press.indenter import Indenter
 from workbench.core.result.sampled import SampledDistance
@@ -28,7 +28,8 @@ class Collider:
 
     shape: Shape
     size: np.ndarray
-    """Dimensions as in `shapes.analytic_size`, or grid origin and 1 / spacing, shape (8,)."""
+    """Dimensions as in `shape_distance.analytic_size`, or grid origin and 1 / spacing, shape
+    (8,)."""
     samples: np.ndarray
     """Quadratic B-spline coefficients of the distance [mm], shape (A, B, C); (1, 1, 1) if none."""
     reach_mm: float

@@ -79,10 +79,10 @@ def make_grid(
         low, high = np.maximum(low_mm, first), np.minimum(high_mm, last)
         if (low >= high).any():
             raise ValueError(f"the window {first} to {last} mm holds no part of the object")
-    sides = high - low
-    count = np.prod(sides / spacing_mm + 2 * PADDING_SAMPLES + 1)
+    extent_mm = high - low
+    count = np.prod(extent_mm / spacing_mm + 2 * PADDING_SAMPLES + 1)
     spacing_mm *= max(1.0, float(count / most) ** (1.0 / 3.0))
-    shape = np.ceil(sides / spacing_mm).astype(int) + 2 * PADDING_SAMPLES + 1
+    shape = np.ceil(extent_mm / spacing_mm).astype(int) + 2 * PADDING_SAMPLES + 1
     return SampleGrid(
         origin_mm=low - PADDING_SAMPLES * spacing_mm,
         spacing_mm=float(spacing_mm),

@@ -12,6 +12,7 @@ from collections import OrderedDict
 import numpy as np
 
 from sim.contact.objects import textures
+from sim.contact.objects.object_measures import exact_distance, smooth_box_mm
 from sim.contact.objects.redistance import redistanced
 from sim.contact.objects.samples import (
     MOST_SAMPLES,
@@ -21,7 +22,6 @@ from sim.contact.objects.samples import (
     read_spline,
     spline,
 )
-from sim.contact.objects.solids import smooth_box_mm, solid
 from workbench.core.base.digest import digest
 from workbench.core.base.errors import DesignError
 from workbench.core.press.indenter import Indenter
@@ -115,10 +115,10 @@ def _smooth(indenter: Indenter, grid: SampleGrid) -> np.ndarray:
     """Signed distances without the texture, shape (A, B, C)."""
     mesh = indenter.standing_mesh
     if mesh is None:
-        function, places = solid(indenter), grid.places()
+        function, places = exact_distance(indenter), grid.places()
         parts = [function(places[i : i + CHUNK]) for i in range(0, len(places), CHUNK)]
         return np.concatenate(parts).reshape(grid.shape)
-    from sim.contact.objects.distance import mesh_distance, rounded_mesh_distance
+    from sim.contact.objects.mesh_distance import mesh_distance, rounded_mesh_distance
 
     if indenter.mesh_rounding_mm:
         return rounded_mesh_distance(mesh, grid, radius_mm=indenter.mesh_rounding_mm)
@@ -141,7 +141,7 @@ def _textured(
     def from_samples(place: np.ndarray) -> np.ndarray:
         return read_spline(coefficients, (place - grid.origin_mm) / grid.spacing_mm)
 
-    body = from_samples if indenter.mesh is not None else solid(indenter)
+    body = from_samples if indenter.mesh is not None else exact_distance(indenter)
     field = textures.heights(indenter.texture, grid.spacing_mm)
     function, places = textures.textured(body, field, top_mm), grid.places()
     parts = [function(places[i : i + CHUNK]) for i in range(0, len(places), CHUNK)]

@@ -32,8 +32,8 @@ def flat_block(
 
     low, high = np.array([*-half, 0.0]), np.array([*half, height_mm])
     counts = [max(1, round(2.0 * side / skin_mm)) for side in half]
-    sides = [np.linspace(-s, s, count + 1) for s, count in zip(half, counts, strict=True)]
-    u, v = np.meshgrid(*sides, indexing="ij")
+    axes = [np.linspace(-s, s, count + 1) for s, count in zip(half, counts, strict=True)]
+    u, v = np.meshgrid(*axes, indexing="ij")
     faces = grid_faces(*counts)
     up = np.tile([0.0, 0.0, 1.0], (u.size, 1))
     top = np.stack([u.ravel(), v.ravel(), np.full(u.size, height_mm)], axis=1)

@@ -150,8 +150,8 @@ def spacing_mm(points_mm: np.ndarray, faces: np.ndarray | None = None) -> float:
     expect(points_mm, "P 3", name="points_mm")
     if faces is not None:
         corners = points_mm[expect(faces, "F 3", name="faces")]
-        sides = corners[:, 1:] - corners[:, :1]
-        area_mm2 = 0.5 * np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1).sum()
+        edges = corners[:, 1:] - corners[:, :1]
+        area_mm2 = 0.5 * np.linalg.norm(np.cross(edges[:, 0], edges[:, 1]), axis=1).sum()
         return float(np.sqrt(area_mm2 / len(np.unique(faces))))
     from scipy.spatial import KDTree
 

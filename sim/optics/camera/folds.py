@@ -1,6 +1,6 @@
 """Where one point of the skin is seen in several pixels, or a ray map jumps.
 
-With X(x, y) the place that the ray of pixel (x, y) meets, the picture is the right way round where
+With X(x, y) the place that the ray of pixel (x, y) meets, the image is the right way round where
 d . (X_x x X_y) > 0; where a ridge of the wall turns it over, the same skin shows three times, and
 projecting a point finds only one of the three. Where neighbouring rays cross different walls, or
 turn by more than walls bend them, the map is no map between them.
@@ -48,7 +48,7 @@ def folds(
 def spread(bad: np.ndarray, face: np.ndarray, faces: np.ndarray) -> np.ndarray:
     """All pixels that see, or nearly see, a triangle that bad pixels see: (H, W), bool.
 
-    What is folded shows several times; each of its pictures is cast.
+    What is folded shows several times; each of its images is cast.
     """
     if not bad.any():
         return bad

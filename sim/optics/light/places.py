@@ -12,8 +12,8 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from sim.optics.camera.camera import pixel_directions
+from sim.optics.camera.inside_skin import JUST_ABOVE_BASE_MM, inside, wall_radius
 from sim.optics.camera.lens import lens_of
-from sim.optics.camera.within import JUST_ABOVE_BASE_MM, inside, wall_radius
 from sim.optics.light.lights import place_leds
 from workbench.core.base.errors import DesignError
 from workbench.core.design.camera import Camera

@@ -161,8 +161,8 @@ def _divided(
     fine, rest = faces[within[faces].any(axis=1)], faces[~within[faces].any(axis=1)]
     carried = [points, *(value.astype(np.float64) for value in values)]
     for _ in range(DIVISIONS):
-        sides = np.sort(fine[:, [[0, 1], [1, 2], [2, 0]]], axis=2).reshape(-1, 2)
-        edges, of = np.unique(sides, axis=0, return_inverse=True)
+        ends = np.sort(fine[:, [[0, 1], [1, 2], [2, 0]]], axis=2).reshape(-1, 2)
+        edges, of = np.unique(ends, axis=0, return_inverse=True)
         middle = len(carried[0]) + of.reshape(-1, 3)
         carried = [np.concatenate([v, v[edges].mean(axis=1)]) for v in carried]
         a, b, c = fine.T

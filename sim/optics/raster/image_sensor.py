@@ -1,4 +1,4 @@
-"""From radiance on the pixels to the picture that an image sensor gives.
+"""From radiance on the pixels to the image that an image sensor gives.
 
 In this order, each left out at its default:
 
@@ -29,7 +29,7 @@ from workbench.core.base.check import expect
 from workbench.core.design.camera import Camera
 
 SHARP_PX = 0.1
-"""Standard deviation up to which a whole picture counts as sharp [px]: 1 % beside a step."""
+"""Standard deviation up to which a whole image counts as sharp [px]: 1 % beside a step."""
 FIRST_BLUR_PX = 0.8
 """Of the first layer [px]; a sampled Gaussian narrower than this has less than its variance."""
 BLUR_RATIO = 1.5
@@ -46,7 +46,7 @@ def develop(
     range_mm: np.ndarray | None = None,
     frame: int = 0,
 ) -> np.ndarray:
-    """8-bit picture of radiance, shape (H, W, 3); at the sensor's defaults that of `encode`.
+    """8-bit image of radiance, shape (H, W, 3); at the sensor's defaults that of `encode`.
 
     Args:
         linear: Radiance, shape (H, W, 3), float32.
@@ -54,7 +54,7 @@ def develop(
         exposure: Display light per radiance, gain included, as `fixed_exposure` gives it.
         range_mm: Length of each line of sight [mm], shape (H, W), NaN where it meets nothing;
             None leaves out the blur.
-        frame: Number of the picture, which its noise follows besides the seed.
+        frame: Number of the image, which its noise follows besides the seed.
     """
     expect(linear, f"{camera.height_px} {camera.width_px} 3", name="radiance")
     sensor = camera.sensor

@@ -71,22 +71,22 @@ class Imager:
     def images(self, displacement_mm: np.ndarray, radiance: np.ndarray | None = None) -> np.ndarray:
         """Images of frames of displacement [mm], shape (K, V, 3): (K, H, W, 3), uint8."""
         found = np.empty((len(displacement_mm), self.raster.pixels, 3), dtype=np.uint8)
-        for rows in self._batches(displacement_mm, radiance):
-            self.expose(found[rows])
+        for batch in self._batches(displacement_mm, radiance):
+            self.expose(found[batch])
         return found.reshape(-1, *self.shape, 3)
 
     def linear(self, displacement_mm: np.ndarray, radiance: np.ndarray | None = None) -> np.ndarray:
         """Linear radiance with ink, before exposure: (K, H, W, 3), float32."""
         found = np.empty((len(displacement_mm), self.raster.pixels, 3), dtype=np.float32)
-        for rows in self._batches(displacement_mm, radiance):
-            self.gather_light(found[rows])
+        for batch in self._batches(displacement_mm, radiance):
+            self.gather_light(found[batch])
         return found.reshape(-1, *self.shape, 3)
 
     def _batches(self, displacement_mm: np.ndarray, radiance: np.ndarray | None) -> Iterator[slice]:
         for first in range(0, len(displacement_mm), self.raster.frames):
-            rows = slice(first, min(first + self.raster.frames, len(displacement_mm)))
-            self.look(displacement_mm[rows], None if radiance is None else radiance[rows])
-            yield rows
+            batch = slice(first, min(first + self.raster.frames, len(displacement_mm)))
+            self.look(displacement_mm[batch], None if radiance is None else radiance[batch])
+            yield batch
 
     def look(self, displacement_mm: np.ndarray, radiance: np.ndarray | None = None) -> None:
         """Find, shade and ink what the pixels of at most one batch of frames see."""

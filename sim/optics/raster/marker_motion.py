@@ -1,4 +1,4 @@
-"""How the markers moved in the image: as numbers, and as arrows over a picture."""
+"""How the markers moved in the image: as numbers, and as arrows over an image."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def draw_arrows(
     """A copy of an image, shape (H, W, 3), uint8, with an arrow on each marker that is seen.
 
     Args:
-        image: The picture to draw over.
+        image: The image to draw over.
         frames: Where the markers are.
         number: Frame, 0 for the background.
         scale: Length of an arrow over the way of its marker [1]; arrows start at rest.

@@ -196,15 +196,15 @@ def _nearest_triangle(
     weights = np.tile([1.0, 0.0, 0.0], (len(places), 1))
     best = np.full(len(places), np.inf)
     for column in range(fan.shape[1]):
-        rows = np.flatnonzero(fan[:, column] >= 0)
-        corners = faces[fan[rows, column]]
+        with_face = np.flatnonzero(fan[:, column] >= 0)
+        corners = faces[fan[with_face, column]]
         triangle = points[corners]
-        share = np.maximum(_affine(triangle, places[rows]), 0.0)
+        share = np.maximum(_affine(triangle, places[with_face]), 0.0)
         share /= share.sum(axis=1, keepdims=True)
-        gap = places[rows] - np.einsum("qk,qkd->qd", share, triangle)
+        gap = places[with_face] - np.einsum("qk,qkd->qd", share, triangle)
         distance = np.einsum("qd,qd->q", gap, gap)
-        nearer = distance < best[rows]
-        chosen = rows[nearer]
+        nearer = distance < best[with_face]
+        chosen = with_face[nearer]
         best[chosen], nodes[chosen], weights[chosen] = (
             distance[nearer],
             corners[nearer],

@@ -47,8 +47,8 @@ def build_tree(points_mm: np.ndarray, faces: np.ndarray) -> Tree:
         starts = _starts(count, parts)
         owner = np.repeat(np.arange(parts), np.diff(starts))
         here = centre[order]
-        sides = np.maximum.reduceat(here, starts[:-1]) - np.minimum.reduceat(here, starts[:-1])
-        key = np.take_along_axis(here, sides.argmax(axis=1)[owner][:, None], axis=1)[:, 0]
+        extent = np.maximum.reduceat(here, starts[:-1]) - np.minimum.reduceat(here, starts[:-1])
+        key = np.take_along_axis(here, extent.argmax(axis=1)[owner][:, None], axis=1)[:, 0]
         order = order[np.lexsort((key, owner))]
         parts *= 2
     starts = _starts(count, leaves)

@@ -62,18 +62,18 @@ def _aim(
     aim = points.copy()
     best = np.full(len(points), np.inf)
     found = _unit(eye - points)
-    rows = np.arange(len(points))
+    unsolved = np.arange(len(points))
     for step in STEPS:
-        start, direction = _bent(caster, wall, eye, _unit(aim[rows] - eye), index)
-        along = np.einsum("ij,ij->i", points[rows] - start, direction)
-        gap = points[rows] - start - along[:, None] * direction
+        start, direction = _bent(caster, wall, eye, _unit(aim[unsolved] - eye), index)
+        along = np.einsum("ij,ij->i", points[unsolved] - start, direction)
+        gap = points[unsolved] - start - along[:, None] * direction
         miss = np.where(along > 0.0, np.linalg.norm(gap, axis=1), np.inf)
-        better = miss < best[rows]
-        chosen = rows[better]
+        better = miss < best[unsolved]
+        chosen = unsolved[better]
         best[chosen], found[chosen] = miss[better], -direction[better]
-        aim[rows] += step * gap
-        rows = rows[best[rows] > 0.1 * MISS_MM]
-        if not rows.size:
+        aim[unsolved] += step * gap
+        unsolved = unsolved[best[unsolved] > 0.1 * MISS_MM]
+        if not unsolved.size:
             break
     return found, best
 

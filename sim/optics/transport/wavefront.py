@@ -56,16 +56,16 @@ class Wavefront:
         lamps = sources.position_mm, sources.axis, sources.emission, sources.in_shell
         begin_all: Any = kernels.begin_all
         begin_all(first, seed, *lamps, *state)
-        rows = np.arange(count, dtype=np.int32)
+        flying = np.arange(count, dtype=np.int32)
         for event in range(EVENTS):
-            if not rows.size:
+            if not flying.size:
                 return
-            alive = self._event(first, event, seed, rows, state)
-            rows = rows[alive]
+            alive = self._event(first, event, seed, flying, state)
+            flying = flying[alive]
             state = [np.ascontiguousarray(part[alive]) for part in state]
 
     def _event(
-        self, first: int, event: int, seed: int, rows: np.ndarray, state: list[np.ndarray]
+        self, first: int, event: int, seed: int, flying: np.ndarray, state: list[np.ndarray]
     ) -> np.ndarray:
         """Let one event happen in place; the photons that fly on, shape (A,)."""
         import taichi.math as tm
@@ -75,13 +75,13 @@ class Wavefront:
         happen_to_all: Any = kernels.happen_to_all
         scene, tally = self._scene, self._tally
         hits = self._hits(state[0], state[1])
-        alive = np.empty(len(rows), dtype=np.int32)
+        alive = np.empty(len(flying), dtype=np.int32)
         happen_to_all(
             tally.gather,
             first,
             event,
             seed,
-            rows,
+            flying,
             *state,
             alive,
             *hits,

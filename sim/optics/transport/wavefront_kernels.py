@@ -55,7 +55,7 @@ def happen_to_all(
     first: ti.i64,
     event: ti.i32,
     seed: ti.i32,
-    rows: Integers,
+    flying: Integers,
     origins: Points,
     directions: Points,
     fluxes: Floats,
@@ -79,8 +79,8 @@ def happen_to_all(
     to_camera: Points,
     radiance: Counts2,
 ):
-    """One event of every photon; `rows` are their numbers less `first`."""
-    for i in range(rows.shape[0]):
+    """One event of every photon; `flying` are their numbers less `first`."""
+    for i in range(flying.shape[0]):
         photon = Photon(
             origin=origins[i],
             direction=directions[i],
@@ -92,7 +92,7 @@ def happen_to_all(
         photon = happen(
             gather,
             photon,
-            first + rows[i],
+            first + flying[i],
             event,
             seed,
             hit_face[i],

@@ -34,7 +34,7 @@ class ComparePanel:
         self._timer: threading.Timer | None = None
         self.variants = VariantsFolder(desk, self._listed)
         self.score = ScoreFolder(desk)
-        self.versus = VersusFolder(desk, self._side, self._picture)
+        self.versus = VersusFolder(desk, self._side, self._thumbnail)
         self.variants.on_save = self.versus.fill
         self.sweep = SweepFolder(desk, self._kept)
         self.report = ReportFolder(desk, self._reported)
@@ -48,7 +48,7 @@ class ComparePanel:
 
     def _kept(self, name: str) -> None:
         """A point of a sweep became a variant."""
-        self.variants.portraits.draw(name)
+        self.variants.thumbnails.draw(name)
         self.variants.list()
 
     def _reported(self) -> tuple[Side | None, Side | None, Reported]:
@@ -66,9 +66,9 @@ class ComparePanel:
     def _score(self) -> None:
         self.score.load([(NOW_SHORT, self._as_it_stands().figures), *self._variants()])
 
-    def _picture(self, name: str) -> Path | None:
+    def _thumbnail(self, name: str) -> Path | None:
         """File of the thumbnail of a variant, if it has one."""
-        found = (entry.picture for entry in self.variants.shelf.entries() if entry.name == name)
+        found = (entry.thumbnail for entry in self.variants.shelf.entries() if entry.name == name)
         return next(found, None)
 
     def _side(self, name: str) -> Side | None:

@@ -12,7 +12,7 @@ from ui.desk.desk import Desk
 from ui.page.colours import BLUE, RED
 from ui.page.offer import offer
 from workbench.report.html_page import jpeg_bytes
-from workbench.report.portraits import framed
+from workbench.report.thumbnails import framed
 from workbench.system.names import NONE
 from workbench.variants.comparison_report import default_metric, strip
 from workbench.variants.sweeps import Status, Sweep, curve, lost, metrics_of

@@ -12,7 +12,7 @@ from workbench.pipeline.store import Store
 from workbench.variants.variant_files import Entry
 from workbench.variants.variants import Variant, stored_keys
 
-MOST_PICTURES = 40
+MOST_THUMBNAILS = 40
 """Thumbnails in the list; each is some 30 KB of the page."""
 
 
@@ -21,30 +21,30 @@ def cards_html(entries: Sequence[Entry], store: Store) -> str:
     if not entries:
         return "<p style='margin:8px'>No variant yet: press a design, then save it.</p>"
     shown = "".join(
-        _card(entry, store, pictured=number < MOST_PICTURES) for number, entry in enumerate(entries)
+        _card(entry, store, drawn=number < MOST_THUMBNAILS) for number, entry in enumerate(entries)
     )
     # Two or three stand in the list at once: what comes below must not be out of reach.
     box = "margin:4px 8px;font-size:12px;max-height:330px;overflow-y:auto"
     return f"<div style='{box}'>{shown}</div>"
 
 
-def _card(entry: Entry, store: Store, *, pictured: bool) -> str:
+def _card(entry: Entry, store: Store, *, drawn: bool) -> str:
     """One variant."""
     name, variant = html.escape(entry.name), entry.variant
     box = "<div style='border-top:1px solid #8885;padding:6px 0;overflow-wrap:anywhere'>"
     if variant is None:
         reason = html.escape(entry.reason)
         return f"{box}<b>{name}</b> <span style='color:{RED}'>broken: {reason}</span></div>"
-    picture = ""
-    if pictured and entry.picture is not None:
-        picture = picture_html(entry.picture, entry.name)
+    thumbnail = ""
+    if drawn and entry.thumbnail is not None:
+        thumbnail = thumbnail_html(entry.thumbnail, entry.name)
     pill = "background:#8884;border-radius:8px;padding:0 6px"
     tags = "".join(f" <span style='{pill}'>{html.escape(t)}</span>" for t in variant.tags)
     note = f"<div style='white-space:pre-wrap'>{html.escape(variant.note)}</div>"
     when = html.escape(f"{variant.state.design.family} · {variant.saved}".rstrip(" ·"))
     head = f"<b>{name}</b> <span style='opacity:.65'>{when}</span>{tags}"
     gone = _gone(variant, stored_keys(store, variant.keys, entry.planned))
-    return f"{box}{head}{note if variant.note else ''}{gone}{picture}</div>"
+    return f"{box}{head}{note if variant.note else ''}{gone}{thumbnail}</div>"
 
 
 def _gone(variant: Variant, keys: dict[str, str]) -> str:
@@ -56,7 +56,7 @@ def _gone(variant: Variant, keys: dict[str, str]) -> str:
     return f"<div style='color:{AMBER}'>No image: {why}. Run what is missing.</div>"
 
 
-def picture_html(path: Path, name: str) -> str:
+def thumbnail_html(path: Path, name: str) -> str:
     """The thumbnail of a variant as HTML; nothing where its file is gone."""
     try:
         data = base64.b64encode(path.read_bytes()).decode()

@@ -9,7 +9,7 @@ from typing import Any
 import viser
 
 from ui.desk.desk import Desk
-from ui.desk.portraits import Portraits
+from ui.desk.thumbnails import ThumbnailQueue
 from ui.page.offer import offer
 from ui.page.plain import plain
 from ui.panels.compare.variant_cards import cards_html
@@ -44,8 +44,8 @@ class VariantsFolder:
         self.trashed = ""
         """Name in the trash of what was deleted last."""
         gui = desk.server.gui
-        self.portraits = Portraits(self.project, desk.conductor.runner, desk.reports)
-        self.portraits.on_drawn = lambda: desk.guarded(lambda event: self.list())(None)
+        self.thumbnails = ThumbnailQueue(self.project, desk.conductor.runner, desk.reports)
+        self.thumbnails.on_drawn = lambda: desk.guarded(lambda event: self.list())(None)
         with gui.add_folder("Variants"):
             self._form()
             hint = "Only variants with this tag; the score card follows"
@@ -134,7 +134,7 @@ class VariantsFolder:
         pressed = session.result("shoot") is not None
         what = "design, press and figures" if pressed else "the design; it is not pressed yet"
         desk.reports.notify("Saved", f"{name}: {what}", color="green")
-        self.portraits.draw(name)
+        self.thumbnails.draw(name)
         self.list()
         self.chosen.value = name
         self.on_save(name)
@@ -186,7 +186,7 @@ class VariantsFolder:
                 return
             state, tags, note = variant.state, variant.tags, variant.note
             save_variant(self.project, variant.name, state, tags=tags, note=note, replace=True)
-            self.portraits.draw(variant.name)
+            self.thumbnails.draw(variant.name)
             self.list()
 
         self.desk.jobs.submit(

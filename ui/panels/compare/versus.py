@@ -13,7 +13,7 @@ from ui.page.blink import Blink
 from ui.page.imaging import placeholder
 from ui.page.offer import offer
 from ui.page.plain import plain
-from ui.panels.compare.variant_cards import picture_html
+from ui.panels.compare.variant_cards import thumbnail_html
 from ui.scene.ghost import COLOURS, Ghost, GhostView
 from workbench.core.base.errors import DesignError
 from workbench.system.names import NONE
@@ -21,7 +21,7 @@ from workbench.variants.comparison import changes, parameter_differences, press_
 from workbench.variants.comparison_images import Moment, Pair, pair, side_by_side
 from workbench.variants.comparison_side import NOW, Side
 from workbench.variants.comparison_tables import change_table, parameter_table, scrolled
-from workbench.variants.comparison_words import told
+from workbench.variants.comparison_words import sentences
 
 BESIDE, BLINK, DIFFERENCE = "side by side", "blink", "difference"
 BLINK_S = 0.6
@@ -35,12 +35,12 @@ class VersusFolder:
         self,
         desk: Desk,
         side: Callable[[str], Side | None],
-        picture: Callable[[str], Path | None],
+        thumbnail: Callable[[str], Path | None],
     ) -> None:
         self.desk = desk
         self.side = side
         """Finds a side by its name; None of one that cannot be read."""
-        self.picture = picture
+        self.thumbnail = thumbnail
         """Finds the file of a thumbnail by the name of its variant."""
         self.a: Side | None = None
         self.b: Side | None = None
@@ -65,7 +65,7 @@ class VersusFolder:
         hint = "A in place of B and B in place of A"
         swap = gui.add_button("Swap A and B", icon=viser.Icon.ARROWS_EXCHANGE, hint=hint)
         swap.on_click(desk.guarded(self._swap))
-        self.portraits = gui.add_html("")
+        self.thumbnails = gui.add_html("")
         self.words = gui.add_markdown("Choose A and B.")
 
     def _images(self, gui: Any) -> None:
@@ -121,7 +121,7 @@ class VersusFolder:
             None if handle.value == NONE else self.side(handle.value)
             for handle in (self.choice_a, self.choice_b)
         )
-        self.portraits.content = self._portraits()
+        self.thumbnails.content = self._thumbnails()
         if self.a is None or self.b is None:
             self.both = None
             self.tables.content, self.words.content = "", "Choose A and B."
@@ -131,23 +131,23 @@ class VersusFolder:
         self._show_images()
         self.draw()
 
-    def _portraits(self) -> str:
+    def _thumbnails(self) -> str:
         """Thumbnails of those chosen, each below its letter, as HTML."""
         tiles = []
         for letter, side in (("A", self.a), ("B", self.b)):
-            path = None if side is None else self.picture(side.name)
+            path = None if side is None else self.thumbnail(side.name)
             if side is not None and path is not None:
                 tiles.append(
                     "<div style='display:flex;align-items:center;gap:6px;max-width:250px'>"
                     f"<b>{letter}</b>"
-                    f"{picture_html(path, short(side))}</div>"
+                    f"{thumbnail_html(path, short(side))}</div>"
                 )
         return f"<div style='margin:4px 8px;font-size:12px'>{''.join(tiles)}</div>"
 
     def _tell(self, a: Side, b: Side) -> None:
         rows = changes(a.figures, b.figures)
         words = summary(rows, press_notice(a.state, b.state))
-        heads = (line.partition(": ") for line in told(rows))
+        heads = (line.partition(": ") for line in sentences(rows))
         items = [f"- **{plain(head)}**: {plain(figures)}" for head, _, figures in heads]
         self.words.content = "\n".join([f"**{plain(words)}**", "", *items])
         differing = parameter_differences(a.state, b.state)
@@ -186,9 +186,9 @@ class VersusFolder:
                 if self.a is None or self.b is None:
                     self.caption.content = ""
                 return
-            told = both.change_words if mode == DIFFERENCE else both.words
-            sides = "A left, B right: " if mode == BESIDE else ""
-            self.caption.content = f"<small>{plain(sides + told)}</small>"
+            words = both.change_words if mode == DIFFERENCE else both.words
+            order = "A left, B right: " if mode == BESIDE else ""
+            self.caption.content = f"<small>{plain(order + words)}</small>"
             if mode == BESIDE:
                 self.image.image = side_by_side(both)
             elif mode == DIFFERENCE and both.difference is not None:

@@ -13,7 +13,7 @@ from ui.page.plain import plain
 from ui.panels.make.parts import PartsTree
 from workbench.core.result.fabrication import FabricationCheck, Severity
 from workbench.view.part_words import part_words
-from workbench.view.previews import clear_view
+from workbench.view.scene_shapes import clear_view
 
 LOOKS = {
     Severity.BAD: ("✗", (190, 48, 52)),

@@ -15,10 +15,10 @@ from ui.panels.page import Page
 from workbench.core.base.units import volume_ml
 from workbench.core.result.quality import MeshQuality, QualityReport
 from workbench.system.names import NONE
-from workbench.view.previews import clear_view, judged, mesh_edges
+from workbench.view.scene_shapes import clear_view, judged, mesh_edges
 
 NOTHING = "No numbers yet: press *Check mesh*."
-TOPICS = ("mesh", "tetrahedra")
+JOBS = ("mesh", "tetrahedra")
 """Requests after which the edges stay on show."""
 CLOSE = 25.0
 """Distance of the eye from a cell over the cell's diagonal."""
@@ -44,7 +44,7 @@ class MeshPanel:
         hint = "Conforming tetrahedra for other solvers; a minute or so, Cancel stops it"
         tets = gui.add_button("Tetrahedra", icon=viser.Icon.PYRAMID, hint=hint)
         tets.on_click(desk.guarded(lambda event: self._run("tetrahedra", "tets")))
-        desk.reports.beside(*TOPICS)
+        desk.reports.beside(*JOBS)
         self.found: dict[str, MeshQuality] = {}
         self.notice = ""
         self.choice = gui.add_dropdown(
@@ -67,9 +67,9 @@ class MeshPanel:
         )
         self.worst.on_click(desk.guarded(lambda event: self._fly()))
 
-    def _run(self, topic: str, stage: str) -> None:
+    def _run(self, job: str, stage: str) -> None:
         self.edges.value = True
-        self.desk.run(topic, (stage,))
+        self.desk.run(job, (stage,))
 
     def _plot(self, label: str, colour: str) -> Any:
         return self.desk.server.gui.add_uplot(
@@ -164,7 +164,7 @@ class MeshPanel:
 
     def show(self, stage: str, result: Any) -> None:
         """Follow results."""
-        if stage == "press" or (stage == "run" and str(result) not in TOPICS):
+        if stage == "press" or (stage == "run" and str(result) not in JOBS):
             self.edges.value = False
         elif stage == "build":
             self.found.clear()

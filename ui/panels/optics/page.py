@@ -1,4 +1,4 @@
-"""Optics: light model, lights, cameras, and how skin and picture look; renders on a button."""
+"""Optics: light model, lights, cameras, and how skin and image look; renders on a button."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """The tab of the tactile image: which camera, what is shown of it, its change, and measures.
 
-Blinking between the frame and the rest shows small changes better than two pictures do.
+Blinking between the frame and the rest shows small changes better than two images do.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from workbench.view.map_display import scores
 from workbench.view.metric_rules import rule
 
 BLINK_S = 0.5
-"""How long each of the two blinking pictures is shown [s]."""
+"""How long each of the two blinking images is shown [s]."""
 NO_IMAGE = "No press of this sensor yet: *Run press* makes an image."
 IMAGE_COMES = (
     "The tactile image appears here.",
     "Run press (R) computes it;",
-    "a sketch comes first.",
+    "a preview comes first.",
 )
 CHANGE_COMES = ("Its change against the untouched skin", "appears here.")
 """What empty places say."""
@@ -43,7 +43,7 @@ class ImageTab:
         self.camera = gui.add_dropdown(
             "Camera", ("camera 1",), visible=False, hint="Whose image is shown"
         )
-        hint = "What the first picture is; below it stands its change"
+        hint = "What the first image is; below it stands its change"
         self.view = gui.add_dropdown("Show", (View.IMAGE.value,), visible=False, hint=hint)
         for handle in (self.camera, self.view):
             handle.on_update(desk.guarded(lambda event: self.show(self.number)))
@@ -94,7 +94,7 @@ class ImageTab:
         self.blink.visible = self.blink.value = False
 
     def say(self, text: str) -> None:
-        """Write above the picture."""
+        """Write above the image."""
         if self.caption.content != text:
             self.caption.content = text
 
@@ -137,7 +137,7 @@ class ImageTab:
             self.change.image = change
 
     def _crossed(self, image: np.ndarray) -> np.ndarray:
-        """The picture with a cross at the chosen pixel, of the camera's or of fewer pixels."""
+        """The image with a cross at the chosen pixel, of the camera's or of fewer pixels."""
         uv_px, cameras = self.probe.uv_px, self.desk.session.design.optics.all_cameras
         if uv_px is None or self.probe.camera >= len(cameras):
             return image

@@ -28,7 +28,7 @@ from workbench.view.map_display import (
 
 NO_MAPS = "Where on the skin this design sees, and how well. Not measured yet."
 STALE = "**stale**: the design has changed, measure again"
-TOPIC = "maps"
+JOB = "maps"
 
 
 class MapsPanel:
@@ -45,7 +45,7 @@ class MapsPanel:
         hint = "From the light and the cameras, without a press; some seconds after the light"
         button = gui.add_button("Measure maps", icon=viser.Icon.MAP_2, hint=hint)
         button.on_click(guarded(lambda event: self._measure()))
-        desk.reports.beside(TOPIC)
+        desk.reports.beside(JOB)
         self.about = gui.add_markdown(NO_MAPS)
         self.choice = gui.add_dropdown(
             "Map", (NONE,), visible=False, hint="What is measured; its meaning stands below"
@@ -68,7 +68,7 @@ class MapsPanel:
                 hint="choose the light model hybrid or table",
                 at="optics.light_model",
             )
-            desk.reports.report(error, topic=TOPIC)
+            desk.reports.report(error, job=JOB)
             return
         if self.found is not None and desk.current("maps"):
             # They are there already, and nothing would come that shows them.
@@ -76,7 +76,7 @@ class MapsPanel:
             self.wanted.value = True
             return
         self.asked = True
-        desk.run(TOPIC, ("maps",))
+        desk.run(JOB, ("maps",))
 
     def _chosen(self) -> SkinMap | None:
         if self.found is None:
@@ -140,7 +140,7 @@ class MapsPanel:
             self._forget()
         elif stage in ("press", "live", "partial"):
             self._hide()
-        elif stage == "run" and str(result) != TOPIC:
+        elif stage == "run" and str(result) != JOB:
             self.asked = False
             self._hide()
 

@@ -15,15 +15,15 @@ from ui.panels.results.timeline import Timeline
 from workbench.core.base.errors import SolveError
 from workbench.core.press.press import Press
 from workbench.core.result.sensing import Contact, Shot
-from workbench.live.glimpse import Glimpse
-from workbench.live.live_press import Preview, live_press
+from workbench.live.image_preview import ImagePreview
+from workbench.live.live_press import PressPreview, live_press
 from workbench.view.frame_words import phase
 
 LOG_ROWS = 60
 LIVE_NOTE = "**live**: one frame, not stored; *Run press* computes the path"
-GLIMPSE_NOTE = "**preview**: {model} light, dent by geometry; *Run press* computes the image"
+PREVIEW_NOTE = "**preview**: {model} light, dent by geometry; *Run press* computes the image"
 BEFORE_NOTE = "**outdated preview, of the shape before**: the new shape is being built"
-EARLIER_NOTE = "**preview of an earlier design**: this one cannot be sketched, see the log"
+EARLIER_NOTE = "**preview of an earlier design**: this one cannot be previewed, see the log"
 
 
 class ResultsPanel:
@@ -38,10 +38,10 @@ class ResultsPanel:
         """Key of that press; empty for a live one."""
         self.note = ""
         """What is said of frames that are not a whole press: a live one, or what settled."""
-        self.sketch = ""
-        """What is said of a picture that follows the sliders; empty while images are shown."""
-        self.sketch_note = ""
-        """The same of a sketch that has the shape of the state."""
+        self.preview_note = ""
+        """What is said of an image preview; empty while images are shown."""
+        self.current_note = ""
+        """The same of a preview that has the shape of the state."""
         self.play_next = False
         """Whether the next images are played as soon as they are there."""
         gui = desk.server.gui
@@ -61,7 +61,7 @@ class ResultsPanel:
         self.timeline = Timeline(desk, self._show_frame)
 
     def _show_frame(self, number: int) -> None:
-        # Or the page draws the view once for the skin and once for the picture.
+        # Or the page draws the view once for the skin and once for the image.
         with self.desk.server.atomic():
             self.desk.scene.show_frame(number)
             self._show_image(number)
@@ -78,8 +78,8 @@ class ResultsPanel:
         what = "background"
         if number:
             what = f"frame {min(number, last)} of {last}, {self._phase(min(number, last))}"
-        if self.sketch:
-            self.image.say(self.sketch)
+        if self.preview_note:
+            self.image.say(self.preview_note)
             return
         stale = "" if self.desk.current("shoot") else " · **stale**: render again"
         live = self.note == LIVE_NOTE
@@ -92,7 +92,7 @@ class ResultsPanel:
 
     def refresh(self) -> None:
         """Mark an image and a force that no longer belong to the state."""
-        live = self.desk.live.on
+        live = self.desk.live_press.on
         self._caption(self.timeline.number)
         self.sources.network.refresh()
         self._show_forces(self.timeline.number)
@@ -111,10 +111,10 @@ class ResultsPanel:
             self.sources.take(stage, result)
         elif stage == "live":
             self._show_live(result)
-        elif stage == "glimpse":
-            self._show_glimpse(result)
-        elif stage == "glimpse_of_shape":
-            self._date_glimpse(of_now=result)
+        elif stage == "image_preview":
+            self._show_image_preview(result)
+        elif stage == "image_preview_of_shape":
+            self._date_preview(of_now=result)
         elif stage == "partial":
             self._show_partial(*result)
         elif stage == "shoot":
@@ -138,7 +138,7 @@ class ResultsPanel:
             self.log.content = f"<div style='font:12px monospace;margin:8px'>{rows}</div>"
 
     def _show_shot(self, shot: Shot) -> None:
-        self.sketch = ""
+        self.preview_note = ""
         self.image.load(shot)
         self.image.measure()
         self.timeline.follow(self.image.last or 0)
@@ -150,10 +150,10 @@ class ResultsPanel:
             self.play_next = False
             self.timeline.player.start()
 
-    def _show_live(self, preview: Preview) -> None:
+    def _show_live(self, preview: PressPreview) -> None:
         """Show a live frame and its image; the scene has its skin already."""
         self.timeline.player.stop()
-        self.sketch = ""
+        self.preview_note = ""
         self.contact, self.press = preview.contact, live_press(self.desk.session.case.press)
         self.note, self.key = LIVE_NOTE, ""
         self.image.load_live(preview.images)
@@ -164,24 +164,24 @@ class ResultsPanel:
         self.sources.take_contact(None)
         self._show_forces(1)
 
-    def _show_glimpse(self, glimpse: Glimpse | None) -> None:
-        """Show the small picture of a state without images, in place of a stale one.
+    def _show_image_preview(self, preview: ImagePreview | None) -> None:
+        """Show the image preview of a state without images, in place of a stale one.
 
         None is that of a state for which there is none: what is on show is an earlier one's.
         """
-        if glimpse is None:
-            self.sketch = self.sketch and EARLIER_NOTE
+        if preview is None:
+            self.preview_note = self.preview_note and EARLIER_NOTE
             self._caption(self.timeline.number)
             return
         self.timeline.player.stop()
-        self.sketch = self.sketch_note = GLIMPSE_NOTE.format(model=glimpse.model.value)
-        self.image.load_live(glimpse.images)
+        self.preview_note = self.current_note = PREVIEW_NOTE.format(model=preview.model.value)
+        self.image.load_live(preview.images)
         self._show_image(1)
 
-    def _date_glimpse(self, *, of_now: bool) -> None:
-        """Say of the sketch on show, if there is one, whether it has the shape of the state."""
-        if self.sketch:
-            self.sketch = self.sketch_note if of_now else BEFORE_NOTE
+    def _date_preview(self, *, of_now: bool) -> None:
+        """Say of the preview on show, if there is one, whether it has the shape of the state."""
+        if self.preview_note:
+            self.preview_note = self.current_note if of_now else BEFORE_NOTE
             self._caption(self.timeline.number)
 
     def _show_partial(self, contact: Contact, error: SolveError) -> None:
@@ -194,7 +194,7 @@ class ResultsPanel:
     def _blank(self) -> None:
         """What was seen and felt belongs to another sensor."""
         self.contact = None
-        self.note = self.sketch = ""
+        self.note = self.preview_note = ""
         self.timeline.player.stop()
         with self.desk.server.atomic():
             self.image.clear()
@@ -226,7 +226,7 @@ class ResultsPanel:
         if k >= count:
             return
         note = self.note
-        followed = note == LIVE_NOTE and self.desk.live.on
+        followed = note == LIVE_NOTE and self.desk.live_press.on
         if not followed and not self._of_now:
             note = "**stale**: run the press again"
         self.forces.mark(number)

@@ -1,6 +1,6 @@
 """From a pixel of the tactile image to the skin it sees, and from a click on the skin to its pixel.
 
-A pixel is chosen by a click on the picture (`ui.page.picture_click`) or by its column and row, and
+A pixel is chosen by a click on the image (`ui.page.image_click`) or by its column and row, and
 shown by a cross.
 """
 
@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 
 from ui.desk.desk import Desk
-from ui.page.picture_click import COLUMN, ROW, picture_clicks
+from ui.page.image_click import COLUMN, ROW, image_clicks
 from workbench.core.result.results import MembraneMesh
 from workbench.view.frame_words import number as written
 from workbench.view.pixel_link import PixelLink, SkinPoint, frame_link
-from workbench.view.previews import first_hit
+from workbench.view.scene_shapes import first_hit
 
 COLOUR = (255, 45, 85)
 BALL_MM = 0.6
@@ -30,7 +30,7 @@ class Probe:
     def __init__(self, desk: Desk, clicks: Any) -> None:
         self.desk = desk
         self.clicks = clicks
-        """The HTML before the pictures, which catches clicks on them while probing."""
+        """The HTML before the images, which catches clicks on them while probing."""
         self.camera = 0
         """Number of the camera on show, from 0."""
         self.frame = 0
@@ -44,11 +44,11 @@ class Probe:
         self._big: tuple[Any, Any] = (None, None)
         """What was last looked through: camera and frame; press and mesh."""
         self._nodes: list[Any] = []
-        desk.takers.append(self.takes)
+        desk.click_handlers.append(self.takes)
         gui, guarded = desk.server.gui, desk.guarded
         self.folder = gui.add_folder("Pixel and skin", expand_by_default=False, visible=False)
         with self.folder:
-            hint = "A click on the picture shows the place on the skin that the pixel sees; "
+            hint = "A click on the image shows the place on the skin that the pixel sees; "
             hint += "a click on the skin shows its pixel, instead of aiming the press there"
             self.on = gui.add_checkbox("Probe on click", False, hint=hint)
             self.on.on_update(guarded(lambda event: self._switch()))
@@ -70,7 +70,7 @@ class Probe:
             self.clear()
 
     def _switch(self) -> None:
-        self.clicks.content = picture_clicks(bool(self.on.value))
+        self.clicks.content = image_clicks(bool(self.on.value))
 
     def follow(self, camera: int, frame: int) -> None:
         """Look through another camera, or at another frame, by the same pixel."""
@@ -139,7 +139,7 @@ class Probe:
         if found.why:
             self.uv_px = None
             self._mark(point.place_mm)
-            self.said.content = f"{_place(point.place_mm)}: not in the picture, {found.why}."
+            self.said.content = f"{_place(point.place_mm)}: not in the image, {found.why}."
         else:
             self.uv_px = found.uv_px
             column, row = (int(c) for c in np.floor(found.uv_px))

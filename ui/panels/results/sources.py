@@ -66,8 +66,8 @@ class SourcesFolder:
         self._offer()
         if contact is not None and self.desk.session.calls().keys() & STAGES.keys():
             # Their results may be stored, and were shown before the press came.
-            self.desk.showing.forget(*STAGES)
-            self.desk.showing.show_stored()
+            self.desk.shown_results.forget(*STAGES)
+            self.desk.shown_results.show_stored()
 
     def take(self, stage: str, found: ForceField) -> None:
         """The result of another source, on the skin of the design."""

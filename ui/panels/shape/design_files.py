@@ -1,7 +1,7 @@
 """The design as something to keep: name, save, copy, open, delete, download and load.
 
 What is opened replaces the whole design and press; Undo brings yours back. Drawing the small
-picture of a kept design is left to the worker, in a thread that only waits for it.
+thumbnail of a kept design is left to the worker, in a thread that only waits for it.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from ui.panels.shape.question import ask
 from workbench.core.base.errors import WorkbenchError
 from workbench.core.base.monitor import silent
 from workbench.edit.forms import choices, load_design, purpose
-from workbench.edit.thumbnails import thumbnail_png
+from workbench.edit.shipped_thumbnails import shipped_thumbnail
 from workbench.planning.plan import plan
 from workbench.project.design_bundle import bundle, unbundle
 from workbench.project.saved_designs import (
@@ -32,7 +32,7 @@ from workbench.project.saved_designs import (
     saved_names,
 )
 from workbench.project.state import State
-from workbench.report.portraits import portrait_calls
+from workbench.report.thumbnails import thumbnail_calls
 from workbench.system.names import NONE, numbered
 
 SAVE, COPY = "Save design", "Duplicate"
@@ -175,19 +175,19 @@ class DesignFiles:
         self._draw(state)
 
     def _draw(self, state: State) -> None:
-        """Have the small picture of a design drawn, if its body is stored."""
+        """Have the thumbnail of a design drawn, if its body is stored."""
         store, runner = self.project.store, self.desk.conductor.runner
 
         def wait(call: Any) -> None:
             try:
                 runner.run(call, silent)
             except WorkbenchError as error:
-                # A design without a picture is still a design.
-                self.desk.log(f"no picture of {state.design.name}: {error.message}")
+                # A design without a thumbnail is still a design.
+                self.desk.log(f"no thumbnail of {state.design.name}: {error.message}")
 
         keys = {"build": plan(state.design, state.case)["build"].key}
-        for call in portrait_calls(store, keys):
-            threading.Thread(target=wait, args=(call,), name="picture", daemon=True).start()
+        for call in thumbnail_calls(store, keys):
+            threading.Thread(target=wait, args=(call,), name="thumbnail", daemon=True).start()
 
     def _with_kept(self, what: str) -> None:
         name = self.kept.value
@@ -240,7 +240,7 @@ class DesignFiles:
     def _open_gallery(self, event: Any) -> None:
         kept = {f"{found.name}{MARK}": found for found in self.shelf.entries()}
         shipped = [
-            Card(name=name, words=_short(purpose(name)), png=thumbnail_png(f"start-{name}"))
+            Card(name=name, words=_short(purpose(name)), png=shipped_thumbnail(f"start-{name}"))
             for name in choices()
         ]
         own = [self._own_card(label, found) for label, found in kept.items()]
@@ -256,17 +256,17 @@ class DesignFiles:
 
     def _own_card(self, label: str, found: SavedDesign) -> Card:
         words = found.reason or found.family
-        return Card(name=label, words=_short(words), png=self._picture(found), group=YOURS)
+        return Card(name=label, words=_short(words), png=self._thumbnail(found), group=YOURS)
 
-    def _picture(self, found: SavedDesign) -> bytes | None:
-        """What was drawn of a kept design, else its family's picture."""
+    def _thumbnail(self, found: SavedDesign) -> bytes | None:
+        """What was drawn of a kept design, else its family's thumbnail."""
         if found.reason:
             return None
         store = self.project.store
-        for call in portrait_calls(store, {"build": found.build}):
+        for call in thumbnail_calls(store, {"build": found.build}):
             if store.has(call.stage, call.key):
                 return bytes(store.load(call.stage, call.key).png)
-        return thumbnail_png(f"start-{found.family}")
+        return shipped_thumbnail(f"start-{found.family}")
 
 
 def _short(words: str) -> str:

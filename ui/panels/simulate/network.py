@@ -19,7 +19,7 @@ from workbench.pipeline.shipped import RETRAIN
 from workbench.pipeline.stages.learned import foreknown
 
 PREDICT = "Predict by the network"
-TOPIC = "learned"
+JOB = "learned"
 MOST_FRAMES = 30
 """Longer presses are predicted only when asked for: they take as many seconds."""
 CHOICES = {
@@ -48,7 +48,7 @@ class NetworkPart:
         self.about = gui.add_markdown("", visible=False)
         hint = "Seconds; what the network does not know of this press is said"
         self.button = gui.add_button(PREDICT, icon=viser.Icon.BRAIN, hint=hint)
-        desk.reports.beside(TOPIC)
+        desk.reports.beside(JOB)
         self.button.on_click(desk.guarded(self._predict))
         self.choices: dict[str, Any] = {}
         self._offered: dict[str, dict[str, str]] = {}
@@ -77,19 +77,23 @@ class NetworkPart:
     def follow(self) -> None:
         """Predict a press that has come with its image, if the network chosen knows it."""
         desk, session = self.desk, self.desk.session
-        call = session.calls().get(TOPIC)
-        if call is None or desk.live.on or not (desk.current("press") and desk.current("shoot")):
+        call = session.calls().get(JOB)
+        if (
+            call is None
+            or desk.live_press.on
+            or not (desk.current("press") and desk.current("shoot"))
+        ):
             return
         known = session.case.press.frame_count <= MOST_FRAMES and not foreknown(call.inputs)
         if known and not session.store.has(call.stage, call.key):
-            desk.jobs.submit(PREDICTION, session.design, session.case, (TOPIC,))
+            desk.jobs.submit(PREDICTION, session.design, session.case, (JOB,))
 
     def give_way(self) -> None:
         """Stop predicting: something that was asked for needs the worker."""
         self.desk.conductor.stop(PREDICTION)
 
     def _predict(self, event: Any) -> None:
-        self.desk.run(TOPIC, ("press", TOPIC))
+        self.desk.run(JOB, ("press", JOB))
 
     def _chooser(self, field: str) -> Callable[[Any], None]:
         def choose(event: Any) -> None:

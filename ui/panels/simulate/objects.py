@@ -30,11 +30,11 @@ from workbench.edit.indenter_edit import (
     rounded,
     textured,
 )
-from workbench.edit.thumbnails import thumbnail_png
+from workbench.edit.shipped_thumbnails import shipped_thumbnail
 from workbench.live.object_file import ObjectFile
 from workbench.live.requests import Finished
 
-TOPIC = "object"
+JOB = "object"
 LOADED = "loaded mesh"
 PLAIN = tuple(p.value for p in Pattern if p is not Pattern.IMAGE)
 GROUPS = {"seen": "The paper's, seen in training", "unseen": "The paper's, unseen in training"}
@@ -53,7 +53,7 @@ class ObjectFolder:
         self.chosen = ""
         """Label of the last choice, to name an everyday object, which is a mesh by now."""
         self.chosen_mesh: Any = None
-        desk.jobs.on_preview[TOPIC] = lambda found, request: self._take(found)
+        desk.jobs.on_preview[JOB] = lambda found, request: self._take(found)
         gui, guarded = desk.server.gui, desk.guarded
         now = desk.session.case.indenter
         with gui.add_folder("Object"):
@@ -63,8 +63,8 @@ class ObjectFolder:
             )
             self.kind.on_update(guarded(self._choose))
             hint = "All objects as pictures of the face that touches"
-            pictures = gui.add_button("Gallery of objects", icon=viser.Icon.LAYOUT_GRID, hint=hint)
-            pictures.on_click(guarded(self._open_gallery))
+            button = gui.add_button("Gallery of objects", icon=viser.Icon.LAYOUT_GRID, hint=hint)
+            button.on_click(guarded(self._open_gallery))
             hint = "Diameter, else the largest width"
             size_mm = min(now.size_mm, MESH_SPAN_MM)
             self.size = gui.add_slider("Size mm", 0.5, MESH_SPAN_MM, 0.5, size_mm, hint=hint)
@@ -130,7 +130,7 @@ class ObjectFolder:
         cards = []
         for label, name in self.names.items():
             group, _, words = label.partition(": ")
-            png = thumbnail_png(f"object-{name}")
+            png = shipped_thumbnail(f"object-{name}")
             cards.append(Card(name=words, png=png, group=GROUPS.get(group, group)))
         labels = {label.partition(": ")[2]: label for label in self.names}
 
@@ -207,9 +207,9 @@ class ObjectFolder:
         desk = self.desk
         desk.reports.settle()
         if isinstance(sent, SensorDesign):
-            desk.trial(TOPIC, sent, "intake", self._read)
+            desk.trial(JOB, sent, "intake", self._read)
         else:
-            desk.jobs.ask(TOPIC, sent, desk.session.state, self._read)
+            desk.jobs.ask(JOB, sent, desk.session.state, self._read)
 
     def _read(self, event: Finished) -> None:
         """Take the object that the worker has read."""

@@ -69,7 +69,7 @@ class SimulatePanel:
         fields.slider("Friction", "design.material.friction", span=(0.0, 1.5, 0.05), hint=hint)
         # Last, so that nothing moves under the mouse when it comes.
         self.live_text = gui.add_markdown("", visible=False)
-        desk.live.told = self._tell_live
+        desk.live_press.on_message = self._tell_live
 
     def _solver_widgets(self) -> None:
         fields = self.desk.fields
@@ -106,17 +106,17 @@ class SimulatePanel:
 
     def _switch_live(self, event: Any) -> None:
         if event.client is not None:
-            self.desk.live.switch(bool(self.live.value))
+            self.desk.live_press.switch(bool(self.live.value))
 
     def _toggle_live(self, event: Any) -> None:
         self.live.value = not self.live.value
-        self.desk.live.switch(bool(self.live.value))
+        self.desk.live_press.switch(bool(self.live.value))
 
     def _end_live(self) -> None:
         """The whole path is wanted, not a preview of its end."""
-        if self.desk.live.on:
+        if self.desk.live_press.on:
             self.live.value = False
-            self.desk.live.switch(False)
+            self.desk.live_press.switch(False)
 
     def _tell_live(self, text: str) -> None:
         if self.live_text.content != text:

@@ -30,7 +30,7 @@ class ViewPanel:
         self.desk = desk
         self.look = Look(desk.scene)
         self.measure = Measure(desk.scene, desk.scene.on_click)
-        desk.takers.append(self.measure.takes)
+        desk.click_handlers.append(self.measure.takes)
         gui = desk.server.gui
         with dock.add_tab("View"):
             self._sides()
@@ -140,7 +140,7 @@ class ViewPanel:
         button = gui.add_button("Measure distance", icon=viser.Icon.RULER_MEASURE, hint=hint)
         button.on_click(guarded(lambda event: self.measure.switch(not self.measure.on)))
         self.said = gui.add_markdown("")
-        self.measure.told = self._say
+        self.measure.on_message = self._say
         command = gui.add_command("Measure distance", hotkey="M")
         command.on_trigger(guarded(lambda event: self.measure.switch(not self.measure.on)))
         command = gui.add_command("End measuring", hotkey="escape")

@@ -107,8 +107,8 @@ def _say_estimate(recipe: Recipe, options: argparse.Namespace) -> int:
     from workbench.learning.dataset.cases import deal, positions_of
     from workbench.learning.dataset.estimate import estimate, estimate_text
     from workbench.learning.dataset.folder import FAILED, MANIFEST, TIMES, DataSet
+    from workbench.learning.dataset.json_lines import read_rows
     from workbench.learning.dataset.positions import Pattern, Position
-    from workbench.learning.dataset.rows import read_rows
 
     if recipe.pattern is Pattern.SPREAD:
         # Where they lie does not matter here, and would need the mesh.

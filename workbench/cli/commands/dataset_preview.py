@@ -21,13 +21,13 @@ def options(sub: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace, project: Project) -> int:
     """Draw a sheet of samples."""
     from workbench.learning.dataset.folder import DataSet
-    from workbench.learning.dataset.preview import PREVIEW, write_preview
+    from workbench.learning.dataset.sample_sheet import SHEET, write_sheet
 
-    if not write_preview(DataSet.open(options.folder)):
+    if not write_sheet(DataSet.open(options.folder)):
         raise DesignError(
             f"{options.folder} has no samples yet", hint="make some first", at=str(options.folder)
         )
-    path = options.folder / PREVIEW
+    path = options.folder / SHEET
     say(json.dumps({"file": str(path)}) if options.json else path)
     return 0
 

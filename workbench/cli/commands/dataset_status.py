@@ -24,8 +24,8 @@ def run(options: argparse.Namespace, project: Project) -> int:
     data = DataSet.open(options.folder)
     counts, failed = data.counts(), data.failed()
     if options.json:
-        told = {"key": data.key, "program": data.manifest["program"], **counts}
-        say(json.dumps({**told, "failed": list(failed.values())}))
+        answer = {"key": data.key, "program": data.manifest["program"], **counts}
+        say(json.dumps({**answer, "failed": list(failed.values())}))
         return 0
     say(
         f"{counts['samples_done']} of {counts['samples']} samples ({counts['samples_distinct']} "

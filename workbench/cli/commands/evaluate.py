@@ -89,15 +89,15 @@ def _pack(options: argparse.Namespace, printer: Progress) -> int:
         monitor=_stage(printer, "pack"),
     )
     write_atomically(options.pack, content)
-    told = {"file": str(options.pack), "bytes": len(content), "key": source.key}
-    say(json.dumps(told) if options.json else f"{options.pack}: {len(content) / 1e6:.2f} MB")
+    answer = {"file": str(options.pack), "bytes": len(content), "key": source.key}
+    say(json.dumps(answer) if options.json else f"{options.pack}: {len(content) / 1e6:.2f} MB")
     return 0
 
 
 def _evaluated(options: argparse.Namespace, printer: Progress) -> Evaluation:
     from workbench.learning.evaluation.evaluate import evaluate_all
-    from workbench.learning.evaluation.pictures import spread
     from workbench.learning.evaluation.report import Evaluation
+    from workbench.learning.evaluation.sheets import spread
     from workbench.learning.evaluation.sources import open_source
     from workbench.learning.evaluation.speed import efficiency, measured_here
     from workbench.learning.evaluation.stiffness import evaluate_stiffness
@@ -133,7 +133,7 @@ def _drawn(
     results: dict[Target, FieldResult],
     monitor: Monitor,
 ) -> list[Any]:
-    from workbench.learning.evaluation.pictures import sheets
+    from workbench.learning.evaluation.sheets import sheets
 
     drawn = []
     for number, named in enumerate(weights):

@@ -80,11 +80,11 @@ def run(options: argparse.Namespace, project: Project) -> int:
                 printer.done(outcome)
                 outcomes.append(outcome)
     try:
-        *_, picture = evaluate(design, case, runner, wanted=("picture",), monitor=printer)
-        printer.done(picture)
-        outcomes.append(picture)
+        *_, drawing = evaluate(design, case, runner, wanted=("picture",), monitor=printer)
+        printer.done(drawing)
+        outcomes.append(drawing)
     except DeviceError as error:
-        complain(f"the report has no picture of the mould: {error.message}")
+        complain(f"the report has no drawing of the mould: {error.message}")
     summary = write_all(
         options.out,
         design,

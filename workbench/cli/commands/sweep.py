@@ -75,8 +75,8 @@ def run(options: argparse.Namespace, project: Project) -> int:
     )
     prepare(options.out, clear=FILES)
     project.sweep()
-    told = {} if options.json else {"on_point": say_point}
-    what = compute(what, project, monitor=printer, on_outcome=printer.done, **told)
+    callbacks = {} if options.json else {"on_point": say_point}
+    what = compute(what, project, monitor=printer, on_outcome=printer.done, **callbacks)
     contents = {
         "sweep.json": json.dumps(sweep_table(what), indent=1, allow_nan=False),
         "sweep.csv": sweep_csv(what),

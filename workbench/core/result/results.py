@@ -247,7 +247,7 @@ class MaterialPoints:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Picture:
-    """A rendered picture."""
+    """A drawing; stored drawings name the class, so it keeps this word."""
 
     png: np.ndarray
     """Bytes of a PNG file, shape (bytes,), uint8."""

@@ -10,7 +10,7 @@ from workbench.learning.dataset.agreement import agreement
 from workbench.learning.dataset.cases import Split
 from workbench.learning.dataset.estimate import estimate, estimate_text
 from workbench.learning.dataset.folder import TIMES, DataSet
-from workbench.learning.dataset.rows import read_rows
+from workbench.learning.dataset.json_lines import read_rows
 
 FIELDS = """\
 Forces act on the skin, displacements are from rest, in the sensor frame; mm, N, MPa. Vertices are

@@ -26,9 +26,9 @@ from workbench.learning.dataset.cases import Case, cases_of
 from workbench.learning.dataset.folder import BACKGROUND, BACKGROUND_MARKERS, DataSet
 from workbench.learning.dataset.images import Cameras
 from workbench.learning.dataset.lock import held
-from workbench.learning.dataset.preview import write_preview
 from workbench.learning.dataset.recipe import Recipe, Solvers
 from workbench.learning.dataset.repair import clear_parts
+from workbench.learning.dataset.sample_sheet import write_sheet
 from workbench.learning.dataset.solving import Report, Setup
 from workbench.learning.dataset.watch import Tell, Watch
 from workbench.learning.dataset.worker import open_bench, solve_case
@@ -57,7 +57,7 @@ def make(
     project: Project,
     *,
     jobs: int = 1,
-    tell: Tell = lambda told: None,
+    tell: Tell = lambda progress: None,
     monitor: StageMonitor | None = None,
 ) -> DataSet:
     """Make a data set, or the rest of it.
@@ -204,8 +204,8 @@ def _one_thread() -> Iterator[None]:
 
 
 def finish(data: DataSet) -> None:
-    """Bring counts, card and preview up to date."""
+    """Bring counts, card and sheet up to date."""
     write_manifest(data.folder, {**data.manifest, "counts": data.counts()})
     data = DataSet.open(data.folder)
     write_atomically(data.folder / "card.md", card_text(data).encode())
-    write_preview(data)
+    write_sheet(data)

@@ -33,8 +33,8 @@ from workbench.core.base.digest import digest
 from workbench.core.base.errors import StoreError, shown
 from workbench.core.result.results import Skin
 from workbench.learning.dataset.cases import Case, Split, case_of_row
+from workbench.learning.dataset.json_lines import read_rows
 from workbench.learning.dataset.recipe import table_key
-from workbench.learning.dataset.rows import read_rows
 from workbench.learning.dataset.sample import Sample, from_bytes
 
 FORMAT = 1

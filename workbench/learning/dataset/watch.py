@@ -9,12 +9,12 @@ from dataclasses import dataclass
 
 from workbench.learning.dataset.cases import Case
 from workbench.learning.dataset.folder import FAILED, TIMES, DataSet
-from workbench.learning.dataset.rows import append_row
+from workbench.learning.dataset.json_lines import append_row
 from workbench.learning.dataset.solving import Report
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Told:
+class SetProgress:
     """How far a data set is."""
 
     done: int
@@ -27,7 +27,7 @@ class Told:
     """Time that remains at the pace of this run [s]; None while nothing is done in it."""
 
 
-Tell = Callable[[Told], None]
+Tell = Callable[[SetProgress], None]
 
 
 class Watch:
@@ -70,4 +70,4 @@ class Watch:
         done = sum(self._done.values())
         new, spent_s = done - self._first, time.monotonic() - self._begun_s
         eta_s = (self._total - done) * spent_s / new if new else None
-        self._tell(Told(done=done, total=self._total, failed=self._failed, eta_s=eta_s))
+        self._tell(SetProgress(done=done, total=self._total, failed=self._failed, eta_s=eta_s))

@@ -1,1 +1,1 @@
-"""How good learned forces are: scores beside nulls, pictures, rows and a report."""
+"""How good learned forces are: scores beside nulls, sheets, rows and a report."""

@@ -41,13 +41,13 @@ class FieldResult:
     target: Target
     weights: str
     """Name of the file."""
-    rows: tuple[Scored, ...]
+    samples: tuple[Scored, ...]
     notes: tuple[str, ...] = field(default=())
     """What the reader must know beside the numbers."""
 
     def of(self, *splits: Split) -> list[Scored]:
         """Samples of some splits."""
-        return [row for row in self.rows if row.case.split in splits]
+        return [sample for sample in self.samples if sample.case.split in splits]
 
 
 def evaluate_field(
@@ -72,17 +72,17 @@ def evaluate_field(
     expect_no_leak(named.weights, source, cases.values(), name=named.name)
     predictor = predictor_for(named.weights, source)
     learned = learned_by(named.weights, predictor)
-    rows = scored_states(source, chosen, target, learned, monitor=monitor)
-    if not rows:
+    samples = scored_states(source, chosen, target, learned, monitor=monitor)
+    if not samples:
         raise SolveError(
             f"no held-out sample of {name} was settled by both solvers",
             hint="make the data set again with smaller depths",
             at=name,
         )
     notes = _notes(named.weights, source, predictor.notes)
-    if len(rows) < len(chosen):
-        notes += (f"{len(chosen) - len(rows)} samples that a solver did not settle: left out",)
-    return FieldResult(target=target, weights=named.name, rows=tuple(rows), notes=notes)
+    if len(samples) < len(chosen):
+        notes += (f"{len(chosen) - len(samples)} samples that a solver did not settle: left out",)
+    return FieldResult(target=target, weights=named.name, samples=tuple(samples), notes=notes)
 
 
 def evaluate_all(
@@ -99,25 +99,25 @@ def evaluate_all(
 
 def tables(found: FieldResult) -> dict[str, Any]:
     """All tables of a field for JSON: presses and shears apart wherever places and ways count."""
-    pressed = [row for row in found.rows if not row.sheared]
-    sheared = [row for row in found.rows if row.sheared]
+    pressed = [sample for sample in found.samples if not sample.sheared]
+    sheared = [sample for sample in found.samples if sample.sheared]
     return {
         "unit": found.target.unit,
         "weights": found.weights,
         "notes": list(found.notes),
-        "splits": _tables(found.rows, lambda row: row.case.split.value),
-        "all": as_table(compared(found.rows)),
-        "motions": _tables(found.rows, lambda row: "shear" if row.sheared else "press"),
-        "indenters": _tables(found.rows, lambda row: row.case.indenter.value),
+        "splits": _tables(found.samples, lambda sample: sample.case.split.value),
+        "all": as_table(compared(found.samples)),
+        "motions": _tables(found.samples, lambda sample: "shear" if sample.sheared else "press"),
+        "indenters": _tables(found.samples, lambda sample: sample.case.indenter.value),
         "press_stations": _tables(by_station(pressed), station_of),
         "shear_stations": _tables(by_station(sheared), station_of),
-        "press_depths_mm": _tables(sorted(pressed, key=lambda row: row.depth_mm), depth_of),
-        "shear_ways_mm": _tables(sorted(sheared, key=lambda row: row.shear_mm), shear_of),
+        "press_depths_mm": _tables(sorted(pressed, key=lambda sample: sample.depth_mm), depth_of),
+        "shear_ways_mm": _tables(sorted(sheared, key=lambda sample: sample.shear_mm), shear_of),
     }
 
 
-def _tables(rows: Iterable[Scored], name: Callable[[Scored], str]) -> dict[str, Any]:
-    return {group: as_table(one) for group, one in grouped(rows, name).items()}
+def _tables(samples: Iterable[Scored], name: Callable[[Scored], str]) -> dict[str, Any]:
+    return {group: as_table(one) for group, one in grouped(samples, name).items()}
 
 
 def _notes(weights: NetworkWeights, source: Source, notes: tuple[str, ...]) -> tuple[str, ...]:

@@ -19,27 +19,27 @@ from workbench.learning.evaluation.groups import (
     station_words,
 )
 from workbench.learning.evaluation.html_tables import FIELD_WORDS
-from workbench.learning.evaluation.pictures import Spread
 from workbench.learning.evaluation.scoring import Compared, Scored, Way, grouped
+from workbench.learning.evaluation.sheets import Spread
 
 
 def field_charts(found: FieldResult) -> list[str]:
     """By object, station, depth and way aside; presses and shears apart."""
     what = f"mean error of {FIELD_WORDS[found.target]} [{found.target.unit}]"
-    pressed = [row for row in found.rows if not row.sheared]
-    sheared = [row for row in found.rows if row.sheared]
-    places = station_words(found.rows[0].case)
-    drawn = [_bars(found.rows, f"By object: {what}")]
-    for words, rows in (("Presses", pressed), ("Shears", sheared)):
-        if rows:
+    pressed = [sample for sample in found.samples if not sample.sheared]
+    sheared = [sample for sample in found.samples if sample.sheared]
+    places = station_words(found.samples[0].case)
+    drawn = [_bars(found.samples, f"By object: {what}")]
+    for words, samples in (("Presses", pressed), ("Shears", sheared)):
+        if samples:
             title = f"{words} by place: {what}"
-            drawn.append(_lines(by_station(rows), station_of, title, places))
+            drawn.append(_lines(by_station(samples), station_of, title, places))
     if pressed:
-        by_depth = sorted(pressed, key=lambda row: row.depth_mm)
+        by_depth = sorted(pressed, key=lambda sample: sample.depth_mm)
         title = f"Presses by depth: {what}"
         drawn.append(_lines(by_depth, depth_of, title, "depth from first touch [mm]"))
     if sheared:
-        by_way = sorted(sheared, key=lambda row: row.shear_mm)
+        by_way = sorted(sheared, key=lambda sample: sample.shear_mm)
         title = f"Shears by way aside: {what}"
         drawn.append(_lines(by_way, shear_of, title, "way aside along U or V, the larger [mm]"))
     return drawn
@@ -49,13 +49,13 @@ def _series(groups: Mapping[str, Compared]) -> dict[str, list[float]]:
     return {way.value: [one.ways[way].mae for one in groups.values()] for way in Way}
 
 
-def _lines(rows: list[Scored], name: Callable[[Scored], str], title: str, below: str) -> str:
-    groups = grouped(rows, name)
+def _lines(samples: list[Scored], name: Callable[[Scored], str], title: str, below: str) -> str:
+    groups = grouped(samples, name)
     return charts.lines(title, list(groups), _series(groups), below=below)
 
 
-def _bars(rows: Sequence[Scored], title: str) -> str:
-    groups = grouped(rows, lambda row: row.case.indenter.value.replace("_", " "))
+def _bars(samples: Sequence[Scored], title: str) -> str:
+    groups = grouped(samples, lambda sample: sample.case.indenter.value.replace("_", " "))
     return charts.bars(title, list(groups), _series(groups), below="")
 
 

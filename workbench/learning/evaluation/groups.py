@@ -42,21 +42,21 @@ def station_words(case: Case) -> str:
     return "distance from the middle [mm]"
 
 
-def by_station(rows: Iterable[Scored]) -> list[Scored]:
+def by_station(samples: Iterable[Scored]) -> list[Scored]:
     """Samples in the order of their stations."""
-    return sorted(rows, key=lambda row: station(row.case))
+    return sorted(samples, key=lambda sample: station(sample.case))
 
 
-def station_of(row: Scored) -> str:
+def station_of(sample: Scored) -> str:
     """Name of a sample's station."""
-    return station(row.case)[1]
+    return station(sample.case)[1]
 
 
-def depth_of(row: Scored) -> str:
+def depth_of(sample: Scored) -> str:
     """Depth of a sample [mm], as a name."""
-    return f"{row.depth_mm:.2g}"
+    return f"{sample.depth_mm:.2g}"
 
 
-def shear_of(row: Scored) -> str:
+def shear_of(sample: Scored) -> str:
     """Way aside of a sample [mm], as a name."""
-    return f"{row.shear_mm:.2g}"
+    return f"{sample.shear_mm:.2g}"

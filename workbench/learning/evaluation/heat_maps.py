@@ -85,7 +85,7 @@ def _tile(skin: SkinData, pair: Pair, colours: np.ndarray) -> np.ndarray:
     """The skin in these colours, shape (TILE_PX, TILE_PX, 3), uint8."""
     import cv2
 
-    from geometry.picture.rendering import canvas, look, png, surface
+    from geometry.drawing.rendering import canvas, look, png, surface
 
     eye = _eye(pair.sample.normal)
     body = surface(skin.points_mm + pair.moved_mm, skin.faces)
@@ -117,7 +117,7 @@ def _eye(normal: np.ndarray) -> np.ndarray:
 
 
 def _across(eye: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    from geometry.picture.rendering import screen_axes
+    from geometry.drawing.rendering import screen_axes
 
     return screen_axes(eye)
 

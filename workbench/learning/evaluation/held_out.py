@@ -27,7 +27,7 @@ from workbench.learning.dataset.cases import Case, Split, case_of_row
 from workbench.learning.dataset.folder import SkinData
 from workbench.learning.dataset.recipe import table_key
 from workbench.learning.dataset.sample import Sample, Solved
-from workbench.view.previews import corner_normals
+from workbench.view.scene_shapes import corner_normals
 
 FORMAT = 1
 STEPS = 32767
@@ -142,8 +142,8 @@ class HeldOut:
 
 def content_digest(head: Mapping[str, Any], arrays: Mapping[str, np.ndarray]) -> str:
     """Digest of all that a file holds, but for itself."""
-    told = {name: value for name, value in head.items() if name != "content"}
-    return digest([json.dumps(told, sort_keys=True), *(arrays[name] for name in sorted(arrays))])
+    fields = {name: value for name, value in head.items() if name != "content"}
+    return digest([json.dumps(fields, sort_keys=True), *(arrays[name] for name in sorted(arrays))])
 
 
 def _skin(points_mm: np.ndarray, faces: np.ndarray, areas_mm2: np.ndarray) -> SkinData:

@@ -120,8 +120,10 @@ def indenter_table(found: FieldResult) -> str:
     unit = found.target.unit
     heads = ("object", "split", "samples", f"learned [{unit}]", "contact solver", "zero",
              "learned / contact solver", "learned / zero")  # fmt: skip
-    groups = grouped(found.rows, lambda row: row.case.indenter.value)
-    first: Mapping[str, Scored] = {row.case.indenter.value: row for row in reversed(found.rows)}
+    groups = grouped(found.samples, lambda sample: sample.case.indenter.value)
+    first: Mapping[str, Scored] = {
+        each.case.indenter.value: each for each in reversed(found.samples)
+    }
     rows = [
         (
             name.replace("_", " "),
@@ -150,7 +152,7 @@ def stiffness_html(
              "over peak [%]", "total force, worst axis [N]")  # fmt: skip
     rows: list[Sequence[Any]] = []
     for found in nominal:
-        ways = compared(found.rows).ways
+        ways = compared(found.samples).ways
         rows += _stiffness_rows(found.target, nominal_MPa, 1.0, ways)
     for found in results:
         rows += _stiffness_rows(found.target, found.young_MPa, found.factor, found.found.ways)

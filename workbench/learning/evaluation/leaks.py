@@ -56,8 +56,8 @@ def expect_no_leak(
 
 def dataset_keys(card: Mapping[str, Any]) -> list[str]:
     """Keys of the data sets that were trained on; several belong together by the same split."""
-    told = card.get("dataset", {})
-    found = told.get("keys") or [told.get("key", "")]
+    dataset = card.get("dataset", {})
+    found = dataset.get("keys") or [dataset.get("key", "")]
     return [str(key) for key in found if key]
 
 

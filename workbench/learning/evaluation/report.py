@@ -24,8 +24,8 @@ from workbench.learning.evaluation.html_tables import (
     totals_table,
 )
 from workbench.learning.evaluation.leaks import dataset_keys
-from workbench.learning.evaluation.pictures import Sheet, Spread
 from workbench.learning.evaluation.scoring import Way, compared
+from workbench.learning.evaluation.sheets import Sheet, Spread
 from workbench.learning.evaluation.sources import Source, young_MPa
 from workbench.learning.evaluation.speed import efficiency_html
 from workbench.learning.evaluation.stiffness import StiffnessResult, stiffness_table
@@ -122,14 +122,14 @@ def verdicts(results: Mapping[Target, FieldResult]) -> list[str]:
             lines.append(f"No unseen object was scored for {FIELD_WORDS[target]}.")
             continue
         one = compared(members)
-        told = [
+        parts = [
             f"{one.error_ratio(Way.LEARNED, way):.3f} of the {name}'s"
             + (_asked(one.error_ratio(Way.LEARNED, way), LIMITS[way], target))
             for way, name in ((Way.MPM, "contact solver"), (Way.ZERO, "zero predictor"))
         ]
         lines.append(
             f"On unseen objects the error of the learned {FIELD_WORDS[target]} is "
-            f"{' and '.join(told)}."
+            f"{' and '.join(parts)}."
         )
     return lines
 
@@ -141,8 +141,8 @@ def _asked(found: float, limit: float, target: Target) -> str:
 
 
 def _notes(results: Mapping[Target, FieldResult]) -> str:
-    told = dict.fromkeys(note for one in results.values() for note in one.notes)
-    return "".join(f"<p>{html.escape(note)}.</p>" for note in told)
+    notes = dict.fromkeys(note for one in results.values() for note in one.notes)
+    return "".join(f"<p>{html.escape(note)}.</p>" for note in notes)
 
 
 def _field_section(found: FieldResult) -> str:
@@ -213,5 +213,5 @@ def _provenance(found: Evaluation) -> str:
 
 def _listed(table: Mapping[str, Any]) -> str:
     """Names and values in a line."""
-    told = {name: f"{v:.4g}" if isinstance(v, float) else v for name, v in table.items()}
-    return ", ".join(f"{name} {value}" for name, value in told.items() if value != "")
+    values = {name: f"{v:.4g}" if isinstance(v, float) else v for name, v in table.items()}
+    return ", ".join(f"{name} {value}" for name, value in values.items() if value != "")

@@ -190,18 +190,18 @@ def scores_of(sample: Sample, target: Target, fields: Mapping[str, np.ndarray]) 
     return {way: score(field, truth, frame) for way, field in fields.items()}
 
 
-def compared(rows: Iterable[Scored]) -> Compared:
+def compared(samples: Iterable[Scored]) -> Compared:
     """Take samples together, way by way; at least one."""
-    rows = list(rows)
-    ways = {way: summary([row.scores[way] for row in rows]) for way in rows[0].scores}
-    return Compared(cases=len({row.case.id for row in rows}), ways=ways)
+    samples = list(samples)
+    ways = {way: summary([sample.scores[way] for sample in samples]) for way in samples[0].scores}
+    return Compared(cases=len({sample.case.id for sample in samples}), ways=ways)
 
 
-def grouped(rows: Iterable[Scored], name: Callable[[Scored], str]) -> dict[str, Compared]:
+def grouped(samples: Iterable[Scored], name: Callable[[Scored], str]) -> dict[str, Compared]:
     """Samples taken together by a name, in the order in which names first come."""
     groups: dict[str, list[Scored]] = {}
-    for row in rows:
-        groups.setdefault(name(row), []).append(row)
+    for sample in samples:
+        groups.setdefault(name(sample), []).append(sample)
     return {group: compared(members) for group, members in groups.items()}
 
 

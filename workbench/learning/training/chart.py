@@ -48,23 +48,23 @@ def chart(series: Sequence[Series], title: str) -> np.ndarray:
         series: At least one, with at least one point each.
         title: Says what goes up, what across, and the units.
     """
-    picture = np.full((HEIGHT, WIDTH, 3), 255, np.uint8)
+    image = np.full((HEIGHT, WIDTH, 3), 255, np.uint8)
     xs = [x for each in series for x, _ in each.points]
     ys = [math.log10(y) for each in series for _, y in each.points]
     across = _axis(min(xs), max(xs), LEFT, WIDTH - RIGHT)
     up = _axis(min(ys) - 0.05, max(ys) + 0.05, HEIGHT - BOTTOM, TOP)
-    _text(picture, title, LEFT, 24, size=0.5)
-    _grid(picture, across, up, (min(xs), max(xs)), (min(ys) - 0.05, max(ys) + 0.05))
+    _text(image, title, LEFT, 24, size=0.5)
+    _grid(image, across, up, (min(xs), max(xs)), (min(ys) - 0.05, max(ys) + 0.05))
     colours = iter(COLOURS * len(series))
     for number, each in enumerate(series):
         colour = GREY if each.reference else next(colours)
         places = [(across(x), up(math.log10(y))) for x, y in each.points]
-        _line(picture, places, colour, 1 if each.reference else 2, dots=len(places) < 20)
+        _line(image, places, colour, 1 if each.reference else 2, dots=len(places) < 20)
         height = TOP + 16 + 34 * number
-        _line(picture, [(WIDTH - RIGHT + 12, height), (WIDTH - RIGHT + 34, height)], colour, 2)
-        _text(picture, each.name, WIDTH - RIGHT + 42, height + 4)
-        _text(picture, f"last {each.points[-1][1]:.3g}", WIDTH - RIGHT + 42, height + 19, colour)
-    return picture
+        _line(image, [(WIDTH - RIGHT + 12, height), (WIDTH - RIGHT + 34, height)], colour, 2)
+        _text(image, each.name, WIDTH - RIGHT + 42, height + 4)
+        _text(image, f"last {each.points[-1][1]:.3g}", WIDTH - RIGHT + 42, height + 19, colour)
+    return image
 
 
 def _axis(low: float, high: float, start_px: int, end_px: int) -> Callable[[float], int]:
@@ -73,7 +73,7 @@ def _axis(low: float, high: float, start_px: int, end_px: int) -> Callable[[floa
 
 
 def _grid(
-    picture: np.ndarray,
+    image: np.ndarray,
     across: Callable[[float], int],
     up: Callable[[float], int],
     x_range: tuple[float, float],
@@ -81,12 +81,12 @@ def _grid(
 ) -> None:
     for value in _round_values(*x_range):
         x = across(value)
-        _line(picture, [(x, TOP), (x, HEIGHT - BOTTOM)], FAINT, 1)
-        _text(picture, f"{value:g}", x - 8, HEIGHT - BOTTOM + 18)
+        _line(image, [(x, TOP), (x, HEIGHT - BOTTOM)], FAINT, 1)
+        _text(image, f"{value:g}", x - 8, HEIGHT - BOTTOM + 18)
     for value in _decades(*y_range):
         y = up(math.log10(value))
-        _line(picture, [(LEFT, y), (WIDTH - RIGHT, y)], FAINT, 1)
-        _text(picture, f"{value:.2g}", 8, y + 4)
+        _line(image, [(LEFT, y), (WIDTH - RIGHT, y)], FAINT, 1)
+        _text(image, f"{value:.2g}", 8, y + 4)
 
 
 def _round_values(low: float, high: float) -> list[float]:
@@ -108,7 +108,7 @@ def _decades(low: float, high: float) -> list[float]:
 
 
 def _line(
-    picture: np.ndarray,
+    image: np.ndarray,
     places: Sequence[tuple[int, int]],
     colour: tuple[int, int, int],
     width: int,
@@ -118,13 +118,13 @@ def _line(
     import cv2
 
     points = np.array(places, np.int32).reshape(-1, 1, 2)
-    cv2.polylines(picture, [points], False, colour, width, cv2.LINE_AA)
+    cv2.polylines(image, [points], False, colour, width, cv2.LINE_AA)
     for place in places if dots else ():
-        cv2.circle(picture, place, 3, colour, -1, cv2.LINE_AA)
+        cv2.circle(image, place, 3, colour, -1, cv2.LINE_AA)
 
 
 def _text(
-    picture: np.ndarray,
+    image: np.ndarray,
     text: str,
     x: int,
     y: int,
@@ -134,4 +134,4 @@ def _text(
 ) -> None:
     import cv2
 
-    cv2.putText(picture, text, (x, y), cv2.FONT_HERSHEY_SIMPLEX, size, colour, 1, cv2.LINE_AA)
+    cv2.putText(image, text, (x, y), cv2.FONT_HERSHEY_SIMPLEX, size, colour, 1, cv2.LINE_AA)

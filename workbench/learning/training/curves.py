@@ -1,4 +1,4 @@
-"""The curves of a training as files: a row per epoch, in JSON lines, CSV and a picture."""
+"""The curves of a training as files: a row per epoch, in JSON lines, CSV and a chart."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def write_curves(folder: Path, rows: Sequence[Mapping[str, Any]]) -> None:
     write_atomically(folder / CSV, text.getvalue().encode())
 
 
-def write_picture(folder: Path, rows: Sequence[Mapping[str, Any]], target: Target) -> bool:
+def write_chart(folder: Path, rows: Sequence[Mapping[str, Any]], target: Target) -> bool:
     """Draw the errors by epoch; False where there is nothing to draw, or nothing to draw with.
 
     A machine that is lent for training may lack OpenCV: the same command draws it later.
@@ -65,8 +65,8 @@ def write_picture(folder: Path, rows: Sequence[Mapping[str, Any]], target: Targe
     try:
         from workbench.report.image_files import png_bytes
 
-        picture = png_bytes(chart(series, title))
+        drawn_png = png_bytes(chart(series, title))
     except ImportError:
         return False
-    write_atomically(folder / PNG, picture)
+    write_atomically(folder / PNG, drawn_png)
     return True

@@ -29,8 +29,8 @@ from workbench.learning.dataset.lock import held
 from workbench.learning.training.beginning import Beginning, begin
 from workbench.learning.training.card import data_card, training_card
 from workbench.learning.training.checkpoint import read_checkpoint, write_checkpoint
-from workbench.learning.training.curves import write_curves, write_picture
-from workbench.learning.training.plan import Plan, Tell, Told, Trained
+from workbench.learning.training.curves import write_chart, write_curves
+from workbench.learning.training.plan import Plan, Tell, Trained, TrainingProgress
 from workbench.learning.training.presses import Presses
 from workbench.learning.training.results import final_weights
 from workbench.pipeline.weight_files import save_weights
@@ -40,8 +40,8 @@ if TYPE_CHECKING:
     from sim.forces.training.trainer import Trainer
 
 SUMMARY = "training.json"
-PICTURE_S = 10.0
-"""Least time between two pictures of the curves [s]."""
+CHART_S = 10.0
+"""Least time between two charts of the curves [s]."""
 
 
 def train(
@@ -52,7 +52,7 @@ def train(
     device: str,
     numbers: Numbers = Numbers.AUTO,
     minutes: float = 0.0,
-    tell: Tell = lambda told: None,
+    tell: Tell = lambda progress: None,
     monitor: Monitor = silent,
 ) -> Trained:
     """Train, or go on where it was.
@@ -118,7 +118,7 @@ class _Training:
             left = settings.epochs - self.trainer.epoch
             pace_s = float(np.median([row["seconds"] for row in self.rows[-9:]]))
             self._tell(
-                Told(
+                TrainingProgress(
                     row=self.rows[-1],
                     epochs=settings.epochs,
                     eta_s=left * pace_s,
@@ -183,8 +183,8 @@ class _Training:
             },
         )
         write_curves(self.out, self.rows)
-        if time.monotonic() - self._drawn_s > PICTURE_S:
-            write_picture(self.out, self.rows, self.plan.target)
+        if time.monotonic() - self._drawn_s > CHART_S:
+            write_chart(self.out, self.rows, self.plan.target)
             self._drawn_s = time.monotonic()
 
     def _restore(self, content: dict[str, Any]) -> None:
@@ -222,7 +222,7 @@ class _Training:
         for old in self.out.glob("*.weights"):
             if old != path:
                 old.unlink(missing_ok=True)
-        if not write_picture(self.out, self.rows, plan.target):
+        if not write_chart(self.out, self.rows, plan.target):
             notes += ("the curves are not drawn: OpenCV is missing here",)
         done = Trained(
             weights=path,

@@ -36,7 +36,7 @@ def learning_curve(
     device: str,
     numbers: Numbers = Numbers.AUTO,
     minutes: float = 0.0,
-    tell: Tell = lambda told: None,
+    tell: Tell = lambda progress: None,
     monitor: Monitor = silent,
 ) -> dict[str, Any]:
     """Train on each share and write `learning_curve.json` and `.png`.
@@ -113,7 +113,7 @@ def _draw(out: Path, rows: Sequence[dict[str, Any]]) -> None:
     try:
         from workbench.report.image_files import png_bytes
 
-        picture = png_bytes(chart(series, "Error over the zero predictor's, by training cases"))
+        drawn_png = png_bytes(chart(series, "Error over the zero predictor's, by training cases"))
     except ImportError:
         return
-    write_atomically(out / PNG, picture)
+    write_atomically(out / PNG, drawn_png)

@@ -65,7 +65,7 @@ class Plan:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Told:
+class TrainingProgress:
     """How far a training is, after an epoch."""
 
     row: dict[str, Any]
@@ -78,7 +78,7 @@ class Told:
     """All so far."""
 
 
-Tell = Callable[[Told], None]
+Tell = Callable[[TrainingProgress], None]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -11,7 +11,7 @@ from workbench.pipeline.stage import Chain, Stage
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class PictureInputs:
+class DrawingInputs:
     """What is drawn."""
 
     solid: Solid
@@ -19,27 +19,28 @@ class PictureInputs:
     housing: HousingSet
 
 
-def inputs(chain: Chain) -> PictureInputs:
+def inputs(chain: Chain) -> DrawingInputs:
     """The body and all parts around it."""
-    return PictureInputs(
+    return DrawingInputs(
         solid=chain.result("build"), moulds=chain.result("mould"), housing=chain.result("housing")
     )
 
 
-def picture(given: PictureInputs, *, monitor: Monitor) -> Picture:
+def drawing(given: DrawingInputs, *, monitor: Monitor) -> Picture:
     """The drawing; a DeviceError where nothing can render."""
-    from geometry.picture.pictures import exploded_sensor
+    from geometry.drawing.sensor_drawings import exploded_sensor
 
     return Picture(png=exploded_sensor(given.solid, given.moulds, given.housing))
 
 
 STAGE = Stage(
+    # Drawings lie in stores and in keys under this name.
     name="picture",
     label="Drawing",
     version=2,
     place=20,
     lane="cad",
-    run=picture,
+    run=drawing,
     inputs=inputs,
     shown=False,
 )

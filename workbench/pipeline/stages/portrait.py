@@ -1,4 +1,4 @@
-"""The stage `portrait`: the membrane at rest, small, for lists."""
+"""The stage `portrait`: thumbnails of the membrane at rest, for lists."""
 
 from __future__ import annotations
 
@@ -10,19 +10,26 @@ from workbench.pipeline.stage import Stage
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class PortraitInputs:
+class ThumbnailInputs:
     """What is drawn."""
 
     solid: Solid
 
 
-def portrait(given: PortraitInputs, *, monitor: Monitor) -> Picture:
+def thumbnail(given: ThumbnailInputs, *, monitor: Monitor) -> Picture:
     """The drawing; a DeviceError where nothing can render."""
-    from geometry.picture.portraits import at_rest
+    from geometry.drawing.thumbnails import at_rest
 
     return Picture(png=at_rest(given.solid))
 
 
 STAGE = Stage(
-    name="portrait", label="Thumbnail", version=1, place=21, lane="cad", run=portrait, shown=False
+    # Thumbnails lie in stores and in keys under this name.
+    name="portrait",
+    label="Thumbnail",
+    version=1,
+    place=21,
+    lane="cad",
+    run=thumbnail,
+    shown=False,
 )

@@ -1,7 +1,7 @@
 """Playing the frames of a press in the browser: time from one skin drawn to the next.
 
-Each frame is a mesh with buffers of its own, and the skin at rest is a smaller mesh: a picture with
-another large mesh than the picture before, or without one, is a frame that was applied.
+Each frame is a mesh with buffers of its own, and the skin at rest is a smaller mesh: an image with
+another large mesh than the image before, or without one, is a frame that was applied.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ WebGL2RenderingContext.prototype.drawElements = function (...given) {
   return draw.apply(this, given);
 };
 """
-"""Notes when the large mesh of a picture was another than before [ms], and its corners."""
+"""Notes when the large mesh of an image was another than before [ms], and its corners."""
 WARM_MS, SPAN_MS = 6_000, 8_000
 
 

@@ -108,10 +108,10 @@ def read_record(path: Path) -> Record:
         table = json.loads(path.read_bytes())
         if set(table) != PARTS or table["format"] != FORMAT:
             raise ValueError(f"it holds {', '.join(sorted(table))}")
-        told = {name: table[name] for name in PARTS - {"format", "rows"}}
+        fields = {name: table[name] for name in PARTS - {"format", "rows"}}
         if not all({"name", "value"} <= set(row) for row in table["rows"]):
             raise ValueError("a row has no name or no value")
-        return Record(**told, rows=tuple(table["rows"]))
+        return Record(**fields, rows=tuple(table["rows"]))
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise StoreError(
             f"the record {path} cannot be read: {error}",

@@ -163,7 +163,7 @@ class Tab:
         )
         self.send({"type": "CommandTriggerMessage", "uuid": found[0]})
 
-    def told(self, words: str) -> bool:
+    def has_seen(self, words: str) -> bool:
         """Whether a notification, a text or a modal with these words has come."""
         texts = (
             str(message.get("props") or message.get("updates") or message)

@@ -66,10 +66,10 @@ def blocked_s(url: str) -> float:
             follower.uuid("Edit here")
             editor.set("Frames", FRAMES)
             editor.trigger("Run press")
-            editor.wait(lambda: editor.told("press: started"), 20.0, "the press runs")
+            editor.wait(lambda: editor.has_seen("press: started"), 20.0, "the press runs")
             worst = 0.0
             deadline = time.monotonic() + LONGEST_JOB_S
-            while time.monotonic() < deadline and not editor.told("press: finished"):
+            while time.monotonic() < deadline and not editor.has_seen("press: finished"):
                 worst = max(worst, _health_s(url), _put_back_s(follower))
                 time.sleep(STEP_S)
             editor.click("Cancel")

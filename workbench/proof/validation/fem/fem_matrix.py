@@ -66,10 +66,12 @@ def recorded_rows(path: Path = RECORD) -> list[Row]:
 def _family_rows(family: str, record: dict[str, Any]) -> Iterator[Row]:
     cases = [case for case in every_case() if case.family == family]
     found = {case.name: record["cases"].get(case.name) for case in cases}
-    done = {name: told for name, told in found.items() if told is not None and told["ok"]}
+    done = {
+        name: outcome for name, outcome in found.items() if outcome is not None and outcome["ok"]
+    }
     others = [
-        f"{name}: {'not in the record' if told is None else told['why']}"
-        for name, told in found.items()
+        f"{name}: {'not in the record' if outcome is None else outcome['why']}"
+        for name, outcome in found.items()
         if name not in done
     ]
     made = (
@@ -90,14 +92,14 @@ def _family_rows(family: str, record: dict[str, Any]) -> Iterator[Row]:
         null=0.0,
     )
     if done:
-        plain = [told["cpu_s"] for told in done.values() if not _by_gpu(told)]
+        plain = [outcome["cpu_s"] for outcome in done.values() if not _by_gpu(outcome)]
         if plain:
             words = f"{case}: median CPU time of the {len(plain)} cases solved without a GPU"
             yield stated("fem_matrix_cpu", words, float(np.median(plain)), unit="s")
         yield bounded(
             "fem_matrix_residual",
             f"{case}: worst relative residual",
-            max(told["worst_residual"] for told in done.values()),
+            max(outcome["worst_residual"] for outcome in done.values()),
             unit="1",
             limit=FemSettings().tolerance,
             null=1.0,
@@ -111,7 +113,7 @@ def repeated_rows(path: Path = RECORD) -> list[Row]:
     except StoreError as error:
         return [failed("fem_matrix_repeated", "two cases", why=error.message)]
     known = {case.name: case for case in every_case()}
-    done = {n: told for n, told in record["cases"].items() if told["ok"] and n in known}
+    done = {n: outcome for n, outcome in record["cases"].items() if outcome["ok"] and n in known}
     by_cost = sorted(done, key=lambda name: (_by_gpu(done[name]), done[name]["cpu_s"]))
     cheapest = by_cost[:REPEATED]
     return [
@@ -128,17 +130,17 @@ def repeated_rows(path: Path = RECORD) -> list[Row]:
     ]
 
 
-def _by_gpu(told: dict[str, Any]) -> bool:
+def _by_gpu(outcome: dict[str, Any]) -> bool:
     """Whether a GPU solved its equations; the CPU time says less then."""
-    return "GPU" in told["solver"]
+    return "GPU" in outcome["solver"]
 
 
-def _difference(case: MatrixCase, told: dict[str, Any]) -> float:
+def _difference(case: MatrixCase, outcome: dict[str, Any]) -> float:
     """Infinity where the case no longer completes."""
     anew = solve_case(case)
     if not anew["ok"]:
         return float("inf")
-    before_N, now_N = np.array(told["reaction_N"]), np.array(anew["reaction_N"])
+    before_N, now_N = np.array(outcome["reaction_N"]), np.array(anew["reaction_N"])
     return float(np.abs(now_N - before_N).max() / np.abs(before_N).max())
 
 
@@ -182,12 +184,12 @@ def solve_all(todo: Sequence[MatrixCase], path: Path, jobs: int, hex_mm: float) 
             pool.submit(solve_case, case): case for case in left
         }
         for count, future in enumerate(as_completed(waiting), 1):
-            case, told = waiting[future], future.result()
-            record["cases"][case.name] = told
+            case, outcome = waiting[future], future.result()
+            record["cases"][case.name] = outcome
             record["made"] = datetime.datetime.now(datetime.UTC).date().isoformat()
             write_atomically(path, json.dumps(record, indent=1).encode())
-            state = "done" if told["ok"] else f"FAILED ({told['why']})"
-            line = f"{count} of {len(left)}: {case.name}: {state}, {told['cpu_s']:.0f} s"
+            state = "done" if outcome["ok"] else f"FAILED ({outcome['why']})"
+            line = f"{count} of {len(left)}: {case.name}: {state}, {outcome['cpu_s']:.0f} s"
             print(line, file=sys.stderr, flush=True)
     return record
 

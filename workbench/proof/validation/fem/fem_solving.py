@@ -71,27 +71,27 @@ def _solved(case: MatrixCase) -> ForceField:
 
 def _told(case: MatrixCase, result: ForceField | None, why: str, cpu_s: float) -> dict[str, Any]:
     """What is kept of a case, for JSON."""
-    told: dict[str, Any] = {"ok": False, "why": why, "cpu_s": round(cpu_s, 2), "frames": 0}
+    outcome: dict[str, Any] = {"ok": False, "why": why, "cpu_s": round(cpu_s, 2), "frames": 0}
     if result is None:
-        return told
+        return outcome
     mu = material().friction
     chosen = [k for k in STEPS_AT if k < len(result.residual)]
     if not why:
         chosen.append(len(result.residual) + LAST_BEFORE_RELEASE)
-    told["frames"] = len(result.residual)
-    told["worst_residual"] = float(result.residual.max())
-    told["worst_cone"] = float(result.friction_ratio.max()) / mu - 1.0
-    told["worst_balance"] = float(result.balance.max())
-    told["left_mm"] = float(np.abs(result.displacement_mm[-1]).max())
-    told["increments"] = int(result.increments.sum())
-    told["steps"] = int(result.steps.sum())
-    told["solver"] = result.solver
-    told["reaction_N"] = result.reaction_N[chosen].tolist()
-    within = told["worst_residual"] <= case.settings.tolerance and told["worst_cone"] <= 1e-9
-    told["ok"] = bool(not why and result.converged.all() and within)
-    if not why and not told["ok"]:
-        told["why"] = "a frame is beyond the tolerance or the friction cone"
-    return told
+    outcome["frames"] = len(result.residual)
+    outcome["worst_residual"] = float(result.residual.max())
+    outcome["worst_cone"] = float(result.friction_ratio.max()) / mu - 1.0
+    outcome["worst_balance"] = float(result.balance.max())
+    outcome["left_mm"] = float(np.abs(result.displacement_mm[-1]).max())
+    outcome["increments"] = int(result.increments.sum())
+    outcome["steps"] = int(result.steps.sum())
+    outcome["solver"] = result.solver
+    outcome["reaction_N"] = result.reaction_N[chosen].tolist()
+    within = outcome["worst_residual"] <= case.settings.tolerance and outcome["worst_cone"] <= 1e-9
+    outcome["ok"] = bool(not why and result.converged.all() and within)
+    if not why and not outcome["ok"]:
+        outcome["why"] = "a frame is beyond the tolerance or the friction cone"
+    return outcome
 
 
 def conditions(hex_mm: float = FemSettings().hex_mm) -> str:

@@ -81,8 +81,8 @@ def judge_set(trial: Trial) -> Finding:
     except Exception as error:
         return Finding(trial=trial, fault=f"bug: {error!r}")
     red = {c.name for c in (*moulds.checks, *recipe.checks) if c.severity is Severity.BAD}
-    told = "; ".join((bundle.notice, moulds.notice, housing.notice))
-    faults = [*file_faults(bundle, told), *motion_faults(bundle, moulds, red)]
+    notices = "; ".join((bundle.notice, moulds.notice, housing.notice))
+    faults = [*file_faults(bundle, notices), *motion_faults(bundle, moulds, red)]
     return Finding(
         trial=trial,
         fault=", ".join(faults),
@@ -92,7 +92,7 @@ def judge_set(trial: Trial) -> Finding:
     )
 
 
-def file_faults(bundle: Bundle, told: str) -> Iterator[str]:
+def file_faults(bundle: Bundle, notices: str) -> Iterator[str]:
     """What another program would find wrong in the STL and STEP files, and is not told."""
     from geometry.workshop.step import read_back
 
@@ -100,7 +100,7 @@ def file_faults(bundle: Bundle, told: str) -> Iterator[str]:
         if not name.endswith(".stl"):
             continue
         mesh = _mesh(data)
-        if not mesh.is_watertight and f"{Path(name).stem} touches itself" not in told:
+        if not mesh.is_watertight and f"{Path(name).stem} touches itself" not in notices:
             yield f"{name} is not closed"
         step = bundle.files.get(name.replace(".stl", ".step"))
         if step is None:

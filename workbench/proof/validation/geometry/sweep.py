@@ -74,10 +74,10 @@ def _measured(trial: Trial, solid: Solid, fields: Any, seconds: float) -> Findin
         f"volume off the fields' by {field:.2%}": field > FIELD_LIMIT,
         f"size off by {size_mm:.2g} mm": size_mm > SIZE_LIMIT_MM,
     }
-    told = [text for text, bad in faults.items() if bad]
+    named = [text for text, bad in faults.items() if bad]
     return Finding(
         trial=trial,
-        fault=", ".join([*told, *_step_faults(solid)]),
+        fault=", ".join([*named, *_step_faults(solid)]),
         softened=bool(solid.notice) and not distance,
         distance=distance,
         surface_error=surface,

@@ -35,15 +35,15 @@ def rows() -> list[Row]:
         found, why = [], error.message
     else:
         why = "no held-out set of this stiffness"
-    told = []
+    rows = []
     for factor, target in itertools.product(FACTORS, WORDS):
         here = [
             one for one in found if one.target is target and abs(one.factor / factor - 1) < NEAR
         ]
-        told += [row for one in here for row in _rows(one, FACTORS[factor])] or [
+        rows += [row for one in here for row in _rows(one, FACTORS[factor])] or [
             failed(f"learned_stiffness_{WORDS[target]}", f"E {FACTORS[factor]}", unit="1", why=why)
         ]
-    return told
+    return rows
 
 
 def _evaluated(folder: Path) -> list[StiffnessResult]:

@@ -64,14 +64,14 @@ def case_rows(case: Case) -> list[Row]:
 def _row(case: Case, region: str, seen: Witness, inside: np.ndarray) -> Row:
     """Ratio of a region's light, beside the null; stated where Mitsuba has not converged."""
     error = standard_error(seen, inside)
-    told = f"{case.name}, {region}; ceiling: Mitsuba's standard error; null: direct light alone"
+    what = f"{case.name}, {region}; ceiling: Mitsuba's standard error; null: direct light alone"
     if case.index != 1.0:
-        told += "; with mirror images in the wall, which the product leaves out"
+        what += "; with mirror images in the wall, which the product leaves out"
     value, null = (ratio(image, seen.mitsuba, inside) for image in (seen.traced, seen.direct))
     if error >= CONVERGED:
-        told += "; not converged"
-        return stated("mitsuba", told, value, unit="1", null=null, ceiling=error)
-    return compared("mitsuba", told, value, 1.0, unit="1", limit=LIMIT, null=null, ceiling=error)
+        what += "; not converged"
+        return stated("mitsuba", what, value, unit="1", null=null, ceiling=error)
+    return compared("mitsuba", what, value, 1.0, unit="1", limit=LIMIT, null=null, ceiling=error)
 
 
 def _product(case: Case, seen: Witness) -> Row:
@@ -81,24 +81,24 @@ def _product(case: Case, seen: Witness) -> Row:
         for inside in rings()
         if standard_error(seen, inside) < CONVERGED
     ]
-    told = f"{case.name}, worst ring without mirror images, as the product draws it"
+    what = f"{case.name}, worst ring without mirror images, as the product draws it"
     if not found:
-        return failed("mitsuba_product", told, unit="1", why="no ring converged")
+        return failed("mitsuba_product", what, unit="1", why="no ring converged")
     value = max(found, key=lambda share: abs(share - 1.0))
-    return stated("mitsuba_product", told, value, unit="1")
+    return stated("mitsuba_product", what, value, unit="1")
 
 
 def _octants(case: Case, seen: Witness) -> Row:
     """The worst octant of those that converged."""
     regions = [inside for inside in octants() if standard_error(seen, inside) < CONVERGED]
-    told = f"{case.name}, worst octant"
+    what = f"{case.name}, worst octant"
     if not regions:
-        return failed("mitsuba_octant", told, unit="1", why="none converged")
-    told += f"; {len(regions)} of {OCTANTS} converged; null: direct light alone"
+        return failed("mitsuba_octant", what, unit="1", why="none converged")
+    what += f"; {len(regions)} of {OCTANTS} converged; null: direct light alone"
     ratios = [ratio(seen.traced, seen.mitsuba, inside) for inside in regions]
     nulls = [ratio(seen.direct, seen.mitsuba, inside) for inside in regions]
     value, null = (max(found, key=lambda r: abs(r - 1.0)) for found in (ratios, nulls))
-    return compared("mitsuba_octant", told, value, 1.0, unit="1", limit=LIMIT, null=null)
+    return compared("mitsuba_octant", what, value, 1.0, unit="1", limit=LIMIT, null=null)
 
 
 def ratio(image: np.ndarray, reference: np.ndarray, inside: np.ndarray) -> float:

@@ -45,18 +45,18 @@ def _lenses() -> list[Row]:
 
     found = []
     for lens in LensModel:
-        told = f"{lens.value}, without and with distortion" if _bends(lens) else lens.value
+        what = f"{lens.value}, without and with distortion" if _bends(lens) else lens.value
         found += [
             bounded(
                 "projection",
-                told,
+                what,
                 functools.partial(checks.round_trip_px, lens),
                 unit="px",
                 limit=ROUND_TRIP_LIMIT_PX,
             ),
             bounded(
                 "field_of_view",
-                told,
+                what,
                 functools.partial(checks.edge_angle_error_deg, lens),
                 unit="deg",
                 limit=1e-6,
@@ -124,18 +124,18 @@ def _cavity_ring(mesh: MembraneMesh) -> LedRing:
 
 
 def _plane_rows(model: LightModel, body: str, mesh: MembraneMesh) -> list[Row]:
-    name, told = "plane_closed_form", f"{model.value}, {body}, against the cut mesh curve"
+    name, what = "plane_closed_form", f"{model.value}, {body}, against the cut mesh curve"
     try:
         check = _plane_check(model, body, mesh)
     except WorkbenchError as error:
-        return [failed(name, told, unit="deg", why=error.message)]
-    high = stated(name, f"{told}, 95th percentile", check.percentile_95_deg, unit="deg")
-    told += ", median; null: the straight line"
+        return [failed(name, what, unit="deg", why=error.message)]
+    high = stated(name, f"{what}, 95th percentile", check.percentile_95_deg, unit="deg")
+    what += ", median; null: the straight line"
     median, null = check.median_deg, check.straight_deg
     if body != "finger":
-        return [stated(name, told, median, unit="deg", null=null), high]
+        return [stated(name, what, median, unit="deg", null=null), high]
     return [
-        bounded(name, told, median, unit="deg", limit=PLANE_LIMIT_DEG, null=null),
+        bounded(name, what, median, unit="deg", limit=PLANE_LIMIT_DEG, null=null),
         high,
     ]
 
@@ -163,12 +163,12 @@ def _photons() -> list[Row]:
             limit=0.01,
         )
     )
-    for told, coating in FLAT_COATINGS.items():
+    for what, coating in FLAT_COATINGS.items():
         flat = functools.cache(functools.partial(checks.flat_furnace, coating, photons=100_000))
         found.append(
             compared(
                 "flat_furnace",
-                f"{told}: share of even light returned; exact: quadrature of the lobes",
+                f"{what}: share of even light returned; exact: quadrature of the lobes",
                 lambda flat=flat: flat()[0],
                 lambda flat=flat: flat()[1],
                 unit="1",
@@ -201,13 +201,13 @@ def _two_patches() -> list[Row]:
     return [
         compared(
             "reciprocity",
-            f"coaxial discs, {told}; exact: Howell C-41",
+            f"coaxial discs, {what}; exact: Howell C-41",
             lambda number=number: exchange()[number],
             lambda: exchange()[2],
             unit="mm2",
             limit=0.01,
         )
-        for number, told in enumerate(("A1 F12", "A2 F21"))
+        for number, what in enumerate(("A1 F12", "A2 F21"))
     ] + [
         bounded(
             "plane_irradiance",
@@ -225,10 +225,10 @@ def _walls() -> list[Row]:
 
     slab = functools.cache(functools.partial(checks.refraction_errors, photons=60_000))
     total = functools.partial(checks.total_reflection_error, photons=60_000)
-    told = "photons into a slab at 0, 30, 60 and 80 degrees"
+    what = "photons into a slab at 0, 30, 60 and 80 degrees"
     return [
-        bounded("slab", f"{told}: Fresnel", lambda: slab()[0], unit="1", limit=0.008),
-        bounded("slab", f"{told}: Snell", lambda: slab()[1], unit="deg", limit=0.01),
+        bounded("slab", f"{what}: Fresnel", lambda: slab()[0], unit="1", limit=0.008),
+        bounded("slab", f"{what}: Snell", lambda: slab()[1], unit="deg", limit=0.01),
         bounded(
             "total_reflection", "from the solid at 20, 40, 60 degrees", total, unit="1", limit=0.006
         ),
@@ -240,11 +240,11 @@ def _tables() -> list[Row]:
 
     virtual = functools.cache(functools.partial(checks.virtual_light_errors, photons=400_000))
     direct = functools.cache(functools.partial(checks.direct_table_errors, photons=600_000))
-    told = "at index 1 against straight lines"
+    what = "at index 1 against straight lines"
     table = "unscattered light at index 1 against direct shading"
     return [
-        bounded("virtual_leds", f"{told}: irradiance", lambda: virtual()[0], unit="1", limit=0.04),
-        bounded("virtual_leds", f"{told}: angle", lambda: virtual()[1], unit="deg", limit=1.5),
+        bounded("virtual_leds", f"{what}: irradiance", lambda: virtual()[0], unit="1", limit=0.04),
+        bounded("virtual_leds", f"{what}: angle", lambda: virtual()[1], unit="deg", limit=1.5),
         bounded("direct_table", f"{table}: rms", lambda: direct()[0], unit="1", limit=0.12),
         bounded("direct_table", f"{table}: mean", lambda: direct()[1], unit="1", limit=0.004),
         *(

@@ -51,18 +51,18 @@ def _drawing() -> list[Row]:
     found = []
     for body in ("finger", "trunk", "paw"):
         drawn = functools.cache(functools.partial(check, body))
-        told = f"{body}, 320x240, sphere dent, against casting"
+        what = f"{body}, 320x240, sphere dent, against casting"
         found += [
             bounded(
                 "raster",
-                f"{told}: median",
+                f"{what}: median",
                 lambda drawn=drawn: drawn().median_mm,
                 unit="mm",
                 limit=DRAWN_MEDIAN_MM,
             ),
             bounded(
                 "raster",
-                f"{told}: 99.9th percentile",
+                f"{what}: 99.9th percentile",
                 lambda drawn=drawn: drawn().rare_mm,
                 unit="mm",
                 limit=DRAWN_RARE_MM,
@@ -88,16 +88,16 @@ def _projection() -> list[Row]:
 
     found = []
     for body in ("finger", "trunk", "paw"):
-        told = f"{body}: places that a finer image sees, through the wall"
+        what = f"{body}: places that a finer image sees, through the wall"
         try:
             median, high, null = newton_error_px(mesh_of(body), camera_of(body))
         except WorkbenchError as error:
-            found.append(failed("newton_projection", told, unit="px", why=error.message))
+            found.append(failed("newton_projection", what, unit="px", why=error.message))
             continue
         found += [
             bounded(
                 "newton_projection",
-                f"{told}, median; null: without refraction",
+                f"{what}, median; null: without refraction",
                 median,
                 unit="px",
                 limit=NEWTON_MEDIAN_PX,
@@ -105,7 +105,7 @@ def _projection() -> list[Row]:
             ),
             bounded(
                 "newton_projection",
-                f"{told}, 99th percentile",
+                f"{what}, 99th percentile",
                 high,
                 unit="px",
                 limit=NEWTON_HIGH_PX,
@@ -126,29 +126,29 @@ def _depth_maps(mesh: MembraneMesh) -> list[Row]:
             limit=RECAST_LIMIT_MM,
         )
     ]
-    told = "the paper's depth map at index 1, contact box, against exact"
+    what = "the paper's depth map at index 1, contact box, against exact"
     try:
         paper = checks.published_depth_error(mesh, SMALL)
     except WorkbenchError as error:
-        return [*found, failed("published_depth", told, unit="mm", why=error.message)]
+        return [*found, failed("published_depth", what, unit="mm", why=error.message)]
     null = "null: the undeformed skin"
     return [
         *found,
         stated(
             "published_depth",
-            f"{told}: median; {null}",
+            f"{what}: median; {null}",
             paper.median_mm,
             unit="mm",
             null=paper.null_median_mm,
         ),
         stated(
             "published_depth",
-            f"{told}: 99th percentile; {null}",
+            f"{what}: 99th percentile; {null}",
             paper.rare_mm,
             unit="mm",
             null=paper.null_rare_mm,
         ),
-        stated("published_depth", f"{told}: pixels without one", paper.missing_1, unit="1"),
+        stated("published_depth", f"{what}: pixels without one", paper.missing_1, unit="1"),
         stated("published_depth", "its time over that of drawing", paper.slower_1, unit="1"),
     ]
 
@@ -190,11 +190,11 @@ def _sensitivity() -> list[Row]:
     from sim.optics.proof.map_checks import sensitivity_check
 
     check = functools.cache(sensitivity_check)
-    told = "0.1 mm dents of a 6 mm ball at 10 places of the finger, direct model"
+    what = "0.1 mm dents of a 6 mm ball at 10 places of the finger, direct model"
     return [
         bounded(
             "map_sensitivity",
-            f"{told}: correlation of map and images",
+            f"{what}: correlation of map and images",
             lambda: check().correlation,
             unit="1",
             limit=LEAST_CORRELATION,
@@ -202,7 +202,7 @@ def _sensitivity() -> list[Row]:
         ),
         stated(
             "map_sensitivity",
-            f"{told}: change in images over that of the map",
+            f"{what}: change in images over that of the map",
             lambda: check().ratio,
             unit="1",
         ),
@@ -213,12 +213,12 @@ def _detail() -> list[Row]:
     """Contrast of fine waves in the image over that of a skin meshed 10 times per period."""
     from sim.optics.proof import detail_checks
 
-    told = {
+    measures = {
         "waves of 0.5 mm, which contact cannot resolve": detail_checks.wave_contrast,
         "waves of 1.5 mm, which the skin carries in part": detail_checks.carried_contrast,
     }
     found = []
-    for case, measure in told.items():
+    for case, measure in measures.items():
         try:
             with_detail, without = measure()
         except WorkbenchError as error:

@@ -126,7 +126,7 @@ def _distance(corners: np.ndarray, grid: SampleGrid, band_samples: float) -> np.
     """
     from scipy.ndimage import distance_transform_edt
 
-    from sim.contact.objects.distance_kernels import band_distance
+    from sim.contact.objects.mesh_distance_kernels import band_distance
 
     spacing_mm = grid.spacing_mm
     band_mm = band_samples * spacing_mm
@@ -147,7 +147,7 @@ def _distance(corners: np.ndarray, grid: SampleGrid, band_samples: float) -> np.
 
 def _inside(corners: np.ndarray, shape: np.ndarray, spacing_mm: float) -> np.ndarray:
     """Whether two of three winding numbers put a sample inside."""
-    from sim.contact.objects.distance_kernels import ray_crossings
+    from sim.contact.objects.mesh_distance_kernels import ray_crossings
 
     votes = np.zeros(tuple(shape), np.int8)
     shifted = corners - COLUMN_SHIFT * spacing_mm

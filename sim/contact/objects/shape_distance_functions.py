@@ -1,6 +1,6 @@
 """Taichi functions: signed distance of a rigid indenter in its body frame, with its gradient.
 
-Shapes and the meaning of `size` are those of `collider`, whose NumPy functions are the twin.
+Shapes and the meaning of `size` are those of `shape_distance`, the twin in NumPy.
 Rounded shapes are a smaller sharp shape, offset outwards by the edge radius.
 """
 

@@ -23,16 +23,16 @@ GROUND = (244, 243, 241)
 """Behind the membrane: the same in the dark front and in printed reports."""
 
 
-def portrait_calls(store: Store, keys: Mapping[str, str]) -> tuple[Call, ...]:
+def thumbnail_calls(store: Store, keys: Mapping[str, str]) -> tuple[Call, ...]:
     """The drawings that can be made of the stored results with these keys, by stage."""
     there: dict[str, Any] = {
         stage: Ref(stage=stage, key=key) for stage, key in keys.items() if store.has(stage, key)
     }
     calls = []
     if "build" in there:
-        calls.append(portrait.STAGE.call(portrait.PortraitInputs(solid=there["build"])))
+        calls.append(portrait.STAGE.call(portrait.ThumbnailInputs(solid=there["build"])))
     if "mesh" in there and "press" in there:
-        inputs = portrait_pressed.PortraitPressedInputs(mesh=there["mesh"], contact=there["press"])
+        inputs = portrait_pressed.PressedThumbnailInputs(mesh=there["mesh"], contact=there["press"])
         calls.append(portrait_pressed.STAGE.call(inputs))
     return tuple(calls)
 
@@ -45,7 +45,7 @@ def thumbnail_png(store: Store, keys: Mapping[str, str]) -> bytes | None:
     """
     tiles: dict[str, np.ndarray] = {
         call.stage: _drawn(store.load(call.stage, call.key).png)
-        for call in portrait_calls(store, keys)
+        for call in thumbnail_calls(store, keys)
         if store.has(call.stage, call.key)
     }
     if "shoot" in keys and store.has("shoot", keys["shoot"]):

@@ -1,4 +1,4 @@
-"""Off-screen pictures are made without a display, in frame, and without warnings."""
+"""Off-screen drawings are made without a display, in frame, and without warnings."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ import cv2
 import numpy as np
 import pytest
 
-from geometry.picture import pictures, rendering
-from geometry.picture.exploded import STACK, exploded
+from geometry.drawing import rendering, sensor_drawings
+from geometry.drawing.exploded import STACK, exploded
 from geometry.surface.primitives import rounded_box, sphere
 from geometry.surface.surface import vertex_normals
 from workbench.core.base.errors import DeviceError
@@ -105,14 +105,14 @@ def expect_in_frame(image: np.ndarray, *, fill: float) -> None:
 
 
 @pytest.mark.slow
-def test_pictures_are_filled_and_not_clipped(capfd: pytest.CaptureFixture[str]) -> None:
-    """The body reaches 1 / 1.06 of the picture (0.9 allows for rounded ends), never its border."""
+def test_drawings_are_filled_and_not_clipped(capfd: pytest.CaptureFixture[str]) -> None:
+    """The body reaches 1 / 1.06 of the drawing (0.9 allows for rounded ends), never its border."""
     ball, triangles = sphere(3.0)
     skin = Skin(points_mm=ball, faces=triangles, normals=vertex_normals(ball, triangles))
     for png in (
-        pictures.exploded_sensor(solid(), moulds(20.0), HOUSING, SMALL),
-        pictures.thumbnail(solid(), SMALL, clear=False),
-        pictures.skin_field(skin, ball[:, 2], "height [mm]", SMALL),
+        sensor_drawings.exploded_sensor(solid(), moulds(20.0), HOUSING, SMALL),
+        sensor_drawings.membrane_drawing(solid(), SMALL, clear=False),
+        sensor_drawings.skin_field(skin, ball[:, 2], "height [mm]", SMALL),
     ):
         image = decoded(png)
         assert image.shape == (180, 240, 3)
@@ -123,7 +123,7 @@ def test_pictures_are_filled_and_not_clipped(capfd: pytest.CaptureFixture[str]) 
 @pytest.mark.slow
 def test_actuators_are_tinted_on_a_clear_ground() -> None:
     """Alpha is 0 in the corner; the driven upper half is blue, the lower half is red."""
-    image = decoded(pictures.thumbnail(solid(Label.ACTUATOR, 0), SMALL))
+    image = decoded(sensor_drawings.membrane_drawing(solid(Label.ACTUATOR, 0), SMALL))
     assert image.shape == (180, 240, 4)
     assert image[0, 0, 3] == 0
     upper, lower = image[40, 120].astype(int), image[150, 120].astype(int)
@@ -139,9 +139,9 @@ def test_field_is_pale_at_zero_and_dark_at_its_largest() -> None:
     skin = Skin(points_mm=ball, faces=triangles, normals=vertex_normals(ball, triangles))
     values = (ball[:, 2] + 3.0) / 6.0
     eye = np.array([1.0, 0.0, 0.0])
-    image = decoded(pictures.skin_field(skin, values, "height", SMALL, eye=eye))
-    # The legend takes the right of the picture; the ball is in the middle of the rest.
-    middle = round((1.0 - pictures.LEGEND_SHARE) / 2.0 * SMALL[0])
+    image = decoded(sensor_drawings.skin_field(skin, values, "height", SMALL, eye=eye))
+    # The legend takes the right of the drawing; the ball is in the middle of the rest.
+    middle = round((1.0 - sensor_drawings.LEGEND_SHARE) / 2.0 * SMALL[0])
     rows = np.flatnonzero(image[:, middle].min(axis=1) < 240)
     top, bottom = (image[row, middle].astype(int) for row in (rows[8], rows[-8]))
     assert top.mean() < bottom.mean() - 50
@@ -149,14 +149,14 @@ def test_field_is_pale_at_zero_and_dark_at_its_largest() -> None:
 
 @pytest.mark.parametrize("azimuth_deg", [0.0, 35.0, 250.0])
 def test_exploded_parts_stand_apart(azimuth_deg: float) -> None:
-    """The stack goes downward in its order; mould and sensor do not meet across the picture."""
-    places = exploded(solid(), moulds(azimuth_deg), HOUSING, pictures.EYE)
+    """The stack goes downward in its order; mould and sensor do not meet across the drawing."""
+    places = exploded(solid(), moulds(azimuth_deg), HOUSING, sensor_drawings.EYE)
     assert len(places) == 3 + len(STACK) + 1
     points = {place.name: place.points_mm for place in places}
     for above, below in itertools.pairwise(STACK):
         assert points[above][:, 2].min() > points[below][:, 2].max()
     assert points["core"][:, 2].max() < points["half_a"][:, 2].min()
-    right, _ = rendering.screen_axes(pictures.EYE)
+    right, _ = rendering.screen_axes(sensor_drawings.EYE)
     edge_mm = max((points[name] @ right).max() for name in ("half_a", "half_b", "core"))
     assert edge_mm < min((points[name] @ right).min() for name in (*STACK, "slider_0"))
 
@@ -165,7 +165,7 @@ def test_mould_opens_the_same_way_for_every_split() -> None:
     """From one half to the other the way is the same after splits at 35 and at 250 degrees."""
     ways = []
     for azimuth_deg in (35.0, 250.0):
-        first, second, *_ = exploded(solid(), moulds(azimuth_deg), HOUSING, pictures.EYE)
+        first, second, *_ = exploded(solid(), moulds(azimuth_deg), HOUSING, sensor_drawings.EYE)
         way = first.points_mm.mean(axis=0) - second.points_mm.mean(axis=0)
         ways.append(way / np.linalg.norm(way))
     np.testing.assert_allclose(ways[0], ways[1], atol=1e-9)
@@ -181,7 +181,7 @@ def test_no_renderer_is_a_device_error(monkeypatch: pytest.MonkeyPatch) -> None:
     rendering._window.cache_clear()
 
 
-def test_report_goes_without_pictures_where_nothing_renders(
+def test_report_goes_without_drawings_where_nothing_renders(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Neither membrane nor displacement is drawn, and the page says why."""

@@ -42,22 +42,22 @@ def chosen_press(found: FieldResult, *, sheared: bool) -> Scored | None:
 
     Of unseen objects where there are such; None where there is no such sample at all.
     """
-    members = [row for row in found.rows if row.sheared == sheared]
-    unseen = [row for row in members if row.case.split is Split.UNSEEN]
+    members = [scored for scored in found.samples if scored.sheared == sheared]
+    unseen = [scored for scored in members if scored.case.split is Split.UNSEEN]
     members = unseen or members
     if not members:
         return None
     far = max(map(_reach, members))
-    last = [row for row in members if _reach(row) >= far - 1e-9]
+    last = [scored for scored in members if _reach(scored) >= far - 1e-9]
     return sorted(last, key=_own_error)[(len(last) - 1) // 2]
 
 
-def _reach(row: Scored) -> float:
-    return row.shear_mm if row.sheared else row.depth_mm
+def _reach(scored: Scored) -> float:
+    return scored.shear_mm if scored.sheared else scored.depth_mm
 
 
-def _own_error(row: Scored) -> float:
-    one = row.scores[Way.LEARNED]
+def _own_error(scored: Scored) -> float:
+    one = scored.scores[Way.LEARNED]
     return one.mae / max(one.peak, 1e-30)
 
 
@@ -65,10 +65,10 @@ def sheets(source: Source, named: Named, found: FieldResult) -> list[Sheet]:
     """Heat maps of a typical press and a typical shear."""
     learned, drawn = learned_by(named.weights, predictor_for(named.weights, source)), []
     for sheared, motion in ((False, "press"), (True, "shear")):
-        row = chosen_press(found, sheared=sheared)
-        if row is None:
+        scored = chosen_press(found, sheared=sheared)
+        if scored is None:
             continue
-        sample = source.sample(row.case, row.frame)
+        sample = source.sample(scored.case, scored.frame)
         mpm, fem = both(sample)
         pair = Pair(
             sample=sample,
@@ -78,10 +78,10 @@ def sheets(source: Source, named: Named, found: FieldResult) -> list[Sheet]:
             unit=found.target.unit,
         )
         caption = (
-            f"{_words(found.target)} of a typical {motion} ({row.case.split}): {row.case.id}, "
-            f"{row.depth_mm:.2g} mm deep"
-            + (f", {row.shear_mm:.2g} mm aside" if sheared else "")
-            + f"; mean error {100.0 * _own_error(row):.3f} % of its peak"
+            f"{_words(found.target)} of a typical {motion} ({scored.case.split}): "
+            f"{scored.case.id}, {scored.depth_mm:.2g} mm deep"
+            + (f", {scored.shear_mm:.2g} mm aside" if sheared else "")
+            + f"; mean error {100.0 * _own_error(scored):.3f} % of its peak"
         )
         try:
             image = heat_map(source.skin, pair)

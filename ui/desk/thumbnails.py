@@ -15,14 +15,14 @@ from typing import Any
 from ui.desk.reports import Reports
 from workbench.core.base.errors import Cancelled, WorkbenchError
 from workbench.core.base.monitor import silent
-from workbench.live.request_thread import Runner
+from workbench.live.job_thread import Runner
 from workbench.project.project import Project
-from workbench.report.portraits import portrait_calls, thumbnail_png
+from workbench.report.thumbnails import thumbnail_calls, thumbnail_png
 from workbench.system.whole_files import write_atomically
 from workbench.variants.variants import load_variant, result_keys, variant_path
 
 
-class Portraits:
+class ThumbnailQueue:
     """A queue of variants without thumbnails and the thread that works it off."""
 
     def __init__(self, project: Project, runner: Runner, reports: Reports) -> None:
@@ -32,7 +32,7 @@ class Portraits:
         self.on_drawn: Callable[[], None] = lambda: None
         """Set by the panel: a file has come."""
         self._waiting: queue.Queue[str] = queue.Queue()
-        threading.Thread(target=self._loop, name="portraits", daemon=True).start()
+        threading.Thread(target=self._loop, name="thumbnails", daemon=True).start()
 
     def draw(self, name: str) -> None:
         """Draw the thumbnail of a variant when its turn comes."""
@@ -46,7 +46,7 @@ class Portraits:
             except Cancelled:
                 return
             except WorkbenchError as error:
-                # A variant without a picture is still a variant.
+                # A variant without a thumbnail is still a variant.
                 self.reports.log(f"no thumbnail of {name}: {error.message}")
             except Exception as bug:
                 # The thread must outlive a bug, and the designer must hear of it.
@@ -56,7 +56,7 @@ class Portraits:
     def _draw(self, name: str) -> None:
         keys = result_keys(self.project, load_variant(self.project, name))
         unable: Any = None
-        for call in portrait_calls(self.project.store, keys):
+        for call in thumbnail_calls(self.project.store, keys):
             try:
                 self.runner.run(call, silent)
             except Cancelled:

@@ -1,9 +1,9 @@
-"""Clicks on the tactile picture, which viser's pictures do not have: they fill the pixel's boxes.
+"""Clicks on the tactile image, which viser's images do not have: they fill the pixel's boxes.
 
-A piece of HTML beside the picture installs one handler in the page. It turns the place of a click
+A piece of HTML beside the image installs one handler in the page. It turns the place of a click
 into a column and a row of the camera and types both into the sliders' boxes, so that all else goes
 the way of typed values: a tab that follows is refused, and the server knows of no second way. The
-sliders' ends tell the camera's size, whatever the picture's own size and however large it is shown.
+sliders' ends tell the camera's size, whatever the image's own size and however large it is shown.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ COLUMN, ROW = "Pixel column px", "Pixel row px"
 """Labels of the sliders that are filled."""
 PIXEL_GIF = "data:image/gif;base64,R0lGODlhAQABAIAAAAAAAP///yH5BAEAAAAALAAAAAABAAEAAAIBRAA7"
 """An image that loads at once, by which the page runs the handler's script."""
-TARGET = "probe-picture"
-"""Class of the piece of HTML; its parents are searched for pictures and boxes."""
+TARGET = "probe-image"
+"""Class of the piece of HTML; its parents are searched for images and boxes."""
 INSTALL = """
-document.removeEventListener('click', window.probePicture, true);
-window.probePicture = event => {
-  const mark = document.querySelector('.probe-picture');
+document.removeEventListener('click', window.probeImage, true);
+window.probeImage = event => {
+  const mark = document.querySelector('.probe-image');
   if (!mark || event.target.tagName !== 'IMG' || !event.target.src.startsWith('blob:')) return;
   let tab = mark;
   while (tab && !tab.querySelector('img[src^="blob:"]')) tab = tab.parentElement;
@@ -43,14 +43,14 @@ window.probePicture = event => {
     input.dispatchEvent(new Event('focusout', {bubbles: true}));
   }
 };
-document.addEventListener('click', window.probePicture, true);
+document.addEventListener('click', window.probeImage, true);
 """
 """Installs the handler, in place of one of an earlier page of the same server."""
 CROSSHAIR = '<style>div:has(> .{0}) ~ div img[src^="blob:"]{{cursor:crosshair}}</style>'
 
 
-def picture_clicks(on: bool) -> str:
-    """What stands before the pictures, as HTML: the handler where clicks are wanted, or nothing."""
+def image_clicks(on: bool) -> str:
+    """What stands before the images, as HTML: the handler where clicks are wanted, or nothing."""
     if not on:
         return ""
     script = html.escape(" ".join(INSTALL.split()), quote=True)

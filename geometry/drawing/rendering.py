@@ -1,9 +1,9 @@
-"""Off-screen drawing for the pictures: a white or clear canvas, bodies on it, framing, PNG bytes.
+"""Drawing off screen: a white or clear canvas, bodies on it, framing, PNG bytes.
 
 Rendered by VTK without a display: through EGL where there is a device for it, else in software
 by OSMesa. Which one works is found out once, in a child process, because VTK ends the process
-that asks for a window it cannot have. The projection is parallel, so a picture is framed exactly
-by projecting its points, and a drawing has one scale.
+that asks for a window it cannot have. The projection is parallel, so a drawing is framed exactly
+by projecting its points, and it has one scale.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ CREASE_DEG = 30.0
 """Edges sharper than this are drawn sharp, and as lines."""
 EDGE_COLOUR = "#3a4048"
 MARGIN = 1.06
-"""Size of the picture over that of what is on it."""
+"""Size of the drawing over that of what is on it."""
 
 
 @functools.cache
@@ -61,7 +61,7 @@ def _window() -> str:
 
 
 def canvas(size_px: tuple[int, int]) -> Any:
-    """An empty white picture, to be drawn on and handed to `png`.
+    """An empty white drawing, to be drawn on and handed to `png`.
 
     Raises:
         DeviceError: If nothing here can render.
@@ -110,7 +110,7 @@ def draw(
 
 
 def screen_axes(eye: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Unit vectors to the right and upward of a picture seen from direction `eye`; +Z is up.
+    """Unit vectors to the right and upward of a drawing seen from direction `eye`; +Z is up.
 
     Looked at along Z itself, +Y is up.
     """
@@ -124,7 +124,7 @@ def screen_axes(eye: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def look(
     plotter: Any, eye: np.ndarray, points_mm: np.ndarray, margins: tuple[float, float] = (0.0, 0.0)
 ) -> None:
-    """Aim the picture so that the points fill it.
+    """Aim the drawing so that the points fill it.
 
     Args:
         eye: Direction from the bodies to the eye.
@@ -149,7 +149,7 @@ def look(
 
 
 def png(plotter: Any, *, clear: bool = False) -> np.ndarray:
-    """Render and close: the picture as PNG bytes, shape (bytes,), uint8.
+    """Render and close: the drawing as PNG bytes, shape (bytes,), uint8.
 
     Args:
         clear: Whether the ground is transparent instead of white.

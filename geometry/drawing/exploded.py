@@ -3,7 +3,7 @@
 Two groups side by side, as in Fig. 9e of SimTac: the mould, its outer parts drawn apart and the
 core below; and the sensor as a stack, from the top membrane, support, LED ring holder, base and
 camera mount, with the sliders beside the base. The mould is turned about Z until it opens across
-the picture, so that the far cavity shows whichever way the best split lies. Only places are chosen
+the drawing, so that the far cavity shows whichever way the best split lies. Only places are chosen
 here; nothing is drawn.
 """
 
@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.picture.rendering import screen_axes
+from geometry.drawing.rendering import screen_axes
 from workbench.core.result.fabrication import FabricationPart, HousingSet, MouldSet
 from workbench.core.result.results import Solid
 
@@ -41,7 +41,7 @@ class Place(NamedTuple):
 
 
 def exploded(solid: Solid, moulds: MouldSet, housing: HousingSet, eye: np.ndarray) -> list[Place]:
-    """All parts, mould first, for a picture seen from direction `eye`."""
+    """All parts, mould first, for a drawing seen from direction `eye`."""
     width_mm = float(np.ptp(solid.membrane.points_mm[:, :2], axis=0).max())
     right, up = screen_axes(eye)
     groups = [_mould(moulds, eye), _stack(solid, housing, width_mm)]

@@ -1,4 +1,4 @@
-"""One topic of the conductor: a thread that works off the newest request and tells of it.
+"""One job of the conductor: a thread that works off the newest request and tells of it.
 
 Nothing heavy runs in it: it waits for the runner. Every request ends in exactly one `Finished`, but
 those of the hand that were replaced before they began, for which nobody waits.
@@ -60,8 +60,8 @@ class _Stop:
         return time.monotonic() - self.began
 
 
-class Topic:
-    """One thread that works off the newest request."""
+class JobThread:
+    """The thread of one job: it works off the newest request."""
 
     def __init__(self, name: str, runner: Runner, events: queue.Queue[Event]) -> None:
         self.name = name
@@ -74,7 +74,7 @@ class Topic:
         self._wanted = True
         """Whether anybody waits for what runs."""
         self._wake = threading.Condition()
-        threading.Thread(target=self._loop, name=f"topic-{name}", daemon=True).start()
+        threading.Thread(target=self._loop, name=f"job-{name}", daemon=True).start()
 
     @property
     def busy(self) -> bool:
@@ -145,7 +145,7 @@ class Topic:
     ) -> None:
         self.events.put(
             Finished(
-                topic=self.name,
+                job=self.name,
                 request=request,
                 error=error,
                 seconds=seconds,
@@ -170,11 +170,11 @@ class Topic:
                 # A stage whose input was found damaged is done twice.
                 if outcome.stage in waiting:
                     waiting.remove(outcome.stage)
-                self.events.put(StageDone(topic=self.name, outcome=outcome, request=request))
+                self.events.put(StageDone(job=self.name, outcome=outcome, request=request))
             if request.preview is not None:
                 call = request.preview
                 preview = self.runner.preview(call, stage_monitor(reporter, call.stage))
-                self.events.put(PreviewDone(topic=self.name, preview=preview, request=request))
+                self.events.put(PreviewDone(job=self.name, preview=preview, request=request))
         except WorkbenchError as raised:
             error = raised
         except Exception as bug:
@@ -183,7 +183,7 @@ class Topic:
         superseded = stop.superseded and isinstance(error, Cancelled)
         seconds = stop.seconds
         with self._wake:
-            # Together, so that whoever reads the event finds the topic free.
+            # Together, so that whoever reads the event finds the thread free.
             self._stop = None
             self._finished(
                 request,
@@ -197,8 +197,8 @@ class Topic:
 class _Reporter:
     """Turns a stage's progress into events with an estimate of the time left."""
 
-    def __init__(self, topic: Topic, events: queue.Queue[Event], stop: _Stop) -> None:
-        self.topic = topic
+    def __init__(self, thread: JobThread, events: queue.Queue[Event], stop: _Stop) -> None:
+        self.thread = thread
         self.events = events
         self.stop = stop
         self.stage = ""
@@ -206,7 +206,7 @@ class _Reporter:
         self.sent = 0.0
 
     def __call__(self, stage: str, fraction: float, note: str) -> None:
-        if not self.stop.asked and self.topic.outdated(self.stop):
+        if not self.stop.asked and self.thread.outdated(self.stop):
             self.stop.asked = self.stop.superseded = True
         if self.stop.asked:
             newer = "superseded by a newer request"
@@ -220,7 +220,7 @@ class _Reporter:
         left = seconds_left(now - self.began, fraction)
         self.events.put(
             Progress(
-                topic=self.topic.name,
+                job=self.thread.name,
                 stage=stage,
                 fraction=fraction,
                 note=note,

@@ -13,7 +13,8 @@ from workbench.learning.dataset.sample import Sample, Solved
 from workbench.report.image_files import png_bytes
 from workbench.system.whole_files import write_atomically
 
-PREVIEW = "preview.png"
+SHEET = "preview.png"
+"""Data sets and the command `dataset preview` have called it so: folders keep the name."""
 SHOWN = 8
 """Samples on a sheet."""
 TILE_PX = 200
@@ -23,7 +24,7 @@ LINE_PX = 18
 INK = (30, 30, 30)
 
 
-def write_preview(data: DataSet) -> bool:
+def write_sheet(data: DataSet) -> bool:
     """Write the sheet; False where no sample is done yet.
 
     Raises:
@@ -33,7 +34,7 @@ def write_preview(data: DataSet) -> bool:
     if not chosen:
         return False
     columns = [_column(data.skin, sample) for sample in chosen]
-    write_atomically(data.folder / PREVIEW, png_bytes(np.concatenate(columns, axis=1)))
+    write_atomically(data.folder / SHEET, png_bytes(np.concatenate(columns, axis=1)))
     return True
 
 

@@ -1,4 +1,4 @@
-"""A dent by geometry alone: the skin gives way to a rigid object, for pictures within a moment.
+"""A dent by geometry alone: the skin gives way to a rigid object, for previews within a moment.
 
 In the tangent frame of the target, with the skin's height k = q . n over the tangent plane and the
 object's lower face at p(u, w) over its lowest point, the object touches first where k - p is
@@ -26,7 +26,7 @@ MARGIN_MM = 3.0
 """Added to that, for the foot of the dent."""
 
 
-def sketched(
+def geometric_dent(
     skin: Skin, points_mm: np.ndarray, faces: np.ndarray, *, target_mm: np.ndarray, depth_mm: float
 ) -> np.ndarray:
     """Displacement of the skin's vertices [mm], shape (V, 3), float32; zero where none is below.

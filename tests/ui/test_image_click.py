@@ -1,4 +1,4 @@
-"""A click on the tactile picture finds its place on the skin, in a real browser."""
+"""A click on the tactile image finds its place on the skin, in a real browser."""
 
 from __future__ import annotations
 
@@ -34,15 +34,15 @@ MIDDLE = (640, 420)
 """A place of the page where the finger is."""
 
 
-def picture(page: Any, number: int = 0) -> Any:
-    """A picture of the tactile image's tab."""
+def image(page: Any, number: int = 0) -> Any:
+    """An image of the tactile image's tab."""
     return page.locator("img[src^='blob:']:visible").nth(number)
 
 
 def click_pixel(page: Any, column: int, row: int, number: int = 0) -> None:
-    """Click the middle of a pixel of the camera, as large as its picture is shown."""
-    picture(page, number).scroll_into_view_if_needed()
-    box = picture(page, number).bounding_box()
+    """Click the middle of a pixel of the camera, as large as its image is shown."""
+    image(page, number).scroll_into_view_if_needed()
+    box = image(page, number).bounding_box()
     x = box["width"] * (column + 0.5) / SIZE_PX[0]
     y = box["height"] * (row + 0.5) / SIZE_PX[1]
     page.mouse.click(box["x"] + x, box["y"] + y)
@@ -93,7 +93,7 @@ def test_a_click_on_the_picture_finds_what_a_click_on_the_skin_had_there(
 ) -> None:
     """Boxes, mark and text within a pixel, on a screen of 1.5 pixels per point; a follower cannot.
 
-    A place clicked on the skin has a pixel; that pixel, clicked in the picture, sees the place.
+    A place clicked on the skin has a pixel; that pixel, clicked in the image, sees the place.
     """
     server = start_server(pressed_project)
     context = browser.new_context(viewport={"width": 1280, "height": 1000}, device_scale_factor=1.5)
@@ -130,10 +130,10 @@ def test_a_click_on_the_picture_finds_what_a_click_on_the_skin_had_there(
     wait_until(lambda: marked(page, bare), 20, "the place is marked in the view")
 
     click_pixel(page, 130, 140, number=1)
-    wait_until(lambda: near(page, 130, 140), 20, "the picture of the change takes clicks too")
+    wait_until(lambda: near(page, 130, 140), 20, "the image of the change takes clicks too")
     follower = context.new_page()
     open_page(follower, server.url)
-    picture(follower).wait_for()
+    image(follower).wait_for()
     follower.wait_for_timeout(1500)
     click_pixel(follower, 200, 90)
     follower.wait_for_timeout(2000)

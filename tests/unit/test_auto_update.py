@@ -5,7 +5,7 @@ from __future__ import annotations
 from types import SimpleNamespace
 from typing import Any
 
-from ui.desk.auto_update import SETTLED_S, Upkeep
+from ui.desk.auto_update import SETTLED_S, AutoUpdate
 
 
 class Widget:
@@ -27,7 +27,7 @@ class StubDesk:
         made = {"add_button": Widget(), "add_command": Widget(), "add_checkbox": Widget(False)}
         gui = SimpleNamespace(**{k: (lambda *a, w=w, **o: w) for k, w in made.items()})
         self.server = SimpleNamespace(gui=gui)
-        self.live = SimpleNamespace(on=False)
+        self.live_press = SimpleNamespace(on=False)
         self.ready = {"press": True, "shoot": False}
         self.session = SimpleNamespace(fresh=lambda: self.ready)
         self.asked: list[tuple[str, tuple[str, ...]]] = []
@@ -35,29 +35,29 @@ class StubDesk:
     def guarded(self, handler: Any) -> Any:
         return handler
 
-    def run(self, topic: str, wanted: tuple[str, ...]) -> None:
-        self.asked.append((topic, wanted))
+    def run(self, job: str, wanted: tuple[str, ...]) -> None:
+        self.asked.append((job, wanted))
 
 
 def test_an_update_waits_until_the_last_edit_has_settled() -> None:
     """Two edits .5 s apart: one request, 1.5 s after the second; none without the check box."""
     now = [0.0]
     desk = StubDesk()
-    upkeep = Upkeep(desk, lambda: now[0])  # pyright: ignore[reportArgumentType]
-    upkeep.edited()
+    update = AutoUpdate(desk, lambda: now[0])  # pyright: ignore[reportArgumentType]
+    update.edited()
     now[0] = 10.0
-    upkeep.turn()
+    update.turn()
     assert desk.asked == []
-    upkeep.auto.value = True
+    update.auto.value = True
     for at_s in (20.0, 20.5):
         now[0] = at_s
-        upkeep.edited()
+        update.edited()
     now[0] = 20.4 + SETTLED_S
-    upkeep.turn()
+    update.turn()
     assert desk.asked == []
     now[0] = 20.5 + SETTLED_S
-    upkeep.turn()
-    upkeep.turn()
+    update.turn()
+    update.turn()
     assert desk.asked == [("press", ("press", "shoot"))]
 
 
@@ -66,15 +66,15 @@ def test_nothing_is_computed_that_is_up_to_date() -> None:
     now = [0.0]
     desk = StubDesk()
     desk.ready["shoot"] = True
-    upkeep = Upkeep(desk, lambda: now[0])  # pyright: ignore[reportArgumentType]
-    upkeep.auto.value = True
-    upkeep.edited()
+    update = AutoUpdate(desk, lambda: now[0])  # pyright: ignore[reportArgumentType]
+    update.auto.value = True
+    update.edited()
     now[0] = 9.0
-    upkeep.turn()
-    upkeep.button.click(None)
-    upkeep.refresh()
-    assert desk.asked == [] and upkeep.button.disabled
+    update.turn()
+    update.button.click(None)
+    update.refresh()
+    assert desk.asked == [] and update.button.disabled
     desk.ready["press"] = False
-    upkeep.button.click(None)
-    upkeep.refresh()
-    assert len(desk.asked) == 1 and not upkeep.button.disabled
+    update.button.click(None)
+    update.refresh()
+    assert len(desk.asked) == 1 and not update.button.disabled

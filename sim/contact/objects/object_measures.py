@@ -1,4 +1,4 @@
-"""Exact signed distances, extents and sharpness of the kinds of objects as they stand.
+"""Measures of an object as it stands: exact signed distance, extent and sharpness.
 
 `workbench.core.objects.kinds` says what each is; a shape that the kernels know in closed form is
 evaluated by their twin.
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sim.contact.objects.shapes import analytic_size, evaluate
+from sim.contact.objects.shape_distance import analytic_size, evaluate
 from workbench.core.design.turning import turn_matrix
 from workbench.core.objects.kind import Distance
 from workbench.core.press.indenter import Indenter
@@ -17,7 +17,7 @@ FAR_SHARE = 1e6
 """Distance over the size from which a body is looked at for its extent: misses 1e-7 of it."""
 
 
-def solid(indenter: Indenter) -> Distance:
+def exact_distance(indenter: Indenter) -> Distance:
     """Exact distance of any indenter that is no mesh, as it is turned, without its texture."""
     upright = _upright(indenter)
     if not indenter.turned:
@@ -48,7 +48,7 @@ def smooth_box_mm(indenter: Indenter) -> tuple[np.ndarray, np.ndarray]:
         return -half, half
     far_mm = FAR_SHARE * indenter.size_mm
     ways = np.vstack([-np.eye(3), np.eye(3)])
-    low, high = (far_mm - solid(indenter)(far_mm * ways)).reshape(2, 3)
+    low, high = (far_mm - exact_distance(indenter)(far_mm * ways)).reshape(2, 3)
     return -low, high
 
 

@@ -1,9 +1,9 @@
-"""The small picture that follows the sliders: what the camera would see, within a moment.
+"""The image preview that follows the sliders: what the camera would see, within a moment.
 
 The body is meshed coarsely, lit by straight light with shadows, and dented by geometry alone
-(`sim.optics.studio.sketch`): no photons, no elasticity. It tells framing, colours and where the
-dent lies; *Run press* tells the rest. A `GlimpseCall` is a `workbench.live.preview_call` and is
-answered in a lane of its own, which keeps the last coarse mesh and the last lit scene.
+(`sim.optics.studio.geometric_dent`): no photons, no elasticity. It tells framing, colours and where
+the dent lies; *Run press* tells the rest. An `ImagePreviewCall` is a `workbench.live.preview_call`
+and is answered in a lane of its own, which keeps the last coarse mesh and the last lit scene.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ CELL_MM = 0.8
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Glimpse:
+class ImagePreview:
     """What the camera would see."""
 
     images: np.ndarray
@@ -52,8 +52,8 @@ class Glimpse:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class GlimpseCall:
-    """One glimpse; a `PreviewCall`."""
+class ImagePreviewCall:
+    """One image preview; a `PreviewCall`."""
 
     solid: Ref
     optics: Optics
@@ -70,21 +70,21 @@ class GlimpseCall:
     @property
     def stage(self) -> str:
         """What messages call it."""
-        return "glimpse"
+        return "image preview"
 
     @property
     def needs(self) -> tuple[str, ...]:
         """Stages that must be stored before."""
         return ("build",)
 
-    def answer(self, store: Store, kept: dict[str, Any], monitor: Monitor) -> Glimpse:
+    def answer(self, store: Store, kept: dict[str, Any], monitor: Monitor) -> ImagePreview:
         """Mesh, light and look; raises as those do."""
-        glimpser: Glimpser = kept.setdefault(self.stage, Glimpser(shapes_of(kept)))
-        return glimpser.answer(store, self)
+        previewer: ImagePreviewer = kept.setdefault(self.stage, ImagePreviewer(shapes_of(kept)))
+        return previewer.answer(store, self)
 
 
-def glimpse_call(design: SensorDesign, case: PressCase) -> GlimpseCall:
-    """The glimpse of a state.
+def image_preview_call(design: SensorDesign, case: PressCase) -> ImagePreviewCall:
+    """The image preview of a state.
 
     Raises:
         DesignError: As `plan`.
@@ -93,7 +93,7 @@ def glimpse_call(design: SensorDesign, case: PressCase) -> GlimpseCall:
     quick = model if model_of(model).quick else quick_model()
     optics = dataclasses.replace(small(design.optics, WIDTH_PX), light_model=quick)
     # The body does not depend on the press, whose object may have a million triangles to digest.
-    return GlimpseCall(
+    return ImagePreviewCall(
         solid=plan(design, PressCase())["build"].ref,
         optics=optics,
         indenter=case.indenter,
@@ -102,17 +102,17 @@ def glimpse_call(design: SensorDesign, case: PressCase) -> GlimpseCall:
     )
 
 
-class Glimpser:
-    """Answers glimpses in one process, and keeps what the next one may need."""
+class ImagePreviewer:
+    """Answers image previews in one process, and keeps what the next one may need."""
 
     def __init__(self, shapes: Shapes) -> None:
         self.shapes = shapes
         self._mesh: tuple[Ref, MembraneMesh] | None = None
         self._studio: tuple[str, Studio] | None = None
 
-    def answer(self, store: Store, call: GlimpseCall) -> Glimpse:
+    def answer(self, store: Store, call: ImagePreviewCall) -> ImagePreview:
         """What the camera sees at rest and dented."""
-        from sim.optics.studio.sketch import sketched
+        from sim.optics.studio.geometric_dent import geometric_dent
         from workbench.pipeline.devices import open_device
 
         begun = time.perf_counter()
@@ -121,9 +121,11 @@ class Glimpser:
         studio = self._open_studio(call, mesh)
         target_mm = np.asarray(call.target_mm)
         points_mm, faces = self.shapes.shape(call.indenter)
-        moved = sketched(mesh.seen, points_mm, faces, target_mm=target_mm, depth_mm=call.depth_mm)
+        moved = geometric_dent(
+            mesh.seen, points_mm, faces, target_mm=target_mm, depth_mm=call.depth_mm
+        )
         images = enlarged(studio.images(np.stack([np.zeros_like(moved), moved])))
-        return Glimpse(
+        return ImagePreview(
             images=images, model=call.optics.light_model, seconds=time.perf_counter() - begun
         )
 
@@ -138,7 +140,7 @@ class Glimpser:
             )
         return self._mesh[1]
 
-    def _open_studio(self, call: GlimpseCall, mesh: MembraneMesh) -> Studio:
+    def _open_studio(self, call: ImagePreviewCall, mesh: MembraneMesh) -> Studio:
         from sim.optics.field.bake import bake_light
         from sim.optics.studio.render import Studio
 

@@ -1,4 +1,4 @@
-"""The small picture that follows the sliders: its geometry, and what it asks for."""
+"""The image preview that follows the sliders: its geometry, and what it asks for."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ import pytest
 
 from geometry.objects.indenters import primitive_mesh
 from sim.optics.raster.dents import SOFTNESS_MM
-from sim.optics.studio.sketch import lower_face_mm, sketched
+from sim.optics.studio.geometric_dent import geometric_dent, lower_face_mm
 from workbench.core.base.monitor import silent
 from workbench.core.design.lighting import LightModel
 from workbench.core.press.indenter import Indenter, IndenterKind
 from workbench.core.result.results import Skin
-from workbench.live.glimpse import Glimpse, glimpse_call
+from workbench.live.image_preview import ImagePreview, image_preview_call
 from workbench.pipeline.store import Store
 from workbench.planning import running
 from workbench.planning.plan import plan
@@ -61,7 +61,7 @@ def test_lower_face_of_a_ball_is_its_cap() -> None:
 def test_a_ball_dents_a_plane_to_its_depth(depth_mm: float) -> None:
     """s ln(1 + exp(o / s)) with o = d - (r - sqrt(r^2 - x^2)) along -z, and no motion across."""
     skin = flat_skin()
-    moved = sketched(skin, *ball(), target_mm=np.array([0.0, 0.0, 10.0]), depth_mm=depth_mm)
+    moved = geometric_dent(skin, *ball(), target_mm=np.array([0.0, 0.0, 10.0]), depth_mm=depth_mm)
     radius = np.linalg.norm(skin.points_mm[:, :2], axis=1)
     inside = (radius < 2.5) & (skin.points_mm[:, 2] > 5.0)
     overlap = depth_mm - (3.0 - np.sqrt(9.0 - radius[inside] ** 2))
@@ -78,37 +78,37 @@ def test_the_dent_begins_where_the_object_touches_first() -> None:
     points = np.array(skin.points_mm)
     points[:, 2] += np.where(points[:, 2] > 5.0, -0.2 * np.abs(points[:, 0] - 1.0), 0.0)
     ridge = dataclasses.replace(skin, points_mm=points)
-    moved = sketched(ridge, *ball(), target_mm=np.array([0.5, 0.0, 10.0]), depth_mm=0.0)
+    moved = geometric_dent(ridge, *ball(), target_mm=np.array([0.5, 0.0, 10.0]), depth_mm=0.0)
     deepest = int(np.argmin(moved[:, 2]))
     # There the overlap is nought exactly; the motion is kept in single precision.
     assert moved[deepest, 2] == pytest.approx(-SOFTNESS_MM * math.log(2.0), rel=1e-6)
     assert abs(points[deepest, 0] - 0.75) <= 0.26
 
 
-def test_a_glimpse_asks_for_no_photons_and_few_pixels() -> None:
-    """Hybrid is sketched by straight light, 160 pixels wide; the paper's linear field stays."""
+def test_an_image_preview_asks_for_no_photons_and_few_pixels() -> None:
+    """Hybrid is lit by straight light, 160 pixels wide; the paper's linear field stays."""
     state = fresh_state(load_design("geltip"))
-    call = glimpse_call(state.design, state.case)
+    call = image_preview_call(state.design, state.case)
     assert call.optics.light_model is LightModel.DIRECT
     assert call.optics.camera.width_px == 160
     linear = state.design.replace("optics.light_model", LightModel.LINEAR)
-    assert glimpse_call(linear, state.case).optics.light_model is LightModel.LINEAR
+    assert image_preview_call(linear, state.case).optics.light_model is LightModel.LINEAR
     assert pickle.loads(pickle.dumps(call)) == call
 
 
-def test_a_glimpse_sees_the_dent_where_the_press_aims(tmp_path: Path) -> None:
+def test_an_image_preview_sees_the_dent_where_the_press_aims(tmp_path: Path) -> None:
     """The pad pressed at its middle changes in the middle of its image and not in the corners."""
     state = fresh_state(load_design("pad"))
     store, kept = Store(tmp_path), dict[str, Any]()
     running.run(store, plan(state.design, state.case)["build"])
-    seen: Glimpse = glimpse_call(state.design, state.case).answer(store, kept, silent)
+    seen: ImagePreview = image_preview_call(state.design, state.case).answer(store, kept, silent)
     change = np.abs(seen.images[1].astype(int) - seen.images[0]).max(axis=2)
     rows, columns = change.shape
     assert change[rows // 4 : -rows // 4, columns // 4 : -columns // 4].max() > 20
     assert change[: rows // 8].max() == 0
     moved = dataclasses.replace(state.case.press, depth_mm=0.2)
-    less = glimpse_call(state.design, dataclasses.replace(state.case, press=moved))
-    fainter: Glimpse = less.answer(store, kept, silent)
+    less = image_preview_call(state.design, dataclasses.replace(state.case, press=moved))
+    fainter: ImagePreview = less.answer(store, kept, silent)
     assert (fainter.images[0] == seen.images[0]).all()
     faint = np.abs(fainter.images[1].astype(int) - fainter.images[0]).max()
     assert 0 < faint < change.max()

@@ -10,7 +10,7 @@ from ui.panels.mesh.page import steps
 from workbench.core.result.fabrication import FabricationCheck, Severity
 from workbench.core.result.results import Label, LabelledSurface, Skin, VolumeMesh
 from workbench.edit.forms import choices, purpose
-from workbench.view.previews import cell_edges, clear_view, first_hit, mesh_edges, skin_parts
+from workbench.view.scene_shapes import cell_edges, clear_view, first_hit, mesh_edges, skin_parts
 
 
 def cube(edge_mm: float = 2.0) -> tuple[np.ndarray, np.ndarray]:

@@ -12,20 +12,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ui.scene.gizmo import Gizmo
-from workbench.live.live_press import LiveCall, Preview, live_call
+from workbench.live.live_press import LiveCall, PressPreview, live_call
 from workbench.live.requests import Request
 
 if TYPE_CHECKING:
     from ui.desk.desk import Desk
 
 
-class LivePress:
+class LivePressFollower:
     """The live press of one desk."""
 
     def __init__(self, desk: Desk) -> None:
         self.desk = desk
         self.on = False
-        self.told: Callable[[str], None] = lambda text: None
+        self.on_message: Callable[[str], None] = lambda text: None
         """Set by the panel with the check box: shows how it goes."""
         self.gizmo = Gizmo(desk.scene.api, self._dragged, edits=desk.editor.edits)
         self._asked: LiveCall | None = None
@@ -36,13 +36,13 @@ class LivePress:
         self._asked = None
         self.gizmo.show(on)
         if on:
-            self.told("solving")
+            self.on_message("solving")
             self.follow()
             return
-        self.told("")
+        self.on_message("")
         self.desk.conductor.stop_live()
         self.desk.scene.clear_frames()
-        self.desk.showing.forget("press", "shoot")
+        self.desk.shown_results.forget("press", "shoot")
         self.desk.changed()
 
     def follow(self) -> None:
@@ -52,10 +52,10 @@ class LivePress:
         self.gizmo.place(self.desk.scene.object.standing[:3])
         if call != self._asked:
             self._asked = call
-            self.told("solving")
+            self.on_message("solving")
             self.desk.conductor.press_live(session.design, session.case)
 
-    def show(self, preview: Preview, request: Request) -> None:
+    def show(self, preview: PressPreview, request: Request) -> None:
         """Show a frame that settled, unless the sensor is another by now."""
         desk = self.desk
         if not self.on or request.design != desk.session.design:
@@ -67,7 +67,7 @@ class LivePress:
         self.gizmo.place(desk.scene.object.standing[:3])
         desk.tell("live", preview)
         force_N = float(preview.contact.normal_N[-1])
-        self.told(
+        self.on_message(
             f"**{force_N:.3f} N** along the normal · settled in {preview.seconds:.2f} s "
             f"({preview.way}, {preview.contact.substeps} substeps)"
         )
@@ -75,7 +75,7 @@ class LivePress:
     def failed(self) -> None:
         """Take back what is said of a request that did not settle."""
         self._asked = None
-        self.told("not solved: see the message")
+        self.on_message("not solved: see the message")
 
     def _dragged(self, place_mm: np.ndarray, wxyz: np.ndarray) -> None:
         """Aim at the skin nearest to where the handle was dragged."""

@@ -1,4 +1,4 @@
-"""Cheap shapes for the live view: regions of a body, a standing object, clicks, cells of a mesh.
+"""Cheap shapes for the 3D view: regions of a body, a standing object, clicks, cells of a mesh.
 
 Everything here takes milliseconds on the largest body; what takes longer is a stage.
 """
@@ -147,11 +147,11 @@ def mesh_edges(mesh: VolumeMesh | Skin) -> np.ndarray:
 
 def _boundary(cells: np.ndarray) -> np.ndarray:
     """Faces of hexahedra (M, 8) or tetrahedra (M, 4) that no other cell has, (B, 4) or (B, 3)."""
-    sides = cells[:, np.array(CELL_SIDES[cells.shape[1]])].reshape(-1, 3 + (cells.shape[1] == 8))
+    faces = cells[:, np.array(CELL_SIDES[cells.shape[1]])].reshape(-1, 3 + (cells.shape[1] == 8))
     _, first, count = np.unique(
-        np.sort(sides, axis=1), axis=0, return_index=True, return_counts=True
+        np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True
     )
-    return sides[first[count == 1]]
+    return faces[first[count == 1]]
 
 
 def judged(mesh: VolumeMesh, volume_mm3: float) -> MeshQuality:

@@ -1,4 +1,4 @@
-"""Pictures of a sensor: the membrane, the exploded view, and a skin coloured by a field.
+"""Drawings of a sensor: the membrane, the exploded view, and a skin coloured by a field.
 
 All are PNG bytes, shape (bytes,), uint8, drawn off-screen; each raises DeviceError where nothing
 can render.
@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from geometry.picture.exploded import exploded
-from geometry.picture.rendering import canvas, draw, look, png, surface
+from geometry.drawing.exploded import exploded
+from geometry.drawing.rendering import canvas, draw, look, png, surface
 from workbench.core.result.fabrication import HousingSet, MouldSet
 from workbench.core.result.results import Label, LabelledSurface, Skin, Solid
 
 SIZE_PX = (1200, 900)
-THUMBNAIL_PX = (480, 480)
+MEMBRANE_PX = (480, 480)
 EYE = np.array([1.6, 1.8, 0.9])
 """Direction from the body to the eye; families aim at +Y, where suckers and finger pads are."""
 COLOURS = {
@@ -38,11 +38,11 @@ SMOOTH = ("membrane", "support")
 """Parts drawn without lines along their edges: slivers of their many triangles would be lines."""
 PIN = "#27384d"
 LEGEND_SHARE = 0.24
-"""Share of the picture's width that the colour bar takes."""
+"""Share of the drawing's width that the colour bar takes."""
 
 
-def thumbnail(
-    solid: Solid, size_px: tuple[int, int] = THUMBNAIL_PX, *, clear: bool = True
+def membrane_drawing(
+    solid: Solid, size_px: tuple[int, int] = MEMBRANE_PX, *, clear: bool = True
 ) -> np.ndarray:
     """The membrane, actuator regions tinted; one with pins is clear, so that they show.
 

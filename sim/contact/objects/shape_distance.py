@@ -1,11 +1,11 @@
-"""Rigid indenter shapes: numbers, dimensions and signed distances in plain NumPy.
+"""Signed distance of rigid shapes in closed form, and their dimensions, in plain NumPy.
 
 Body frame as in `workbench.core.press.press`: origin at the shape's centre, +Z away from the skin.
 A cylinder is as long as it is wide. The cone has a right apex angle: its base diameter is
 `size_mm` and its sharp height half of that, apex toward -Z. Edges, rim and apex are rounded by
 `edge_radius_mm`: a smaller sharp shape, offset outwards.
 
-`evaluate` is the twin of `signed_distance.signed_distance`.
+`evaluate` is the twin of `shape_distance_functions.signed_distance`.
 """
 
 from __future__ import annotations

@@ -1,15 +1,15 @@
 """Small drawings of a membrane for lists of variants: at rest, and pressed.
 
-PNG bytes, shape (bytes,), uint8, drawn off-screen as in `pictures`; DeviceError where nothing can
-render.
+PNG bytes, shape (bytes,), uint8, drawn off-screen as in `sensor_drawings`; DeviceError where
+nothing can render.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from geometry.picture.pictures import EYE, thumbnail
-from geometry.picture.rendering import canvas, look, png, surface
+from geometry.drawing.rendering import canvas, look, png, surface
+from geometry.drawing.sensor_drawings import EYE, membrane_drawing
 from workbench.core.result.results import Skin, Solid
 
 SIZE_PX = (240, 240)
@@ -17,7 +17,7 @@ SIZE_PX = (240, 240)
 
 def at_rest(solid: Solid, size_px: tuple[int, int] = SIZE_PX) -> np.ndarray:
     """The membrane, untouched, on a clear ground."""
-    return thumbnail(solid, size_px)
+    return membrane_drawing(solid, size_px)
 
 
 def pressed(

@@ -1,4 +1,4 @@
-"""The small pictures of the galleries, shipped with the designs and drawn by `docs/thumbnails.py`.
+"""The thumbnails of the galleries, shipped with the designs and drawn by `docs/thumbnails.py`.
 
 `keys.toml` beside them says what each was drawn of: the key of a body, or the digest of an object.
 """
@@ -20,14 +20,14 @@ FOLDER = Path("designs") / "thumbnails"
 KEYS = "keys.toml"
 
 
-def thumbnail_png(name: str) -> bytes | None:
-    """A shipped picture, for example of `start-finger` or `object-cube`; None where none is."""
+def shipped_thumbnail(name: str) -> bytes | None:
+    """A shipped thumbnail, for example of `start-finger` or `object-cube`; None where none is."""
     file = resources.files("designs") / "thumbnails" / f"{name}.png"
     return file.read_bytes() if file.is_file() else None
 
 
 def shipped_keys() -> dict[str, str]:
-    """What each shipped picture was drawn of."""
+    """What each shipped thumbnail was drawn of."""
     return tomllib.loads(
         (resources.files("designs") / "thumbnails" / KEYS).read_text(encoding="utf-8")
     )

@@ -1,0 +1,1 @@
+"""Bodies and parts, drawn off screen."""

@@ -1,1 +1,0 @@
-"""Pictures of bodies and parts, drawn off screen."""
