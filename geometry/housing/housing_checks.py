@@ -11,7 +11,7 @@ from geometry.body.csg import Node
 from geometry.body.csg_mesh import closed, evaluate
 from geometry.housing.holder_seat import seat_gap
 from geometry.mould.castability import Worst
-from geometry.mould.print_checks import PrintLimits, bed_check, check, wall_check
+from geometry.mould.print_checks import Bound, PrintLimits, bed_check, check, wall_check
 from geometry.mould.walls import thinnest_wall
 from geometry.surface.rays import RayCaster
 from geometry.surface.surface import closest_point
@@ -118,9 +118,7 @@ def _whole(name: str, lost: Worst) -> FabricationCheck:
         "loose_pieces",
         name,
         lost,
-        unit="of its volume",
-        limit=MOST_LOST,
-        bad=MOST_LOST,
+        Bound(limit=MOST_LOST, unit="of its volume", bad=MOST_LOST),
         message="camera, LEDs or shell cut the part in two: use a smaller camera module, move it "
         "by optics.camera.position_mm, or make room for it in the shape",
     )
@@ -184,10 +182,7 @@ def _led_clearance(
         "led_clearance",
         "led_ring_holder",
         min(gaps, key=lambda gap: gap.value),
-        unit="mm",
-        limit=options.clearance_mm,
-        sense="min",
-        bad=0.0,
+        Bound(limit=options.clearance_mm, unit="mm", sense="min", bad=0.0),
         message="change optics.ring.radius_mm or height_mm, lower its count, or use smaller LEDs",
     )
 
@@ -204,10 +199,7 @@ def _camera_clearance(
         "camera_clearance",
         "camera_mount",
         Worst(min(gap, below), _centre(camera)),
-        unit="mm",
-        limit=options.clearance_mm,
-        sense="min",
-        bad=0.0,
+        Bound(limit=options.clearance_mm, unit="mm", sense="min", bad=0.0),
         message="move optics.camera.position_mm, raise shape.base_height_mm or take a smaller one",
     )
 
@@ -225,9 +217,7 @@ def _holder_seat(parts: Sequence[FabricationPart], options: Housing) -> Fabricat
         "led_ring_holder",
         # The parts' triangles are good to a thousandth.
         gap._replace(value=round(gap.value, 3)),
-        unit="mm",
-        limit=options.clearance_mm,
-        bad=LARGEST_DROP_MM,
+        Bound(limit=options.clearance_mm, unit="mm", bad=LARGEST_DROP_MM),
         message="nothing under it carries it: lower optics.ring.height_mm, or bring "
         "optics.ring.radius_mm nearer to the wall of the cavity, or use a smaller camera module",
     )
