@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from geometry.body.csg import Node
 from geometry.body.csg_mesh import closed, evaluate
 from geometry.housing.holder_seat import seat_gap
 from geometry.mould.castability import Worst
+from geometry.mould.fabricate import Made
 from geometry.mould.print_checks import Bound, PrintLimits, bed_check, check, wall_check
 from geometry.mould.walls import thinnest_wall
 from geometry.surface.rays import RayCaster
@@ -39,29 +41,40 @@ MOST_LOST = 0.01
 """Share of a part that may be left away as crumbs between cuts [1]."""
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Bought:
+    """Rooms of the bought parts, without gaps."""
+
+    module: Node
+    """Of the camera module."""
+    leds: tuple[Node, ...]
+    """Of each LED."""
+
+
 def housing_checks(
-    parts: Sequence[FabricationPart],
+    made: Sequence[Made],
     solid: Solid,
-    module: Node,
-    leds: Sequence[Node],
+    bought: Bought,
     options: Housing,
     *,
     in_shell: bool,
     printer: Printer,
-    lost: Mapping[str, Worst],
 ) -> tuple[FabricationCheck, ...]:
     """Gaps around the bought parts, and walls and sizes of the printed ones.
 
     Args:
-        module: Room of the camera module.
-        leds: Room of each LED.
+        made: The printed parts, with what was left away of each in loose pieces.
+        solid: The bodies of the design.
+        bought: Rooms of camera module and LEDs.
+        options: Clearances and walls.
         in_shell: Whether LEDs touch the support on purpose, to feed light into it.
-        lost: Share of each part in loose pieces, which are left away.
+        printer: That prints the parts.
     """
+    parts = [one.part for one in made]
     walls = [solid.membrane] if in_shell else [solid.membrane, solid.support]
     shells = [closed("shell", surface.points_mm, surface.faces) for surface in walls]
-    camera = evaluate(module)
-    lights = [evaluate(led) for led in leds]
+    camera = evaluate(bought.module)
+    lights = [evaluate(led) for led in bought.leds]
     cavity = Cavity(solid.membrane)
     checks = [_camera_clearance(camera, shells, cavity, solid, options)]
     if lights:
@@ -74,7 +87,7 @@ def housing_checks(
             limits = limits._replace(thin=holder_advice(edge, lights, shell, options))
         checks.append(_wall(part, edge, limits, printer))
         checks.append(bed_check(part, printer.bed_mm, limits))
-    checks += [_whole(name, share) for name, share in lost.items() if share.value > 0.0]
+    checks += [_whole(one.part.name, one.lost) for one in made if one.lost.value > 0.0]
     return tuple(checks)
 
 
