@@ -30,8 +30,8 @@ from geometry.housing.camera_mount import (
     module_room,
 )
 from geometry.housing.holder_seat import holder_seat
-from geometry.housing.housing_checks import LEAST_WALL_MM, Bought, housing_checks
-from geometry.housing.led_holder import shaped_holder
+from geometry.housing.housing_checks import Bought, housing_checks
+from geometry.housing.led_holder import LEAST_WALL_MM, Shells, shaped_holder
 from geometry.housing.led_room import hole_mm, led_rooms, ring_outline
 from geometry.housing.supplies import camera_module
 from geometry.mould.fabricate import Made, PartPlan, fabricate, largest
@@ -129,12 +129,10 @@ def _nodes(
     sleeve = holder_seat(
         holder,
         base,
-        [membrane, support],
+        Shells(bodies=(membrane, support), gap_mm=gap),
         below,
         hole_mm=hole_mm(ring, options),
-        gap_mm=gap,
         wall_mm=max(options.wall_mm, LEAST_WALL_MM),
-        least_mm=LEAST_WALL_MM,
     )
     return {
         "support": made.pop("support"),
@@ -158,10 +156,9 @@ def _holder(
         return plain
     shaped = shaped_holder(
         whole,
-        shells[:2],
+        Shells(bodies=tuple(shells[:2]), gap_mm=options.clearance_mm),
         module,
         leds,
-        gap_mm=options.clearance_mm,
         wall_mm=LEAST_WALL_MM,
         tilt_deg=ring.tilt_deg,
     )

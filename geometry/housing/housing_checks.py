@@ -11,6 +11,7 @@ import numpy as np
 from geometry.body.csg import Node
 from geometry.body.csg_mesh import closed, evaluate
 from geometry.housing.holder_seat import seat_gap
+from geometry.housing.led_holder import LEAST_WALL_MM
 from geometry.mould.castability import Worst
 from geometry.mould.fabricate import Made
 from geometry.mould.print_checks import Bound, PrintLimits, bed_check, check, wall_check
@@ -23,8 +24,6 @@ from workbench.core.result.results import Label, LabelledSurface, Solid
 
 SEARCH_MM = 50.0
 """Gaps wider than this are not measured [mm]."""
-LEAST_WALL_MM = 0.8
-"""Thinnest printed wall of a part that carries no bolts: two lines of a 0.4 mm nozzle [mm]."""
 
 HOUSING_LIMITS = PrintLimits(
     LEAST_WALL_MM,
