@@ -15,7 +15,7 @@ from geometry.housing.housing import make_housing
 from geometry.housing.led_holder import Shells, opened, shadow, shaped_holder
 from geometry.mould.walls import thinnest_wall
 from geometry.surface.surface import mesh_volume
-from geometry.workshop.recipe import make_recipe
+from geometry.workshop.recipe import WantedMaterial, make_recipe
 from workbench.core.base.monitor import silent
 from workbench.core.design.camera import Camera
 from workbench.core.design.design import Layers
@@ -133,9 +133,7 @@ def test_the_silicone_decides_whether_the_core_leaves(
             HousingSet(parts=()),
             ring=LedRing(),
             casting=Casting(silicone=silicone),
-            young_MPa=0.145,
-            density_g_cm3=1.0,
-            backing_MPa=0.0,
+            wanted=WantedMaterial(young_MPa=0.145, density_g_cm3=1.0, backing_MPa=0.0),
         ).checks
 
     (check,) = checks(mould)
