@@ -50,10 +50,10 @@ def check(
     severity = Severity.WARNING if over else Severity.GOOD
     if over and bad is not None and sign * worst.value > sign * bad:
         severity = Severity.BAD
-    bound = "at most" if sense == "max" else "at least"
+    side = "at most" if sense == "max" else "at least"
     title = title or name.replace("_", " ")
     value = legible(worst.value)
-    text = f"{part}: {title} {value} {unit}, {bound} {limit:.3g} {unit} is good"
+    text = f"{part}: {title} {value} {unit}, {side} {limit:.3g} {unit} is good"
     if tolerated(worst.value, limit, sense=sense) and not over:
         text = f"{part}: {title} {value} {unit} is within tolerance, {limit:.3g} {unit}"
     return FabricationCheck(
