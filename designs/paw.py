@@ -48,7 +48,7 @@ from designs import distance
 from designs.bodies import Bodies, Fields
 from designs.lobed_outline import LobedOutline
 from designs.paw_pads import BETWEEN_MM, Pads, check_pads, expect_pads, pad_bodies, pads_field
-from designs.prisms import elliptic_foot, rounded_prism
+from designs.prisms import Outline, elliptic_foot, rounded_prism
 from designs.shells import hollow
 from designs.sliders import slider
 from workbench.core.base.booleans import expect_volume, fuse, volume
@@ -233,9 +233,11 @@ def _rim_mm(shape: PawShape, outline: LobedOutline) -> float:
 def _prism(shape: PawShape, inset_mm: float, *, what: str) -> Any:
     outline = shape.outline(inset_mm)
     return rounded_prism(
-        outline.edges(),
-        area_mm2=outline.area_mm2,
-        perimeter_mm=outline.perimeter_mm,
+        Outline(
+            edges=outline.edges(),
+            area_mm2=outline.area_mm2,
+            perimeter_mm=outline.perimeter_mm,
+        ),
         top_mm=shape.height_mm - inset_mm,
         rim_mm=_rim_mm(shape, outline) if inset_mm else shape.rim_mm,
         what=what,

@@ -47,11 +47,19 @@ def prism(outline: Sequence[Any], top_mm: float) -> Any:
     return Solid.extrude(Face(Wire(outline)), Vector(0, 0, top_mm))
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Outline:
+    """A smooth closed curve in the plane z = 0, with its closed forms."""
+
+    edges: Sequence[Any]
+    """build123d edges that close."""
+    area_mm2: float
+    perimeter_mm: float
+
+
 def rounded_prism(
-    outline: Sequence[Any],
+    outline: Outline,
     *,
-    area_mm2: float,
-    perimeter_mm: float,
     top_mm: float,
     rim_mm: float,
     what: str,
@@ -60,17 +68,17 @@ def rounded_prism(
     """A prism on z = 0 with a rounded top rim, checked by its closed form.
 
     Args:
-        outline: build123d edges in the plane z = 0 that close.
+        outline: What it stands on.
         relative: Tolerance of the volume; fillets of splines are approximated by the kernel.
 
     Raises:
         GeometryError: If the kernel could not round the rim.
     """
-    block = prism(outline, top_mm)
+    block = prism(outline.edges, top_mm)
     edges = [edge for edge in block.edges() if edge.bounding_box().min.Z > top_mm - 1e-3]
-    least, most = rim_limits(perimeter_mm, rim_mm, slack=0.05)
+    least, most = rim_limits(outline.perimeter_mm, rim_mm, slack=0.05)
     body = fillet(block, rim_mm, edges, what=what, removes_mm3=(least, most))
-    expected = rounded_prism_mm3(area_mm2, perimeter_mm, top_mm, rim_mm)
+    expected = rounded_prism_mm3(outline.area_mm2, outline.perimeter_mm, top_mm, rim_mm)
     return expect_volume(body, expected, what=what, relative=relative)
 
 
@@ -118,10 +126,13 @@ class EllipticPrism:
         Raises:
             GeometryError: If the kernel could not round the rim.
         """
-        return rounded_prism(
-            ellipse_edges(*self.half_mm),
+        outline = Outline(
+            edges=ellipse_edges(*self.half_mm),
             area_mm2=ellipse_area_mm2(*self.half_mm),
             perimeter_mm=ellipse_perimeter_mm(*self.half_mm),
+        )
+        return rounded_prism(
+            outline,
             top_mm=self.top_mm,
             rim_mm=self.rim_mm,
             what=what,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Callable
 from typing import Any
 
@@ -40,7 +39,7 @@ def build_finger() -> Callable[..., Solid]:
 
     def build(layers: Layers | None = None, **shape: Any) -> Solid:
         bodies = family("finger").build(resolve_shape("finger", shape), layers or Layers())
-        return assemble(**{f.name: getattr(bodies, f.name) for f in dataclasses.fields(bodies)})
+        return assemble(bodies)
 
     return build
 

@@ -20,7 +20,6 @@ from geometry.surface.regions import mark_regions
 from geometry.surface.surface import face_areas, mesh_volume, open_edges
 from workbench.core.base.booleans import volume
 from workbench.core.base.errors import GeometryError, MeshingError
-from workbench.core.result.marks import NO_MARKS, Marks
 from workbench.core.result.results import Label, LabelledSurface, Solid
 
 TOLERANCE_MM = 0.02
@@ -47,19 +46,12 @@ class Tessellation(NamedTuple):
     """Number of the B-rep face, shape (M,), int32."""
 
 
-def assemble(
-    *,
-    membrane: Any,
-    outer: Any,
-    core: Any,
-    support: Any,
-    base: Any,
-    marks: Marks = NO_MARKS,
-    fineness: float = 1.0,
-) -> Solid:
+def assemble(bodies: Any, *, fineness: float = 1.0) -> Solid:
     """Turn the B-rep bodies of a family into arrays.
 
     Args:
+        bodies: `membrane`, `outer`, `core`, `support`, `base` and `marks`, duck-typed: who builds
+            them, `designs`, stands above this package.
         fineness: How many times finer than `TOLERANCE_MM` the elastomer is tessellated.
 
     Raises:
@@ -69,18 +61,20 @@ def assemble(
     # A chord's distance from its arc goes with the square of its angle.
     fine = {"tolerance_mm": TOLERANCE_MM / fineness, "angle_rad": ANGLE_RAD / fineness**0.5}
     return Solid(
-        membrane=mark_regions(label_surface(membrane, core, **fine), marks.regions),
-        support=label_surface(support, core, **coarse),
-        base=label_surface(base, None, **coarse),
-        outer_brep=brep_bytes(outer),
-        core_brep=brep_bytes(core),
-        membrane_brep=brep_bytes(membrane),
-        support_brep=brep_bytes(support),
-        base_brep=brep_bytes(base),
-        volume_mm3=volume(membrane),
-        tips_mm=np.asarray(marks.tips_mm, dtype=np.float64).reshape(-1, 3),
-        tip_radius_mm=marks.tip_radius_mm,
-        backing_mm=marks.backing_mm,
+        membrane=mark_regions(
+            label_surface(bodies.membrane, bodies.core, **fine), bodies.marks.regions
+        ),
+        support=label_surface(bodies.support, bodies.core, **coarse),
+        base=label_surface(bodies.base, None, **coarse),
+        outer_brep=brep_bytes(bodies.outer),
+        core_brep=brep_bytes(bodies.core),
+        membrane_brep=brep_bytes(bodies.membrane),
+        support_brep=brep_bytes(bodies.support),
+        base_brep=brep_bytes(bodies.base),
+        volume_mm3=volume(bodies.membrane),
+        tips_mm=np.asarray(bodies.marks.tips_mm, dtype=np.float64).reshape(-1, 3),
+        tip_radius_mm=bodies.marks.tip_radius_mm,
+        backing_mm=bodies.marks.backing_mm,
     )
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from geometry.body import csg
 from geometry.body.csg_mesh import arrays, evaluate
-from geometry.housing.housing_checks import LEAST_WALL_MM
+from geometry.housing.led_holder import LEAST_WALL_MM
 from geometry.housing.led_room import half_mm, holder_mm
 from workbench.core.design.camera import Camera
 from workbench.core.design.lighting import LedRing

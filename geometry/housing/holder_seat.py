@@ -20,7 +20,7 @@ import numpy as np
 
 from geometry.body import csg
 from geometry.body.csg_mesh import arrays
-from geometry.housing.led_holder import heights, opened, prisms, shadow
+from geometry.housing.led_holder import LEAST_WALL_MM, Shells, heights, opened, prisms, shadow
 from geometry.mould.castability import Worst
 from geometry.surface.rays import RayCaster
 from geometry.surface.spread import spread
@@ -41,13 +41,11 @@ FARTHEST_MM = 50.0
 def holder_seat(
     holder: csg.Node,
     base: csg.Node,
-    shells: Sequence[csg.Node],
+    shells: Shells,
     keep_free: Sequence[csg.Node],
     *,
     hole_mm: float,
-    gap_mm: float,
     wall_mm: float,
-    least_mm: float,
 ) -> list[csg.Node]:
     """The pieces of the sleeve from the base up to the holder; none if the base's top is high
     enough, or if there is no room for a sleeve that carries it.
@@ -55,20 +53,20 @@ def holder_seat(
     Args:
         holder: The finished holder.
         base: The foot with all its cuts.
-        shells: Bodies beside which `gap_mm` stays free.
+        shells: Bodies beside which it stands; their gap is left below the holder too.
         keep_free: Rooms of camera module and mount.
         hole_mm: Radius of the ring's hole; 0 for a disc.
         wall_mm: Thickness of the sleeve.
-        least_mm: Thinnest wall of it.
     """
     import shapely
 
+    gap_mm = shells.gap_mm
     top_mm, floor_mm = heights(holder)[0] - gap_mm, heights(base)[1]
     if top_mm <= floor_mm:
         return []
     ground = shadow(base, floor_mm - ROOT_MM, floor_mm)
     carried = shadow(holder, top_mm, top_mm + gap_mm + REST_MM)
-    walls = [shadow(shell, floor_mm, top_mm + gap_mm) for shell in shells]
+    walls = [shadow(shell, floor_mm, top_mm + gap_mm) for shell in shells.bodies]
     wall = shapely.union_all(walls).buffer(gap_mm)
     free = _inside(wall) & ground
     for room in keep_free:
@@ -83,7 +81,7 @@ def holder_seat(
         carried,
     )
     for plan in plans:
-        area = opened(plan & free, least_mm)
+        area = opened(plan & free, LEAST_WALL_MM)
         if _carries(area & carried, carried):
             return prisms(area, floor_mm - ROOT_MM, top_mm)
     return []

@@ -16,7 +16,6 @@ Leaves out: wiring, screws between the parts, cable glands.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -31,32 +30,23 @@ from geometry.housing.camera_mount import (
     module_room,
 )
 from geometry.housing.holder_seat import holder_seat
-from geometry.housing.housing_checks import LEAST_WALL_MM, housing_checks
-from geometry.housing.led_holder import shaped_holder
+from geometry.housing.housing_checks import Bought, housing_checks
+from geometry.housing.led_holder import LEAST_WALL_MM, Shells, shaped_holder
 from geometry.housing.led_room import hole_mm, led_rooms, ring_outline
 from geometry.housing.supplies import camera_module
-from geometry.mould.castability import Worst
-from geometry.mould.fabricate import fabricate, largest
+from geometry.mould.fabricate import Made, PartPlan, fabricate, largest
 from geometry.mould.walls import thinnest_wall
 from workbench.core.base.monitor import Monitor, silent
 from workbench.core.design.camera import Camera
 from workbench.core.design.lighting import LedMount, LedRing
 from workbench.core.design.making import Housing, Printer
-from workbench.core.result.fabrication import FabricationPart, HousingSet, PartGroup
+from workbench.core.result.fabrication import HousingSet, PartGroup
 from workbench.core.result.results import LabelledSurface, Solid
 
 TOUCH_MM3 = 1e-9
 APART_MM = 12.0
 CLEAR_RESIN = "print in clear resin, polish"
 TOUGH = "3D print, opaque"
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Bought:
-    """Rooms of the bought parts, without gaps."""
-
-    module: csg.Node
-    leds: tuple[csg.Node, ...]
 
 
 def make_housing(
@@ -83,38 +73,26 @@ def make_housing(
     nodes = _nodes(solid, options, ring, camera, rods)
     places = _exploded(solid, rods)
     processes = {"support": CLEAR_RESIN, **{rod.name: f"{TOUGH}; {rod.title}" for rod in rods}}
-    parts: list[FabricationPart] = []
-    reasons: list[str] = []
-    lost: dict[str, Worst] = {}
+    made: list[Made] = []
     for number, (name, node) in enumerate(nodes.items()):
         monitor(0.8 * number / len(nodes), f"making {name}")
-        made = fabricate(
-            name,
-            node,
+        part = PartPlan(
+            name=name,
+            node=node,
             group=PartGroup.SENSOR,
             explode=places[name],
             process=processes.get(name, TOUGH),
-            keep_largest=True,
             brep=solid.support_brep if name == "support" else None,
         )
-        parts.append(made.part)
-        lost[name] = made.lost
-        reasons += [made.reason] if made.reason else []
+        made.append(fabricate(part, keep_largest=True))
     monitor(0.8, "checking")
     checks = housing_checks(
-        parts,
-        solid,
-        bought.module,
-        bought.leds,
-        options,
-        in_shell=ring.mount is LedMount.SHELL,
-        printer=printer,
-        lost=lost,
+        made, solid, bought, options, in_shell=ring.mount is LedMount.SHELL, printer=printer
     )
     return HousingSet(
-        parts=tuple(parts),
+        parts=tuple(one.part for one in made),
         checks=checks,
-        notice="; ".join(reasons),
+        notice="; ".join(one.reason for one in made if one.reason),
         bought=(camera_module(options),),
     )
 
@@ -151,12 +129,10 @@ def _nodes(
     sleeve = holder_seat(
         holder,
         base,
-        [membrane, support],
+        Shells(bodies=(membrane, support), gap_mm=gap),
         below,
         hole_mm=hole_mm(ring, options),
-        gap_mm=gap,
         wall_mm=max(options.wall_mm, LEAST_WALL_MM),
-        least_mm=LEAST_WALL_MM,
     )
     return {
         "support": made.pop("support"),
@@ -180,10 +156,9 @@ def _holder(
         return plain
     shaped = shaped_holder(
         whole,
-        shells[:2],
+        Shells(bodies=tuple(shells[:2]), gap_mm=options.clearance_mm),
         module,
         leds,
-        gap_mm=options.clearance_mm,
         wall_mm=LEAST_WALL_MM,
         tilt_deg=ring.tilt_deg,
     )

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -10,8 +11,10 @@ import numpy as np
 from geometry.body.csg import Node
 from geometry.body.csg_mesh import closed, evaluate
 from geometry.housing.holder_seat import seat_gap
+from geometry.housing.led_holder import LEAST_WALL_MM
 from geometry.mould.castability import Worst
-from geometry.mould.print_checks import PrintLimits, bed_check, check, wall_check
+from geometry.mould.fabricate import Made
+from geometry.mould.print_checks import Bound, PrintLimits, bed_check, check, wall_check
 from geometry.mould.walls import thinnest_wall
 from geometry.surface.rays import RayCaster
 from geometry.surface.surface import closest_point
@@ -21,8 +24,6 @@ from workbench.core.result.results import Label, LabelledSurface, Solid
 
 SEARCH_MM = 50.0
 """Gaps wider than this are not measured [mm]."""
-LEAST_WALL_MM = 0.8
-"""Thinnest printed wall of a part that carries no bolts: two lines of a 0.4 mm nozzle [mm]."""
 
 HOUSING_LIMITS = PrintLimits(
     LEAST_WALL_MM,
@@ -39,29 +40,40 @@ MOST_LOST = 0.01
 """Share of a part that may be left away as crumbs between cuts [1]."""
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Bought:
+    """Rooms of the bought parts, without gaps."""
+
+    module: Node
+    """Of the camera module."""
+    leds: tuple[Node, ...]
+    """Of each LED."""
+
+
 def housing_checks(
-    parts: Sequence[FabricationPart],
+    made: Sequence[Made],
     solid: Solid,
-    module: Node,
-    leds: Sequence[Node],
+    bought: Bought,
     options: Housing,
     *,
     in_shell: bool,
     printer: Printer,
-    lost: Mapping[str, Worst],
 ) -> tuple[FabricationCheck, ...]:
     """Gaps around the bought parts, and walls and sizes of the printed ones.
 
     Args:
-        module: Room of the camera module.
-        leds: Room of each LED.
+        made: The printed parts, with what was left away of each in loose pieces.
+        solid: The bodies of the design.
+        bought: Rooms of camera module and LEDs.
+        options: Clearances and walls.
         in_shell: Whether LEDs touch the support on purpose, to feed light into it.
-        lost: Share of each part in loose pieces, which are left away.
+        printer: That prints the parts.
     """
+    parts = [one.part for one in made]
     walls = [solid.membrane] if in_shell else [solid.membrane, solid.support]
     shells = [closed("shell", surface.points_mm, surface.faces) for surface in walls]
-    camera = evaluate(module)
-    lights = [evaluate(led) for led in leds]
+    camera = evaluate(bought.module)
+    lights = [evaluate(led) for led in bought.leds]
     cavity = Cavity(solid.membrane)
     checks = [_camera_clearance(camera, shells, cavity, solid, options)]
     if lights:
@@ -74,7 +86,7 @@ def housing_checks(
             limits = limits._replace(thin=holder_advice(edge, lights, shell, options))
         checks.append(_wall(part, edge, limits, printer))
         checks.append(bed_check(part, printer.bed_mm, limits))
-    checks += [_whole(name, share) for name, share in lost.items() if share.value > 0.0]
+    checks += [_whole(one.part.name, one.lost) for one in made if one.lost.value > 0.0]
     return tuple(checks)
 
 
@@ -118,9 +130,7 @@ def _whole(name: str, lost: Worst) -> FabricationCheck:
         "loose_pieces",
         name,
         lost,
-        unit="of its volume",
-        limit=MOST_LOST,
-        bad=MOST_LOST,
+        Bound(limit=MOST_LOST, unit="of its volume", bad=MOST_LOST),
         message="camera, LEDs or shell cut the part in two: use a smaller camera module, move it "
         "by optics.camera.position_mm, or make room for it in the shape",
     )
@@ -184,10 +194,7 @@ def _led_clearance(
         "led_clearance",
         "led_ring_holder",
         min(gaps, key=lambda gap: gap.value),
-        unit="mm",
-        limit=options.clearance_mm,
-        sense="min",
-        bad=0.0,
+        Bound(limit=options.clearance_mm, unit="mm", sense="min", bad=0.0),
         message="change optics.ring.radius_mm or height_mm, lower its count, or use smaller LEDs",
     )
 
@@ -204,10 +211,7 @@ def _camera_clearance(
         "camera_clearance",
         "camera_mount",
         Worst(min(gap, below), _centre(camera)),
-        unit="mm",
-        limit=options.clearance_mm,
-        sense="min",
-        bad=0.0,
+        Bound(limit=options.clearance_mm, unit="mm", sense="min", bad=0.0),
         message="move optics.camera.position_mm, raise shape.base_height_mm or take a smaller one",
     )
 
@@ -225,9 +229,7 @@ def _holder_seat(parts: Sequence[FabricationPart], options: Housing) -> Fabricat
         "led_ring_holder",
         # The parts' triangles are good to a thousandth.
         gap._replace(value=round(gap.value, 3)),
-        unit="mm",
-        limit=options.clearance_mm,
-        bad=LARGEST_DROP_MM,
+        Bound(limit=options.clearance_mm, unit="mm", bad=LARGEST_DROP_MM),
         message="nothing under it carries it: lower optics.ring.height_mm, or bring "
         "optics.ring.radius_mm nearer to the wall of the cavity, or use a smaller camera module",
     )

@@ -14,6 +14,7 @@ up to the next slab, or through. Source: Serra, Image Analysis and Mathematical 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
@@ -30,15 +31,24 @@ ARC_CHORDS = 6
 """Of a quarter of that disc: its outline then is good to 4 micrometres."""
 CRUMB_MM2 = 0.5
 UPRIGHT_DEG = 1.0
+LEAST_WALL_MM = 0.8
+"""Thinnest printed wall of a part that carries no bolts: two lines of a 0.4 mm nozzle [mm]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Shells:
+    """Membrane and support, beside which a gap stays free."""
+
+    bodies: tuple[csg.Node, ...]
+    gap_mm: float
 
 
 def shaped_holder(
     ring: csg.Node,
-    shells: Sequence[csg.Node],
+    shells: Shells,
     module: csg.Node,
     pockets: Sequence[csg.Node],
     *,
-    gap_mm: float,
     wall_mm: float,
     tilt_deg: float,
 ) -> csg.Node | None:
@@ -46,17 +56,18 @@ def shaped_holder(
 
     Args:
         ring: The uncut ring.
-        shells: Bodies beside which `gap_mm` stays free.
+        shells: Bodies beside which it stands.
         module: Room of the camera module with its gap.
         pockets: Room of each LED with its gap, open to the front.
         tilt_deg: Of the LEDs; the pockets of upright ones are part of the plan.
     """
     low_mm, top_mm = heights(ring)
+    gap_mm = shells.gap_mm
     upright = abs(tilt_deg) < UPRIGHT_DEG
     floor_mm = min(heights(pocket)[0] for pocket in pockets) if upright else top_mm
     module_mm = _module_top(heights(module)[1], floor_mm, top_mm, wall_mm)
     plan = shadow(ring, low_mm, top_mm)
-    for shell in shells:
+    for shell in shells.bodies:
         plan -= shadow(shell, low_mm - gap_mm, top_mm + gap_mm).buffer(gap_mm)
     levels = [low_mm, *(z for z in sorted({floor_mm, module_mm}) if low_mm < z < top_mm), top_mm]
     slabs: list[csg.Node] = []

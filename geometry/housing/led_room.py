@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from geometry.body import csg
-from geometry.housing.housing_checks import LEAST_WALL_MM
-from geometry.housing.led_holder import SPARE_MM
+from geometry.housing.led_holder import LEAST_WALL_MM, SPARE_MM
 from workbench.core.design.leds import led_places
 from workbench.core.design.lighting import LedRing
 from workbench.core.design.making import Housing

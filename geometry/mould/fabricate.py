@@ -33,6 +33,24 @@ GIVEN_SHARE = 0.01
 chords of 0.05 mm cost a thin shell 0.5 %."""
 
 
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class PartPlan:
+    """A printable part before it is made."""
+
+    name: str
+    """File name without ending: letters, digits, underscores."""
+    node: csg.Node
+    """Its body, in the assembled position."""
+    group: PartGroup
+    explode: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Where it stands in the exploded view, from its assembled place [mm]."""
+    process: str = "3D print"
+    """How it is made, for the build sheet."""
+    brep: np.ndarray | None = None
+    """Its B-rep where the design already has it, see `FabricationPart`; empty when there is none,
+    None: it is made from the body."""
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Made:
     """A part and what its making has cost it."""
@@ -44,28 +62,19 @@ class Made:
     """Share of its volume in loose pieces that were left away, and the middle of the largest."""
 
 
-def fabricate(
-    name: str,
-    node: csg.Node,
-    *,
-    group: PartGroup,
-    explode: tuple[float, float, float],
-    pull: tuple[float, float, float] = (0.0, 0.0, 0.0),
-    process: str = "3D print",
-    keep_largest: bool = False,
-    brep: np.ndarray | None = None,
-) -> Made:
+def fabricate(plan: PartPlan, *, keep_largest: bool = False) -> Made:
     """The part, as one closed body.
 
     Args:
+        plan: What it is to be.
         keep_largest: Leave crumbs that cuts have separated away, instead of refusing the part; how
             much that was is told, for the caller to judge.
-        brep: The part's B-rep where the design already has it; empty when it has none.
 
     Raises:
         GeometryError: If the part is empty or falls into pieces.
     """
-    solid = without_crumbs(evaluate(node))
+    name, group = plan.name, plan.group
+    solid = without_crumbs(evaluate(plan.node))
     lost = Worst(0.0, (0.0, 0.0, 0.0))
     if keep_largest:
         solid, lost = largest(solid)
@@ -82,7 +91,7 @@ def fabricate(
         reason = f"{name} had loose pieces, {100 * lost.value:.2g} % of it, which are left away"
         brep = NO_BREP
     else:
-        brep, reason, volume_mm3 = _brep(node, brep, volume_mm3, name)
+        brep, reason, volume_mm3 = _brep(plan, volume_mm3)
     if not closed:
         touching = f"{name} touches itself: its STL file is not closed where it does"
         reason = "; ".join(words for words in (reason, touching) if words)
@@ -94,9 +103,8 @@ def fabricate(
         brep=brep,
         volume_mm3=volume_mm3,
         watertight=closed,
-        explode=explode,
-        pull=pull,
-        process=process,
+        explode=plan.explode,
+        process=plan.process,
     )
     return Made(part=part, reason=reason, lost=lost)
 
@@ -159,13 +167,12 @@ def stl_points(points_mm: np.ndarray) -> np.ndarray:
     return (np.round(points_mm, 6) + 0.0).astype(np.float32)
 
 
-def _brep(
-    node: csg.Node, given: np.ndarray | None, volume_mm3: float, name: str
-) -> tuple[np.ndarray, str, float]:
+def _brep(plan: PartPlan, volume_mm3: float) -> tuple[np.ndarray, str, float]:
     """The exact body, why there is none, and the best volume there is [mm3]."""
     from geometry.body.csg_brep import checked, has_brep, translated
     from geometry.body.solid import brep_bytes
 
+    name, node, given = plan.name, plan.node, plan.brep
     if not (has_brep(node) if given is None else given.size):
         return NO_BREP, f"{name} has no exact CAD body: its STEP file has flat facets", volume_mm3
 

@@ -12,7 +12,7 @@ from geometry.mould.castability import Worst, draft_deg, undercut
 from geometry.mould.channels import Channels
 from geometry.mould.core_release import bend_strain, core_strain, pin_strain
 from geometry.mould.parting import Parting
-from geometry.mould.print_checks import PrintLimits, bed_check, check, wall_check
+from geometry.mould.print_checks import Bound, PrintLimits, bed_check, check, wall_check
 from geometry.mould.trapped import POCKET_VENT_MM
 from geometry.mould.walls import thinnest_wall
 from geometry.surface.spread import Spread, spread
@@ -74,9 +74,7 @@ def _release(cast: Cast, parting: Parting) -> Iterator[FabricationCheck]:
             "undercut",
             name,
             held,
-            unit="of its surface",
-            limit=UNDERCUT_SHARE,
-            bad=LOCKED_SHARE,
+            Bound(limit=UNDERCUT_SHARE, unit="of its surface", bad=LOCKED_SHARE),
             message="the skin must be peeled over it: use a silicone that stretches, "
             "raise mould.outer_parts or round the shape",
         )
@@ -84,9 +82,7 @@ def _release(cast: Cast, parting: Parting) -> Iterator[FabricationCheck]:
             "draft",
             name,
             draft_deg(part, parting.pulls[number]),
-            unit="degree",
-            limit=LEAST_DRAFT_DEG,
-            sense="min",
+            Bound(limit=LEAST_DRAFT_DEG, unit="degree", sense="min"),
             message="the surface leans against the pull there",
         )
 
@@ -98,10 +94,8 @@ def motion_checks(motions: Sequence[PartMotion]) -> Iterator[FabricationCheck]:
             "demoulding",
             motion.part,
             Worst(motion.overlap_mm3, motion.overlap_at_mm),
-            unit="mm3",
+            Bound(limit=motion.tolerance_mm3, unit="mm3", bad=motion.tolerance_mm3),
             title="overlap with other parts on its way out",
-            limit=motion.tolerance_mm3,
-            bad=motion.tolerance_mm3,
             message="no order of pulling the parts apart is free: choose another "
             "mould.outer_parts, or bend or undercut the shape less",
         )
@@ -120,9 +114,7 @@ def _core(cast: Cast, way: np.ndarray) -> Iterator[FabricationCheck]:
         "draft",
         "core",
         draft,
-        unit="degree",
-        limit=LEAST_DRAFT_DEG,
-        sense="min",
+        Bound(limit=LEAST_DRAFT_DEG, unit="degree", sense="min"),
         message="the core is wider above than below: raise mould.draft_deg or stretch the skin",
     )
 
@@ -147,10 +139,8 @@ def part_removal(part: str, strain: Worst, elongation: float) -> FabricationChec
         "part_removal",
         part,
         strain,
-        unit="strain",
+        Bound(limit=elongation / STRAIN_SAFETY, unit="strain", bad=elongation),
         title="stretch of the skin that it is pulled over",
-        limit=elongation / STRAIN_SAFETY,
-        bad=elongation,
         message="choose a silicone with more elongation, raise mould.outer_parts or round the "
         "shape",
     )
@@ -166,9 +156,7 @@ def core_removal(strain: Worst, elongation: float) -> FabricationCheck:
         "core_removal",
         "core",
         strain,
-        unit="strain",
-        limit=elongation / STRAIN_SAFETY,
-        bad=elongation,
+        Bound(limit=elongation / STRAIN_SAFETY, unit="strain", bad=elongation),
         message="choose a silicone with more elongation, bend the shape less, or raise "
         "mould.draft_deg",
     )
@@ -182,8 +170,7 @@ def _trapped(channels: Channels) -> FabricationCheck:
         "trapped_air",
         "cast",
         Worst(float(len(places)), (float(spot[0]), float(spot[1]), float(spot[2]))),
-        unit="pockets",
-        limit=0.0,
+        Bound(limit=0.0, unit="pockets"),
         message=f"the highest holds {channels.trapped_height_mm:.1f} mm of air; {vented} others "
         "are vented; tilt the mould while pouring and degas it under vacuum",
     )
@@ -203,8 +190,6 @@ def _feature(channels: Channels, options: MouldOptions) -> FabricationCheck:
         "smallest_feature",
         "core",
         min(features, key=lambda feature: feature.value),
-        unit="mm",
-        limit=options.feature_mm,
-        sense="min",
+        Bound(limit=options.feature_mm, unit="mm", sense="min"),
         message="the printer closes holes this small: drill them, or lower mould.feature_mm",
     )

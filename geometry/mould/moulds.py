@@ -18,7 +18,7 @@ from geometry.body.silicones import UNKNOWN_ELONGATION
 from geometry.mould.cast import Cast, footprint, make_cast
 from geometry.mould.channels import Channels, make_channels
 from geometry.mould.demoulding import core_way, drawn_apart, hardship, opening
-from geometry.mould.fabricate import Made, fabricate
+from geometry.mould.fabricate import Made, PartPlan, fabricate
 from geometry.mould.mould_checks import motion_checks, mould_checks, release_strain
 from geometry.mould.mould_fit import measure_fit
 from geometry.mould.mould_layout import Layout, make_layout
@@ -29,7 +29,6 @@ from workbench.core.design.making import MouldOptions
 from workbench.core.result.fabrication import MouldSet, PartGroup, PartMotion
 from workbench.core.result.results import Solid
 
-NOWHERE = (0.0, 0.0, 0.0)
 TORN_STRAIN = UNKNOWN_ELONGATION
 """A skin that must stretch by more is as good as jammed, whatever it is cast of [1]."""
 MOST_TRIED = 4
@@ -97,7 +96,7 @@ def _made(
     made = []
     for number, (name, node) in enumerate(nodes.items()):
         monitor(0.1 + 0.6 * number / len(nodes), f"making {name}")
-        made.append(fabricate(name, node, group=PartGroup.MOULD, explode=NOWHERE))
+        made.append(fabricate(PartPlan(name=name, node=node, group=PartGroup.MOULD)))
     return made
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from geometry.mould.castability import Worst, bed_ratio
@@ -15,33 +16,44 @@ ROUNDING = 1e-6
 """A value that misses its limit by less meets it."""
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Bound:
+    """How far a measure may go."""
+
+    limit: float
+    """Beyond it a check is a warning, in `unit`."""
+    unit: str
+    sense: str = "max"
+    """`max`: at most the limit is good; `min`: at least."""
+    bad: float | None = None
+    """Beyond it a check is bad, in `unit`; None: it never is."""
+
+
 def check(
     name: str,
     part: str,
     worst: Worst,
+    bound: Bound,
     *,
-    unit: str,
-    limit: float,
     message: str,
-    sense: str = "max",
-    bad: float | None = None,
     title: str = "",
 ) -> FabricationCheck:
-    """A check; a warning beyond the limit, bad beyond `bad` (never, when None).
+    """A check: a measure of a part against its bound.
 
     Args:
         title: What is measured, in words; made of the name when empty.
         message: What to do about it, added when it is not good.
     """
+    limit, sense, bad, unit = bound.limit, bound.sense, bound.bad, bound.unit
     sign = 1.0 if sense == "max" else -1.0
     over = sign * (worst.value - limit) > ROUNDING
     severity = Severity.WARNING if over else Severity.GOOD
     if over and bad is not None and sign * worst.value > sign * bad:
         severity = Severity.BAD
-    bound = "at most" if sense == "max" else "at least"
+    side = "at most" if sense == "max" else "at least"
     title = title or name.replace("_", " ")
     value = legible(worst.value)
-    text = f"{part}: {title} {value} {unit}, {bound} {limit:.3g} {unit} is good"
+    text = f"{part}: {title} {value} {unit}, {side} {limit:.3g} {unit} is good"
     if tolerated(worst.value, limit, sense=sense) and not over:
         text = f"{part}: {title} {value} {unit} is within tolerance, {limit:.3g} {unit}"
     return FabricationCheck(
@@ -90,10 +102,12 @@ def wall_check(
         "minimum_wall",
         name,
         wall,
-        unit="mm",
-        limit=limits.wall_mm,
-        sense="min",
-        bad=None if feature_mm is None else max(LEAST_PRINT_MM, feature_mm),
+        Bound(
+            limit=limits.wall_mm,
+            unit="mm",
+            sense="min",
+            bad=None if feature_mm is None else max(LEAST_PRINT_MM, feature_mm),
+        ),
         message=limits.thin,
     )
 
@@ -107,9 +121,7 @@ def bed_check(
         "bed",
         part.name,
         Worst(100.0 * bed_ratio(part.points_mm, bed_mm), (float(x), float(y), float(z))),
-        unit="%",
+        Bound(limit=100.0, unit="%", bad=100.0),
         title="share of the bed",
-        limit=100.0,
-        bad=100.0,
         message=limits.large,
     )

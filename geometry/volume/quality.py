@@ -7,6 +7,8 @@ those of triangles in the skins. Leaves out: skewness, aspect ratio.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from workbench.core.result.quality import MeshQuality, QualityReport
@@ -24,6 +26,18 @@ CELL_EDGES = {
     ),
 }
 """Pairs of corners in VTK order by number of corners."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Measure:
+    """What cells are judged by."""
+
+    values: np.ndarray
+    """Of each cell, larger is better, shape (M,)."""
+    low: float
+    """Where its histogram begins."""
+    high: float
+    """Where it ends."""
 
 
 def quality_report(mesh: MembraneMesh, volume_mm3: float) -> QualityReport:
@@ -51,10 +65,12 @@ def volume_quality(mesh: VolumeMesh, volume_mm3: float) -> MeshQuality:
     return _judged(
         mesh.points_mm,
         mesh.cells,
-        mesh.quality.astype(np.float64),
+        Measure(
+            values=mesh.quality.astype(np.float64),
+            low=min(0.0, float(mesh.quality.min())),
+            high=1.0,
+        ),
         length_mm,
-        low=min(0.0, float(mesh.quality.min())),
-        high=1.0,
         volume_ratio=mesh.volume_mm3 / volume_mm3,
     )
 
@@ -67,7 +83,8 @@ def skin_quality(skin: Skin) -> MeshQuality:
     unit = edges / np.maximum(length_mm, 1e-300)[:, :, None]
     cosine = -np.einsum("fij,fij->fi", unit, np.roll(unit, 1, axis=1))
     angle_deg = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))).min(axis=1)
-    return _judged(skin.points_mm, skin.faces, angle_deg, length_mm.ravel(), low=0.0, high=60.0)
+    measure = Measure(values=angle_deg, low=0.0, high=60.0)
+    return _judged(skin.points_mm, skin.faces, measure, length_mm.ravel())
 
 
 def tetrahedron_quality(points_mm: np.ndarray, cells: np.ndarray) -> np.ndarray:
@@ -92,20 +109,19 @@ def tetrahedron_quality(points_mm: np.ndarray, cells: np.ndarray) -> np.ndarray:
 def _judged(
     points_mm: np.ndarray,
     cells: np.ndarray,
-    measure: np.ndarray,
+    measure: Measure,
     length_mm: np.ndarray,
     *,
-    low: float,
-    high: float,
     volume_ratio: float = float("nan"),
 ) -> MeshQuality:
-    worst = int(measure.argmin())
-    counts, borders = np.histogram(np.clip(measure, low, high), bins=BINS, range=(low, high))
+    values, low, high = measure.values, measure.low, measure.high
+    worst = int(values.argmin())
+    counts, borders = np.histogram(np.clip(values, low, high), bins=BINS, range=(low, high))
     edge_counts, edge_borders = np.histogram(length_mm, bins=BINS)
     return MeshQuality(
         cells=len(cells),
         nodes=len(points_mm),
-        measure=np.percentile(measure, PERCENT),
+        measure=np.percentile(values, PERCENT),
         measure_counts=counts,
         measure_borders=borders,
         edge_mm=np.percentile(length_mm, PERCENT),

@@ -6,6 +6,8 @@ holds the shrinkage. Numbers of the silicone come from `silicones`.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from geometry.body.csg_mesh import closed
@@ -31,6 +33,38 @@ from workbench.core.result.fabrication import (
 from workbench.core.result.results import Label, Solid
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class WantedMaterial:
+    """What a design asks of the silicone of its skin and of the gel behind it."""
+
+    young_MPa: float
+    density_g_cm3: float
+    """To weigh with where the table of silicones has none."""
+    backing_MPa: float
+    """Young's modulus of the gel behind a skin that stands off [MPa]; 0 is air."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Mix:
+    """A silicone as it is weighed."""
+
+    silicone: Silicone
+    pour_ml: float
+    mass_g: float
+    share_a: float
+    """Of part A in the mass [1]."""
+
+    @property
+    def part_a_g(self) -> float:
+        """Mass of part A."""
+        return self.mass_g * self.share_a
+
+    @property
+    def part_b_g(self) -> float:
+        """Mass of part B."""
+        return self.mass_g * (1.0 - self.share_a)
+
+
 def make_recipe(
     solid: Solid,
     moulds: MouldSet,
@@ -38,26 +72,31 @@ def make_recipe(
     *,
     ring: LedRing,
     casting: Casting,
-    young_MPa: float,
-    density_g_cm3: float,
-    backing_MPa: float,
+    wanted: WantedMaterial,
 ) -> Recipe:
     """Everything the workshop needs besides the files.
 
     Args:
-        young_MPa: Young's modulus that the design asks for.
-        density_g_cm3: Density to weigh with where the table has none.
-        backing_MPa: Young's modulus of the gel behind a skin that stands off; 0 is air.
+        solid: The bodies of the design.
+        moulds: What the skin is cast in.
+        housing: The rigid parts.
+        ring: The LEDs to solder.
+        casting: The silicone and how much of it is wasted.
+        wanted: What the design asks of silicone and gel.
 
     Raises:
         DesignError: If the silicone is not in the table.
     """
     chosen = silicone(casting.silicone)
-    density = chosen.density_g_cm3 or density_g_cm3
+    density = chosen.density_g_cm3 or wanted.density_g_cm3
     cast_ml = moulds.cast_volume_mm3 / 1000.0
     pour_ml = cast_ml * (1.0 + casting.waste_percent / 100.0)
-    mass_g = pour_ml * density
-    share_a = chosen.parts_a / (chosen.parts_a + chosen.parts_b)
+    mix = Mix(
+        silicone=chosen,
+        pour_ml=pour_ml,
+        mass_g=pour_ml * density,
+        share_a=chosen.parts_a / (chosen.parts_a + chosen.parts_b),
+    )
     sensing = solid.membrane.faces[solid.membrane.has(Label.OUTER)]
     return Recipe(
         silicone=chosen.name,
@@ -65,15 +104,15 @@ def make_recipe(
         density_g_cm3=density,
         cast_ml=cast_ml,
         pour_ml=pour_ml,
-        part_a_g=mass_g * share_a,
-        part_b_g=mass_g * (1.0 - share_a),
+        part_a_g=mix.part_a_g,
+        part_b_g=mix.part_b_g,
         coating_mm2=float(face_areas(solid.membrane.points_mm, sensing).sum()),
         leds=led_items(ring),
         prints=tuple(print_item(part) for part in (*moulds.parts, *housing.parts)),
-        steps=_steps(solid, moulds, housing, chosen, pour_ml, mass_g, share_a, backing_MPa),
+        steps=_steps(solid, moulds, housing, mix, wanted.backing_MPa),
         checks=_checks(moulds, chosen),
-        notice=_notice(chosen, young_MPa, density_g_cm3),
-        supplies=supplies(solid, moulds, housing, casting, backing_MPa),
+        notice=_notice(chosen, wanted),
+        supplies=supplies(solid, moulds, housing, casting, wanted.backing_MPa),
         size_mm=_size_mm(solid, housing),
     )
 
@@ -125,8 +164,8 @@ def print_item(part: FabricationPart) -> PrintItem:
     )
 
 
-def _notice(chosen: Silicone, young_MPa: float, density_g_cm3: float) -> str:
-    words = []
+def _notice(chosen: Silicone, wanted: WantedMaterial) -> str:
+    words, young_MPa = [], wanted.young_MPa
     off = abs(chosen.young_MPa / young_MPa - 1.0)
     if off > NEAR:
         near = nearest(young_MPa)
@@ -138,7 +177,7 @@ def _notice(chosen: Silicone, young_MPa: float, density_g_cm3: float) -> str:
     if chosen.density_g_cm3 is None:
         words.append(
             f"no density of {chosen.name} is on record: masses use the design's "
-            f"{density_g_cm3:g} g/cm3"
+            f"{wanted.density_g_cm3:g} g/cm3"
         )
     return "; ".join(words)
 
@@ -147,13 +186,10 @@ def _steps(
     solid: Solid,
     moulds: MouldSet,
     housing: HousingSet,
-    chosen: Silicone,
-    pour_ml: float,
-    mass_g: float,
-    share_a: float,
+    mix: Mix,
     backing_MPa: float,
 ) -> tuple[str, ...]:
-    pins = len(solid.tips_mm)
+    chosen, pins = mix.silicone, len(solid.tips_mm)
     life = f", within {chosen.pot_life_min:g} minutes" if chosen.pot_life_min else ""
     steps = [
         f"Print {', '.join(part.name for part in moulds.parts)} and, for the sensor, "
@@ -161,8 +197,8 @@ def _steps(
         "Coat all mould faces with release agent: printed resin stops platinum silicone from "
         "curing, so bake it or seal it with clear acrylic lacquer first.",
         *closing_steps(moulds.motions, bolts(moulds)[0]),
-        f"Weigh {mass_g * share_a:.2f} g of part A and {mass_g * (1 - share_a):.2f} g of part B of "
-        f"{chosen.name} ({pour_ml:.2f} ml in all), stir slowly and degas under vacuum.",
+        f"Weigh {mix.part_a_g:.2f} g of part A and {mix.part_b_g:.2f} g of part B of "
+        f"{chosen.name} ({mix.pour_ml:.2f} ml in all), stir slowly and degas under vacuum.",
         f"Fill the mould through the gate{life}, until silicone stands in every vent.",
         f"Let it cure ({chosen.cure} at room temperature), flange up and level.",
         *opening_steps(moulds.motions, hollow=moulds.release_strain is not None),

@@ -11,7 +11,7 @@ import pytest
 import trimesh
 
 from designs.family import resolve_shape
-from geometry.housing.housing_checks import LEAST_WALL_MM
+from geometry.housing.led_holder import LEAST_WALL_MM
 from workbench.core.base.monitor import silent
 from workbench.core.press.press import ContactSettings
 from workbench.core.result.fabrication import Severity

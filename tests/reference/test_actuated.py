@@ -16,7 +16,7 @@ from workbench.core.press.indenter import Indenter
 from workbench.core.press.press import ContactSettings, Extent, Press
 from workbench.core.result.results import Label, MembraneMesh
 from workbench.core.result.sensing import Contact
-from workbench.edit.sequences import LIFT_FRAMES, sequence
+from workbench.edit.sequences import LIFT_FRAMES, find_sequence, sequence
 from workbench.pipeline.stages.build import build
 from workbench.pipeline.stages.lattice import LatticeInputs, lattice
 from workbench.pipeline.stages.mesh import MeshInputs, mesh
@@ -82,7 +82,9 @@ def test_driving_the_wall_at_a_ball_is_pressing_the_ball(taichi_device: str) -> 
 def grip() -> tuple[MembraneMesh, Contact]:
     """The trunk's grip on a coarse grid: two frames a phase, at its usual closing."""
     design = load_design("trunk").replace("meshing.hex_mm", 0.8)
-    case = sequence(design, "grip", frames=GRIP_FRAMES, settings={"grid_mm": 1.25})
+    case = sequence(
+        design, find_sequence(design, "grip"), frames=GRIP_FRAMES, settings={"grid_mm": 1.25}
+    )
     solid = build(plan(design, case)["build"].inputs, monitor=silent)
     skins = mesh(MeshInputs(solid=solid, meshing=design.meshing), monitor=silent)
     points = lattice(LatticeInputs(solid=solid, grid_mm=case.settings.grid_mm), monitor=silent)
@@ -147,7 +149,9 @@ def test_the_backs_of_the_lobes_follow_their_drives(grip: tuple[MembraneMesh, Co
     skins, contact = grip
     design = load_design("trunk")
     closed = 2 * GRIP_FRAMES - 1
-    for drive in sequence(design, "grip", frames=GRIP_FRAMES).press.actuations:
+    for drive in sequence(
+        design, find_sequence(design, "grip"), frames=GRIP_FRAMES
+    ).press.actuations:
         number = int(drive.region[-1])
         outer = skins.outer
         facing = outer.normals @ np.array(drive.facing) > 0.5

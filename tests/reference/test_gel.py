@@ -10,7 +10,7 @@ from designs.digitac import DigitacShape
 from geometry.body.solid import part_from_brep
 from geometry.mould.gel import gap_ml, gel_step
 from geometry.mould.moulds import make_mould
-from geometry.workshop.recipe import make_recipe
+from geometry.workshop.recipe import WantedMaterial, make_recipe
 from workbench.core.design.design import Layers, MouldOptions
 from workbench.core.design.lighting import LedRing
 from workbench.core.design.making import Casting
@@ -40,9 +40,7 @@ def steps(solid: Solid, moulds: MouldSet, backing_MPa: float) -> tuple[str, ...]
         HousingSet(parts=()),
         ring=LedRing(),
         casting=Casting(),
-        young_MPa=0.145,
-        density_g_cm3=1.0,
-        backing_MPa=backing_MPa,
+        wanted=WantedMaterial(young_MPa=0.145, density_g_cm3=1.0, backing_MPa=backing_MPa),
     ).steps
 
 

@@ -12,10 +12,10 @@ from geometry.body import csg
 from geometry.body.csg_mesh import arrays, closed, evaluate, overlaps_mm3
 from geometry.housing.holder_seat import FARTHEST_MM, seat_gap
 from geometry.housing.housing import make_housing
-from geometry.housing.led_holder import opened, shadow, shaped_holder
+from geometry.housing.led_holder import Shells, opened, shadow, shaped_holder
 from geometry.mould.walls import thinnest_wall
 from geometry.surface.surface import mesh_volume
-from geometry.workshop.recipe import make_recipe
+from geometry.workshop.recipe import WantedMaterial, make_recipe
 from workbench.core.base.monitor import silent
 from workbench.core.design.camera import Camera
 from workbench.core.design.design import Layers
@@ -66,7 +66,9 @@ def test_a_pocket_that_nearly_breaks_through_is_opened() -> None:
     camera = csg.Box(low_mm=(-20.0, -20.0, -5.0), high_mm=(0.0, 20.0, 0.9))
     plain = csg.without(RING, [pocket, camera])
     assert thinnest_wall(*arrays(evaluate(plain)), edges=True).value < 0.3
-    shaped = shaped_holder(RING, [], camera, [pocket], gap_mm=0.15, wall_mm=0.8, tilt_deg=0.0)
+    shaped = shaped_holder(
+        RING, Shells(bodies=(), gap_mm=0.15), camera, [pocket], wall_mm=0.8, tilt_deg=0.0
+    )
     assert shaped is not None
     solid = evaluate(shaped)
     points, faces = arrays(solid)
@@ -95,7 +97,9 @@ def test_slivers_beside_the_shell_are_cut_away() -> None:
     shell = csg.moved(csg.cylinder(10.0, -3.0, 3.0), (6.0, 0.0, 0.0))
     led = csg.moved(csg.cylinder(0.5, 0.0, 3.0), (-7.5, 0.0, 0.0))
     assert thinnest_wall(*arrays(evaluate(csg.without(RING, [shell]))), edges=True).value < 0.1
-    shaped = shaped_holder(RING, [shell], NOWHERE, [led], gap_mm=0.15, wall_mm=0.8, tilt_deg=0.0)
+    shaped = shaped_holder(
+        RING, Shells(bodies=(shell,), gap_mm=0.15), NOWHERE, [led], wall_mm=0.8, tilt_deg=0.0
+    )
     assert shaped is not None
     assert thinnest_wall(*arrays(evaluate(shaped)), edges=True).value >= 0.8 - 1e-6
     assert evaluate(shaped).min_gap(evaluate(shell), 5.0) >= 0.15 - 0.005  # chords
@@ -129,9 +133,7 @@ def test_the_silicone_decides_whether_the_core_leaves(
             HousingSet(parts=()),
             ring=LedRing(),
             casting=Casting(silicone=silicone),
-            young_MPa=0.145,
-            density_g_cm3=1.0,
-            backing_MPa=0.0,
+            wanted=WantedMaterial(young_MPa=0.145, density_g_cm3=1.0, backing_MPa=0.0),
         ).checks
 
     (check,) = checks(mould)

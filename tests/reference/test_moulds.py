@@ -19,7 +19,7 @@ from geometry.mould.moulds import make_mould
 from geometry.objects.indenters import load_stl
 from geometry.surface.surface import is_watertight, mesh_volume, pieces
 from geometry.workshop.export import package_files, step_body, stl_bytes
-from geometry.workshop.recipe import make_recipe
+from geometry.workshop.recipe import WantedMaterial, make_recipe
 from geometry.workshop.step import write_step
 from workbench.core.base.errors import DesignError, GeometryError, StoreError
 from workbench.core.design.camera import Camera
@@ -51,9 +51,11 @@ def recipe(finger: Solid, moulds: MouldSet, housing: HousingSet) -> Recipe:
         housing,
         ring=LedRing(),
         casting=Casting(),
-        young_MPa=Elastomer().young_MPa,
-        density_g_cm3=Elastomer().density_g_cm3,
-        backing_MPa=Elastomer().backing_MPa,
+        wanted=WantedMaterial(
+            young_MPa=Elastomer().young_MPa,
+            density_g_cm3=Elastomer().density_g_cm3,
+            backing_MPa=Elastomer().backing_MPa,
+        ),
     )
 
 

@@ -13,7 +13,7 @@ import pytest
 
 from geometry.body import csg, csg_brep
 from geometry.body.solid import brep_bytes
-from geometry.mould.fabricate import fabricate
+from geometry.mould.fabricate import PartPlan, fabricate
 from geometry.workshop.export import step_file
 from geometry.workshop.faceted import faceted_step
 from geometry.workshop.step import expect_assembly, expect_read_back, read_back, step_bytes
@@ -73,7 +73,7 @@ def test_a_surface_of_revolution_of_an_ellipse_is_caught() -> None:
 
 def test_a_part_that_reads_back_as_another_gets_facets() -> None:
     """Its B-rep is twice as large as its triangles: facets of 24 mm3 instead, and why."""
-    made = fabricate("block", BLOCK, group=PartGroup.MOULD, explode=(0.0, 0.0, 0.0)).part
+    made = fabricate(PartPlan(name="block", node=BLOCK, group=PartGroup.MOULD)).part
     larger = csg_brep.evaluate(
         csg.Box(low_mm=(0.0, 0.0, 0.0), high_mm=(4.0, 3.0, 4.0)), what="block"
     )
@@ -86,7 +86,7 @@ def test_a_part_that_reads_back_as_another_gets_facets() -> None:
 
 def _facets(low_mm: float = 0.0) -> bytes:
     """A block of 24 mm3 as flat facets."""
-    made = fabricate("block", BLOCK, group=PartGroup.MOULD, explode=(0.0, 0.0, 0.0)).part
+    made = fabricate(PartPlan(name="block", node=BLOCK, group=PartGroup.MOULD)).part
     return faceted_step(made.points_mm + low_mm, made.faces, name="block")[0]
 
 

@@ -6,7 +6,7 @@ import csv
 import io
 
 from geometry.mould.castability import Worst
-from geometry.mould.print_checks import check
+from geometry.mould.print_checks import Bound, check
 from geometry.workshop.build_sheet import bom_csv, build_sheet_html
 from workbench.core.result.fabrication import (
     FabricationCheck,
@@ -52,7 +52,9 @@ def sheet(*checks: FabricationCheck) -> str:
 def draft(value_deg: float) -> FabricationCheck:
     """The check of a mould part's draft, at a place with a rounded zero."""
     place = Worst(value_deg, (-1e-9, 1.0, 2.0))
-    return check("draft", "half_a", place, unit="degree", limit=-0.5, sense="min", message="turn")
+    return check(
+        "draft", "half_a", place, Bound(limit=-0.5, unit="degree", sense="min"), message="turn"
+    )
 
 
 def test_the_head_names_design_silicone_and_sizes() -> None:

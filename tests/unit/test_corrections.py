@@ -19,18 +19,18 @@ from sim.forces.network.weights import (
     weights_to_bytes,
 )
 from sim.forces.training.frames import turn_matrix
-from sim.forces.training.settings import Numbers
 from tests.made_weights import SPEC, tiny_weights
 from tests.unit.made_presses import SETTINGS, made_presses
 from workbench.core.base.errors import DesignError, StoreError
 from workbench.learning.dataset.cases import Split
 from workbench.learning.training.beginning import begin
 from workbench.learning.training.learn import train
-from workbench.learning.training.plan import Plan
+from workbench.learning.training.plan import Plan, Resources
 from workbench.learning.training.presses import Presses
 from workbench.learning.training.results import score, single_predictor
 
 PRESSES = made_presses(12)
+CPU = Resources(device="cpu")
 BOTH = dataclasses.replace(SETTINGS, takes_force=True, corrects=True)
 TARGETS = (Target.FORCE, Target.DISPLACEMENT)
 
@@ -112,7 +112,7 @@ def test_training_begins_at_the_solver_s_error(target: Target) -> None:
     """Before its first epoch a correction scores what the contact solver does, on every split."""
     plan = Plan(settings=BOTH, target=target, seed=4)
     states = PRESSES.of_split(Split.TRAIN)
-    begun = begin(PRESSES, states, plan, device="cpu", numbers=Numbers.AUTO)
+    begun = begin(PRESSES, states, plan, CPU)
     assert begun.corrects and begun.network.spec.input_channels == 6
     weights = begun.weights(arrays_of(begun.network), {})
     told = score(PRESSES, weights, states, single_predictor(weights, PRESSES, "cpu"), 4)
@@ -123,7 +123,7 @@ def test_training_begins_at_the_solver_s_error(target: Target) -> None:
 
 def test_errors_of_an_epoch_are_those_of_its_weights(tmp_path: Path) -> None:
     """What the trainer measures of the correction is what the file scores as a whole field."""
-    done = train(PRESSES, Plan(settings=BOTH, target=Target.FORCE, seed=4), tmp_path, device="cpu")
+    done = train(PRESSES, Plan(settings=BOTH, target=Target.FORCE, seed=4), tmp_path, resources=CPU)
     best = min(row["validation_mae"] for row in done.rows)
     assert done.scores["validation"]["mae"] == pytest.approx(best, rel=2e-3)
     weights = load_weights(done.weights)
@@ -156,12 +156,12 @@ def test_data_without_the_solver_s_force_are_refused() -> None:
 
 def test_tuning_a_correction_scales_force_and_output_by_the_ratio(tmp_path: Path) -> None:
     """Twice as stiff: what enters looks the same to the network, what it adds is doubled."""
-    done = train(PRESSES, Plan(settings=BOTH, target=Target.FORCE, seed=4), tmp_path, device="cpu")
+    done = train(PRESSES, Plan(settings=BOTH, target=Target.FORCE, seed=4), tmp_path, resources=CPU)
     base = load_weights(done.weights)
     stiff = made_presses(12, young=0.2)
     plan = Plan(settings=SETTINGS, target=Target.FORCE, base=base, base_name=done.weights.name)
     states = stiff.of_split(Split.TRAIN)
-    begun = begin(stiff, states, plan, device="cpu", numbers=Numbers.AUTO)
+    begun = begin(stiff, states, plan, CPU)
     assert begun.corrects
     assert begun.scales.force_N == pytest.approx(2.0 * base.force_scale_N)
     assert begun.scales.output == pytest.approx(2.0 * base.output_scale[0])

@@ -15,7 +15,7 @@ import pytest
 from geometry.body import csg, csg_brep
 from geometry.body.solid import brep_bytes
 from geometry.mould.cast import make_cast
-from geometry.mould.fabricate import Made, fabricate
+from geometry.mould.fabricate import Made, PartPlan, fabricate
 from geometry.workshop import export
 from geometry.workshop.export import step_body, step_file
 from geometry.workshop.step import write_step
@@ -47,7 +47,7 @@ def refuse(error: Exception) -> Any:
 
 def block(**options: Any) -> Made:
     """The block as a part."""
-    return fabricate("block", BLOCK, group=PartGroup.SENSOR, explode=(0.0, 0.0, 0.0), **options)
+    return fabricate(PartPlan(name="block", node=BLOCK, group=PartGroup.SENSOR, **options))
 
 
 @pytest.mark.parametrize("error", refusals(), ids=lambda error: type(error).__name__)
@@ -121,12 +121,12 @@ def test_a_crumb_without_a_volume_is_no_second_piece() -> None:
     for size_mm, refused in ((1e-3, False), (1.0, True)):
         low, high = (10.0, 0.0, 0.0), (10.0 + size_mm, size_mm, size_mm)
         node = csg.Union(parts=(BLOCK, csg.Box(low_mm=low, high_mm=high)))
-        place = {"group": PartGroup.MOULD, "explode": (0.0, 0.0, 0.0)}
+        plan = PartPlan(name="block", node=node, group=PartGroup.MOULD)
         if refused:
             with pytest.raises(GeometryError, match="falls into 2 pieces"):
-                fabricate("block", node, **place)
+                fabricate(plan)
         else:
-            assert fabricate("block", node, **place).part.volume_mm3 == pytest.approx(24.0)
+            assert fabricate(plan).part.volume_mm3 == pytest.approx(24.0)
 
 
 def test_lost_pieces_are_measured_and_end_the_exact_body() -> None:
@@ -135,14 +135,8 @@ def test_lost_pieces_are_measured_and_end_the_exact_body() -> None:
     node = csg.Union(parts=(BLOCK, crumb))
     given = brep_bytes(csg_brep.evaluate(BLOCK, what="block"))
     for brep in (None, given):
-        made = fabricate(
-            "block",
-            node,
-            group=PartGroup.SENSOR,
-            explode=(0.0, 0.0, 0.0),
-            keep_largest=True,
-            brep=brep,
-        )
+        plan = PartPlan(name="block", node=node, group=PartGroup.SENSOR, brep=brep)
+        made = fabricate(plan, keep_largest=True)
         assert made.lost.value == pytest.approx(0.2)
         assert made.lost.place_mm == pytest.approx((10.5, 1.5, 1.0))
         assert made.part.volume_mm3 == pytest.approx(24.0)

@@ -13,7 +13,7 @@ from workbench.core.base.mapping import from_table, to_table
 from workbench.core.press.indenter import Indenter
 from workbench.core.press.motion import StrokeKind
 from workbench.core.press.press import Press
-from workbench.edit.sequences import sequence, titles
+from workbench.edit.sequences import find_sequence, sequence, titles
 from workbench.project.named_designs import load_design
 
 
@@ -22,15 +22,16 @@ def test_the_trunk_has_a_grip_and_the_finger_has_none() -> None:
     assert list(titles(load_design("trunk"))) == ["grip"]
     assert titles(load_design("finger")) == {}
     with pytest.raises(DesignError, match="finger has no sequence 'grip'"):
-        sequence(load_design("finger"), "grip")
+        find_sequence(load_design("finger"), "grip")
     with pytest.raises(DesignError, match="no sequence 'grap'") as caught:
-        sequence(load_design("trunk"), "grap")
+        find_sequence(load_design("trunk"), "grap")
     assert "grip" in caught.value.hint
 
 
 def test_the_grip_closes_after_the_press_and_opens_before_the_lift() -> None:
     """With 4 frames a phase: shares 0 at 4, 1 at 8, 0 at 12; 14 frames, released at the end."""
-    press = sequence(load_design("trunk"), "grip", frames=4).press
+    design = load_design("trunk")
+    press = sequence(design, find_sequence(design, "grip"), frames=4).press
     assert press.frame_count == 14
     assert [stroke.kind for stroke in press.strokes] == [StrokeKind.HOLD, StrokeKind.RELEASE]
     for drive in press.actuations:
@@ -41,7 +42,7 @@ def test_the_grip_closes_after_the_press_and_opens_before_the_lift() -> None:
 def test_the_lobes_close_toward_each_other_as_mirror_images(lobe_mm: float) -> None:
     """The top of the lobe at +Y goes toward -Y by lobe x sin(turn), the other one as far to +Y."""
     design = load_design("trunk").replace("shape.lobe_mm", lobe_mm)
-    press = sequence(design, "grip").press
+    press = sequence(design, find_sequence(design, "grip")).press
     shape = resolve_shape(design.family, design.shape)
     for sign, drive in zip((1.0, -1.0), press.actuations, strict=True):
         top = np.array([[3.0, sign * shape.peak_mm, shape.valley_mm + lobe_mm]])
@@ -55,15 +56,18 @@ def test_the_lobes_close_toward_each_other_as_mirror_images(lobe_mm: float) -> N
 def test_object_depth_and_solver_may_be_ones_own() -> None:
     """What is named is taken, the rest stays the family's."""
     design, ball = load_design("trunk"), Indenter(size_mm=8.0)
-    case = sequence(design, "grip", indenter=ball, depth_mm=0.3, settings={"max_substeps": 99})
-    usual = sequence(design, "grip")
+    grip = find_sequence(design, "grip")
+    less = dataclasses.replace(grip, depth_mm=0.3)
+    case = sequence(design, less, indenter=ball, settings={"max_substeps": 99})
+    usual = sequence(design, grip)
     assert (case.indenter, case.press.depth_mm) == (ball, 0.3)
     assert case.settings == dataclasses.replace(usual.settings, max_substeps=99)
 
 
 def test_a_sequence_survives_a_file() -> None:
     """Table and back, as a project keeps it: the same press."""
-    press = sequence(load_design("trunk"), "grip").press
+    design = load_design("trunk")
+    press = sequence(design, find_sequence(design, "grip")).press
     assert from_table(Press, to_table(press)) == press
 
 

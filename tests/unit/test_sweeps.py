@@ -24,6 +24,7 @@ from workbench.variants.sweep_files import (
     save_sweep,
 )
 from workbench.variants.sweeps import (
+    Span,
     Status,
     Sweep,
     curve,
@@ -51,7 +52,7 @@ def finger() -> State:
 
 def walls(project: Project, start: float = 1.0, stop: float = 3.0) -> Sweep:
     name = numbered("elastomer_mm", list_sweeps(project), first=1)
-    return make_sweep(name, finger(), WALL, start=start, stop=stop, steps=3)
+    return make_sweep(name, finger(), WALL, Span(start=start, stop=stop, steps=3))
 
 
 def shot(grey: float) -> Shot:
@@ -78,9 +79,9 @@ def compute(project: Project, sweep: Sweep, number: int) -> None:
 def test_values_include_both_ends_and_whole_ones_are_unique() -> None:
     """0.1 to 0.5 in 5 steps has 0.3 exactly; LEDs 1 to 3 in 5 steps are 1, 2, 3."""
     about = find_field(finger(), WALL)
-    assert sweep_values(about, start=0.1, stop=0.5, steps=5) == [0.1, 0.2, 0.3, 0.4, 0.5]
+    assert sweep_values(about, Span(start=0.1, stop=0.5, steps=5)) == [0.1, 0.2, 0.3, 0.4, 0.5]
     leds = find_field(finger(), "design.optics.ring.count")
-    assert sweep_values(leds, start=1, stop=3, steps=5) == [1.0, 2.0, 3.0]
+    assert sweep_values(leds, Span(start=1, stop=3, steps=5)) == [1.0, 2.0, 3.0]
 
 
 @pytest.mark.parametrize(
@@ -89,7 +90,7 @@ def test_values_include_both_ends_and_whole_ones_are_unique() -> None:
 def test_sweeps_without_sense_are_refused(start: float, stop: float, steps: int) -> None:
     """Equal ends, NaN, too few or many steps, and values that the design refuses throughout."""
     with pytest.raises(DesignError):
-        make_sweep("x", finger(), WALL, start=start, stop=stop, steps=steps)
+        make_sweep("x", finger(), WALL, Span(start=start, stop=stop, steps=steps))
 
 
 def test_an_unknown_field_is_refused_with_a_suggestion() -> None:
@@ -157,7 +158,7 @@ def test_a_failed_point_keeps_its_message_and_the_others_their_figures(project: 
 
 def test_a_value_that_the_design_refuses_fails_alone(project: Project) -> None:
     """A wall of 20 mm does not fit into the finger; 1 mm does."""
-    sweep = make_sweep("x", finger(), WALL, start=1.0, stop=20.0, steps=2)
+    sweep = make_sweep("x", finger(), WALL, Span(start=1.0, stop=20.0, steps=2))
     assert refusal(sweep, 0) is None
     assert refusal(sweep, 1) is not None
 

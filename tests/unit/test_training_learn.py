@@ -19,7 +19,7 @@ from sim.forces.network.minkunet import arrays_of
 from sim.forces.network.predictor import Precision, Predictor
 from sim.forces.network.spec import NetworkSpec, Target
 from sim.forces.network.weights import load_weights
-from sim.forces.training.settings import Numbers, TrainingSettings
+from sim.forces.training.settings import TrainingSettings
 from sim.forces.training.trainer import Trainer
 from tests.unit.made_presses import SETTINGS, made_presses
 from workbench.core.base.errors import DesignError, DeviceError, SolveError, StoreError
@@ -29,18 +29,19 @@ from workbench.learning.training.checkpoint import CHECKPOINT, read_checkpoint
 from workbench.learning.training.curves import COLUMNS
 from workbench.learning.training.learn import train
 from workbench.learning.training.learning_curve import learning_curve
-from workbench.learning.training.plan import Plan, Trained
+from workbench.learning.training.plan import Plan, Resources, Trained
 from workbench.learning.training.presses import Presses
 
 PRESSES = made_presses(12)
 PLAN = Plan(settings=SETTINGS, target=Target.FORCE, seed=4)
-NUMBERS = Numbers.AUTO
+CPU = Resources(device="cpu")
 TIMED = ("seconds",)
 
 
-def run(out: Path, plan: Plan = PLAN, presses: Presses = PRESSES, **options: Any) -> Trained:
+def run(out: Path, plan: Plan = PLAN, presses: Presses = PRESSES, minutes: float = 0.0) -> Trained:
     """A training on the CPU."""
-    return train(presses, plan, out, device="cpu", **options)
+    resources = dataclasses.replace(CPU, minutes=minutes)
+    return train(presses, plan, out, resources=resources)
 
 
 def told(done: Trained) -> list[dict[str, Any]]:
@@ -282,8 +283,7 @@ def test_tuning_starts_at_force_times_the_ratio_of_stiffness(
     stiff = made_presses(12, young=0.2)
     plan = dataclasses.replace(PLAN, base=base, base_name=whole.weights.name)
     begun, old = (
-        begin(presses, PRESSES.of_split(Split.TRAIN), plan, device="cpu", numbers=NUMBERS)
-        for presses in (stiff, PRESSES)
+        begin(presses, PRESSES.of_split(Split.TRAIN), plan, CPU) for presses in (stiff, PRESSES)
     )
     assert begun.scales.output == pytest.approx(2.0 * old.scales.output, rel=1e-4)
     assert begun.scales.input_mm == base.input_scale_mm
@@ -349,7 +349,7 @@ def test_a_learning_curve_trains_on_shares_with_equal_steps(tmp_path: Path) -> N
     """Half and all of six cases, as many steps, scores on the same others."""
     settings = dataclasses.replace(SETTINGS, epochs=1)
     plan = dataclasses.replace(PLAN, settings=settings)
-    found = learning_curve(PRESSES, plan, [0.5, 1.0], tmp_path, device="cpu")
+    found = learning_curve(PRESSES, plan, [0.5, 1.0], tmp_path, resources=CPU)
     assert [(row["cases"], row["samples"]) for row in found["rows"]] == [(3, 6), (6, 12)]
     cards = [load_weights(tmp_path / row["weights"]).card for row in found["rows"]]
     assert [card["training"]["cases"] for card in cards] == [3, 6]
@@ -362,4 +362,4 @@ def test_a_learning_curve_trains_on_shares_with_equal_steps(tmp_path: Path) -> N
     steps = {int(next(iter(p["optimiser"]["state"].values()))["step"]) for p in passes}
     assert steps == {3}
     with pytest.raises(DesignError, match=r"share 1\.5 is outside"):
-        learning_curve(PRESSES, plan, [1.5], tmp_path, device="cpu")
+        learning_curve(PRESSES, plan, [1.5], tmp_path, resources=CPU)

@@ -8,6 +8,7 @@ stands at its thing again.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,22 @@ import numpy as np
 SCALE_MM = 9.0
 """Length of the arms."""
 UPRIGHT = (1.0, 0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Arms:
+    """What a handle is held by."""
+
+    name: str = "/drag"
+    """Of its node in the scene."""
+    length_mm: float = SCALE_MM
+    turns: bool = False
+    """Whether it can be turned too."""
+    axes: tuple[bool, bool, bool] = (True, True, True)
+    """Along which of X, Y and Z it can be dragged."""
+
+
+ARMS = Arms()
 
 
 class Gizmo:
@@ -29,10 +46,7 @@ class Gizmo:
         moved: Callable[[np.ndarray, np.ndarray], None],
         *,
         edits: Callable[[int], bool],
-        name: str = "/drag",
-        scale_mm: float = SCALE_MM,
-        turns: bool = False,
-        axes: tuple[bool, bool, bool] = (True, True, True),
+        arms: Arms = ARMS,
     ) -> None:
         self.moved = moved
         self.edits = edits
@@ -41,12 +55,12 @@ class Gizmo:
         self._holder: int | None = None
         """Number of the tab that drags."""
         self.handle = api.add_transform_controls(
-            name,
-            scale=scale_mm,
+            arms.name,
+            scale=arms.length_mm,
             line_width=4.0,
-            active_axes=axes,
-            disable_sliders=not all(axes),
-            disable_rotations=not turns,
+            active_axes=arms.axes,
+            disable_sliders=not all(arms.axes),
+            disable_rotations=not arms.turns,
             depth_test=False,
             visible=False,
         )

@@ -68,17 +68,20 @@ def press_case(
 
 
 def _sequence(options: argparse.Namespace, design: SensorDesign) -> PressCase:
-    from workbench.edit.sequences import sequence
+    from workbench.edit.sequences import FRAMES, find_sequence, sequence
 
     _refuse(options, NOT_WITH_SEQUENCE, "sequence")
     named = (options.indenter, options.size_mm, options.edge_radius_mm, options.texture)
     named = (*named, options.soft_mpa, options.turn_deg)
+    indenter = None if all(value is None for value in named) else _indenter(options)
+    chosen = find_sequence(design, options.sequence)
+    if options.depth_mm is not None:
+        chosen = dataclasses.replace(chosen, depth_mm=options.depth_mm)
     return sequence(
         design,
-        options.sequence,
-        indenter=None if all(value is None for value in named) else _indenter(options),
-        depth_mm=options.depth_mm,
-        frames=options.frames,
+        chosen,
+        indenter=indenter,
+        frames=FRAMES if options.frames is None else options.frames,
         settings=_settings(options),
     )
 

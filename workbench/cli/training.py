@@ -75,7 +75,7 @@ def train(options: argparse.Namespace, *, base: Path | None) -> int:
     """Train a network, or the decoder of one; returns the exit code."""
     from sim.forces.network.weights import load_weights
     from workbench.learning.training.learn import train as learn
-    from workbench.learning.training.plan import Plan
+    from workbench.learning.training.plan import Plan, Resources
     from workbench.pipeline.devices import torch_device
 
     plan = Plan(
@@ -93,9 +93,11 @@ def train(options: argparse.Namespace, *, base: Path | None) -> int:
             presses,
             plan,
             options.out,
-            device=torch_device(),
-            numbers=Numbers(options.numbers),
-            minutes=options.minutes,
+            resources=Resources(
+                device=torch_device(),
+                numbers=Numbers(options.numbers),
+                minutes=options.minutes,
+            ),
             tell=line.tell,
             monitor=line.within,
         )

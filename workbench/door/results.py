@@ -134,7 +134,7 @@ class Results:
         Raises:
             StoreError: If the folder cannot be written.
         """
-        from workbench.report.outputs import write_all
+        from workbench.report.outputs import FinishedRun, write_all
         from workbench.system.folder import RUN_FILES, prepare
 
         out = Path(folder)
@@ -143,8 +143,10 @@ class Results:
         # The report does without the drawing where nothing can be drawn off screen.
         with contextlib.suppress(DeviceError):
             self.compute("picture")
-        known = (self.project.store, self._calls, self.outcomes)
-        return write_all(out, self.design, self.case, *known)
+        finished = FinishedRun(
+            design=self.design, case=self.case, calls=self._calls, outcomes=self.outcomes
+        )
+        return write_all(out, finished, self.project.store)
 
     def compute(self, *stages: str) -> None:
         """Compute stages and what they need, unless they are stored.

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from workbench.door.results import Results
 from workbench.variants.comparison import Change, changes
 from workbench.variants.sweep_computing import compute
-from workbench.variants.sweeps import Sweep, make_sweep
+from workbench.variants.sweeps import Span, Sweep, make_sweep
 
 
 def sweep(base: Results, field: str, start: float, stop: float, steps: int = 5) -> Sweep:
@@ -28,7 +28,8 @@ def sweep(base: Results, field: str, start: float, stop: float, steps: int = 5) 
     Raises:
         DesignError: If the field cannot be swept, or every value is refused.
     """
-    what = make_sweep("sweep", base.state, field, start=start, stop=stop, steps=steps)
+    span = Span(start=start, stop=stop, steps=steps)
+    what = make_sweep("sweep", base.state, field, span)
     return compute(what, base.project)
 
 

@@ -38,53 +38,56 @@ def titles(design: SensorDesign) -> dict[str, str]:
     return {name: each.title for name, each in _declared(design).items()}
 
 
-def sequence(
-    design: SensorDesign,
-    name: str,
-    *,
-    indenter: Indenter | None = None,
-    depth_mm: float | None = None,
-    frames: int | None = None,
-    close_deg: float | None = None,
-    settings: Mapping[str, Any] | None = None,
-) -> PressCase:
-    """A sequence of a design as a press.
-
-    Args:
-        design: The sensor.
-        name: One of `titles`.
-        indenter: The object; None takes the one that suits the lobes.
-        depth_mm: How deep it is pressed before the lobes close [mm]; None as the family says.
-        frames: Frames of each phase.
-        close_deg: How far the lobes turn [degree]; None as the family says.
-        settings: Fields of `ContactSettings`; the grid is one that suits the lobes.
+def find_sequence(design: SensorDesign, name: str) -> Sequence:
+    """A sequence of a design as its family declares it.
 
     Raises:
-        DesignError: If the design has no such sequence, or a value is refused.
+        DesignError: If the design has none of that name.
     """
-    from workbench.project.aim import default_target_mm
-
     known = _declared(design)
     if name not in known:
         hint = suggest(name, known) if known else "the trunk has one: grip"
         raise DesignError(
             f"the {design.family} has no sequence {shown(name)}", hint=hint, at="--sequence"
         )
-    chosen = known[name]
-    count = FRAMES if frames is None else frames
+    return known[name]
+
+
+def sequence(
+    design: SensorDesign,
+    chosen: Sequence,
+    *,
+    indenter: Indenter | None = None,
+    frames: int = FRAMES,
+    settings: Mapping[str, Any] | None = None,
+) -> PressCase:
+    """A sequence of a design as a press.
+
+    Args:
+        design: The sensor.
+        chosen: What is done: of `find_sequence`, perhaps with another depth or turn.
+        indenter: The object; None takes the one that suits the lobes.
+        frames: Frames of each phase.
+        settings: Fields of `ContactSettings`; the grid is one that suits the lobes.
+
+    Raises:
+        DesignError: If a value is refused.
+    """
+    from workbench.project.aim import default_target_mm
+
     press = Press(
         target_mm=default_target_mm(design),
-        depth_mm=chosen.depth_mm if depth_mm is None else depth_mm,
-        frames=count,
-        strokes=(hold(2 * count), release(frames=LIFT_FRAMES)),
+        depth_mm=chosen.depth_mm,
+        frames=frames,
+        strokes=(hold(2 * frames), release(frames=LIFT_FRAMES)),
         actuations=tuple(
             Actuation(
                 region=lobe.region,
-                turn_deg=chosen.close_deg if close_deg is None else close_deg,
+                turn_deg=chosen.close_deg,
                 axis=lobe.axis,
                 about_mm=lobe.root_mm,
                 facing=lobe.outward,
-                keys=((float(count), 0.0), (2.0 * count, 1.0), (3.0 * count, 0.0)),
+                keys=((float(frames), 0.0), (2.0 * frames, 1.0), (3.0 * frames, 0.0)),
             )
             for lobe in chosen.lobes
         ),

@@ -129,12 +129,8 @@ def _by_kernel(family: Any, shape: Any, layers: Layers, expected_mm3: float) -> 
     from geometry.body.csg_brep import translated
     from geometry.body.solid import assemble
 
-    def bodies() -> dict[str, Any]:
-        found = family.build(shape, layers)
-        return {field.name: getattr(found, field.name) for field in dataclasses.fields(found)}
-
-    parts = translated(bodies)
-    first, finer = (functools.partial(assemble, **parts, fineness=value) for value in FINENESS)
+    bodies = translated(lambda: family.build(shape, layers))
+    first, finer = (functools.partial(assemble, bodies, fineness=value) for value in FINENESS)
     solid = translated(first)
     if surface_error(solid) > SURFACE_LIMIT:
         solid = translated(finer)

@@ -6,6 +6,7 @@ import io
 import json
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -179,21 +180,29 @@ def summary_table(
     }
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FinishedRun:
+    """A design and a press whose results are in the store."""
+
+    design: SensorDesign
+    case: PressCase
+    calls: dict[str, Call]
+    """Of the whole chain, by stage."""
+    outcomes: Sequence[Outcome]
+    """Stages that are done."""
+    changed: str = ""
+    """What the command itself changed of the design; stands among the notices."""
+
+
 def write_all(
-    out: Path,
-    design: SensorDesign,
-    case: PressCase,
-    store: Store,
-    calls: dict[str, Call],
-    outcomes: Sequence[Outcome],
-    *,
-    changed: str = "",
-    fields: bool = False,
+    out: Path, finished: FinishedRun, store: Store, *, fields: bool = False
 ) -> dict[str, Any]:
     """Write every file of a run; returns the summary.
 
     Args:
-        changed: What the command itself changed of the design; stands among the notices.
+        out: Folder of the run.
+        finished: What was computed.
+        store: Where its results are.
         fields: Write depth, normals and masks of every pixel too.
 
     Raises:
@@ -201,10 +210,11 @@ def write_all(
     """
     from workbench.report.report import drawings, report_html
 
+    design, case, calls = finished.design, finished.case, finished.calls
     path = case.press
     load = results(store, calls, calls)
     seconds = store.entry("press", calls["press"].key).seconds
-    summary = summary_table(design, case, load["press"], load["shoot"], seconds, outcomes)
+    summary = summary_table(design, case, load["press"], load["shoot"], seconds, finished.outcomes)
     summary["images"] = write_images(out, load["shoot"], fields=fields)
     maps = load.get("maps")
     summary["maps"] = write_maps(out, load["mesh"], maps)
@@ -213,7 +223,7 @@ def write_all(
     summary["notices"] = {
         name: value.notice for name, value in load.items() if getattr(value, "notice", "")
     }
-    notices = {"press": path.notice, "material": design.material.notice, "design": changed}
+    notices = {"press": path.notice, "material": design.material.notice, "design": finished.changed}
     notices["object"] = touching_notice(case.indenter)
     notices["target"] = target_notice(design, load["build"], path, load["press"])
     summary["notices"] |= {name: notice for name, notice in notices.items() if notice}

@@ -85,14 +85,23 @@ class Sweep:
         return sum(point.status is not Status.WAITING for point in self.points)
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Span:
+    """Values at equal distances, both ends included."""
+
+    start: float
+    """First value, in the field's own unit."""
+    stop: float
+    """Last value."""
+    steps: int
+
+
 def make_sweep(
     name: str,
     base: State,
     path: str,
+    span: Span,
     *,
-    start: float,
-    stop: float,
-    steps: int,
     parts: bool = False,
 ) -> Sweep:
     """A sweep that has not begun.
@@ -102,7 +111,7 @@ def make_sweep(
             steps is out of its range, or the design refuses every value.
     """
     about = find_field(base, path)
-    values = sweep_values(about, start=start, stop=stop, steps=steps)
+    values = sweep_values(about, span)
     points = tuple(Point(value=value) for value in values)
     sweep = Sweep(name=name, base=base, path=about.path, points=points, parts=parts)
     refused = [refusal(sweep, number) for number in range(len(points))]
@@ -112,12 +121,13 @@ def make_sweep(
     return sweep
 
 
-def sweep_values(about: SweepField, *, start: float, stop: float, steps: int) -> list[float]:
+def sweep_values(about: SweepField, span: Span) -> list[float]:
     """Values at equal distances, both ends included; of whole numbers each once.
 
     Raises:
         DesignError: If the ends are equal or not finite, or the steps out of range.
     """
+    start, stop, steps = span.start, span.stop, span.steps
     if not (math.isfinite(start) and math.isfinite(stop)) or start == stop:
         raise DesignError(
             f"a sweep from {start:g} to {stop:g} {about.unit} has no way to go",

@@ -87,30 +87,19 @@ def write_glb(
     colour[:, :3] = _linear()[np.asarray(colours)]
     blocks = [points, topology.normals(points).astype("<f4", copy=False), colour]
     parts = [block.tobytes() for block in (*blocks, topology.indices)]
-    short = topology.indices.dtype == np.uint16
-    text = _description(
-        sizes=tuple(len(part) for part in parts),
-        vertices=len(points),
-        corners=len(topology.indices),
-        kind=UINT16 if short else UINT32,
-        low=[float(low) for low in points.min(axis=0)],
-        high=[float(high) for high in points.max(axis=0)],
-        both_sides=both_sides,
-    )
+    sizes = tuple(len(part) for part in parts)
+    text = _description(sizes, points, topology, both_sides=both_sides)
     return _packed(text, b"".join(parts))
 
 
 def _description(
-    *,
-    sizes: tuple[int, ...],
-    vertices: int,
-    corners: int,
-    kind: int,
-    low: list[float],
-    high: list[float],
-    both_sides: bool,
+    sizes: tuple[int, ...], points: np.ndarray, topology: Topology, *, both_sides: bool
 ) -> bytes:
     """The chunk of JSON: what stands where in the chunk of bytes."""
+    vertices, corners = len(points), len(topology.indices)
+    kind = UINT16 if topology.indices.dtype == np.uint16 else UINT32
+    low = [float(low) for low in points.min(axis=0)]
+    high = [float(high) for high in points.max(axis=0)]
     starts = [sum(sizes[:k]) for k in range(len(sizes))]
     views = [
         {"buffer": 0, "byteOffset": start, "byteLength": size, "target": target}

@@ -24,7 +24,7 @@ from workbench.variants.sweep_files import (
     restore_sweep,
     save_sweep,
 )
-from workbench.variants.sweeps import FEWEST, MOST, Sweep, make_sweep, todo
+from workbench.variants.sweeps import FEWEST, MOST, Span, Sweep, make_sweep, todo
 from workbench.variants.variants import save_variant
 
 TELL_S = 0.5
@@ -134,9 +134,11 @@ class SweepFolder:
             name,
             self.desk.session.state,
             field.path,
-            start=float(self.start.value),
-            stop=float(self.stop.value),
-            steps=int(self.steps.value),
+            Span(
+                start=float(self.start.value),
+                stop=float(self.stop.value),
+                steps=int(self.steps.value),
+            ),
             parts=bool(self.parts.value),
         )
         save_sweep(self.project, sweep)

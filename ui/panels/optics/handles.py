@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ui.scene.gizmo import Gizmo
+from ui.scene.gizmo import Arms, Gizmo
 from workbench.core.design.camera import Camera
 from workbench.core.design.lighting import Lamp, LedRing
 
@@ -50,10 +50,7 @@ class Handle:
             desk.scene.api,
             self._moved,
             edits=desk.editor.edits,
-            name=name,
-            scale_mm=SMALL_MM,
-            turns=turns,
-            axes=axes,
+            arms=Arms(name=name, length_mm=SMALL_MM, turns=turns, axes=axes),
         )
         desk.gizmos.append(self.gizmo)
 

@@ -12,7 +12,7 @@ from ui.panels.page import Page
 from ui.panels.simulate.objects import ObjectFolder
 from ui.panels.simulate.strokes import MotionFolder
 from workbench.core.press.press import Extent, Method
-from workbench.edit.sequences import sequence, titles
+from workbench.edit.sequences import find_sequence, sequence, titles
 from workbench.project.state import State
 from workbench.view.frame_words import number
 
@@ -98,7 +98,7 @@ class SimulatePanel:
         self._end_live()
         design = desk.session.design
         name = next(iter(titles(design)))
-        case = sequence(design, name)
+        case = sequence(design, find_sequence(design, name))
         desk.session.replace_state(State(design=design, case=case))
         desk.replaced()
         desk.tell("play", None)

@@ -44,7 +44,7 @@ def run(options: argparse.Namespace, project: Project) -> int:
     from workbench.project.aim import default_target_mm
     from workbench.project.named_designs import load_design
     from workbench.report.fabrication_tables import all_checks
-    from workbench.report.outputs import write_all
+    from workbench.report.outputs import FinishedRun, write_all
     from workbench.report.partial import keeping_partial
     from workbench.report.source_files import asked_sources, with_weights, write_sources
     from workbench.system.folder import RUN_FILES, prepare
@@ -85,16 +85,10 @@ def run(options: argparse.Namespace, project: Project) -> int:
         outcomes.append(drawing)
     except DeviceError as error:
         complain(f"the report has no drawing of the mould: {error.message}")
-    summary = write_all(
-        options.out,
-        design,
-        case,
-        project.store,
-        calls,
-        outcomes,
-        changed=start.changed,
-        fields=options.image_fields,
+    finished = FinishedRun(
+        design=design, case=case, calls=calls, outcomes=outcomes, changed=start.changed
     )
+    summary = write_all(options.out, finished, project.store, fields=options.image_fields)
     if "target" in summary["notices"]:
         complain(f"notice: {summary['notices']['target']}")
     if not options.json:

@@ -31,7 +31,7 @@ from workbench.project.project import Project
 from workbench.system.terminal import Progress, complain, say
 from workbench.system.whole_files import write_atomically
 from workbench.variants.sweep_computing import compute
-from workbench.variants.sweeps import Status, Sweep, make_sweep, metrics_of
+from workbench.variants.sweeps import Span, Status, Sweep, make_sweep, metrics_of
 
 FILES = ("sweep.json", "sweep.csv", "sweep.html")
 
@@ -68,9 +68,7 @@ def run(options: argparse.Namespace, project: Project) -> int:
         "sweep",
         base_state(options, project, printer),
         options.field,
-        start=options.start,
-        stop=options.stop,
-        steps=options.steps,
+        Span(start=options.start, stop=options.stop, steps=options.steps),
         parts=options.parts,
     )
     prepare(options.out, clear=FILES)

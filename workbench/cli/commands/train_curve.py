@@ -37,7 +37,7 @@ def options(sub: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace, project: Project) -> int:
     """Train on parts of a data set and draw what more cases buy."""
     from workbench.learning.training.learning_curve import learning_curve
-    from workbench.learning.training.plan import Plan
+    from workbench.learning.training.plan import Plan, Resources
     from workbench.pipeline.devices import torch_device
 
     plan = Plan(settings=chosen_settings(options), target=Target(options.target), seed=options.seed)
@@ -55,9 +55,11 @@ def run(options: argparse.Namespace, project: Project) -> int:
             plan,
             options.fractions,
             options.out,
-            device=torch_device(),
-            numbers=Numbers(options.numbers),
-            minutes=options.minutes,
+            resources=Resources(
+                device=torch_device(),
+                numbers=Numbers(options.numbers),
+                minutes=options.minutes,
+            ),
             tell=line.tell,
             monitor=line.within,
         )

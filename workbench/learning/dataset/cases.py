@@ -107,6 +107,15 @@ class Case:
         return done * self.shear_mm[0] + 0.0, done * self.shear_mm[1] + 0.0
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Pair:
+    """A position with an object, which all cases of one split press."""
+
+    kind: IndenterKind
+    place: Position
+    split: Split
+
+
 def case_row(case: Case) -> dict[str, Any]:
     """A case as a plain table."""
     return to_table(case)
@@ -188,7 +197,8 @@ def deal(recipe: Recipe, positions: Sequence[Position]) -> list[Case]:
         kind = kinds[pair % len(kinds)]
         place = places[(pair + pair // together) % len(places)]
         steps, way = ways[(pair // len(kinds) + pair % len(kinds) + turn) % len(ways)]
-        found.append(_case(recipe, kind, place, steps, way, splits[pair], int(pressed[pair])))
+        both = _Pair(kind=kind, place=place, split=splits[pair])
+        found.append(_case(recipe, both, steps, way, int(pressed[pair])))
         pressed[pair] = max(pressed[pair], steps)
     return found
 
@@ -208,15 +218,15 @@ def _splits(recipe: Recipe, pairs: int, rng: np.random.Generator) -> list[Split]
     return found
 
 
-def _case(
-    recipe: Recipe,
-    kind: IndenterKind,
-    place: Position,
-    steps: int,
-    way: int,
-    split: Split,
-    pressed: int,
-) -> Case:
+def _case(recipe: Recipe, pair: _Pair, steps: int, way: int, pressed: int) -> Case:
+    """A pair pressed one way.
+
+    Args:
+        steps: Of depth.
+        way: Direction of the shear; -1 for none.
+        pressed: Steps of depth that an earlier case of the pair has taken.
+    """
+    kind, place = pair.kind, pair.place
     name = f"{kind.value}_{place.name}"
     depth_mm = recipe.depth_mm * steps / recipe.depth_steps
     if recipe.shear_every_depth and recipe.shear_directions:
@@ -224,7 +234,7 @@ def _case(
     name += f"_shear{way}" if way >= 0 else "_press"
     return Case(
         id=name,
-        split=split,
+        split=pair.split,
         indenter=kind,
         position=place,
         depth_mm=depth_mm,

@@ -21,10 +21,9 @@ from sim.forces.network.inputs import FORCE
 from sim.forces.network.spec import NetworkSpec, Target
 from sim.forces.network.weights import NetworkWeights
 from sim.forces.training.fields import Fields, rms_of_nonzero
-from sim.forces.training.settings import Numbers
 from workbench.core.base.errors import DesignError
 from workbench.learning.dataset.cases import Split
-from workbench.learning.training.plan import Plan
+from workbench.learning.training.plan import Plan, Resources
 from workbench.learning.training.presses import RAW, Presses
 from workbench.learning.training.results import batches, single_predictor
 
@@ -52,8 +51,7 @@ class Beginning:
     validation: Fields
     plan: Plan
     points_mm: np.ndarray
-    device: str
-    numbers: Numbers
+    resources: Resources
     notes: tuple[str, ...]
 
     @property
@@ -89,7 +87,7 @@ class Beginning:
             spec=self.network.spec,
             target=target,
             turns=settings.turns,
-            device=self.device,
+            device=self.resources.device,
         )
         return Trainer(
             self.network,
@@ -98,8 +96,8 @@ class Beginning:
             unit=self.unit_mae / self.scales.output,
             settings=settings,
             output_scale=self.scales.output,
-            device=self.device,
-            numbers=self.numbers,
+            device=self.resources.device,
+            numbers=self.resources.numbers,
             seed=self.plan.seed,
         )
 
@@ -120,17 +118,14 @@ class Beginning:
         )
 
 
-def begin(
-    presses: Presses, states: Sequence[int], plan: Plan, *, device: str, numbers: Numbers
-) -> Beginning:
+def begin(presses: Presses, states: Sequence[int], plan: Plan, resources: Resources) -> Beginning:
     """Make network and scales ready.
 
     Args:
         presses: All data.
         states: What is trained on.
         plan: What is trained how.
-        device: `cpu` or `cuda`.
-        numbers: Type of the arithmetic.
+        resources: Device and type of the arithmetic.
 
     Raises:
         DesignError: If the weights to tune predict something else.
@@ -169,7 +164,7 @@ def begin(
         )
         voxel, patch = plan.settings.voxel_per_spacing, plan.settings.patch_spacings
     else:
-        network, scales, factor = _tuned(base, plan, states, presses, device)
+        network, scales, factor = _tuned(base, plan, states, presses, resources.device)
         voxel, patch = base.voxel_per_spacing, base.patch_spacings
         notes.append(f"the output scale of {plan.base_name} is multiplied by {factor:.4g}")
     return Beginning(
@@ -185,8 +180,7 @@ def begin(
         corrects=corrects,
         plan=plan,
         points_mm=presses.points_mm,
-        device=device,
-        numbers=numbers,
+        resources=resources,
         notes=tuple(notes),
     )
 

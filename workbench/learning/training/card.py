@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from sim.forces.network.spec import Target
-from sim.forces.training.settings import TrainingSettings
 from workbench.core.base.version import VERSION
 from workbench.learning.dataset.cases import Split
+from workbench.learning.training.beginning import Beginning
+from workbench.learning.training.plan import Course
 from workbench.learning.training.presses import INPUT, Presses
 
 NAMED = 20
@@ -78,39 +79,32 @@ def data_card(
     }
 
 
-def training_card(
-    settings: TrainingSettings,
-    *,
-    seed: int,
-    rows: Sequence[Mapping[str, Any]],
-    best_epoch: int,
-    samples: int,
-    cases: int,
-    parameters: int,
-    device: str,
-    seconds: float,
-    tuned_from: str,
-    patch_spacings: float,
-    finished: bool,
-) -> dict[str, Any]:
-    """How the weights were made."""
+def training_card(begun: Beginning, course: Course, *, cases: int) -> dict[str, Any]:
+    """How the weights were made.
+
+    Args:
+        begun: What the training began with.
+        course: What came of it.
+        cases: How many the training samples are of.
+    """
+    plan, settings = begun.plan, begun.plan.settings
     return {
         "preset": settings.name,
-        "seed": seed,
-        "epochs": len(rows),
+        "seed": plan.seed,
+        "epochs": len(course.rows),
         "epochs_planned": settings.epochs,
-        "finished": finished,
-        "best_epoch": best_epoch,
+        "finished": course.finished,
+        "best_epoch": course.best_epoch,
         "cases": cases,
-        "samples": samples,
-        "parameters": parameters,
-        "seconds": seconds,
-        "device": device,
+        "samples": len(begun.train),
+        "parameters": begun.parameters,
+        "seconds": course.seconds,
+        "device": begun.resources.device,
         "rate": settings.rate,
         "batch": settings.batch,
-        "turns": "any" if patch_spacings else settings.turns,
-        "patch_spacings": patch_spacings,
-        "tuned_from": tuned_from,
+        "turns": "any" if begun.patch_spacings else settings.turns,
+        "patch_spacings": begun.patch_spacings,
+        "tuned_from": plan.base_name,
         "program": VERSION,
     }
 

@@ -21,7 +21,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sim.forces.network.weights import Storage
-from sim.forces.training.settings import Numbers
 from workbench.core.base.freed_memory import freed_memory_kept
 from workbench.core.base.monitor import Monitor, silent
 from workbench.learning.dataset.cases import Split
@@ -30,7 +29,14 @@ from workbench.learning.training.beginning import Beginning, begin
 from workbench.learning.training.card import data_card, training_card
 from workbench.learning.training.checkpoint import read_checkpoint, write_checkpoint
 from workbench.learning.training.curves import write_chart, write_curves
-from workbench.learning.training.plan import Plan, Tell, Trained, TrainingProgress
+from workbench.learning.training.plan import (
+    Course,
+    Plan,
+    Resources,
+    Tell,
+    Trained,
+    TrainingProgress,
+)
 from workbench.learning.training.presses import Presses
 from workbench.learning.training.results import final_weights
 from workbench.pipeline.weight_files import save_weights
@@ -49,9 +55,7 @@ def train(
     plan: Plan,
     out: Path,
     *,
-    device: str,
-    numbers: Numbers = Numbers.AUTO,
-    minutes: float = 0.0,
+    resources: Resources,
     tell: Tell = lambda progress: None,
     monitor: Monitor = silent,
 ) -> Trained:
@@ -61,9 +65,7 @@ def train(
         presses: The data.
         plan: What is trained how.
         out: Folder of the training.
-        device: `cpu` or `cuda`.
-        numbers: Type of the arithmetic.
-        minutes: Time after which it pauses at the end of an epoch; 0: none.
+        resources: Device, type of the arithmetic and time.
         tell: Told after each epoch.
         monitor: Told within an epoch; may raise.
 
@@ -74,22 +76,16 @@ def train(
         DeviceError: If the device runs out of memory; the last checkpoint is kept.
     """
     with held(out, doing="training in"), freed_memory_kept():
-        return _Training(presses, plan, out, device, numbers, tell).run(minutes, monitor)
+        return _Training(presses, plan, out, resources, tell).run(monitor)
 
 
 class _Training:
     """One training, while it runs."""
 
     def __init__(
-        self,
-        presses: Presses,
-        plan: Plan,
-        out: Path,
-        device: str,
-        numbers: Numbers,
-        tell: Tell,
+        self, presses: Presses, plan: Plan, out: Path, resources: Resources, tell: Tell
     ) -> None:
-        self.presses, self.plan, self.out, self.device = presses, plan, out, device
+        self.presses, self.plan, self.out, self.resources = presses, plan, out, resources
         self._tell = tell
         self._begun_s = time.monotonic()
         self._drawn_s = 0.0
@@ -97,7 +93,7 @@ class _Training:
         self.states = plan.states(presses)
         self.validation = presses.of_split(Split.VALIDATION)
         found = read_checkpoint(out, self.key)
-        self.begun: Beginning = begin(presses, self.states, plan, device=device, numbers=numbers)
+        self.begun: Beginning = begin(presses, self.states, plan, resources)
         self.trainer: Trainer = self.begun.trainer()
         self.rows: list[dict[str, Any]] = []
         self.best: dict[str, np.ndarray] = {}
@@ -107,8 +103,8 @@ class _Training:
         if found is not None:
             self._restore(found)
 
-    def run(self, minutes: float, monitor: Monitor) -> Trained:
-        settings = self.plan.settings
+    def run(self, monitor: Monitor) -> Trained:
+        settings, minutes = self.plan.settings, self.resources.minutes
         paused = False
         while not self._ended and not paused:
             started = time.monotonic()
@@ -198,23 +194,19 @@ class _Training:
         shown = plan.base.card.get("indenters", ()) if plan.base else ()
         card = data_card(self.presses, self.states, plan.target, self.begun.spacing_mm, shown)
         card["training"] = training_card(
-            plan.settings,
-            seed=plan.seed,
-            rows=self.rows,
-            best_epoch=self.best_epoch,
-            samples=len(self.states),
+            self.begun,
+            Course(
+                rows=self.rows,
+                best_epoch=self.best_epoch,
+                seconds=self.seconds,
+                finished=self._ended,
+            ),
             cases=len({self.presses.states[number].case for number in self.states}),
-            parameters=self.begun.parameters,
-            device=self.device,
-            seconds=self.seconds,
-            tuned_from=plan.base_name,
-            patch_spacings=self.begun.patch_spacings,
-            finished=self._ended,
         )
         weights, scores = final_weights(
             self.presses,
             self.begun.weights(self.best, card),
-            device=self.device,
+            device=self.resources.device,
             batch=plan.settings.batch,
         )
         path = save_weights(self.out, weights, storage=Storage.HALF)

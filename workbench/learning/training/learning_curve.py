@@ -14,13 +14,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from sim.forces.training.settings import Numbers
 from workbench.core.base.check import within
 from workbench.core.base.monitor import Monitor, silent
 from workbench.learning.dataset.cases import Split
 from workbench.learning.training.chart import Series, chart
 from workbench.learning.training.learn import train
-from workbench.learning.training.plan import Plan, Tell
+from workbench.learning.training.plan import Plan, Resources, Tell
 from workbench.learning.training.presses import Presses
 from workbench.system.whole_files import write_atomically
 
@@ -33,9 +32,7 @@ def learning_curve(
     fractions: Sequence[float],
     out: Path,
     *,
-    device: str,
-    numbers: Numbers = Numbers.AUTO,
-    minutes: float = 0.0,
+    resources: Resources,
     tell: Tell = lambda progress: None,
     monitor: Monitor = silent,
 ) -> dict[str, Any]:
@@ -46,9 +43,7 @@ def learning_curve(
         plan: What is trained how, on all cases.
         fractions: Shares of the training cases, in (0, 1].
         out: Folder of the curve.
-        device: `cpu` or `cuda`.
-        numbers: Type of the arithmetic.
-        minutes: Time for all of it, shared evenly by what is left to do; 0: none.
+        resources: Of all of it: the time is shared evenly by what is left to do.
         tell: Told after each epoch.
         monitor: Told within an epoch; may raise.
 
@@ -65,14 +60,13 @@ def learning_curve(
         samples = len(dataclasses.replace(plan, cases=cases).states(presses))
         passes = max(1, round(plan.settings.passes * whole / samples))
         settings = dataclasses.replace(plan.settings, passes=passes)
-        left = minutes - (time.monotonic() - began_s) / 60.0
+        left = resources.minutes - (time.monotonic() - began_s) / 60.0
+        share = max(left, 1e-3) / (len(counts) - number) if resources.minutes else 0.0
         done = train(
             presses,
             dataclasses.replace(plan, settings=settings, cases=cases),
             out / f"cases{cases:04d}",
-            device=device,
-            numbers=numbers,
-            minutes=max(left, 1e-3) / (len(counts) - number) if minutes else 0.0,
+            resources=dataclasses.replace(resources, minutes=share),
             tell=tell,
             monitor=monitor,
         )

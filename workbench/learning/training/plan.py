@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from sim.forces.network.spec import Target
 from sim.forces.network.weights import NetworkWeights
-from sim.forces.training.settings import TrainingSettings
+from sim.forces.training.settings import Numbers, TrainingSettings
 from workbench.core.base.digest import digest
 from workbench.core.base.errors import DesignError
 from workbench.learning.dataset.cases import Split
@@ -62,6 +62,30 @@ class Plan:
                 at="data",
             )
         return presses.of_split(Split.TRAIN, cases=there[: self.cases] if self.cases else None)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Resources:
+    """What a training may use; the plan is the same with others."""
+
+    device: str
+    """`cpu` or `cuda`."""
+    numbers: Numbers = Numbers.AUTO
+    """Type of the arithmetic."""
+    minutes: float = 0.0
+    """Time after which it pauses at the end of an epoch [min]; 0: none."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Course:
+    """How a training has gone."""
+
+    rows: Sequence[dict[str, Any]]
+    """Of the curves, one for each epoch."""
+    best_epoch: int
+    seconds: float
+    """That its epochs took [s]."""
+    finished: bool
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -49,7 +49,7 @@ def bought(ring: LedRing) -> LedRing:
 
 def recipe(given: RecipeInputs, *, monitor: Monitor) -> Recipe:
     """Amounts, steps and the list of parts."""
-    from geometry.workshop.recipe import make_recipe
+    from geometry.workshop.recipe import WantedMaterial, make_recipe
 
     return make_recipe(
         given.solid,
@@ -57,9 +57,11 @@ def recipe(given: RecipeInputs, *, monitor: Monitor) -> Recipe:
         given.housing,
         ring=given.ring,
         casting=given.casting,
-        young_MPa=given.young_MPa,
-        density_g_cm3=given.density_g_cm3,
-        backing_MPa=given.backing_MPa,
+        wanted=WantedMaterial(
+            young_MPa=given.young_MPa,
+            density_g_cm3=given.density_g_cm3,
+            backing_MPa=given.backing_MPa,
+        ),
     )
 
 

@@ -18,6 +18,7 @@ from workbench.proof.specimens import finger_mesh, finger_points
 TIP_CENTRE_MM = 27.0
 RADIUS_MM = 15.0
 REGION_MM = 12.0
+GRID_MM = 0.5
 NAME = "finger_45: sphere R 3 mm, tip at 45 degrees, E .145 MPa, nu .45, mu .3, 1 mm deep"
 
 
@@ -48,20 +49,17 @@ def finger_press(
     azimuth_deg: float = 0.0,
     young_MPa: float = 0.145,
     shear_mm: tuple[float, float] = (0.0, 0.0),
-    grid_mm: float = 0.5,
     friction: float = 0.3,
-    region_mm: float = REGION_MM,
-    frames: int = 1,
 ) -> Contact:
     """The press `finger_45` of the validation, varied."""
     return press(
         PressInputs(
             mesh=finger_mesh(),
-            points=finger_points(grid_mm),
+            points=finger_points(GRID_MM),
             material=Elastomer(young_MPa=young_MPa, friction=friction),
             indenter=Indenter(size_mm=6.0),
-            path=Press(target_mm=tip_target(45.0, azimuth_deg), shear_mm=shear_mm, frames=frames),
-            settings=ContactSettings(grid_mm=grid_mm, active_radius_mm=region_mm),
+            path=Press(target_mm=tip_target(45.0, azimuth_deg), shear_mm=shear_mm, frames=1),
+            settings=ContactSettings(grid_mm=GRID_MM, active_radius_mm=REGION_MM),
         ),
         monitor=silent,
     )

@@ -45,7 +45,7 @@ def judge_set(trial: Trial) -> Finding:
     from geometry.housing.housing import make_housing
     from geometry.mould.moulds import make_mould
     from geometry.workshop.export import package_files
-    from geometry.workshop.recipe import make_recipe
+    from geometry.workshop.recipe import WantedMaterial, make_recipe
     from workbench.core.result.fabrication import SheetHead
     from workbench.pipeline.building import build_solid
     from workbench.planning.fitting import fitted
@@ -70,9 +70,11 @@ def judge_set(trial: Trial) -> Finding:
             housing,
             ring=design.optics.ring,
             casting=design.casting,
-            young_MPa=design.material.young_MPa,
-            density_g_cm3=design.material.density_g_cm3,
-            backing_MPa=design.material.backing_MPa,
+            wanted=WantedMaterial(
+                young_MPa=design.material.young_MPa,
+                density_g_cm3=design.material.density_g_cm3,
+                backing_MPa=design.material.backing_MPa,
+            ),
         )
         head = SheetHead(name="set", family=trial.family, shrink_percent=0.2, draft_deg=0.0)
         bundle = package_files(moulds, housing, recipe, head)
