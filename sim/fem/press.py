@@ -9,7 +9,6 @@ Left out: soft objects, self-contact.
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable
 from dataclasses import fields
 from typing import Any
@@ -103,7 +102,7 @@ def solve_press(
         error.partial = course.result() if course.outcomes else None
         raise
     finally:
-        course.tangent.close()
+        course.pairing.tangent.close()
 
 
 def set_up(
@@ -169,7 +168,7 @@ class _Course:
         self.settings = settings
         self.submodel = submodel
         self.pairing = Pairing(
-            body=submodel.body,
+            tangent=Tangent(submodel.body, device=device),
             law=Law(
                 penalty_MPa_mm=PENALTY * material.young_MPa,
                 friction=material.friction,
@@ -179,7 +178,6 @@ class _Course:
             held_mm=self._held_mm,
             tolerance=settings.tolerance,
         )
-        self.tangent = Tangent(submodel.body, device=device)
         self.frame = 0
         self.outcomes: list[FemFrame] = []
 
@@ -188,7 +186,7 @@ class _Course:
         count, state = self.approach.frame_count, at_rest(self.pairing)
         for frame in range(count):
             self.frame = frame
-            begun, effort = time.perf_counter(), Effort()
+            effort = Effort()
             label = f"frame {frame + 1} of {count}"
 
             def watch(progress: float, label: str = label) -> None:
@@ -197,18 +195,8 @@ class _Course:
             effort.watch = lambda now=state.progress, watch=watch: watch(now)
             before = state
             for goal in self._goals(frame):
-                state = advance(self.pairing, state, goal, self.tangent, effort, watch=watch)
-            outcome = read_frame(
-                self.mesh,
-                self.submodel,
-                self.pairing,
-                state,
-                before,
-                drives=len(self.approach.press.actuations),
-                increments=effort.increments,
-                steps=effort.newton + effort.lagged,
-                seconds=time.perf_counter() - begun,
-            )
+                state = advance(self.pairing, state, goal, effort, watch=watch)
+            outcome = read_frame(self.mesh, self.submodel, self.pairing, state, before, effort)
             self.outcomes.append(outcome)
             on_frame(frame, outcome)
         monitor(1.0, "converged")
@@ -229,7 +217,7 @@ class _Course:
             radius_mm=self.submodel.radius_mm,
             spacing_mm=self.settings.hex_mm,
             solver=f"{len(body.elements.cells)} hexahedra, {len(body.system.free)} equations, "
-            f"{self.tangent.solver_name}",
+            f"{self.pairing.tangent.solver_name}",
         )
 
     def _pose(self, progress: float) -> RigidPose:

@@ -12,7 +12,7 @@ from sim.fem import newton as newton_module
 from sim.fem import press as press_module
 from sim.fem import submodel as submodel_module
 from sim.fem import tangent as tangent_module
-from sim.fem.balance import Balance, Load, balance
+from sim.fem.balance import Balance, Equations, Load
 from sim.fem.body import Body
 from sim.fem.contact_law import PENALTY, Law
 from sim.fem.dense_solver import DenseSolver
@@ -57,7 +57,7 @@ def cut(near_mm: float, monkeypatch: pytest.MonkeyPatch) -> tuple[Submodel, Load
 
 def at_rest(body: Body, load: Load) -> Balance:
     """Forces of the undeformed skin, with the object inside it."""
-    state = balance(body, load, np.zeros_like(body.points_mm))
+    state = Equations(body=body, load=load).balance(np.zeros_like(body.points_mm))
     assert state is not None
     return state
 

@@ -17,6 +17,7 @@ from sim.fem.obstacle import RigidPose
 from sim.fem.press import set_up, solve_press
 from sim.fem.readout import FemFrame, _point_stress
 from sim.fem.studies.blocks import flat_membrane, irregular_block
+from sim.fem.tangent import Tangent
 from workbench.core.base.errors import Cancelled, DesignError, MeshingError, SolveError
 from workbench.core.design.design import Elastomer, Law
 from workbench.core.press.fem import FemSettings
@@ -151,7 +152,7 @@ def test_what_friction_remembers_turns_with_the_object() -> None:
     ]
     _, _, submodel = set_up(flat_membrane(), Elastomer(), Indenter(), PRESS, SETTINGS)
     pairing = Pairing(
-        body=submodel.body,
+        tangent=Tangent(submodel.body),
         law=ContactLaw(penalty_MPa_mm=200.0, friction=0.3),
         collider=make_collider(Indenter(), grid_mm=0.25),
         pose_at=lambda progress: poses[round(progress)],
@@ -245,10 +246,10 @@ def fails_after(frame: int, monkeypatch: pytest.MonkeyPatch) -> SolveError:
 
     solved = increment.increment
 
-    def refused(pairing, state, progress, solvers, effort):  # type: ignore[no-untyped-def]
+    def refused(pairing, state, progress, effort):  # type: ignore[no-untyped-def]
         if progress > frame:
             pairing = dataclasses.replace(pairing, tolerance=0.0)
-        return solved(pairing, state, progress, solvers, effort)
+        return solved(pairing, state, progress, effort)
 
     monkeypatch.setattr(increment, "increment", refused)
     monkeypatch.setattr(increment, "MOST_HALVINGS", 0)
