@@ -34,8 +34,7 @@ from workbench.core.base.freed_memory import freed_memory_kept
 from workbench.core.base.monitor import Monitor, silent
 from workbench.core.design.design import Elastomer
 from workbench.core.press.fem import FemSettings
-from workbench.core.press.indenter import Indenter
-from workbench.core.press.press import Press
+from workbench.core.press.press_case import PressCase
 from workbench.core.result.force_field import ForceField, Source
 from workbench.core.result.results import MembraneMesh
 from workbench.core.result.sampled import SampledDistance
@@ -59,9 +58,7 @@ def sampling_grid_mm(settings: FemSettings) -> float:
 def solve_press(
     mesh: MembraneMesh,
     material: Elastomer,
-    indenter: Indenter,
-    press: Press,
-    settings: FemSettings,
+    case: PressCase,
     *,
     sampled: SampledDistance | None = None,
     device: str = "cpu",
@@ -71,11 +68,10 @@ def solve_press(
     """Solve a press frame by frame.
 
     Args:
-        mesh: The membrane, meshed at `settings.hex_mm`.
+        mesh: The membrane, meshed at `case.fem.hex_mm`.
         material: The elastomer, with its friction against the object.
-        indenter: The object, rigid.
-        press: Its path, and the regions that are driven meanwhile.
-        settings: Region, increments, tolerance.
+        case: The rigid object, its path, the regions that are driven meanwhile; region,
+            increments, tolerance.
         sampled: The object's distance on `sampling_grid_mm` where a store has it.
         device: `cpu`, or `cuda` where linear equations are to be solved on a GPU by PyTorch.
         monitor: Told frame and progress; raises `Cancelled` to stop.
@@ -88,10 +84,8 @@ def solve_press(
         SolveError: If an increment does not converge; carries the frames before it.
     """
     monitor(0.0, "placing the object")
-    collider, approach, submodel = set_up(
-        mesh, material, indenter, press, settings, sampled=sampled
-    )
-    course = _Course(mesh, material, collider, approach, settings, submodel, device)
+    collider, approach, submodel = set_up(mesh, material, case, sampled=sampled)
+    course = _Course(mesh, material, collider, approach, case.fem, submodel, device)
     try:
         with freed_memory_kept():
             course.run(monitor, on_frame)
@@ -108,9 +102,7 @@ def solve_press(
 def set_up(
     mesh: MembraneMesh,
     material: Elastomer,
-    indenter: Indenter,
-    press: Press,
-    settings: FemSettings,
+    case: PressCase,
     *,
     sampled: SampledDistance | None = None,
 ) -> tuple[Collider, Approach, Submodel]:
@@ -120,6 +112,7 @@ def set_up(
         DesignError: As `solve_press`.
         MeshingError: As `solve_press`.
     """
+    indenter, press, settings = case.indenter, case.press, case.fem
     if indenter.soft is not None:
         raise DesignError(
             "finite elements take rigid objects only, and this one is soft",
