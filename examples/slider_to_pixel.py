@@ -13,6 +13,7 @@ from sim.contact.press import press_membrane
 from sim.optics.field.bake import bake_light
 from sim.optics.studio.render import Studio
 from workbench.core.design.lighting import LightModel
+from workbench.core.press.press_case import PressCase
 from workbench.pipeline.devices import open_device
 
 open_device()
@@ -36,7 +37,9 @@ light = bake_light(mesh, ring, design.optics.lamps, model=LightModel("direct"))
 points = material_points(solid.membrane, 0.8)
 press = wb.Press(target_mm=(0.0, 10.0, 35.0), depth_mm=1.0, frames=2)
 ball, settings = wb.Indenter("sphere", size_mm=6.0), wb.ContactSettings(grid_mm=0.8)
-contact = press_membrane(mesh, points, design.material, ball, press, settings)
+contact = press_membrane(
+    mesh, points, design.material, PressCase(indenter=ball, press=press, settings=settings)
+)
 
 # 5 Image. The moved skin is drawn into the camera: pixel = f (x/z, y/z) + centre after Snell's law
 #   at the clear wall. Radiance of matte and glossy coating (GGX), summed over the LEDs:

@@ -31,9 +31,9 @@ from sim.contact.region.backing import support_points_mm
 from sim.contact.solver.solver import relaxation_of, resume
 from workbench.core.base.monitor import Monitor, silent
 from workbench.core.design.design import Elastomer
-from workbench.core.press.indenter import Indenter
 from workbench.core.press.motion import press_stroke
-from workbench.core.press.press import ContactSettings, Method, Press
+from workbench.core.press.press import Method, Press
+from workbench.core.press.press_case import PressCase
 from workbench.core.result.results import MaterialPoints, MembraneMesh
 from workbench.core.result.sensing import Contact
 
@@ -88,22 +88,19 @@ class LiveContact:
         mesh: MembraneMesh,
         points: MaterialPoints,
         material: Elastomer,
-        indenter: Indenter,
-        press: Press,
-        settings: ContactSettings,
+        case: PressCase,
         *,
         key: object,
         monitor: Monitor = silent,
     ) -> Contact:
-        """The last frame of `one_frame(press)`, as a contact of one frame.
+        """The last frame of `one_frame(case.press)`, as a contact of one frame.
 
         Args:
             mesh: Skins, as for a press.
             points: Material points.
             material: The elastomer.
-            indenter: The rigid object.
-            press: The press; its strokes, trajectory and actuations are left out.
-            settings: Region, penalty, tolerance.
+            case: The rigid object, the press without its strokes, trajectory and actuations;
+                region, penalty, tolerance.
             key: Equal for requests whose mesh, points, material, indenter and settings are equal.
             monitor: Raises `Cancelled` to stop; the next request then starts from rest.
 
@@ -111,14 +108,13 @@ class LiveContact:
             DesignError: If the press cannot be placed.
             SolveError: If it does not settle.
         """
-        path = one_frame(press)
+        case = dataclasses.replace(case, press=one_frame(case.press))
+        path = case.press
         monitor(0.0, "placing the object")
-        if indenter.soft is not None or settings.method is not Method.LATTICE:
+        if case.indenter.soft is not None or case.settings.method is not Method.LATTICE:
             # What deforms the object, or resets its particles, has no state to go on from.
             self.way, self._kept = Way.ANEW, None
-            alone = press_membrane(
-                mesh, points, material, indenter, path, settings, monitor=monitor
-            )
+            alone = press_membrane(mesh, points, material, case, monitor=monitor)
             return _last_frame(alone)
         kept = self._kept
         if kept is not None and self._serves(kept, key, path):
@@ -131,7 +127,7 @@ class LiveContact:
             kept.relaxation = relaxation_of([problem])
         else:
             self.way = Way.ANEW
-            problem = make_problem(mesh, points, material, indenter, path, settings)
+            problem = make_problem(mesh, points, material, case)
             # Placing takes a third of a second, in which a newer request may have come.
             monitor(0.0, "the region is ready")
             kept = _Kept(key=key, problem=problem, relaxation=relaxation_of([problem]))

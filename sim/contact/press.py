@@ -7,8 +7,8 @@ from sim.contact.solver.solver import solve
 from workbench.core.base.errors import SolveError
 from workbench.core.base.monitor import Monitor, silent
 from workbench.core.design.design import Elastomer
-from workbench.core.press.indenter import Indenter
-from workbench.core.press.press import ContactSettings, Method, Press
+from workbench.core.press.press import Method
+from workbench.core.press.press_case import PressCase
 from workbench.core.result.results import MaterialPoints, MembraneMesh
 from workbench.core.result.sampled import SampledDistance
 from workbench.core.result.sensing import Contact
@@ -18,9 +18,7 @@ def press_membrane(
     mesh: MembraneMesh,
     points: MaterialPoints,
     material: Elastomer,
-    indenter: Indenter,
-    press: Press,
-    settings: ContactSettings,
+    case: PressCase,
     *,
     sampled: SampledDistance | None = None,
     monitor: Monitor = silent,
@@ -31,9 +29,8 @@ def press_membrane(
         mesh: Skins: contact on `outer`, bond or gel on `inner`.
         points: Material points; their `grid_mm` is the grid of the solution.
         material: The elastomer, with its friction against the object.
-        indenter: The object.
-        press: Its path, and the regions that are driven meanwhile.
-        settings: Region, penalty, tolerance.
+        case: The object, its path, the regions that are driven meanwhile; region, penalty,
+            tolerance.
         sampled: The object's distance on this grid where a store has it; else it is sampled here.
         monitor: Told the frame and residual; raises `Cancelled` to stop.
 
@@ -43,16 +40,18 @@ def press_membrane(
         SolveError: If a frame does not settle or is not sound; carries frame, residual, last
             good frame, and the result of the frames that settled.
     """
-    if settings.method is Method.PARTICLES:
+    if case.settings.method is Method.PARTICLES:
         from sim.contact.particles.press import press_particles
 
-        return press_particles(mesh, points, material, indenter, press, settings, monitor=monitor)
+        return press_particles(
+            mesh, points, material, case.indenter, case.press, case.settings, monitor=monitor
+        )
     monitor(0.0, "placing the object")
-    problem = make_problem(mesh, points, material, indenter, press, settings, sampled)
-    if indenter.soft is not None:
+    problem = make_problem(mesh, points, material, case, sampled)
+    if case.indenter.soft is not None:
         from sim.contact.soft.solver import press_soft
 
-        result = press_soft(problem, indenter, monitor)
+        result = press_soft(problem, case.indenter, monitor)
     else:
         (result,) = solve([problem], monitor=monitor)
     if isinstance(result, SolveError):

@@ -67,75 +67,83 @@ class Balance:
         return Lag(pressure_MPa=pressure, normal=normal)
 
 
-def balance(
-    body: Body,
-    load: Load,
-    displacement_mm: np.ndarray,
-    *,
-    tangent: bool = True,
-    lag: Lag | None = None,
-    convex: bool = False,
-    known: ElementState | None = None,
-) -> Balance | None:
-    """Forces at a displacement, shape (N, 3); None where an element is inverted.
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Equations:
+    """Balance of forces of a body against the object at one pose."""
 
-    Args:
-        body: The body.
-        load: The object.
-        displacement_mm: Displacement of all nodes; held ones are where they belong.
-        tangent: Whether stiffnesses are wanted.
-        lag: Pressure and normal of friction that is held, for all contact points.
-        convex: As in `contact_law.traction`.
-        known: Forces of the elements, where they were found at this displacement before.
-    """
-    elements = evaluate(
-        body.elements, displacement_mm, tangent=tangent, leading=body.near, known=known
-    )
-    if not np.isfinite(elements.energy_Nmm):
-        return None
-    faces = body.faces
-    places_mm = faces.places(body.points_mm + displacement_mm)
-    distance_mm, gradient = distance(load.collider, load.pose, places_mm)
-    touches = distance_mm < 0.0
-    if lag is not None:
-        touches |= lag.pressure_MPa > 0.0
-    members = np.flatnonzero(touches)
-    touch = Touch(
-        distance_mm=distance_mm[members],
-        gradient=gradient[members],
-        curvature=curvature(load.collider, load.pose, places_mm[members]) if tangent else None,
-        slip_mm=(load.elastic_mm + places_mm - load.anchor_mm)[members],
-    )
-    held = None if lag is None else lag.take(members)
-    pull = traction(load.law, touch, lag=held, convex=convex)
-    touching_faces, spots = _by_face(members, faces.areas_mm2.shape)
-    meeting = faces.take(touching_faces)
-    contact_N = body.system.gather(meeting.nodes, meeting.forces(_spread(pull.total_MPa, spots)))
-    gel_N, gel_Nmm = body.spring_forces(displacement_mm)
-    internal_N = body.system.gather(body.elements.cells, elements.force_N)
-    residual_N = body.system.reduced(contact_N + gel_N - internal_N)
-    load_N = max(
-        np.abs(contact_N).max(initial=0.0),
-        np.abs(internal_N[body.driven]).max(initial=0.0),
-        LEAST_MM2 * body.young_MPa,
-    )
-    contact_Nmm = float(pull.energy_N_mm @ faces.areas_mm2.ravel()[members])
-    bent = pull.stiffness_MPa_mm
-    return Balance(
-        energy_Nmm=elements.energy_Nmm + gel_Nmm + contact_Nmm,
-        residual_N=residual_N,
-        relative=float(np.abs(residual_N).max(initial=0.0) / load_N),
-        contact_N=contact_N,
-        internal_N=internal_N,
-        gel_N=gel_N,
-        elements=elements,
-        places_mm=places_mm,
-        distance_mm=distance_mm,
-        members=members,
-        traction=pull,
-        touching_faces=touching_faces,
-        face_N_mm=None if bent is None else meeting.stiffness(_spread(bent, spots)),
-    )
+    body: Body
+    load: Load
+    lag: Lag | None = None
+    """Pressure and normal of friction that is held, for all contact points; None: each state's own
+    friction."""
+
+    def balance(
+        self,
+        displacement_mm: np.ndarray,
+        *,
+        tangent: bool = True,
+        convex: bool = False,
+        known: ElementState | None = None,
+    ) -> Balance | None:
+        """Forces at a displacement, shape (N, 3); None where an element is inverted.
+
+        Args:
+            displacement_mm: Displacement of all nodes; held ones are where they belong.
+            tangent: Whether stiffnesses are wanted.
+            convex: As in `contact_law.traction`.
+            known: Forces of the elements, where they were found at this displacement before.
+        """
+        body, load, lag = self.body, self.load, self.lag
+        elements = evaluate(
+            body.elements, displacement_mm, tangent=tangent, leading=body.near, known=known
+        )
+        if not np.isfinite(elements.energy_Nmm):
+            return None
+        faces = body.faces
+        places_mm = faces.places(body.points_mm + displacement_mm)
+        distance_mm, gradient = distance(load.collider, load.pose, places_mm)
+        touches = distance_mm < 0.0
+        if lag is not None:
+            touches |= lag.pressure_MPa > 0.0
+        members = np.flatnonzero(touches)
+        touch = Touch(
+            distance_mm=distance_mm[members],
+            gradient=gradient[members],
+            curvature=curvature(load.collider, load.pose, places_mm[members]) if tangent else None,
+            slip_mm=(load.elastic_mm + places_mm - load.anchor_mm)[members],
+        )
+        held = None if lag is None else lag.take(members)
+        pull = traction(load.law, touch, lag=held, convex=convex)
+        touching_faces, spots = _by_face(members, faces.areas_mm2.shape)
+        meeting = faces.take(touching_faces)
+        contact_N = body.system.gather(
+            meeting.nodes, meeting.forces(_spread(pull.total_MPa, spots))
+        )
+        gel_N, gel_Nmm = body.spring_forces(displacement_mm)
+        internal_N = body.system.gather(body.elements.cells, elements.force_N)
+        residual_N = body.system.reduced(contact_N + gel_N - internal_N)
+        load_N = max(
+            np.abs(contact_N).max(initial=0.0),
+            np.abs(internal_N[body.driven]).max(initial=0.0),
+            LEAST_MM2 * body.young_MPa,
+        )
+        contact_Nmm = float(pull.energy_N_mm @ faces.areas_mm2.ravel()[members])
+        bent = pull.stiffness_MPa_mm
+        return Balance(
+            energy_Nmm=elements.energy_Nmm + gel_Nmm + contact_Nmm,
+            residual_N=residual_N,
+            relative=float(np.abs(residual_N).max(initial=0.0) / load_N),
+            contact_N=contact_N,
+            internal_N=internal_N,
+            gel_N=gel_N,
+            elements=elements,
+            places_mm=places_mm,
+            distance_mm=distance_mm,
+            members=members,
+            traction=pull,
+            touching_faces=touching_faces,
+            face_N_mm=None if bent is None else meeting.stiffness(_spread(bent, spots)),
+        )
 
 
 Spots = tuple[np.ndarray, np.ndarray, tuple[int, int]]

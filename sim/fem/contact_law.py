@@ -59,6 +59,11 @@ class Touch:
     slip_mm: np.ndarray
     """v, shape (Q, 3)."""
 
+    @property
+    def steepness(self) -> np.ndarray:
+        """|grad phi|, shape (Q,)."""
+        return np.linalg.norm(self.gradient, axis=1)
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Lag:
@@ -110,25 +115,28 @@ def traction(law: Law, touch: Touch, *, lag: Lag | None = None, convex: bool = F
             negative part.
     """
     gradient = touch.gradient
-    size = np.linalg.norm(gradient, axis=1)
+    size = touch.steepness
     normal = gradient / np.maximum(size, LEAST_MM)[:, None]
     depth_mm = np.maximum(-touch.distance_mm, 0.0)
-    energy, lam, slope = _penalty(law, depth_mm)
+    penalty = _penalty(law, depth_mm)
+    lam = penalty.pressure_MPa
     own = Lag(pressure_MPa=lam * size, normal=normal)
     stiffness = None
     if touch.curvature is not None:
-        stiffness = slope[:, None, None] * gradient[:, :, None] * gradient[:, None, :]
+        stiffness = (
+            penalty.slope_MPa_mm[:, None, None] * gradient[:, :, None] * gradient[:, None, :]
+        )
         if not convex:
             stiffness -= lam[:, None, None] * touch.curvature
     rub = _Rub.of(law, lag or own, touch.slip_mm)
     if law.friction > 0.0 and stiffness is not None and touch.curvature is not None:
         if lag is None:
-            stiffness += _exact_friction(law, touch, rub, own, lam, slope, size)
+            stiffness += _exact_friction(law, touch, rub, normal, penalty)
         else:
             projector = _projectors(lag.normal)
             stiffness += projector @ rub.moduli(law) @ projector
     return Traction(
-        energy_N_mm=energy + rub.energy_N_mm(law),
+        energy_N_mm=penalty.energy_N_mm + rub.energy_N_mm(law),
         normal_MPa=lam[:, None] * gradient,
         friction_MPa=rub.traction_MPa(law),
         stiffness_MPa_mm=stiffness,
@@ -138,8 +146,20 @@ def traction(law: Law, touch: Touch, *, lag: Lag | None = None, convex: bool = F
     )
 
 
-def _penalty(law: Law, depth_mm: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Energy per area, pressure and its slope at penetrations, each of shape (Q,)."""
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Penalty:
+    """What penetration costs at points, each of shape (Q,)."""
+
+    energy_N_mm: np.ndarray
+    """Per area."""
+    pressure_MPa: np.ndarray
+    """lam."""
+    slope_MPa_mm: np.ndarray
+    """Derivative of lam by the depth."""
+
+
+def _penalty(law: Law, depth_mm: np.ndarray) -> _Penalty:
+    """Of penetrations, shape (Q,)."""
     stiffness, soft = law.penalty_MPa_mm, law.soft_mm
     early = depth_mm < soft
     energy = np.where(
@@ -149,7 +169,11 @@ def _penalty(law: Law, depth_mm: np.ndarray) -> tuple[np.ndarray, np.ndarray, np
     )
     pressure = np.where(early, depth_mm**2 / (2.0 * soft), depth_mm - 0.5 * soft)
     slope = np.where(early, depth_mm / soft, 1.0)
-    return stiffness * energy, stiffness * pressure, stiffness * slope
+    return _Penalty(
+        energy_N_mm=stiffness * energy,
+        pressure_MPa=stiffness * pressure,
+        slope_MPa_mm=stiffness * slope,
+    )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -204,17 +228,11 @@ class _Rub:
 
 
 def _exact_friction(
-    law: Law,
-    touch: Touch,
-    rub: _Rub,
-    own: Lag,
-    lam: np.ndarray,
-    slope: np.ndarray,
-    size: np.ndarray,
+    law: Law, touch: Touch, rub: _Rub, normal: np.ndarray, penalty: _Penalty
 ) -> np.ndarray:
     """Minus the derivative of the friction by the place, pressure and normal moving with it."""
     assert touch.curvature is not None
-    normal, slip = own.normal, touch.slip_mm
+    slip, size = touch.slip_mm, touch.steepness
     projector = _projectors(normal)
     turning = projector @ touch.curvature / np.maximum(size, LEAST_MM)[:, None, None]
     along = np.einsum("qi,qi->q", normal, slip)
@@ -222,7 +240,8 @@ def _exact_friction(
     slope_of_slip = projector - along[:, None, None] * turning
     slope_of_slip -= normal[:, :, None] * carried[:, None, :]
     bent = np.einsum("qij,qj->qi", touch.curvature, normal)
-    slope_of_pressure = lam[:, None] * bent - (slope * size)[:, None] * touch.gradient
+    rise = penalty.slope_MPa_mm * size
+    slope_of_pressure = penalty.pressure_MPa[:, None] * bent - rise[:, None] * touch.gradient
     pull = (law.friction * rub.share)[:, None, None] * rub.direction[:, :, None]
     return rub.moduli(law) @ slope_of_slip + pull * slope_of_pressure[:, None, :]
 

@@ -207,15 +207,15 @@ def _neo_hookean_chunk(
     force[:] = _to_nodes(elements, part, stress) + pressure[:, None] * growth
     if tangent is not None:
         closing = pressure[:, None] * weight * ratio
-        tangent[:] = _stiffness(elements, part, deformation, inverse, scale, square, closing)
+        slopes = elements.slopes[part]
+        tangent[:] = _stiffness(slopes, deformation, inverse, scale, square, closing)
         tangent += (bulk / volume)[:, None, None] * growth[:, :, None] * growth[:, None, :]
     isochoric = 0.5 * mu * (square * power - 3.0) * weight
     return float(isochoric.sum() + (0.5 * bulk * volume * dilation**2).sum())
 
 
 def _stiffness(
-    elements: Elements,
-    part: slice,
+    slopes: np.ndarray,
     deformation: np.ndarray,
     inverse: np.ndarray,
     scale: np.ndarray,
@@ -228,7 +228,6 @@ def _stiffness(
     + h_iJ F_kL) + (2/9) I1 h_iJ h_kL + (I1 / 3) h_iL h_kJ] + s (h_iJ h_kL - h_iL h_kJ). Between the
     slopes of the nodes every product becomes one of vectors over (a, i): m = F dN_a, g = h dN_a.
     """
-    slopes = elements.slopes[part]
     count = len(slopes)
     by_point = slopes.transpose(0, 2, 1, 3)
 
@@ -275,7 +274,7 @@ def _linear_chunk(
         # At rest the neo-Hookean stiffness is Hooke's.
         rest = np.broadcast_to(np.eye(3), gradient.shape)
         three, none = np.full(weight.shape, 3.0), np.zeros(weight.shape)
-        tangent[:] = _stiffness(elements, part, rest, rest, mu * weight, three, none)
+        tangent[:] = _stiffness(elements.slopes[part], rest, rest, mu * weight, three, none)
         tangent += (bulk / volume)[:, None, None] * growth[:, :, None] * growth[:, None, :]
     sheared = (mu * weight) * np.einsum("mqij,mqij->mq", deviator, deviator)
     return float(sheared.sum() + (0.5 * bulk * volume * dilation**2).sum())

@@ -5,13 +5,14 @@ Nothing is remembered of an increment that did not converge.
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from sim.contact.objects.collider import Collider
-from sim.fem.balance import Balance, Load, balance
+from sim.fem.balance import Balance, Equations, Load
 from sim.fem.body import Body
 from sim.fem.contact_law import Lag, Law
 from sim.fem.lagged import lagged, minimise
@@ -33,7 +34,8 @@ LONGEST_GUESS = 2.0
 class Pairing:
     """What does not change along a path."""
 
-    body: Body
+    tangent: Tangent
+    """The linearised equations of the body."""
     law: Law
     collider: Collider
     pose_at: Callable[[float], RigidPose]
@@ -41,6 +43,11 @@ class Pairing:
     held_mm: Callable[[float], np.ndarray]
     """Displacement of held nodes after a number of frames, shape (N, 3), zero elsewhere."""
     tolerance: float
+
+    @property
+    def body(self) -> Body:
+        """What is pressed."""
+        return self.tangent.body
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -78,7 +85,6 @@ def advance(
     pairing: Pairing,
     state: State,
     progress: float,
-    tangent: Tangent,
     effort: Effort,
     *,
     halvings: int = 0,
@@ -90,7 +96,6 @@ def advance(
         pairing: Body, object and path.
         state: Where it stands.
         progress: Where it goes.
-        tangent: The linearised equations of the body.
         effort: Counts what it took.
         halvings: How often this piece of the path has been halved.
         watch: Told the progress reached; raises to stop.
@@ -98,7 +103,7 @@ def advance(
     Raises:
         SolveError: If a sixteenth of the increment does not converge either.
     """
-    found = increment(pairing, state, progress, tangent, effort)
+    found = increment(pairing, state, progress, effort)
     if found is not None:
         watch(progress)
         return found
@@ -112,29 +117,25 @@ def advance(
     effort.halved += 1
     middle = 0.5 * (state.progress + progress)
     for goal in (middle, progress):
-        state = advance(pairing, state, goal, tangent, effort, halvings=halvings + 1, watch=watch)
+        state = advance(pairing, state, goal, effort, halvings=halvings + 1, watch=watch)
     return state
 
 
-def increment(
-    pairing: Pairing, state: State, progress: float, tangent: Tangent, effort: Effort
-) -> State | None:
+def increment(pairing: Pairing, state: State, progress: float, effort: Effort) -> State | None:
     """The state after `progress` frames; None if neither method converges."""
-    old, load = _load(pairing, state, state.progress), _load(pairing, state, progress)
-    start_mm = _predicted(pairing, state, progress, old, load, tangent)
+    tangent = pairing.tangent
+    old, new = _equations(pairing, state, state.progress), _equations(pairing, state, progress)
+    start_mm = _predicted(pairing, state, progress, old, new)
     start_mm = minimise(
-        pairing.body,
-        load,
+        dataclasses.replace(new, lag=_lag(state)),
         start_mm,
-        _lag(state),
         tangent,
         effort,
         tolerance=START_TOLERANCE,
         most=MOST_STARTING,
     )
     found = newton(
-        pairing.body,
-        load,
+        new,
         start_mm,
         tangent,
         effort,
@@ -142,11 +143,16 @@ def increment(
         most=MOST_NEWTON,
     )
     if found is None or not found.converged:
-        found = lagged(pairing.body, load, start_mm, tangent, effort, tolerance=pairing.tolerance)
+        found = lagged(new, start_mm, tangent, effort, tolerance=pairing.tolerance)
     if found is None or not found.converged:
         return None
     effort.increments += 1
     return _remembered(state, progress, found)
+
+
+def _equations(pairing: Pairing, state: State, progress: float) -> Equations:
+    """Balance of forces after `progress` frames, with the memory of `state` carried there."""
+    return Equations(body=pairing.body, load=_load(pairing, state, progress))
 
 
 def _load(pairing: Pairing, state: State, progress: float) -> Load:
@@ -170,17 +176,17 @@ def _lag(state: State) -> Lag:
 
 
 def _predicted(
-    pairing: Pairing, state: State, progress: float, old: Load, new: Load, tangent: Tangent
+    pairing: Pairing, state: State, progress: float, old: Equations, new: Equations
 ) -> np.ndarray:
     """First guess (N, 3): held nodes moved, the others by the tangent about the old state."""
     body = pairing.body
     held_mm = pairing.held_mm(progress) - pairing.held_mm(state.progress)
     moved_mm = state.displacement_mm + held_mm
-    known = balance(body, old, state.displacement_mm)
+    known = old.balance(state.displacement_mm)
     assert known is not None and known.face_N_mm is not None
     nodes = body.faces.nodes[known.touching_faces]
     corners_mm = (body.points_mm + state.displacement_mm)[nodes]
-    way_mm = new.pose.carried(corners_mm, old.pose) - corners_mm
+    way_mm = new.load.pose.carried(corners_mm, old.load.pose) - corners_mm
     pushed = known.face_N_mm @ (way_mm - held_mm[nodes]).reshape(-1, 12, 1)
     right_N = body.system.gather(nodes, pushed[..., 0])
     if held_mm.any():
@@ -192,13 +198,13 @@ def _predicted(
     right = body.system.reduced(right_N)
     if not right.any():
         return moved_mm
-    tangent.factorise(known)
-    step_mm = tangent.solve(right)
+    pairing.tangent.factorise(known)
+    step_mm = pairing.tangent.solve(right)
     farthest_mm = LONGEST_GUESS * max(
         float(np.abs(way_mm).max(initial=0.0)), float(np.abs(held_mm).max(initial=0.0))
     )
     step_mm *= min(1.0, farthest_mm / max(float(np.abs(step_mm).max(initial=0.0)), 1e-12))
-    guess = balance(body, new, moved_mm + step_mm, tangent=False)
+    guess = new.balance(moved_mm + step_mm, tangent=False)
     return moved_mm if guess is None else moved_mm + step_mm
 
 

@@ -9,13 +9,12 @@ the same, held values are renewed again and again, until its residual is small e
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable
 
 import numpy as np
 
-from sim.fem.balance import Balance, Load, balance
-from sim.fem.body import Body
-from sim.fem.contact_law import Lag
+from sim.fem.balance import Balance, Equations
 from sim.fem.elements import ElementState
 from sim.fem.newton import Effort, Solution, first_share, newton
 from sim.fem.tangent import Tangent
@@ -36,8 +35,7 @@ AWAY = 0.1
 
 
 def lagged(
-    body: Body,
-    load: Load,
+    equations: Equations,
     displacement_mm: np.ndarray,
     tangent: Tangent,
     effort: Effort,
@@ -45,24 +43,22 @@ def lagged(
     tolerance: float,
 ) -> Solution | None:
     """Solve from a displacement, shape (N, 3); None if an element is inverted from the start."""
-    state = balance(body, load, displacement_mm, tangent=False)
+    state = equations.balance(displacement_mm, tangent=False)
     before = np.inf
     for number in range(MOST_LAGS):
         if state is None:
             return None
         goal = max(0.1 * tolerance, min(LOOSEST, SHARE * before))
-        displacement_mm = minimise(
-            body, load, displacement_mm, state.lag(), tangent, effort, tolerance=goal
-        )
-        state = balance(body, load, displacement_mm, tangent=False)
+        held = dataclasses.replace(equations, lag=state.lag())
+        displacement_mm = minimise(held, displacement_mm, tangent, effort, tolerance=goal)
+        state = equations.balance(displacement_mm, tangent=False)
         if state is None:
             return None
         if state.relative < tolerance:
             return Solution(displacement_mm=displacement_mm, balance=state, converged=True)
         if state.relative < NEAR and number >= 1:
             exact = newton(
-                body,
-                load,
+                equations,
                 displacement_mm,
                 tangent,
                 effort,
@@ -76,26 +72,24 @@ def lagged(
 
 
 def minimise(
-    body: Body,
-    load: Load,
+    equations: Equations,
     displacement_mm: np.ndarray,
-    lag: Lag,
     tangent: Tangent,
     effort: Effort,
     *,
     tolerance: float,
     most: int = MOST_STEPS,
 ) -> np.ndarray:
-    """Displacement (N, 3) of least potential with friction held, as near as it comes."""
+    """Displacement (N, 3) of least potential, as near as it comes; the equations hold friction."""
     known: ElementState | None = None
     for _ in range(most):
-        state = balance(body, load, displacement_mm, lag=lag, known=known)
+        state = equations.balance(displacement_mm, known=known)
         if state is None or state.relative < tolerance:
             break
         effort.lagged += 1
         effort.watch()
-        step_mm = _descent(body, load, displacement_mm, state, lag, tangent, effort)
-        found = _search(body, load, displacement_mm, step_mm, state, lag)
+        step_mm = _descent(equations, displacement_mm, state, tangent, effort)
+        found = _search(equations, displacement_mm, step_mm, state)
         if found is None:
             break
         displacement_mm, known = found
@@ -103,11 +97,9 @@ def minimise(
 
 
 def _descent(
-    body: Body,
-    load: Load,
+    equations: Equations,
     displacement_mm: np.ndarray,
     state: Balance,
-    lag: Lag,
     tangent: Tangent,
     effort: Effort,
 ) -> np.ndarray:
@@ -115,10 +107,10 @@ def _descent(
     negative = tangent.factorise(state, symmetric=True)
     if not negative:
         step_mm = tangent.solve(state.residual_N)
-        if negative == 0 or state.residual_N @ body.system.reduced(step_mm) > 0.0:
+        if negative == 0 or state.residual_N @ equations.body.system.reduced(step_mm) > 0.0:
             return step_mm
     effort.projected += 1
-    convex = balance(body, load, displacement_mm, lag=lag, convex=True, known=state.elements)
+    convex = equations.balance(displacement_mm, convex=True, known=state.elements)
     assert convex is not None
     positive = _positive(convex.elements.tangent_N_mm)
     tangent.factorise(convex, symmetric=True, elements_N_mm=positive)
@@ -133,12 +125,10 @@ def _positive(stiffness: np.ndarray | None) -> np.ndarray:
 
 
 def _search(
-    body: Body,
-    load: Load,
+    equations: Equations,
     displacement_mm: np.ndarray,
     step_mm: np.ndarray,
     state: Balance,
-    lag: Lag,
 ) -> tuple[np.ndarray, ElementState | None] | None:
     """Where along a step the potential is nearly least, shape (N, 3); None if nowhere lower.
 
@@ -146,7 +136,7 @@ def _search(
     step is minus the residual times it. Stiff contact makes the potential one of kinks, which a
     search that only asks for some decrease follows in twice as many steps.
     """
-    way = body.system.reduced(step_mm)
+    way = equations.body.system.reduced(step_mm)
     start = float(state.residual_N @ way)
     if start <= 0.0:
         return None
@@ -155,7 +145,7 @@ def _search(
 
     def slope(share: float) -> float | None:
         nonlocal last
-        tried = balance(body, load, displacement_mm + share * step_mm, tangent=False, lag=lag)
+        tried = equations.balance(displacement_mm + share * step_mm, tangent=False)
         if tried is None:
             return None
         last = share, tried.elements

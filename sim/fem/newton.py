@@ -12,13 +12,13 @@ factor of two or three a step only. There the last factors serve on, corrected b
 from __future__ import annotations
 
 import itertools
+import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from sim.fem.balance import Balance, Load, balance
-from sim.fem.body import Body
+from sim.fem.balance import Balance, Equations
 from sim.fem.tangent import Tangent
 
 FARTHEST_MM = 0.5
@@ -58,6 +58,18 @@ class Effort:
     increments: int = 0
     watch: Callable[[], None] = _unwatched
     """Called at every step; raises to stop."""
+    begun: float = field(default_factory=time.perf_counter)
+    """When it began, by `time.perf_counter` [s]."""
+
+    @property
+    def steps(self) -> int:
+        """Linear systems that were solved, but for those of kept factors."""
+        return self.newton + self.lagged
+
+    @property
+    def seconds(self) -> float:
+        """Time since it began [s]."""
+        return time.perf_counter() - self.begun
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -77,8 +89,7 @@ def first_share(step_mm: np.ndarray) -> float:
 
 
 def newton(
-    body: Body,
-    load: Load,
+    equations: Equations,
     displacement_mm: np.ndarray,
     tangent: Tangent,
     effort: Effort,
@@ -89,15 +100,14 @@ def newton(
     """Solve from a displacement, shape (N, 3); None if an element is inverted from the start.
 
     Args:
-        body: The body.
-        load: The object.
+        equations: Of the increment, with each state's own friction.
         displacement_mm: Start; held nodes are where they belong.
         tangent: The linearised equations of the body.
         effort: Counts the steps.
         tolerance: Relative residual to reach.
         most: Steps at most.
     """
-    state = balance(body, load, displacement_mm, tangent=False)
+    state = equations.balance(displacement_mm, tangent=False)
     if state is None:
         return None
     history: list[float] = []
@@ -105,7 +115,7 @@ def newton(
         if state.relative < tolerance:
             break
         history.append(float(np.linalg.norm(state.residual_N)))
-        stepped = _step(body, load, displacement_mm, state, tangent, max(history[-REMEMBERED:]))
+        stepped = _step(equations, displacement_mm, state, tangent, max(history[-REMEMBERED:]))
         effort.newton += 1
         effort.watch()
         if stepped is None or _stalls(history):
@@ -114,7 +124,7 @@ def newton(
         displacement_mm, state = stepped.displacement_mm, stepped.balance
         if stepped.whole and tolerance <= state.relative < CLOSE:
             displacement_mm, state = _updated(
-                body, load, displacement_mm, state, tangent, effort, way_mm, tolerance
+                equations, stepped, tangent, effort, way_mm, tolerance
             )
     return Solution(
         displacement_mm=displacement_mm, balance=state, converged=state.relative < tolerance
@@ -132,15 +142,14 @@ class _Stepped:
 
 
 def _step(
-    body: Body,
-    load: Load,
+    equations: Equations,
     displacement_mm: np.ndarray,
     state: Balance,
     tangent: Tangent,
     reference_N: float,
 ) -> _Stepped | None:
     """One step with its line search; None if none of the tried ones will do."""
-    linear = balance(body, load, displacement_mm, known=state.elements)
+    linear = equations.balance(displacement_mm, known=state.elements)
     assert linear is not None
     tangent.factorise(linear)
     step_mm = tangent.solve(state.residual_N)
@@ -148,7 +157,7 @@ def _step(
     best: tuple[float, _Stepped] | None = None
     for _ in range(HALVINGS):
         moved_mm = displacement_mm + share * step_mm
-        tried = balance(body, load, moved_mm, tangent=False)
+        tried = equations.balance(moved_mm, tangent=False)
         if tried is not None:
             size_N = float(np.linalg.norm(tried.residual_N))
             found = _Stepped(displacement_mm=moved_mm, balance=tried, whole=share == 1.0)
@@ -163,16 +172,16 @@ def _step(
 
 
 def _updated(
-    body: Body,
-    load: Load,
-    displacement_mm: np.ndarray,
-    state: Balance,
+    equations: Equations,
+    stepped: _Stepped,
     tangent: Tangent,
     effort: Effort,
     way_mm: np.ndarray,
     tolerance: float,
 ) -> tuple[np.ndarray, Balance]:
     """Go on with the last factors after a whole step `way_mm`, as long as that pays."""
+    body = equations.body
+    displacement_mm, state = stepped.displacement_mm, stepped.balance
     steps = [body.system.reduced(way_mm)]
     for _ in range(MOST_UPDATES):
         way = broyden_step(body.system.reduced(tangent.solve(state.residual_N)), steps)
@@ -183,7 +192,7 @@ def _updated(
         if first_share(step_mm) < 1.0:
             break
         moved_mm = displacement_mm + step_mm
-        tried = balance(body, load, moved_mm, tangent=False)
+        tried = equations.balance(moved_mm, tangent=False)
         if tried is None or not _is_nearer(tried, state):
             break
         worth = tried.relative < WORTH * state.relative

@@ -9,7 +9,6 @@ Left out: soft objects, self-contact.
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable
 from dataclasses import fields
 from typing import Any
@@ -35,8 +34,7 @@ from workbench.core.base.freed_memory import freed_memory_kept
 from workbench.core.base.monitor import Monitor, silent
 from workbench.core.design.design import Elastomer
 from workbench.core.press.fem import FemSettings
-from workbench.core.press.indenter import Indenter
-from workbench.core.press.press import Press
+from workbench.core.press.press_case import PressCase
 from workbench.core.result.force_field import ForceField, Source
 from workbench.core.result.results import MembraneMesh
 from workbench.core.result.sampled import SampledDistance
@@ -60,9 +58,7 @@ def sampling_grid_mm(settings: FemSettings) -> float:
 def solve_press(
     mesh: MembraneMesh,
     material: Elastomer,
-    indenter: Indenter,
-    press: Press,
-    settings: FemSettings,
+    case: PressCase,
     *,
     sampled: SampledDistance | None = None,
     device: str = "cpu",
@@ -72,11 +68,10 @@ def solve_press(
     """Solve a press frame by frame.
 
     Args:
-        mesh: The membrane, meshed at `settings.hex_mm`.
+        mesh: The membrane, meshed at `case.fem.hex_mm`.
         material: The elastomer, with its friction against the object.
-        indenter: The object, rigid.
-        press: Its path, and the regions that are driven meanwhile.
-        settings: Region, increments, tolerance.
+        case: The rigid object, its path, the regions that are driven meanwhile; region,
+            increments, tolerance.
         sampled: The object's distance on `sampling_grid_mm` where a store has it.
         device: `cpu`, or `cuda` where linear equations are to be solved on a GPU by PyTorch.
         monitor: Told frame and progress; raises `Cancelled` to stop.
@@ -89,10 +84,8 @@ def solve_press(
         SolveError: If an increment does not converge; carries the frames before it.
     """
     monitor(0.0, "placing the object")
-    collider, approach, submodel = set_up(
-        mesh, material, indenter, press, settings, sampled=sampled
-    )
-    course = _Course(mesh, material, collider, approach, settings, submodel, device)
+    collider, approach, submodel = set_up(mesh, material, case, sampled=sampled)
+    course = _Course(mesh, material, collider, approach, case.fem, submodel, device)
     try:
         with freed_memory_kept():
             course.run(monitor, on_frame)
@@ -103,15 +96,13 @@ def solve_press(
         error.partial = course.result() if course.outcomes else None
         raise
     finally:
-        course.tangent.close()
+        course.pairing.tangent.close()
 
 
 def set_up(
     mesh: MembraneMesh,
     material: Elastomer,
-    indenter: Indenter,
-    press: Press,
-    settings: FemSettings,
+    case: PressCase,
     *,
     sampled: SampledDistance | None = None,
 ) -> tuple[Collider, Approach, Submodel]:
@@ -121,6 +112,7 @@ def set_up(
         DesignError: As `solve_press`.
         MeshingError: As `solve_press`.
     """
+    indenter, press, settings = case.indenter, case.press, case.fem
     if indenter.soft is not None:
         raise DesignError(
             "finite elements take rigid objects only, and this one is soft",
@@ -169,7 +161,7 @@ class _Course:
         self.settings = settings
         self.submodel = submodel
         self.pairing = Pairing(
-            body=submodel.body,
+            tangent=Tangent(submodel.body, device=device),
             law=Law(
                 penalty_MPa_mm=PENALTY * material.young_MPa,
                 friction=material.friction,
@@ -179,7 +171,6 @@ class _Course:
             held_mm=self._held_mm,
             tolerance=settings.tolerance,
         )
-        self.tangent = Tangent(submodel.body, device=device)
         self.frame = 0
         self.outcomes: list[FemFrame] = []
 
@@ -188,7 +179,7 @@ class _Course:
         count, state = self.approach.frame_count, at_rest(self.pairing)
         for frame in range(count):
             self.frame = frame
-            begun, effort = time.perf_counter(), Effort()
+            effort = Effort()
             label = f"frame {frame + 1} of {count}"
 
             def watch(progress: float, label: str = label) -> None:
@@ -197,18 +188,8 @@ class _Course:
             effort.watch = lambda now=state.progress, watch=watch: watch(now)
             before = state
             for goal in self._goals(frame):
-                state = advance(self.pairing, state, goal, self.tangent, effort, watch=watch)
-            outcome = read_frame(
-                self.mesh,
-                self.submodel,
-                self.pairing,
-                state,
-                before,
-                drives=len(self.approach.press.actuations),
-                increments=effort.increments,
-                steps=effort.newton + effort.lagged,
-                seconds=time.perf_counter() - begun,
-            )
+                state = advance(self.pairing, state, goal, effort, watch=watch)
+            outcome = read_frame(self.mesh, self.submodel, self.pairing, state, before, effort)
             self.outcomes.append(outcome)
             on_frame(frame, outcome)
         monitor(1.0, "converged")
@@ -229,7 +210,7 @@ class _Course:
             radius_mm=self.submodel.radius_mm,
             spacing_mm=self.settings.hex_mm,
             solver=f"{len(body.elements.cells)} hexahedra, {len(body.system.free)} equations, "
-            f"{self.tangent.solver_name}",
+            f"{self.pairing.tangent.solver_name}",
         )
 
     def _pose(self, progress: float) -> RigidPose:

@@ -14,6 +14,7 @@ from sim.contact.readout.fields import VOIGT
 from sim.fem.balance import LEAST_MM2, Balance
 from sim.fem.elements import CORNERS, Elements, displacement_gradient
 from sim.fem.increment import Pairing, State
+from sim.fem.newton import Effort
 from sim.fem.submodel import Submodel
 from sim.material import energy_density_MPa
 from workbench.core.base.frames import quaternion
@@ -59,11 +60,7 @@ def read_frame(
     pairing: Pairing,
     state: State,
     before: State,
-    *,
-    drives: int,
-    increments: int,
-    steps: int,
-    seconds: float,
+    effort: Effort,
 ) -> FemFrame:
     """Read a state at the end of a frame.
 
@@ -73,18 +70,17 @@ def read_frame(
         pairing: Object and path.
         state: A converged state.
         before: The state at the end of the frame before, for what slid in this one.
-        drives: Actuations of the press.
-        increments: Increments of the frame.
-        steps: Linear systems of the frame.
-        seconds: Time the frame took [s].
+        effort: What the frame took.
     """
+    # Reading takes a while too, which is none of the solution's.
+    seconds = effort.seconds
     body, forces = submodel.body, state.balance
     assert forces is not None
     pose = pairing.pose_at(state.progress)
     place_mm = body.points_mm + state.displacement_mm
     moment_Nmm = -np.cross(place_mm - pose.origin_mm, forces.contact_N).sum(axis=0)
     holding_N = forces.internal_N - forces.contact_N - forces.gel_N
-    held = _held_forces(submodel, holding_N, forces, drives)
+    held = _held_forces(submodel, holding_N, forces)
     contact_N = forces.contact_N.sum(axis=0)
     missing_N = contact_N + held[0] + held[1] + held[2].sum(axis=0)
     # After a release nothing is left but rounding, which is not out of balance.
@@ -114,8 +110,8 @@ def read_frame(
         penetration_mm=-float(forces.distance_mm.min(initial=0.0)),
         friction_ratio=_friction_ratio(forces),
         least_volume_ratio=least,
-        increments=increments,
-        steps=steps,
+        increments=effort.increments,
+        steps=effort.steps,
         frame_seconds=seconds,
     )
 
@@ -129,12 +125,12 @@ def _on_skin(vertices: np.ndarray, values: np.ndarray, count: int) -> np.ndarray
 
 
 def _held_forces(
-    submodel: Submodel, holding_N: np.ndarray, forces: Balance, drives: int
+    submodel: Submodel, holding_N: np.ndarray, forces: Balance
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Forces of the support (gel included), of elastomer cut off, and of each drive (A, 3) [N]."""
     body = submodel.body
     driven = np.array(
-        [holding_N[submodel.drive == number].sum(axis=0) for number in range(drives)]
+        [holding_N[submodel.drive == number].sum(axis=0) for number in range(submodel.drives)]
     ).reshape(-1, 3)
     cut_N = holding_N[submodel.cut & (submodel.drive < 0)].sum(axis=0)
     bonded = body.held & ~submodel.cut & (submodel.drive < 0)

@@ -45,6 +45,8 @@ class Submodel:
     """Vertex of the inner skin likewise, shape (N,)."""
     drive: np.ndarray
     """Actuation that moves each node of the body, -1 for none, shape (N,)."""
+    drives: int
+    """Actuations of the press."""
     cut: np.ndarray
     """Nodes held because the mesh goes on beyond them, shape (N,), bool."""
     radius_mm: float
@@ -126,6 +128,7 @@ def cut_out(
         skin=outer,
         inner=inner,
         drive=drive,
+        drives=len(press.actuations),
         cut=cut,
         radius_mm=radius_mm,
     )

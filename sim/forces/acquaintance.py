@@ -25,6 +25,7 @@ from workbench.core.design.design import Elastomer
 from workbench.core.press.indenter import Indenter
 from workbench.core.press.motion import StrokeKind
 from workbench.core.press.press import ContactSettings, Method, Press
+from workbench.core.press.press_case import PressCase
 
 SAME = 1e-3
 """Relative difference below which numbers of a card are the same."""
@@ -73,9 +74,7 @@ def acquaintance(
     target: Target,
     membrane: Membrane,
     material: Elastomer,
-    indenter: Indenter,
-    press: Press,
-    settings: ContactSettings,
+    case: PressCase,
     *,
     largest_mm: float = 0.0,
 ) -> Acquaintance:
@@ -86,9 +85,7 @@ def acquaintance(
         target: What they predict; displacements do not change with E.
         membrane: Of the design.
         material: Its elastomer.
-        indenter: The object.
-        press: Its path.
-        settings: Of the contact solver, whose displacement the network is given.
+        case: The object, its path, and the contact solver whose displacement the network is given.
         largest_mm: Largest displacement of the press [mm], once that is known.
     """
     ratio, note, open_reasons = _stiffness(card, target, membrane, material)
@@ -97,9 +94,9 @@ def acquaintance(
         *_of_membrane(card, membrane),
         *open_reasons,
         *_of_material(card, material),
-        *_of_object(card, indenter),
-        *_of_path(card, press),
-        *_of_solver(card, settings, largest_mm),
+        *_of_object(card, case.indenter),
+        *_of_path(card, case.press),
+        *_of_solver(card, case.settings, largest_mm),
     )
     factor = 1.0 if target is Target.DISPLACEMENT else ratio
     return Acquaintance(reasons=reasons, factor=factor, young_ratio=ratio, note=note)

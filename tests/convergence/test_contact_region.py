@@ -17,6 +17,7 @@ from workbench.core.base.errors import DesignError
 from workbench.core.design.design import Elastomer
 from workbench.core.press.indenter import Indenter, IndenterKind
 from workbench.core.press.press import ContactSettings, Press
+from workbench.core.press.press_case import PressCase
 from workbench.core.result.results import Label
 
 
@@ -32,9 +33,11 @@ def test_chosen_region_gives_the_force_of_a_large_one(kind: IndenterKind) -> Non
             mesh,
             points,
             Elastomer(),
-            indenter,
-            at_45_degrees(),
-            ContactSettings(active_radius_mm=radius_mm),
+            PressCase(
+                indenter=indenter,
+                press=at_45_degrees(),
+                settings=ContactSettings(active_radius_mm=radius_mm),
+            ),
         )
         for radius_mm in (0.0, 16.0)
     )

@@ -18,6 +18,7 @@ from workbench.core.base.monitor import silent
 from workbench.core.design.design import Elastomer
 from workbench.core.press.indenter import Indenter, IndenterKind, IndenterMesh
 from workbench.core.press.press import ContactSettings, Press
+from workbench.core.press.press_case import PressCase
 from workbench.core.result.sensing import Contact
 
 pytestmark = pytest.mark.usefixtures("taichi_device")
@@ -38,7 +39,13 @@ def press_block(
     mesh, points = BLOCK
     soft = Elastomer(**material)
     sphere = indenter or Indenter(size_mm=4.0)
-    return press_membrane(mesh, points, soft, sphere, press, settings, monitor=monitor)
+    return press_membrane(
+        mesh,
+        points,
+        soft,
+        PressCase(indenter=sphere, press=press, settings=settings),
+        monitor=monitor,
+    )
 
 
 @pytest.fixture(scope="module")
@@ -224,7 +231,12 @@ def test_running_out_of_substeps_is_reported() -> None:
 def test_the_measure_that_did_not_settle_is_named() -> None:
     """A residual of 9e-4 is below its limit of 1e-3: the net force over 5e-3 is what failed."""
     mesh, points = flat_block(width_mm=6.0, height_mm=2.0, grid_mm=0.5)
-    problem = make_problem(mesh, points, Elastomer(), Indenter(size_mm=4.0), PRESS, SETTINGS)
+    problem = make_problem(
+        mesh,
+        points,
+        Elastomer(),
+        PressCase(indenter=Indenter(size_mm=4.0), press=PRESS, settings=SETTINGS),
+    )
     run = Run(problem, relaxation_of([problem]), 0)
     limit = SETTINGS.tolerance
     assert "a residual of 9.0e-02" in run.unsettled(9e-2, 9e-2, 9e-2).message
@@ -238,7 +250,12 @@ def test_the_measure_that_did_not_settle_is_named() -> None:
 def test_masses_doubled_in_a_stall_come_back_frame_by_frame() -> None:
     """Doubled twice, halved three times: 1, 2, 4, 2, 1, 1."""
     mesh, points = flat_block(width_mm=6.0, height_mm=2.0, grid_mm=0.5)
-    problem = make_problem(mesh, points, Elastomer(), Indenter(size_mm=4.0), PRESS, SETTINGS)
+    problem = make_problem(
+        mesh,
+        points,
+        Elastomer(),
+        PressCase(indenter=Indenter(size_mm=4.0), press=PRESS, settings=SETTINGS),
+    )
     relaxation, seen = relaxation_of([problem]), []
     for step in (relaxation.burden, relaxation.burden, *[relaxation.relieve] * 3):
         step(np.ones(1, bool) if step == relaxation.burden else 0)

@@ -14,6 +14,7 @@ from workbench.core.design.design import Elastomer
 from workbench.core.press.actuation import Actuation, Place
 from workbench.core.press.indenter import Indenter
 from workbench.core.press.press import ContactSettings, Extent, Press
+from workbench.core.press.press_case import PressCase
 from workbench.core.result.results import Label, MembraneMesh
 from workbench.core.result.sensing import Contact
 from workbench.edit.sequences import LIFT_FRAMES, find_sequence, sequence
@@ -44,7 +45,9 @@ def drive_wall(move_mm: Place) -> Contact:
     wall = Actuation(region="inner", move_mm=move_mm, keys=((0.0, 0.0), (2.0, 1.0)))
     press = Press(target_mm=TIP_MM, depth_mm=0.0, frames=2, actuations=(wall,))
     settings = ContactSettings(grid_mm=GRID_MM)
-    return press_membrane(SOFT, POINTS, Elastomer(), BALL, press, settings)
+    return press_membrane(
+        SOFT, POINTS, Elastomer(), PressCase(indenter=BALL, press=press, settings=settings)
+    )
 
 
 @pytest.mark.parametrize("move_mm", [(0.0, 0.0, -0.3), (0.3, 0.0, 0.0)])
@@ -72,7 +75,9 @@ def test_driving_the_wall_at_a_ball_is_pressing_the_ball(taichi_device: str) -> 
     driven = drive_wall((0.0, 0.0, 0.6))
     press = Press(target_mm=TIP_MM, depth_mm=0.6, frames=2)
     settings = ContactSettings(grid_mm=GRID_MM, extent=Extent.FULL)
-    pressed = press_membrane(SOFT, POINTS, Elastomer(), BALL, press, settings)
+    pressed = press_membrane(
+        SOFT, POINTS, Elastomer(), PressCase(indenter=BALL, press=press, settings=settings)
+    )
     np.testing.assert_allclose(driven.normal_N, pressed.normal_N, rtol=0.03)
     balance_N = driven.reaction_N - driven.actuator_N[:, 0]
     assert np.abs(balance_N).max() < 0.01 * driven.normal_N[-1]
@@ -88,9 +93,7 @@ def grip() -> tuple[MembraneMesh, Contact]:
     solid = build(plan(design, case)["build"].inputs, monitor=silent)
     skins = mesh(MeshInputs(solid=solid, meshing=design.meshing), monitor=silent)
     points = lattice(LatticeInputs(solid=solid, grid_mm=case.settings.grid_mm), monitor=silent)
-    contact = press_membrane(
-        skins, points, design.material, case.indenter, case.press, case.settings
-    )
+    contact = press_membrane(skins, points, design.material, case)
     return skins, contact
 
 

@@ -12,8 +12,8 @@ from sim.contact.studies.specimens import flat_block
 from sim.material import energy_density_MPa, moduli_MPa, stress_of
 from workbench.core.design.design import Elastomer, Law
 from workbench.core.design.inclusion import Inclusion, Where
-from workbench.core.press.indenter import Indenter
 from workbench.core.press.press import ContactSettings, Press
+from workbench.core.press.press_case import PressCase
 from workbench.core.result.sensing import Contact
 
 pytestmark = pytest.mark.usefixtures("taichi_device")
@@ -28,11 +28,11 @@ GRADIENT = np.array([[0.10, 0.05, 0.00], [-0.02, -0.08, 0.03], [0.00, 0.04, 0.12
 @pytest.fixture(scope="module")
 def pressed(taichi_device: str) -> Contact:
     """A 6 mm ball pressed 0.4 mm into a block of 2 mm without friction, in eight frames."""
-    return press_membrane(MESH, POINTS, SMOOTH, Indenter(), PRESS, SETTINGS)
+    return press_membrane(MESH, POINTS, SMOOTH, PressCase(press=PRESS, settings=SETTINGS))
 
 
 def domain_of(material: Elastomer):
-    return make_problem(MESH, POINTS, material, Indenter(), PRESS, SETTINGS).domain
+    return make_problem(MESH, POINTS, material, PressCase(press=PRESS, settings=SETTINGS)).domain
 
 
 def test_cauchy_stress_of_a_simple_extension() -> None:

@@ -16,6 +16,7 @@ from workbench.core.press.actuation import Actuation
 from workbench.core.press.indenter import Indenter
 from workbench.core.press.motion import slide
 from workbench.core.press.press import ContactSettings, Press
+from workbench.core.press.press_case import PressCase
 from workbench.core.press.soft_body import SoftBody
 from workbench.core.press.trajectory import Trajectory
 
@@ -46,7 +47,10 @@ def test_frames_of_a_straight_press_with_friction_end_alike() -> None:
     rough = Elastomer(friction=0.5)
     coarse, fine = (
         press_membrane(
-            MESH, POINTS, rough, Indenter(), dataclasses.replace(PRESS, frames=n), SETTINGS
+            MESH,
+            POINTS,
+            rough,
+            PressCase(press=dataclasses.replace(PRESS, frames=n), settings=SETTINGS),
         )
         for n in (2, 8)
     )
@@ -62,7 +66,9 @@ def test_a_soft_object_settles_before_it_touches() -> None:
     path = Trajectory.from_arrays(np.arange(3.0), np.array(rows))
     ball = Indenter(size_mm=6.0, soft=SoftBody())
     press = dataclasses.replace(PRESS, trajectory=path)
-    contact = press_membrane(MESH, POINTS, Elastomer(), ball, press, SETTINGS)
+    contact = press_membrane(
+        MESH, POINTS, Elastomer(), PressCase(indenter=ball, press=press, settings=SETTINGS)
+    )
     assert np.linalg.norm(contact.reaction_N[0]) == 0.0
     assert contact.normal_N[-1] > 0.01
 

@@ -10,6 +10,7 @@ from sim.contact.studies.specimens import flat_block
 from workbench.core.design.design import Elastomer
 from workbench.core.press.indenter import Indenter, IndenterKind, IndenterMesh
 from workbench.core.press.press import ContactSettings, Press
+from workbench.core.press.press_case import PressCase
 
 pytestmark = pytest.mark.usefixtures("taichi_device")
 PRESS = Press(target_mm=(0.0, 0.0, 2.0), depth_mm=0.3, frames=1)
@@ -42,7 +43,9 @@ def test_large_mesh_presses_as_the_exact_ball() -> None:
     mesh, points = flat_block(width_mm=12.0, height_mm=2.0, grid_mm=0.5)
     settings = ContactSettings(active_radius_mm=9.0)
     forces = [
-        press_membrane(mesh, points, Elastomer(), each, PRESS, settings).normal_N[-1]
+        press_membrane(
+            mesh, points, Elastomer(), PressCase(indenter=each, press=PRESS, settings=settings)
+        ).normal_N[-1]
         for each in (ball(40.0), Indenter(size_mm=40.0))
     ]
     assert forces[0] == pytest.approx(forces[1], rel=0.03)

@@ -15,6 +15,7 @@ from workbench.core.design.design import Elastomer
 from workbench.core.press.indenter import Indenter
 from workbench.core.press.motion import slide
 from workbench.core.press.press import ContactSettings, Press
+from workbench.core.press.press_case import PressCase
 
 pytestmark = pytest.mark.usefixtures("taichi_device")
 
@@ -32,15 +33,20 @@ def at(depth_mm: float, x_mm: float = 0.0, **rest: object) -> Press:
     return dataclasses.replace(path, **rest)  # pyright: ignore[reportArgumentType]
 
 
+def case(press: Press) -> PressCase:
+    """The ball, pressed like this."""
+    return PressCase(indenter=BALL, press=press, settings=SETTINGS)
+
+
 def fresh_N(press: Press) -> float:
     """Normal force of a press of one frame by itself [N]."""
-    contact = press_membrane(*BLOCK, SOFT, BALL, one_frame(press), SETTINGS)
+    contact = press_membrane(*BLOCK, SOFT, case(one_frame(press)))
     return float(contact.normal_N[-1])
 
 
 def live_N(live: LiveContact, press: Press) -> float:
     """Normal force of a live frame [N]."""
-    contact = live.press(*BLOCK, SOFT, BALL, press, SETTINGS, key="block")
+    contact = live.press(*BLOCK, SOFT, case(press), key="block")
     assert len(contact.reaction_N) == len(contact.displacement_mm) == 1
     return float(contact.normal_N[0])
 
@@ -68,8 +74,8 @@ def test_shear_is_one_frame_after_the_approach() -> None:
     """The frame shown of a sheared press is its last; strokes are left out."""
     live = LiveContact()
     press = at(0.5, shear_mm=(0.3, 0.0), strokes=(slide(1.0, 0.0),))
-    contact = live.press(*BLOCK, SOFT, BALL, press, SETTINGS, key="block")
-    alone = press_membrane(*BLOCK, SOFT, BALL, one_frame(press), SETTINGS)
+    contact = live.press(*BLOCK, SOFT, case(press), key="block")
+    alone = press_membrane(*BLOCK, SOFT, case(one_frame(press)))
     assert contact.reaction_N.shape == (1, 3)
     # The same problem from the same rest: nothing but the last bits may differ.
     np.testing.assert_allclose(contact.reaction_N[0], alone.reaction_N[-1], rtol=1e-6)
@@ -90,7 +96,7 @@ def test_a_stopped_request_leaves_nothing_to_go_on_from() -> None:
             raise Cancelled("superseded")
 
     with pytest.raises(Cancelled):
-        live.press(*BLOCK, SOFT, BALL, at(0.6), SETTINGS, key="block", monitor=stop)
+        live.press(*BLOCK, SOFT, case(at(0.6)), key="block", monitor=stop)
     force_N = live_N(live, at(0.65))
     assert live.way is Way.SAME_REGION
     assert force_N == pytest.approx(fresh_N(at(0.65)), rel=FORCE_TOLERANCE)
@@ -102,7 +108,7 @@ def test_another_key_begins_anew() -> None:
     live = LiveContact()
     soft_N = live_N(live, at(0.5))
     stiff = dataclasses.replace(SOFT, young_MPa=2.0 * SOFT.young_MPa)
-    contact = live.press(*BLOCK, stiff, BALL, at(0.5), SETTINGS, key="stiff")
+    contact = live.press(*BLOCK, stiff, case(at(0.5)), key="stiff")
     assert live.way is Way.ANEW
     # Twice the energy at every strain is twice the force.
     assert contact.normal_N[0] == pytest.approx(2.0 * soft_N, rel=5e-3)

@@ -18,6 +18,7 @@ from workbench.core.base.errors import DesignError
 from workbench.core.design.design import Elastomer
 from workbench.core.press.indenter import Indenter
 from workbench.core.press.press import ContactSettings, Press
+from workbench.core.press.press_case import PressCase
 from workbench.core.press.soft_body import SoftBody
 from workbench.core.result.sensing import Contact
 
@@ -31,12 +32,14 @@ PRESS = Press(target_mm=(0.1, 0.2, 3.0), depth_mm=0.5, frames=1)
 def press(soft: SoftBody | None, material: Elastomer = SMOOTH, path: Press = PRESS) -> Contact:
     ball = Indenter(size_mm=6.0, soft=soft)
     settings = ContactSettings(active_radius_mm=7.5)
-    return press_membrane(MESH, POINTS, material, ball, path, settings)
+    return press_membrane(
+        MESH, POINTS, material, PressCase(indenter=ball, press=path, settings=settings)
+    )
 
 
 def prepared(material: Elastomer = SMOOTH) -> tuple[SoftRelaxation, SoftObject]:
     ball = Indenter(size_mm=6.0, soft=SoftBody())
-    problem = make_problem(MESH, POINTS, material, ball, PRESS, ContactSettings())
+    problem = make_problem(MESH, POINTS, material, PressCase(indenter=ball, press=PRESS))
     soft = make_soft_object(problem, ball)
     return SoftRelaxation(problem, soft), soft
 

@@ -16,6 +16,7 @@ from workbench.core.press.actuation import Actuation
 from workbench.core.press.indenter import Indenter, IndenterKind
 from workbench.core.press.motion import hold, press_stroke, release, slide, twist
 from workbench.core.press.press import ContactSettings, Method, Press
+from workbench.core.press.press_case import PressCase
 from workbench.core.press.soft_body import SoftBody
 from workbench.core.press.texture import Pattern, Texture
 from workbench.core.press.trajectory import Trajectory
@@ -41,15 +42,14 @@ KNOWN: dict[str, Any] = {
     "target": Target.FORCE,
     "membrane": Membrane(differences=()),
     "material": Elastomer(),
-    "indenter": Indenter(),
-    "press": Press(),
-    "settings": ContactSettings(),
 }
 
 
 def judged(**changed: Any) -> Acquaintance:
     """The verdict on the known press with some parts of it changed."""
-    return acquaintance(**{**KNOWN, **changed})
+    parts = {field.name for field in dataclasses.fields(PressCase)} & set(changed)
+    case = PressCase(**{name: changed.pop(name) for name in parts})
+    return acquaintance(**KNOWN | changed, case=case)
 
 
 def test_what_was_trained_on_is_known() -> None:

@@ -11,7 +11,7 @@ from sim.contact.motion.approach import Approach, plan_approach
 from sim.contact.objects.collider import Collider, make_collider
 from sim.contact.readout.fields import volume_state
 from sim.contact.readout.frame import FrameOutcome
-from sim.contact.readout.outcome import _friction, frame_outcome
+from sim.contact.readout.outcome import SettledFrame, _friction, frame_outcome
 from sim.contact.readout.problem import Problem, prepare
 from sim.contact.readout.verdict import check_depth, check_frame
 from sim.contact.region.quadrature import facets_of
@@ -50,7 +50,8 @@ def frame(load_N: float = 1.0) -> tuple[FrameOutcome, Problem]:
     origin, rotation = approach.pose(1.0)
     relaxation.set_poses(0, np.concatenate([origin, rotation.ravel(), [1.0]])[None])
     balance = relaxation.evaluate(np.ones(1, bool)).of(0)
-    outcome = frame_outcome(relaxation, 0, problem, balance, 0, load_N=load_N, seconds=0.0)
+    settled = SettledFrame(problem=problem, number=0, balance=balance, load_N=load_N, seconds=0.0)
+    outcome = frame_outcome(relaxation, 0, settled)
     return outcome, problem
 
 

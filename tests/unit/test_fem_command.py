@@ -25,7 +25,6 @@ from workbench.cli.command_line import main
 from workbench.core.base.errors import StoreError
 from workbench.core.design.design import Elastomer, SensorDesign
 from workbench.core.press.fem import DRAFT_MM, FemSettings
-from workbench.core.press.indenter import Indenter
 from workbench.core.press.press import Press
 from workbench.core.press.press_case import PressCase
 from workbench.project.named_designs import load_design
@@ -169,7 +168,7 @@ def test_calculix_agrees_where_nothing_locks() -> None:
     )
     mesh = flat_membrane(edge_mm=0.5, layers=4)
     theirs = calculix.run_calculix(mesh, state, Element.C3D8I)
-    mine = solve_press(mesh, state.design.material, Indenter(), press, settings)
+    mine = solve_press(mesh, state.design.material, PressCase(press=press, fem=settings))
     assert mine.normal_N[0] == pytest.approx(theirs.normal_N[0], rel=0.03)
     # Forces found from printed stresses leave out the incompatible modes: some per cent.
     assert theirs.balance[0] < 0.05

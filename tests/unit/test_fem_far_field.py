@@ -12,7 +12,7 @@ from sim.fem import newton as newton_module
 from sim.fem import press as press_module
 from sim.fem import submodel as submodel_module
 from sim.fem import tangent as tangent_module
-from sim.fem.balance import Balance, Load, balance
+from sim.fem.balance import Balance, Equations, Load
 from sim.fem.body import Body
 from sim.fem.contact_law import PENALTY, Law
 from sim.fem.dense_solver import DenseSolver
@@ -25,9 +25,9 @@ from sim.fem.submodel import Submodel
 from sim.fem.tangent import Tangent
 from workbench.core.design.design import Elastomer
 from workbench.core.press.fem import FemSettings
-from workbench.core.press.indenter import Indenter
 from workbench.core.press.motion import slide
 from workbench.core.press.press import Press
+from workbench.core.press.press_case import PressCase
 from workbench.core.result.force_field import ForceField
 
 SETTINGS = FemSettings(hex_mm=0.9, radius_mm=7.0)
@@ -41,7 +41,7 @@ def cut(near_mm: float, monkeypatch: pytest.MonkeyPatch) -> tuple[Submodel, Load
     """The part of a pad around a press, and the object as deep as the press goes."""
     monkeypatch.setattr(press_module, "NEAR_MARGIN_MM", near_mm)
     mesh = flat_membrane(width_mm=16.0)
-    collider, approach, submodel = set_up(mesh, Elastomer(), Indenter(), PRESS, SETTINGS)
+    collider, approach, submodel = set_up(mesh, Elastomer(), PressCase(press=PRESS, fem=SETTINGS))
     origin_mm, rotation = approach.pose(2.0)
     law = Law(penalty_MPa_mm=PENALTY * 0.145, friction=0.3)
     places_mm = submodel.body.faces.places(submodel.body.points_mm)
@@ -57,14 +57,16 @@ def cut(near_mm: float, monkeypatch: pytest.MonkeyPatch) -> tuple[Submodel, Load
 
 def at_rest(body: Body, load: Load) -> Balance:
     """Forces of the undeformed skin, with the object inside it."""
-    state = balance(body, load, np.zeros_like(body.points_mm))
+    state = Equations(body=body, load=load).balance(np.zeros_like(body.points_mm))
     assert state is not None
     return state
 
 
 def solved(near_mm: float, monkeypatch: pytest.MonkeyPatch) -> ForceField:
     monkeypatch.setattr(press_module, "NEAR_MARGIN_MM", near_mm)
-    return solve_press(flat_membrane(width_mm=16.0), Elastomer(), Indenter(), PRESS, SETTINGS)
+    return solve_press(
+        flat_membrane(width_mm=16.0), Elastomer(), PressCase(press=PRESS, fem=SETTINGS)
+    )
 
 
 @pytest.mark.parametrize("symmetric", [False, True])
@@ -184,7 +186,9 @@ def test_a_press_that_meets_nothing_condenses_nothing(monkeypatch: pytest.Monkey
     monkeypatch.setattr(tangent_module, "condense", refuse)
     monkeypatch.setattr(press_module, "NEAR_MARGIN_MM", CLOSE_MM)
     above = dataclasses.replace(PRESS, depth_mm=0.0, strokes=())
-    found = solve_press(flat_membrane(width_mm=16.0), Elastomer(), Indenter(), above, SETTINGS)
+    found = solve_press(
+        flat_membrane(width_mm=16.0), Elastomer(), PressCase(press=above, fem=SETTINGS)
+    )
     assert not found.contact_force_N.any() and "nothing to solve" in found.solver
 
 

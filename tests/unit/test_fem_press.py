@@ -17,12 +17,14 @@ from sim.fem.obstacle import RigidPose
 from sim.fem.press import set_up, solve_press
 from sim.fem.readout import FemFrame, _point_stress
 from sim.fem.studies.blocks import flat_membrane, irregular_block
+from sim.fem.tangent import Tangent
 from workbench.core.base.errors import Cancelled, DesignError, MeshingError, SolveError
 from workbench.core.design.design import Elastomer, Law
 from workbench.core.press.fem import FemSettings
 from workbench.core.press.indenter import Indenter, IndenterKind
 from workbench.core.press.motion import release, slide
 from workbench.core.press.press import Press
+from workbench.core.press.press_case import PressCase
 from workbench.core.press.soft_body import SoftBody
 from workbench.core.result.force_field import ForceField, Source
 
@@ -40,7 +42,11 @@ def pressed(
     young_MPa: float = 0.145,
 ) -> ForceField:
     mesh = flat_membrane(width_mm=10.0, gap_mm=gap_mm)
-    return solve_press(mesh, Elastomer(young_MPa=young_MPa), indenter, press, settings)
+    return solve_press(
+        mesh,
+        Elastomer(young_MPa=young_MPa),
+        PressCase(indenter=indenter, press=press, fem=settings),
+    )
 
 
 def test_frames_are_stacked_and_named() -> None:
@@ -149,9 +155,9 @@ def test_what_friction_remembers_turns_with_the_object() -> None:
             origin_mm=np.array([1.0, 0.0, 5.0]), rotation=turn(np.array([0.0, 0.0, 1.0]), 0.5)
         ),
     ]
-    _, _, submodel = set_up(flat_membrane(), Elastomer(), Indenter(), PRESS, SETTINGS)
+    _, _, submodel = set_up(flat_membrane(), Elastomer(), PressCase(press=PRESS, fem=SETTINGS))
     pairing = Pairing(
-        body=submodel.body,
+        tangent=Tangent(submodel.body),
         law=ContactLaw(penalty_MPa_mm=200.0, friction=0.3),
         collider=make_collider(Indenter(), grid_mm=0.25),
         pose_at=lambda progress: poses[round(progress)],
@@ -171,7 +177,9 @@ def test_what_friction_remembers_turns_with_the_object() -> None:
 def test_linear_solver_makes_no_difference(monkeypatch: pytest.MonkeyPatch) -> None:
     """SuperLU, which counts no pivots, finds the same state."""
     monkeypatch.setattr("sim.fem.linear_solver.has_pardiso", lambda: False)
-    found = solve_press(flat_membrane(width_mm=10.0), Elastomer(), Indenter(), PRESS, SETTINGS)
+    found = solve_press(
+        flat_membrane(width_mm=10.0), Elastomer(), PressCase(press=PRESS, fem=SETTINGS)
+    )
     assert found.solver.endswith("SuperLU")
     np.testing.assert_allclose(found.reaction_N, pressed().reaction_N, atol=1e-6)
 
@@ -197,9 +205,7 @@ def test_every_frame_is_told_as_soon_as_it_has_converged() -> None:
     found = solve_press(
         flat_membrane(width_mm=10.0),
         Elastomer(),
-        Indenter(),
-        PRESS,
-        SETTINGS,
+        PressCase(press=PRESS, fem=SETTINGS),
         on_frame=lambda number, frame: told.append((number, frame)),
     )
     assert [number for number, _ in told] == [0, 1, 2]
@@ -218,7 +224,9 @@ def test_the_monitor_stops_a_press() -> None:
             raise Cancelled("stopped")
 
     with pytest.raises(Cancelled):
-        solve_press(flat_membrane(), Elastomer(), Indenter(), PRESS, SETTINGS, monitor=monitor)
+        solve_press(
+            flat_membrane(), Elastomer(), PressCase(press=PRESS, fem=SETTINGS), monitor=monitor
+        )
     assert max(asked) < 1.0 / 3.0
 
 
@@ -231,7 +239,7 @@ def test_a_soft_object_is_refused() -> None:
 def test_a_membrane_without_hexahedra_is_refused() -> None:
     mesh = dataclasses.replace(flat_membrane(), hexes=None, notice="an imported body")
     with pytest.raises(MeshingError, match="an imported body"):
-        solve_press(mesh, Elastomer(), Indenter(), PRESS, SETTINGS)
+        solve_press(mesh, Elastomer(), PressCase(press=PRESS, fem=SETTINGS))
 
 
 def test_a_press_into_the_support_is_refused() -> None:
@@ -245,15 +253,15 @@ def fails_after(frame: int, monkeypatch: pytest.MonkeyPatch) -> SolveError:
 
     solved = increment.increment
 
-    def refused(pairing, state, progress, solvers, effort):  # type: ignore[no-untyped-def]
+    def refused(pairing, state, progress, effort):  # type: ignore[no-untyped-def]
         if progress > frame:
             pairing = dataclasses.replace(pairing, tolerance=0.0)
-        return solved(pairing, state, progress, solvers, effort)
+        return solved(pairing, state, progress, effort)
 
     monkeypatch.setattr(increment, "increment", refused)
     monkeypatch.setattr(increment, "MOST_HALVINGS", 0)
     with pytest.raises(SolveError) as caught:
-        solve_press(flat_membrane(), Elastomer(), Indenter(), PRESS, SETTINGS)
+        solve_press(flat_membrane(), Elastomer(), PressCase(press=PRESS, fem=SETTINGS))
     return caught.value
 
 
@@ -277,11 +285,11 @@ def test_no_frame_no_partial_result(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_the_pole_of_a_region_grows_with_the_shear() -> None:
     """What takes part reaches 4 mm beyond where the object ends."""
     _, _, submodel = set_up(
-        flat_membrane(width_mm=10.0), Elastomer(), Indenter(), SHEARED, SETTINGS
+        flat_membrane(width_mm=10.0), Elastomer(), PressCase(press=SHEARED, fem=SETTINGS)
     )
     assert submodel.radius_mm == pytest.approx(4.2)
     whole = dataclasses.replace(SETTINGS, radius_mm=0.0)
-    _, _, submodel = set_up(flat_membrane(), Elastomer(), Indenter(), PRESS, whole)
+    _, _, submodel = set_up(flat_membrane(), Elastomer(), PressCase(press=PRESS, fem=whole))
     assert submodel.radius_mm == np.inf
 
 

@@ -12,7 +12,7 @@ import pytest
 
 from sim.optics.camera.camera import pixel_directions
 from sim.optics.light.lights import place_leds
-from sim.optics.proof.mitsuba_scene import ply_bytes, write_scene
+from sim.optics.proof.mitsuba_scene import ply_bytes, scene_files, write_scene
 from sim.optics.proof.specimen import dent, finger
 from workbench.cli.command_line import main
 from workbench.core.base.errors import DesignError
@@ -41,7 +41,8 @@ def scene(folder: Path, mesh: MembraneMesh, **changes: object) -> ElementTree.El
     camera, transport = changes.get("camera", TURNED), changes.get("transport", MATTE)
     moved = changes.get("displacement_mm")
     leds = place_leds(changes.get("ring", RING))  # type: ignore[arg-type]
-    path = write_scene(folder, mesh, leds, camera, transport, displacement_mm=moved)  # type: ignore[arg-type]
+    files = scene_files(mesh, leds, camera, transport, displacement_mm=moved)  # type: ignore[arg-type]
+    path = write_scene(folder, files)
     return ElementTree.fromstring(path.read_text())
 
 

@@ -13,7 +13,7 @@ from sim.optics.camera.camera import refracted_rays
 from sim.optics.field.bake import bake_light
 from sim.optics.proof.specimen import dent, finger
 from sim.optics.raster.gbuffer import open_view
-from sim.optics.raster.markers import ink, no_ink, place_markers, print_dots
+from sim.optics.raster.markers import ink, place_markers, print_dots
 from sim.optics.studio.render import shoot
 from tests.synthetic_light import SHADED, lit
 from workbench.core.base.errors import Cancelled, DesignError, OpticsError
@@ -239,8 +239,6 @@ def test_skipping_triangles_without_ink_changes_nothing(mesh: MembraneMesh) -> N
     seen = view.background
     few, all_of_them = (
         ink(
-            no_ink(160 * 120),
-            seen.pixel,
             seen,
             dots=each,
             skin=mesh.outer,

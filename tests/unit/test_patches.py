@@ -20,7 +20,7 @@ from sim.forces.network.steady import steady_predictor
 from sim.forces.network.turns import any_turn, turn_matrix, value_matrix
 from sim.forces.network.voxels import Voxels, voxelise
 from sim.forces.network.weights import NetworkWeights, weights_from_bytes, weights_to_bytes
-from sim.forces.training.feeds import PatchFeed, Scales
+from sim.forces.training.feeds import PatchFeed, Scales, SeenSkin
 from sim.forces.training.fields import Fields
 from sim.forces.training.scores import network_output
 from tests.unit.made_presses import SPEC, made_presses
@@ -66,10 +66,8 @@ def feed_of(fields: Fields) -> PatchFeed:
     """Samples as training takes them."""
     return PatchFeed(
         fields,
-        PRESSES.points_mm,
+        SeenSkin(points_mm=PRESSES.points_mm, voxel_mm=0.75, patch_mm=REACH_MM),
         SCALES,
-        voxel_mm=0.75,
-        reach_mm=REACH_MM,
         spec=weights().spec,
         target=Target.FORCE,
         device="cpu",

@@ -16,9 +16,9 @@ from sim.forces.network.spec import Norm, Target
 from sim.forces.training import trainer as trainer_module
 from sim.forces.training.arithmetic import half_type
 from sim.forces.training.averages import Average
-from sim.forces.training.feeds import Batch, Scales, feeds
+from sim.forces.training.feeds import Batch, Scales, SeenSkin, feeds
 from sim.forces.training.settings import Numbers, TrainingSettings
-from sim.forces.training.trainer import Trainer
+from sim.forces.training.trainer import Trainer, TrainingData
 from tests.unit.made_presses import SETTINGS, SPEC, made_presses
 from workbench.core.base.errors import DeviceError, SolveError
 from workbench.learning.dataset.cases import Split
@@ -39,22 +39,26 @@ def start(settings: TrainingSettings = SETTINGS, network: MinkUNet | None = None
     scales = Scales(input_mm=0.3, output=0.01)
     train, validation = feeds(
         fields,
-        PRESSES.points_mm,
+        SeenSkin(
+            points_mm=PRESSES.points_mm,
+            voxel_mm=0.75,
+            patch_mm=settings.patch_spacings,
+            turns=settings.turns,
+        ),
         scales,
-        voxel_mm=0.75,
-        patch_mm=settings.patch_spacings,
         spec=settings.spec,
         target=Target.FORCE,
-        turns=settings.turns,
         device="cpu",
     )
     return Trainer(
         network or new_network(settings.spec, seed=1),
-        train,
-        validation,
-        unit=fields[0].zero_mae / scales.output,
-        settings=settings,
-        output_scale=scales.output,
+        TrainingData(
+            train=train,
+            validation=validation,
+            unit=fields[0].zero_mae / scales.output,
+            output_scale=scales.output,
+        ),
+        settings,
         seed=5,
     )
 
@@ -235,7 +239,7 @@ def test_a_foot_pulls_less_at_small_errors_only() -> None:
     torch.nn.init.constant_(network.last.bias, 0.1)
     plain, footed = start(dataclasses.replace(settings, foot=0.0), network), start(settings)
     footed._network.load_state_dict(network.state_dict())
-    batch = plain._train.batch(range(12), 0)
+    batch = plain._data.train.batch(range(12), 0)
     error, minimised = plain._losses(batch)
     assert float(error) == float(minimised.detach())
     same_error, minimised = footed._losses(batch)

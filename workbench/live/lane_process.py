@@ -19,8 +19,8 @@ from typing import Any
 from workbench.core.base.errors import Cancelled, LaneError, WorkbenchError
 from workbench.core.base.monitor import Monitor
 from workbench.core.design.design import Elastomer
-from workbench.core.press.indenter import Indenter
-from workbench.core.press.press import ContactSettings, Press
+from workbench.core.press.press import Press
+from workbench.core.press.press_case import PressCase
 from workbench.live.preview_call import PreviewCall
 from workbench.pipeline.stage import Call
 from workbench.pipeline.store import Store
@@ -81,7 +81,7 @@ def _rehearse() -> None:
     open_device()
     # What fails here fails again in the first press, which reports it.
     with contextlib.suppress(WorkbenchError, RuntimeError):
-        press_membrane(*block, Elastomer(), Indenter(), path, ContactSettings())
+        press_membrane(*block, Elastomer(), PressCase(press=path))
 
 
 def _answer(

@@ -168,9 +168,7 @@ class PressPreviewer:
             mesh,
             store.load(call.points.stage, call.points.key),
             call.material,
-            call.indenter,
-            call.press,
-            call.settings,
+            PressCase(indenter=call.indenter, press=call.press, settings=call.settings),
             key=call.key,
             monitor=monitor,
         )

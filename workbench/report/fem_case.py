@@ -82,9 +82,7 @@ def make_deck_case(
         # A large object is sampled once more where it meets the skin.
         open_device()
     material, case = state.design.material, state.case
-    collider, approach, submodel = set_up(
-        mesh, material, case.indenter, case.press, case.fem, sampled=sampled
-    )
+    collider, approach, submodel = set_up(mesh, material, case, sampled=sampled)
     skin_mm = submodel.body.points_mm[submodel.skin >= 0]
     surface = near_surface(collider, *near_box_mm(skin_mm, approach, collider))
     return DeckCase(

@@ -22,6 +22,8 @@ BEHIND = 0.9
 """Cosine between the way from the skin and its inward normal from which a place is inside."""
 MOST_LOOKED_AT = 200
 """Poses at which the gap of a path that covers no vertex is looked for."""
+ACCURACY_MM = 1e-3
+"""Missing gap that is let pass."""
 AT = "press.trajectory"
 
 
@@ -154,7 +156,6 @@ def clear_way_mm(
     *,
     outward: np.ndarray,
     gap_mm: float,
-    accuracy_mm: float = 1e-3,
 ) -> float:
     """Least way along a direction after which the object is a gap away from the skin [mm].
 
@@ -167,13 +168,12 @@ def clear_way_mm(
         rotation: Body to sensor, shape (3, 3).
         outward: Unit direction, shape (3,).
         gap_mm: Gap that is wanted.
-        accuracy_mm: Missing gap that is let pass.
     """
     way_mm, reach_mm = 0.0, collider.reach_mm + gap_mm
     while True:
         body = skin.points_mm - (origin_mm + way_mm * outward)
         body = body[np.einsum("nc,nc->n", body, body) < reach_mm**2]
         found_mm = float(collider.distance(body @ rotation)[0].min(initial=np.inf))
-        if found_mm >= gap_mm - accuracy_mm:
+        if found_mm >= gap_mm - ACCURACY_MM:
             return way_mm
         way_mm += gap_mm - found_mm

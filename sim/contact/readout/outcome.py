@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
+from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
@@ -27,15 +27,25 @@ LEAST_PRESSURE_SHARE = 1e-3
 """Points that carry less than this share of the largest normal force have no friction ratio."""
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SettledFrame:
+    """A frame of a press in which forces balance."""
+
+    problem: Problem
+    number: int
+    balance: Balance
+    """Forces of the state."""
+    load_N: float
+    """Force that the residual is relative to, the same as for the stop test."""
+    seconds: float
+    """Time that it took [s]."""
+
+
 def frame_outcome(
     relaxation: Relaxation,
     case: int,
-    problem: Problem,
-    balance: Balance,
-    frame: int,
+    frame: SettledFrame,
     *,
-    load_N: float,
-    seconds: float,
     met: tuple[np.ndarray, np.ndarray] | None = None,
 ) -> FrameOutcome:
     """Read a settled frame, evaluated at its pose and not yet committed.
@@ -43,16 +53,13 @@ def frame_outcome(
     Args:
         relaxation: The state.
         case: Which case of it.
-        problem: The press.
-        balance: Forces of the state.
-        frame: Which frame.
-        load_N: Force that the residual is relative to, the same as for the stop test.
-        seconds: Time the frame took [s].
+        frame: What settled.
         met: Distances [mm], (P,), and outward directions, (P, 3), of the object at the points
             that may meet it, where it is not where its pose has it: it is soft.
     """
+    problem, balance = frame.problem, frame.balance
     domain = problem.domain
-    origin, rotation = problem.approach.pose(frame + 1.0)
+    origin, rotation = problem.approach.pose(frame.number + 1.0)
     nodal = relaxation.displacement(case).astype(np.float64)
     displacement = domain.outer.displacement_mm(nodal)
     inner = domain.inner
@@ -82,7 +89,7 @@ def frame_outcome(
         reaction_N=balance.reaction_N,
         moment_Nmm=-np.cross(at - origin, forces).sum(axis=0),
         indenter_pose=np.concatenate([origin, quaternion(rotation)]),
-        residual=balance.unbalanced_N / load_N,
+        residual=balance.unbalanced_N / frame.load_N,
         penetration_mm=max(overlap_mm, -float(distance.min(initial=0.0))),
         support_N=point_forces[held].sum(axis=0),
         support_moment_Nmm=np.cross(place[held], point_forces[held]).sum(axis=0),
@@ -101,7 +108,7 @@ def frame_outcome(
         strain_energy_Nmm=volume.strain_energy_Nmm,
         kinetic_ratio=0.5 * balance.inertia_Nmm / max(volume.strain_energy_Nmm, LEAST),
         least_volume_ratio=volume.least_volume_ratio,
-        frame_seconds=seconds,
+        frame_seconds=frame.seconds,
     )
 
 

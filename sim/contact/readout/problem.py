@@ -25,8 +25,8 @@ from sim.contact.region.quadrature import SurfacePoints, corner_points, facets_o
 from sim.contact.region.radius import region_radius_mm
 from sim.contact.region.refinement import LONGEST_EDGE, path_distance_mm, reach_mm, refine
 from workbench.core.design.design import Elastomer
-from workbench.core.press.indenter import Indenter
 from workbench.core.press.press import ContactSettings, Press
+from workbench.core.press.press_case import PressCase
 from workbench.core.result.results import MaterialPoints, MembraneMesh
 from workbench.core.result.sampled import SampledDistance
 
@@ -58,9 +58,7 @@ def make_problem(
     mesh: MembraneMesh,
     points: MaterialPoints,
     material: Elastomer,
-    indenter: Indenter,
-    press: Press,
-    settings: ContactSettings,
+    case: PressCase,
     sampled: SampledDistance | None = None,
 ) -> Problem:
     """Place the object and number the region.
@@ -69,9 +67,7 @@ def make_problem(
         mesh: Skins and gap.
         points: Material points.
         material: The elastomer.
-        indenter: The object.
-        press: Its path.
-        settings: Region and penalty.
+        case: The object, its path; region and penalty.
         sampled: The object's distance on this grid where a store has it; else it is sampled here.
 
     Raises:
@@ -80,9 +76,10 @@ def make_problem(
         SolveError: If the first touch cannot be found.
     """
     collider, approach = place_object(
-        mesh.outer, indenter, press, grid_mm=points.grid_mm, sampled=sampled
+        mesh.outer, case.indenter, case.press, grid_mm=points.grid_mm, sampled=sampled
     )
     check_depth(support_points_mm(mesh), approach, collider)
+    settings = case.settings
     radius_mm = region_radius_mm(mesh, material, approach, collider, settings)
     return Problem(
         mesh=mesh,

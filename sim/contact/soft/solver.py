@@ -181,11 +181,7 @@ class SoftSolver(Solver):
         return frame_outcome(
             self.relaxation,
             case,
-            problem,
-            balance,
-            run.frame,
-            load_N=load_N,
-            seconds=run.seconds,
+            self.settled_frame(case, balance, load_N),
             met=(distance, meeting.steep @ soft.rotation.T),
         )
 

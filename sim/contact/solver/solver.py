@@ -17,7 +17,7 @@ import numpy as np
 from sim.contact.engine.batch import Case
 from sim.contact.engine.relaxation import STEPS, Balance, Balances, Relaxation
 from sim.contact.readout.frame import FrameOutcome
-from sim.contact.readout.outcome import collect, frame_outcome
+from sim.contact.readout.outcome import SettledFrame, collect, frame_outcome
 from sim.contact.readout.problem import Problem
 from sim.contact.readout.verdict import check_frame
 from sim.contact.solver.load import Load
@@ -215,13 +215,15 @@ class Solver:
 
     def read_frame(self, case: int, balance: Balance, load_N: float) -> FrameOutcome:
         """What the settled frame of a press says."""
+        return frame_outcome(self.relaxation, case, self.settled_frame(case, balance, load_N))
+
+    def settled_frame(self, case: int, balance: Balance, load_N: float) -> SettledFrame:
+        """The frame that a press has just settled in."""
         run = self.runs[case]
-        return frame_outcome(
-            self.relaxation,
-            case,
-            run.problem,
-            balance,
-            run.frame,
+        return SettledFrame(
+            problem=run.problem,
+            number=run.frame,
+            balance=balance,
             load_N=load_N,
             seconds=run.seconds,
         )

@@ -11,6 +11,7 @@ from sim.contact.studies import specimens
 from workbench.core.design.design import Elastomer
 from workbench.core.press.indenter import Indenter, IndenterKind
 from workbench.core.press.press import ContactSettings, Press
+from workbench.core.press.press_case import PressCase
 from workbench.core.result.results import Label
 from workbench.core.result.sensing import Contact
 
@@ -51,14 +52,16 @@ def _press_backed_block(backing_MPa: float, *, shear_mm: float) -> Contact:
         dataclasses.replace(bonded, inner=inner, backing_mm=BACKED_GAP_MM),
         points,
         dataclasses.replace(BACKED_MATERIAL, backing_MPa=backing_MPa, friction=friction),
-        Indenter(kind=IndenterKind("cube"), size_mm=3.0 * BACKED_MM),
-        Press(
-            target_mm=(0.0, 0.0, BACKED_HEIGHT_MM),
-            depth_mm=BACKED_DEPTH_MM,
-            shear_mm=(shear_mm, 0.0),
-            frames=1,
+        PressCase(
+            indenter=Indenter(kind=IndenterKind("cube"), size_mm=3.0 * BACKED_MM),
+            press=Press(
+                target_mm=(0.0, 0.0, BACKED_HEIGHT_MM),
+                depth_mm=BACKED_DEPTH_MM,
+                shear_mm=(shear_mm, 0.0),
+                frames=1,
+            ),
+            settings=ContactSettings(active_radius_mm=2.0 * BACKED_MM),
         ),
-        ContactSettings(active_radius_mm=2.0 * BACKED_MM),
     )
 
 

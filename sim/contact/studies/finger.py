@@ -17,6 +17,7 @@ from sim.contact.studies import specimens
 from workbench.core.design.design import Elastomer
 from workbench.core.press.indenter import Indenter
 from workbench.core.press.press import ContactSettings, Extent, Press
+from workbench.core.press.press_case import PressCase
 from workbench.core.result.sensing import Contact
 
 BALL_MM = 6.0
@@ -42,9 +43,9 @@ def press_finger(
         mesh,
         points,
         material or Elastomer(),
-        Indenter(size_mm=BALL_MM),
-        press,
-        settings or ContactSettings(),
+        PressCase(
+            indenter=Indenter(size_mm=BALL_MM), press=press, settings=settings or ContactSettings()
+        ),
     )
 
 

@@ -19,6 +19,7 @@ from sim.contact.studies.closed_forms import LayerContact
 from workbench.core.design.design import Elastomer, Law
 from workbench.core.press.indenter import Indenter, IndenterKind
 from workbench.core.press.press import ContactSettings, Press
+from workbench.core.press.press_case import PressCase
 from workbench.core.result.sensing import Contact
 
 HEIGHT_MM = 4.0
@@ -125,9 +126,13 @@ def press_ball(ball: Ball) -> LayerPress:
         mesh,
         points,
         ball.material,
-        Indenter(size_mm=2.0 * ball.radius_mm),
-        Press(target_mm=(0.0, 0.0, HEIGHT_MM), depth_mm=ball.depth_mm, frames=1),
-        ContactSettings(grid_mm=ball.grid_mm, active_radius_mm=radius_mm, tolerance=ball.tolerance),
+        PressCase(
+            indenter=Indenter(size_mm=2.0 * ball.radius_mm),
+            press=Press(target_mm=(0.0, 0.0, HEIGHT_MM), depth_mm=ball.depth_mm, frames=1),
+            settings=ContactSettings(
+                grid_mm=ball.grid_mm, active_radius_mm=radius_mm, tolerance=ball.tolerance
+            ),
+        ),
     )
     return LayerPress(contact=contact, skin_mm=mesh.outer.points_mm)
 
@@ -152,9 +157,13 @@ def press_flat_end(*, poisson: float = 0.45) -> LayerPress:
         mesh,
         points,
         material,
-        Indenter(kind=IndenterKind("cylinder_end"), size_mm=END_MM, edge_radius_mm=END_EDGE_MM),
-        Press(target_mm=(0.0, 0.0, HEIGHT_MM), depth_mm=END_DEPTH_MM, frames=1),
-        ContactSettings(grid_mm=END_GRID_MM, active_radius_mm=radius_mm),
+        PressCase(
+            indenter=Indenter(
+                kind=IndenterKind("cylinder_end"), size_mm=END_MM, edge_radius_mm=END_EDGE_MM
+            ),
+            press=Press(target_mm=(0.0, 0.0, HEIGHT_MM), depth_mm=END_DEPTH_MM, frames=1),
+            settings=ContactSettings(grid_mm=END_GRID_MM, active_radius_mm=radius_mm),
+        ),
     )
     return LayerPress(contact=contact, skin_mm=mesh.outer.points_mm)
 
@@ -194,9 +203,13 @@ def press_line() -> LayerPress:
         mesh,
         points,
         LINE_MATERIAL,
-        Indenter(kind=IndenterKind("cylinder_side"), size_mm=LINE_MM, edge_radius_mm=LINE_EDGE_MM),
-        Press(target_mm=(0.0, 0.0, LINE_HEIGHT_MM), depth_mm=LINE_DEPTH_MM, frames=1),
-        ContactSettings(grid_mm=LINE_GRID_MM, active_radius_mm=width_mm),
+        PressCase(
+            indenter=Indenter(
+                kind=IndenterKind("cylinder_side"), size_mm=LINE_MM, edge_radius_mm=LINE_EDGE_MM
+            ),
+            press=Press(target_mm=(0.0, 0.0, LINE_HEIGHT_MM), depth_mm=LINE_DEPTH_MM, frames=1),
+            settings=ContactSettings(grid_mm=LINE_GRID_MM, active_radius_mm=width_mm),
+        ),
     )
     return LayerPress(contact=contact, skin_mm=mesh.outer.points_mm)
 

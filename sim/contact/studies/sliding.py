@@ -17,6 +17,7 @@ from workbench.core.design.design import Elastomer
 from workbench.core.press.indenter import Indenter
 from workbench.core.press.motion import Stroke, release, slide
 from workbench.core.press.press import ContactSettings, Press
+from workbench.core.press.press_case import PressCase
 from workbench.core.result.sensing import Contact
 
 FRICTION = 0.3
@@ -44,9 +45,13 @@ def press_and(strokes: tuple[Stroke, ...]) -> Contact:
         mesh,
         points,
         Elastomer(friction=FRICTION),
-        Indenter(size_mm=BALL_MM),
-        Press(target_mm=(start_mm, 0.0, HEIGHT_MM), depth_mm=DEPTH_MM, frames=1, strokes=strokes),
-        ContactSettings(grid_mm=GRID_MM, active_radius_mm=LENGTH_MM),
+        PressCase(
+            indenter=Indenter(size_mm=BALL_MM),
+            press=Press(
+                target_mm=(start_mm, 0.0, HEIGHT_MM), depth_mm=DEPTH_MM, frames=1, strokes=strokes
+            ),
+            settings=ContactSettings(grid_mm=GRID_MM, active_radius_mm=LENGTH_MM),
+        ),
     )
 
 

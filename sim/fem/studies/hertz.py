@@ -153,17 +153,17 @@ def _pressed(body: Body, material: Elastomer) -> State:
         return RigidPose(origin_mm=np.array([0.0, 0.0, height_mm]), rotation=np.eye(3))
 
     far_mm = np.where(body.held[:, None], point_load_mm(body.points_mm, material), 0.0)
+    tangent = Tangent(body)
     pairing = Pairing(
-        body=body,
+        tangent=tangent,
         law=Pair(penalty_MPa_mm=PENALTY * material.young_MPa, friction=0.0),
         collider=make_collider(Indenter(size_mm=2.0 * RADIUS_MM), grid_mm=1.0),
         pose_at=pose_at,
         held_mm=lambda progress: progress**1.5 * far_mm,
         tolerance=TOLERANCE,
     )
-    tangent = Tangent(body)
     try:
-        return advance(pairing, at_rest(pairing), 1.0, tangent, Effort())
+        return advance(pairing, at_rest(pairing), 1.0, Effort())
     finally:
         tangent.close()
 

@@ -48,6 +48,20 @@ class Scales:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
+class SeenSkin:
+    """A skin at rest, and how a network looks at it."""
+
+    points_mm: np.ndarray
+    """Vertices [mm], shape (V, 3)."""
+    voxel_mm: float
+    """Edge of a voxel."""
+    patch_mm: float = 0.0
+    """Reach of a patch beyond where the contact solver's field is; 0: whole skins."""
+    turns: int = 1
+    """Orientations of whole skins."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
 class Batch:
     """Samples that are computed together, on the device."""
 
@@ -135,11 +149,9 @@ class PatchFeed:
     def __init__(
         self,
         fields: Fields,
-        points_mm: np.ndarray,
+        skin: SeenSkin,
         scales: Scales,
         *,
-        voxel_mm: float,
-        reach_mm: float,
         spec: NetworkSpec,
         target: Target,
         device: str,
@@ -148,19 +160,17 @@ class PatchFeed:
 
         Args:
             fields: Of the samples.
-            points_mm: Vertices of the skin at rest [mm], shape (V, 3).
+            skin: Looked at in patches.
             scales: Of input and output.
-            voxel_mm: Edge of a voxel.
-            reach_mm: Of a patch beyond where the contact solver's field is.
             spec: Of the network.
             target: What is predicted.
             device: Where batches are computed.
         """
-        self._points_mm = points_mm
-        self._scales, self._voxel_mm, self._device = scales, voxel_mm, device
+        self._points_mm, self._voxel_mm = skin.points_mm, skin.voxel_mm
+        self._scales, self._device = scales, device
         self._spec, self._target = spec, target
         self._values = fields.targets[0].size if len(fields) else 0
-        finder = PatchFinder(points_mm, reach_mm=reach_mm)
+        finder = PatchFinder(skin.points_mm, reach_mm=skin.patch_mm)
         leading = leading_channels(target, takes_force=scales.force_N > 0.0)
         self._patches = [
             _patch(finder.patch(given[:, leading]), given, wanted)
@@ -211,27 +221,21 @@ class PatchFeed:
 
 def feeds(
     groups: Sequence[Fields],
-    points_mm: np.ndarray,
+    skin: SeenSkin,
     scales: Scales,
     *,
-    voxel_mm: float,
-    patch_mm: float,
     spec: NetworkSpec,
     target: Target,
-    turns: int,
     device: str,
 ) -> list[Feed]:
     """Feeds of groups of samples on one skin, whole or in patches.
 
     Args:
         groups: Samples to train on, samples to validate with.
-        points_mm: Vertices of the skin at rest [mm], shape (V, 3).
+        skin: Of all samples.
         scales: Of input and output.
-        voxel_mm: Edge of a voxel.
-        patch_mm: Reach of a patch; 0: whole skins.
         spec: Of the network.
         target: What is predicted.
-        turns: Orientations of whole skins.
         device: `cpu` or `cuda`.
 
     Raises:
@@ -239,22 +243,18 @@ def feeds(
         DeviceError: If the device has no room for whole skins.
     """
     with room_for(device):
-        if patch_mm:
+        if skin.patch_mm:
             return [
-                PatchFeed(
-                    fields,
-                    points_mm,
-                    scales,
-                    voxel_mm=voxel_mm,
-                    reach_mm=patch_mm,
-                    spec=spec,
-                    target=target,
-                    device=device,
-                )
+                PatchFeed(fields, skin, scales, spec=spec, target=target, device=device)
                 for fields in groups
             ]
         frames = frames_of(
-            points_mm, voxel_mm=voxel_mm, spec=spec, target=target, turns=turns, device=device
+            skin.points_mm,
+            voxel_mm=skin.voxel_mm,
+            spec=spec,
+            target=target,
+            turns=skin.turns,
+            device=device,
         )
         return [SkinFeed(fields, frames, scales, device=device) for fields in groups]
 

@@ -23,6 +23,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from typing import Any, TypeVar
 
 import numpy as np
@@ -47,6 +48,20 @@ CHECK_STEPS = 20
 """Steps between two looks at the loss: each look waits for the device."""
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class TrainingData:
+    """What a network learns from, and what its errors are measured in."""
+
+    train: Feed
+    """What the loss is of."""
+    validation: Feed
+    """What the best epoch is chosen by; may be empty."""
+    unit: float
+    """Mean absolute error of zero output on what is trained on, over the output's scale."""
+    output_scale: float
+    """What outputs are multiplied by, in the target's unit."""
+
+
 class Trainer:
     """A training between two epochs.
 
@@ -58,12 +73,9 @@ class Trainer:
     def __init__(
         self,
         network: MinkUNet,
-        train: Feed,
-        validation: Feed,
-        *,
-        unit: float,
+        data: TrainingData,
         settings: TrainingSettings,
-        output_scale: float,
+        *,
         device: str = "cpu",
         numbers: Numbers = Numbers.AUTO,
         seed: int = 0,
@@ -72,11 +84,8 @@ class Trainer:
 
         Args:
             network: Untrained, or with its encoder frozen to be tuned.
-            train: What the loss is of.
-            validation: What the best epoch is chosen by; may be empty.
-            unit: Mean absolute error of zero output on what is trained on, over the output's scale.
+            data: What it learns from.
             settings: Of the training.
-            output_scale: What outputs are multiplied by, in the target's unit.
             device: `cpu` or `cuda`.
             numbers: Type of the arithmetic.
             seed: Of the order of samples.
@@ -87,14 +96,12 @@ class Trainer:
         self.settings = settings
         self.epoch = 0
         self.notes: list[str] = []
-        self._train, self._validation = train, validation
-        self._output_scale = output_scale
+        self._data = data
         self._seed = seed
-        self._unit = unit
         self._half = half_type(device, numbers)
         self._piece = settings.batch
         self._factor = 1.0
-        self._steps = math.ceil(len(train) * settings.passes / settings.batch)
+        self._steps = math.ceil(len(data.train) * settings.passes / settings.batch)
         with room_for(device):
             self._network = network.to(device)
             self._average = Average(network, settings.averaging) if settings.averaging else None
@@ -142,8 +149,8 @@ class Trainer:
         return self._with_room(
             lambda: sample_errors(
                 self.kept.eval(),
-                self._validation,
-                output_scale=self._output_scale,
+                self._data.validation,
+                output_scale=self._data.output_scale,
                 batch=self._piece,
                 tick=lambda: monitor(1.0),
             )
@@ -174,7 +181,7 @@ class Trainer:
     def _batches(self) -> Iterator[tuple[list[int], int]]:
         """Samples of each step of this epoch, and the number that their orientations hang on."""
         rng = np.random.default_rng([self._seed, self.epoch])
-        count = len(self._train)
+        count = len(self._data.train)
         order = np.concatenate([rng.permutation(count) for _ in range(self.settings.passes)])
         draws = rng.integers(DRAWS_BELOW, size=self._steps).tolist()
         # Parts as equal as can be: statistics of a batch with one sample left would be its own.
@@ -199,7 +206,7 @@ class Trainer:
         total = torch.zeros((), device=self._device)
         for first in range(0, len(samples), self._piece):
             part = samples[first : first + self._piece]
-            error, loss = self._losses(self._train.batch(part, draw))
+            error, loss = self._losses(self._data.train.batch(part, draw))
             share = len(part) / len(samples)
             self._scaler.scale(loss * share).backward()
             total += error * share
@@ -208,12 +215,12 @@ class Trainer:
     def _losses(self, batch: Batch) -> tuple[Tensor, Tensor]:
         """The mean absolute error and what is minimised, both over the error of zero."""
         found = network_output(self._network, batch, half=self._half)
-        error = batch.errors((found - batch.targets).abs()).mean() / self._unit
+        error = batch.errors((found - batch.targets).abs()).mean() / self._data.unit
         foot = self.settings.foot * self._factor
         if not foot:
             return error.detach(), error
         smooth = smooth_l1_loss(found, batch.targets, beta=foot, reduction="none")
-        return error.detach(), batch.errors(smooth).mean() / self._unit
+        return error.detach(), batch.errors(smooth).mean() / self._data.unit
 
     def _with_room(self, work: Callable[[], _Result]) -> _Result:
         """The work's result; it is done again with smaller parts while the device is full."""

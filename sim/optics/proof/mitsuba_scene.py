@@ -14,6 +14,7 @@ Source: Mitsuba 3 documentation, scene format and plugins `dielectric`, `diffuse
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
@@ -31,20 +32,8 @@ SAMPLES = 256
 LEAST_SIDE_MM = 1e-6
 
 
-def write_scene(
-    folder: Path,
-    mesh: MembraneMesh,
-    leds: Leds,
-    camera: Camera,
-    transport: Transport,
-    *,
-    samples: int = SAMPLES,
-    displacement_mm: np.ndarray | None = None,
-) -> Path:
-    """Write the files of `scene_files` into a folder, made if need be; returns the XML file."""
-    files = scene_files(
-        mesh, leds, camera, transport, samples=samples, displacement_mm=displacement_mm
-    )
+def write_scene(folder: Path, files: Mapping[str, bytes]) -> Path:
+    """Write what `scene_files` gives into a folder, made if need be; returns the XML file."""
     folder.mkdir(parents=True, exist_ok=True)
     for name, content in files.items():
         (folder / name).write_bytes(content)

@@ -97,35 +97,23 @@ def dots_at(skin: Skin, centres: np.ndarray, radius_mm: float, camera: Camera) -
     return Dots(centres_mm=centres, radius_mm=radius_mm, inked=inked)
 
 
-def ink(
-    before: Coverage,
-    changed: np.ndarray,
-    seen: GBuffer,
-    *,
-    dots: Dots,
-    skin: Skin,
-    camera: Camera,
-    rays: Rays,
-) -> Coverage:
-    """Coverage after some pixels changed what they see.
+def ink(seen: GBuffer, *, dots: Dots, skin: Skin, camera: Camera, rays: Rays) -> Coverage:
+    """Coverage of an image.
 
     The edge of a dot is a smoothstep one pixel footprint wide: depth (fisheye: range) over focal
     length, divided by the cosine of the viewing angle.
 
     Args:
-        before: Coverage of the other pixels.
-        changed: Pixel numbers to compute anew, shape (C,).
-        seen: What those of them that see the skin see.
+        seen: What the pixels that see the skin see.
         dots: The dots on `skin`.
         skin: The undeformed skin.
         camera: Gives the size of a pixel.
-        rays: Gives the viewing angle.
+        rays: Gives the viewing angle, and the number of pixels.
     """
-    marker, share = before.marker.copy(), before.ink.copy()
-    share[changed] = 0.0
+    found = no_ink(len(rays.direction))
     near = np.flatnonzero(dots.inked[seen.face])
     if not near.size:
-        return Coverage(marker=marker, ink=share)
+        return found
     from scipy.spatial import KDTree
 
     seen = seen.take(near)
@@ -138,9 +126,9 @@ def ink(
     footprint = away / focal_px(camera) / np.maximum(cosine, LEAST_COSINE)
     distance, nearest = KDTree(dots.centres_mm).query(place)
     step = np.clip((dots.radius_mm - distance) / footprint + 0.5, 0.0, 1.0)
-    share[seen.pixel] = step * step * (3.0 - 2.0 * step)
-    marker[seen.pixel] = nearest
-    return Coverage(marker=marker, ink=share)
+    found.ink[seen.pixel] = step * step * (3.0 - 2.0 * step)
+    found.marker[seen.pixel] = nearest
+    return found
 
 
 def centroids(coverage: Coverage, count: int, width_px: int) -> np.ndarray:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,21 @@ from sim.optics.raster.shade_kernels import EVERYWHERE, FADING, GIVEN, NO_SHADOW
 from sim.optics.raster.shading import FULL_SHADOW_MM
 from sim.optics.raster.vertex_light import VertexLight
 from workbench.core.base.errors import OpticsError
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Vertices:
+    """Vertices to be shaded, in arrays on the device."""
+
+    count: int
+    numbers: Any
+    """Which ones, shape (count,) or longer, int32."""
+    placed: Any
+    """Places of all vertices [mm], float32 vectors."""
+    turned: Any
+    """Outward unit normals of all, float32 vectors."""
+    to_camera: Any
+    """Unit vectors from all to the camera, float32."""
 
 
 class Shader:
@@ -54,15 +70,14 @@ class Shader:
         if self.given:
             _take(raster.radiance, radiance)
             return
-        self._run(
-            raster.vertex_entries,
-            raster.vertex_list,
-            raster.placed,
-            raster.turned,
-            raster.to_camera,
-            raster.radiance,
-            shadows=EVERYWHERE if whole else FADING,
+        moved = _Vertices(
+            count=raster.vertex_entries,
+            numbers=raster.vertex_list,
+            placed=raster.placed,
+            turned=raster.turned,
+            to_camera=raster.to_camera,
         )
+        self._run(moved, raster.radiance, shadows=EVERYWHERE if whole else FADING)
 
     def everywhere(self) -> np.ndarray:
         """Radiance of all vertices of the one frame looked at, with whole shadows, (V, 3), float32.
@@ -76,15 +91,14 @@ class Shader:
         entries = raster.vertex_list.to_numpy()[: raster.vertex_entries]
         placed[entries] = raster.placed.to_numpy()[entries]
         found = empty(ti.f32, raster.vertices, vector=3)
-        self._run(
-            raster.vertices,
-            on_device(np.arange(raster.vertices, dtype=np.int32)),
-            on_device(placed, vector=3),
-            raster.normals,
-            raster.still_to_camera,
-            found,
-            shadows=EVERYWHERE,
+        everything = _Vertices(
+            count=raster.vertices,
+            numbers=on_device(np.arange(raster.vertices, dtype=np.int32)),
+            placed=on_device(placed, vector=3),
+            turned=raster.normals,
+            to_camera=raster.still_to_camera,
         )
+        self._run(everything, found, shadows=EVERYWHERE)
         return found.to_numpy()
 
     def undeformed(self, normals: np.ndarray | None = None) -> np.ndarray:
@@ -106,40 +120,29 @@ class Shader:
         turned = raster.normals
         if normals is not None:
             turned = on_device(normals.astype(np.float32), vector=3)
-        everything = on_device(np.arange(raster.vertices, dtype=np.int32))
-        found = empty(ti.f32, raster.vertices, vector=3)
-        self._run(
-            raster.vertices,
-            everything,
-            raster.points,
-            turned,
-            raster.still_to_camera,
-            found,
-            shadows=NO_SHADOWS,
+        everything = _Vertices(
+            count=raster.vertices,
+            numbers=on_device(np.arange(raster.vertices, dtype=np.int32)),
+            placed=raster.points,
+            turned=turned,
+            to_camera=raster.still_to_camera,
         )
+        found = empty(ti.f32, raster.vertices, vector=3)
+        self._run(everything, found, shadows=NO_SHADOWS)
         return found.to_numpy()
 
-    def _run(
-        self,
-        count: int,
-        vertex_list: Any,
-        placed: Any,
-        turned: Any,
-        to_camera: Any,
-        radiance: Any,
-        *,
-        shadows: int,
-    ) -> None:
+    def _run(self, vertices: _Vertices, radiance: Any, *, shadows: int) -> None:
+        """Fill the radiance of vertices, by their numbers."""
         raster = self._raster
         arguments = (
-            count,
+            vertices.count,
             self.lit.way_of_lighting,
-            vertex_list,
+            vertices.numbers,
             raster.points,
             raster.normals,
-            placed,
-            turned,
-            to_camera,
+            vertices.placed,
+            vertices.turned,
+            vertices.to_camera,
             *self.lights,
             MOVED_MM,
             FULL_SHADOW_MM,

@@ -16,7 +16,7 @@ from sim.optics.raster.display import choose_exposure, encode
 from sim.optics.raster.gbuffer import GBuffer, Hits, describe
 from sim.optics.raster.image_sensor import develop, fixed_exposure
 from sim.optics.raster.imager import Imager
-from sim.optics.raster.markers import TIP_REFLECTANCE, Dots, dots_at, ink, no_ink, print_dots
+from sim.optics.raster.markers import TIP_REFLECTANCE, Coverage, Dots, dots_at, ink, print_dots
 from sim.optics.raster.raster import Raster
 from sim.optics.raster.shader import Shader
 from sim.optics.raster.shading import straight
@@ -57,6 +57,31 @@ class StudioScene:
             range_mm=range_mm.reshape(rows, columns),
             frame=number,
         )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Radiances:
+    """Radiance per undeformed vertex toward the camera, shape (V, 3), float32 each."""
+
+    undeformed: np.ndarray
+    """As the vertices of a frame are shaded."""
+    behind: np.ndarray
+    """As the background is; another where the light model renders it by straight lines."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Printed:
+    """What is printed on the seen skin, and which pixels see it."""
+
+    dots: Dots
+    gain: float
+    """Radiance of inked skin over that of bare skin [1]."""
+    coverage: Coverage
+    """Of the background."""
+    start: np.ndarray
+    """Where the dots of each triangle begin in `of`, int32."""
+    of: np.ndarray
+    """Numbers of the dots that each triangle can hold, one triangle after the other, int32."""
 
 
 def develops_plainly(camera: Camera) -> bool:
@@ -104,14 +129,17 @@ def open_scene(
         undeformed = radiance.astype(np.float32)
     else:
         undeformed = shader.undeformed()
-    behind = _background_radiance(mesh, light, optics, raster, undeformed)
+    radiances = _Radiances(
+        undeformed=undeformed,
+        behind=_background_radiance(mesh, light, optics, raster, undeformed),
+    )
     monitor(0.25, "background")
     seen = _background_buffer(mesh, camera, view)
-    dots, gain = _dots(mesh, LightModel(light.model), optics, camera)
+    printed = _printed(mesh, LightModel(light.model), optics, camera, view, seen)
     # The photograph is what the first camera saw; the others' backgrounds are rendered.
     if camera != optics.camera:
         optics = dataclasses.replace(optics, background=None)
-    backdrop = _backdrop(mesh, optics, camera, view, seen, undeformed, behind, dots, gain)
+    backdrop = _backdrop(optics, camera, view, seen, radiances, printed)
     range_mm = np.full(len(view.direction), np.nan, dtype=np.float32)
     first = view.layer_start[seen.pixel]
     range_mm[seen.pixel] = view.travelled_mm[seen.pixel] + view.layer_mm[first]
@@ -122,7 +150,7 @@ def open_scene(
         imager=Imager(raster, shader, backdrop),
         seen=seen,
         range_mm=range_mm,
-        dots_mm=dots.centres_mm,
+        dots_mm=printed.dots.centres_mm,
     )
     if develops_plainly(camera):
         return scene
@@ -174,30 +202,41 @@ def _dots(
     return print_dots(mesh.seen, optics.markers, camera), optics.markers.reflectance
 
 
-def _backdrop(
+def _printed(
     mesh: MembraneMesh,
+    model: LightModel,
     optics: Optics,
     camera: Camera,
     view: SkinView,
     seen: GBuffer,
-    undeformed: np.ndarray,
-    behind: np.ndarray,
-    dots: Dots,
-    gain: float,
-) -> Backdrop:
+) -> _Printed:
+    """Dots or tips as the pixels `seen` see them."""
+    dots, gain = _dots(mesh, model, optics, camera)
     by_number = np.empty_like(dots.inked)
     by_number[:] = dots.inked[view.face_number]
     coverage = ink(
-        no_ink(len(view.direction)),
-        seen.pixel,
         seen,
         dots=dataclasses.replace(dots, inked=by_number),
         skin=dataclasses.replace(mesh.seen, faces=view.faces),
         camera=camera,
         rays=view.rays,
     )
+    start, of = dots_of_faces(dots, mesh.seen, view)
+    return _Printed(dots=dots, gain=gain, coverage=coverage, start=start, of=of)
+
+
+def _backdrop(
+    optics: Optics,
+    camera: Camera,
+    view: SkinView,
+    seen: GBuffer,
+    radiances: _Radiances,
+    printed: _Printed,
+) -> Backdrop:
+    dots, gain, coverage = printed.dots, printed.gain, printed.coverage
     factor = (1.0 + (gain - 1.0) * coverage.ink)[:, None].astype(np.float32)
-    bare, foreground = at_pixels(view, behind), at_pixels(view, undeformed)
+    bare = at_pixels(view, radiances.behind)
+    foreground = at_pixels(view, radiances.undeformed)
     # White tips on black skin are what must not be overexposed; black dots never are.
     bright = bare * factor if gain > 1.0 else bare
     exposure = fixed_exposure(camera, bright[seen.pixel])
@@ -209,9 +248,8 @@ def _backdrop(
         photo = photo_radiance(optics.background, camera, exposure)
         background = np.ascontiguousarray(photo.reshape(-1, 3), dtype=np.float32)
         remainder, inked = background - foreground * factor, 0
-    start, of = dots_of_faces(dots, mesh.seen, view)
     return Backdrop(
-        undeformed=undeformed,
+        undeformed=radiances.undeformed,
         background=background,
         remainder=remainder,
         inked_background=inked,
@@ -222,8 +260,8 @@ def _backdrop(
         ink_gain=gain,
         dot_radius_mm=dots.radius_mm,
         dots_mm=dots.centres_mm.astype(np.float32),
-        dot_start=start,
-        dot_of=of,
+        dot_start=printed.start,
+        dot_of=printed.of,
         camera_mm=np.array(camera.position_mm, dtype=np.float32),
         axis=rotation_camera_to_sensor(camera)[:, 2].astype(np.float32),
         focal_px=focal_px(camera),

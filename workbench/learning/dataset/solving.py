@@ -20,6 +20,7 @@ import numpy as np
 from workbench.core.base.errors import Cancelled, DeviceError, LaneError, StoreError, WorkbenchError
 from workbench.core.press.fem import FemSettings
 from workbench.core.press.press import ContactSettings
+from workbench.core.press.press_case import PressCase
 from workbench.core.result.force_field import ForceField, Source, from_contact
 from workbench.core.result.results import MembraneMesh
 from workbench.learning.dataset.cases import Case
@@ -173,9 +174,7 @@ class Bench:
             solve_press(
                 self.mesh,
                 self.recipe.design.material,
-                indenter,
-                case.press,
-                settings,
+                PressCase(indenter=indenter, press=case.press, fem=settings),
                 device=solver_device(),
                 monitor=self._watch,
                 on_frame=converged,

@@ -68,8 +68,8 @@ class Beginning:
             DesignError: If no training sample has a target that is not zero.
             DeviceError: If the device has no room for the data.
         """
-        from sim.forces.training.feeds import feeds
-        from sim.forces.training.trainer import Trainer
+        from sim.forces.training.feeds import SeenSkin, feeds
+        from sim.forces.training.trainer import Trainer, TrainingData
 
         settings, target = self.plan.settings, self.plan.target
         if self.unit_mae == 0.0:
@@ -78,24 +78,29 @@ class Beginning:
                 hint="take a data set with presses that touch, in the split train",
                 at="train",
             )
-        train, validation = feeds(
-            [self.train, self.validation],
-            self.points_mm,
-            self.scales,
+        skin = SeenSkin(
+            points_mm=self.points_mm,
             voxel_mm=self.voxel_per_spacing * self.spacing_mm,
             patch_mm=self.patch_spacings * self.spacing_mm,
+            turns=settings.turns,
+        )
+        train, validation = feeds(
+            [self.train, self.validation],
+            skin,
+            self.scales,
             spec=self.network.spec,
             target=target,
-            turns=settings.turns,
             device=self.resources.device,
         )
         return Trainer(
             self.network,
-            train,
-            validation,
-            unit=self.unit_mae / self.scales.output,
-            settings=settings,
-            output_scale=self.scales.output,
+            TrainingData(
+                train=train,
+                validation=validation,
+                unit=self.unit_mae / self.scales.output,
+                output_scale=self.scales.output,
+            ),
+            settings,
             device=self.resources.device,
             numbers=self.resources.numbers,
             seed=self.plan.seed,

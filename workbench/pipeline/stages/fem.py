@@ -10,6 +10,7 @@ from workbench.core.design.design import Elastomer
 from workbench.core.press.fem import FemSettings
 from workbench.core.press.indenter import Indenter
 from workbench.core.press.press import Press
+from workbench.core.press.press_case import PressCase
 from workbench.core.result.force_field import ForceField
 from workbench.core.result.results import MembraneMesh, Solid
 from workbench.core.result.sampled import SampledDistance
@@ -69,9 +70,7 @@ def fem(given: FemInputs, *, monitor: Monitor) -> ForceField:
     return solve_press(
         found,
         given.material,
-        given.indenter,
-        given.path,
-        given.settings,
+        PressCase(indenter=given.indenter, press=given.path, fem=given.settings),
         sampled=given.sampled,
         device=solver_device(),
         monitor=monitor,

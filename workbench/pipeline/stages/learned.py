@@ -11,6 +11,7 @@ from workbench.core.design.design import Elastomer, SensorDesign
 from workbench.core.press.indenter import Indenter
 from workbench.core.press.learned import WeightsFile
 from workbench.core.press.press import ContactSettings, Press
+from workbench.core.press.press_case import PressCase
 from workbench.core.result.force_field import ForceField
 from workbench.core.result.results import MembraneMesh, Solid
 from workbench.core.result.sensing import Contact
@@ -50,6 +51,11 @@ class LearnedInputs:
     displacement: Trained | None
     source: MembraneMesh | None = field(default=None, metadata=PART)
     """The body at the spacing of the training."""
+
+    @property
+    def case(self) -> PressCase:
+        """What is pressed, where, and by which settings of the contact solver."""
+        return PressCase(indenter=self.indenter, press=self.path, settings=self.settings)
 
 
 def inputs(chain: Chain) -> LearnedInputs | None:
@@ -114,9 +120,7 @@ def learned(given: LearnedInputs, *, monitor: Monitor) -> ForceField:
                 weights.target,
                 Membrane(differences=network.differences, points_mm=points_mm, gel=gel),
                 given.material,
-                given.indenter,
-                given.path,
-                given.settings,
+                given.case,
                 largest_mm=largest_mm,
             ),
         )
@@ -150,9 +154,7 @@ def foreknown(given: LearnedInputs) -> tuple[str, ...]:
                 said.target,
                 Membrane(differences=network.differences),
                 given.material,
-                given.indenter,
-                given.path,
-                given.settings,
+                given.case,
             )
             reasons |= dict.fromkeys(found.reasons)
     return tuple(reasons)

@@ -9,6 +9,7 @@ from workbench.core.base.monitor import Monitor
 from workbench.core.design.design import Elastomer
 from workbench.core.press.indenter import Indenter
 from workbench.core.press.press import ContactSettings, Press
+from workbench.core.press.press_case import PressCase
 from workbench.core.result.results import MaterialPoints, MembraneMesh
 from workbench.core.result.sampled import SampledDistance
 from workbench.core.result.sensing import Contact
@@ -58,9 +59,7 @@ def press(given: PressInputs, *, monitor: Monitor) -> Contact:
         given.mesh,
         given.points,
         given.material,
-        given.indenter,
-        given.path,
-        given.settings,
+        PressCase(indenter=given.indenter, press=given.path, settings=given.settings),
         sampled=given.sampled,
         monitor=monitor,
     )

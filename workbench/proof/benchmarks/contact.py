@@ -16,6 +16,7 @@ from workbench.core.base.monitor import silent
 from workbench.core.design.design import Elastomer
 from workbench.core.press.indenter import Indenter
 from workbench.core.press.press import ContactSettings, Extent, Press
+from workbench.core.press.press_case import PressCase
 from workbench.pipeline.stages.press import PressInputs, press
 from workbench.proof.benchmarks.timing import RUNS, timed_row
 from workbench.proof.row import Row, bounded
@@ -94,7 +95,9 @@ def whole_finger(grid_mm: float):
     from sim.contact.readout.problem import make_problem
 
     settings = ContactSettings(grid_mm=grid_mm, extent=Extent.FULL)
-    problem = make_problem(*_finger(grid_mm), Elastomer(), Indenter(), Press(frames=1), settings)
+    problem = make_problem(
+        *_finger(grid_mm), Elastomer(), PressCase(press=Press(frames=1), settings=settings)
+    )
     case = Case(domain=problem.domain, collider=problem.collider, friction=0.3)
     relaxation = Relaxation([case])
     origin, rotation = problem.approach.pose(0.2)
@@ -127,9 +130,10 @@ def _problem(number: int):
     return make_problem(
         *_finger(0.5),
         Elastomer(),
-        Indenter(),
-        Press(target_mm=tip_target(polar, azimuth), frames=1),
-        ContactSettings(active_radius_mm=9.0),
+        PressCase(
+            press=Press(target_mm=tip_target(polar, azimuth), frames=1),
+            settings=ContactSettings(active_radius_mm=9.0),
+        ),
     )
 
 

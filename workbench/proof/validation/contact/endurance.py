@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 from workbench.core.design.design import Elastomer
 from workbench.core.press.indenter import SEEN, UNSEEN, Indenter
 from workbench.core.press.press import ContactSettings, Press
+from workbench.core.press.press_case import PressCase
 from workbench.pipeline.devices import open_device
 from workbench.proof.row import Row, bounded
 
@@ -63,9 +64,13 @@ def varied_press(number: int) -> Problem:
         mesh,
         points,
         Elastomer(young_MPa=0.1 + 1e-4 * number),
-        Indenter(kind=kinds[number % len(kinds)], size_mm=4.0),
-        Press(target_mm=(0.0, 0.0, height_mm), depth_mm=0.2 + 0.02 * (number % 5), frames=1),
-        ContactSettings(grid_mm=grid_mm),
+        PressCase(
+            indenter=Indenter(kind=kinds[number % len(kinds)], size_mm=4.0),
+            press=Press(
+                target_mm=(0.0, 0.0, height_mm), depth_mm=0.2 + 0.02 * (number % 5), frames=1
+            ),
+            settings=ContactSettings(grid_mm=grid_mm),
+        ),
     )
 
 

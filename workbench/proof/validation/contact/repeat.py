@@ -18,6 +18,7 @@ import numpy as np
 from workbench.core.base.errors import LaneError
 from workbench.core.press.indenter import Indenter
 from workbench.core.press.press import ContactSettings, Press
+from workbench.core.press.press_case import PressCase
 from workbench.pipeline.devices import VARIABLE, open_device
 
 THREADS = "TI_CPU_MAX_NUM_THREADS"
@@ -43,9 +44,11 @@ def forces() -> dict[str, np.ndarray]:
         mesh,
         points,
         Elastomer(friction=0.0),
-        Indenter(size_mm=8.0),
-        Press(target_mm=(0.0, 0.0, 4.0), depth_mm=0.5, frames=1),
-        ContactSettings(active_radius_mm=12.0, tolerance=TOLERANCE),
+        PressCase(
+            indenter=Indenter(size_mm=8.0),
+            press=Press(target_mm=(0.0, 0.0, 4.0), depth_mm=0.5, frames=1),
+            settings=ContactSettings(active_radius_mm=12.0, tolerance=TOLERANCE),
+        ),
     )
     return {
         "finger_sheared_N": sheared.reaction_N,

@@ -28,6 +28,7 @@ import numpy as np
 from workbench.core.base.errors import DesignError, SolveError
 from workbench.core.design.design import Elastomer
 from workbench.core.press.press import ContactSettings
+from workbench.core.press.press_case import PressCase
 from workbench.core.result.sensing import Contact
 from workbench.pipeline.devices import open_device
 from workbench.proof.row import Row, bounded, gathered
@@ -127,7 +128,12 @@ def _problem(trial: Trial, sensor: Sensor) -> Problem:
 
     path, thing = trials.path_of(trial, sensor), trials.object_of(trial)
     settings = ContactSettings(grid_mm=sensor.points.grid_mm)
-    return make_problem(sensor.mesh, sensor.points, Elastomer(), thing, path, settings)
+    return make_problem(
+        sensor.mesh,
+        sensor.points,
+        Elastomer(),
+        PressCase(indenter=thing, press=path, settings=settings),
+    )
 
 
 def _solved(problems: list[Problem]) -> list[Contact | Exception]:

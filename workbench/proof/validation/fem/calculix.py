@@ -97,7 +97,7 @@ def ours(hex_mm: float, friction: float = 0.0) -> ForceField:
 
     state = finger_state(hex_mm, friction)
     case = state.case
-    return solve_press(_mesh(hex_mm), state.design.material, case.indenter, case.press, case.fem)
+    return solve_press(_mesh(hex_mm), state.design.material, case)
 
 
 @functools.cache

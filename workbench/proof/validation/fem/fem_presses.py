@@ -14,6 +14,7 @@ from workbench.core.press.fem import DRAFT_MM, FemSettings
 from workbench.core.press.indenter import BALL, Indenter, IndenterKind
 from workbench.core.press.motion import release
 from workbench.core.press.press import Press
+from workbench.core.press.press_case import PressCase
 from workbench.core.result.force_field import ForceField
 from workbench.core.result.results import MembraneMesh, Skin
 from workbench.pipeline.stages.mesh import MeshInputs, mesh
@@ -90,4 +91,6 @@ def solved(case: Case) -> ForceField:
     )
     material = Elastomer(friction=case.friction)
     membrane = (mirrored_finger if case.mirrored else finger)(case.hex_mm)
-    return solve_press(membrane, material, Indenter(kind=case.kind), press, settings)
+    return solve_press(
+        membrane, material, PressCase(indenter=Indenter(kind=case.kind), press=press, fem=settings)
+    )

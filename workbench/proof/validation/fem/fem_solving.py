@@ -10,6 +10,7 @@ import numpy as np
 from workbench.core.base.digest import digest
 from workbench.core.base.errors import SolveError, WorkbenchError
 from workbench.core.press.fem import FemSettings
+from workbench.core.press.press_case import PressCase
 from workbench.core.result.force_field import ForceField
 from workbench.pipeline.devices import open_device, solver_device
 from workbench.proof.validation.fem.fem_cases import (
@@ -62,9 +63,7 @@ def _solved(case: MatrixCase) -> ForceField:
     return solve_press(
         mesh,
         material(),
-        object_of(case.thing),
-        press_of(case),
-        case.settings,
+        PressCase(indenter=object_of(case.thing), press=press_of(case), fem=case.settings),
         device=solver_device(),
     )
 

@@ -185,7 +185,7 @@ def rendered(case: Case, samples: int) -> tuple[np.ndarray, np.ndarray]:
         DeviceError: If it fails.
     """
     from sim.optics.light.lights import place_leds
-    from sim.optics.proof.mitsuba_scene import write_scene
+    from sim.optics.proof.mitsuba_scene import scene_files, write_scene
     from workbench.core.design.lighting import Baking
     from workbench.core.design.optics import Transport
 
@@ -194,7 +194,8 @@ def rendered(case: Case, samples: int) -> tuple[np.ndarray, np.ndarray]:
         folder = Path(name)
         moved = displacement_mm(case) if case.dented else None
         leds = place_leds(RING)
-        write_scene(folder, body(), leds, CAMERA, transport, displacement_mm=moved)
+        files = scene_files(body(), leds, CAMERA, transport, displacement_mm=moved)
+        write_scene(folder, files)
         halves = [render(folder, samples=samples, seed=seed) for seed in (1, 2)]
     return (halves[0] + halves[1]) / 2.0, np.abs(halves[0] - halves[1]) / 2.0
 
