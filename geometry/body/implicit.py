@@ -27,7 +27,7 @@ from geometry.body.csg_mesh import arrays
 from geometry.body.solid import COARSE_ANGLE_RAD, COARSE_TOLERANCE_MM, brep_bytes, label_surface
 from geometry.surface.isosurface import isosurface
 from geometry.surface.regions import mark_regions
-from geometry.surface.surface import mesh_volume, open_edges
+from geometry.surface.surface import mesh_volume, on_plane, open_edges
 from workbench.core.base.errors import MeshingError
 from workbench.core.result.marks import Field
 from workbench.core.result.results import BodyMethod, Label, LabelledSurface, Solid
@@ -45,7 +45,6 @@ BLOCK = 6
 """Grid points along the edge of a block that is sampled in full or not at all."""
 SLACK = 2.0
 """Factor of caution on the distance at a block's middle: the fields are exact near 0 only."""
-FLAT_MM = 1e-6
 
 
 def solid_from_fields(fields: Any, *, wall_mm: float, support_mm: float) -> Solid:
@@ -124,7 +123,7 @@ def between(
     labels = np.where(
         np.abs(outer(centre)) <= np.abs(core(centre)), Label.OUTER, Label.INNER
     ).astype(np.uint8)
-    labels[np.abs(points[faces][:, :, 2]).max(axis=1) < FLAT_MM] = Label.BASE
+    labels[on_plane(points, faces)] = Label.BASE
     return LabelledSurface(points_mm=points, faces=faces, labels=labels)
 
 

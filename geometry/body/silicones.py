@@ -11,13 +11,12 @@ What a bulletin does not state, or we could not confirm, is None.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from workbench.core.base.errors import DesignError, shown
 
 PSI_MPA = 6.894757e-3
 """Megapascal in a pound per square inch. Source: NIST SP 811."""
-GENT, DOUBLED = "Gent 1958", "100 % modulus, neo-Hookean"
-"""What a modulus follows from; see the module docstring."""
 NEAR = 0.3
 """Relative difference of moduli that is still the same silicone: the relation's own error."""
 UNKNOWN_ELONGATION = 2.0
@@ -69,11 +68,61 @@ def doubled_MPa(stress_psi: float) -> float:
     return 12.0 / 7.0 * stress_psi * PSI_MPA
 
 
-def _smooth_on(bulletin: str, by: str) -> str:
-    """The source of a row: a bulletin of Smooth-On, and what its modulus follows from."""
-    return f"Smooth-On technical bulletin {bulletin}; E by {by}"
+class _SmoothOn(NamedTuple):
+    """A row of a technical bulletin of Smooth-On; its parts are mixed one to one."""
+
+    name: str
+    hardness: str
+    young_MPa: float
+    density_g_cm3: float
+    elongation: float
+    pot_life_min: float
+    cure: str
+    bulletin: str
+
+    @property
+    def silicone(self) -> Silicone:
+        """The row with its source: the modulus follows from Shore A, else from 100 % strain."""
+        how = "Gent 1958" if self.hardness.endswith("A") else "100 % modulus, neo-Hookean"
+        return Silicone(
+            name=self.name,
+            hardness=self.hardness,
+            young_MPa=self.young_MPa,
+            density_g_cm3=self.density_g_cm3,
+            parts_a=1.0,
+            parts_b=1.0,
+            elongation=self.elongation,
+            pot_life_min=self.pot_life_min,
+            cure=self.cure,
+            source=f"Smooth-On technical bulletin {self.bulletin}; E by {how}",
+        )
 
 
+_SMOOTH_ON = (
+    _SmoothOn(
+        "Ecoflex 00-10", "00-10", doubled_MPa(8.0), 1.04, 8.00, 30.0, "4 h", "Ecoflex Series"
+    ),
+    _SmoothOn(
+        "Ecoflex 00-20", "00-20", doubled_MPa(8.0), 1.07, 8.45, 30.0, "4 h", "Ecoflex Series"
+    ),
+    _SmoothOn(
+        "Ecoflex 00-30", "00-30", doubled_MPa(10.0), 1.07, 9.00, 45.0, "4 h", "Ecoflex Series"
+    ),
+    _SmoothOn(
+        "Ecoflex 00-50", "00-50", doubled_MPa(12.0), 1.07, 9.80, 18.0, "3 h", "Ecoflex Series"
+    ),
+    _SmoothOn(
+        "Dragon Skin 10", "10A", gent_MPa(10.0), 1.07, 10.00, 20.0, "5 h", "Dragon Skin Series"
+    ),
+    _SmoothOn(
+        "Dragon Skin 20", "20A", gent_MPa(20.0), 1.08, 6.20, 25.0, "4 h", "Dragon Skin Series"
+    ),
+    _SmoothOn(
+        "Dragon Skin 30", "30A", gent_MPa(30.0), 1.08, 3.64, 45.0, "16 h", "Dragon Skin Series"
+    ),
+    _SmoothOn("Solaris", "15A", gent_MPa(15.0), 0.99, 2.90, 240.0, "24 h", "Solaris"),
+)
+"""Numbers of the maker's technical bulletins."""
 _ROWS = (
     Silicone(
         name="XP-565 1:15",
@@ -87,102 +136,7 @@ _ROWS = (
         cure="follow the maker's sheet",
         source="Silicones Inc. XP-565 mixed 1:15; E from SimTac, Supplementary (1.45e5 Pa)",
     ),
-    Silicone(
-        name="Ecoflex 00-10",
-        hardness="00-10",
-        young_MPa=doubled_MPa(8.0),
-        density_g_cm3=1.04,
-        parts_a=1.0,
-        parts_b=1.0,
-        elongation=8.00,
-        pot_life_min=30.0,
-        cure="4 h",
-        source=_smooth_on("Ecoflex Series", DOUBLED),
-    ),
-    Silicone(
-        name="Ecoflex 00-20",
-        hardness="00-20",
-        young_MPa=doubled_MPa(8.0),
-        density_g_cm3=1.07,
-        parts_a=1.0,
-        parts_b=1.0,
-        elongation=8.45,
-        pot_life_min=30.0,
-        cure="4 h",
-        source=_smooth_on("Ecoflex Series", DOUBLED),
-    ),
-    Silicone(
-        name="Ecoflex 00-30",
-        hardness="00-30",
-        young_MPa=doubled_MPa(10.0),
-        density_g_cm3=1.07,
-        parts_a=1.0,
-        parts_b=1.0,
-        elongation=9.00,
-        pot_life_min=45.0,
-        cure="4 h",
-        source=_smooth_on("Ecoflex Series", DOUBLED),
-    ),
-    Silicone(
-        name="Ecoflex 00-50",
-        hardness="00-50",
-        young_MPa=doubled_MPa(12.0),
-        density_g_cm3=1.07,
-        parts_a=1.0,
-        parts_b=1.0,
-        elongation=9.80,
-        pot_life_min=18.0,
-        cure="3 h",
-        source=_smooth_on("Ecoflex Series", DOUBLED),
-    ),
-    Silicone(
-        name="Dragon Skin 10",
-        hardness="10A",
-        young_MPa=gent_MPa(10.0),
-        density_g_cm3=1.07,
-        parts_a=1.0,
-        parts_b=1.0,
-        elongation=10.00,
-        pot_life_min=20.0,
-        cure="5 h",
-        source=_smooth_on("Dragon Skin Series", GENT),
-    ),
-    Silicone(
-        name="Dragon Skin 20",
-        hardness="20A",
-        young_MPa=gent_MPa(20.0),
-        density_g_cm3=1.08,
-        parts_a=1.0,
-        parts_b=1.0,
-        elongation=6.20,
-        pot_life_min=25.0,
-        cure="4 h",
-        source=_smooth_on("Dragon Skin Series", GENT),
-    ),
-    Silicone(
-        name="Dragon Skin 30",
-        hardness="30A",
-        young_MPa=gent_MPa(30.0),
-        density_g_cm3=1.08,
-        parts_a=1.0,
-        parts_b=1.0,
-        elongation=3.64,
-        pot_life_min=45.0,
-        cure="16 h",
-        source=_smooth_on("Dragon Skin Series", GENT),
-    ),
-    Silicone(
-        name="Solaris",
-        hardness="15A",
-        young_MPa=gent_MPa(15.0),
-        density_g_cm3=0.99,
-        parts_a=1.0,
-        parts_b=1.0,
-        elongation=2.90,
-        pot_life_min=240.0,
-        cure="24 h",
-        source=_smooth_on("Solaris", GENT),
-    ),
+    *(sheet.silicone for sheet in _SMOOTH_ON),
     Silicone(
         name="Sylgard 184",
         hardness="43A",

@@ -14,8 +14,8 @@ from geometry.body.csg_mesh import arrays
 from geometry.surface.isosurface import distance_mm
 from geometry.surface.offset import inside
 from geometry.surface.spread import spread
+from geometry.surface.surface import FLAT_MM, on_plane
 
-FLAT_MM = 1e-6
 SAMPLES = 8000
 """Places of each side that are looked at beside its vertices: about one for each mm2."""
 
@@ -60,7 +60,7 @@ def wall_between(outer: Any, core: Any) -> Wall:
 def _side(body: Any) -> _Side:
     points, faces = arrays(body)
     points[np.abs(points[:, 2]) < FLAT_MM, 2] = 0.0
-    upright = faces[np.abs(points[faces][:, :, 2]).max(axis=1) >= FLAT_MM]
+    upright = faces[~on_plane(points, faces)]
     places = np.concatenate(
         [points[np.unique(upright)], spread(points, upright, SAMPLES).points_mm]
     )

@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from geometry.intake.labelling import FLAT_MM, flat_arrays
+from geometry.intake.labelling import flat_arrays
+from geometry.surface.surface import FLAT_MM, on_plane
 from workbench.core.base.errors import DesignError
 from workbench.core.result.results import Label, LabelledSurface
 
@@ -30,8 +31,7 @@ def foot(outer: Any, cavity: Any, shape: Any) -> LabelledSurface:
     radius = BORE_SHARE * _opening_mm(cavity) / 2
     bore = manifold3d.Manifold.cylinder(height + 2.0, radius, radius, 64)
     points, faces, _ = flat_arrays(plate - bore.translate((0.0, 0.0, -height - 1.0)))
-    flat = np.abs(points[faces][:, :, 2]).max(axis=1) < FLAT_MM
-    labels = np.where(flat, Label.BASE, Label.OUTER).astype(np.uint8)
+    labels = np.where(on_plane(points, faces), Label.BASE, Label.OUTER).astype(np.uint8)
     return LabelledSurface(points_mm=points, faces=faces, labels=labels)
 
 

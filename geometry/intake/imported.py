@@ -16,7 +16,6 @@ import numpy as np
 from geometry.body.wall_between import Wall, wall_between
 from geometry.intake.foot import foot
 from geometry.intake.labelling import (
-    FLAT_MM,
     expect_one_body,
     flat_arrays,
     labelled,
@@ -26,7 +25,7 @@ from geometry.intake.labelling import (
 )
 from geometry.intake.shell import outer_and_inner
 from geometry.surface.offset import inset_surface
-from geometry.surface.surface import face_areas, mesh_volume
+from geometry.surface.surface import FLAT_MM, face_areas, mesh_volume, on_plane
 from workbench.core.base.errors import DesignError
 from workbench.core.base.monitor import Monitor, silent
 from workbench.core.design.design import Layers
@@ -90,7 +89,8 @@ def build_imported(
         _expect_inside(outer, core)
         cavity = _offset(core, layers.support_mm, at="layers.support_mm")
     monitor(0.8, "labelling")
-    membrane = labelled(outer - renumbered(core), picks)
+    skin = outer - renumbered(core)
+    membrane = labelled(skin, picks)
     expect_one_body(membrane, from_file=body.inner is not None)
     return Solid(
         membrane=membrane,
@@ -103,7 +103,7 @@ def build_imported(
         base_brep=NO_BREP,
         volume_mm3=mesh_volume(membrane.points_mm, membrane.faces),
         method=BodyMethod.IMPORTED,
-        patches=patches(outer, core),
+        patches=patches(skin),
         notice=notice,
     )
 
@@ -162,8 +162,7 @@ def _placed(surface: ReadSurface, turn: np.ndarray, cut_mm: float) -> tuple[Any,
 def _flat_mm2(body: Any) -> float:
     """Area of the faces on z = 0."""
     points, faces, _ = flat_arrays(body)
-    flat = np.abs(points[faces][:, :, 2]).max(axis=1) < FLAT_MM
-    return float(face_areas(points, faces[flat]).sum())
+    return float(face_areas(points, faces[on_plane(points, faces)]).sum())
 
 
 def _offset(outer: Any, inset_mm: float, *, at: str) -> Any:

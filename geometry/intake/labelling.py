@@ -12,14 +12,13 @@ from typing import Any
 import numpy as np
 
 from geometry.body.csg_mesh import arrays, closed
+from geometry.surface.surface import FLAT_MM, on_plane
 from workbench.core.base.errors import DesignError
 from workbench.core.design.imported import Pick
 from workbench.core.result.results import Label, LabelledSurface
 
 CORE_FACE = 1_000_000
 """Face number of every triangle of the core; patches of the outer file stay below."""
-FLAT_MM = 1e-6
-"""How near to z = 0 a vertex lies on the base [mm]."""
 
 
 def labelled(body: Any, picks: Sequence[Pick]) -> LabelledSurface:
@@ -30,8 +29,7 @@ def labelled(body: Any, picks: Sequence[Pick]) -> LabelledSurface:
     """
     points, faces, source = flat_arrays(body)
     labels = np.where(source >= CORE_FACE, Label.INNER, Label.OUTER).astype(np.uint8)
-    flat = np.abs(points[faces][:, :, 2]).max(axis=1) < FLAT_MM
-    labels[flat] = Label.BASE
+    labels[on_plane(points, faces)] = Label.BASE
     numbers = np.full(len(faces), -1, dtype=np.int16)
     for pick in picks:
         members = (source == pick.patch) & (labels == Label.OUTER)
@@ -50,11 +48,10 @@ def labelled(body: Any, picks: Sequence[Pick]) -> LabelledSurface:
     return LabelledSurface(points_mm=points, faces=faces, labels=labels, numbers=numbers)
 
 
-def patches(outer: Any, core: Any) -> np.ndarray:
-    """Face of the outer file of each membrane triangle, -1 on the core and the cut, (M,)."""
-    points, faces, source = flat_arrays(outer - renumbered(core))
-    flat = np.abs(points[faces][:, :, 2]).max(axis=1) < FLAT_MM
-    return np.where(flat | (source >= CORE_FACE), -1, source).astype(np.int32)
+def patches(skin: Any) -> np.ndarray:
+    """Face of the outer file of each triangle of the skin, -1 on the core and the cut, (M,)."""
+    points, faces, source = flat_arrays(skin)
+    return np.where(on_plane(points, faces) | (source >= CORE_FACE), -1, source).astype(np.int32)
 
 
 def manifold_of(points: np.ndarray, faces: np.ndarray, source: np.ndarray | None) -> Any:

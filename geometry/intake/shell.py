@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from geometry.body.csg_mesh import arrays, closed
+from geometry.body.csg_mesh import closed
+from geometry.intake.labelling import flat_arrays
 from geometry.surface.holes import Damaged, close_holes
-from geometry.surface.surface import face_areas, mesh_volume, pieces
+from geometry.surface.surface import face_areas, mesh_volume, on_plane, pieces
 
-FLAT_MM = 1e-6
 LEAST_SHARE = 0.25
 """A cavity with less of the volume inside the outer side is a bore, not the inside of a shell."""
 STRAY_SHARE = 1e-4
@@ -27,10 +27,8 @@ def outer_and_inner(body: Any) -> tuple[Any, Any] | None:
     Args:
         body: Manifold cut flat on z = 0, above which all of it lies; faces keep their numbers.
     """
-    points, faces = arrays(body)
-    points[np.abs(points[:, 2]) < FLAT_MM, 2] = 0.0
-    numbers = np.array(body.to_mesh64().face_id).astype(np.int64)
-    upright = np.abs(points[faces][:, :, 2]).max(axis=1) >= FLAT_MM
+    points, faces, numbers = flat_arrays(body)
+    upright = ~on_plane(points, faces)
     faces, numbers = faces[upright], numbers[upright]
     piece = pieces(faces)
     area = np.bincount(piece, face_areas(points, faces))

@@ -11,8 +11,8 @@ import numpy as np
 
 from geometry.surface.isosurface import distance_mm, isosurface
 from geometry.surface.rays import RayCaster
+from geometry.surface.surface import on_plane
 
-FLAT_MM = 1e-6
 STEPS = 5.0
 """Grid cells through the offset."""
 FINEST_MM, COARSEST_MM = 0.25, 0.5
@@ -66,7 +66,7 @@ def _depth(
     Every fourth place is measured first. A distance changes by no more than the way gone, so only
     places whose nearest measured one is within that of the inset need be measured themselves.
     """
-    skin = faces[np.abs(points_mm[faces][:, :, 2]).max(axis=1) >= FLAT_MM]
+    skin = faces[~on_plane(points_mm, faces)]
     coarse = grid[::COARSE, ::COARSE, ::COARSE]
     known = distance_mm(points_mm, skin, coarse.reshape(-1, 3)).reshape(coarse.shape[:3])
     index = np.meshgrid(

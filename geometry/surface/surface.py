@@ -22,11 +22,14 @@ __all__ = [
     "half_space_clip",
     "is_watertight",
     "mesh_volume",
+    "on_plane",
     "open_edges",
     "section_outline",
     "vertex_normals",
 ]
 
+FLAT_MM = 1e-6
+"""How near to z = 0 a vertex lies on the plane on which bodies stand [mm]."""
 CANDIDATE_CHUNK = 1_000_000
 """Point-triangle pairs tested at a time: 200 MB of temporaries."""
 
@@ -50,6 +53,11 @@ def vertex_normals(points_mm: np.ndarray, faces: np.ndarray) -> np.ndarray:
     count = len(points_mm)
     total = np.column_stack([np.bincount(flat, weighted[:, k], count) for k in range(3)])
     return total / np.maximum(np.linalg.norm(total, axis=1, keepdims=True), 1e-300)
+
+
+def on_plane(points_mm: np.ndarray, faces: np.ndarray) -> np.ndarray:
+    """Which triangles lie on z = 0, on which bodies stand, shape (M,), bool."""
+    return np.abs(points_mm[faces][:, :, 2]).max(axis=1) < FLAT_MM
 
 
 def face_areas(points_mm: np.ndarray, faces: np.ndarray) -> np.ndarray:

@@ -43,9 +43,7 @@ def press_membrane(
     if case.settings.method is Method.PARTICLES:
         from sim.contact.particles.press import press_particles
 
-        return press_particles(
-            mesh, points, material, case.indenter, case.press, case.settings, monitor=monitor
-        )
+        return press_particles(mesh, points, material, case, monitor=monitor)
     monitor(0.0, "placing the object")
     problem = make_problem(mesh, points, material, case, sampled)
     if case.indenter.soft is not None:

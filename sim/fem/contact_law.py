@@ -21,6 +21,7 @@ radius of a Hertz contact no longer depend on them.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -46,7 +47,7 @@ class Law:
     slip_mm: float = SLIP_MM
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
+@dataclass(frozen=True, kw_only=True)
 class Touch:
     """Points that may touch, Q of them, against the object at one pose."""
 
@@ -59,7 +60,7 @@ class Touch:
     slip_mm: np.ndarray
     """v, shape (Q, 3)."""
 
-    @property
+    @cached_property
     def steepness(self) -> np.ndarray:
         """|grad phi|, shape (Q,)."""
         return np.linalg.norm(self.gradient, axis=1)

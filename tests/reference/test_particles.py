@@ -20,13 +20,15 @@ from sim.material import elastic_solid
 from workbench.core.base.errors import DesignError
 from workbench.core.design.design import Elastomer
 from workbench.core.press.indenter import Indenter
-from workbench.core.press.press import ContactSettings, Press
+from workbench.core.press.press import Press
+from workbench.core.press.press_case import PressCase
 from workbench.core.press.soft_body import SoftBody
 
 pytestmark = pytest.mark.usefixtures("taichi_device")
 
 PRESS = Press(target_mm=(0.0, 0.0, 2.0), depth_mm=0.3, frames=1)
 BALL = Indenter(size_mm=3.0)
+CASE = PressCase(indenter=BALL, press=PRESS)
 
 
 def cloud_of(width_mm: float = 4.0):
@@ -101,9 +103,7 @@ def test_momentum_is_conserved() -> None:
 def test_a_press_is_the_same_bit_by_bit() -> None:
     """Two presses: equal bytes of displacement and force; the object is pushed outward."""
     mesh, points = flat_block(width_mm=4.0, height_mm=2.0, grid_mm=0.5)
-    first, second = (
-        press_particles(mesh, points, Elastomer(), BALL, PRESS, ContactSettings()) for _ in range(2)
-    )
+    first, second = (press_particles(mesh, points, Elastomer(), CASE) for _ in range(2))
     assert first.normal_N[-1] > 0.0
     assert first.displacement_mm.tobytes() == second.displacement_mm.tobytes()
     assert first.reaction_N.tobytes() == second.reaction_N.tobytes()
@@ -114,8 +114,8 @@ def test_what_was_not_published_is_refused() -> None:
     mesh, points = flat_block(width_mm=4.0, height_mm=2.0, grid_mm=0.5)
     over_gel = dataclasses.replace(mesh, backing_mm=1.0)
     with pytest.raises(DesignError, match="cannot take a gap behind") as raised:
-        press_particles(over_gel, points, Elastomer(), BALL, PRESS, ContactSettings())
+        press_particles(over_gel, points, Elastomer(), CASE)
     assert raised.value.at == "contact.method"
-    soft = dataclasses.replace(BALL, soft=SoftBody())
+    soft = dataclasses.replace(CASE, indenter=dataclasses.replace(BALL, soft=SoftBody()))
     with pytest.raises(DesignError, match="cannot take a soft object"):
-        press_particles(mesh, points, Elastomer(), soft, PRESS, ContactSettings())
+        press_particles(mesh, points, Elastomer(), soft)

@@ -14,7 +14,7 @@ import urllib.error
 import urllib.request
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 import pytest
 
@@ -70,6 +70,12 @@ class Server:
                 self.process.wait(15)
         self.kill()
 
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self.stop()
+
     def kill(self) -> None:
         """kill -9."""
         self.process.kill()
@@ -108,13 +114,12 @@ def browser() -> Iterator[Any]:
 @pytest.fixture(scope="package")
 def pressed_store(browser: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The store of a coarse project once the browser has shown its first image."""
-    server = Server(coarse_project(tmp_path_factory.mktemp("pressed")))
-    tab = browser.new_page()
-    tab.add_init_script(DRAW_WHEN_LOOKED_AT)
-    open_page(tab, server.url)
-    wait_until(lambda: tab.get_by_text("Image ✓").count(), 180, "the example is pressed")
-    tab.close()
-    server.stop()
+    with Server(coarse_project(tmp_path_factory.mktemp("pressed"))) as server:
+        tab = browser.new_page()
+        tab.add_init_script(DRAW_WHEN_LOOKED_AT)
+        open_page(tab, server.url)
+        wait_until(lambda: tab.get_by_text("Image ✓").count(), 180, "the example is pressed")
+        tab.close()
     return server.project / "store"
 
 

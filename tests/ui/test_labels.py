@@ -55,9 +55,8 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
     head, rest = COARSE.split("[press_case.press]")
     text = f"{head}{MORE}[press_case.press]{rest}"
     (project / "designs" / "autosave.toml").write_text(text)
-    running = Server(project)
-    yield running
-    running.stop()
+    with Server(project) as running:
+        yield running
 
 
 def listed(server: Server) -> list[Control]:

@@ -77,9 +77,8 @@ def refused(server: Server, headers: dict[str, str]) -> int:
 @pytest.fixture(scope="module")
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
     """A server on loopback; what it refuses leaves it as it was."""
-    running = Server(coarse_project(tmp_path_factory.mktemp("safety")))
-    yield running
-    running.stop()
+    with Server(coarse_project(tmp_path_factory.mktemp("safety"))) as running:
+        yield running
 
 
 @pytest.fixture

@@ -30,9 +30,8 @@ LENGTH, RADIUS = "Straight length mm", "Outer radius mm"
 @pytest.fixture(scope="module")
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
     """A server that no tab is open on when a test begins."""
-    running = Server(coarse_project(tmp_path_factory.mktemp("tabs")))
-    yield running
-    running.stop()
+    with Server(coarse_project(tmp_path_factory.mktemp("tabs"))) as running:
+        yield running
 
 
 @pytest.fixture

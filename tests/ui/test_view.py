@@ -39,9 +39,8 @@ def server(tmp_path_factory: pytest.TempPathFactory, pressed_store: Path) -> Ite
     shutil.copytree(pressed_store, project / "store")
     design = project / "designs" / "autosave.toml"
     design.write_text(design.read_text().replace('"coarse"', '"<b>cut</b>"'))
-    running = Server(project)
-    yield running
-    running.stop()
+    with Server(project) as running:
+        yield running
 
 
 def pressed(page: Any, server: Server) -> None:

@@ -38,7 +38,8 @@ from workbench.core.base.frames import quaternion
 from workbench.core.base.monitor import Monitor, silent
 from workbench.core.design.design import Elastomer, Law
 from workbench.core.press.indenter import Indenter
-from workbench.core.press.press import ContactSettings, Press
+from workbench.core.press.press import Press
+from workbench.core.press.press_case import PressCase
 from workbench.core.result.results import MaterialPoints, MembraneMesh
 from workbench.core.result.sensing import Contact
 
@@ -52,9 +53,7 @@ def press_particles(
     mesh: MembraneMesh,
     points: MaterialPoints,
     material: Elastomer,
-    indenter: Indenter,
-    press: Press,
-    settings: ContactSettings,
+    case: PressCase,
     *,
     monitor: Monitor = silent,
 ) -> Contact:
@@ -65,12 +64,12 @@ def press_particles(
             inclusions or the linear law, which the published method does not have.
         SolveError: If a point becomes infinite or leaves the grid.
     """
-    _refuse_what_was_not_published(mesh, material, indenter, press)
+    _refuse_what_was_not_published(mesh, material, case.indenter, case.press)
     monitor(0.0, "filling the object")
-    collider = make_collider(indenter, grid_mm=points.grid_mm)
-    approach = plan_approach(mesh.outer, collider, press)
+    collider = make_collider(case.indenter, grid_mm=points.grid_mm)
+    approach = plan_approach(mesh.outer, collider, case.press)
     check_depth(support_points_mm(mesh), approach, collider)
-    radius_mm = region_radius_mm(mesh, material, approach, collider, settings)
+    radius_mm = region_radius_mm(mesh, material, approach, collider, case.settings)
     cloud = make_cloud(mesh, points, approach, collider, radius_mm=radius_mm)
     state = State(cloud, material)
     readout = Readout(mesh, cloud)

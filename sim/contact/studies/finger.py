@@ -105,9 +105,11 @@ def published_45(*, active_radius_mm: float = 12.0) -> float:
         mesh,
         points,
         Elastomer(),
-        Indenter(size_mm=BALL_MM),
-        at_45_degrees(frames=FRAMES),
-        ContactSettings(active_radius_mm=active_radius_mm),
+        PressCase(
+            indenter=Indenter(size_mm=BALL_MM),
+            press=at_45_degrees(frames=FRAMES),
+            settings=ContactSettings(active_radius_mm=active_radius_mm),
+        ),
     )
     return float(contact.normal_N[-1])
 
