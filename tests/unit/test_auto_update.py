@@ -27,7 +27,7 @@ class StubDesk:
         made = {"add_button": Widget(), "add_command": Widget(), "add_checkbox": Widget(False)}
         gui = SimpleNamespace(**{k: (lambda *a, w=w, **o: w) for k, w in made.items()})
         self.server = SimpleNamespace(gui=gui)
-        self.live_press = SimpleNamespace(on=False)
+        self.live = False
         self.ready = {"press": True, "shoot": False}
         self.session = SimpleNamespace(fresh=lambda: self.ready)
         self.asked: list[tuple[str, tuple[str, ...]]] = []

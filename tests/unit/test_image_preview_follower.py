@@ -24,7 +24,7 @@ class FakeDesk:
         self.session = SimpleNamespace(design=SHORT, case=PressCase())
         self.told: list[tuple[str, Any]] = []
         self.rendered = False
-        self.live_press = SimpleNamespace(on=False)
+        self.live = False
         self.jobs = SimpleNamespace(on_preview={})
         self.conductor = SimpleNamespace(ask=lambda *words: None, give_up=lambda *words: None)
         self.shown_results = SimpleNamespace(forget=lambda *words: None)

@@ -46,8 +46,8 @@ class Bench:
             jobs = SimpleNamespace(submit=lambda *words: bench.asked.append(words))
 
             @property
-            def live_press(self) -> Any:
-                return SimpleNamespace(on=bench.live)
+            def live(self) -> bool:
+                return bench.live
 
             def guarded(self, handler: Any) -> Any:
                 return handler

@@ -60,7 +60,7 @@ class FakeDesk:
         self.conductor = SimpleNamespace(ask=lambda job, d, c, call: self.asked.append(call))
         shown = object_view()
         self.scene = SimpleNamespace(object=shown, body=shown.body)
-        self.live_press = SimpleNamespace(on=False)
+        self.object_drawn = lambda: None
         self.told: list[str] = []
 
     def tell(self, stage: str, result: Any) -> None:

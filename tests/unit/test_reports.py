@@ -146,7 +146,8 @@ def test_all_who_follow_the_target_hear_that_it_moved(live: bool) -> None:
         auto_update=SimpleNamespace(edited=tells("auto_update")),
         fields=SimpleNamespace(refresh=tells("fields")),
         log=tells("log"),
-        live_press=SimpleNamespace(on=live, follow=tells("live")),
+        live=live,
+        live_press=SimpleNamespace(follow=tells("live")),
         image_preview=SimpleNamespace(follow=tells("image_preview")),
         scene=SimpleNamespace(body=SimpleNamespace(place_near=lambda point: OFF)),
         session=SimpleNamespace(
@@ -156,6 +157,7 @@ def test_all_who_follow_the_target_hear_that_it_moved(live: bool) -> None:
         ),
     )
     desk.scene.body.solid = None
+    desk.amended = lambda words: Desk._follow_amended(desk, words)  # pyright: ignore[reportPrivateUsage]
     Aiming(desk).keep_aim()
     follow = {"live"} if live else set()
     assert (

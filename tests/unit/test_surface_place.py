@@ -54,20 +54,13 @@ def aiming_at(solid: Solid, target_mm: tuple[float, float, float]) -> Any:
     view.skin = view.inside = view.support = view.foot = nothing  # pyright: ignore[reportAttributeAccessIssue]
     view.show = lambda visible: None
     view.show_solid(solid)
-    desk: Any = SimpleNamespace(
-        scene=SimpleNamespace(body=view), live_press=SimpleNamespace(on=False)
-    )
+    desk: Any = SimpleNamespace(scene=SimpleNamespace(body=view), amended=lambda words: None)
     case = SimpleNamespace(press=Press(target_mm=target_mm))
     design = SensorDesign(name="finger")
-    desk.amended = []
+    desk.aims = []
     desk.session = SimpleNamespace(
-        case=case, design=design, amend=lambda path, value: desk.amended.append(value)
+        case=case, design=design, amend=lambda path, value: desk.aims.append(value)
     )
-    for name in ("saving", "auto_update"):
-        setattr(desk, name, SimpleNamespace(edited=lambda: None))
-    desk.fields = SimpleNamespace(refresh=lambda: None)
-    desk.image_preview = SimpleNamespace(follow=lambda: None)
-    desk.log = lambda words: None
     return desk
 
 
@@ -76,7 +69,7 @@ def test_a_target_typed_on_a_straight_wall_stays(build_finger: Callable[..., Sol
     solid = build_finger(outer_radius_mm=10.0)
     desk = aiming_at(solid, (0.0, 10.0, 18.0))
     Aiming(desk).keep_aim()
-    assert desk.amended == []
+    assert desk.aims == []
     place = skin_place(solid, (0.0, 10.0, 18.0))
     # The chord of a facet lies below the wall by its sagitta.
     assert place.distance_mm < 0.02
@@ -97,7 +90,7 @@ def test_a_target_left_in_the_air_still_follows(build_finger: Callable[..., Soli
     """At 0, 16, 18 it is 6 mm off a finger of radius 10, which the solver refuses: 0, 10, 18."""
     desk = aiming_at(build_finger(outer_radius_mm=10.0), (0.0, 16.0, 18.0))
     Aiming(desk).keep_aim()
-    assert desk.amended[0] == pytest.approx((0.0, 10.0, 18.0), abs=0.02)
+    assert desk.aims[0] == pytest.approx((0.0, 10.0, 18.0), abs=0.02)
 
 
 def test_a_chosen_target_well_off_the_skin_is_named(build_finger: Callable[..., Solid]) -> None:

@@ -5,34 +5,19 @@ Handlers of widgets call `edit` or `run` and return; what comes of it arrives th
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, Protocol
-
-import numpy as np
+from typing import Any
 
 from ui.desk.aiming import Aiming
 from ui.desk.auto_update import AutoUpdate
 from ui.desk.foresight import Foresight
+from ui.desk.front import Front
 from ui.desk.image_preview import ImagePreviewFollower
-from ui.desk.jobs import Jobs
 from ui.desk.live_press import LivePressFollower
 from ui.desk.object_follower import ObjectFollower
-from ui.desk.reports import Reports
-from ui.desk.saving import Saving
 from ui.desk.session import Session
-from ui.desk.shown_results import ShownResults
-from ui.page.background_thread import BackgroundThread
 from ui.page.editor import Editor
-from ui.page.fields import Fields
-from ui.page.gallery import Galleries
-from ui.page.header import Header
-from ui.scene.gizmo import Gizmo
-from ui.scene.scene import Scene
 from workbench.core.base.errors import SolveError, WorkbenchError
-from workbench.core.design.design import SensorDesign
 from workbench.core.result.sensing import Contact
-from workbench.edit.forms import resolve_shape
-from workbench.edit.item_fields import read_field
 from workbench.live.conductor import Conductor
 from workbench.live.requests import (
     DRAWN,
@@ -41,7 +26,6 @@ from workbench.live.requests import (
     LIVE,
     PREDICTION,
     SHAPE,
-    Finished,
 )
 from workbench.planning.running import PARTIAL
 
@@ -49,20 +33,8 @@ OF_A_SENSOR = ("press", "image", "maps", "forces", "learned", PREDICTION)
 """Jobs that nobody waits for once another sensor has been chosen."""
 
 
-class Panel(Protocol):
-    """A part of the front that follows state and results."""
-
-    def refresh(self) -> None:
-        """Show the state as it stands."""
-        ...
-
-    def show(self, stage: str, result: Any) -> None:
-        """Show a new result."""
-        ...
-
-
-class Desk:
-    """One server's front; all tabs of it show the same desk."""
+class Desk(Front):
+    """The front, and all that follows its state."""
 
     def __init__(
         self,
@@ -73,90 +45,32 @@ class Desk:
         *,
         fast: bool,
     ) -> None:
-        self.server = server
-        self.editor = editor
-        self.session = session
-        self.conductor = conductor
-        self.fields = Fields(server, self.read, self.edit)
-        self.reports = Reports(server, session, self.fields)
-        self.reports.on_log = lambda lines: self.tell("log", lines)
-        session.store.on_message = self.reports.log_soon
-        self.guarded = self.reports.guarded
-        self.log = self.reports.log
-        self.galleries = Galleries(server, editor)
+        super().__init__(server, session, conductor, editor, fast=fast)
         self.aiming = Aiming(self)
-        self.background = BackgroundThread(on_error=self.reports.tell)
-        on_click = self.guarded(self.aiming.clicked)
-        self.scene = Scene(server, fast=fast, on_click=on_click, background=self.background)
-        self.shown_results = ShownResults(self)
-        self.current = self.shown_results.current
-        self.panels: list[Panel] = []
-        self.put_parts_away: Callable[[], None] = lambda: None
-        """Set by the panel that shows the parts."""
-        self.pick: Callable[[int], bool] = lambda face: False
-        """Set by the panel that labels faces: whether it took a click on this membrane face."""
-        self.probe: Callable[[np.ndarray, np.ndarray], bool] = lambda origin, direction: False
-        """Set by the panel of maps: whether it told the value where a click's ray meets the map."""
-        self.click_handlers: list[Callable[[np.ndarray, np.ndarray], bool]] = []
-        """Asked in turn, with a click's ray, before the click aims: the first that takes it has it.
-
-        Panels add themselves, for example while two points are being measured.
-        """
-        self.header = Header(
-            server.gui,
-            on_cancel=self.guarded(lambda event: conductor.cancel()),
-        )
         self.auto_update = AutoUpdate(self)
-        self.reports.banner = self.header.banner
-        self.jobs = Jobs(conductor, self.reports, self.header)
-        self.jobs.on_done = self.shown_results.stage_done
-        self.jobs.asked_now = session.asks_now
-        self.jobs.on_events = self.refresh_header
-        self.jobs.on_idle = self._idle
-        self.jobs.on_failed = self._failed
-        self.on_turn: list[Callable[[], None]] = []
-        """What else is looked after each time the pump turns."""
-        self.gizmos: list[Gizmo] = []
-        """Handles in the 3D view, asked each time the pump turns."""
         self.live_press = LivePressFollower(self)
-        self.gizmos.append(self.live_press.gizmo)
-        self.jobs.on_preview[LIVE] = self.live_press.show
         self.foresight = Foresight(self)
         self.image_preview = ImagePreviewFollower(self)
         self.object = ObjectFollower(self)
-        self.saving = Saving(session, self.reports, self.header.unsaved)
         self._sensor: tuple[str, str] | None = None
         self._built = ""
         """Key of the body that was asked for last; empty once it is there."""
-        self._covering: set[str] = set()
-        self._lock = self.reports.lock
+        self._connect()
 
-    def read(self, path: str) -> Any:
-        """Value of a field of the state; shape parameters have their defaults filled in."""
-        if path.startswith("design.shape."):
-            design = self.session.design
-            shape = resolve_shape(design.family, design.shape)
-            return getattr(shape, path.rsplit(".", 1)[1])
-        return read_field(self.session.state, path)
+    def _connect(self) -> None:
+        """Who follows what."""
+        self.changed.connect(self._follow)
+        self.replaced.connect(self._replace)
+        self.amended.connect(self._follow_amended)
+        self.clicked.connect(self.aiming.aim_at)
+        self.shown_results.on_body.connect(self.aiming.show_body)
+        self.shown_results.on_body.connect(lambda solid: self.object.follow())
+        self.object_drawn.connect(self.live_press.object_drawn)
+        self.jobs.on_events = self.refresh_header
+        self.jobs.on_idle = self._idle
+        self.jobs.on_failed = self._failed
 
-    def edit(self, path: str, value: Any) -> None:
-        """Change one field; a refused value is explained and leaves the last good state."""
-        with self._lock:
-            try:
-                self.session.change(path, value)
-            except WorkbenchError as error:
-                self.fields.refuse(path)
-                self.reports.report(error, edited=path)
-                return
-            self.reports.settle(path)
-            if not path.startswith(("design.mould", "design.housing", "design.casting")):
-                self.put_parts_away()
-            self.changed()
-            if path.startswith("design.optics") and not self.live_press.on:
-                # The pressed skin is opaque; the one at rest shows LEDs and camera.
-                self.scene.show_frame(0)
-
-    def changed(self) -> None:
+    def _follow(self) -> None:
         """Follow a change of state: live view, stage strip, autosave."""
         self.saving.edited()
         self.auto_update.edited()
@@ -171,15 +85,25 @@ class Desk:
         if not self.current("press"):
             # What was pressed was another press: the skin is at rest again, or follows live.
             self.shown_results.forget("press")
-            if not self.live_press.on:
+            if not self.live:
                 self.scene.clear_frames()
             self.scene.object.place(session.case.press)
-        if self.live_press.on:
+        if self.live:
             self.live_press.follow()
         for panel in self.panels:
             panel.refresh()
         self.image_preview.follow()
         self.refresh_header()
+
+    def _follow_amended(self, words: str) -> None:
+        """Let all follow who follow an edit: what runs was asked for at the old place."""
+        self.saving.edited()
+        self.auto_update.edited()
+        self.fields.refresh()
+        self.log(words)
+        if self.live:
+            self.live_press.follow()
+        self.image_preview.follow()
 
     def _begin(self) -> None:
         """First of all: the worker builds while the widgets follow, and the old body shows it."""
@@ -193,16 +117,6 @@ class Desk:
         elif key != self._built:
             self._built = key
             self.jobs.submit(SHAPE, session.design, session.case, ("build",))
-
-    def cover(self, what: str, shown: bool) -> None:
-        """Tell all panels whether parts, or the edges of a mesh, are looked at, not the press."""
-        before = bool(self._covering)
-        if shown:
-            self._covering.add(what)
-        else:
-            self._covering.discard(what)
-        if bool(self._covering) != before:
-            self.tell("covered", not before)
 
     def _follow_sensor(self) -> None:
         """Take away what was pressed and rendered of another family or another file."""
@@ -218,9 +132,9 @@ class Desk:
             self.refresh_header()
         self._sensor = sensor
 
-    def replaced(self) -> None:
+    def _replace(self) -> None:
         """Follow a change of many fields at once: undo, a preset, an upload."""
-        with self._lock:
+        with self.lock:
             self._begin()
             for panel in self.panels:
                 # Another family's widgets come before they are given values.
@@ -229,26 +143,6 @@ class Desk:
             self.reports.settle()
             self.put_parts_away()
             self.changed()
-
-    def run(self, job: str, wanted: tuple[str, ...]) -> None:
-        """Compute stages for the state as it stands."""
-        self.reports.begin()
-        self.fields.read_typed(now=True)
-        if job != "parts":
-            self.put_parts_away()
-        self.tell("run", job)
-        self.jobs.submit(job, self.session.design, self.session.case, wanted)
-
-    def trial(
-        self, job: str, design: SensorDesign, wanted: str, then: Callable[[Finished], None]
-    ) -> None:
-        """Compute a stage of a design that is not the state; `then` decides by how it ended."""
-        self.jobs.submit(job, design, self.session.case, (wanted,), then)
-
-    def tell(self, stage: str, result: Any) -> None:
-        """Hand a result, or another piece of news, to all panels."""
-        for panel in self.panels:
-            panel.show(stage, result)
 
     def _failed(self, error: WorkbenchError, job: str) -> None:
         """Show the frames that settled before a press failed."""

@@ -6,83 +6,86 @@ settled. Nothing of it is stored: *Run press* computes the whole path.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from ui.desk.front import Front
 from ui.scene.gizmo import Gizmo
 from workbench.live.live_press import LiveCall, PressPreview, live_call
-from workbench.live.requests import Request
-
-if TYPE_CHECKING:
-    from ui.desk.desk import Desk
+from workbench.live.requests import LIVE, Request
 
 
 class LivePressFollower:
-    """The live press of one desk."""
+    """The live press of one front."""
 
-    def __init__(self, desk: Desk) -> None:
-        self.desk = desk
-        self.on = False
-        self.on_message: Callable[[str], None] = lambda text: None
-        """Set by the panel with the check box: shows how it goes."""
-        self.gizmo = Gizmo(desk.scene.api, self._dragged, edits=desk.editor.edits)
+    def __init__(self, front: Front) -> None:
+        self.front = front
+        self.gizmo = Gizmo(front.scene.api, self._dragged, edits=front.editor.edits)
         self._asked: LiveCall | None = None
+        front.gizmos.append(self.gizmo)
+        front.jobs.on_preview[LIVE] = self._show
 
     def switch(self, on: bool) -> None:
         """Begin or end to follow changes."""
-        self.on = on
+        self.front.live = on
         self._asked = None
         self.gizmo.show(on)
         if on:
-            self.on_message("solving")
+            self.front.live_said("solving")
             self.follow()
             return
-        self.on_message("")
-        self.desk.conductor.stop_live()
-        self.desk.scene.clear_frames()
-        self.desk.shown_results.forget("press", "shoot")
-        self.desk.changed()
+        self.front.live_said("")
+        self.front.conductor.stop_live()
+        self.front.scene.clear_frames()
+        self.front.shown_results.forget("press", "shoot")
+        self.front.changed()
 
     def follow(self) -> None:
         """Ask for the state as it stands, unless that was asked last."""
-        session = self.desk.session
+        session = self.front.session
         call = live_call(session.design, session.case)
-        self.gizmo.place(self.desk.scene.object.standing[:3])
+        self.place_gizmo()
         if call != self._asked:
             self._asked = call
-            self.on_message("solving")
-            self.desk.conductor.press_live(session.design, session.case)
+            self.front.live_said("solving")
+            self.front.conductor.press_live(session.design, session.case)
 
-    def show(self, preview: PressPreview, request: Request) -> None:
+    def _show(self, preview: PressPreview, request: Request) -> None:
         """Show a frame that settled, unless the sensor is another by now."""
-        desk = self.desk
-        if not self.on or request.design != desk.session.design:
+        front = self.front
+        if not self.front.live or request.design != front.session.design:
             return
-        mesh = desk.session.result("mesh")
+        mesh = front.session.result("mesh")
         if mesh is None:
             return
-        desk.scene.show_live(mesh.outer, preview.contact)
-        self.gizmo.place(desk.scene.object.standing[:3])
-        desk.tell("live", preview)
+        front.scene.show_live(mesh.outer, preview.contact)
+        self.place_gizmo()
+        front.tell("live", preview)
         force_N = float(preview.contact.normal_N[-1])
-        self.on_message(
+        self.front.live_said(
             f"**{force_N:.3f} N** along the normal · settled in {preview.seconds:.2f} s "
             f"({preview.way}, {preview.contact.substeps} substeps)"
         )
 
+    def place_gizmo(self) -> None:
+        """Put the handle where the object stands."""
+        self.gizmo.place(self.front.scene.object.standing[:3])
+
+    def object_drawn(self) -> None:
+        """The handle stands where the object does; out of sight it waits for the next switch."""
+        if self.front.live:
+            self.place_gizmo()
+
     def failed(self) -> None:
         """Take back what is said of a request that did not settle."""
         self._asked = None
-        self.on_message("not solved: see the message")
+        self.front.live_said("not solved: see the message")
 
     def _dragged(self, place_mm: np.ndarray, wxyz: np.ndarray) -> None:
         """Aim at the skin nearest to where the handle was dragged."""
-        desk = self.desk
-        place = desk.scene.body.place_near((place_mm[0], place_mm[1], place_mm[2]))
-        if not self.on or place is None:
+        front = self.front
+        place = front.scene.body.place_near((place_mm[0], place_mm[1], place_mm[2]))
+        if not self.front.live or place is None:
             return
         x, y, z = (round(float(c), 2) for c in place.point_mm)
-        desk.edit("case.press.target_mm", (x, y, z))
-        desk.fields.refresh()
+        front.edit("case.press.target_mm", (x, y, z))
+        front.fields.refresh()

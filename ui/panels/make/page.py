@@ -38,7 +38,7 @@ class MakePanel:
         desk.reports.beside("parts")
         self.status = gui.add_markdown(NOTHING)
         self.tree = PartsTree(desk)
-        desk.put_parts_away = self.tree.put_away
+        desk.put_parts_away.connect(self.tree.put_away)
         self.notes_folder = gui.add_folder("Notes", expand_by_default=False, visible=False)
         with self.notes_folder:
             self.notes = gui.add_markdown("")

@@ -92,7 +92,7 @@ class ResultsPanel:
 
     def refresh(self) -> None:
         """Mark an image and a force that no longer belong to the state."""
-        live = self.desk.live_press.on
+        live = self.desk.live
         self._caption(self.timeline.number)
         self.sources.network.refresh()
         self._show_forces(self.timeline.number)
@@ -226,7 +226,7 @@ class ResultsPanel:
         if k >= count:
             return
         note = self.note
-        followed = note == LIVE_NOTE and self.desk.live_press.on
+        followed = note == LIVE_NOTE and self.desk.live
         if not followed and not self._of_now:
             note = "**stale**: run the press again"
         self.forces.mark(number)

@@ -78,11 +78,7 @@ class NetworkPart:
         """Predict a press that has come with its image, if the network chosen knows it."""
         desk, session = self.desk, self.desk.session
         call = session.calls().get(JOB)
-        if (
-            call is None
-            or desk.live_press.on
-            or not (desk.current("press") and desk.current("shoot"))
-        ):
+        if call is None or desk.live or not (desk.current("press") and desk.current("shoot")):
             return
         known = session.case.press.frame_count <= MOST_FRAMES and not foreknown(call.inputs)
         if known and not session.store.has(call.stage, call.key):

@@ -69,7 +69,7 @@ class SimulatePanel:
         fields.slider("Friction", "design.material.friction", span=(0.0, 1.5, 0.05), hint=hint)
         # Last, so that nothing moves under the mouse when it comes.
         self.live_text = gui.add_markdown("", visible=False)
-        desk.live_press.on_message = self._tell_live
+        desk.live_said.connect(self._tell_live)
 
     def _solver_widgets(self) -> None:
         fields = self.desk.fields
@@ -114,7 +114,7 @@ class SimulatePanel:
 
     def _end_live(self) -> None:
         """The whole path is wanted, not a preview of its end."""
-        if self.desk.live_press.on:
+        if self.desk.live:
             self.live.value = False
             self.desk.live_press.switch(False)
 
