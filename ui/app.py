@@ -23,6 +23,7 @@ from typing import Any
 import viser
 
 from ui.desk.desk import Desk
+from ui.desk.followers import Followers
 from ui.desk.session import Session
 from ui.guard import LOOPBACK, Gate, guarded
 from ui.links import links, reachable_names
@@ -130,6 +131,7 @@ def build_desk(
         found = pages()
         guide = Help(server, incoming, {label: page.help for label, page in found.items()})
         desk = Desk(server, session, conductor, editor, fast=fast)
+        Followers(desk)
         tabs = gui.add_tab_group()
         # Six labels without icons fit on one row.
         for label, build in ((label, found[label].page.build) for label in found):

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from ui.desk.desk import Desk
+from ui.desk.followers import Followers
 from ui.panels.results.page import settled_note
 from workbench.core.base.errors import SolveError, WorkbenchError
 from workbench.planning.running import PARTIAL
@@ -17,6 +17,7 @@ class FakeDesk:
     """A desk whose press has the key `asked` and whose store keeps its settled frames."""
 
     def __init__(self) -> None:
+        self.desk = self
         self.told: list[tuple[str, Any]] = []
         store = SimpleNamespace(
             has=lambda stage, key: (stage, key) == (PARTIAL, "asked"),
@@ -29,7 +30,7 @@ class FakeDesk:
         )
 
     def _settled(self, contact: Any, error: Any) -> None:
-        Desk._settled(self, contact, error)  # pyright: ignore
+        Followers._settled(self, contact, error)  # pyright: ignore
 
     def tell(self, stage: str, result: Any) -> None:
         self.told.append((stage, result))
@@ -46,7 +47,7 @@ def test_kept_frames_of_the_press_asked_for_are_shown() -> None:
     """The panels are told the stored frames together with the error."""
     desk: Any = FakeDesk()
     error = failed("asked")
-    Desk._failed(desk, error, "press")  # pyright: ignore[reportPrivateUsage]
+    Followers._failed(desk, error, "press")  # pyright: ignore[reportPrivateUsage]
     assert desk.told == [("partial", ("frames of asked", error))]
 
 
@@ -54,7 +55,7 @@ def test_kept_frames_of_the_press_asked_for_are_shown() -> None:
 def test_frames_of_another_press_are_not_shown(error: WorkbenchError) -> None:
     """Nothing kept, another press's frames, or another error: nothing changes on screen."""
     desk: Any = FakeDesk()
-    Desk._failed(desk, error, "press")  # pyright: ignore[reportPrivateUsage]
+    Followers._failed(desk, error, "press")  # pyright: ignore[reportPrivateUsage]
     assert desk.told == []
 
 

@@ -12,7 +12,7 @@ import pytest
 
 from geometry.surface.surface_place import SkinPlace
 from ui.desk.aiming import Aiming
-from ui.desk.desk import Desk
+from ui.desk.followers import Followers
 from ui.desk.reports import Reports
 from ui.desk.thumbnails import ThumbnailQueue
 from ui.scene.ghost import Ghost, GhostView
@@ -91,7 +91,8 @@ def test_a_step_that_fails_stops_no_other(reports: Reports) -> None:
         saving=step("saving"),
         on_turn=[lambda: turned.append("tenancy")],
     )
-    Desk._idle(desk)  # pyright: ignore[reportPrivateUsage]
+    desk.desk = desk
+    Followers._idle(desk)  # pyright: ignore[reportPrivateUsage]
     assert turned == ["saving", "gizmo", "background", "pressed", "auto_update", "tenancy"]
 
 
@@ -156,8 +157,8 @@ def test_all_who_follow_the_target_hear_that_it_moved(live: bool) -> None:
             amend=tells("amend"),
         ),
     )
-    desk.scene.body.solid = None
-    desk.amended = lambda words: Desk._follow_amended(desk, words)  # pyright: ignore[reportPrivateUsage]
+    desk.scene.body.solid, desk.desk = None, desk
+    desk.amended = lambda words: Followers._follow_amended(desk, words)  # pyright: ignore[reportPrivateUsage]
     Aiming(desk).keep_aim()
     follow = {"live"} if live else set()
     assert (

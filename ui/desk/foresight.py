@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from ui.desk.front import Front
+from ui.desk.desk import Desk
 from ui.page.colours import RED
 from ui.page.plain import plain
 from workbench.core.base.errors import DesignError
@@ -20,21 +20,21 @@ from workbench.planning.foresight import ForesightCall, foresight_call
 
 
 class Foresight:
-    """What does not fit, on one front."""
+    """What does not fit, on one desk."""
 
-    def __init__(self, front: Front) -> None:
-        self.front = front
+    def __init__(self, desk: Desk) -> None:
+        self.desk = desk
         self._asked: ForesightCall | None = None
-        front.jobs.on_preview[FORESIGHT] = self._show
-        front.header.fit.on_click(front.guarded(self._fit))
+        desk.jobs.on_preview[FORESIGHT] = self._show
+        desk.header.fit.on_click(desk.guarded(self._fit))
 
     def follow(self) -> None:
         """Ask for the state as it stands, unless it was asked last."""
-        session = self.front.session
+        session = self.desk.session
         call = foresight_call(session.design, session.case)
         if call != self._asked:
             self._asked = call
-            self.front.conductor.ask(FORESIGHT, session.design, session.case, call)
+            self.desk.conductor.ask(FORESIGHT, session.design, session.case, call)
 
     def failed(self) -> None:
         """The body cannot be built, which is told at its sliders: nothing is known of the rest."""
@@ -47,7 +47,7 @@ class Foresight:
             self._put(found)
 
     def _put(self, found: Sequence[DesignError]) -> None:
-        header, in_words = self.front.header, self.front.fields.in_words
+        header, in_words = self.desk.header, self.desk.fields.in_words
         lines = [f"{in_words(e.message, e.at)}; {in_words(e.hint, e.at)}" for e in found]
         text = "<br>".join(plain(f"{line[:1].upper()}{line[1:]}.") for line in lines)
         header.misfit.content = f"<span style='color:{RED}'>**Does not fit:** {text}</span>"
@@ -55,14 +55,14 @@ class Foresight:
         header.fit.visible = any(error.at.startswith("optics") for error in found)
 
     def _fit(self, event: Any) -> None:
-        front, body = self.front, self.front.scene.body
+        desk, body = self.desk, self.desk.scene.body
         if body.solid is None:
             return
-        design, changed = fitted(front.session.design, body.solid)
-        if design == front.session.design:
-            front.reports.notify("Nothing was moved", f"{changed or 'All of it is inside'}.")
+        design, changed = fitted(desk.session.design, body.solid)
+        if design == desk.session.design:
+            desk.reports.notify("Nothing was moved", f"{changed or 'All of it is inside'}.")
             return
-        front.session.change_optics(design.optics)
-        front.replaced()
-        front.log(changed)
-        front.reports.notify("Moved inside", f"{changed}. Ctrl+Z takes it back.")
+        desk.session.change_optics(design.optics)
+        desk.replaced()
+        desk.log(changed)
+        desk.reports.notify("Moved inside", f"{changed}. Ctrl+Z takes it back.")

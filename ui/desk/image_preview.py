@@ -8,48 +8,48 @@ preview on show is of the one before, and is said to be.
 
 from __future__ import annotations
 
-from ui.desk.front import Front
+from ui.desk.desk import Desk
 from workbench.live.image_preview import ImagePreview, ImagePreviewCall, image_preview_call
 from workbench.live.requests import IMAGE_PREVIEW, Request
 
 
 class ImagePreviewFollower:
-    """The image preview of one front."""
+    """The image preview of one desk."""
 
-    def __init__(self, front: Front) -> None:
-        self.front = front
+    def __init__(self, desk: Desk) -> None:
+        self.desk = desk
         self._asked: ImagePreviewCall | None = None
         self._shown: ImagePreviewCall | None = None
         """What the preview on show was asked for; None while there is none."""
-        front.jobs.on_preview[IMAGE_PREVIEW] = self._show
+        desk.jobs.on_preview[IMAGE_PREVIEW] = self._show
 
     def follow(self) -> None:
         """Ask for the state as it stands, unless it has images or was asked last."""
-        front, session = self.front, self.front.session
-        if front.live or front.current("shoot"):
+        desk, session = self.desk, self.desk.session
+        if desk.live or desk.current("shoot"):
             self._asked = self._shown = None
-            front.conductor.give_up(IMAGE_PREVIEW)
+            desk.conductor.give_up(IMAGE_PREVIEW)
             return
         call = image_preview_call(session.design, session.case)
         if call != self._asked:
             self._asked = call
-            front.conductor.ask(IMAGE_PREVIEW, session.design, session.case, call)
+            desk.conductor.ask(IMAGE_PREVIEW, session.design, session.case, call)
         self._date()
 
     def _date(self) -> None:
         """Tell whether the preview on show has the shape of the state."""
         if self._shown is not None and self._asked is not None:
-            self.front.tell("image_preview_of_shape", self._shown.solid == self._asked.solid)
+            self.desk.tell("image_preview_of_shape", self._shown.solid == self._asked.solid)
 
     def _show(self, preview: ImagePreview, request: Request) -> None:
         """Show what came, unless images have come meanwhile or the design is another one."""
-        front = self.front
-        other = request.design.family != front.session.design.family
-        if other or front.live or front.current("shoot"):
+        desk = self.desk
+        other = request.design.family != desk.session.design.family
+        if other or desk.live or desk.current("shoot"):
             return
         # A step back to a state that has images shows them again.
-        front.shown_results.forget("shoot")
-        front.tell("image_preview", preview)
+        desk.shown_results.forget("shoot")
+        desk.tell("image_preview", preview)
         if isinstance(request.preview, ImagePreviewCall):
             self._shown = request.preview
         self._date()
@@ -57,5 +57,5 @@ class ImagePreviewFollower:
     def failed(self) -> None:
         """Take the preview of an earlier state away: it would pass for one of this state."""
         self._asked = self._shown = None
-        if not self.front.live and not self.front.current("shoot"):
-            self.front.tell("image_preview", None)
+        if not self.desk.live and not self.desk.current("shoot"):
+            self.desk.tell("image_preview", None)

@@ -8,84 +8,84 @@ from __future__ import annotations
 
 import numpy as np
 
-from ui.desk.front import Front
+from ui.desk.desk import Desk
 from ui.scene.gizmo import Gizmo
 from workbench.live.live_press import LiveCall, PressPreview, live_call
 from workbench.live.requests import LIVE, Request
 
 
 class LivePressFollower:
-    """The live press of one front."""
+    """The live press of one desk."""
 
-    def __init__(self, front: Front) -> None:
-        self.front = front
-        self.gizmo = Gizmo(front.scene.api, self._dragged, edits=front.editor.edits)
+    def __init__(self, desk: Desk) -> None:
+        self.desk = desk
+        self.gizmo = Gizmo(desk.scene.api, self._dragged, edits=desk.editor.edits)
         self._asked: LiveCall | None = None
-        front.gizmos.append(self.gizmo)
-        front.jobs.on_preview[LIVE] = self._show
+        desk.gizmos.append(self.gizmo)
+        desk.jobs.on_preview[LIVE] = self._show
 
     def switch(self, on: bool) -> None:
         """Begin or end to follow changes."""
-        self.front.live = on
+        self.desk.live = on
         self._asked = None
         self.gizmo.show(on)
         if on:
-            self.front.live_said("solving")
+            self.desk.live_said("solving")
             self.follow()
             return
-        self.front.live_said("")
-        self.front.conductor.stop_live()
-        self.front.scene.clear_frames()
-        self.front.shown_results.forget("press", "shoot")
-        self.front.changed()
+        self.desk.live_said("")
+        self.desk.conductor.stop_live()
+        self.desk.scene.clear_frames()
+        self.desk.shown_results.forget("press", "shoot")
+        self.desk.changed()
 
     def follow(self) -> None:
         """Ask for the state as it stands, unless that was asked last."""
-        session = self.front.session
+        session = self.desk.session
         call = live_call(session.design, session.case)
         self.place_gizmo()
         if call != self._asked:
             self._asked = call
-            self.front.live_said("solving")
-            self.front.conductor.press_live(session.design, session.case)
+            self.desk.live_said("solving")
+            self.desk.conductor.press_live(session.design, session.case)
 
     def _show(self, preview: PressPreview, request: Request) -> None:
         """Show a frame that settled, unless the sensor is another by now."""
-        front = self.front
-        if not self.front.live or request.design != front.session.design:
+        desk = self.desk
+        if not self.desk.live or request.design != desk.session.design:
             return
-        mesh = front.session.result("mesh")
+        mesh = desk.session.result("mesh")
         if mesh is None:
             return
-        front.scene.show_live(mesh.outer, preview.contact)
+        desk.scene.show_live(mesh.outer, preview.contact)
         self.place_gizmo()
-        front.tell("live", preview)
+        desk.tell("live", preview)
         force_N = float(preview.contact.normal_N[-1])
-        self.front.live_said(
+        self.desk.live_said(
             f"**{force_N:.3f} N** along the normal · settled in {preview.seconds:.2f} s "
             f"({preview.way}, {preview.contact.substeps} substeps)"
         )
 
     def place_gizmo(self) -> None:
         """Put the handle where the object stands."""
-        self.gizmo.place(self.front.scene.object.standing[:3])
+        self.gizmo.place(self.desk.scene.object.standing[:3])
 
     def object_drawn(self) -> None:
         """The handle stands where the object does; out of sight it waits for the next switch."""
-        if self.front.live:
+        if self.desk.live:
             self.place_gizmo()
 
     def failed(self) -> None:
         """Take back what is said of a request that did not settle."""
         self._asked = None
-        self.front.live_said("not solved: see the message")
+        self.desk.live_said("not solved: see the message")
 
     def _dragged(self, place_mm: np.ndarray, wxyz: np.ndarray) -> None:
         """Aim at the skin nearest to where the handle was dragged."""
-        front = self.front
-        place = front.scene.body.place_near((place_mm[0], place_mm[1], place_mm[2]))
-        if not self.front.live or place is None:
+        desk = self.desk
+        place = desk.scene.body.place_near((place_mm[0], place_mm[1], place_mm[2]))
+        if not self.desk.live or place is None:
             return
         x, y, z = (round(float(c), 2) for c in place.point_mm)
-        front.edit("case.press.target_mm", (x, y, z))
-        front.fields.refresh()
+        desk.edit("case.press.target_mm", (x, y, z))
+        desk.fields.refresh()

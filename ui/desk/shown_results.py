@@ -16,7 +16,7 @@ from workbench.planning.stage_table import STAGES
 
 
 class ShownResults:
-    """Results of one front."""
+    """Results of one desk."""
 
     def __init__(self, session: Session, background: BackgroundThread) -> None:
         self._session, self._background = session, background

@@ -11,8 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ui.desk.desk import Desk
-from ui.desk.front import Panel
+from ui.desk.desk import Desk, Panel
 from workbench.core.base.records import folders
 
 

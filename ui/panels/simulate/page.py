@@ -106,17 +106,17 @@ class SimulatePanel:
 
     def _switch_live(self, event: Any) -> None:
         if event.client is not None:
-            self.desk.live_press.switch(bool(self.live.value))
+            self.desk.live_switched(bool(self.live.value))
 
     def _toggle_live(self, event: Any) -> None:
         self.live.value = not self.live.value
-        self.desk.live_press.switch(bool(self.live.value))
+        self.desk.live_switched(bool(self.live.value))
 
     def _end_live(self) -> None:
         """The whole path is wanted, not a preview of its end."""
         if self.desk.live:
             self.live.value = False
-            self.desk.live_press.switch(False)
+            self.desk.live_switched(False)
 
     def _tell_live(self, text: str) -> None:
         if self.live_text.content != text:
