@@ -123,7 +123,7 @@ class LiveContact:
             self.way = Way.SAME_REGION
             approach = dataclasses.replace(kept.problem.approach, press=path)
             problem = dataclasses.replace(kept.problem, approach=approach)
-            check_depth(support_points_mm(mesh), approach, problem.collider)
+            check_depth(support_points_mm(mesh), approach)
             kept.relaxation = relaxation_of([problem])
         else:
             self.way = Way.ANEW
@@ -156,7 +156,7 @@ class LiveContact:
         legs = legs_of(press, planned.touch_mm, _no_release)
         approach = dataclasses.replace(planned, press=press, legs=legs)
         problem = dataclasses.replace(kept.problem, approach=approach)
-        check_depth(support_points_mm(problem.mesh), approach, problem.collider)
+        check_depth(support_points_mm(problem.mesh), approach)
         return self._solve(kept, problem, frame=1, depth_mm=path.depth_mm, monitor=monitor)
 
     @staticmethod

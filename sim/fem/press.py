@@ -16,7 +16,6 @@ from typing import Any
 import numpy as np
 
 from sim.contact.motion.approach import Approach
-from sim.contact.objects.collider import Collider
 from sim.contact.objects.sampling import SAMPLES_PER_CELL
 from sim.contact.readout.verdict import check_depth
 from sim.contact.region.backing import decay_mm, support_points_mm
@@ -84,8 +83,8 @@ def solve_press(
         SolveError: If an increment does not converge; carries the frames before it.
     """
     monitor(0.0, "placing the object")
-    collider, approach, submodel = set_up(mesh, material, case, sampled=sampled)
-    course = _Course(mesh, material, collider, approach, case.fem, submodel, device)
+    approach, submodel = set_up(mesh, material, case, sampled=sampled)
+    course = _Course(mesh, material, approach, case.fem, submodel, device)
     try:
         with freed_memory_kept():
             course.run(monitor, on_frame)
@@ -105,7 +104,7 @@ def set_up(
     case: PressCase,
     *,
     sampled: SampledDistance | None = None,
-) -> tuple[Collider, Approach, Submodel]:
+) -> tuple[Approach, Submodel]:
     """The object, its path and the part of the membrane of a press, before anything is solved.
 
     Raises:
@@ -119,14 +118,14 @@ def set_up(
             hint="make the object rigid, or use the forces of the contact solver (source mpm)",
             at="indenter.soft",
         )
-    collider, approach = place_object(
+    approach = place_object(
         mesh.outer, indenter, press, grid_mm=sampling_grid_mm(settings), sampled=sampled
     )
-    check_depth(support_points_mm(mesh), approach, collider)
+    check_depth(support_points_mm(mesh), approach)
     radius_mm = _radius_mm(mesh, material, approach, settings)
-    near_mm = patch_radius_mm(mesh, approach, collider) + NEAR_MARGIN_MM
+    near_mm = patch_radius_mm(mesh, approach) + NEAR_MARGIN_MM
     centre_mm = approach.target_mm
-    return collider, approach, cut_out(mesh, material, press, centre_mm, radius_mm, near_mm=near_mm)
+    return approach, cut_out(mesh, material, press, centre_mm, radius_mm, near_mm=near_mm)
 
 
 def _radius_mm(
@@ -150,7 +149,6 @@ class _Course:
         self,
         mesh: MembraneMesh,
         material: Elastomer,
-        collider: Collider,
         approach: Approach,
         settings: FemSettings,
         submodel: Submodel,
@@ -166,7 +164,7 @@ class _Course:
                 penalty_MPa_mm=PENALTY * material.young_MPa,
                 friction=material.friction,
             ),
-            collider=collider,
+            collider=approach.collider,
             pose_at=self._pose,
             held_mm=self._held_mm,
             tolerance=settings.tolerance,
@@ -227,7 +225,7 @@ class _Course:
 
     def _goals(self, frame: int) -> list[float]:
         """Progress at the end of each increment of a frame."""
-        way_mm = self.approach.travel_mm(frame, self.pairing.collider.reach_mm)
+        way_mm = self.approach.travel_mm(frame, self.approach.collider.reach_mm)
         way_mm = max(way_mm, self._driven_mm(frame))
         pieces = max(1, math.ceil(way_mm / self.settings.increment_mm - ROUNDING))
         return [frame + (piece + 1.0) / pieces for piece in range(pieces)]

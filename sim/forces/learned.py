@@ -56,12 +56,29 @@ class Known:
     acquaintance: Acquaintance
 
 
+@dataclass(frozen=True, slots=True)
+class Pair:
+    """A force network, and a displacement network beside it.
+
+    Raises:
+        StoreError: If weights are not of the kind that they are given for.
+    """
+
+    force: Known
+    displacement: Known | None = None
+    """Without one, the displacement is the solver's."""
+
+    def __post_init__(self) -> None:
+        _expect_target(self.force, Target.FORCE)
+        if self.displacement is not None:
+            _expect_target(self.displacement, Target.DISPLACEMENT)
+
+
 def learned_forces(
     mesh: MembraneMesh,
     contact: Contact,
     source: MembraneMesh,
-    force: Known,
-    displacement: Known | None = None,
+    networks: Pair,
     *,
     solvable: bool = True,
     device: str = "cpu",
@@ -73,22 +90,18 @@ def learned_forces(
         mesh: Of the design, on whose skin the press was solved.
         contact: What the contact solver found.
         source: The same membrane at the spacing of the weights.
-        force: Weights of a force network.
-        displacement: Weights of a displacement network; without, the displacement is the solver's.
+        networks: Their weights.
         solvable: Whether finite elements take the press, so that they are a remedy.
         device: Where PyTorch computes.
         monitor: Told the frames; raises `Cancelled` to stop.
 
     Raises:
-        StoreError: If weights are not of the kind that they are given for.
         SolveError: If a displacement, or a prediction, is not finite.
         DeviceError: If the device has no room for a network.
     """
     from sim.forces.network.steady import steady_predictor
 
-    _expect_target(force, Target.FORCE)
-    if displacement is not None:
-        _expect_target(displacement, Target.DISPLACEMENT)
+    force, displacement = networks.force, networks.displacement
     monitor(0.0, "carrying the displacement to the network's points")
     given_mm, given_N = _carried(mesh.outer, source.outer, contact)
     used = [force] if displacement is None else [force, displacement]

@@ -53,7 +53,7 @@ def radius_mm(indenter: Indenter, press: Press, *, fixed_mm: float = 0.0) -> flo
     collider = make_collider(indenter, grid_mm=1.0)
     settings = ContactSettings(active_radius_mm=fixed_mm)
     approach = plan_approach(mesh.outer, collider, press)
-    return region_radius_mm(mesh, Elastomer(), approach, collider, settings)
+    return region_radius_mm(mesh, Elastomer(), approach, settings)
 
 
 def test_region_follows_size_and_shear() -> None:
@@ -91,7 +91,7 @@ def backed_radius_mm(backing_MPa: float, fixed_mm: float) -> float:
     collider = make_collider(Indenter(size_mm=4.0), grid_mm=1.0)
     settings = ContactSettings(active_radius_mm=fixed_mm)
     approach = plan_approach(mesh.outer, collider, at_45_degrees())
-    return region_radius_mm(mesh, Elastomer(backing_MPa=backing_MPa), approach, collider, settings)
+    return region_radius_mm(mesh, Elastomer(backing_MPa=backing_MPa), approach, settings)
 
 
 def test_a_chosen_radius_must_hold_the_bending_over_gel() -> None:

@@ -66,7 +66,7 @@ def setup(
     collider = make_collider(indenter, grid_mm=0.5)
     press = Press(target_mm=(0.1, 0.2, 2.0), depth_mm=depth_mm, twist_deg=20.0, frames=1)
     approach = plan_approach(mesh.outer, collider, press)
-    domain = prepare(mesh, points, material, approach, collider, ContactSettings(), radius_mm=3.0)
+    domain = prepare(mesh, points, material, approach, ContactSettings(), radius_mm=3.0)
     relaxation = alone(domain, collider)
     return domain, collider, approach, relaxation
 
@@ -87,7 +87,7 @@ def test_forces_equal_the_twin(taichi_device: str, kind: IndenterKind) -> None:
         pose = approach.pose(progress)
         evaluate(relaxation, pose)
         point_forces = reference.surface_forces(
-            domain, displacement.astype(float), history, collider, pose, friction=0.3
+            domain, displacement.astype(float), history, reference.PosedObject(collider, pose, 0.3)
         )
     exact = reference.stress_forces(domain, displacement.astype(float))
     exact += reference.spread_to_nodes(domain, point_forces)
@@ -128,7 +128,7 @@ def test_gel_forces_equal_the_twin_for_any_normal(taichi_device: str) -> None:
     evaluate(relaxation, pose)
     history = reference.ContactHistory.fresh(points.count)
     exact = reference.surface_forces(
-        domain, displacement.astype(float), history, collider, pose, friction=0.3
+        domain, displacement.astype(float), history, reference.PosedObject(collider, pose, 0.3)
     )
     held = points.bonded
     for group in (held, ~held):
@@ -146,10 +146,11 @@ def test_commit_equals_the_twin(taichi_device: str) -> None:
     for progress in (1.0, 1.5):
         pose = approach.pose(progress)
         evaluate(relaxation, pose)
-        arguments = (domain, displacement.astype(float), history, collider, pose)
-        reference.surface_forces(*arguments, friction=0.3)
+        met = reference.PosedObject(collider, pose, 0.3)
+        arguments = (domain, displacement.astype(float), history, met)
+        reference.surface_forces(*arguments)
     relaxation.commit(0)
-    reference.commit_history(*arguments, friction=0.3)
+    reference.commit_history(*arguments)
     anchors, states = relaxation.contact_history()
     np.testing.assert_array_equal(states, history.states)
     held = states == reference.HELD
@@ -168,8 +169,8 @@ def test_driven_points_are_pulled_to_their_goals(taichi_device: str) -> None:
     pose = approach.pose(0.0)
     evaluate(relaxation, pose, 0.25)
     exact = reference.surface_forces(
-        domain, displacement.astype(float), reference.ContactHistory.fresh(count), collider, pose,
-        friction=0.3, goals_mm=0.25 * goal_mm,
+        domain, displacement.astype(float), reference.ContactHistory.fresh(count),
+        reference.PosedObject(collider, pose, 0.3), goals_mm=0.25 * goal_mm,
     )  # fmt: skip
     held = domain.points.bonded
     bound = RELATIVE * np.abs(exact[held]).max()
@@ -190,7 +191,10 @@ def test_two_elastomers_and_both_laws_equal_the_twin(taichi_device: str, law: La
     forces = reference.stress_forces(domain, displacement.astype(float))
     history = reference.ContactHistory.fresh(domain.points.count)
     held = reference.surface_forces(
-        domain, displacement.astype(float), history, collider, approach.pose(-3.0), friction=0.3
+        domain,
+        displacement.astype(float),
+        history,
+        reference.PosedObject(collider, approach.pose(-3.0), 0.3),
     )
     exact = forces + reference.spread_to_nodes(domain, held)
     assert len(np.unique(domain.moduli_MPa[:, 0])) == 2
@@ -235,10 +239,9 @@ def test_step_equals_the_twin(taichi_device: str) -> None:
     velocity, pose = np.zeros_like(displacement), approach.pose(1.0)
     for _ in range(STEPS):
         forces = reference.stress_forces(domain, displacement)
-        forces += reference.spread_to_nodes(
-            domain,
-            reference.surface_forces(domain, displacement, history, collider, pose, friction=0.3),
-        )
+        met = reference.PosedObject(collider, pose, 0.3)
+        held = reference.surface_forces(domain, displacement, history, met)
+        forces += reference.spread_to_nodes(domain, held)
         velocity = reference.damped_step(
             domain,
             velocity,

@@ -37,7 +37,7 @@ def test_a_path_that_comes_and_goes_is_seen_at_its_far_end() -> None:
     assert set(range(approach.frame_count + 1)) <= set(samples.tolist())
     origins, _ = approach.poses(np.array([2.0, 3.0]))
     under = [[*origin[:2], 2.0] for origin in origins]
-    home_mm, far_mm = path_distance_mm(np.array(under), approach, collider)
+    home_mm, far_mm = path_distance_mm(np.array(under), approach)
     assert home_mm == pytest.approx(-0.4, abs=1e-3)
     assert far_mm == pytest.approx(-0.4, abs=1e-3)
 

@@ -27,7 +27,8 @@ def ball(size_mm: float) -> Indenter:
 def test_large_mesh_is_sampled_at_two_fifths_of_a_cell_where_it_touches() -> None:
     """A ball of 120 mm would get 0.9 mm as a whole; its window, with the contact, gets 0.2 mm."""
     mesh, _ = flat_block(width_mm=12.0, height_mm=2.0, grid_mm=0.5)
-    collider, approach = place_object(mesh.outer, ball(120.0), PRESS, grid_mm=0.5)
+    approach = place_object(mesh.outer, ball(120.0), PRESS, grid_mm=0.5)
+    collider = approach.collider
     assert 1.0 / collider.size[3] == pytest.approx(0.2)
     assert np.prod(collider.samples.shape) < 1_500_000
     origin, rotation = approach.pose(1.0)

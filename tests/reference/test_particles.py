@@ -35,7 +35,7 @@ def cloud_of(width_mm: float = 4.0):
     mesh, points = flat_block(width_mm=width_mm, height_mm=2.0, grid_mm=0.5)
     collider = make_collider(BALL, grid_mm=0.5)
     approach = plan_approach(mesh.outer, collider, PRESS)
-    return make_cloud(mesh, points, approach, collider, radius_mm=10.0), approach
+    return make_cloud(mesh, points, approach, radius_mm=10.0), approach
 
 
 def twin_points(state: State, cloud: Cloud, body: np.ndarray, given: np.ndarray) -> twin.Points:

@@ -81,7 +81,10 @@ def test_forces_friction_and_commit_equal_the_twin() -> None:
     elastic = reference.stress_forces(soft.domain, object_mm)
     fresh = reference.ContactHistory.fresh(soft.domain.points.count)
     held = reference.surface_forces(
-        soft.domain, object_mm, fresh, problem.collider, (origin, rotation), friction=0.0
+        soft.domain,
+        object_mm,
+        fresh,
+        reference.PosedObject(problem.collider, (origin, rotation), 0.0),
     )
     exact = elastic + nodal + reference.spread_to_nodes(soft.domain, held)
     assert np.abs(relaxation.node_forces(OBJECT) - exact).max() < 1e-4 * np.abs(exact).max()

@@ -8,7 +8,7 @@ import pytest
 from sim.contact.engine.batch import Case
 from sim.contact.engine.relaxation import Relaxation
 from sim.contact.motion.approach import Approach, plan_approach
-from sim.contact.objects.collider import Collider, make_collider
+from sim.contact.objects.collider import make_collider
 from sim.contact.readout.fields import volume_state
 from sim.contact.readout.frame import FrameOutcome
 from sim.contact.readout.outcome import SettledFrame, _friction, frame_outcome
@@ -28,25 +28,24 @@ MESH, POINTS = flat_block(width_mm=6.0, height_mm=2.0, grid_mm=0.5, skin_mm=0.4)
 PRESS = Press(target_mm=(0.0, 0.0, 2.0), depth_mm=0.4, frames=1)
 
 
-def plan(press: Press = PRESS, indenter: Indenter | None = None) -> tuple[Approach, Collider]:
+def plan(press: Press = PRESS, indenter: Indenter | None = None) -> Approach:
     collider = make_collider(indenter or Indenter(size_mm=4.0), grid_mm=0.5)
-    return plan_approach(MESH.outer, collider, press), collider
+    return plan_approach(MESH.outer, collider, press)
 
 
 def frame(load_N: float = 1.0) -> tuple[FrameOutcome, Problem]:
     """A frame of the undeformed block under the ball; nothing has settled."""
-    (approach, collider), material = plan(), Elastomer()
-    domain = prepare(MESH, POINTS, material, approach, collider, ContactSettings(), radius_mm=3.0)
+    approach, material = plan(), Elastomer()
+    domain = prepare(MESH, POINTS, material, approach, ContactSettings(), radius_mm=3.0)
     problem = Problem(
         mesh=MESH,
         material=material,
         settings=ContactSettings(),
         approach=approach,
-        collider=collider,
         domain=domain,
         radius_mm=3.0,
     )
-    relaxation = Relaxation([Case(domain=domain, collider=collider, friction=0.3)])
+    relaxation = Relaxation([Case(domain=domain, collider=approach.collider, friction=0.3)])
     origin, rotation = approach.pose(1.0)
     relaxation.set_poses(0, np.concatenate([origin, rotation.ravel(), [1.0]])[None])
     balance = relaxation.evaluate(np.ones(1, bool)).of(0)
@@ -112,17 +111,17 @@ def test_friction_ratio_comes_from_forces_alone() -> None:
 
 def test_depth_that_reaches_the_support_is_refused() -> None:
     """A wall of 2 mm takes at most 2.0 mm; a shear alone does not change that of a flat block."""
-    approach, collider = plan(dataclasses.replace(PRESS, depth_mm=2.5, shear_mm=(0.5, 0.0)))
+    approach = plan(dataclasses.replace(PRESS, depth_mm=2.5, shear_mm=(0.5, 0.0)))
     with pytest.raises(DesignError, match=r"2\.5 mm .* that fits is 2\.0 mm") as raised:
-        check_depth(MESH.inner.points_mm, approach, collider)
+        check_depth(MESH.inner.points_mm, approach)
     assert raised.value.at == "press.depth_mm"
-    check_depth(MESH.inner.points_mm, *plan(dataclasses.replace(PRESS, depth_mm=1.9)))
+    check_depth(MESH.inner.points_mm, plan(dataclasses.replace(PRESS, depth_mm=1.9)))
 
 
 def test_depth_that_passes_right_through_is_refused() -> None:
     """A ball of 4 mm ends 48 mm below the support of a 2 mm wall: it met it at 2.0 mm."""
     with pytest.raises(DesignError, match=r"50 mm .* that fits is 2\.0 mm"):
-        check_depth(MESH.inner.points_mm, *plan(dataclasses.replace(PRESS, depth_mm=50.0)))
+        check_depth(MESH.inner.points_mm, plan(dataclasses.replace(PRESS, depth_mm=50.0)))
 
 
 @pytest.mark.parametrize(
@@ -137,9 +136,9 @@ def test_edges_under_the_indenter_are_short(
     indenter: Indenter, depth_mm: float, longest_mm: float
 ) -> None:
     """At most half the least radius and 1.2 cells; a 6 mm ball leaves the skin as it is."""
-    approach, collider = plan(dataclasses.replace(PRESS, depth_mm=depth_mm), indenter)
+    approach = plan(dataclasses.replace(PRESS, depth_mm=depth_mm), indenter)
     before = facets_of(MESH.outer, np.arange(len(MESH.outer.faces)), spacing_mm=0.6)
-    after = refine(before, approach, collider, grid_mm=0.5)
+    after = refine(before, approach, grid_mm=0.5)
     centre = after.corners_mm().mean(axis=1)
     under = np.linalg.norm(centre - approach.target_mm, axis=1) < 0.3
     assert after.longest_edges_mm()[under].max() <= longest_mm
@@ -155,9 +154,9 @@ def area_mm2(facets) -> float:
 def test_shallow_first_frame_has_points_to_touch() -> None:
     """A 6 mm ball 2 um deep covers a spot of 0.11 mm, between vertices 0.4 mm apart."""
     press = dataclasses.replace(PRESS, target_mm=(0.2, 0.1, 2.0), depth_mm=0.002)
-    approach, collider = plan(press, Indenter())
+    approach = plan(press, Indenter())
     facets = facets_of(MESH.outer, np.arange(len(MESH.outer.faces)), spacing_mm=0.6)
-    facets = refine(facets, approach, collider, grid_mm=0.5)
+    facets = refine(facets, approach, grid_mm=0.5)
     origin, rotation = approach.pose(1.0)
-    distance, _ = collider.distance((facets.points_mm - origin) @ rotation)
+    distance, _ = approach.collider.distance((facets.points_mm - origin) @ rotation)
     assert np.count_nonzero(distance < 0.0) >= 4

@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sim.fem.deck_mesh import Element
-from sim.fem.deck_results import force_field, read_table
-from sim.fem.deck_text import carried_text, read_deck
+from sim.fem.decks.mesh import Element
+from sim.fem.decks.results import force_field, read_table
+from sim.fem.decks.text import carried_text, read_deck
 from sim.fem.press import solve_press
 from sim.fem.studies.blocks import flat_membrane
 from tests.unit.test_fem_deck import pad_case

@@ -10,10 +10,10 @@ import pytest
 
 from geometry.surface.surface import face_areas
 from sim.contact.objects.collider import make_collider
-from sim.fem.deck import DeckCase, write_deck
-from sim.fem.deck_mesh import EDGES, FACE_CORNERS, Element
-from sim.fem.deck_object import NEAR_MM, near_box_mm
-from sim.fem.deck_text import DeckText, carried_text, read_deck
+from sim.fem.decks.deck import DeckCase, write_deck
+from sim.fem.decks.mesh import EDGES, FACE_CORNERS, Element
+from sim.fem.decks.rigid_object import NEAR_MM, near_box_mm
+from sim.fem.decks.text import DeckText, carried_text, read_deck
 from sim.fem.studies.blocks import flat_membrane
 from workbench.core.base.errors import DesignError, SolveError, StoreError
 from workbench.core.design.design import Elastomer, SensorDesign
@@ -173,7 +173,7 @@ def test_an_object_that_stays_off_the_skin_is_refused() -> None:
     case = pad_case()
     far_mm = case.submodel.body.points_mm - np.array([0.0, 0.0, 10.0])
     with pytest.raises(SolveError, match="stays more than"):
-        near_box_mm(far_mm, case.approach, make_collider(Indenter(), grid_mm=0.25))
+        near_box_mm(far_mm, case.approach)
 
 
 def lifted_case() -> DeckCase:
@@ -185,9 +185,8 @@ def lifted_case() -> DeckCase:
 def test_driven_skin_may_meet_more_of_the_object() -> None:
     """Skin 4 mm below the ball, which a drive could lift by 3 mm, may meet all of it."""
     case = lifted_case()
-    collider = make_collider(Indenter(), grid_mm=0.25)
     low_mm = case.submodel.body.points_mm - np.array([0.0, 0.0, 4.0])
-    low, high = near_box_mm(low_mm, case.approach, collider)
+    low, high = near_box_mm(low_mm, case.approach)
     assert low[2] == -(3.0 + NEAR_MM)
     assert high[2] > -3.0
 

@@ -41,13 +41,13 @@ def cut(near_mm: float, monkeypatch: pytest.MonkeyPatch) -> tuple[Submodel, Load
     """The part of a pad around a press, and the object as deep as the press goes."""
     monkeypatch.setattr(press_module, "NEAR_MARGIN_MM", near_mm)
     mesh = flat_membrane(width_mm=16.0)
-    collider, approach, submodel = set_up(mesh, Elastomer(), PressCase(press=PRESS, fem=SETTINGS))
+    approach, submodel = set_up(mesh, Elastomer(), PressCase(press=PRESS, fem=SETTINGS))
     origin_mm, rotation = approach.pose(2.0)
     law = Law(penalty_MPa_mm=PENALTY * 0.145, friction=0.3)
     places_mm = submodel.body.faces.places(submodel.body.points_mm)
     load = Load(
         law=law,
-        collider=collider,
+        collider=approach.collider,
         pose=press_module.RigidPose(origin_mm=origin_mm, rotation=rotation),
         anchor_mm=places_mm,
         elastic_mm=np.zeros_like(places_mm),

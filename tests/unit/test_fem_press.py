@@ -155,7 +155,7 @@ def test_what_friction_remembers_turns_with_the_object() -> None:
             origin_mm=np.array([1.0, 0.0, 5.0]), rotation=turn(np.array([0.0, 0.0, 1.0]), 0.5)
         ),
     ]
-    _, _, submodel = set_up(flat_membrane(), Elastomer(), PressCase(press=PRESS, fem=SETTINGS))
+    _, submodel = set_up(flat_membrane(), Elastomer(), PressCase(press=PRESS, fem=SETTINGS))
     pairing = Pairing(
         tangent=Tangent(submodel.body),
         law=ContactLaw(penalty_MPa_mm=200.0, friction=0.3),
@@ -284,12 +284,12 @@ def test_no_frame_no_partial_result(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_the_pole_of_a_region_grows_with_the_shear() -> None:
     """What takes part reaches 4 mm beyond where the object ends."""
-    _, _, submodel = set_up(
+    _, submodel = set_up(
         flat_membrane(width_mm=10.0), Elastomer(), PressCase(press=SHEARED, fem=SETTINGS)
     )
     assert submodel.radius_mm == pytest.approx(4.2)
     whole = dataclasses.replace(SETTINGS, radius_mm=0.0)
-    _, _, submodel = set_up(flat_membrane(), Elastomer(), PressCase(press=PRESS, fem=whole))
+    _, submodel = set_up(flat_membrane(), Elastomer(), PressCase(press=PRESS, fem=whole))
     assert submodel.radius_mm == np.inf
 
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sim.fem.deck import DeckCase, skin_cells
-from sim.fem.deck_dat import read_dat
-from sim.fem.deck_forces import shape_functions, shape_slopes, stress_forces
-from sim.fem.deck_mesh import Element, deck_mesh
-from sim.fem.deck_results import force_field, read_table
+from sim.fem.decks.dat import read_dat
+from sim.fem.decks.deck import DeckCase, skin_cells
+from sim.fem.decks.mesh import Element, deck_mesh
+from sim.fem.decks.results import force_field, read_table
+from sim.fem.decks.stress_forces import shape_functions, shape_slopes, stress_forces
 from sim.fem.elements import GAUSS
 from sim.fem.studies.blocks import block
 from tests.unit.test_fem_deck import pad_case

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from sim.forces.acquaintance import Acquaintance
-from sim.forces.learned import Known, learned_forces
+from sim.forces.learned import Known, Pair, learned_forces
 from sim.forces.network.predictor import Precision, Predictor
 from sim.forces.network.spec import Target
 from tests.made_weights import tiny_weights
@@ -79,7 +79,7 @@ def known(value: Any = FORCE_N, target: Target = Target.FORCE, **fields: Any) ->
 def found(design: int, source: int, *used: Known, **options: Any) -> ForceField:
     """Forces of the press on a membrane of so many cells, by networks of another."""
     mesh = membrane(design)
-    return learned_forces(mesh, contact(mesh), membrane(source), *used, **options)
+    return learned_forces(mesh, contact(mesh), membrane(source), Pair(*used), **options)
 
 
 def test_forces_of_every_vertex_add_up_on_the_design_s_skin() -> None:
@@ -113,7 +113,7 @@ def test_displacement_is_the_solver_s_unless_a_network_gives_one() -> None:
     """Without such weights to the last bit; with them what they say, on the design's skin."""
     mesh = membrane(16)
     pressed = contact(mesh)
-    alone = learned_forces(mesh, pressed, membrane(8), known())
+    alone = learned_forces(mesh, pressed, membrane(8), Pair(known()))
     assert alone.displacement_mm is pressed.displacement_mm
     moved_mm = np.array([0.01, 0.0, -0.2])
     both = found(16, 8, known(), known(moved_mm, Target.DISPLACEMENT))

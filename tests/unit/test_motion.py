@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from sim.contact.motion.approach import Approach, plan_approach
-from sim.contact.objects.collider import Collider, make_collider
+from sim.contact.objects.collider import make_collider
 from sim.contact.readout.verdict import check_depth
 from sim.contact.studies.specimens import finger, flat_block
 from workbench.core.base.digest import digest
@@ -32,20 +32,16 @@ FINGER, _ = finger(grid_mm=2.0)
 FRAMES = 4
 
 
-def plan(
-    *strokes: Stroke, kind: IndenterKind = IndenterKind.SPHERE, **press: object
-) -> tuple[Approach, Collider]:
+def plan(*strokes: Stroke, kind: IndenterKind = IndenterKind.SPHERE, **press: object) -> Approach:
     """A press 1 mm into the block by four frames, then strokes; U is +X, V is +Y there."""
     collider = make_collider(Indenter(kind=kind), grid_mm=0.5)
     fields = {"target_mm": (0.0, 0.0, 4.0), "frames": FRAMES, **press}
-    return plan_approach(BLOCK.outer, collider, Press(strokes=strokes, **fields)), collider  # type: ignore[arg-type]
+    return plan_approach(BLOCK.outer, collider, Press(strokes=strokes, **fields))  # type: ignore[arg-type]
 
 
 def test_strokes_follow_one_another() -> None:
     """3 mm deep in all, 1 and -2 mm aside, lifted by 0.5 mm: the places after every stroke."""
-    approach, _ = plan(
-        press_stroke(0.5, frames=2), slide(1.0, -2.0), lift(0.2), move(-1.0, 0.0, -0.1)
-    )
+    approach = plan(press_stroke(0.5, frames=2), slide(1.0, -2.0), lift(0.2), move(-1.0, 0.0, -0.1))
     origins, turned = approach.poses(np.array([4.0, 6.0, 16.0, 26.0, 36.0, 99.0]))
     exact = [[0, 0, 6.0], [0, 0, 5.5], [1, -2, 5.5], [1, -2, 5.7], [0, -2, 5.6], [0, -2, 5.6]]
     # First touch is exact to 1e-4 mm on a flat skin.
@@ -58,7 +54,7 @@ def test_strokes_follow_one_another() -> None:
 
 def test_strokes_begin_where_shear_and_twist_end() -> None:
     """The pose is continuous over the seam, and a twist adds to a twist."""
-    approach, _ = plan(twist(40.0), shear_mm=(0.3, 0.1), twist_deg=20.0)
+    approach = plan(twist(40.0), shear_mm=(0.3, 0.1), twist_deg=20.0)
     before, after = approach.pose(2 * FRAMES - 1e-9), approach.pose(2.0 * FRAMES)
     # In 1e-9 of a frame nothing moves by more than 1e-9 mm.
     np.testing.assert_allclose(after[0], before[0], atol=1e-8)
@@ -75,7 +71,7 @@ def test_rolling_ball_does_not_slip(axis_deg: float) -> None:
     The ball of radius 3 mm lies 1 mm deep, so the contact plane is 2 mm below its origin.
     """
     degrees = np.degrees(0.5)
-    approach, _ = plan(roll(degrees, axis_deg=axis_deg))
+    approach = plan(roll(degrees, axis_deg=axis_deg))
     start, end = approach.pose(4.0)[0], approach.pose(14.0)[0]
     angle = np.radians(axis_deg)
     exact = np.cross([np.cos(angle), np.sin(angle), 0.0], [0.0, 0.0, 1.0])
@@ -92,9 +88,9 @@ def test_rolling_ball_does_not_slip(axis_deg: float) -> None:
 @pytest.mark.parametrize("kind", [IndenterKind.SPHERE, IndenterKind.CUBE])
 def test_release_leaves_the_clearance(kind: IndenterKind) -> None:
     """After a roll of 30 degrees a cube's edge hangs lower; either ends 0.5 mm above the skin."""
-    approach, collider = plan(roll(30.0), release(frames=3), kind=kind, depth_mm=0.5)
+    approach = plan(roll(30.0), release(frames=3), kind=kind, depth_mm=0.5)
     origin, rotation = approach.pose(99.0)
-    gap = collider.distance((BLOCK.outer.points_mm - origin) @ rotation)[0].min()
+    gap = approach.collider.distance((BLOCK.outer.points_mm - origin) @ rotation)[0].min()
     assert gap == pytest.approx(0.5, abs=2e-3)
     assert approach.overlaps_mm[-1] == 0.0
     assert not approach.pressing(approach.frame_count - 1)
@@ -115,7 +111,7 @@ def test_slide_off_a_curved_skin_is_not_pressing() -> None:
 
 def test_straight_runs_are_counted() -> None:
     """Each stroke begins at 1, rest is 0, and a stroke that goes on the same way counts on."""
-    approach, _ = plan(
+    approach = plan(
         press_stroke(0.25, frames=1), slide(1, 0, frames=3), hold(2), twist(9, frames=3)
     )
     found = [approach.continues(frame) for frame in range(approach.frame_count)]
@@ -124,7 +120,7 @@ def test_straight_runs_are_counted() -> None:
 
 def test_travel_is_way_and_turn() -> None:
     """A slide of 3 mm by 3 frames: 1 mm; a twist of 90 degrees by 3 frames at 2 mm: pi / 3 mm."""
-    approach, _ = plan(slide(3.0, 0.0, frames=3), twist(90.0, frames=3))
+    approach = plan(slide(3.0, 0.0, frames=3), twist(90.0, frames=3))
     assert approach.travel_mm(5, 2.0) == pytest.approx(1.0)
     assert approach.travel_mm(8, 2.0) == pytest.approx(np.pi / 3)
 
@@ -132,7 +128,7 @@ def test_travel_is_way_and_turn() -> None:
 def test_driven_regions_make_no_force_certain() -> None:
     """An actuator may take the skin away: nothing is due, and the object rests at the end."""
     drive = Actuation(move_mm=(0.0, 0.0, -1.0), keys=((0.0, 0.0), (20.0, 1.0)))
-    approach, _ = plan(shear_mm=(0.5, 0.0), actuations=(drive,))
+    approach = plan(shear_mm=(0.5, 0.0), actuations=(drive,))
     assert approach.frame_count == 20
     assert not any(approach.pressing(frame) for frame in range(20))
     np.testing.assert_allclose(approach.pose(20.0)[0], [0.5, 0.0, 6.0], atol=1e-4)
@@ -141,13 +137,13 @@ def test_driven_regions_make_no_force_certain() -> None:
 
 def test_stroke_into_the_support_is_refused() -> None:
     """1 + 3.4 mm into 4 mm: met in the last of four frames of the second stroke, 0.4 mm deep."""
-    approach, collider = plan(slide(1.0, 0.0), press_stroke(3.4, frames=4))
+    approach = plan(slide(1.0, 0.0), press_stroke(3.4, frames=4))
     with pytest.raises(DesignError) as raised:
-        check_depth(BLOCK.inner.points_mm, approach, collider)
+        check_depth(BLOCK.inner.points_mm, approach)
     assert raised.value.at == "press.strokes"
     # The support is looked at where its vertices are: up to 0.28 mm aside, which is 0.013 mm less.
     assert "frame 18 of 18 (stroke 2, press:3.4): the object reaches 0.39 mm" in str(raised.value)
-    check_depth(BLOCK.inner.points_mm, *plan(slide(1.0, 0.0), press_stroke(2.9)))
+    check_depth(BLOCK.inner.points_mm, plan(slide(1.0, 0.0), press_stroke(2.9)))
 
 
 def test_support_is_looked_at_on_the_way() -> None:
@@ -155,7 +151,7 @@ def test_support_is_looked_at_on_the_way() -> None:
     post = np.array([[20.0, 0.0, 4.0]])
     up, aside, down = lift(50.0, frames=1), slide(-50.0, 0.0), move(0.0, 0.0, -50.0)
     with pytest.raises(DesignError, match="stroke 4, slide:100,0"):
-        check_depth(post, *plan(up, aside, down, slide(100.0, 0.0, frames=1)))
+        check_depth(post, plan(up, aside, down, slide(100.0, 0.0, frames=1)))
 
 
 @pytest.mark.parametrize(

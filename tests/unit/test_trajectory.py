@@ -253,7 +253,7 @@ def test_trajectory_into_the_support_is_refused() -> None:
     press = Press(trajectory=straight_down(8.0, 6.0, 2.0, 8.0))
     approach = plan_approach(BLOCK.outer, COLLIDER, press)
     with pytest.raises(DesignError) as raised:
-        check_depth(BLOCK.inner.points_mm, approach, COLLIDER)
+        check_depth(BLOCK.inner.points_mm, approach)
     assert "frame 2 of 3 (row 3 of the trajectory)" in raised.value.message
     assert "reaches 1 mm into the rigid support" in raised.value.message
 

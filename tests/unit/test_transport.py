@@ -15,7 +15,7 @@ from sim.optics.transport import reference
 from sim.optics.transport.constants import AT_NODES, FIXED_POINT, FLYING
 from sim.optics.transport.gather import gather_light
 from sim.optics.transport.nodes import coarse_nodes, neighbours
-from sim.optics.transport.paths import Driver, trace_paths
+from sim.optics.transport.paths import Driver, Photons, trace_paths
 from sim.optics.transport.radiance import trace_radiance
 from sim.optics.transport.scene import Scene, build_scene, open_scene
 from sim.optics.transport.sources import open_sources
@@ -242,9 +242,8 @@ def test_batches_of_radiance_add_up_to_one_run(taichi_device: str, mesh: Membran
     """Photons 0 to n and n to 2 n give what photons 0 to 2 n give."""
 
     def trace(first: int, photons: int) -> Any:
-        return trace_radiance(
-            mesh, lights(), CAMERA, TRANSPORT, photons=photons, first_photon=first
-        )
+        batch = Photons(count=photons, seed=TRANSPORT.baking.seed, first=first)
+        return trace_radiance(mesh, lights(), CAMERA, TRANSPORT, batch)
 
     half, other, whole = trace(0, 15_000), trace(15_000, 15_000), trace(0, 30_000)
     np.testing.assert_allclose(half.radiance + other.radiance, whole.radiance, rtol=1e-5)
@@ -356,7 +355,7 @@ def test_the_ledger_sums_to_all_that_was_emitted(taichi_device: str, mesh: Membr
     """Shares of power sum to 1 within the rounding of whole numbers, 6e-8 an event."""
     scene = open_scene(mesh, TRANSPORT)
     tally = ledger_only()
-    trace_paths(scene, open_sources(lights(), scene), tally, photons=PHOTONS, seed=1)
+    trace_paths(scene, open_sources(lights(), scene), tally, Photons(count=PHOTONS, seed=1))
     assert sum(tally.balance.values()) == pytest.approx(1.0, abs=1e-6)
     assert tally.balance["leaked"] < 1e-3
     assert tally.gather != AT_NODES

@@ -95,7 +95,7 @@ def _check_press(mesh: MembraneMesh, indenter: Indenter, press: Press) -> None:
         inner=_around(mesh.inner, place.point_mm, reach_mm),
     )
     approach = plan_approach(around.outer, collider, press)
-    check_depth(support_points_mm(around), approach, collider)
+    check_depth(support_points_mm(around), approach)
 
 
 @functools.lru_cache(maxsize=4)

@@ -22,8 +22,8 @@ from workbench.project.state import State, case_table, read_state
 from workbench.system.terminal import Progress
 
 if TYPE_CHECKING:
-    from sim.fem.deck import DeckCase
-    from sim.fem.deck_mesh import Element
+    from sim.fem.decks.deck import DeckCase
+    from sim.fem.decks.mesh import Element
 
 STAGE = "fem"
 SCHEMA = 1
@@ -72,25 +72,24 @@ def make_deck_case(
 ) -> DeckCase:
     """As `deck_case`, with the membrane at hand."""
     from sim.fem.contact_law import PENALTY, Law
-    from sim.fem.deck import DeckCase
-    from sim.fem.deck_object import make_shell, near_box_mm
+    from sim.fem.decks.deck import DeckCase
+    from sim.fem.decks.rigid_object import make_shell, near_box_mm, near_surface
     from sim.fem.press import set_up
     from workbench.pipeline.devices import open_device
-    from workbench.report.fem_surface import near_surface
 
     if sampled is not None:
         # A large object is sampled once more where it meets the skin.
         open_device()
     material, case = state.design.material, state.case
-    collider, approach, submodel = set_up(mesh, material, case, sampled=sampled)
+    approach, submodel = set_up(mesh, material, case, sampled=sampled)
     skin_mm = submodel.body.points_mm[submodel.skin >= 0]
-    surface = near_surface(collider, *near_box_mm(skin_mm, approach, collider))
+    surface = near_surface(approach.collider, *near_box_mm(skin_mm, approach))
     return DeckCase(
         submodel=submodel,
         approach=approach,
         material=material,
         law=Law(penalty_MPa_mm=PENALTY * material.young_MPa, friction=material.friction),
-        shell=make_shell(*surface, collider),
+        shell=make_shell(*surface, approach.collider),
         element=element,
     )
 
@@ -113,7 +112,7 @@ def read_carried(text: str, project: Project, *, source: str) -> tuple[State, El
     Raises:
         StoreError: If the text is damaged or of another version.
     """
-    from sim.fem.deck_mesh import Element
+    from sim.fem.decks.mesh import Element
 
     try:
         table = json.loads(text)

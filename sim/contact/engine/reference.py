@@ -19,6 +19,16 @@ from sim.material import stress_of
 Pose = tuple[np.ndarray, np.ndarray]
 
 
+@dataclass(frozen=True, slots=True)
+class PosedObject:
+    """The object at a pose."""
+
+    collider: Collider
+    pose: Pose
+    friction: float
+    """Coefficient of Coulomb's friction against it."""
+
+
 @dataclass(kw_only=True, slots=True)
 class ContactHistory:
     """Friction memory of the surface points; changed in place."""
@@ -71,10 +81,8 @@ def surface_forces(
     domain: Domain,
     displacement: np.ndarray,
     history: ContactHistory,
-    collider: Collider,
-    pose: Pose,
+    met: PosedObject,
     *,
-    friction: float,
     goals_mm: np.ndarray | float = 0.0,
 ) -> np.ndarray:
     """Forces on the membrane at the surface points [N], shape (P, 3); sets first anchors.
@@ -87,9 +95,9 @@ def surface_forces(
     along = np.einsum("pc,pc->p", axis, away)[:, None] * axis
     spring = along + sideways * (away - along)
     forces = -domain.points.stiffness_N_mm[:, None] * spring
-    origin, rotation = pose
+    origin, rotation = met.pose
     place = (domain.points.position_mm + moved - origin) @ rotation
-    distance, gradient = collider.distance(place)
+    distance, gradient = met.collider.distance(place)
     for p in np.flatnonzero(~domain.points.bonded):
         forces[p] = 0.0
         if distance[p] >= 0.0:
@@ -98,7 +106,7 @@ def surface_forces(
             continue
         if history.states[p] == FREE:
             history.states[p], history.anchors[p] = TOUCHED, place[p]
-        slip = returned_slip(place[p], history.anchors[p], distance[p], gradient[p], friction)
+        slip = returned_slip(place[p], history.anchors[p], distance[p], gradient[p], met.friction)
         body_force = -domain.points.stiffness_N_mm[p] * (distance[p] * gradient[p] + slip)
         forces[p] = rotation @ body_force
     return forces
@@ -120,19 +128,17 @@ def commit_history(
     domain: Domain,
     displacement: np.ndarray,
     history: ContactHistory,
-    collider: Collider,
-    pose: Pose,
-    *,
-    friction: float,
+    met: PosedObject,
 ) -> None:
     """Close a frame: anchors follow the points that slid, and their way is added up."""
-    origin, rotation = pose
+    origin, rotation = met.pose
     place = (point_places(domain, displacement) - origin) @ rotation
-    distance, gradient = collider.distance(place)
+    distance, gradient = met.collider.distance(place)
     for p in np.flatnonzero(~domain.points.bonded):
         if distance[p] < 0.0 and history.states[p] != FREE:
-            slip = returned_slip(place[p], history.anchors[p], distance[p], gradient[p], friction)
-            way = place[p] - slip - history.anchors[p]
+            anchor = history.anchors[p]
+            slip = returned_slip(place[p], anchor, distance[p], gradient[p], met.friction)
+            way = place[p] - slip - anchor
             normal = gradient[p] / np.linalg.norm(gradient[p])
             history.slips[p] += np.linalg.norm(way - (way @ normal) * normal)
             history.states[p], history.anchors[p] = HELD, place[p] - slip

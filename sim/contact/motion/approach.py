@@ -39,8 +39,9 @@ WAYPOINTS = 8
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Approach:
-    """The path of the object in the sensor frame."""
+    """The object and its path in the sensor frame."""
 
+    collider: Collider
     target_mm: np.ndarray
     """Target on the skin [mm], shape (3,): the middle of the active region."""
     normal: np.ndarray
@@ -239,6 +240,7 @@ def _plan_trajectory(
     touching = covering.overlaps_mm[first:] > 0.0
     aside_mm = float(np.linalg.norm(ways_mm[touching], axis=1).max(initial=0.0))
     return Approach(
+        collider=collider,
         target_mm=target,
         normal=normal,
         tangent_u=tangent_u,
@@ -264,6 +266,7 @@ def _plan_straight(skin: Skin, collider: Collider, press: Press) -> Approach:
     rotation = np.stack([tangent_u, tangent_v, normal], axis=1)
     touch_mm = first_touch(skin, collider, target, rotation)
     return Approach(
+        collider=collider,
         target_mm=target,
         normal=normal,
         tangent_u=tangent_u,

@@ -9,7 +9,6 @@ import numpy as np
 
 from sim.contact.grid.stencil import point_offsets
 from sim.contact.motion.approach import Approach
-from sim.contact.objects.collider import Collider
 from sim.contact.particles import kernels
 from workbench.core.result.results import MaterialPoints, MembraneMesh
 
@@ -46,7 +45,6 @@ def make_cloud(
     mesh: MembraneMesh,
     points: MaterialPoints,
     approach: Approach,
-    collider: Collider,
     *,
     radius_mm: float,
 ) -> Cloud:
@@ -70,7 +68,7 @@ def make_cloud(
         place_mm=place_mm,
         fraction=fraction,
         kind=kind,
-        body_mm=_body_points(approach, collider, grid_mm, low, high),
+        body_mm=_body_points(approach, grid_mm, low, high),
         grid_mm=grid_mm,
         low=low,
         nodes=(nx, ny, nz),
@@ -78,9 +76,10 @@ def make_cloud(
 
 
 def _body_points(
-    approach: Approach, collider: Collider, grid_mm: float, low: np.ndarray, high: np.ndarray
+    approach: Approach, grid_mm: float, low: np.ndarray, high: np.ndarray
 ) -> np.ndarray:
     """Points at half a cell that fill the object's shell and stay on the grid, (B, 3)."""
+    collider = approach.collider
     count = math.ceil(collider.reach_mm / (0.5 * grid_mm))
     line = (np.arange(-count, count) + 0.5) * 0.5 * grid_mm
     body = np.stack(np.meshgrid(line, line, line, indexing="ij"), axis=-1).reshape(-1, 3)

@@ -26,7 +26,7 @@ import taichi as ti
 from taichi.lang.impl import current_cfg
 
 from sim.contact.motion.approach import Approach, plan_approach
-from sim.contact.objects.collider import Collider, make_collider
+from sim.contact.objects.collider import make_collider
 from sim.contact.particles import kernels
 from sim.contact.particles.cloud import Readout, make_cloud
 from sim.contact.particles.state import TABLE, State
@@ -66,18 +66,18 @@ def press_particles(
     """
     _refuse_what_was_not_published(mesh, material, case.indenter, case.press)
     monitor(0.0, "filling the object")
-    collider = make_collider(case.indenter, grid_mm=points.grid_mm)
-    approach = plan_approach(mesh.outer, collider, case.press)
-    check_depth(support_points_mm(mesh), approach, collider)
-    radius_mm = region_radius_mm(mesh, material, approach, collider, case.settings)
-    cloud = make_cloud(mesh, points, approach, collider, radius_mm=radius_mm)
+    indenter = make_collider(case.indenter, grid_mm=points.grid_mm)
+    approach = plan_approach(mesh.outer, indenter, case.press)
+    check_depth(support_points_mm(mesh), approach)
+    radius_mm = region_radius_mm(mesh, material, approach, case.settings)
+    cloud = make_cloud(mesh, points, approach, radius_mm=radius_mm)
     state = State(cloud, material)
     readout = Readout(mesh, cloud)
     found = []
     for frame in range(approach.frame_count):
         monitor(frame / approach.frame_count, f"frame {frame + 1} of {approach.frame_count}")
         try:
-            found.append(_frame(state, approach, readout, collider, frame))
+            found.append(_frame(state, approach, readout, frame))
         except SolveError as error:
             if found:
                 error.partial = _collected(found, approach, state, points.grid_mm, radius_mm)
@@ -129,11 +129,9 @@ def _refuse_what_was_not_published(
             )
 
 
-def _frame(
-    state: State, approach: Approach, readout: Readout, collider: Collider, frame: int
-) -> dict[str, Any]:
+def _frame(state: State, approach: Approach, readout: Readout, frame: int) -> dict[str, Any]:
     """Move the object through a frame and read the fields of `Contact`."""
-    travel_mm = approach.travel_mm(frame, collider.reach_mm)
+    travel_mm = approach.travel_mm(frame, approach.collider.reach_mm)
     count = max(1, math.ceil(SUBSTEPS_PER_MM * travel_mm / TABLE)) * TABLE
     averaged = max(1, round(LAST_SHARE * count))
     shares = np.arange(count + 1) / count
@@ -159,7 +157,7 @@ def _frame(
     arm_mm = origin - state.cloud.low * state.cloud.grid_mm
     displacement = readout.displacement_mm(place_mm)
     vertex_mm = readout.vertex_mm + displacement
-    distance, _ = collider.distance((vertex_mm - origin) @ rotation)
+    distance, _ = approach.collider.distance((vertex_mm - origin) @ rotation)
     size_N = max(float(np.linalg.norm(reaction)), 1e-12)
     return {
         "displacement_mm": displacement.astype(np.float32),

@@ -17,7 +17,7 @@ from sim.contact.region.backing import (
     foundation_N_mm3,
     support_points_mm,
 )
-from sim.contact.region.domain import Domain, build_domain
+from sim.contact.region.domain import Domain, Region, build_domain
 from sim.contact.region.drives import driven_faces, drives_inner, farthest_drive_mm
 from sim.contact.region.materials import stiffest_MPa, young_MPa_at
 from sim.contact.region.placing import place_object
@@ -44,7 +44,6 @@ class Problem:
     material: Elastomer
     settings: ContactSettings
     approach: Approach
-    collider: Collider
     domain: Domain
     radius_mm: float
 
@@ -52,6 +51,11 @@ class Problem:
     def press(self) -> Press:
         """The path."""
         return self.approach.press
+
+    @property
+    def collider(self) -> Collider:
+        """The object."""
+        return self.approach.collider
 
 
 def make_problem(
@@ -75,19 +79,18 @@ def make_problem(
             support, the region is too small, a driven region does not exist, or memory is short.
         SolveError: If the first touch cannot be found.
     """
-    collider, approach = place_object(
+    approach = place_object(
         mesh.outer, case.indenter, case.press, grid_mm=points.grid_mm, sampled=sampled
     )
-    check_depth(support_points_mm(mesh), approach, collider)
+    check_depth(support_points_mm(mesh), approach)
     settings = case.settings
-    radius_mm = region_radius_mm(mesh, material, approach, collider, settings)
+    radius_mm = region_radius_mm(mesh, material, approach, settings)
     return Problem(
         mesh=mesh,
         material=material,
         settings=settings,
         approach=approach,
-        collider=collider,
-        domain=prepare(mesh, points, material, approach, collider, settings, radius_mm=radius_mm),
+        domain=prepare(mesh, points, material, approach, settings, radius_mm=radius_mm),
         radius_mm=radius_mm,
     )
 
@@ -97,16 +100,13 @@ def prepare(
     points: MaterialPoints,
     material: Elastomer,
     approach: Approach,
-    collider: Collider,
     settings: ContactSettings,
     *,
     radius_mm: float,
 ) -> Domain:
     """Surface points that may take part, and the active region around them."""
     check_memory(points, approach.target_mm, radius_mm)
-    held = contact_points(
-        mesh, material, approach, collider, settings, points.grid_mm, radius_mm=radius_mm
-    )
+    held = contact_points(mesh, material, approach, settings, points.grid_mm, radius_mm=radius_mm)
     for group in held_points(mesh, material, approach, points.grid_mm, radius_mm=radius_mm):
         held = join(held, group)
     return build_domain(
@@ -114,8 +114,7 @@ def prepare(
         points,
         held,
         material,
-        target_mm=approach.target_mm,
-        active_radius_mm=radius_mm,
+        region=Region(centre_mm=approach.target_mm, radius_mm=radius_mm),
         inner_moves=mesh.backing_mm > 0.0 or drives_inner(mesh, approach.press),
     )
 
@@ -124,7 +123,6 @@ def contact_points(
     mesh: MembraneMesh,
     material: Elastomer,
     approach: Approach,
-    collider: Collider,
     settings: ContactSettings,
     grid_mm: float,
     *,
@@ -134,10 +132,10 @@ def contact_points(
     centre = mesh.outer.points_mm[mesh.outer.faces].mean(axis=1)
     near = np.flatnonzero(_near(centre, approach, radius_mm, grid_mm))
     facets = facets_of(mesh.outer, near, spacing_mm=LONGEST_EDGE * grid_mm)
-    facets = refine(facets, approach, collider, grid_mm=grid_mm)
+    facets = refine(facets, approach, grid_mm=grid_mm)
     unit = settings.penalty / grid_mm
     points = corner_points(facets, stiffness_N_mm3=unit, bonded=False)
-    gap_mm = path_distance_mm(points.position_mm, approach, collider)
+    gap_mm = path_distance_mm(points.position_mm, approach)
     reached_mm = reach_mm(approach, grid_mm) + farthest_drive_mm(mesh, approach.press)
     points = points.take(gap_mm < reached_mm)
     return points.scaled(young_MPa_at(material, mesh.outer, points.position_mm))

@@ -8,7 +8,6 @@ import math
 import numpy as np
 
 from sim.contact.motion.approach import SHALLOW_MM, Approach
-from sim.contact.objects.collider import Collider
 from sim.contact.readout.frame import FrameOutcome, deepest_overlap_mm
 from workbench.core.base.errors import DesignError, SolveError
 from workbench.core.press.press import Press
@@ -28,32 +27,31 @@ LEAST_VOLUME_RATIO = 0.02
 """J below which a point counts as crushed: the material law ends at 0."""
 
 
-def check_depth(support_mm: np.ndarray, approach: Approach, collider: Collider) -> None:
+def check_depth(support_mm: np.ndarray, approach: Approach) -> None:
     """Refuse a path on which the rigid indenter meets the rigid support.
 
     Args:
         support_mm: Points of the support [mm], shape (N, 3).
-        approach: The path.
-        collider: The indenter.
+        approach: The indenter and its path.
 
     Raises:
         DesignError: With the largest depth that fits, or with the frame and row that does not.
     """
     if approach.track is None:
-        _check_press(support_mm, approach, collider)
+        _check_press(support_mm, approach)
     if approach.track is not None or approach.legs:
-        _check_frames(support_mm, approach, collider)
+        _check_frames(support_mm, approach)
 
 
-def _check_press(support_mm: np.ndarray, approach: Approach, collider: Collider) -> None:
+def _check_press(support_mm: np.ndarray, approach: Approach) -> None:
     """Approach, shear and twist."""
     press = approach.press
-    if not _meets_support(support_mm, approach, collider, press.depth_mm):
+    if not _meets_support(support_mm, approach, press.depth_mm):
         return
     fits_mm, meets_mm = 0.0, press.depth_mm
     while meets_mm - fits_mm > 1e-3:
         middle_mm = 0.5 * (fits_mm + meets_mm)
-        if _meets_support(support_mm, approach, collider, middle_mm):
+        if _meets_support(support_mm, approach, middle_mm):
             meets_mm = middle_mm
         else:
             fits_mm = middle_mm
@@ -65,21 +63,19 @@ def _check_press(support_mm: np.ndarray, approach: Approach, collider: Collider)
     )
 
 
-def _meets_support(
-    support_mm: np.ndarray, approach: Approach, collider: Collider, depth_mm: float
-) -> bool:
+def _meets_support(support_mm: np.ndarray, approach: Approach, depth_mm: float) -> bool:
     press = dataclasses.replace(approach.press, depth_mm=depth_mm, strokes=())
     path = dataclasses.replace(approach, press=press, legs=())
     # On the way down too: a depth of 50 mm passes right through a finger.
     inward = math.ceil(depth_mm / INWARD_EVERY_MM) + 1
     progress = np.linspace(press.frames, 0.0, inward)
     if press.sliding:
-        way_mm = sum(path.travel_mm(k, collider.reach_mm) for k in _sideways(press))
+        way_mm = sum(path.travel_mm(k, path.collider.reach_mm) for k in _sideways(press))
         count = max(POSES, math.ceil(way_mm / POSE_EVERY_MM))
         progress = np.append(progress, np.linspace(press.frames, press.approach_frames, count))
     origins, turned = path.poses(progress)
     return any(
-        deepest_overlap_mm(support_mm, collider, origin, rotation) > 0.0
+        deepest_overlap_mm(support_mm, path.collider, origin, rotation) > 0.0
         for origin, rotation in zip(origins, turned, strict=True)
     )
 
@@ -89,15 +85,15 @@ def _sideways(press: Press) -> range:
     return range(press.frames, press.approach_frames)
 
 
-def _check_frames(support_mm: np.ndarray, approach: Approach, collider: Collider) -> None:
+def _check_frames(support_mm: np.ndarray, approach: Approach) -> None:
     """Strokes and trajectories, frame by frame and on the way."""
     begin = 0 if approach.track is not None else approach.press.approach_frames
     for frame in range(begin, approach.frame_count):
-        way_mm = approach.travel_mm(frame, collider.reach_mm)
+        way_mm = approach.travel_mm(frame, approach.collider.reach_mm)
         count = min(max(1, math.ceil(way_mm / POSE_EVERY_MM)), MOST_POSES)
         origins, turned = approach.poses(frame + (np.arange(count) + 1.0) / count)
         deepest_mm = max(
-            deepest_overlap_mm(support_mm, collider, origin, rotation)
+            deepest_overlap_mm(support_mm, approach.collider, origin, rotation)
             for origin, rotation in zip(origins, turned, strict=True)
         )
         if deepest_mm > 0.0:

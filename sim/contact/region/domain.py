@@ -1,7 +1,8 @@
 """The active region as arrays: cells, nodes, slots, masses, surface points.
 
-Cells within `active_radius_mm` of the target take part. Nodes that they share with material left
-out are fixed. Positions are stored from the target, so that single precision resolves nanometres.
+Cells within the region, a ball about the target, take part. Nodes that they share with material
+left out are fixed. Positions are stored from the target, so that single precision resolves
+nanometres.
 
 Layouts: nodes are sorted by x, y, z, so the three z-neighbours of a cell's stencil row are
 consecutive and `rows` holds only the first of each of the nine rows. Cell a owns 81 slots,
@@ -20,6 +21,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sim.contact.grid.lattice_keys import cells_of, keys_of, look_up
 from sim.contact.grid.stencil import gradient_table, point_slopes, point_weights, weight_table
 from sim.contact.region.materials import moduli_MPa_at
 from sim.contact.region.quadrature import SurfacePoints
@@ -37,6 +39,15 @@ NO_SLOT = -1
 """Entry of `node_slots` where the lattice has no cell."""
 
 _STENCIL = np.stack(np.meshgrid(*[[-1, 0, 1]] * 3, indexing="ij"), axis=-1).reshape(27, 3)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Region:
+    """The ball in which material takes part."""
+
+    centre_mm: np.ndarray
+    """Shape (3,)."""
+    radius_mm: float
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -144,8 +155,7 @@ def build_domain(
     surface_points: SurfacePoints,
     material: Elastomer,
     *,
-    target_mm: np.ndarray,
-    active_radius_mm: float,
+    region: Region,
     inner_moves: bool,
 ) -> Domain:
     """Number the active region.
@@ -155,8 +165,7 @@ def build_domain(
         material_points: Filled fractions of all cells.
         surface_points: Candidates; those in cells outside the region are dropped.
         material: Elastic constants of all parts.
-        target_mm: Centre of the region [mm], shape (3,).
-        active_radius_mm: Radius of the region.
+        region: What takes part.
         inner_moves: Whether the inner skin is free or driven, and receives displacements too.
 
     Raises:
@@ -167,15 +176,15 @@ def build_domain(
     skin_cells = [np.round(skin.points_mm / grid_mm).astype(np.int64) for skin in skins]
     point_cells = np.round(surface_points.position_mm / grid_mm).astype(np.int64)
     cells, fractions, left_out = _choose_cells(
-        material_points, np.concatenate([*skin_cells, point_cells]), target_mm, active_radius_mm
+        material_points, np.concatenate([*skin_cells, point_cells]), region
     )
     node_keys, rows = _number_nodes(cells)
-    cell_keys = _keys(cells)
-    cut = np.isin(node_keys, _keys(left_out[:, None] + _STENCIL))
-    node_mm = _coordinates(node_keys) * grid_mm - target_mm
+    cell_keys = keys_of(cells)
+    cut = np.isin(node_keys, keys_of(left_out[:, None] + _STENCIL))
+    node_mm = cells_of(node_keys) * grid_mm - region.centre_mm
     volumes_mm3 = np.maximum(fractions, LEAST_FRACTION) * grid_mm**3 / 8.0
 
-    owner, found = _look_up(cell_keys, _keys(point_cells))
+    owner, found = look_up(cell_keys, keys_of(point_cells))
     order = np.flatnonzero(found)[np.argsort(owner[found], kind="stable")]
     points = surface_points.take(order)
     owners, starts = np.unique(owner[order], return_index=True)
@@ -194,7 +203,7 @@ def build_domain(
     ]
     return Domain(
         grid_mm=grid_mm,
-        target_mm=target_mm,
+        target_mm=region.centre_mm,
         node_mm=node_mm,
         rows=rows,
         volumes_mm3=volumes_mm3,
@@ -217,7 +226,7 @@ def _readout(
     place: np.ndarray, place_cells: np.ndarray, cell_keys: np.ndarray, rows: np.ndarray
 ) -> Readout:
     """Readout of vertices at `place` (V, 3), in cell edges, that lie in cells `place_cells`."""
-    owner, inside = _look_up(cell_keys, _keys(place_cells))
+    owner, inside = look_up(cell_keys, keys_of(place_cells))
     vertices = np.flatnonzero(inside)
     local = place[vertices] - place_cells[vertices]
     return Readout(
@@ -231,38 +240,35 @@ def _readout(
 
 
 def _choose_cells(
-    material_points: MaterialPoints,
-    skin_cells: np.ndarray,
-    target_mm: np.ndarray,
-    active_radius_mm: float,
+    material_points: MaterialPoints, skin_cells: np.ndarray, region: Region
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Active cells in order, their fractions, and material cells left out beside them."""
     grid_mm = material_points.grid_mm
     material = material_points.cells.astype(np.int64)
 
-    def near(cells: np.ndarray) -> np.ndarray:
-        return np.linalg.norm(cells * grid_mm - target_mm, axis=1) < active_radius_mm
+    def within(cells: np.ndarray, margin_mm: float = 0.0) -> np.ndarray:
+        from_centre_mm = np.linalg.norm(cells * grid_mm - region.centre_mm, axis=1)
+        return from_centre_mm < region.radius_mm + margin_mm
 
-    active = near(material)
+    active = within(material)
     if not active.any():
         raise DesignError(
-            f"no material lies within {active_radius_mm:g} mm of the target",
+            f"no material lies within {region.radius_mm:g} mm of the target",
             hint="raise contact.active_radius_mm or move press.target_mm",
             at="contact.active_radius_mm",
         )
-    bare = np.unique(_keys(skin_cells[near(skin_cells)]))
-    bare = _coordinates(bare[~np.isin(bare, _keys(material))])
+    bare = np.unique(keys_of(skin_cells[within(skin_cells)]))
+    bare = cells_of(bare[~np.isin(bare, keys_of(material))])
     cells = np.concatenate([material[active], bare])
     fractions = np.concatenate([material_points.fractions[active], np.zeros((len(bare), 8))])
-    order = np.argsort(_keys(cells), kind="stable")
-    margin_mm = active_radius_mm + 4.0 * grid_mm
-    beside = ~active & (np.linalg.norm(material * grid_mm - target_mm, axis=1) < margin_mm)
+    order = np.argsort(keys_of(cells), kind="stable")
+    beside = ~active & within(material, 4.0 * grid_mm)
     return cells[order], fractions[order].astype(np.float64), material[beside]
 
 
 def _number_nodes(cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Keys of all stencil nodes in order, and the first node of each row, shape (C, 9)."""
-    keys = _keys(cells[:, None] + _STENCIL)
+    keys = keys_of(cells[:, None] + _STENCIL)
     nodes, inverse = np.unique(keys.ravel(), return_inverse=True)
     return nodes, inverse.reshape(-1, 27)[:, ::3].astype(np.int32)
 
@@ -276,23 +282,3 @@ def _node_slots(rows: np.ndarray, node_count: int) -> np.ndarray:
 
 def _spread(values: np.ndarray, rows: np.ndarray, node_count: int) -> np.ndarray:
     return np.bincount(stencil_nodes(rows).ravel(), values.ravel(), node_count)
-
-
-# A key orders lattice points by x, y, z and fits 21 signed bits of each into one integer.
-_SPAN = 1 << 21
-_HALF = _SPAN >> 1
-
-
-def _keys(lattice: np.ndarray) -> np.ndarray:
-    x, y, z = np.moveaxis(lattice.astype(np.int64) + _HALF, -1, 0)
-    return (x * _SPAN + y) * _SPAN + z
-
-
-def _coordinates(keys: np.ndarray) -> np.ndarray:
-    return np.stack([keys // _SPAN**2, keys // _SPAN % _SPAN, keys % _SPAN], axis=-1) - _HALF
-
-
-def _look_up(sorted_keys: np.ndarray, keys: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Row of each key among sorted keys, and whether it is there."""
-    row = np.minimum(np.searchsorted(sorted_keys, keys), len(sorted_keys) - 1)
-    return row, sorted_keys[row] == keys

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from sim.contact.motion.approach import Approach, plan_approach
-from sim.contact.objects.collider import Collider, make_collider
+from sim.contact.objects.collider import make_collider
 from sim.contact.objects.samples import Window
 from sim.contact.objects.sampling import SAMPLES_PER_CELL
 from sim.contact.region.refinement import path_samples
@@ -34,8 +34,8 @@ def place_object(
     *,
     grid_mm: float,
     sampled: SampledDistance | None = None,
-) -> tuple[Collider, Approach]:
-    """The object's signed distance and its path.
+) -> Approach:
+    """The object on its path.
 
     Args:
         outer: The skin.
@@ -51,19 +51,18 @@ def place_object(
     collider = make_collider(indenter, grid_mm=grid_mm, whole=sampled)
     approach = plan_approach(outer, collider, press)
     if collider.shape is not Shape.GRID:
-        return collider, approach
+        return approach
     spacing_mm = 1.0 / float(collider.size[3])
     if spacing_mm <= COARSER * grid_mm / SAMPLES_PER_CELL:
-        return collider, approach
-    window_mm = near_window_mm(outer, collider, approach, grid_mm=grid_mm)
+        return approach
+    window_mm = near_window_mm(outer, approach, grid_mm=grid_mm)
     collider = make_collider(indenter, grid_mm=grid_mm, window_mm=window_mm, whole=sampled)
-    return collider, plan_approach(outer, collider, press)
+    return plan_approach(outer, collider, press)
 
 
-def near_window_mm(
-    outer: Skin, collider: Collider, approach: Approach, *, grid_mm: float
-) -> Window:
+def near_window_mm(outer: Skin, approach: Approach, *, grid_mm: float) -> Window:
     """Lower and upper corner [mm], body frame, of what comes near the skin on the path."""
+    collider = approach.collider
     spacing_mm = 1.0 / float(collider.size[3])
     near_mm = NEAR_CELLS * grid_mm + 2.0 * spacing_mm
     low, high = np.full(3, np.inf), np.full(3, -np.inf)

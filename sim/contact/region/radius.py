@@ -13,7 +13,6 @@ import math
 import numpy as np
 
 from sim.contact.motion.approach import Approach
-from sim.contact.objects.collider import Collider
 from sim.contact.region.backing import decay_mm
 from sim.contact.region.materials import stiffest_MPa
 from sim.contact.region.refinement import path_samples
@@ -43,7 +42,6 @@ def region_radius_mm(
     mesh: MembraneMesh,
     material: Elastomer,
     approach: Approach,
-    collider: Collider,
     settings: ContactSettings,
 ) -> float:
     """The designer's radius [mm], or with 0 the one that patch and wall ask for.
@@ -58,7 +56,7 @@ def region_radius_mm(
     """
     to_support = np.linalg.norm(mesh.inner.points_mm - approach.target_mm, axis=1)
     wall_mm = float(to_support.min())
-    patch_mm = patch_radius_mm(mesh, approach, collider)
+    patch_mm = patch_radius_mm(mesh, approach)
     chosen_mm = settings.active_radius_mm
     decays_mm = decay_mm(mesh, material, wall_mm)
     from_target = np.linalg.norm(mesh.outer.points_mm - approach.target_mm, axis=1)
@@ -91,12 +89,13 @@ def margin_walls(error: float) -> float:
     return max(LEAST_MARGIN_WALLS, MARGIN_WALLS + math.log(MARGIN_ERROR / error) / DECAY_WALLS)
 
 
-def patch_radius_mm(mesh: MembraneMesh, approach: Approach, collider: Collider) -> float:
+def patch_radius_mm(mesh: MembraneMesh, approach: Approach) -> float:
     """Farthest skin vertex from the target that the indenter covers on its path."""
     from_target = np.linalg.norm(mesh.outer.points_mm - approach.target_mm, axis=1)
     patch_mm = 0.0
     for progress in path_samples(approach):
         origin, rotation = approach.pose(float(progress))
-        inside = collider.distance((mesh.outer.points_mm - origin) @ rotation)[0] < 0.0
+        body = (mesh.outer.points_mm - origin) @ rotation
+        inside = approach.collider.distance(body)[0] < 0.0
         patch_mm = max(patch_mm, float(from_target[inside].max(initial=0.0)))
     return patch_mm

@@ -13,7 +13,6 @@ import math
 import numpy as np
 
 from sim.contact.motion.approach import Approach
-from sim.contact.objects.collider import Collider
 from sim.contact.region.quadrature import Facets
 
 LONGEST_EDGE = 1.2
@@ -45,23 +44,23 @@ def path_samples(approach: Approach) -> np.ndarray:
     return np.concatenate(found)
 
 
-def path_distance_mm(places_mm: np.ndarray, approach: Approach, collider: Collider) -> np.ndarray:
+def path_distance_mm(places_mm: np.ndarray, approach: Approach) -> np.ndarray:
     """Least signed distance [mm] of undeformed places, (N, 3), over the path, shape (N,)."""
     nearest = np.full(len(places_mm), np.inf)
     for progress in path_samples(approach):
-        nearest = np.minimum(nearest, _distance_mm(places_mm, approach, collider, float(progress)))
+        nearest = np.minimum(nearest, _distance_mm(places_mm, approach, float(progress)))
     return nearest
 
 
-def refine(facets: Facets, approach: Approach, collider: Collider, *, grid_mm: float) -> Facets:
+def refine(facets: Facets, approach: Approach, *, grid_mm: float) -> Facets:
     """Halve the triangles that the indenter comes near."""
-    sharp_mm = max(EDGE_PER_RADIUS * collider.least_radius_mm, FINEST_EDGE * grid_mm)
+    sharp_mm = max(EDGE_PER_RADIUS * approach.collider.least_radius_mm, FINEST_EDGE * grid_mm)
     longest_mm = min(LONGEST_EDGE * grid_mm, sharp_mm)
     most = len(facets.triangles) + MOST_ADDED
     while len(facets.triangles) < most:
         long = np.flatnonzero(facets.longest_edges_mm() > longest_mm)
         centre, radius = _balls(facets.corners_mm()[long])
-        gap = path_distance_mm(centre, approach, collider) - radius
+        gap = path_distance_mm(centre, approach) - radius
         near = long[gap < MARGIN * grid_mm]
         if not len(near):
             break
@@ -69,18 +68,18 @@ def refine(facets: Facets, approach: Approach, collider: Collider, *, grid_mm: f
         room = max(1, (most - len(facets.triangles)) // 3)
         order = np.argsort(gap[gap < MARGIN * grid_mm], kind="stable")
         facets = facets.halve(near[order[:room]])
-    return _refine_first_touch(facets, approach, collider) if approach.deepest_mm else facets
+    return _refine_first_touch(facets, approach) if approach.deepest_mm else facets
 
 
-def _refine_first_touch(facets: Facets, approach: Approach, collider: Collider) -> Facets:
+def _refine_first_touch(facets: Facets, approach: Approach) -> Facets:
     """Halve the triangles under the indenter in the first frame until enough corners are inside."""
     most = len(facets.triangles) + MOST_ADDED
     while len(facets.triangles) < most:
         centre, radius = _balls(facets.corners_mm())
-        gap = _distance_mm(centre, approach, collider, 1.0) - radius
+        gap = _distance_mm(centre, approach, 1.0) - radius
         under = np.flatnonzero((gap < 0.0) & (facets.longest_edges_mm() > FINEST_TOUCH_EDGE_MM))
         corners = np.unique(facets.triangles[gap < 0.0])
-        inside = _distance_mm(facets.points_mm[corners], approach, collider, 1.0) < 0.0
+        inside = _distance_mm(facets.points_mm[corners], approach, 1.0) < 0.0
         if np.count_nonzero(inside) >= FEWEST_TOUCHING or not len(under):
             break
         facets = facets.halve(under)
@@ -93,15 +92,13 @@ def _balls(corners_mm: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return centre, np.linalg.norm(corners_mm - centre[:, None], axis=2).max(axis=1)
 
 
-def _distance_mm(
-    places_mm: np.ndarray, approach: Approach, collider: Collider, progress: float
-) -> np.ndarray:
+def _distance_mm(places_mm: np.ndarray, approach: Approach, progress: float) -> np.ndarray:
     """Signed distance of places, (N, 3), at a pose; for those beyond its reach a lower bound."""
     origin, rotation = approach.pose(progress)
     body = places_mm - origin
-    distance = np.linalg.norm(body, axis=1) - collider.reach_mm
+    distance = np.linalg.norm(body, axis=1) - approach.collider.reach_mm
     near = np.flatnonzero(distance < REACH_MARGIN_MM)
-    distance[near] = collider.distance(body[near] @ rotation)[0]
+    distance[near] = approach.collider.distance(body[near] @ rotation)[0]
     return distance
 
 

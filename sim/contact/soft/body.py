@@ -19,7 +19,7 @@ from sim.contact.grid.stencil import point_weights
 from sim.contact.objects.collider import Collider
 from sim.contact.objects.sampling import box_mm
 from sim.contact.readout.problem import BOND_PENALTY, Problem
-from sim.contact.region.domain import EIGENVALUE, Domain, build_domain, stencil_nodes
+from sim.contact.region.domain import EIGENVALUE, Domain, Region, build_domain, stencil_nodes
 from sim.contact.region.filling import fill
 from sim.contact.region.materials import stiffest_MPa
 from sim.contact.region.quadrature import SurfacePoints
@@ -83,8 +83,7 @@ def make_soft_object(problem: Problem, indenter: Indenter) -> SoftObject:
         points,
         _held(points, level_mm, BOND_PENALTY * soft.young_MPa * grid_mm),
         material,
-        target_mm=np.zeros(3),
-        active_radius_mm=EVERYTHING_MM,
+        region=Region(centre_mm=np.zeros(3), radius_mm=EVERYTHING_MM),
         inner_moves=False,
     )
     first, cell_map = _cell_map(points)

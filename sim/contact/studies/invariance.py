@@ -94,9 +94,7 @@ def _free_block() -> tuple[Domain, Relaxation]:
     collider = make_collider(Indenter(), grid_mm=GRID_MM)
     press = Press(target_mm=(0.0, 0.0, HEIGHT_MM), depth_mm=0.2, frames=1)
     approach = plan_approach(mesh.outer, collider, press)
-    domain = prepare(
-        mesh, points, MATERIAL, approach, collider, ContactSettings(), radius_mm=3.0 * WIDTH_MM
-    )
+    domain = prepare(mesh, points, MATERIAL, approach, ContactSettings(), radius_mm=3.0 * WIDTH_MM)
     relaxation = Relaxation([Case(domain=domain, collider=collider, friction=0.0)])
     away_mm = approach.target_mm + 100.0 * approach.normal
     pose = np.concatenate([away_mm, np.eye(3).ravel(), [1.0]])

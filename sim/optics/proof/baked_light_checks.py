@@ -20,6 +20,7 @@ from sim.optics.proof.specimen import finger
 from sim.optics.proof.transport_scenes import BLACK
 from sim.optics.transport.gather import gather_light
 from sim.optics.transport.nodes import vertex_areas
+from sim.optics.transport.paths import Photons
 from sim.optics.transport.radiance import trace_radiance
 from sim.optics.transport.view import directions_to_camera
 from workbench.core.base.monitor import silent
@@ -111,7 +112,8 @@ def table_error(*, in_shell: bool, photons: int = 1_000_000) -> float:
     assert scattered is not None
     places = scattered.nodes, scattered.weights, scattered.frame
     found = look_up(table.values[0], *places, -mesh.seen.normals)
-    traced = trace_radiance(mesh, leds, camera, transport, photons=photons, first_photon=photons)
+    others = Photons(count=photons, seed=transport.baking.seed, first=photons)
+    traced = trace_radiance(mesh, leds, camera, transport, others)
     exact = traced.radiance * (len(leds.rgb) / traced.photons)
     share = vertex_areas(mesh.seen) * (mesh.seen.points_mm[:, 2] > 3.0)
     return float(abs(share @ found.sum(axis=1) / (share @ exact.sum(axis=1)) - 1.0))

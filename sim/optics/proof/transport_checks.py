@@ -29,7 +29,7 @@ from sim.optics.proof.transport_scenes import (
 from sim.optics.transport.constants import FIXED_POINT
 from sim.optics.transport.gather import scattered_light, virtual_lights
 from sim.optics.transport.nodes import coarse_nodes
-from sim.optics.transport.paths import trace_paths
+from sim.optics.transport.paths import Photons, trace_paths
 from sim.optics.transport.scene import Scene, build_scene
 from sim.optics.transport.sources import open_sources
 from sim.optics.transport.tally import ledger_only, tally_at_nodes
@@ -103,7 +103,7 @@ def reciprocity(
         scene = build_scene(_raw(disc(distance_mm, far_mm)), None, coating=BLACK)
         source = disc_source(near_mm)
         tally = ledger_only()
-        trace_paths(scene, source, tally, photons=photons, seed=1)
+        trace_paths(scene, source, tally, Photons(count=photons, seed=1))
         found.append(tally.balance["absorbed"] * math.pi * near_mm**2)
     one, two = (radius / distance_mm for radius in radii_mm)
     x = 1.0 + (1.0 + two**2) / one**2
@@ -175,7 +175,7 @@ def _raw(skin: Skin) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 def _ledger(scene: Scene, leds: Leds, photons: int) -> dict[str, float]:
     tally = ledger_only()
-    trace_paths(scene, open_sources(leds, scene), tally, photons=photons, seed=1)
+    trace_paths(scene, open_sources(leds, scene), tally, Photons(count=photons, seed=1))
     return tally.balance
 
 
@@ -186,7 +186,7 @@ def _gathered(
     nodes = coarse_nodes(skin, count)
     sources = open_sources(leds, scene)
     tally = tally_at_nodes(nodes, sources.count)
-    trace_paths(scene, sources, tally, photons=photons, seed=1)
+    trace_paths(scene, sources, tally, Photons(count=photons, seed=1))
     return scattered_light(nodes, sources, tally), nodes.points_mm, nodes.area_mm2
 
 
@@ -195,7 +195,7 @@ def _virtual(scene: Scene, skin: Skin, leds: Leds, photons: int) -> tuple[np.nda
     nodes = coarse_nodes(skin, len(skin.points_mm))
     sources = open_sources(leds, scene)
     tally = tally_at_nodes(nodes, sources.count)
-    trace_paths(scene, sources, tally, photons=photons, seed=1)
+    trace_paths(scene, sources, tally, Photons(count=photons, seed=1))
     direction, irradiance = virtual_lights(nodes, sources, tally, skin.points_mm, smoothings=0)
     return direction[0], irradiance[0]
 
@@ -207,6 +207,6 @@ def _ledger_and_mean(
     nodes = coarse_nodes(skin, len(skin.points_mm))
     sources = open_sources(leds, scene)
     tally = tally_at_nodes(nodes, sources.count)
-    trace_paths(scene, sources, tally, photons=photons, seed=1)
+    trace_paths(scene, sources, tally, Photons(count=photons, seed=1))
     mean = tally.lamps[:, 0, :3].sum(axis=0) / FIXED_POINT
     return tally.balance, mean / np.linalg.norm(mean)

@@ -206,6 +206,7 @@ def dented(model: LightModel, mesh: MembraneMesh) -> TactileFrames:
 def _radiance(
     mesh: MembraneMesh, optics: Optics, traced: Transport, displacement_mm: np.ndarray | None
 ) -> np.ndarray:
+    from sim.optics.transport.paths import Photons
     from sim.optics.transport.radiance import trace_radiance
 
     leds = place_leds(optics.ring)
@@ -214,8 +215,7 @@ def _radiance(
         leds,
         optics.camera,
         traced,
-        photons=traced.baking.photons,
-        first_photon=0,
+        Photons(count=traced.baking.photons, seed=traced.baking.seed),
         displacement_mm=displacement_mm,
     )
     return found.radiance * np.float32(len(leds.rgb) / found.photons)

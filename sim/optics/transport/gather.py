@@ -14,7 +14,7 @@ import numpy as np
 from sim.optics.light.lights import Leds
 from sim.optics.transport.constants import FIXED_POINT
 from sim.optics.transport.nodes import Nodes, coarse_nodes, neighbours
-from sim.optics.transport.paths import Driver, trace_paths
+from sim.optics.transport.paths import Driver, Photons, trace_paths
 from sim.optics.transport.scene import open_scene
 from sim.optics.transport.smoothing import smoothed_bins
 from sim.optics.transport.sources import Sources, open_sources
@@ -57,15 +57,8 @@ def gather_light(
     scene = open_scene(mesh, transport)
     sources = open_sources(leds, scene)
     tally = tally_at_nodes(nodes, sources.count)
-    trace_paths(
-        scene,
-        sources,
-        tally,
-        photons=baking.photons,
-        seed=baking.seed,
-        driver=driver,
-        monitor=part(monitor, 0.05, 0.95),
-    )
+    photons = Photons(count=baking.photons, seed=baking.seed, driver=driver)
+    trace_paths(scene, sources, tally, photons, monitor=part(monitor, 0.05, 0.95))
     direction, irradiance = virtual_lights(nodes, sources, tally, mesh.seen.points_mm)
     monitor(1.0, "light gathered")
     return direction, irradiance, scattered_light(nodes, sources, tally)

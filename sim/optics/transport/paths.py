@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import enum
+from dataclasses import dataclass
 from typing import Protocol
 
 from sim.optics.transport.scene import Scene
@@ -12,12 +13,30 @@ from workbench.core.base.monitor import Monitor, silent
 
 
 class Driver(enum.StrEnum):
-    """How rays find what they meet; both give the same light."""
+    """How rays find what they meet; both give the same light.
+
+    Two, because on two cores the tree takes twice the processor time that Embree takes, and a GPU
+    would wait for Embree.
+    """
 
     WAVEFRONT = "wavefront"
     """Embree for all rays at once, event by event: for processors."""
     MEGAKERNEL = "megakernel"
     """One thread a photon, with a tree of boxes: for CUDA."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Photons:
+    """Which photons are followed, and how."""
+
+    count: int
+    """Rounded up to as many from each light."""
+    seed: int
+    """Of the random numbers."""
+    first: int = 0
+    """Number of the first one; batches that follow one another make one long run."""
+    driver: Driver | None = None
+    """None takes the one for the open device."""
 
 
 class _Tracer(Protocol):
@@ -32,11 +51,8 @@ def trace_paths(
     scene: Scene,
     sources: Sources,
     tally: Tally,
+    photons: Photons,
     *,
-    photons: int,
-    seed: int,
-    first_photon: int = 0,
-    driver: Driver | None = None,
     monitor: Monitor = silent,
 ) -> int:
     """Follow photons and add what they leave to the tally.
@@ -45,20 +61,18 @@ def trace_paths(
         scene: What they meet.
         sources: Where they begin.
         tally: Grows.
-        photons: How many; rounded up to as many from each light.
-        seed: Of the random numbers.
-        first_photon: Number of the first one; batches that follow one another make one long run.
-        driver: None takes the one for the open device.
+        photons: How many, and how.
 
     Returns:
         Photons that were followed.
     """
-    count = -(-photons // sources.count) * sources.count
-    tracer = _open(driver or driver_of_device(), scene, sources, tally)
+    count = -(-photons.count // sources.count) * sources.count
+    tracer = _open(photons.driver or driver_of_device(), scene, sources, tally)
     try:
         for start in range(0, count, tracer.batch):
             monitor(start / count, f"{start / 1e6:.1f} of {count / 1e6:.1f} million photons")
-            tracer.trace(first_photon + start, min(tracer.batch, count - start), seed)
+            batch = min(tracer.batch, count - start)
+            tracer.trace(photons.first + start, batch, photons.seed)
     finally:
         tracer.close()
     tally.photons += count

@@ -15,7 +15,7 @@ import numpy as np
 from geometry.surface.surface import face_areas
 from sim.optics.light.lights import Leds
 from sim.optics.transport.constants import FIXED_POINT
-from sim.optics.transport.paths import Driver, trace_paths
+from sim.optics.transport.paths import Photons, trace_paths
 from sim.optics.transport.scene import open_scene
 from sim.optics.transport.sources import open_sources
 from sim.optics.transport.tally import tally_toward_camera
@@ -32,11 +32,9 @@ def trace_radiance(
     leds: Leds,
     camera: Camera,
     transport: Transport,
+    photons: Photons,
     *,
-    photons: int,
-    first_photon: int,
     displacement_mm: np.ndarray | None = None,
-    driver: Driver | None = None,
     monitor: Monitor = silent,
 ) -> VertexRadiance:
     """One batch of photons as radiance at the vertices of the seen skin.
@@ -47,27 +45,16 @@ def trace_radiance(
         mesh: The skins.
         leds: The lights.
         camera: Whose radiance is asked for.
-        transport: What photons meet; its seed.
-        photons: In this batch; rounded up to as many from each light.
-        first_photon: Photons of all batches before this one.
+        transport: What photons meet.
+        photons: Of this batch.
         displacement_mm: Of the seen skin's vertices [mm], shape (V, 3); None at rest.
-        driver: None takes the one for the open device.
     """
     scene = open_scene(mesh, transport, displacement_mm=displacement_mm)
     sources = open_sources(leds, scene)
     points = scene.points_mm[: scene.skin_points].astype(np.float64)
     to_camera = directions_to_camera(points, mesh, camera, transport.refractive_index)
     tally = tally_toward_camera(scene, to_camera)
-    followed = trace_paths(
-        scene,
-        sources,
-        tally,
-        photons=photons,
-        seed=transport.baking.seed,
-        first_photon=first_photon,
-        driver=driver,
-        monitor=monitor,
-    )
+    followed = trace_paths(scene, sources, tally, photons, monitor=monitor)
     faces = scene.faces[: scene.skin_faces]
     third = np.repeat(face_areas(points, faces) / 3.0, 3)
     area_mm2 = np.bincount(faces.ravel(), third, len(points))

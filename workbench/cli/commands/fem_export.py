@@ -24,8 +24,8 @@ def options(sub: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace, project: Project) -> int:
     """Write a press as an input deck of CalculiX or Abaqus."""
-    from sim.fem.deck import write_deck
-    from sim.fem.deck_mesh import Element
+    from sim.fem.decks.deck import write_deck
+    from sim.fem.decks.mesh import Element
 
     if options.out.is_dir() or options.out.suffix != ".inp":
         raise DesignError(

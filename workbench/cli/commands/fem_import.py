@@ -30,7 +30,7 @@ def options(sub: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace, project: Project) -> int:
     """Compare another program's results of a deck with ours."""
-    from sim.fem.deck_text import carried_text
+    from sim.fem.decks.text import carried_text
 
     deck = _text(options.deck)
     state, element = read_carried(carried_text(deck), project, source=str(options.deck))
@@ -60,9 +60,9 @@ def read_theirs(deck: str, path: Path, state: State, element: Any, project: Proj
             truncated or of another deck.
         SolveError: If it has fewer steps than frames.
     """
-    from sim.fem.deck_dat import read_dat
-    from sim.fem.deck_results import force_field, read_table
-    from sim.fem.deck_text import read_deck
+    from sim.fem.decks.dat import read_dat
+    from sim.fem.decks.results import force_field, read_table
+    from sim.fem.decks.text import read_deck
 
     ready, mesh = deck_case(state, element, project)
     points_mm = ready.submodel.body.points_mm

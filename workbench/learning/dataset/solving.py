@@ -160,7 +160,7 @@ class Bench:
         indenter = self.recipe.indenter(case.indenter)
         frame_of: Any = contact
         if contact is None:
-            _, frame_of = place_object(
+            frame_of = place_object(
                 self.mesh.outer, indenter, case.press, grid_mm=sampling_grid_mm(settings)
             )
 

@@ -107,7 +107,7 @@ def learned(given: LearnedInputs, *, monitor: Monitor) -> ForceField:
     networks = [force] if displacement is None else [force, displacement]
     read = [read_weights(network.file) for network in networks]
     load_torch(monitor)
-    from sim.forces.learned import Known, learned_forces
+    from sim.forces.learned import Known, Pair, learned_forces
 
     points_mm, gel = source.outer.points_mm, source.backing_mm > 0.0
     largest_mm = float(np.linalg.norm(contact.displacement_mm, axis=2).max(initial=0.0))
@@ -130,7 +130,7 @@ def learned(given: LearnedInputs, *, monitor: Monitor) -> ForceField:
         mesh,
         contact,
         source,
-        *used,
+        Pair(*used),
         solvable=source.hexes is not None and given.indenter.soft is None,
         device=torch_device(),
         monitor=monitor,

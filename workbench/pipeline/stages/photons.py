@@ -35,6 +35,7 @@ def photons(given: PhotonsInputs, *, monitor: Monitor) -> VertexRadiance:
     """Radiance toward the camera from each vertex, of these photons."""
     start_device(monitor)
     from sim.optics.light.lights import place_leds
+    from sim.optics.transport.paths import Photons
     from sim.optics.transport.radiance import trace_radiance
 
     contact, mesh = given.contact, given.mesh
@@ -44,8 +45,7 @@ def photons(given: PhotonsInputs, *, monitor: Monitor) -> VertexRadiance:
         place_leds(given.ring, given.lamps),
         given.camera,
         given.transport,
-        photons=given.count,
-        first_photon=given.first_photon,
+        Photons(count=given.count, seed=given.transport.baking.seed, first=given.first_photon),
         displacement_mm=moved,
         monitor=monitor,
     )

@@ -15,7 +15,7 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-from sim.fem.deck_mesh import Element
+from sim.fem.decks.mesh import Element
 from workbench.core.base.errors import DeviceError, SolveError
 from workbench.core.base.monitor import silent
 from workbench.core.design.design import Elastomer, Meshing, SensorDesign
@@ -118,9 +118,9 @@ def run_calculix(mesh: MembraneMesh, state: State, element: Element) -> ForceFie
         SolveError: If it does not converge or takes too long.
         DeviceError: If it cannot be started.
     """
-    from sim.fem.deck import write_deck
-    from sim.fem.deck_dat import read_dat
-    from sim.fem.deck_results import force_field
+    from sim.fem.decks.dat import read_dat
+    from sim.fem.decks.deck import write_deck
+    from sim.fem.decks.results import force_field
 
     ready = make_deck_case(mesh, state, element)
     with tempfile.TemporaryDirectory() as folder:

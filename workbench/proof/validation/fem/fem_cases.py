@@ -191,8 +191,8 @@ def _reachable(skin: MembraneMesh, ordered: np.ndarray, family: str) -> tuple[fl
     for x, y, z in ordered[:: max(1, len(ordered) // MOST_TRIED)].tolist():
         press = Press(target_mm=(x, y, z), depth_mm=DEPTH_MM, shear_mm=(SHEAR_MM, SHEAR_MM))
         try:
-            collider, approach = place_object(skin.outer, cube, press, grid_mm=0.25)
-            check_depth(support_points_mm(skin), approach, collider)
+            approach = place_object(skin.outer, cube, press, grid_mm=0.25)
+            check_depth(support_points_mm(skin), approach)
         except WorkbenchError:
             continue
         return x, y, z

@@ -136,6 +136,7 @@ def _traced(case: Case, optics: Optics, photons: int) -> tuple[np.ndarray, np.nd
 def _radiance(case: Case, optics: Optics, photons: int) -> np.ndarray:
     """Toward the camera at the seen skin's vertices, shape (V, 3)."""
     from sim.optics.light.lights import place_leds
+    from sim.optics.transport.paths import Photons
     from sim.optics.transport.radiance import trace_radiance
 
     transport, leds = optics.transport, place_leds(RING)
@@ -146,8 +147,7 @@ def _radiance(case: Case, optics: Optics, photons: int) -> np.ndarray:
         leds,
         CAMERA,
         transport,
-        photons=photons,
-        first_photon=0,
+        Photons(count=photons, seed=transport.baking.seed),
         displacement_mm=displacement_mm(case) if case.dented else None,
     )
     return found.radiance * (len(leds.rgb) / found.photons)

@@ -115,6 +115,7 @@ def trace(file: Path, out: Path, photons: int, names: list[str]) -> None:
     Frames whose file is there already are kept.
     """
     from sim.optics.light.lights import place_leds
+    from sim.optics.transport.paths import Photons
     from sim.optics.transport.radiance import trace_radiance
     from workbench.pipeline.devices import open_device
 
@@ -123,7 +124,7 @@ def trace(file: Path, out: Path, photons: int, names: list[str]) -> None:
     for name, (mesh, optics, frames) in read_scenes(file).items():
         if names and not any(name.startswith(wanted) for wanted in names):
             continue
-        leds = place_leds(optics.ring, optics.lamps)
+        leds, seed = place_leds(optics.ring, optics.lamps), optics.transport.baking.seed
         for frame, displacement in frames.items():
             target = out / f"{name.replace(' ', '_')}_{frame}.npz"
             if target.exists():
@@ -136,8 +137,7 @@ def trace(file: Path, out: Path, photons: int, names: list[str]) -> None:
                     leds,
                     optics.camera,
                     optics.transport,
-                    photons=photons,
-                    first_photon=half * photons,
+                    Photons(count=photons, seed=seed, first=half * photons),
                     displacement_mm=displacement,
                 )
                 halves.append(found.radiance * (len(leds.rgb) / found.photons))

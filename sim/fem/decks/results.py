@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim.fem.deck import DeckCase
+from sim.fem.decks.deck import DeckCase
 from workbench.core.base.errors import SolveError, StoreError
 from workbench.core.base.frames import quaternion
 from workbench.core.result.force_field import ForceField, Source

@@ -14,9 +14,9 @@ import numpy as np
 
 from sim.contact.motion.approach import Approach
 from sim.fem.contact_law import Law
-from sim.fem.deck_mesh import DeckMesh, Element, deck_mesh, element_lines, face_numbers, node_lines
-from sim.fem.deck_object import Shell
-from sim.fem.deck_text import carried_lines
+from sim.fem.decks.mesh import DeckMesh, Element, deck_mesh, element_lines, face_numbers, node_lines
+from sim.fem.decks.rigid_object import Shell
+from sim.fem.decks.text import carried_lines
 from sim.fem.submodel import Submodel
 from workbench.core.base.errors import DesignError
 from workbench.core.design.design import Elastomer

@@ -12,10 +12,10 @@ import re
 import numpy as np
 
 from sim.contact.readout.fields import VOIGT
-from sim.fem.deck import DeckCase, skin_cells
-from sim.fem.deck_forces import stress_forces
-from sim.fem.deck_mesh import deck_mesh
-from sim.fem.deck_results import OtherResult, expect_frames
+from sim.fem.decks.deck import DeckCase, skin_cells
+from sim.fem.decks.mesh import deck_mesh
+from sim.fem.decks.results import OtherResult, expect_frames
+from sim.fem.decks.stress_forces import stress_forces
 from workbench.core.base.errors import StoreError
 
 BLOCK = re.compile(r"^ *(total force|displacements|stresses) .*for set (\w+) and time +(\S+) *$")

@@ -25,6 +25,12 @@ PROJECTIONS = 4
 """Newton steps that bring a vertex onto the surface; contoured vertices start within microns."""
 LEAST_AREA_SHARE = 1e-4
 """Triangles smaller than this share of the mean are left out: programs divide by their area."""
+STEP_MM = 0.12
+"""Edge of a triangle [mm]: its chord leaves a ball of radius 3 mm by 0.6 um."""
+STEPS_PER_RADIUS = 3.0
+FINEST_MM = 0.05
+MERGED_SHARE = 0.4
+"""Vertices nearer than this share of a step become one."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -37,17 +43,14 @@ class Shell:
     """Node numbers, shape (T, 6): the outer triangle, clockwise from outside, then the inner."""
 
 
-def near_box_mm(
-    points_mm: np.ndarray, approach: Approach, collider: Collider
-) -> tuple[np.ndarray, np.ndarray]:
+def near_box_mm(points_mm: np.ndarray, approach: Approach) -> tuple[np.ndarray, np.ndarray]:
     """Lower and upper corner [mm], object's frame, of the skin that comes near it on the path.
 
     Where regions are driven the skin may come from as far as it is driven.
 
     Args:
         points_mm: Skin of the part that takes part, shape (N, 3).
-        approach: The path.
-        collider: The object.
+        approach: The object and its path.
 
     Raises:
         SolveError: If the object stays clear of the skin.
@@ -57,7 +60,7 @@ def near_box_mm(
     for progress in path_samples(approach):
         origin_mm, rotation = approach.pose(float(progress))
         places = (points_mm - origin_mm) @ rotation
-        places = places[collider.distance(places)[0] < near_mm]
+        places = places[approach.collider.distance(places)[0] < near_mm]
         if len(places):
             low, high = np.minimum(low, places.min(axis=0)), np.maximum(high, places.max(axis=0))
     if not np.isfinite(low).all():
@@ -65,7 +68,7 @@ def near_box_mm(
             f"the object stays more than {near_mm:g} mm from the skin on the whole path",
             hint="there is nothing to compare: press it in",
         )
-    whole_mm = collider.reach_mm + NEAR_MM
+    whole_mm = approach.collider.reach_mm + NEAR_MM
     return np.maximum(low - near_mm, -whole_mm), np.minimum(high + near_mm, whole_mm)
 
 
@@ -77,6 +80,44 @@ def _driven_mm(points_mm: np.ndarray, approach: Approach) -> float:
         for frame in range(approach.frame_count)
     ]
     return max(ways_mm, default=0.0)
+
+
+def near_surface(
+    collider: Collider, low_mm: np.ndarray, high_mm: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Even triangles of the object's surface within a box of its own frame.
+
+    Contoured (flying edges) from the very distance that our solver uses; vertices nearer to each
+    other than a share of the step are merged, because slivers spoil other programs' search for
+    contact.
+
+    Args:
+        collider: The object.
+        low_mm: Lower corner of the box, shape (3,).
+        high_mm: Upper corner, shape (3,).
+
+    Returns:
+        Vertices [mm], shape (N, 3), and triangles, shape (M, 3), none if the surface is elsewhere.
+    """
+    import pyvista
+
+    from geometry.surface.isosurface import isosurface
+
+    step_mm = min(STEP_MM, max(collider.least_radius_mm / STEPS_PER_RADIUS, FINEST_MM))
+    axes = [
+        np.arange(low, high + step_mm, step_mm) for low, high in zip(low_mm, high_mm, strict=True)
+    ]
+    grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
+    values = collider.distance(grid.reshape(-1, 3))[0].reshape(grid.shape[:3])
+    found = isosurface(values, low_mm, step_mm) if values.max() > 0.0 else None
+    if found is None:
+        return np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64)
+    points, faces = found
+    padded = np.column_stack([np.full(len(faces), 3), faces]).ravel()
+    merged = pyvista.PolyData(points, padded).clean(
+        tolerance=MERGED_SHARE * step_mm, absolute=True, lines_to_points=False, polys_to_lines=True
+    )
+    return np.asarray(merged.points, dtype=np.float64), merged.regular_faces.astype(np.int64)
 
 
 def make_shell(points_mm: np.ndarray, faces: np.ndarray, collider: Collider) -> Shell:

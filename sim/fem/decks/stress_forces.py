@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sim.fem.deck_mesh import EDGES
+from sim.fem.decks.mesh import EDGES
 from sim.fem.elements import CORNERS, GAUSS
 
 STEP = 1e-6
