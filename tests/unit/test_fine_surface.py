@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sim.contact.objects.fine_surface import fine_surface
+from sim.contact.objects.fine_surface import _frame, fine_surface
 from sim.optics.studio.detail_filling import filling, followed_slope, full_pressure_MPa, gap_share
 from workbench.core.press.texture import SMOOTH, HeightImage, Pattern, Texture
 
@@ -39,6 +39,15 @@ def test_waves_that_the_skin_carries_are_left_in_part() -> None:
     assert surface is not None
     assert surface.high_mm == pytest.approx(0.03262, rel=1e-3)
     assert surface.low_mm == pytest.approx(-0.03262, rel=1e-3)
+
+
+def test_the_raster_of_letters_ends_four_sigmas_beside_them() -> None:
+    """Two letters of 1.5 mm with half a capital around: 4.5 x 3 mm, and 8 sigma of 0.2 mm."""
+    text = Texture(pattern=Pattern.LETTERS, pitch_mm=1.5, height_mm=0.05, text="OK")
+    origin_mm, step_mm, shape = _frame(text, 0.2, False)
+    extent_mm = step_mm * (np.array(shape) - 1)
+    np.testing.assert_allclose(extent_mm, [4.5 + 1.6, 3.0 + 1.6], atol=step_mm)
+    np.testing.assert_allclose(origin_mm + 0.5 * extent_mm, 0.0, atol=1e-12)
 
 
 @pytest.mark.parametrize(

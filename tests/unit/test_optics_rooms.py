@@ -85,6 +85,10 @@ def test_a_hertz_dent_is_as_deep_and_as_wide_as_its_formula() -> None:
     rim = np.abs(away - 0.55) < 0.05
     assert rim.any() and moved[rim] == pytest.approx(np.full(rim.sum(), 0.05), abs=0.012)
     assert not moved[away > 6.0 * 0.55].any()
+    # Far off it falls as 4 a / (3 pi r), and is faded from half of six radii on.
+    far = np.abs(away - 2.9 * 0.55) < 0.05
+    expected = 0.1 * 4.0 * 0.55 / (3.0 * np.pi * away[far])
+    assert far.any() and moved[far] == pytest.approx(expected, rel=0.03)
 
 
 @pytest.mark.slow

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from sim.optics.camera.camera import project, refracted_rays
-from sim.optics.camera.projection import FOUND_MM, open_map, project_points, seeds
+from sim.optics.camera.projection import FOUND_MM, _meet, open_map, project_points, seeds
 from sim.optics.camera.refraction import refract
 from sim.optics.camera.walls import last_segments
 from sim.optics.proof.specimen import finger
@@ -113,6 +113,18 @@ def stacked(*skins: Skin) -> Skin:
         ),
         normals=np.concatenate([skin.normals for skin in skins]),
     )
+
+
+def test_the_first_triangle_is_met_like_any_other() -> None:
+    """One ray into triangle 0, one into triangle 1, and one that goes the other way."""
+    ways = np.array([[0.3, -0.3, 1.0], [-0.3, 0.3, 1.0], [0.0, 0.0, -1.0]])
+    ways /= np.linalg.norm(ways, axis=1, keepdims=True)
+    skin = plate(20.0, 1.0)
+    segments = last_segments(ways, np.zeros(3), cavity=plate(10.0, 1.0), seen=skin, index=1.0)
+    hit, face = _meet(skin, segments)
+    np.testing.assert_array_equal(face, [0, 1, -1])
+    np.testing.assert_allclose(hit[:2], [[6.0, -6.0, 20.0], [-6.0, 6.0, 20.0]], atol=1e-4)
+    assert np.isnan(hit[2]).all()
 
 
 def test_rays_cross_every_wall_before_the_skin() -> None:

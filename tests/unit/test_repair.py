@@ -70,6 +70,19 @@ def test_the_winding_number_is_the_sum_of_solid_angles(top_mm: float) -> None:
     assert np.abs(sampled(found, grid, places) - want).max() < 0.08
 
 
+@pytest.mark.parametrize("step_mm", [0.6, 2.0])
+def test_a_closed_ball_winds_once_about_its_inside(step_mm: float) -> None:
+    """1 inside and 0 outside, on a fine and on a coarse grid."""
+    points, faces = np.array(BALL.vertices), np.array(BALL.faces)
+    grid = grid_around(points, step_mm)
+    found = winding_number(*samples_of(points, faces, step_mm / 1.5), grid)
+    reach = np.linalg.norm(points, axis=1).max()
+    middle = sampled(found, grid, np.array([[0.0, 0.0, 0.0], [0.0, 0.3 * reach, 0.0]]))
+    beside = sampled(found, grid, reach * np.array([[1.4, 0.0, 0.0], [0.0, 0.0, -1.4]]))
+    np.testing.assert_allclose(middle, 1.0, atol=0.06)
+    np.testing.assert_allclose(beside, 0.0, atol=0.06)
+
+
 def test_samples_hold_the_area_of_long_and_of_small_triangles() -> None:
     """A blade of 60 x 0.5 and a speck: areas add up, places are near and few."""
     points = np.array(

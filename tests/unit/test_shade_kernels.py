@@ -101,6 +101,17 @@ def test_dents_cast_shadows_in_this_comparison(mesh: MembraneMesh) -> None:
     assert (dark < 0.5 * bright).sum() > 20
 
 
+def test_skin_that_faces_away_from_a_light_receives_none(mesh: MembraneMesh) -> None:
+    """Unmoved skin keeps its light to the last digits; turned inside out it has none."""
+    light, _ = lit(mesh, LightModel.DIRECT, LedRing())
+    still, normals = mesh.seen.points_mm, mesh.seen.normals
+    same = relight(light, still, still, normals, patch=None).irradiance
+    faces = np.einsum("lvi,vi->lv", light.direction, normals) < -1e-3
+    assert faces.mean() > 0.5
+    np.testing.assert_allclose(same[faces], light.irradiance[faces], rtol=1e-4)
+    assert not relight(light, still, still, -normals, patch=None).irradiance[faces].any()
+
+
 def test_tilting_normals_to_themselves_changes_nothing(mesh: MembraneMesh) -> None:
     """`shade_tilted` of the skin's own normals is the undeformed foreground, bit by bit."""
     studio, _, _ = studio_of(mesh, LightModel.HYBRID, LedRing())

@@ -1,0 +1,26 @@
+"""The learning rate over a training, against the cosine that it names."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import pytest
+
+from sim.forces.training.settings import LAST_RATE, PRESETS, rate_factor
+
+SETTINGS = dataclasses.replace(next(iter(PRESETS.values())), warm_up=0.1, cosine=True)
+
+
+def test_rate_rises_then_falls_along_a_cosine() -> None:
+    """Of 1000 steps 100 warm up evenly; halfway down it is the mean, at the end 1 %."""
+    assert rate_factor(0, 1000, SETTINGS) == pytest.approx(0.01)
+    assert rate_factor(49, 1000, SETTINGS) == pytest.approx(0.5)
+    assert rate_factor(100, 1000, SETTINGS) == pytest.approx(1.0)
+    assert rate_factor(550, 1000, SETTINGS) == pytest.approx((1.0 + LAST_RATE) / 2.0)
+    assert rate_factor(1000, 1000, SETTINGS) == pytest.approx(LAST_RATE)
+
+
+def test_rate_without_a_cosine_stays() -> None:
+    """Once warm it is the whole rate to the end."""
+    settings = dataclasses.replace(SETTINGS, cosine=False)
+    assert rate_factor(500, 1000, settings) == rate_factor(999, 1000, settings) == 1.0
