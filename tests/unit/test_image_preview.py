@@ -72,6 +72,22 @@ def test_a_ball_dents_a_plane_to_its_depth(depth_mm: float) -> None:
     assert not moved[radius > 3.5].any()
 
 
+def test_an_object_is_as_wide_as_its_widest_side() -> None:
+    """A bar 30 mm long and 1 mm thin dents the skin along all of it."""
+    import trimesh
+
+    bar = trimesh.creation.box((30.0, 1.0, 1.0))
+    skin = flat_skin(16.0)
+    moved = geometric_dent(
+        skin, np.array(bar.vertices), np.array(bar.faces), target_mm=np.array([0.0, 0.0, 10.0]),
+        depth_mm=0.5,
+    )  # fmt: skip
+    top = (skin.points_mm[:, 2] > 5.0) & (np.abs(skin.points_mm[:, :2]) < [14.9, 0.4]).all(axis=1)
+    assert np.abs(skin.points_mm[top, 0]).max() > 14.6
+    even_mm = SOFTNESS_MM * np.logaddexp(0.0, 0.5 / SOFTNESS_MM)
+    assert -moved[top, 2] == pytest.approx(np.full(top.sum(), even_mm), rel=1e-4)
+
+
 def test_the_dent_begins_where_the_object_touches_first() -> None:
     """At depth 0 on a slanted ridge the deepest point is the ridge, though the target is beside."""
     skin = flat_skin()

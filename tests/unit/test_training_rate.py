@@ -7,6 +7,7 @@ import dataclasses
 import pytest
 
 from sim.forces.training.settings import LAST_RATE, PRESETS, rate_factor
+from workbench.core.base.errors import DesignError
 
 SETTINGS = dataclasses.replace(next(iter(PRESETS.values())), warm_up=0.1, cosine=True)
 
@@ -24,3 +25,12 @@ def test_rate_without_a_cosine_stays() -> None:
     """Once warm it is the whole rate to the end."""
     settings = dataclasses.replace(SETTINGS, cosine=False)
     assert rate_factor(500, 1000, settings) == rate_factor(999, 1000, settings) == 1.0
+
+
+@pytest.mark.parametrize("turns", [2, 8])
+def test_turned_skins_and_patches_exclude_each_other(turns: int) -> None:
+    """A patch has any angle already; one turn alone is no turn."""
+    patches = dataclasses.replace(SETTINGS, turns=1, patch_spacings=4.5)
+    assert patches.turns == 1
+    with pytest.raises(DesignError, match=f"{turns} turns are of whole skins"):
+        dataclasses.replace(patches, turns=turns)
