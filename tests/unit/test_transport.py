@@ -66,42 +66,32 @@ def step(
     tally: Tally | None = None,
 ) -> tuple[reference.Photons, np.ndarray]:
     """One event of photons 0, 1, ... by the kernel; the photons after it and the ledger."""
-    import taichi.math as tm
-
-    from sim.optics.transport import wavefront_kernels
+    from sim.optics.transport import bundles, wavefront_kernels
 
     happen_to_all: Any = wavefront_kernels.happen_to_all
     tally = tally or ledger_only()
     origin, direction = photons.origin.astype(np.float32), photons.direction.astype(np.float32)
     flux, alive = photons.flux.astype(np.float32), np.zeros(len(photons.flux), dtype=np.int32)
     marks = (photons.fresh + 2 * photons.crossed).astype(np.int32)
-    coating = scene.coating
+    face, u, v = hits
+    none = np.zeros((1, 3), dtype=np.float32)
     happen_to_all(
         tally.gather,
         0,
         event,
         seed,
         np.arange(len(flux), dtype=np.int32),
-        origin,
-        direction,
-        flux,
-        marks,
-        alive,
-        *hits,
-        scene.points_mm,
-        scene.normals,
-        scene.faces,
-        scene.skin_faces,
-        tm.vec4(coating.albedo, coating.specular, coating.roughness, scene.refractive_index),
-        tally.ledger,
-        np.ones((1, 3), dtype=np.float32),
-        tally.face_nodes,
-        tally.face_weights,
-        tally.frames,
-        tally.bins,
-        tally.lamps,
-        tally.to_camera,
-        tally.radiance,
+        bundles.Flight(origins=origin, directions=direction, fluxes=flux, marks=marks, alive=alive),
+        bundles.Hits(face=face, u=u, v=v),
+        bundles.scene_arrays(scene),
+        bundles.Lamps(
+            positions=none,
+            axes=none,
+            emission=none,
+            in_shell=np.zeros(1, dtype=np.int32),
+            power=np.ones((1, 3), dtype=np.float32),
+        ),
+        bundles.books_of(tally)[0],
     )
     after = reference.Photons(
         origin=origin,

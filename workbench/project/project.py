@@ -2,7 +2,7 @@
 
 ```
 .workbench/
-  store/     results by stage and key
+  store/     results by stage and key; elsewhere if `$WORKBENCH_STORE` names a folder for them
   designs/   autosave.toml
   variants/  kept designs with their press, figures and thumbnails; `trash/` has deleted ones
   sweeps/    one-parameter sweeps with their figures
@@ -31,6 +31,8 @@ from workbench.system.whole_files import free_path, write_atomically
 
 VARIABLE = "WORKBENCH_PROJECT"
 DEFAULT_FOLDER = ".workbench"
+STORE_VARIABLE = "WORKBENCH_STORE"
+"""Folder of the results of all projects: what one has computed, the others find."""
 PARTS = tuple(f"{folder}.part-*" for folder in ("", "*/", "*/trash/", "designs/previous/*/"))
 """Where files may lie that were being written when their writer was killed."""
 
@@ -40,7 +42,7 @@ class Project:
 
     def __init__(self, folder: Path | str | None = None) -> None:
         self.folder = Path(folder or os.environ.get(VARIABLE) or DEFAULT_FOLDER).resolve()
-        self.store = Store(self.folder / "store")
+        self.store = Store(os.environ.get(STORE_VARIABLE) or self.folder / "store")
 
     def design_path(self, name: str) -> Path:
         """File of a saved design.

@@ -36,14 +36,24 @@ from workbench.core.result.light import AZIMUTHS
 COSINES = tuple(float(cosine) for cosine in bin_cosines())
 JITTER = 1 << 16
 """Added to the number of an event for the random numbers that choose between two bins."""
-Points = ti.types.ndarray(dtype=tm.vec3, ndim=1)
-Triples = ti.types.ndarray(dtype=tm.ivec3, ndim=1)
-Floats = ti.types.ndarray(dtype=ti.f32, ndim=1)
-Integers = ti.types.ndarray(dtype=ti.i32, ndim=1)
-Frames = ti.types.ndarray(dtype=tm.vec3, ndim=2)
-Counts2 = ti.types.ndarray(dtype=ti.i64, ndim=2)
-Counts3 = ti.types.ndarray(dtype=ti.i64, ndim=3)
-Counts4 = ti.types.ndarray(dtype=ti.i64, ndim=4)
+
+
+@ti.dataclass
+class Turn:
+    """Which event of which photon: what random numbers are made of."""
+
+    number: ti.i64
+    event: ti.i32
+    seed: ti.i32
+
+
+@ti.dataclass
+class Hit:
+    """What a ray meets."""
+
+    face: ti.i32  # -1 for nothing.
+    u: ti.f32  # Weights of the second and third corner.
+    v: ti.f32
 
 
 @ti.func
@@ -53,11 +63,11 @@ def fixed(value: ti.f32) -> ti.i64:
 
 
 @ti.func
-def random_of(number: ti.i64, seed: ti.i32, event: ti.i32) -> tm.vec4:
-    """Four random numbers of one photon's event."""
-    low = ti.cast(number & 0xFFFFFFF, ti.u32)
-    high = ti.cast(number >> 28, ti.u32)
-    return random4(low, high, ti.cast(seed, ti.u32), ti.cast(event, ti.u32))
+def random_of(turn: Turn, jitter: ti.i32) -> tm.vec4:
+    """Four random numbers of one photon's event; others for another `jitter`."""
+    low = ti.cast(turn.number & 0xFFFFFFF, ti.u32)
+    high = ti.cast(turn.number >> 28, ti.u32)
+    return random4(low, high, ti.cast(turn.seed, ti.u32), ti.cast(turn.event + jitter, ti.u32))
 
 
 @ti.func
@@ -67,33 +77,26 @@ def book(ledger: ti.template(), fate: ti.i32, number: ti.i64, flux: ti.f32):
 
 
 @ti.func
-def begin(
-    number: ti.i64,
-    seed: ti.i32,
-    positions: ti.template(),
-    axes: ti.template(),
-    emission: ti.template(),
-    in_shell: ti.template(),
-) -> Photon:
+def begin(number: ti.i64, seed: ti.i32, lamps: ti.template()) -> Photon:
     """Photon `number`, which belongs to light `number` modulo the count of lights.
 
     `emission` holds exponent, cone and radius [mm] of each light.
     """
-    lights = positions.shape[0]
+    lights = lamps.positions.shape[0]
     light = ti.cast(number % lights, ti.i32)
     index = ti.cast(number // lights, ti.u32)
     shift = random4(
         ti.cast(light, ti.u32), ti.u32(0), ti.cast(seed, ti.u32), ti.cast(2 * JITTER, ti.u32)
     )
-    kind = emission[light]
+    kind = lamps.emission[light]
     return emitted(
         lattice4(index, shift),
-        positions[light],
-        axes[light],
+        lamps.positions[light],
+        lamps.axes[light],
         kind[0],
         kind[1],
         kind[2],
-        in_shell[light],
+        lamps.in_shell[light],
     )
 
 
@@ -128,35 +131,31 @@ def gather_at_nodes(
     face: ti.i32,
     light: ti.i32,
     chance: tm.vec4,
-    face_nodes: ti.template(),
-    face_weights: ti.template(),
-    frames: ti.template(),
-    power: ti.template(),
-    bins: ti.template(),
     lamps: ti.template(),
+    books: ti.template(),
 ):
     """Perpendicular irradiance at the three nodes about a place on the skin, by direction."""
     toward = -photon.direction
     received = photon.flux / ti.max(toward.dot(surface.geometric), FLATTEST_COSINE)
     share = tm.vec3(0.0)
     for corner in ti.static(range(3)):
-        share += surface.weights[corner] * face_weights[face, corner]
+        share += surface.weights[corner] * books.face_weights[face, corner]
     share = ti.max(share, 0.0)
     share /= ti.max(share.sum(), 1e-6)
-    nodes = face_nodes[face]
-    colour = power[light]
+    nodes = books.face_nodes[face]
+    colour = lamps.power[light]
     for corner in ti.static(range(3)):
         if share[corner] > 0.0:
             node = nodes[corner]
             amount = received * share[corner]
-            column = bin_of(toward, node, frames, chance)
+            column = bin_of(toward, node, books.frames, chance)
             for c in ti.static(range(3)):
                 if colour[c] > 0.0:
-                    bins[1 - photon.fresh, node, c, column] += fixed(amount * colour[c])
+                    books.bins[1 - photon.fresh, node, c, column] += fixed(amount * colour[c])
             if photon.fresh == 1:
                 for k in ti.static(range(3)):
-                    lamps[node, light, k] += fixed(amount * toward[k])
-                lamps[node, light, 3] += fixed(amount)
+                    books.lamps[node, light, k] += fixed(amount * toward[k])
+                books.lamps[node, light, 3] += fixed(amount)
 
 
 @ti.func
@@ -166,9 +165,8 @@ def gather_toward_camera(
     corners: tm.ivec3,
     light: ti.i32,
     optics: tm.vec4,
-    to_camera: ti.template(),
-    power: ti.template(),
-    radiance: ti.template(),
+    lamps: ti.template(),
+    books: ti.template(),
 ):
     """Radiance toward the camera at the three vertices about a place on the skin."""
     toward = -photon.direction
@@ -177,79 +175,49 @@ def gather_toward_camera(
     cos_facet = ti.max(cos_facet, ti.max(cos_in / STEEPEST, 1e-6))
     for corner in ti.static(range(3)):
         vertex = corners[corner]
-        view = to_camera[vertex]
+        view = books.to_camera[vertex]
         if ti.min(view.dot(surface.geometric), view.dot(surface.shading)) > 0.0:
             lobe = reflected(toward, view, surface.shading, optics[0], optics[1], optics[2])
             amount = photon.flux * surface.weights[corner] * lobe / cos_facet
             for c in ti.static(range(3)):
-                if power[light][c] > 0.0:
-                    radiance[vertex, c] += fixed(amount * power[light][c])
+                if lamps.power[light][c] > 0.0:
+                    books.radiance[vertex, c] += fixed(amount * lamps.power[light][c])
 
 
 @ti.func
 def happen(
     gather: ti.template(),
     photon: Photon,
-    number: ti.i64,
-    event: ti.i32,
-    seed: ti.i32,
-    face: ti.i32,
-    u: ti.f32,
-    v: ti.f32,
-    points: ti.template(),
-    normals: ti.template(),
-    faces: ti.template(),
-    skin_faces: ti.i32,
-    optics: tm.vec4,
-    ledger: ti.template(),
-    power: ti.template(),
-    face_nodes: ti.template(),
-    face_weights: ti.template(),
-    frames: ti.template(),
-    bins: ti.template(),
+    turn: Turn,
+    hit: Hit,
+    scene: ti.template(),
     lamps: ti.template(),
-    to_camera: ti.template(),
-    radiance: ti.template(),
+    books: ti.template(),
 ) -> Photon:
-    """The photon after it met triangle `face` at (u, v), or nothing (-1); all books are kept."""
+    """The photon after it met what it hit, or nothing; all books are kept."""
     after = photon
-    light = ti.cast(number % power.shape[0], ti.i32)
-    if face < 0:
+    light = ti.cast(turn.number % lamps.power.shape[0], ti.i32)
+    if hit.face < 0:
         after.fate = missed(photon)
-        book(ledger, after.fate, number, photon.flux)
+        book(books.ledger, after.fate, turn.number, photon.flux)
     else:
-        corners = faces[face]
-        weights = tm.vec3(1.0 - u - v, u, v)
-        surface = surface_at(photon.direction, corners, weights, points, normals)
-        coated = ti.cast(face < skin_faces, ti.i32)
+        corners = scene.faces[hit.face]
+        weights = tm.vec3(1.0 - hit.u - hit.v, hit.u, hit.v)
+        surface = surface_at(photon.direction, corners, weights, scene.points, scene.normals)
+        coated = ti.cast(hit.face < scene.skin_faces, ti.i32)
         if coated == 1 and surface.outward == 1:
             if ti.static(gather == AT_NODES):
-                chance = random_of(number, seed, event + JITTER)
-                gather_at_nodes(
-                    photon,
-                    surface,
-                    face,
-                    light,
-                    chance,
-                    face_nodes,
-                    face_weights,
-                    frames,
-                    power,
-                    bins,
-                    lamps,
-                )
+                chance = random_of(turn, JITTER)
+                gather_at_nodes(photon, surface, hit.face, light, chance, lamps, books)
             if ti.static(gather == TOWARD_CAMERA):
-                gather_toward_camera(
-                    photon, surface, corners, light, optics, to_camera, power, radiance
-                )
-        chances = random_of(number, seed, event)
-        after, absorbed, cut = meet(photon, surface, coated, chances, optics)
+                gather_toward_camera(photon, surface, corners, light, scene.optics, lamps, books)
+        after, absorbed, cut = meet(photon, surface, coated, random_of(turn, 0), scene.optics)
         if coated == 1 and surface.outward == 1:
-            book(ledger, ABSORBED, number, absorbed)
-            book(ledger, ROULETTE, number, cut)
+            book(books.ledger, ABSORBED, turn.number, absorbed)
+            book(books.ledger, ROULETTE, turn.number, cut)
         if after.fate == LEAKED:
-            book(ledger, LEAKED, number, photon.flux)
-        if after.fate == FLYING and event + 1 >= EVENTS:
+            book(books.ledger, LEAKED, turn.number, photon.flux)
+        if after.fate == FLYING and turn.event + 1 >= EVENTS:
             after.fate = DEPTH
-            book(ledger, DEPTH, number, after.flux)
+            book(books.ledger, DEPTH, turn.number, after.flux)
     return after

@@ -12,18 +12,9 @@ HPG 2010; a full binary tree lets it go up by halving the node's number.
 import taichi as ti
 import taichi.math as tm
 
+from sim.optics.transport.bundles import Books, Boxes, Lamps, SceneArrays
 from sim.optics.transport.constants import EVENTS, FLYING
-from sim.optics.transport.event_functions import (
-    Counts2,
-    Counts3,
-    Counts4,
-    Frames,
-    Integers,
-    Points,
-    Triples,
-    begin,
-    happen,
-)
+from sim.optics.transport.event_functions import Hit, Turn, begin, happen
 
 FAR = 1e9
 """Further than anything [mm]."""
@@ -47,16 +38,9 @@ def _enters(
 
 @ti.func
 def first_hit(
-    origin: tm.vec3,
-    direction: tm.vec3,
-    lower: ti.template(),
-    upper: ti.template(),
-    starts: ti.template(),
-    order: ti.template(),
-    points: ti.template(),
-    faces: ti.template(),
-):
-    """Face and the weights of its second and third corner; -1 for a miss."""
+    origin: tm.vec3, direction: tm.vec3, boxes: ti.template(), scene: ti.template()
+) -> Hit:
+    """The nearest triangle that a ray meets."""
     inverse = tm.vec3(0.0)
     for k in ti.static(range(3)):
         # A zero component would make NaN where the origin lies on a box's side.
@@ -65,7 +49,7 @@ def first_hit(
             if ti.abs(direction[k]) > 1e-12
             else ti.select(direction[k] < 0, -1e-12, 1e-12)
         )
-    leaves = starts.shape[0] - 1
+    leaves = boxes.starts.shape[0] - 1
     nearest, face, hit_u, hit_v = FAR, -1, 0.0, 0.0
     node = 1
     trail = ti.u32(0)
@@ -74,18 +58,19 @@ def first_hit(
         up = 1
         if node < leaves:
             left, right = 2 * node, 2 * node + 1
-            enter_left = _enters(origin, inverse, lower[left], upper[left], nearest)
-            enter_right = _enters(origin, inverse, lower[right], upper[right], nearest)
+            enter_left = _enters(origin, inverse, boxes.lower[left], boxes.upper[left], nearest)
+            enter_right = _enters(origin, inverse, boxes.lower[right], boxes.upper[right], nearest)
             if ti.min(enter_left, enter_right) < FAR:
                 up = 0
                 node = left if enter_left <= enter_right else right
                 both = ti.max(enter_left, enter_right) < FAR
                 trail = (trail << ti.u32(1)) | ti.cast(both, ti.u32)
         else:
-            for k in range(starts[node - leaves], starts[node - leaves + 1]):
-                a = points[faces[order[k]][0]]
-                edge_1 = points[faces[order[k]][1]] - a
-                edge_2 = points[faces[order[k]][2]] - a
+            for k in range(boxes.starts[node - leaves], boxes.starts[node - leaves + 1]):
+                corners = scene.faces[boxes.order[k]]
+                a = scene.points[corners[0]]
+                edge_1 = scene.points[corners[1]] - a
+                edge_2 = scene.points[corners[2]] - a
                 across = direction.cross(edge_2)
                 scale = edge_1.dot(across)
                 if ti.abs(scale) > 1e-12:
@@ -96,7 +81,7 @@ def first_hit(
                     distance = edge_2.dot(turned) / scale
                     inside = u >= -EDGE and v >= -EDGE and u + v <= 1.0 + EDGE
                     if inside and distance > NEAR_MM and distance < nearest:
-                        nearest, face, hit_u, hit_v = distance, order[k], u, v
+                        nearest, face, hit_u, hit_v = distance, boxes.order[k], u, v
         if up == 1:
             if trail == ti.u32(0):
                 walking = 0
@@ -106,7 +91,7 @@ def first_hit(
                     node = node >> 1
                 node = node ^ 1
                 trail = trail ^ ti.u32(1)
-    return face, hit_u, hit_v
+    return Hit(face=face, u=hit_u, v=hit_v)
 
 
 @ti.kernel
@@ -115,60 +100,18 @@ def follow_all(
     first: ti.i64,
     count: ti.i32,
     seed: ti.i32,
-    positions: Points,
-    axes: Points,
-    emission: Points,
-    in_shell: Integers,
-    lower: Points,
-    upper: Points,
-    starts: Integers,
-    order: Integers,
-    points: Points,
-    normals: Points,
-    faces: Triples,
-    skin_faces: ti.i32,
-    optics: tm.vec4,
-    ledger: Counts2,
-    power: Points,
-    face_nodes: Triples,
-    face_weights: Frames,
-    frames: Frames,
-    bins: Counts4,
-    lamps: Counts3,
-    to_camera: Points,
-    radiance: Counts2,
+    boxes: Boxes,
+    scene: SceneArrays,
+    lamps: Lamps,
+    books: Books,
 ):
     """Follow photons `first` to `first + count` to their ends."""
     for row in range(count):
         number = first + row
-        photon = begin(number, seed, positions, axes, emission, in_shell)
+        photon = begin(number, seed, lamps)
         event = 0
         while photon.fate == FLYING and event < EVENTS:
-            face, u, v = first_hit(
-                photon.origin, photon.direction, lower, upper, starts, order, points, faces
-            )
-            photon = happen(
-                gather,
-                photon,
-                number,
-                event,
-                seed,
-                face,
-                u,
-                v,
-                points,
-                normals,
-                faces,
-                skin_faces,
-                optics,
-                ledger,
-                power,
-                face_nodes,
-                face_weights,
-                frames,
-                bins,
-                lamps,
-                to_camera,
-                radiance,
-            )
+            hit = first_hit(photon.origin, photon.direction, boxes, scene)
+            turn = Turn(number=number, event=event, seed=seed)
+            photon = happen(gather, photon, turn, hit, scene, lamps, books)
             event += 1

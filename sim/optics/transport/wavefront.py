@@ -31,11 +31,11 @@ class Wavefront:
     batch = BATCH
 
     def __init__(self, scene: Scene, sources: Sources, tally: Tally) -> None:
-        self._scene, self._sources, self._tally = scene, sources, tally
+        from sim.optics.transport.bundles import books_of, lamp_arrays, scene_arrays
+
         self._caster = RayCaster(scene.points_mm, scene.faces)
-        coating = scene.coating
-        lobes = coating.albedo, coating.specular, coating.roughness
-        self._optics = np.array([*lobes, scene.refractive_index], dtype=np.float32)
+        self._gather, self._lamps = tally.gather, lamp_arrays(sources)
+        self._scene, (self._books, _) = scene_arrays(scene), books_of(tally)
         self._threads = ThreadPoolExecutor(cores())
 
     def close(self) -> None:
@@ -45,62 +45,47 @@ class Wavefront:
     def trace(self, first: int, count: int, seed: int) -> None:
         """Follow photons `first` to `first + count` to their ends."""
         from sim.optics.transport import wavefront_kernels as kernels
+        from sim.optics.transport.bundles import Flight
 
-        sources = self._sources
-        state = [
-            np.empty((count, 3), dtype=np.float32),
-            np.empty((count, 3), dtype=np.float32),
-            np.empty(count, dtype=np.float32),
-            np.empty(count, dtype=np.int32),
-        ]
-        lamps = sources.position_mm, sources.axis, sources.emission, sources.in_shell
+        state = {
+            "origins": np.empty((count, 3), dtype=np.float32),
+            "directions": np.empty((count, 3), dtype=np.float32),
+            "fluxes": np.empty(count, dtype=np.float32),
+            "marks": np.empty(count, dtype=np.int32),
+            "alive": np.empty(count, dtype=np.int32),
+        }
         begin_all: Any = kernels.begin_all
-        begin_all(first, seed, *lamps, *state)
+        begin_all(first, seed, self._lamps, Flight(**state))
         flying = np.arange(count, dtype=np.int32)
         for event in range(EVENTS):
             if not flying.size:
                 return
-            alive = self._event(first, event, seed, flying, state)
-            flying = flying[alive]
-            state = [np.ascontiguousarray(part[alive]) for part in state]
+            self._event(first, event, seed, flying, state)
+            on = np.flatnonzero(state["alive"])
+            flying = flying[on]
+            state = {name: np.ascontiguousarray(part[on]) for name, part in state.items()}
 
     def _event(
-        self, first: int, event: int, seed: int, flying: np.ndarray, state: list[np.ndarray]
-    ) -> np.ndarray:
-        """Let one event happen in place; the photons that fly on, shape (A,)."""
-        import taichi.math as tm
-
+        self, first: int, event: int, seed: int, flying: np.ndarray, state: dict[str, np.ndarray]
+    ) -> None:
+        """Let one event happen in place."""
         from sim.optics.transport import wavefront_kernels as kernels
+        from sim.optics.transport.bundles import Flight, Hits
 
         happen_to_all: Any = kernels.happen_to_all
-        scene, tally = self._scene, self._tally
-        hits = self._hits(state[0], state[1])
-        alive = np.empty(len(flying), dtype=np.int32)
+        face, u, v = self._hits(state["origins"], state["directions"])
         happen_to_all(
-            tally.gather,
+            self._gather,
             first,
             event,
             seed,
             flying,
-            *state,
-            alive,
-            *hits,
-            scene.points_mm,
-            scene.normals,
-            scene.faces,
-            scene.skin_faces,
-            tm.vec4(*self._optics.tolist()),
-            tally.ledger,
-            self._sources.power,
-            tally.face_nodes,
-            tally.face_weights,
-            tally.frames,
-            tally.bins,
-            tally.lamps,
-            tally.to_camera,
-            tally.radiance,
+            Flight(**state),
+            Hits(face=face, u=u, v=v),
+            self._scene,
+            self._lamps,
+            self._books,
         )
-        return np.flatnonzero(alive)
 
     def _hits(
         self, origins: np.ndarray, directions: np.ndarray
