@@ -49,6 +49,14 @@ def test_files_that_it_names_exist(file: str) -> None:
     assert (ROOT / file).is_file()
 
 
+@pytest.mark.parametrize(
+    ("file", "name"), re.findall(r"`([\w/]+\.py)` \(`(\w+)`\)", chapter("Where to look"))
+)
+def test_what_it_looks_for_is_there(file: str, name: str) -> None:
+    """A name in brackets behind a file is one that the file uses or defines."""
+    assert re.search(rf"\b{name}\b", (ROOT / file).read_text())
+
+
 def test_the_way_of_a_slider_is_short() -> None:
     """At most 20 files lie on it."""
     way = chapter("From a slider to a pixel")

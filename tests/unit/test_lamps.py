@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from sim.optics.field.bake import bake_light
-from sim.optics.field.lines import emitted
 from sim.optics.light.lights import place_leds
+from sim.optics.light.lobe import emitted
 from sim.optics.light.places import camera_field, check_camera, check_lenses, check_lights
 from sim.optics.proof.specimen import finger
 from workbench.core.base.errors import DesignError

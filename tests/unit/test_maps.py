@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from sim.optics.camera.camera import project, refracted_rays
-from sim.optics.maps import glare, lighting, seeing, signal
+from sim.optics.maps import lighting, pixel_glare, seeing, signal
 from sim.optics.maps.judging import weighted_percentiles
 from workbench.core.design.camera import Camera, ImageSensor
 from workbench.core.result.light import LightField
@@ -148,7 +148,7 @@ def test_camera_looks_an_led_in_the_face() -> None:
     light = field(up, np.eye(3)[:1], led_size_mm=size)
     eye = np.zeros((2, 3))
     aside = np.array([0.2, 0.0, 1.0]) / np.sqrt(1.04)
-    found = glare.led_radiance(eye, np.vstack([up, aside]), light, np.full(2, np.inf))
+    found = pixel_glare.led_radiance(eye, np.vstack([up, aside]), light, np.full(2, np.inf))
     assert found[:, 0] == pytest.approx([1.0 / np.pi, 0.0])
 
 
@@ -161,7 +161,7 @@ def test_an_led_beside_the_camera_is_mirrored_by_the_wall_above() -> None:
         light, led_mm=np.array([[4.0, 0.0, 0.0]]), led_axis=np.array([[0.0, 0.0, 1.0]])
     )
     rays = refracted_rays(camera, wall, 1.5)
-    found = glare.glare_radiance(camera, rays, wall, light, 1.5)[:, 0].reshape(80, 80)
+    found = pixel_glare.glare_radiance(camera, rays, wall, light, 1.5)[:, 0].reshape(80, 80)
     row, column = np.unravel_index(int(found.argmax()), found.shape)
     focal = 40.0 / np.tan(np.radians(30.0))
     assert abs(column + 0.5 - (40.0 + focal * 0.2)) < 4.0

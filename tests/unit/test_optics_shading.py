@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from sim.optics.field.bake import bake_light
-from sim.optics.field.lines import emitted, tangential
+from sim.optics.field.lines import tangential
 from sim.optics.light.coating import glossy, phong
+from sim.optics.light.lobe import emitted
 from sim.optics.proof.checks import irradiance_error, tangency_error_deg
 from sim.optics.proof.specimen import finger
 from sim.optics.raster.display import choose_exposure, encode, srgb_decode, srgb_encode

@@ -1,4 +1,4 @@
-"""Lines of light from points to a source: their directions, tangents, strength and shadows.
+"""Lines of light from points to a source: their directions, tangents and shadows.
 
 With L = S - T from target to light, the curve where the plane with normal P cuts the skin has at T
 a tangent in the plane and in the skin, hence along n_T x P. The paper does not say which sense it
@@ -72,31 +72,6 @@ def tangential_from(
     sense = np.where(np.einsum("ij,ij->i", tangent, direction) < 0.0, -1.0, 1.0)
     unit = tangent * (sense / np.where(defined, sine, 1.0))[:, None]
     return np.where(defined[:, None], unit, direction)
-
-
-def emitted(
-    direction: np.ndarray,
-    distance_mm: np.ndarray,
-    *,
-    axis: np.ndarray,
-    exponent: float,
-    cone: float = 0.0,
-) -> np.ndarray:
-    """Perpendicular irradiance [1/mm2] per unit of power, I0 cos^m / r^2 within the cone.
-
-    I0 = (m + 1) / (2 pi (1 - cone^(m + 1))), so that the power is the same for every cone.
-
-    Args:
-        direction: Unit vectors from the points to the LED, shape (N, 3).
-        distance_mm: Their distances, shape (N,).
-        axis: Unit emission axis of the LED, shape (3,).
-        exponent: m; 0 shines evenly into the cone.
-        cone: Cosine of half the emission cone [1]; 0 is the half space of the axis.
-    """
-    cosine = -(direction @ axis)
-    lobe = np.where(cosine > cone, np.maximum(cosine, 0.0) ** exponent, 0.0)
-    share = 1.0 - cone ** (exponent + 1.0)
-    return (exponent + 1.0) / (2.0 * np.pi * share) * lobe / distance_mm**2
 
 
 def unshadowed(mesh: MembraneMesh, led_mm: np.ndarray, monitor: Monitor) -> np.ndarray:

@@ -1,7 +1,7 @@
 """The lights of a sensor as points: the ring's LEDs, and the lamps divided into points.
 
 Power is radiant flux, so the radiant intensity on the axis of an LED that falls as cos^m within a
-cone of half angle c is I0 = power (m + 1) / (2 pi (1 - cos(c)^(m + 1))); see `bake.emitted`. Its
+cone of half angle c is I0 = power (m + 1) / (2 pi (1 - cos(c)^(m + 1))); see `lobe.emitted`. Its
 edge is sharp, and in an image as sharp as the triangles of the skin. A
 lamp's power is shared out equally to its points. Colours are linear RGB, see `spectrum`.
 """

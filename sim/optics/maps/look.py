@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from sim.optics.camera.camera import refracted_rays
-from sim.optics.maps import glare, seeing, signal
+from sim.optics.maps import pixel_glare, seeing, signal
 from sim.optics.maps.skin_look import SkinLook
 from sim.optics.raster.image_sensor import vignette
 from sim.optics.studio.render import Studio
@@ -74,9 +74,9 @@ def _glare(
     mesh: MembraneMesh, light: LightField, optics: Optics, studio: Studio, camera: Camera
 ) -> np.ndarray:
     """Glare over the skin's radiance at each vertex, shape (V,), as the nearest pixel sees it."""
-    small = glare.small(camera)
+    small = pixel_glare.small(camera)
     rays = refracted_rays(small, mesh.cavity, optics.refractive_index)
-    shining = glare.glare_radiance(small, rays, mesh.cavity, light, optics.refractive_index)
+    shining = pixel_glare.glare_radiance(small, rays, mesh.cavity, light, optics.refractive_index)
     pixel, in_image = _pixels(studio, camera, small)
     found = shining.mean(axis=1)[pixel]
     # Both as they arrive in the air of the cavity: T / n^2 of the radiance in the solid.

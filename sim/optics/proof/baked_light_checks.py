@@ -11,11 +11,12 @@ import numpy as np
 
 from sim.optics.field.bake import light_field
 from sim.optics.field.gathered import gathered
-from sim.optics.field.lines import emitted, toward
+from sim.optics.field.lines import toward
 from sim.optics.field.model import Baked, Lights
 from sim.optics.field.table import look_up, tabulate
 from sim.optics.light.coating import glossy
 from sim.optics.light.lights import place_leds
+from sim.optics.light.lobe import emitted
 from sim.optics.proof.specimen import finger
 from sim.optics.proof.transport_scenes import BLACK
 from sim.optics.transport.gather import gather_light

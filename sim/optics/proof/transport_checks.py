@@ -13,10 +13,11 @@ import math
 import numpy as np
 
 from sim.optics.camera.refraction import refract
-from sim.optics.field.lines import emitted, toward
+from sim.optics.field.lines import toward
 from sim.optics.light.bins import bin_cosines
 from sim.optics.light.coating import glossy
 from sim.optics.light.lights import Leds
+from sim.optics.light.lobe import emitted
 from sim.optics.proof.transport_scenes import (
     BLACK,
     beam,

@@ -16,9 +16,10 @@ import dataclasses
 import numpy as np
 
 from geometry.surface.rays import RayCaster
-from sim.optics.field.lines import SKIN_OFFSET_MM, emitted, toward
+from sim.optics.field.lines import SKIN_OFFSET_MM, toward
 from sim.optics.field.model import Shading, background_model, model_of
 from sim.optics.light.coating import glossy, phong
+from sim.optics.light.lobe import emitted
 from sim.optics.raster.gbuffer import MOVED_MM
 from workbench.core.design.lighting import LightModel
 from workbench.core.design.optics import Coating

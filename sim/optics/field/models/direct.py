@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from sim.optics.field.lines import emitted, toward, unshadowed
+from sim.optics.field.lines import toward, unshadowed
 from sim.optics.field.model import Baked, Lights, Model, Shading
+from sim.optics.light.lobe import emitted
 from workbench.core.base.monitor import Monitor
 
 

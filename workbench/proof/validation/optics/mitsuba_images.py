@@ -1,7 +1,7 @@
 """One scene as photons of the workbench and as Mitsuba 3 show it, in the same units.
 
 To what the workbench draws, 1 / n^2 of it since Mitsuba counts radiance in air, come the mirror
-images of skin (`sim.optics.proof.ghost`) and LEDs (`maps.glare`) in the cavity's wall: a path
+images of skin (`sim.optics.proof.ghost`) and LEDs (`maps.pixel_glare`) in the cavity's wall: a path
 tracer shows them, the product leaves them out of its images. Mitsuba renders in a process of its
 own, which is this module's `main`, in its plain variant `scalar_rgb`, which needs no LLVM.
 """
@@ -156,7 +156,7 @@ def _radiance(case: Case, optics: Optics, photons: int) -> np.ndarray:
 def _glare(mesh: MembraneMesh, light: LightField, index: float) -> np.ndarray:
     """Mirror images of the LEDs in air, shape (H, W, 3)."""
     from sim.optics.camera.camera import refracted_rays
-    from sim.optics.maps.glare import glare_radiance
+    from sim.optics.maps.pixel_glare import glare_radiance
 
     if index == 1.0:
         return np.zeros((CAMERA.height_px, CAMERA.width_px, 3))
