@@ -11,8 +11,8 @@ slant some 10 %. A path tracer shows it, and so does a real sensor. The product 
 images: it would cost several casts of every ray in each frame. It is here to compare with path
 tracers on equal terms.
 
-Leaves out: mirror images of the lights (`maps.pixel_glare` has the first), light reflected at the wall
-from inside the solid, which the traced photons hold already, and a second wall behind a ridge.
+Leaves out: mirror images of the lights (`maps.pixel_glare` has the first), light reflected at the
+wall from inside the solid, which the traced photons hold already, and a second wall behind a ridge.
 Source of the split: Born and Wolf, Principles of Optics, section 1.5.
 """
 
