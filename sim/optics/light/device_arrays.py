@@ -28,7 +28,7 @@ def on_device(array: np.ndarray, *, vector: int = 0) -> Any:
 
 
 def readable(array: np.ndarray, *, vector: int = 0) -> Any:
-    """What kernels read a contiguous array from: NumPy's own memory, or a copy on the GPU."""
+    """Where kernels find a contiguous array: in NumPy's own memory, or in a copy on the GPU."""
     return on_device(array, vector=vector) if computes_on_gpu() else array
 
 

@@ -52,8 +52,10 @@ class Raster:
         chunk = patch_kernels.CHUNK
         self._face_chunks = -(-len(view.faces) // chunk)
         self._vertex_chunks = -(-self.vertices // chunk)
-        self._face_counts = empty(ti.i32, self.frames * self._face_chunks)
-        self._vertex_counts = empty(ti.i32, self.frames * self._vertex_chunks)
+        self._face_counts, self._vertex_counts = (
+            readable(np.zeros(self.frames * chunks, dtype=np.int32))
+            for chunks in (self._face_chunks, self._vertex_chunks)
+        )
         self.vertex_list, self.vertex_entries = empty(ti.i32, 0), 0
         nothing = empty(ti.i32, 0)
         self.tree = bundles.Tree(
@@ -156,8 +158,8 @@ class Raster:
             self._face_counts,
             self._vertex_counts,
         )
-        face_at = _running(self._face_counts.to_numpy()[: frames * self._face_chunks])
-        vertex_at = _running(self._vertex_counts.to_numpy()[: frames * self._vertex_chunks])
+        face_at = _running(self._face_counts, frames * self._face_chunks)
+        vertex_at = _running(self._vertex_counts, frames * self._vertex_chunks)
         faces, self.vertex_entries = int(face_at[-1]), int(vertex_at[-1])
         self._grow(face_at[:: self._face_chunks].copy(), faces)
         self.vertex_list = _roomy(self.vertex_list, self.vertex_entries)
@@ -185,9 +187,10 @@ class Raster:
             tree["boxes"] = _boxes(count + count // 2)
 
 
-def _running(counts: np.ndarray) -> np.ndarray:
-    """Sums before each entry, and the whole, int32."""
-    return np.append(0, np.cumsum(counts)).astype(np.int32)
+def _running(counts: Any, entries: int) -> np.ndarray:
+    """Sums before each of the first entries, and the whole, int32."""
+    found = counts if isinstance(counts, np.ndarray) else counts.to_numpy()
+    return np.append(0, np.cumsum(found[:entries])).astype(np.int32)
 
 
 def _boxes(count: int) -> Any:
