@@ -19,6 +19,7 @@ from sim.optics.proof.detail_checks import (
     wave_contrast,
 )
 from sim.optics.proof.specimen import dent, finger
+from sim.optics.raster.bundles import Spots
 from sim.optics.raster.imager import Imager
 from sim.optics.raster.shading import relight, shade, take
 from sim.optics.studio.detail import Detail, open_detail, touched_pixels
@@ -209,12 +210,11 @@ def test_points_are_shaded_as_the_plain_twins(
     before, after = np.zeros((2, count, 3), dtype=np.float32)
     raster, shader = studio.imager.raster, studio.imager.shader
     shares = np.ascontiguousarray(touched.weights[:count])
-    places = (raster.points, raster.placed, raster.to_camera)
-    way = shader.lit.way_of_lighting
-    shade_points(
-        count, way, corners, shares, smooth, tilted, *places, *shader.lights, before, after
-    )
-    away = raster.to_camera.to_numpy()
+    spots = Spots(corners=corners, shares=shares, smooth=smooth, tilted=tilted)
+    light_of_skin = (shader.lights, shader.scattered, shader.law)
+    run: Any = shade_points
+    run(spots, raster.skin, raster.posed, *light_of_skin, before, after)
+    away = raster.posed.to_camera.to_numpy()
     for normals, found in ((smooth, before), (tilted, after)):
         total = np.zeros((count, 3))
         for corner in range(3):

@@ -90,7 +90,7 @@ def drawn_and_cast(
     raster = Raster(view)
     raster.look(moved[None])
     count = raster.pixels
-    face, away = raster.seen_face.to_numpy()[:count], raster.seen_mm.to_numpy()[:count]
+    face, away = raster.seen.triangle.to_numpy()[:count], raster.seen.away_mm.to_numpy()[:count]
     changed = np.flatnonzero(face != SAME)
     drawn = np.full(count, np.nan)
     drawn[changed] = depth_z(camera, view.origin_mm + away[:, None] * view.direction)[changed]
@@ -141,7 +141,7 @@ def test_changed_normals_are_those_of_the_caster(smooth: MembraneMesh) -> None:
     raster.look(moved[None])
     twin = look(open_view(smooth.outer, SMALL, view.rays), moved)
     assert np.array_equal(raster.vertex_list.to_numpy()[: raster.vertex_entries], twin.vertices)
-    error = raster.turned.to_numpy()[twin.vertices] - twin.normals[twin.vertices]
+    error = raster.posed.turned.to_numpy()[twin.vertices] - twin.normals[twin.vertices]
     # Areas of 0.3 mm2 come from differences of coordinates near 40 mm, rounded at 4e-6 mm.
     assert np.abs(error).max() < 1e-4
 

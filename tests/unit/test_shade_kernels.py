@@ -77,7 +77,7 @@ def test_kernel_and_twin_agree(mesh: MembraneMesh, model: LightModel, ring: LedR
     studio, light, table = studio_of(mesh, model, ring)
     moved = dent(mesh.outer, at_mm=(15.0, 0.0, 20.0), depth_mm=2.0, radius_mm=4.0)
     got = studio.radiance_at_vertices(moved)
-    to_camera = studio.imager.raster.to_camera.to_numpy()
+    to_camera = studio.imager.raster.posed.to_camera.to_numpy()
     rows, exact = twin(mesh, studio, light, table, moved, to_camera)
     assert len(rows) > 300
     error = np.abs(got[rows] - exact).max(axis=1) / exact.max()

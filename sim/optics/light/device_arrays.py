@@ -27,6 +27,11 @@ def on_device(array: np.ndarray, *, vector: int = 0) -> Any:
     return made
 
 
+def readable(array: np.ndarray, *, vector: int = 0) -> Any:
+    """Where kernels find a contiguous array: in NumPy's own memory, or in a copy on the GPU."""
+    return on_device(array, vector=vector) if computes_on_gpu() else array
+
+
 def empty(kind: Any, count: int, *, vector: int = 0) -> Any:
     """A flat array of at least one element, zero."""
     shape = (max(count, 1),)

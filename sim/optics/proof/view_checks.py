@@ -73,7 +73,7 @@ def drawing_error(
     raster = Raster(view)
     raster.look(displacement_mm[None])
     count = raster.pixels
-    face, drawn_mm = raster.seen_face.to_numpy()[:count], raster.seen_mm.to_numpy()[:count]
+    face, drawn_mm = raster.seen.triangle.to_numpy()[:count], raster.seen.away_mm.to_numpy()[:count]
     changed = np.flatnonzero(face != SAME)
     from geometry.surface.rays import RayCaster
 
@@ -178,7 +178,9 @@ def _drawing_s(mesh: MembraneMesh, camera: Camera, displacement_mm: np.ndarray) 
     for _ in range(4):
         start = time.perf_counter()
         raster.look(displacement_mm[None])
-        depth_z(camera, raster.view.origin_mm + raster.seen_mm.to_numpy()[: raster.pixels, None])
+        depth_z(
+            camera, raster.view.origin_mm + raster.seen.away_mm.to_numpy()[: raster.pixels, None]
+        )
         times.append(time.perf_counter() - start)
     return float(np.median(times[1:]))
 

@@ -11,15 +11,8 @@ walls. Pixels that see what they saw are the background, exactly.
 import taichi as ti
 import taichi.math as tm
 
-from sim.optics.light.kernel_types import (
-    Bytes,
-    Floats,
-    IntegerRows,
-    Integers,
-    Pairs,
-    VectorRows,
-    Vectors,
-)
+from sim.optics.light.kernel_types import Bytes, Floats, Integers, VectorRows, Vectors
+from sim.optics.raster.bundles import Eye, Picture, PrintedDots, Rays, Seen, Skin
 from sim.optics.raster.raster_kernels import SAME
 
 
@@ -32,26 +25,16 @@ def blend(values: ti.template(), first, faces: ti.template(), face, weights):
 
 
 @ti.func
-def facing_way(
-    way,
-    turned: ti.template(),
-    normals: ti.template(),
-    first,
-    at,
-    face,
-    seen_weights: ti.template(),
-    on_patch: ti.template(),
-    faces: ti.template(),
-):
+def facing_way(at, first, way, seen: ti.template(), skin: ti.template(), turned: ti.template()):
     """The inward normal where a pixel looks, turned to face its line of sight; any length.
 
     `first` is the frame's first vertex of `turned`, the normals of the moved patch.
     """
     facing = tm.vec3(0.0)
-    if on_patch[at]:
-        facing = -blend(turned, first, faces, face, seen_weights[at])
+    if seen.on_patch[at]:
+        facing = -blend(turned, first, skin.faces, seen.triangle[at], seen.weights[at])
     else:
-        facing = -blend(normals, 0, faces, face, seen_weights[at])
+        facing = -blend(skin.normals, 0, skin.faces, seen.triangle[at], seen.weights[at])
     facing -= ti.max(facing.dot(way), 0.0) * way
     return facing
 
@@ -59,36 +42,27 @@ def facing_way(
 @ti.kernel
 def describe(
     frames: ti.i32,
-    pixels: ti.i32,
-    vertices: ti.i32,
-    seen_face: Integers,
-    seen_weights: Pairs,
-    seen_mm: Floats,
-    on_patch: Bytes,
-    faces: IntegerRows,
-    normals: Vectors,
+    seen: Seen,
+    skin: Skin,
     turned: Vectors,
-    origin: Vectors,
-    direction: Vectors,
-    camera: tm.vec3,
-    axis: tm.vec3,
+    rays: Rays,
+    eye: Eye,
     normal: Vectors,
     depth: Floats,
 ):
     """Normals facing the camera and depth along its axis; NaN and 0 where there is no skin."""
+    pixels, vertices = rays.direction.shape[0], skin.points.shape[0]
     for at in range(frames * pixels):
-        face = seen_face[at]
+        face = seen.triangle[at]
         if face != SAME:
             frame, number = at // pixels, at % pixels
             facing, away = tm.vec3(0.0), tm.nan
             if face >= 0:
-                way = direction[number]
-                first = frame * vertices
-                facing = facing_way(
-                    way, turned, normals, first, at, face, seen_weights, on_patch, faces
-                )
+                way = rays.direction[number]
+                facing = facing_way(at, frame * vertices, way, seen, skin, turned)
                 facing /= ti.max(facing.norm(), 1e-12)
-                away = (origin[number] + seen_mm[at] * way - camera).dot(axis)
+                place = rays.origin[number] + seen.away_mm[at] * way
+                away = (place - eye.camera).dot(eye.axis)
             normal[at] = facing
             depth[at] = away
 
@@ -96,182 +70,93 @@ def describe(
 @ti.kernel
 def spread_ink(
     frames: ti.i32,
-    pixels: ti.i32,
-    vertices: ti.i32,
-    seen_face: Integers,
-    seen_weights: Pairs,
-    on_patch: Bytes,
-    faces: IntegerRows,
-    points: Vectors,
-    normals: Vectors,
+    seen: Seen,
+    skin: Skin,
     turned: Vectors,
-    origin: Vectors,
-    direction: Vectors,
-    seen_mm: Floats,
-    camera: tm.vec3,
-    axis: tm.vec3,
-    angular: ti.i32,
-    focal_px: ti.f32,
-    least_cosine: ti.f32,
-    radius: ti.f32,
-    dot_start: Integers,
-    dot_of: Integers,
-    centres: Vectors,
+    rays: Rays,
+    eye: Eye,
+    dots: PrintedDots,
     ink: Floats,
     marker: Integers,
 ):
     """Covered share of the pixels that changed, and the nearest dot; `markers.ink` is the twin."""
+    pixels, vertices = rays.direction.shape[0], skin.points.shape[0]
     for at in range(frames * pixels):
-        face = seen_face[at]
+        face = seen.triangle[at]
         if face != SAME:
             frame, number = at // pixels, at % pixels
             share, nearest, gap = 0.0, 0, 1e9
-            if face >= 0 and dot_start[face + 1] > dot_start[face]:
-                place = blend(points, 0, faces, face, seen_weights[at])
-                for entry in range(dot_start[face], dot_start[face + 1]):
-                    distance = (centres[dot_of[entry]] - place).norm()
+            if face >= 0 and dots.dot_start[face + 1] > dots.dot_start[face]:
+                place = blend(skin.points, 0, skin.faces, face, seen.weights[at])
+                for entry in range(dots.dot_start[face], dots.dot_start[face + 1]):
+                    dot = dots.dot_of[entry]
+                    distance = (dots.centres[dot] - place).norm()
                     if distance < gap:
-                        gap, nearest = distance, dot_of[entry]
-                way = direction[number]
-                first = frame * vertices
-                facing = facing_way(
-                    way, turned, normals, first, at, face, seen_weights, on_patch, faces
-                )
+                        gap, nearest = distance, dot
+                way = rays.direction[number]
+                facing = facing_way(at, frame * vertices, way, seen, skin, turned)
                 cosine = -facing.dot(way) / ti.max(facing.norm(), 1e-12)
-                away = ti.abs((origin[number] + seen_mm[at] * way - camera).dot(axis))
-                if angular:
-                    away = (place - camera).norm()
-                footprint = away / focal_px / ti.max(cosine, least_cosine)
-                step = tm.clamp((radius - gap) / footprint + 0.5, 0.0, 1.0)
+                line = rays.origin[number] + seen.away_mm[at] * way - eye.camera
+                away = ti.abs(line.dot(eye.axis))
+                if eye.angular:
+                    away = (place - eye.camera).norm()
+                footprint = away / eye.focal_px / ti.max(cosine, eye.least_cosine)
+                step = tm.clamp((dots.radius - gap) / footprint + 0.5, 0.0, 1.0)
                 share = step * step * (3.0 - 2.0 * step)
             ink[at] = share
             marker[at] = nearest
 
 
 @ti.func
-def light_of(
-    frame,
-    number,
-    at,
-    vertices,
-    face,
-    seen_weights: ti.template(),
-    on_patch: ti.template(),
-    faces: ti.template(),
-    radiance: ti.template(),
-    undeformed: ti.template(),
-    transmittance: ti.template(),
-    remainder: ti.template(),
-    ink: ti.template(),
-    has_dots,
-    ink_gain,
-    inked_background,
-):
+def light_of(frame, number, at, vertices, face, seen: ti.template(), picture: ti.template()):
     """Linear radiance of a pixel that changed."""
     arriving = tm.vec3(0.0)
     if face >= 0:
-        if on_patch[at]:
-            arriving = blend(radiance, frame * vertices, faces, face, seen_weights[at])
+        if seen.on_patch[at]:
+            arriving = blend(
+                picture.radiance, frame * vertices, picture.faces, face, seen.weights[at]
+            )
         else:
-            arriving = blend(undeformed, 0, faces, face, seen_weights[at])
-    arriving *= transmittance[number]
+            arriving = blend(picture.undeformed, 0, picture.faces, face, seen.weights[at])
+    arriving *= picture.transmittance[number]
     factor = 1.0
-    if has_dots:
-        factor += (ink_gain - 1.0) * ink[at]
-    kept = remainder[number]
-    if inked_background:
+    if picture.has_dots:
+        factor += (picture.ink_gain - 1.0) * picture.ink[at]
+    kept = picture.remainder[number]
+    if picture.inked_background:
         kept *= factor
     return ti.max(kept + factor * arriving, 0.0)
 
 
 @ti.kernel
 def expose(
-    frames: ti.i32,
-    pixels: ti.i32,
-    vertices: ti.i32,
-    seen_face: Integers,
-    seen_weights: Pairs,
-    on_patch: Bytes,
-    faces: IntegerRows,
-    radiance: Vectors,
-    undeformed: Vectors,
-    transmittance: Floats,
-    remainder: Vectors,
-    ink: Floats,
-    has_dots: ti.i32,
-    ink_gain: ti.f32,
-    inked_background: ti.i32,
+    seen: Seen,
+    picture: Picture,
     gain: ti.f32,
     curve: Bytes,
     image: ti.types.ndarray(dtype=ti.u8, ndim=3),
 ):
-    """Write the pixels that changed into images of the background; `display.encode` is the twin."""
-    for at in range(frames * pixels):
-        face = seen_face[at]
+    """Write the pixels that changed into images of the background; `display.encode` is the twin.
+
+    `image` has the shape (frames, N, 3).
+    """
+    pixels, vertices = image.shape[1], picture.undeformed.shape[0]
+    for at in range(image.shape[0] * pixels):
+        face = seen.triangle[at]
         if face != SAME:
             frame, number = at // pixels, at % pixels
-            light = light_of(
-                frame,
-                number,
-                at,
-                vertices,
-                face,
-                seen_weights,
-                on_patch,
-                faces,
-                radiance,
-                undeformed,
-                transmittance,
-                remainder,
-                ink,
-                has_dots,
-                ink_gain,
-                inked_background,
-            )
+            light = light_of(frame, number, at, vertices, face, seen, picture)
             for c in ti.static(range(3)):
                 entry = tm.clamp(light[c] * gain, 0.0, float(curve.shape[0] - 1)) + 0.5
                 image[frame, number, c] = curve[int(entry)]
 
 
 @ti.kernel
-def gather_light(
-    frames: ti.i32,
-    pixels: ti.i32,
-    vertices: ti.i32,
-    seen_face: Integers,
-    seen_weights: Pairs,
-    on_patch: Bytes,
-    faces: IntegerRows,
-    radiance: Vectors,
-    undeformed: Vectors,
-    transmittance: Floats,
-    remainder: Vectors,
-    ink: Floats,
-    has_dots: ti.i32,
-    ink_gain: ti.f32,
-    inked_background: ti.i32,
-    linear: VectorRows,
-):
-    """The same with linear light, shape (frames, pixels)."""
-    for at in range(frames * pixels):
-        face = seen_face[at]
+def gather_light(seen: Seen, picture: Picture, linear: VectorRows):
+    """The same with linear light, shape (frames, N)."""
+    pixels, vertices = linear.shape[1], picture.undeformed.shape[0]
+    for at in range(linear.shape[0] * pixels):
+        face = seen.triangle[at]
         if face != SAME:
             frame, number = at // pixels, at % pixels
-            linear[frame, number] = light_of(
-                frame,
-                number,
-                at,
-                vertices,
-                face,
-                seen_weights,
-                on_patch,
-                faces,
-                radiance,
-                undeformed,
-                transmittance,
-                remainder,
-                ink,
-                has_dots,
-                ink_gain,
-                inked_background,
-            )
+            linear[frame, number] = light_of(frame, number, at, vertices, face, seen, picture)

@@ -14,7 +14,7 @@ import numpy as np
 import taichi as ti
 
 from sim.optics.light.device_arrays import empty, on_device
-from sim.optics.raster import compose_kernels
+from sim.optics.raster import bundles, compose_kernels
 from sim.optics.raster.backdrop import Backdrop
 from sim.optics.raster.display import LUT_STEPS, srgb_table
 from sim.optics.raster.markers import LEAST_COSINE
@@ -33,13 +33,33 @@ class Imager:
         self.raster, self.shader, self.backdrop = raster, shader, backdrop
         self.whole_shadows = False
         """Whether shadows do not fade toward skin that did not move: for absolute images."""
-        self._undeformed = on_device(backdrop.undeformed, vector=3)
-        self._remainder = on_device(backdrop.remainder, vector=3)
         self._curve = on_device(srgb_table())
-        self._dots = on_device(backdrop.dots_mm, vector=3)
-        self._dot_start, self._dot_of = on_device(backdrop.dot_start), on_device(backdrop.dot_of)
         inked = raster.frames * raster.pixels if len(backdrop.dots_mm) else 0
         self._ink, self._marker = empty(ti.f32, inked), empty(ti.i32, inked)
+        self._eye = bundles.Eye(
+            camera=ti.math.vec3(*backdrop.camera_mm.tolist()),
+            axis=ti.math.vec3(*backdrop.axis.tolist()),
+            angular=backdrop.angular,
+            focal_px=backdrop.focal_px,
+            least_cosine=LEAST_COSINE,
+        )
+        self._dots = bundles.PrintedDots(
+            dot_start=on_device(backdrop.dot_start),
+            dot_of=on_device(backdrop.dot_of),
+            centres=on_device(backdrop.dots_mm, vector=3),
+            radius=backdrop.dot_radius_mm,
+        )
+        self._picture = bundles.Picture(
+            faces=raster.skin.faces,
+            radiance=raster.radiance,
+            undeformed=on_device(backdrop.undeformed, vector=3),
+            transmittance=raster.transmittance,
+            remainder=on_device(backdrop.remainder, vector=3),
+            ink=self._ink,
+            has_dots=int(len(backdrop.dots_mm) > 0),
+            ink_gain=backdrop.ink_gain,
+            inked_background=backdrop.inked_background,
+        )
 
     @classmethod
     def from_state(cls, state: dict[str, np.ndarray]) -> Imager:
@@ -94,96 +114,36 @@ class Imager:
         self.raster.look(moved)
         self.shader.shade(radiance, whole=self.whole_shadows)
         if len(self.backdrop.dots_mm):
-            self._spread_ink(len(moved))
+            spread_ink: Any = compose_kernels.spread_ink
+            spread_ink(len(moved), *self._looks(), self._dots, self._ink, self._marker)
 
-    def _spread_ink(self, frames: int) -> None:
-        raster, back = self.raster, self.backdrop
-        compose_kernels.spread_ink(
-            frames,
-            raster.pixels,
-            raster.vertices,
-            raster.seen_face,
-            raster.seen_weights,
-            raster.on_patch,
-            raster.faces,
-            raster.points,
-            raster.normals,
-            raster.turned,
-            raster.origin,
-            raster.direction,
-            raster.seen_mm,
-            ti.math.vec3(*back.camera_mm.tolist()),
-            ti.math.vec3(*back.axis.tolist()),
-            back.angular,
-            back.focal_px,
-            LEAST_COSINE,
-            back.dot_radius_mm,
-            self._dot_start,
-            self._dot_of,
-            self._dots,
-            self._ink,
-            self._marker,
-        )
+    def _looks(self) -> tuple[Any, ...]:
+        """What the kernels take that describe what a pixel looks at."""
+        raster = self.raster
+        return raster.seen, raster.skin, raster.posed.turned, raster.rays, self._eye
 
     def expose(self, images: np.ndarray) -> None:
         """Write the grey levels of the frames looked at, shape (k, N, 3), uint8."""
         gain = self.backdrop.exposure * (LUT_STEPS - 1)
         images[:] = self.backdrop.background_rgb
-        arguments = (*self._seen(len(images)), gain, self._curve, images)
-        compose_kernels.expose(*arguments)  # pyright: ignore[reportCallIssue]
+        expose: Any = compose_kernels.expose
+        expose(self.raster.seen, self._picture, gain, self._curve, images)
 
     def gather_light(self, linear: np.ndarray) -> None:
         """Write the linear light of the frames looked at, shape (k, N, 3), float32."""
         linear[:] = self.backdrop.background
-        arguments = (*self._seen(len(linear)), linear)
-        compose_kernels.gather_light(*arguments)  # pyright: ignore[reportCallIssue]
-
-    def _seen(self, frames: int) -> tuple[Any, ...]:
-        raster, back = self.raster, self.backdrop
-        return (
-            frames,
-            raster.pixels,
-            raster.vertices,
-            raster.seen_face,
-            raster.seen_weights,
-            raster.on_patch,
-            raster.faces,
-            raster.radiance,
-            self._undeformed,
-            raster.transmittance,
-            self._remainder,
-            self._ink,
-            int(len(back.dots_mm) > 0),
-            back.ink_gain,
-            back.inked_background,
-        )
+        gather_light: Any = compose_kernels.gather_light
+        gather_light(self.raster.seen, self._picture, linear)
 
     def describe(self, normal: np.ndarray, depth_z_mm: np.ndarray) -> None:
         """Write what the first frame's changed pixels see: normals (N, 3), depths (N,), float32."""
-        raster, back = self.raster, self.backdrop
-        compose_kernels.describe(
-            1,
-            raster.pixels,
-            raster.vertices,
-            raster.seen_face,
-            raster.seen_weights,
-            raster.seen_mm,
-            raster.on_patch,
-            raster.faces,
-            raster.normals,
-            raster.turned,
-            raster.origin,
-            raster.direction,
-            ti.math.vec3(*back.camera_mm.tolist()),
-            ti.math.vec3(*back.axis.tolist()),
-            normal,
-            depth_z_mm,
-        )
+        describe: Any = compose_kernels.describe
+        describe(1, *self._looks(), normal, depth_z_mm)
 
     def ink(self) -> tuple[np.ndarray, np.ndarray]:
         """Nearest dot and covered share of the first frame's pixels, each (N,).
 
-        Right only where `raster.seen_face` says that the pixel changed.
+        Right only where `raster.seen.triangle` says that the pixel changed.
         """
         count = self.raster.pixels
         return self._marker.to_numpy()[:count], self._ink.to_numpy()[:count]

@@ -20,6 +20,7 @@ from sim.optics.light.kernel_types import (
     VectorRows,
     Vectors,
 )
+from sim.optics.raster.bundles import Fans, Posed, Sights, Skin
 
 CHUNK = 256
 """Entries that one thread counts; fixed, so that lists are the same on every machine."""
@@ -103,7 +104,10 @@ def list_moved(
 
 
 @ti.func
-def area_vector(a, b, c):
+def area_of(places: ti.template(), first, faces: ti.template(), face):
+    """Area vector of a face whose vertices' places begin at `first`."""
+    a = places[first + faces[face, 0]]
+    b, c = places[first + faces[face, 1]], places[first + faces[face, 2]]
     return 0.5 * (b - a).cross(c - a)
 
 
@@ -112,53 +116,45 @@ def place_vertices(
     count: ti.i32,
     vertex_list: Integers,
     displacement: VectorRows,
-    faces: IntegerRows,
     moved: Bytes,
-    points: Vectors,
-    normals: Vectors,
-    area: Vectors,
-    face_start: Integers,
-    face_of: Integers,
-    start_pixel: Pairs,
-    outward_to_camera: Vectors,
-    foot_map: VectorRows,
-    way_map: VectorRows,
-    placed: Vectors,
-    turned: Vectors,
+    skin: Skin,
+    fans: Fans,
+    sights: Sights,
+    posed: Posed,
     pixel: Pairs,
-    to_camera: Vectors,
 ):
     """Position, normal, pixel and direction to the camera of every vertex on the list.
 
     n' = unit(|A| n + A' - A) with A the sum of the area vectors of a vertex's triangles: equal to n
     where nothing moved, so that no seam shows.
     """
-    vertices = points.shape[0]
+    vertices = skin.points.shape[0]
     for entry in range(count):
         at = vertex_list[entry]
         frame, vertex = at // vertices, at % vertices
-        placed[at] = points[vertex]
+        posed.placed[at] = skin.points[vertex]
         if moved[at]:
-            placed[at] += displacement[frame, vertex]
+            posed.placed[at] += displacement[frame, vertex]
     for entry in range(count):
         at = vertex_list[entry]
         frame, vertex = at // vertices, at % vertices
         first = frame * vertices
         change = ti.Vector([0.0, 0.0, 0.0])
-        for place in range(face_start[vertex], face_start[vertex + 1]):
-            face = face_of[place]
-            if face_moved(moved, faces, first, face):
-                a, b, c = faces[face, 0], faces[face, 1], faces[face, 2]
-                change += area_vector(placed[first + a], placed[first + b], placed[first + c])
-                change -= area_vector(points[a], points[b], points[c])
-        normal = area[vertex].norm() * normals[vertex] + change
-        turned[at] = normal / ti.max(normal.norm(), 1e-12)
-        pixel[at] = start_pixel[vertex]
-        to_camera[at] = outward_to_camera[vertex]
-        if moved[at] and start_pixel[vertex].x >= 0.0:
-            place, way = project(placed[at], start_pixel[vertex], foot_map, way_map)
+        for number in range(fans.face_start[vertex], fans.face_start[vertex + 1]):
+            face = fans.face_of[number]
+            if face_moved(moved, skin.faces, first, face):
+                change += area_of(posed.placed, first, skin.faces, face)
+                change -= area_of(skin.points, 0, skin.faces, face)
+        normal = fans.area[vertex].norm() * skin.normals[vertex] + change
+        posed.turned[at] = normal / ti.max(normal.norm(), 1e-12)
+        pixel[at] = sights.start_pixel[vertex]
+        posed.to_camera[at] = sights.outward_to_camera[vertex]
+        if moved[at] and sights.start_pixel[vertex].x >= 0.0:
+            place, way = project(
+                posed.placed[at], sights.start_pixel[vertex], sights.foot_map, sights.way_map
+            )
             pixel[at] = place
-            to_camera[at] = -way
+            posed.to_camera[at] = -way
 
 
 @ti.kernel

@@ -23,16 +23,8 @@ import taichi.math as tm
 from sim.optics.field.model import Shading
 from sim.optics.field.table_kernels import look_up
 from sim.optics.light.coating_kernels import reflected
-from sim.optics.light.kernel_types import (
-    FloatRows,
-    FloatTables,
-    FourRows,
-    IntegerRows,
-    Integers,
-    NormalTables,
-    Pairs,
-    Vectors,
-)
+from sim.optics.light.kernel_types import Integers, Vectors
+from sim.optics.raster.bundles import Law, Lights, Posed, ScatteredLight, Skin, Tree
 from sim.optics.raster.tree_kernels import nearest
 
 FIELD, DIRECT, HYBRID, TABLE, GIVEN = (int(shading) for shading in Shading)
@@ -73,8 +65,9 @@ def lobe(place, led, axis, shape):
 
 
 @ti.func
-def arriving(way_of_lighting, was, here, baked, led, axis, shape):
+def arriving(way_of_lighting, was, here, vertex, number, lights: ti.template()):
     """Direction to a light, distance [mm] and perpendicular irradiance at a displaced vertex."""
+    baked, led = lights.light[vertex, number], lights.led[number]
     way, received, reach = baked.xyz, baked.w, 0.0
     if way_of_lighting != FIELD:
         source = led
@@ -87,6 +80,7 @@ def arriving(way_of_lighting, was, here, baked, led, axis, shape):
             ratio = (source - was).norm() / reach
             received *= ratio * ratio
         else:
+            axis, shape = lights.led_axis[number], lights.led_shape[number]
             then = lobe(was, source, axis, shape)
             now = lobe(here, source, axis, shape)
             received *= now / ti.max(then, 1e-20)
@@ -94,112 +88,81 @@ def arriving(way_of_lighting, was, here, baked, led, axis, shape):
 
 
 @ti.func
-def returned_share(way_of_lighting, way, view, inward, diffuse, specular, gloss):
-    """Radiance per irradiance by the law of the model; `gloss` as in `shade_vertices`."""
+def returned_share(way, view, inward, law: ti.template()):
+    """Radiance per irradiance by the law of the model."""
     returned = 0.0
-    if way_of_lighting == FIELD:
-        returned = phong(way, view, inward, diffuse, specular, gloss)
+    if law.way_of_lighting == FIELD:
+        returned = phong(way, view, inward, law.diffuse, law.specular, law.gloss)
     else:
-        returned = reflected(way, view, inward, diffuse, specular, gloss)
+        returned = reflected(way, view, inward, law.diffuse, law.specular, law.gloss)
     return returned
+
+
+@ti.func
+def scattered_to(vertex, inward, scattered: ti.template()):
+    """Radiance of scattered light that a vertex of this inward unit normal sends to the camera."""
+    return look_up(
+        scattered.table,
+        scattered.nodes,
+        scattered.weights,
+        scattered.node_frames,
+        vertex,
+        0,
+        inward,
+    )
+
+
+@ti.func
+def depth_of_shadow(travel, shadows, law: ti.template()):
+    """Share of a light that the patch can take from a vertex, by how far it moved [mm]."""
+    depth = 0.0
+    if shadows and law.way_of_lighting != FIELD:
+        fade = ti.log(ti.max(travel, law.least_mm) / law.least_mm) / ti.log(
+            law.full_shadow_mm / law.least_mm
+        )
+        depth = ti.min(fade, 1.0)
+        if shadows == EVERYWHERE:
+            depth = 1.0
+    return depth
 
 
 @ti.kernel
 def shade_vertices(
     count: ti.i32,
-    way_of_lighting: ti.i32,
     vertex_list: Integers,
-    points: Vectors,
-    normals: Vectors,
-    placed: Vectors,
-    turned: Vectors,
-    to_camera: Vectors,
-    light: FourRows,
-    led: Vectors,
-    led_axis: Vectors,
-    led_rgb: Vectors,
-    led_shape: Pairs,
-    table: NormalTables,
-    nodes: IntegerRows,
-    weights: FloatRows,
-    node_frames: FloatTables,
-    diffuse: ti.f32,
-    specular: ti.f32,
-    gloss: ti.f32,
-    least_mm: ti.f32,
-    full_shadow_mm: ti.f32,
+    skin: Skin,
+    posed: Posed,
+    lights: Lights,
+    scattered: ScatteredLight,
+    law: Law,
     shadows: ti.i32,
-    levels: ti.i32,
-    boxes: ti.i32,
-    level_start: Integers,
-    level_count: Integers,
-    list_start: Integers,
-    face_list: Integers,
-    faces: IntegerRows,
-    low: Vectors,
-    high: Vectors,
-    normal_low: Vectors,
-    normal_high: Vectors,
+    tree: Tree,
     radiance: Vectors,
 ):
-    """Radiance of each vertex on the list; `gloss` is Phong's exponent or GGX's roughness."""
-    vertices = points.shape[0]
+    """Radiance of each vertex on the list."""
+    vertices = skin.points.shape[0]
     for entry in range(count):
         at = vertex_list[entry]
         frame, vertex = at // vertices, at % vertices
-        here, was = placed[at], points[vertex]
-        inward, view = -turned[at], to_camera[at]
+        here, was = posed.placed[at], skin.points[vertex]
+        inward, view = -posed.turned[at], posed.to_camera[at]
         total = tm.vec3(0.0)
-        if way_of_lighting >= HYBRID:
-            total = look_up(table, nodes, weights, node_frames, vertex, 0, inward)
-        if way_of_lighting < TABLE:
-            travel = (here - was).norm()
-            depth = 0.0
-            if shadows and way_of_lighting != FIELD:
-                fade = ti.log(ti.max(travel, least_mm) / least_mm) / ti.log(
-                    full_shadow_mm / least_mm
-                )
-                depth = ti.min(fade, 1.0)
-                if shadows == EVERYWHERE:
-                    depth = 1.0
-            for number in range(led.shape[0]):
-                baked = light[vertex, number]
-                if baked.w > 0.0:
+        if law.way_of_lighting >= HYBRID:
+            total = scattered_to(vertex, inward, scattered)
+        if law.way_of_lighting < TABLE:
+            depth = depth_of_shadow((here - was).norm(), shadows, law)
+            for number in range(lights.led.shape[0]):
+                if lights.light[vertex, number].w > 0.0:
                     way, reach, received = arriving(
-                        way_of_lighting,
-                        was,
-                        here,
-                        baked,
-                        led[number],
-                        led_axis[number],
-                        led_shape[number],
+                        law.way_of_lighting, was, here, vertex, number, lights
                     )
-                    returned = returned_share(
-                        way_of_lighting, way, view, inward, diffuse, specular, gloss
-                    )
+                    returned = returned_share(way, view, inward, law)
                     if returned > 0.0 and depth > 0.0:
+                        start = here + SKIN_OFFSET_MM * inward
                         blocker, _far = nearest(
-                            frame,
-                            here + SKIN_OFFSET_MM * inward,
-                            way,
-                            reach,
-                            True,
-                            levels,
-                            boxes,
-                            vertices,
-                            level_start,
-                            level_count,
-                            list_start,
-                            face_list,
-                            faces,
-                            normals,
-                            placed,
-                            low,
-                            high,
-                            normal_low,
-                            normal_high,
+                            frame, start, way, reach, True, tree, skin, posed.placed
                         )
                         if blocker >= 0:
                             returned *= 1.0 - depth
-                    total += returned * received * led_rgb[number]
+                    total += returned * received * lights.led_rgb[number]
         radiance[at] = total

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import taichi as ti
 
-from sim.optics.light.device_arrays import computes_on_gpu, empty, on_device
+from sim.optics.light.device_arrays import empty, on_device, readable
+from sim.optics.raster.bundles import Law, Lights, Posed, ScatteredLight
 from sim.optics.raster.gbuffer import MOVED_MM
 from sim.optics.raster.raster import Raster
 from sim.optics.raster.shade_kernels import EVERYWHERE, FADING, GIVEN, NO_SHADOWS, shade_vertices
@@ -17,42 +17,33 @@ from sim.optics.raster.vertex_light import VertexLight
 from workbench.core.base.errors import OpticsError
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class _Vertices:
-    """Vertices to be shaded, in arrays on the device."""
-
-    count: int
-    numbers: Any
-    """Which ones, shape (count,) or longer, int32."""
-    placed: Any
-    """Places of all vertices [mm], float32 vectors."""
-    turned: Any
-    """Outward unit normals of all, float32 vectors."""
-    to_camera: Any
-    """Unit vectors from all to the camera, float32."""
-
-
 class Shader:
     """The lights of one design over the vertices of a raster."""
 
     def __init__(self, raster: Raster, lit: VertexLight) -> None:
         self._raster = raster
         self.lit = lit
-        self.lights = (
-            on_device(lit.light, vector=4),
-            on_device(lit.led_mm, vector=3),
-            on_device(lit.led_axis, vector=3),
-            on_device(lit.led_rgb, vector=3),
-            on_device(lit.led_shape, vector=2),
-            on_device(lit.table),
-            on_device(lit.nodes),
-            on_device(lit.weights),
-            on_device(lit.node_frames),
-            lit.diffuse,
-            lit.specular,
-            lit.gloss,
+        self.lights = Lights(
+            light=on_device(lit.light, vector=4),
+            led=on_device(lit.led_mm, vector=3),
+            led_axis=on_device(lit.led_axis, vector=3),
+            led_rgb=on_device(lit.led_rgb, vector=3),
+            led_shape=on_device(lit.led_shape, vector=2),
         )
-        """What the kernels that shade take of a light, in their order."""
+        self.scattered = ScatteredLight(
+            table=on_device(lit.table),
+            nodes=on_device(lit.nodes),
+            weights=on_device(lit.weights),
+            node_frames=on_device(lit.node_frames),
+        )
+        self.law = Law(
+            way_of_lighting=lit.way_of_lighting,
+            diffuse=lit.diffuse,
+            specular=lit.specular,
+            gloss=lit.gloss,
+            least_mm=MOVED_MM,
+            full_shadow_mm=FULL_SHADOW_MM,
+        )
 
     @property
     def given(self) -> bool:
@@ -70,14 +61,8 @@ class Shader:
         if self.given:
             _take(raster.radiance, radiance)
             return
-        moved = _Vertices(
-            count=raster.vertex_entries,
-            numbers=raster.vertex_list,
-            placed=raster.placed,
-            turned=raster.turned,
-            to_camera=raster.to_camera,
-        )
-        self._run(moved, raster.radiance, shadows=EVERYWHERE if whole else FADING)
+        shadows = EVERYWHERE if whole else FADING
+        self._run(raster.vertex_list, raster.vertex_entries, raster.posed, raster.radiance, shadows)
 
     def everywhere(self) -> np.ndarray:
         """Radiance of all vertices of the one frame looked at, with whole shadows, (V, 3), float32.
@@ -87,19 +72,10 @@ class Shader:
         raster = self._raster
         if self.given:
             return raster.radiance.to_numpy()[: raster.vertices]
-        placed = raster.points.to_numpy()
+        placed = raster.skin.points.to_numpy()
         entries = raster.vertex_list.to_numpy()[: raster.vertex_entries]
-        placed[entries] = raster.placed.to_numpy()[entries]
-        found = empty(ti.f32, raster.vertices, vector=3)
-        everything = _Vertices(
-            count=raster.vertices,
-            numbers=on_device(np.arange(raster.vertices, dtype=np.int32)),
-            placed=on_device(placed, vector=3),
-            turned=raster.normals,
-            to_camera=raster.still_to_camera,
-        )
-        self._run(everything, found, shadows=EVERYWHERE)
-        return found.to_numpy()
+        placed[entries] = raster.posed.placed.to_numpy()[entries]
+        return self._all(on_device(placed, vector=3), raster.skin.normals, EVERYWHERE)
 
     def undeformed(self, normals: np.ndarray | None = None) -> np.ndarray:
         """Radiance of the undeformed skin, shape (V, 3), float32.
@@ -116,43 +92,37 @@ class Shader:
                 hint="hand its radiance in, or choose the light model hybrid",
                 at="optics.light_model",
             )
-        raster = self._raster
-        turned = raster.normals
+        skin = self._raster.skin
+        turned = skin.normals
         if normals is not None:
             turned = on_device(normals.astype(np.float32), vector=3)
-        everything = _Vertices(
-            count=raster.vertices,
-            numbers=on_device(np.arange(raster.vertices, dtype=np.int32)),
-            placed=raster.points,
-            turned=turned,
-            to_camera=raster.still_to_camera,
-        )
+        return self._all(skin.points, turned, NO_SHADOWS)
+
+    def _all(self, placed: Any, turned: Any, shadows: int) -> np.ndarray:
+        """Radiance of all vertices at places and with outward normals, (V, 3), float32."""
+        raster = self._raster
         found = empty(ti.f32, raster.vertices, vector=3)
-        self._run(everything, found, shadows=NO_SHADOWS)
+        numbers = on_device(np.arange(raster.vertices, dtype=np.int32))
+        posed = Posed(placed=placed, turned=turned, to_camera=raster.sights.outward_to_camera)
+        self._run(numbers, raster.vertices, posed, found, shadows)
         return found.to_numpy()
 
-    def _run(self, vertices: _Vertices, radiance: Any, *, shadows: int) -> None:
-        """Fill the radiance of vertices, by their numbers."""
+    def _run(self, numbers: Any, count: int, posed: Any, radiance: Any, shadows: int) -> None:
+        """Fill the radiance of vertices, by the first `count` of their numbers."""
         raster = self._raster
-        arguments = (
-            vertices.count,
-            self.lit.way_of_lighting,
-            vertices.numbers,
-            raster.points,
-            raster.normals,
-            vertices.placed,
-            vertices.turned,
-            vertices.to_camera,
-            *self.lights,
-            MOVED_MM,
-            FULL_SHADOW_MM,
+        shade: Any = shade_vertices
+        shade(
+            count,
+            numbers,
+            raster.skin,
+            posed,
+            self.lights,
+            self.scattered,
+            self.law,
             shadows,
-            *raster.tree,
-            raster.faces,
-            *raster.corners,
+            raster.tree,
             radiance,
         )
-        shade_vertices(*arguments)
 
 
 def _take(target: Any, radiance: np.ndarray | None) -> None:
@@ -166,4 +136,4 @@ def _take(target: Any, radiance: np.ndarray | None) -> None:
     from sim.optics.raster.patch_kernels import copy_rows
 
     rows = np.ascontiguousarray(radiance.reshape(-1, 3), dtype=np.float32)
-    copy_rows(on_device(rows, vector=3) if computes_on_gpu() else rows, target)
+    copy_rows(readable(rows, vector=3), target)

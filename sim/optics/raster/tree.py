@@ -23,12 +23,14 @@ def order_of_faces(points_mm: np.ndarray, faces: np.ndarray) -> np.ndarray:
     return np.argsort(code, kind="stable").astype(np.int32)
 
 
-def tree_levels(triangles: int) -> tuple[int, np.ndarray, np.ndarray]:
-    """Levels of a tree over so many triangles, and each level's first box and number of boxes."""
+def tree_levels(triangles: int) -> tuple[int, np.ndarray]:
+    """Levels of a tree over so many triangles, and where each begins among the boxes.
+
+    Levels that it lacks begin where the boxes end: shape (LEVELS + 1,), int32.
+    """
     counts = [max(1, -(-triangles // LEAF))]
     while counts[-1] > WIDTH:
         counts.append(-(-counts[-1] // WIDTH))
-    starts = np.concatenate([[0], np.cumsum(counts)])
-    count, start = np.zeros(LEVELS, dtype=np.int32), np.zeros(LEVELS, dtype=np.int32)
-    count[: len(counts)], start[: len(counts)] = counts, starts[:-1]
-    return len(counts), start, count
+    start = np.full(LEVELS + 1, sum(counts), dtype=np.int32)
+    start[: len(counts)] = np.cumsum([0, *counts[:-1]])
+    return len(counts), start

@@ -12,12 +12,15 @@ per frame, and results do not depend on threads: a shadow is an or, the nearest 
 import taichi as ti
 import taichi.math as tm
 
-from sim.optics.light.kernel_types import IntegerRows, Integers, Vectors
+from sim.optics.light.kernel_types import Vectors
+from sim.optics.raster.bundles import Skin, Tree
 
 LEAF = 2
 WIDTH = 4
 LEVELS = 10
 """Levels that the arrays have room for: 4^11 triangles."""
+LOW, HIGH, FLATTEST, STEEPEST = range(4)
+"""Corners of a box of places and of one of normals."""
 NOTHING_MM = 1e9
 MARGIN_MM = 1e-4
 """Boxes are this much larger, so that rounding cannot cut a triangle off [mm]."""
@@ -33,27 +36,28 @@ def outward(a, b, c):
 
 
 @ti.func
-def may_leave(way, least, most):
-    """Whether a ray could pass outward through a triangle whose normal lies in a box."""
-    return ti.max(way * least, way * most).sum() > 0.0
+def may_leave(way, tree: ti.template(), at):
+    """Whether a ray could pass outward through a triangle in a box."""
+    return ti.max(way * tree.boxes[at, FLATTEST], way * tree.boxes[at, STEEPEST]).sum() > 0.0
 
 
 @ti.func
-def axes_of(
-    frame,
-    list_start: ti.template(),
-    face_list: ti.template(),
-    faces: ti.template(),
-    normals: ti.template(),
-):
+def boxes_of(level, tree: ti.template()):
+    """Boxes of a level of each frame."""
+    return tree.level_start[level + 1] - tree.level_start[level]
+
+
+@ti.func
+def axes_of(frame, tree: ti.template(), skin: ti.template()):
     """Axes of a frame's boxes, as rows: the last is normal to the skin in the middle of the list.
 
     Skin is thin: boxes along it are a fraction of the size of boxes at an angle to it.
     """
     last = tm.vec3(0.0, 0.0, 1.0)
-    if list_start[frame + 1] > list_start[frame]:
-        middle = face_list[(list_start[frame] + list_start[frame + 1]) // 2] % faces.shape[0]
-        last = normals[faces[middle, 0]]
+    begin, end = tree.list_start[frame], tree.list_start[frame + 1]
+    if end > begin:
+        middle = tree.face_list[(begin + end) // 2] % skin.faces.shape[0]
+        last = skin.normals[skin.faces[middle, 0]]
     side = tm.vec3(1.0, 0.0, 0.0)
     if ti.abs(last.x) > 0.7:
         side = tm.vec3(0.0, 1.0, 0.0)
@@ -62,58 +66,53 @@ def axes_of(
     return ti.Matrix.rows([first, second, last])
 
 
+@ti.func
+def corners_of(face, first, faces: ti.template(), placed: ti.template()):
+    """Places of a face's corners in the frame whose vertices begin at `first`."""
+    a, b, c = first + faces[face, 0], first + faces[face, 1], first + faces[face, 2]
+    return placed[a], placed[b], placed[c]
+
+
 @ti.kernel
-def build_tree(
-    frames: ti.i32,
-    vertices: ti.i32,
-    levels: ti.i32,
-    boxes: ti.i32,
-    level_start: Integers,
-    level_count: Integers,
-    list_start: Integers,
-    face_list: Integers,
-    faces: IntegerRows,
-    normals: Vectors,
-    placed: Vectors,
-    low: Vectors,
-    high: Vectors,
-    normal_low: Vectors,
-    normal_high: Vectors,
-):
+def build_tree(frames: ti.i32, tree: Tree, skin: Skin, placed: Vectors):
     """Boxes of places and of normals, all levels of all frames; empty beyond a frame's list."""
-    for frame, leaf in ti.ndrange(frames, level_count[0]):
+    vertices = skin.points.shape[0]
+    for frame, leaf in ti.ndrange(frames, tree.level_start[1]):
         least, most = tm.vec3(NOTHING_MM), tm.vec3(-NOTHING_MM)
         flattest, steepest = tm.vec3(NOTHING_MM), tm.vec3(-NOTHING_MM)
-        first = list_start[frame] + leaf * LEAF
-        turn = axes_of(frame, list_start, face_list, faces, normals)
-        for entry in range(first, ti.min(first + LEAF, list_start[frame + 1])):
-            face = face_list[entry] % faces.shape[0]
-            for corner in ti.static(range(3)):
-                point = turn @ placed[frame * vertices + faces[face, corner]]
+        first = tree.list_start[frame] + leaf * LEAF
+        turn = axes_of(frame, tree, skin)
+        base = frame * vertices
+        for entry in range(first, ti.min(first + LEAF, tree.list_start[frame + 1])):
+            face = tree.face_list[entry] % skin.faces.shape[0]
+            a, b, c = corners_of(face, base, skin.faces, placed)
+            for corner in ti.static((a, b, c)):
+                point = turn @ corner
                 least, most = ti.min(least, point), ti.max(most, point)
-            base = frame * vertices
-            a, b, c = faces[face, 0], faces[face, 1], faces[face, 2]
-            normal = outward(placed[base + a], placed[base + b], placed[base + c])
+            normal = outward(a, b, c)
             flattest, steepest = ti.min(flattest, normal), ti.max(steepest, normal)
-        normal_low[frame * boxes + leaf] = flattest
-        normal_high[frame * boxes + leaf] = steepest
-        low[frame * boxes + leaf] = least - MARGIN_MM
-        high[frame * boxes + leaf] = most + MARGIN_MM
+        at = frame * tree.level_start[LEVELS] + leaf
+        tree.boxes[at, LOW] = least - MARGIN_MM
+        tree.boxes[at, HIGH] = most + MARGIN_MM
+        tree.boxes[at, FLATTEST] = flattest
+        tree.boxes[at, STEEPEST] = steepest
     for level in ti.static(range(1, LEVELS)):
-        for frame, box in ti.ndrange(frames, level_count[level]):
+        for frame, box in ti.ndrange(frames, boxes_of(level, tree)):
             least, most = tm.vec3(NOTHING_MM), tm.vec3(-NOTHING_MM)
             flattest, steepest = tm.vec3(NOTHING_MM), tm.vec3(-NOTHING_MM)
-            below = frame * boxes + level_start[level - 1]
-            last = ti.min((box + 1) * WIDTH, level_count[level - 1])
-            for child in range(box * WIDTH, last):
-                least = ti.min(least, low[below + child])
-                most = ti.max(most, high[below + child])
-                flattest = ti.min(flattest, normal_low[below + child])
-                steepest = ti.max(steepest, normal_high[below + child])
-            normal_low[frame * boxes + level_start[level] + box] = flattest
-            normal_high[frame * boxes + level_start[level] + box] = steepest
-            low[frame * boxes + level_start[level] + box] = least
-            high[frame * boxes + level_start[level] + box] = most
+            first = frame * tree.level_start[LEVELS]
+            below = tree.level_start[level - 1] + box * WIDTH
+            beyond = ti.min(below + WIDTH, tree.level_start[level])
+            for child in range(first + below, first + beyond):
+                least = ti.min(least, tree.boxes[child, LOW])
+                most = ti.max(most, tree.boxes[child, HIGH])
+                flattest = ti.min(flattest, tree.boxes[child, FLATTEST])
+                steepest = ti.max(steepest, tree.boxes[child, STEEPEST])
+            at = first + tree.level_start[level] + box
+            tree.boxes[at, LOW] = least
+            tree.boxes[at, HIGH] = most
+            tree.boxes[at, FLATTEST] = flattest
+            tree.boxes[at, STEEPEST] = steepest
 
 
 @ti.func
@@ -143,8 +142,9 @@ def meet(start: tm.vec3, way: tm.vec3, a: tm.vec3, b: tm.vec3, c: tm.vec3):
 
 
 @ti.func
-def meets_box(start, inverse, low, high, reach):
+def meets_box(start, inverse, tree: ti.template(), at, reach):
     """Whether a ray enters a box within `reach`; never an empty one."""
+    low, high = tree.boxes[at, LOW], tree.boxes[at, HIGH]
     near = (low - start) * inverse
     far = (high - start) * inverse
     enter = ti.max(ti.min(near, far).max(), 0.0)
@@ -171,20 +171,9 @@ def nearest(
     way: tm.vec3,
     reach: ti.f32,
     any_will_do: ti.template(),
-    levels: ti.i32,
-    boxes: ti.i32,
-    vertices: ti.i32,
-    level_start: ti.template(),
-    level_count: ti.template(),
-    list_start: ti.template(),
-    face_list: ti.template(),
-    faces: ti.template(),
-    normals: ti.template(),
+    tree: ti.template(),
+    skin: ti.template(),
     placed: ti.template(),
-    low: ti.template(),
-    high: ti.template(),
-    normal_low: ti.template(),
-    normal_high: ti.template(),
 ):
     """Nearest moved triangle within `reach`, its distance: (-1, reach) if there is none.
 
@@ -192,30 +181,29 @@ def nearest(
     such a one first, so the rest, which is most of a dent as its lights see it, is passed over.
     """
     found, limit = -1, reach
-    top = levels - 1
+    top = tree.levels - 1
+    base = frame * skin.points.shape[0]
+    begin, end = tree.list_start[frame], tree.list_start[frame + 1]
     level, node = top, 0
-    going = list_start[frame + 1] > list_start[frame]
-    turn = axes_of(frame, list_start, face_list, faces, normals)
+    going = end > begin
+    turn = axes_of(frame, tree, skin)
     turned_start, inverse = turn @ start, inverse_of(turn @ way)
     while going:
         down = False
-        at = frame * boxes + level_start[level] + node
+        at = frame * tree.level_start[LEVELS] + tree.level_start[level] + node
         worth = True
         if ti.static(any_will_do):
-            worth = may_leave(way, normal_low[at], normal_high[at])
-        if worth and meets_box(turned_start, inverse, low[at], high[at], limit):
+            worth = may_leave(way, tree, at)
+        if worth and meets_box(turned_start, inverse, tree, at, limit):
             if level > 0:
                 level -= 1
                 node *= WIDTH
                 down = True
             else:
-                first = list_start[frame] + node * LEAF
-                for entry in range(first, ti.min(first + LEAF, list_start[frame + 1])):
-                    face = face_list[entry] % faces.shape[0]
-                    base = frame * vertices
-                    a = placed[base + faces[face, 0]]
-                    b = placed[base + faces[face, 1]]
-                    c = placed[base + faces[face, 2]]
+                first = begin + node * LEAF
+                for entry in range(first, ti.min(first + LEAF, end)):
+                    face = tree.face_list[entry] % skin.faces.shape[0]
+                    a, b, c = corners_of(face, base, skin.faces, placed)
                     distance, _v, _w = meet(start, way, a, b, c)
                     counts = True
                     if ti.static(any_will_do):
@@ -226,9 +214,9 @@ def nearest(
                     going = found < 0
         if not down:
             node += 1
-            while level < top and (node % WIDTH == 0 or node >= level_count[level]):
+            while level < top and (node % WIDTH == 0 or node >= boxes_of(level, tree)):
                 node = (node + WIDTH - 1) // WIDTH
                 level += 1
-            if level == top and node >= level_count[top]:
+            if level == top and node >= boxes_of(top, tree):
                 going = False
     return found, limit

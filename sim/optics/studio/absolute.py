@@ -21,7 +21,7 @@ def cast_change(imager: Imager) -> np.ndarray:
     The imager must hold a single frame, shaded with `everywhere`.
     """
     raster, back = imager.raster, imager.backdrop
-    still = raster.seen_face.to_numpy()[: raster.pixels] == SAME
+    still = raster.seen.triangle.to_numpy()[: raster.pixels] == SAME
     if not raster.vertex_entries and not imager.shader.given:
         return np.zeros((raster.pixels, 3), dtype=np.float32)
     lit = imager.shader.everywhere()

@@ -34,11 +34,13 @@ skin of the mesh; the relief's own shadows and interreflection; slope of w, c an
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from sim.contact.objects.fine_surface import fine_surface
 from sim.contact.objects.sampling import box_mm
+from sim.optics.raster.bundles import Spots
 from sim.optics.raster.imager import Imager
 from sim.optics.studio.detail_filling import Filling, filling
 from sim.optics.studio.detail_kernels import shade_points
@@ -182,15 +184,15 @@ def touched_edge_mm(skin: Skin, pressure_MPa: np.ndarray) -> float:
 def touched_pixels(imager: Imager, pressure_MPa: np.ndarray) -> TouchedPixels:
     """Pixels whose triangle has a corner under pressure, of the first frame of the batch."""
     raster = imager.raster
-    face = raster.seen_face.to_numpy()[: raster.pixels]
-    shown = (face >= 0) & (raster.on_patch.to_numpy()[: raster.pixels] > 0)
+    face = raster.seen.triangle.to_numpy()[: raster.pixels]
+    shown = (face >= 0) & (raster.seen.on_patch.to_numpy()[: raster.pixels] > 0)
     pressed = np.any(pressure_MPa[raster.view.faces] > 0.0, axis=1)
     pixel = np.flatnonzero(shown & pressed[face])
     corners = raster.view.faces[face[pixel]]
-    second = raster.seen_weights.to_numpy()[pixel]
+    second = raster.seen.weights.to_numpy()[pixel]
     weights = np.column_stack([1.0 - second.sum(axis=1), second]).astype(np.float32)
-    placed = raster.placed.to_numpy()[: raster.vertices]
-    turned = raster.turned.to_numpy()[: raster.vertices]
+    placed = raster.posed.placed.to_numpy()[: raster.vertices]
+    turned = raster.posed.turned.to_numpy()[: raster.vertices]
 
     def blended(values: np.ndarray) -> np.ndarray:
         return np.einsum("pk,pk...->p...", weights, values[corners])
@@ -210,19 +212,21 @@ def touched_pixels(imager: Imager, pressure_MPa: np.ndarray) -> TouchedPixels:
 def _change(imager: Imager, touched: TouchedPixels, tilted: np.ndarray) -> np.ndarray:
     """Radiance with the tilted normals less that with the smooth ones, (P, 3), float32."""
     raster, shader = imager.raster, imager.shader
-    count = len(touched.pixel)
-    before, after = np.zeros((2, count, 3), dtype=np.float32)
-    shade_points(
-        count,
-        shader.lit.way_of_lighting,
-        np.ascontiguousarray(touched.corners, dtype=np.int32),
-        touched.weights,
-        np.ascontiguousarray(-touched.normal, dtype=np.float32),
-        np.ascontiguousarray(-tilted, dtype=np.float32),
-        raster.points,
-        raster.placed,
-        raster.to_camera,
-        *shader.lights,
+    spots = Spots(
+        corners=np.ascontiguousarray(touched.corners, dtype=np.int32),
+        shares=touched.weights,
+        smooth=np.ascontiguousarray(-touched.normal, dtype=np.float32),
+        tilted=np.ascontiguousarray(-tilted, dtype=np.float32),
+    )
+    before, after = np.zeros((2, len(touched.pixel), 3), dtype=np.float32)
+    shade: Any = shade_points
+    shade(
+        spots,
+        raster.skin,
+        raster.posed,
+        shader.lights,
+        shader.scattered,
+        shader.law,
         before,
         after,
     )

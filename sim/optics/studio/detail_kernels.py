@@ -13,78 +13,40 @@ caller. The plain twins are those of `shade_kernels`: `shading.shade`, `shading.
 import taichi as ti
 import taichi.math as tm
 
-from sim.optics.field.table_kernels import look_up
-from sim.optics.light.kernel_types import (
-    FloatRows,
-    FloatTables,
-    FourRows,
-    IntegerRows,
-    NormalTables,
-    Pairs,
-    Vectors,
-)
-from sim.optics.raster.shade_kernels import HYBRID, TABLE, arriving, returned_share
+from sim.optics.light.kernel_types import Vectors
+from sim.optics.raster.bundles import Law, Lights, Posed, ScatteredLight, Skin, Spots
+from sim.optics.raster.shade_kernels import HYBRID, TABLE, arriving, returned_share, scattered_to
 
 
 @ti.kernel
 def shade_points(
-    count: ti.i32,
-    way_of_lighting: ti.i32,
-    corners: IntegerRows,
-    shares: FloatRows,
-    smooth: Vectors,
-    tilted: Vectors,
-    points: Vectors,
-    placed: Vectors,
-    to_camera: Vectors,
-    light: FourRows,
-    led: Vectors,
-    led_axis: Vectors,
-    led_rgb: Vectors,
-    led_shape: Pairs,
-    table: NormalTables,
-    nodes: IntegerRows,
-    weights: FloatRows,
-    node_frames: FloatTables,
-    diffuse: ti.f32,
-    specular: ti.f32,
-    gloss: ti.f32,
+    spots: Spots,
+    skin: Skin,
+    posed: Posed,
+    lights: Lights,
+    scattered: ScatteredLight,
+    law: Law,
     before: Vectors,
     after: Vectors,
 ):
-    """Fill `before` and `after` with the radiance for inward unit normals `smooth` and `tilted`.
-
-    Args:
-        corners: Vertices of each point's triangle, shape (count, 3).
-        shares: Their weights, shape (count, 3).
-    """
-    for entry in range(count):
+    """Fill `before` and `after` with the radiance for the smooth and the tilted normals."""
+    for entry in range(spots.corners.shape[0]):
+        old_normal, new_normal = spots.smooth[entry], spots.tilted[entry]
         old, new = tm.vec3(0.0), tm.vec3(0.0)
         for corner in range(3):
-            vertex, share = corners[entry, corner], shares[entry, corner]
-            here, was, view = placed[vertex], points[vertex], to_camera[vertex]
-            if way_of_lighting >= HYBRID:
-                old += share * look_up(table, nodes, weights, node_frames, vertex, 0, smooth[entry])
-                new += share * look_up(table, nodes, weights, node_frames, vertex, 0, tilted[entry])
-            if way_of_lighting < TABLE:
-                for number in range(led.shape[0]):
-                    baked = light[vertex, number]
-                    if baked.w > 0.0:
+            vertex, share = spots.corners[entry, corner], spots.shares[entry, corner]
+            here, was, view = posed.placed[vertex], skin.points[vertex], posed.to_camera[vertex]
+            if law.way_of_lighting >= HYBRID:
+                old += share * scattered_to(vertex, old_normal, scattered)
+                new += share * scattered_to(vertex, new_normal, scattered)
+            if law.way_of_lighting < TABLE:
+                for number in range(lights.led.shape[0]):
+                    if lights.light[vertex, number].w > 0.0:
                         way, _reach, received = arriving(
-                            way_of_lighting,
-                            was,
-                            here,
-                            baked,
-                            led[number],
-                            led_axis[number],
-                            led_shape[number],
+                            law.way_of_lighting, was, here, vertex, number, lights
                         )
-                        strength = share * received * led_rgb[number]
-                        old += strength * returned_share(
-                            way_of_lighting, way, view, smooth[entry], diffuse, specular, gloss
-                        )
-                        new += strength * returned_share(
-                            way_of_lighting, way, view, tilted[entry], diffuse, specular, gloss
-                        )
+                        strength = share * received * lights.led_rgb[number]
+                        old += strength * returned_share(way, view, old_normal, law)
+                        new += strength * returned_share(way, view, new_normal, law)
         before[entry] = old
         after[entry] = new

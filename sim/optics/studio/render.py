@@ -211,7 +211,7 @@ class Studio:
     def _expose(self, frames: TactileFrames, number: int, fine: DetailPixels | None) -> None:
         """Write frame `number`: only the pixels that moved differ from the background."""
         scene, raster, axis = self._scene, self.imager.raster, self.imager.backdrop.axis
-        changed = raster.seen_face.to_numpy()[: raster.pixels] != SAME
+        changed = raster.seen.triangle.to_numpy()[: raster.pixels] != SAME
         rgb = frames.rgb[number].reshape(-1, 3)
         if develops_plainly(scene.camera) and not self._absolute:
             self.imager.expose(rgb[None])
@@ -257,8 +257,8 @@ class Studio:
         """The frame just looked at, through the image sensor: (H, W, 3), uint8."""
         raster = self.imager.raster
         linear = self._linear(fine)
-        face = raster.seen_face.to_numpy()[: raster.pixels]
-        away = raster.view.travelled_mm + raster.seen_mm.to_numpy()[: raster.pixels]
+        face = raster.seen.triangle.to_numpy()[: raster.pixels]
+        away = raster.view.travelled_mm + raster.seen.away_mm.to_numpy()[: raster.pixels]
         range_mm = np.where(face == SAME, self._scene.range_mm, np.where(face >= 0, away, np.nan))
         return self._scene.develop(linear, range_mm, number)
 
