@@ -60,12 +60,14 @@ def test_forces_friction_and_commit_equal_the_twin() -> None:
         origin = origin + np.array([aside_mm, 0.0, 0.0])
         object_mm = wobble_mm + (origin - soft.origin_mm) @ soft.rotation
         relaxation.batch.write(
-            relaxation.batch.displacement,
+            relaxation.batch.nodes.displacement,
             3 * relaxation.batch.spans[MEMBRANE].first_node,
             membrane_mm,
         )
         relaxation.batch.write(
-            relaxation.batch.displacement, 3 * relaxation.batch.spans[OBJECT].first_node, object_mm
+            relaxation.batch.nodes.displacement,
+            3 * relaxation.batch.spans[OBJECT].first_node,
+            object_mm,
         )
         relaxation.set_poses(0, np.concatenate([origin, rotation.ravel(), [1.0]])[None])
         relaxation.evaluate(np.ones(1, bool))

@@ -16,6 +16,7 @@ import numpy as np
 import taichi as ti
 
 from sim.contact.engine import sum_kernels
+from sim.contact.engine.bundles import Cases, Cells, Nodes, Surface, packed
 from sim.contact.grid import layout
 from sim.contact.objects.collider import Collider
 from sim.contact.region.domain import BLOCK, NO_SLOT, Domain
@@ -44,7 +45,7 @@ class Span:
 
 
 class Batch:
-    """Device arrays of all cases; names and layouts are those of `kernels`."""
+    """Device arrays of all cases."""
 
     def __init__(self, cases: list[Case], steps: int) -> None:
         domains = [case.domain for case in cases]
@@ -52,53 +53,66 @@ class Batch:
         cells = [_padded(len(domain.rows)) for domain in domains]
         points = [domain.points.count for domain in domains]
         node_at, cell_at, point_at = _starts(nodes), _starts(cells), _starts(points)
-        self.cases = cases
         self.spans = [
             Span(first_node=n, nodes=len(d.masses), first_point=p, points=d.points.count)
             for d, n, p in zip(domains, node_at, point_at, strict=False)
         ]
         everything = list(zip(domains, node_at, cell_at, point_at, strict=False))
         total = node_at[-1]
-        self.displacement = floats(np.zeros(3 * total))
-        self.velocity = floats(np.zeros(3 * total))
-        self.forces = floats(np.zeros(3 * total))
-        # The block after the last cell stays zero: nodes without a cell on some side read it.
-        self.slots = floats(np.zeros(81 * (cell_at[-1] + BLOCK)))
         nothing = 81 * cell_at[-1]
-        self.rows = integers(_joined([interleaved(d.rows + n, n) for d, n, _, _ in everything]))
-        self.volumes = floats(_joined([interleaved(d.volumes_mm3, 0.0) for d in domains]))
-        self.moduli = floats(_joined([interleaved(d.moduli_MPa, 0.0) for d in domains]))
-        self.cell_cases = integers(np.repeat(np.arange(len(cases)), cells))
-        self.node_slots = integers(
-            _joined(
-                [
-                    interleaved(_shifted(d.node_slots, c, nothing), nothing)
-                    for d, _, c, _ in everything
-                ]
-            )
+        slots = [
+            interleaved(_shifted(d.node_slots, c, nothing), nothing) for d, _, c, _ in everything
+        ]
+        self.nodes = Nodes(
+            displacement=floats(np.zeros(3 * total)),
+            velocity=floats(np.zeros(3 * total)),
+            forces=floats(np.zeros(3 * total)),
+            # A padding node is fixed, and its mass only keeps it from dividing by nothing.
+            masses=floats(_joined([_extended(d.masses, 1.0) for d in domains])),
+            fixed=integers(_joined([_extended(d.fixed, True) for d in domains])),
+            powers=floats(np.zeros(2 * total)),
+            node_slots=integers(_joined(slots)),
+            node_cases=integers(np.repeat(np.arange(len(cases)), nodes)),
         )
-        self.node_cases = integers(np.repeat(np.arange(len(cases)), nodes))
-        # A padding node is fixed, and its mass only keeps it from dividing by nothing.
-        self.masses = floats(_joined([_extended(d.masses, 1.0) for d in domains]))
-        self.fixed = integers(_joined([_extended(d.fixed, True) for d in domains]))
-        self.powers = floats(np.zeros(2 * total))
         counts = _joined([_points_per_cell(d) for d in domains])
-        self.starts = integers(np.concatenate([[0], np.cumsum(counts)]))
-        self.points = floats(_joined([_point_table(d) for d in domains]))
-        self.held = integers(_joined([d.points.bonded for d in domains]))
-        self.goals = floats(np.zeros(6 * point_at[-1]))
-        self.anchors = floats(np.zeros(3 * point_at[-1]))
-        self.states = integers(np.zeros(point_at[-1]))
+        self.cells = Cells(
+            rows=integers(_joined([interleaved(d.rows + n, n) for d, n, _, _ in everything])),
+            volumes=floats(_joined([interleaved(d.volumes_mm3, 0.0) for d in domains])),
+            moduli=floats(_joined([interleaved(d.moduli_MPa, 0.0) for d in domains])),
+            cell_cases=integers(np.repeat(np.arange(len(cases)), cells)),
+            # The block after the last cell stays zero: nodes without a cell on some side read it.
+            slots=floats(np.zeros(81 * (cell_at[-1] + BLOCK))),
+            starts=integers(np.concatenate([[0], np.cumsum(counts)])),
+        )
+        self.surface = Surface(
+            points=floats(_joined([_point_table(d) for d in domains])),
+            held=integers(_joined([d.points.bonded for d in domains])),
+            goals=floats(np.zeros(6 * point_at[-1])),
+            anchors=floats(np.zeros(3 * point_at[-1])),
+            states=integers(np.zeros(point_at[-1])),
+            point_forces=floats(np.zeros(3 * point_at[-1])),
+        )
         self.slips = floats(np.zeros(point_at[-1]))
-        self.point_forces = floats(np.zeros(3 * point_at[-1]))
-        self.poses = floats(np.zeros(steps * len(cases) * layout.POSE))
-        self.numbers = floats(np.zeros(len(cases) * layout.NUMBERS))
-        self.choices = integers(np.zeros(len(cases) * layout.CHOICES))
+        """Way that each surface point has slid in settled frames [mm], P."""
         samples, self.first_coefficients = _shared_samples(cases)
-        self.coefficients = floats(samples)
+        self.cases = Cases(
+            poses=floats(np.zeros(steps * len(cases) * layout.POSE)),
+            numbers=floats(np.zeros(len(cases) * layout.NUMBERS)),
+            choices=integers(np.zeros(len(cases) * layout.CHOICES)),
+            coefficients=floats(samples),
+        )
+        self.packs = (
+            packed(self.nodes), packed(self.cells), packed(self.surface), packed(self.cases),
+        )  # fmt: skip
+        """The bundles as arguments of launched kernels."""
         self.node_sums = _Sums(node_at)
         self.point_sums = _Sums(point_at)
         self._staging = floats(np.zeros(max(3 * max(nodes), 6 * max(points), 1)))
+
+    @property
+    def bundles(self) -> tuple[Nodes, Cells, Surface, Cases]:
+        """What the kernels of a substep take."""
+        return self.nodes, self.cells, self.surface, self.cases
 
     def read(self, array: Any, first: int, count: int) -> np.ndarray:
         """Some entries of a device array of floats, shape (count,)."""

@@ -46,54 +46,40 @@ def entry(row, column, width):
 
 @ti.func
 def cell_pass(
-    displacement: ti.template(),
-    rows: ti.template(),
-    volumes: ti.template(),
-    moduli: ti.template(),
-    cell_cases: ti.template(),
-    slots: ti.template(),
-    starts: ti.template(),
-    points: ti.template(),
-    held: ti.template(),
-    goals: ti.template(),
-    anchors: ti.template(),
-    states: ti.template(),
-    point_forces: ti.template(),
-    poses: ti.template(),
-    numbers: ti.template(),
-    choices: ti.template(),
-    coefficients: ti.template(),
-    cells,
-    cases,
+    nodes: ti.template(),
+    cells: ti.template(),
+    surface: ti.template(),
+    cases: ti.template(),
+    count,
+    case_count,
     step,
     linear: ti.template(),
 ):
-    for cell in range(cells):
-        case = cell_cases[cell]
-        if choices[CHOICES * case + MODE] != IDLE:
-            first = [rows[entry(cell, r, 9)] for r in range(9)]
-            volume = [volumes[entry(cell, p, 8)] for p in range(8)]
+    for cell in range(count):
+        case = cells.cell_cases[cell]
+        if cases.choices[CHOICES * case + MODE] != IDLE:
+            first = [cells.rows[entry(cell, r, 9)] for r in range(9)]
+            volume = [cells.volumes[entry(cell, p, 8)] for p in range(8)]
             nodal = [
-                [displacement[3 * (first[n // 3] + n % 3) + c] for n in range(27)] for c in range(3)
+                [nodes.displacement[3 * (first[n // 3] + n % 3) + c] for n in range(27)]
+                for c in range(3)
             ]
-            inverse_edge = numbers[NUMBERS * case + INVERSE_EDGE]
-            shear, bulk = moduli[entry(cell, 0, 2)], moduli[entry(cell, 1, 2)]
+            inverse_edge = cases.numbers[NUMBERS * case + INVERSE_EDGE]
+            shear, bulk = cells.moduli[entry(cell, 0, 2)], cells.moduli[entry(cell, 1, 2)]
             forces = ti.static(_cell_forces(nodal, volume, inverse_edge, (shear, bulk), linear))
-            for point in range(starts[cell], starts[cell + 1]):
-                x = line_weights(points[POINT * point + LOCAL])
-                y = line_weights(points[POINT * point + LOCAL + 1])
-                z = line_weights(points[POINT * point + LOCAL + 2])
+            for point in range(cells.starts[cell], cells.starts[cell + 1]):
+                x = line_weights(surface.points[POINT * point + LOCAL])
+                y = line_weights(surface.points[POINT * point + LOCAL + 1])
+                z = line_weights(surface.points[POINT * point + LOCAL + 2])
                 moved = ti.Vector([0.0, 0.0, 0.0])
                 for n in ti.static(range(27)):
                     weight = x[n // 9] * y[n // 3 % 3] * z[n % 3]
                     for c in ti.static(range(3)):
                         moved[c] += weight * nodal[c][n]
-                force = point_force(
-                    point, moved, points, held, goals, anchors,
-                    states, poses, numbers, choices, coefficients, case, step * cases + case,
-                )  # fmt: skip
+                row = step * case_count + case
+                force = point_force(point, moved, surface, cases, case, row)
                 for c in ti.static(range(3)):
-                    point_forces[3 * point + c] = force[c]
+                    surface.point_forces[3 * point + c] = force[c]
                 if force.norm_sqr() > 0.0:
                     for n in ti.static(range(27)):
                         weight = x[n // 9] * y[n // 3 % 3] * z[n % 3]
@@ -102,4 +88,4 @@ def cell_pass(
             base = entry(cell, 0, 81)
             for n in ti.static(range(27)):
                 for c in ti.static(range(3)):
-                    slots[base + (3 * n + c) * BLOCK] = forces[c][n]
+                    cells.slots[base + (3 * n + c) * BLOCK] = forces[c][n]

@@ -38,22 +38,20 @@ def line_weights(local):
 
 
 @ti.func
-def body_rotation(poses: ti.template(), row):
+def body_rotation(cases: ti.template(), row):
     """Rotation body to sensor of a row of the pose table."""
     base = POSE * row + 3
-    return ti.Matrix([[poses[base + 3 * r + c] for c in range(3)] for r in range(3)])
+    return ti.Matrix([[cases.poses[base + 3 * r + c] for c in range(3)] for r in range(3)])
 
 
 @ti.func
-def object_distance(
-    place, numbers: ti.template(), choices: ti.template(), coefficients: ti.template(), case
-):
+def object_distance(place, cases: ti.template(), case):
     """Signed distance of a case's object and its gradient, in the body frame."""
-    size = ti.Vector([numbers[NUMBERS * case + SIZE + c] for c in range(8)])
-    counts = ti.Vector([choices[CHOICES * case + COUNTS + c] for c in range(3)])
-    shape = choices[CHOICES * case + SHAPE]
-    first = choices[CHOICES * case + FIRST_COEFFICIENT]
-    return signed_distance(place, shape, size, coefficients, counts, first)
+    size = ti.Vector([cases.numbers[NUMBERS * case + SIZE + c] for c in range(8)])
+    counts = ti.Vector([cases.choices[CHOICES * case + COUNTS + c] for c in range(3)])
+    shape = cases.choices[CHOICES * case + SHAPE]
+    first = cases.choices[CHOICES * case + FIRST_COEFFICIENT]
+    return signed_distance(place, shape, size, cases.coefficients, counts, first)
 
 
 @ti.func
@@ -70,87 +68,61 @@ def tangent_slip(place, gradient, anchor, limit):
 
 @ti.func
 def place_in_body(
-    point, moved, points: ti.template(), poses: ti.template(), rotation: ti.template(), row
+    point, moved, surface: ti.template(), cases: ti.template(), rotation: ti.template(), row
 ):
     place = moved
     for c in ti.static(range(3)):
-        place[c] += points[POINT * point + c] - poses[POSE * row + c]
+        place[c] += surface.points[POINT * point + c] - cases.poses[POSE * row + c]
     return rotation.transpose() @ place
 
 
 @ti.func
-def _holding_force(point, moved, points: ti.template(), goals: ti.template(), share):
+def _holding_force(point, moved, surface: ti.template(), share):
     """Spring of a held point toward where it belongs, stiffer along its axis than across."""
-    axis = ti.Vector([points[POINT * point + AXIS + c] for c in range(3)])
+    axis = ti.Vector([surface.points[POINT * point + AXIS + c] for c in range(3)])
     away = moved
     for c in ti.static(range(3)):
-        start, end = goals[6 * point + c], goals[6 * point + 3 + c]
+        start, end = surface.goals[6 * point + c], surface.goals[6 * point + 3 + c]
         away[c] -= start + share * (end - start)
     along = axis.dot(away) * axis
-    return -points[POINT * point + STIFFNESS] * (
-        along + points[POINT * point + SIDEWAYS] * (away - along)
+    return -surface.points[POINT * point + STIFFNESS] * (
+        along + surface.points[POINT * point + SIDEWAYS] * (away - along)
     )
 
 
 @ti.func
-def _contact_force(
-    point,
-    moved,
-    points: ti.template(),
-    anchors: ti.template(),
-    states: ti.template(),
-    poses: ti.template(),
-    numbers: ti.template(),
-    choices: ti.template(),
-    coefficients: ti.template(),
-    case,
-    row,
-):
+def _contact_force(point, moved, surface: ti.template(), cases: ti.template(), case, row):
     """Penalty and friction of the object on the membrane, in the sensor frame [N]."""
     force = ti.Vector([0.0, 0.0, 0.0])
-    rotation = body_rotation(poses, row)
-    place = place_in_body(point, moved, points, poses, rotation, row)
-    distance, gradient = object_distance(place, numbers, choices, coefficients, case)
+    rotation = body_rotation(cases, row)
+    place = place_in_body(point, moved, surface, cases, rotation, row)
+    distance, gradient = object_distance(place, cases, case)
     if distance < 0.0:
         anchor = place
-        if states[point] == FREE:
-            states[point] = TOUCHED
+        if surface.states[point] == FREE:
+            surface.states[point] = TOUCHED
             for c in ti.static(range(3)):
-                anchors[3 * point + c] = place[c]
+                surface.anchors[3 * point + c] = place[c]
         for c in ti.static(range(3)):
-            anchor[c] = anchors[3 * point + c]
-        limit = -numbers[NUMBERS * case + FRICTION] * distance * gradient.norm()
+            anchor[c] = surface.anchors[3 * point + c]
+        limit = -cases.numbers[NUMBERS * case + FRICTION] * distance * gradient.norm()
         slip = tangent_slip(place, gradient, anchor, limit)
-        force = -points[POINT * point + STIFFNESS] * (rotation @ (distance * gradient + slip))
-    elif states[point] == TOUCHED or distance * numbers[NUMBERS * case + INVERSE_EDGE] > LIFTED:
-        states[point] = FREE
+        stiffness = surface.points[POINT * point + STIFFNESS]
+        force = -stiffness * (rotation @ (distance * gradient + slip))
+    else:
+        gap = distance * cases.numbers[NUMBERS * case + INVERSE_EDGE]
+        if surface.states[point] == TOUCHED or gap > LIFTED:
+            surface.states[point] = FREE
     return force
 
 
 @ti.func
-def point_force(
-    point,
-    moved,
-    points: ti.template(),
-    held: ti.template(),
-    goals: ti.template(),
-    anchors: ti.template(),
-    states: ti.template(),
-    poses: ti.template(),
-    numbers: ti.template(),
-    choices: ti.template(),
-    coefficients: ti.template(),
-    case,
-    row,
-):
+def point_force(point, moved, surface: ti.template(), cases: ti.template(), case, row):
     """Force on the membrane at a surface point that has moved by `moved`, sensor frame [N]."""
     force = ti.Vector([0.0, 0.0, 0.0])
-    if held[point] == HELD_STILL:
-        share = poses[POSE * row + POSE - 1]
-        force = _holding_force(point, moved, points, goals, share)
-    elif held[point] == MEETS_RIGID:
-        force = _contact_force(
-            point, moved, points, anchors, states, poses, numbers, choices,
-            coefficients, case, row,
-        )  # fmt: skip
+    if surface.held[point] == HELD_STILL:
+        share = cases.poses[POSE * row + POSE - 1]
+        force = _holding_force(point, moved, surface, share)
+    elif surface.held[point] == MEETS_RIGID:
+        force = _contact_force(point, moved, surface, cases, case, row)
     return force

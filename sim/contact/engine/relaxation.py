@@ -10,6 +10,8 @@ relaxes: only the sums of `Balances` do.
 
 from __future__ import annotations
 
+import inspect
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -103,9 +105,8 @@ class Relaxation:
 
     def _launcher(self) -> Launcher:
         """What runs the substeps."""
-        linear = _one_law(self.cases)
-        arrays = {name: getattr(self.batch, name) for name in kernels.SUBSTEP_ARRAYS}
-        return Launcher(kernels.SUBSTEP[linear], arrays, cases=len(self.cases))
+        kernel = kernels.SUBSTEP[_one_law(self.cases)]
+        return Launcher(kernel, self.batch.bundles, cases=len(self.cases))
 
     def set_poses(self, case: int, rows: np.ndarray) -> None:
         """Poses of a case in the next substeps, shape (n <= STEPS, POSE); the last one stays.
@@ -135,10 +136,12 @@ class Relaxation:
         """Forces of the last substep; adapts the damping of the marked cases, (B,), that moved."""
         batch = self.batch
         sums = batch.node_sums
-        sum_kernels.node_sums(batch.forces, batch.powers, batch.fixed, sums.bounds, sums.partial)
+        forces, powers, fixed = batch.nodes.forces, batch.nodes.powers, batch.nodes.fixed
+        sum_kernels.node_sums(forces, powers, fixed, sums.bounds, sums.partial)
         nodes = sums.collect()
         sums = batch.point_sums
-        sum_kernels.surface_sums(batch.point_forces, batch.held, sums.bounds, sums.partial)
+        forces, held = batch.surface.point_forces, batch.surface.held
+        sum_kernels.surface_sums(forces, held, sums.bounds, sums.partial)
         surface = sums.collect()
         work, inertia = nodes[:, 0], nodes[:, 1]
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -156,13 +159,8 @@ class Relaxation:
 
     def commit(self, case: int) -> None:
         """Make the anchors of a settled frame, at its first pose, the history of the next."""
-        batch = self.batch
         self._upload()
-        kernels.commit_anchors(
-            batch.displacement, batch.rows, batch.cell_cases, batch.starts, batch.points,
-            batch.held, batch.anchors, batch.states, batch.slips,
-            batch.poses, batch.numbers, batch.choices, batch.coefficients, case,
-        )  # fmt: skip
+        kernels.commit_anchors(*self.batch.packs, self.batch.slips, case)
 
     def burden(self, chosen: np.ndarray) -> None:
         """Double the fictitious masses of the chosen cases, (B,) bool."""
@@ -179,10 +177,10 @@ class Relaxation:
     def restart(self, case: int, displacement_mm: np.ndarray) -> None:
         """Come to rest at a nodal displacement, (N, 3); anchors of this frame are lost."""
         span = self.batch.spans[case]
-        self.batch.write(self.batch.displacement, 3 * span.first_node, displacement_mm)
+        self.batch.write(self.batch.nodes.displacement, 3 * span.first_node, displacement_mm)
         sum_kernels.rest(
-            self.batch.velocity, self.batch.states, span.first_node, span.nodes, span.first_point,
-            span.points,
+            self.batch.nodes.velocity, self.batch.surface.states, span.first_node, span.nodes,
+            span.first_point, span.points,
         )  # fmt: skip
         self._moved[case] = False
         self.damping[case] = FIRST_DAMPING
@@ -190,19 +188,19 @@ class Relaxation:
     def drive(self, case: int, start_mm: np.ndarray, end_mm: np.ndarray) -> None:
         """Where held points belong at share 0 and 1 of the coming frame, each (P, 3)."""
         goals = np.concatenate([start_mm, end_mm], axis=1)
-        self.batch.write(self.batch.goals, 6 * self.batch.spans[case].first_point, goals)
+        self.batch.write(self.batch.surface.goals, 6 * self.batch.spans[case].first_point, goals)
 
     def displacement(self, case: int = 0) -> np.ndarray:
         """Nodal displacement of a case [mm], shape (N, 3), float32."""
-        return self._of_nodes(self.batch.displacement, case)
+        return self._of_nodes(self.batch.nodes.displacement, case)
 
     def node_forces(self, case: int = 0) -> np.ndarray:
         """Force on every node of a case [N], shape (N, 3), float32."""
-        return self._of_nodes(self.batch.forces, case)
+        return self._of_nodes(self.batch.nodes.forces, case)
 
     def point_forces(self, case: int = 0) -> np.ndarray:
         """Force on the membrane at every surface point of a case [N], shape (P, 3), float32."""
-        return self._of_points(self.batch.point_forces, case, 3)
+        return self._of_points(self.batch.surface.point_forces, case, 3)
 
     def slips_mm(self, case: int = 0) -> np.ndarray:
         """Way that each surface point has slid in settled frames [mm], shape (P,)."""
@@ -211,8 +209,9 @@ class Relaxation:
     def contact_history(self, case: int = 0) -> tuple[np.ndarray, np.ndarray]:
         """Anchors in the body frame [mm], (P, 3), and states, (P,), of all surface points."""
         span = self.batch.spans[case]
-        states = self.batch.states.to_numpy()[span.first_point : span.first_point + span.points]
-        return self._of_points(self.batch.anchors, case, 3), states
+        surface = self.batch.surface
+        states = surface.states.to_numpy()[span.first_point : span.first_point + span.points]
+        return self._of_points(surface.anchors, case, 3), states
 
     def _of_nodes(self, array: Any, case: int) -> np.ndarray:
         span = self.batch.spans[case]
@@ -234,35 +233,41 @@ class Relaxation:
         numbers, choices = self._sent
         # A copy to the device costs as much as a substep of a small case: send what changed.
         if not np.array_equal(choices, self._choices):
-            self.batch.choices.from_numpy(self._choices.ravel())
+            self.batch.cases.choices.from_numpy(self._choices.ravel())
         if not np.array_equal(numbers, self._numbers):
-            self.batch.numbers.from_numpy(self._numbers.ravel())
+            self.batch.cases.numbers.from_numpy(self._numbers.ravel())
         self._sent = (self._numbers.copy(), self._choices.copy())
         if self._stale_poses:
-            self.batch.poses.from_numpy(self._poses.ravel())
+            self.batch.cases.poses.from_numpy(self._poses.ravel())
             self._stale_poses = False
 
 
 class Launcher:
-    """Substeps of a batch as a compute graph: its arguments are bound once, not at each launch."""
+    """Substeps of a batch as a compute graph: its arguments are bound once, not at each launch.
 
-    def __init__(self, kernel: Any, arrays: dict[str, Any], *, cases: int) -> None:
-        declared = [
-            ti.graph.Arg(ti.graph.ArgKind.NDARRAY, name, array.dtype, ndim=1)
+    The arrays of all bundles go to the kernel's parameters of the same name.
+    """
+
+    def __init__(self, kernel: Any, bundles: Iterable[Any], *, cases: int) -> None:
+        arrays = {name: a for bundle in bundles for name, a in bundle._asdict().items()}
+        declared = {
+            name: ti.graph.Arg(ti.graph.ArgKind.NDARRAY, name, array.dtype, ndim=1)
             for name, array in arrays.items()
-        ]
-        scalars = [
+        }
+        declared["case_count"] = ti.graph.Arg(ti.graph.ArgKind.SCALAR, "case_count", ti.i32)
+        steps = [
             ti.graph.Arg(ti.graph.ArgKind.SCALAR, f"step_{step}", ti.i32) for step in range(STEPS)
         ]
-        count_of_cases = ti.graph.Arg(ti.graph.ArgKind.SCALAR, "cases", ti.i32)
         self._graphs = {}
         for count in (1, STEPS):
             builder = ti.graph.GraphBuilder()
-            for step in range(count):
-                builder.dispatch(kernel, *declared, count_of_cases, scalars[step])
+            for step in steps[:count]:
+                known = {**declared, "step": step}
+                names = inspect.signature(kernel).parameters
+                builder.dispatch(kernel, *(known[name] for name in names))
             self._graphs[count] = builder.compile()
         self._arguments = {
-            count: {**arrays, "cases": cases, **{f"step_{step}": step for step in range(count)}}
+            count: {**arrays, "case_count": cases, **{f"step_{n}": n for n in range(count)}}
             for count in (1, STEPS)
         }
 

@@ -8,10 +8,9 @@ Sums run in chunks of rows that never span two cases, and in a fixed order.
 
 import taichi as ti
 
+from sim.contact.engine.bundles import Floats, Integers
 from sim.contact.grid.layout import FREE, HELD_STILL, TOUCHED
 
-Floats = ti.types.ndarray(dtype=ti.f32, ndim=1)
-Integers = ti.types.ndarray(dtype=ti.i32, ndim=1)
 Doubles = ti.types.ndarray(dtype=ti.f64, ndim=1)
 
 

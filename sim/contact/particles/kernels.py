@@ -21,6 +21,23 @@ Floats = ti.types.ndarray(dtype=ti.f32, ndim=1)
 Integers = ti.types.ndarray(dtype=ti.i32, ndim=1)
 Longs = ti.types.ndarray(dtype=ti.i64, ndim=1)
 
+Points = ti.types.argpack(
+    places=Floats,
+    speeds=Floats,
+    affine=Floats,
+    gradients=Floats,
+    masses=Floats,
+    moduli=Floats,
+    kinds=Integers,
+)
+"""Of the membrane's P points: places and speeds (3 P), affine velocities C and deformation
+gradients F (9 P), masses (P), shear and bulk moduli [MPa] (2 P), SUPPORT, BORDER or FREE (P)."""
+Body = ti.types.argpack(offsets=Floats, poses=Floats, object_mass=ti.f32)
+"""Of the object's Q points: places in its frame (3 Q), its place and rotation by substep (12 each),
+and the mass of a point."""
+Grid = ti.types.argpack(momentum=Longs, flow=Floats, nodes_y=ti.i32, nodes_z=ti.i32)
+"""Of M nodes: mass and momentum in fixed point (4 M), velocity (3 M), and nodes along y and z."""
+
 
 @ti.func
 def _weights(local):
@@ -57,54 +74,40 @@ def kirchhoff(gradient, shear, bulk):
 
 
 @ti.func
-def _object_place(body: ti.template(), poses: ti.template(), point, step):
+def _object_place(body: ti.template(), point, step):
     base = 12 * step
-    place = ti.Vector([poses[base + c] for c in range(3)])
+    place = ti.Vector([body.poses[base + c] for c in range(3)])
     for r in ti.static(range(3)):
         for c in ti.static(range(3)):
-            place[r] += poses[base + 3 + 3 * r + c] * body[3 * point + c]
+            place[r] += body.poses[base + 3 + 3 * r + c] * body.offsets[3 * point + c]
     return place
 
 
 @ti.kernel
 def substep(
-    places: Floats,
-    speeds: Floats,
-    affine: Floats,
-    gradients: Floats,
-    masses: Floats,
-    moduli: Floats,
-    kinds: Integers,
-    body: Floats,
-    poses: Floats,
-    momentum: Longs,
-    grid: Floats,
-    sums: Longs,
-    step: ti.i32,
-    nodes_y: ti.i32,
-    nodes_z: ti.i32,
-    object_mass: ti.f32,
-    stress_scale: ti.f32,
+    points: Points, body: Body, grid: Grid, sums: Longs, step: ti.i32, stress_scale: ti.f32
 ):
     """Points to grid, grid velocities, grid to points, prescribed points.
 
-    `places` hold the membrane's points; the object's, `body`, follow rows `step` and `step` + 1 of
-    the pose table. Momentum that prescribed points would have gained goes into `sums`.
+    `points` are the membrane's; the object's follow rows `step` and `step` + 1 of the pose table.
+    Momentum that prescribed points would have gained goes into `sums`.
     """
-    points, object_points = kinds.shape[0], body.shape[0] // 3
-    for entry in range(momentum.shape[0]):
-        momentum[entry] = ti.cast(0, ti.i64)
-    for point in range(points + object_points):
+    count, object_points = points.kinds.shape[0], body.offsets.shape[0] // 3
+    for entry in range(grid.momentum.shape[0]):
+        grid.momentum[entry] = ti.cast(0, ti.i64)
+    for point in range(count + object_points):
         place, speed = ti.Vector([0.0, 0.0, 0.0]), ti.Vector([0.0, 0.0, 0.0])
         carried = ti.Matrix.zero(ti.f32, 3, 3)
-        mass = object_mass
-        if point < points:
-            place, speed, mass = _place(places, point), _place(speeds, point), masses[point]
-            stress = kirchhoff(_tensor(gradients, point), moduli[2 * point], moduli[2 * point + 1])
-            carried = mass * (_tensor(affine, point) - 4.0 * stress_scale * stress)
+        mass = body.object_mass
+        if point < count:
+            place, speed = _place(points.places, point), _place(points.speeds, point)
+            mass = points.masses[point]
+            shear, bulk = points.moduli[2 * point], points.moduli[2 * point + 1]
+            stress = kirchhoff(_tensor(points.gradients, point), shear, bulk)
+            carried = mass * (_tensor(points.affine, point) - 4.0 * stress_scale * stress)
         else:
-            place = _object_place(body, poses, point - points, step)
-            speed = _object_place(body, poses, point - points, step + 1) - place
+            place = _object_place(body, point - count, step)
+            speed = _object_place(body, point - count, step + 1) - place
         first = ti.cast(ti.floor(place - 0.5), ti.i32)
         local = place - ti.cast(first, ti.f32)
         weights = _weights(local)
@@ -112,24 +115,25 @@ def substep(
             weight = weights[i, 0] * weights[j, 1] * weights[k, 2]
             arm = ti.Vector([float(i), float(j), float(k)]) - local
             added = weight * (mass * speed + carried @ arm)
-            node = ((first[0] + i) * nodes_y + first[1] + j) * nodes_z + first[2] + k
-            momentum[4 * node] += _fixed(weight * mass)
+            node = ((first[0] + i) * grid.nodes_y + first[1] + j) * grid.nodes_z + first[2] + k
+            grid.momentum[4 * node] += _fixed(weight * mass)
             for c in ti.static(range(3)):
-                momentum[4 * node + 1 + c] += _fixed(added[c])
-    for node in range(momentum.shape[0] // 4):
-        mass = ti.cast(momentum[4 * node], ti.f32)
+                grid.momentum[4 * node + 1 + c] += _fixed(added[c])
+    for node in range(grid.momentum.shape[0] // 4):
+        mass = ti.cast(grid.momentum[4 * node], ti.f32)
         for c in ti.static(range(3)):
-            grid[3 * node + c] = 0.0
+            grid.flow[3 * node + c] = 0.0
             if mass > 0.0:
-                grid[3 * node + c] = ti.cast(momentum[4 * node + 1 + c], ti.f32) / mass
-    for point in range(points + object_points):
+                grid.flow[3 * node + c] = ti.cast(grid.momentum[4 * node + 1 + c], ti.f32) / mass
+    for point in range(count + object_points):
         place, given, mass, kind = ti.Vector([0.0, 0.0, 0.0]), ti.Vector([0.0, 0.0, 0.0]), 0.0, 0
-        if point < points:
-            place, mass, kind = _place(places, point), masses[point], kinds[point]
+        if point < count:
+            place = _place(points.places, point)
+            mass, kind = points.masses[point], points.kinds[point]
         else:
-            place = _object_place(body, poses, point - points, step)
-            given = _object_place(body, poses, point - points, step + 1) - place
-            mass = object_mass
+            place = _object_place(body, point - count, step)
+            given = _object_place(body, point - count, step + 1) - place
+            mass = body.object_mass
         first = ti.cast(ti.floor(place - 0.5), ti.i32)
         local = place - ti.cast(first, ti.f32)
         weights = _weights(local)
@@ -137,8 +141,8 @@ def substep(
         for i, j, k in ti.static(ti.ndrange(3, 3, 3)):
             weight = weights[i, 0] * weights[j, 1] * weights[k, 2]
             arm = ti.Vector([float(i), float(j), float(k)]) - local
-            node = ((first[0] + i) * nodes_y + first[1] + j) * nodes_z + first[2] + k
-            moved = ti.Vector([grid[3 * node + c] for c in range(3)])
+            node = ((first[0] + i) * grid.nodes_y + first[1] + j) * grid.nodes_z + first[2] + k
+            moved = ti.Vector([grid.flow[3 * node + c] for c in range(3)])
             speed += weight * moved
             gradient += 4.0 * weight * moved.outer_product(arm)
         if kind != FREE:
@@ -147,14 +151,14 @@ def substep(
             for c in ti.static(range(3)):
                 sums[6 * kind + c] += _fixed(gain[c])
                 sums[6 * kind + 3 + c] += _fixed(turning[c])
-        if point < points:
-            now = _tensor(gradients, point)
+        if point < count:
+            now = _tensor(points.gradients, point)
             now += gradient @ now
             if kind != FREE:
                 speed, gradient = given, ti.Matrix.zero(ti.f32, 3, 3)
             for r in ti.static(range(3)):
-                speeds[3 * point + r] = speed[r]
-                places[3 * point + r] = place[r] + speed[r]
+                points.speeds[3 * point + r] = speed[r]
+                points.places[3 * point + r] = place[r] + speed[r]
                 for c in ti.static(range(3)):
-                    gradients[9 * point + 3 * r + c] = now[r, c]
-                    affine[9 * point + 3 * r + c] = gradient[r, c]
+                    points.gradients[9 * point + 3 * r + c] = now[r, c]
+                    points.affine[9 * point + 3 * r + c] = gradient[r, c]

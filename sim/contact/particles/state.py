@@ -34,17 +34,27 @@ class State:
         """dt^2 / (density dx^2) [1/MPa]."""
         self.unit_N = cloud.grid_mm**2 / (8.0 * self.stress_scale)
         """Force of one unit of momentum per substep [N]."""
-        self._places = _array(self.cells(cloud.place_mm), ti.f32)
-        self._speeds = _array(np.zeros(3 * count), ti.f32)
-        self._affine = _array(np.zeros(9 * count), ti.f32)
-        self._gradients = _array(np.tile(np.eye(3), (count, 1, 1)), ti.f32)
-        self._masses = _array(cloud.fraction, ti.f32)
-        self._moduli = _array(np.tile([solid.shear_MPa, solid.bulk_MPa], (count, 1)), ti.f32)
-        self._kinds = _array(cloud.kind, ti.i32)
-        self._body = _array(cloud.body_mm / cloud.grid_mm, ti.f32)
-        self._poses = ti.ndarray(ti.f32, 12 * (TABLE + 1))
-        self._momentum = ti.ndarray(ti.i64, 4 * math.prod(cloud.nodes))
-        self._grid = ti.ndarray(ti.f32, 3 * math.prod(cloud.nodes))
+        self._points = kernels.Points(
+            places=_array(self.cells(cloud.place_mm), ti.f32),
+            speeds=_array(np.zeros(3 * count), ti.f32),
+            affine=_array(np.zeros(9 * count), ti.f32),
+            gradients=_array(np.tile(np.eye(3), (count, 1, 1)), ti.f32),
+            masses=_array(cloud.fraction, ti.f32),
+            moduli=_array(np.tile([solid.shear_MPa, solid.bulk_MPa], (count, 1)), ti.f32),
+            kinds=_array(cloud.kind, ti.i32),
+        )
+        self._body = kernels.Body(
+            offsets=_array(cloud.body_mm / cloud.grid_mm, ti.f32),
+            poses=ti.ndarray(ti.f32, 12 * (TABLE + 1)),
+            object_mass=OBJECT_DENSITY,
+        )
+        _, nodes_y, nodes_z = cloud.nodes
+        self._grid = kernels.Grid(
+            momentum=ti.ndarray(ti.i64, 4 * math.prod(cloud.nodes)),
+            flow=ti.ndarray(ti.f32, 3 * math.prod(cloud.nodes)),
+            nodes_y=nodes_y,
+            nodes_z=nodes_z,
+        )
         self._sums = ti.ndarray(ti.i64, 6 * kernels.GROUPS)
 
     def cells(self, place_mm: np.ndarray) -> np.ndarray:
@@ -56,14 +66,11 @@ class State:
         table = np.zeros((TABLE + 1, 12), np.float32)
         rows = [self.cells(origins_mm), turned.reshape(-1, 9)]
         table[: len(origins_mm)] = np.concatenate(rows, axis=1)
-        self._poses.from_numpy(table.ravel())
-        _, nodes_y, nodes_z = self.cloud.nodes
+        self._body["poses"].from_numpy(table.ravel())
         for step in range(len(origins_mm) - 1):
             kernels.substep(
-                self._places, self._speeds, self._affine, self._gradients, self._masses,
-                self._moduli, self._kinds, self._body, self._poses, self._momentum, self._grid,
-                self._sums, step, nodes_y, nodes_z, OBJECT_DENSITY, self.stress_scale,
-            )  # fmt: skip
+                self._points, self._body, self._grid, self._sums, step, self.stress_scale
+            )
         self.substeps += len(origins_mm) - 1
 
     def start_sums(self) -> None:
@@ -80,7 +87,7 @@ class State:
 
     def places_mm(self) -> np.ndarray:
         """Where the membrane's points are [mm], shape (P, 3)."""
-        cells = self._places.to_numpy().reshape(-1, 3).astype(np.float64)
+        cells = self._points["places"].to_numpy().reshape(-1, 3).astype(np.float64)
         return (cells + self.cloud.low) * self.cloud.grid_mm
 
 

@@ -10,9 +10,7 @@ penalty energy k phi(X)^2 / 2 gives
 
 so action and reaction are equal. Friction is that of the rigid object with anchors in the
 undeformed object. Nodes of the object gather integers (2^-36 N): their sum does not depend on its
-order.
-`partner` holds the origin of the object's body from the target at the start, its rotation body to
-sensor by rows, and 1 / cell edge: 13 floats. The plain twins are in `meeting` and `reference`.
+order. The plain twins are in `meeting` and `reference`.
 """
 
 # Taichi reads annotations and operators in its own way.
@@ -20,8 +18,9 @@ sensor by rows, and 1 / cell edge: 13 floats. The plain twins are in `meeting` a
 
 import taichi as ti
 
+from sim.contact.engine.bundles import Cases, Cells, Floats, Integers, Nodes, Surface, pack_of
 from sim.contact.engine.cell_kernel import cell_pass, entry
-from sim.contact.engine.kernels import Floats, Integers, node_pass
+from sim.contact.engine.kernels import node_pass
 from sim.contact.engine.point_functions import line_weights
 from sim.contact.grid.layout import (
     FREE,
@@ -40,107 +39,103 @@ from sim.contact.soft.meeting_functions import (
     MEMBRANE,
     NOWHERE,
     OBJECT,
+    Partner,
+    Sums,
     friction_slip,
     meet,
+    object_rotation,
     point_place,
 )
 
 QUANTUM_N = 2.0**-36
 """Unit in which forces on the object are summed."""
-Sums = ti.types.ndarray(dtype=ti.i64, ndim=1)
 
 
 @ti.func
 def soft_pass(
-    displacement: ti.template(), rows: ti.template(), cell_cases: ti.template(),
-    slots: ti.template(), starts: ti.template(), points: ti.template(),
-    held: ti.template(), anchors: ti.template(), states: ti.template(),
-    point_forces: ti.template(), poses: ti.template(), numbers: ti.template(),
-    choices: ti.template(), coefficients: ti.template(), partner: ti.template(),
-    cell_map: ti.template(), extents: ti.template(), object_forces: ti.template(), cells, row,
-):  # fmt: skip
+    nodes: ti.template(),
+    cells: ti.template(),
+    surface: ti.template(),
+    cases: ti.template(),
+    partner: ti.template(),
+    count,
+    row,
+):
     """Contact of the membrane's points with the object, on both."""
-    for cell in range(cells):
-        if cell_cases[cell] == MEMBRANE and choices[MODE] != IDLE:
-            for point in range(starts[cell], starts[cell + 1]):
-                if held[point] == MEETS_SOFT:
-                    at = point_place(displacement, rows, points, cell, point)
+    for cell in range(count):
+        if cells.cell_cases[cell] == MEMBRANE and cases.choices[MODE] != IDLE:
+            for point in range(cells.starts[cell], cells.starts[cell + 1]):
+                if surface.held[point] == MEETS_SOFT:
+                    at = point_place(nodes, cells, surface, cell, point)
                     place, hit, deformation, distance, gradient = meet(
-                        at, row, displacement, rows, poses, numbers, choices, coefficients,
-                        partner, cell_map, extents,
-                    )  # fmt: skip
+                        at, row, nodes, cells, cases, partner
+                    )
                     if hit != NOWHERE and distance < 0.0:
-                        if states[point] == FREE:
-                            states[point] = TOUCHED
+                        if surface.states[point] == FREE:
+                            surface.states[point] = TOUCHED
                             for c in ti.static(range(3)):
-                                anchors[3 * point + c] = place[c]
-                        anchor = ti.Vector([anchors[3 * point + c] for c in range(3)])
+                                surface.anchors[3 * point + c] = place[c]
+                        anchor = ti.Vector([surface.anchors[3 * point + c] for c in range(3)])
                         steep = deformation.inverse().transpose() @ gradient
-                        limit = -numbers[FRICTION] * distance * steep.norm()
+                        limit = -cases.numbers[FRICTION] * distance * steep.norm()
                         slip = friction_slip(place, anchor, deformation, gradient, limit)
-                        push = -points[POINT * point + STIFFNESS] * (
+                        push = -surface.points[POINT * point + STIFFNESS] * (
                             distance * steep + deformation @ slip
                         )
-                        _give_object(push, place, hit, rows, object_forces, partner[12])
-                        turned = ti.Matrix(
-                            [[partner[3 + 3 * r + c] for c in range(3)] for r in range(3)]
-                        )
-                        force = turned @ push
-                        _give_membrane(force, cell, point, slots, points)
+                        _give_object(push, place, hit, cells, partner)
+                        force = object_rotation(partner) @ push
+                        _give_membrane(force, cell, point, cells, surface)
                         for c in ti.static(range(3)):
-                            point_forces[3 * point + c] = force[c]
-                    elif states[point] == TOUCHED:
-                        states[point] = FREE
+                            surface.point_forces[3 * point + c] = force[c]
+                    elif surface.states[point] == TOUCHED:
+                        surface.states[point] = FREE
 
 
 @ti.func
-def _give_object(
-    push, place, cell, rows: ti.template(), object_forces: ti.template(), inverse_edge
-):
+def _give_object(push, place, cell, cells: ti.template(), partner: ti.template()):
     """Take a force from the object's nodes, in whole quanta."""
-    cells = place * inverse_edge
-    local = cells - ti.floor(cells + 0.5)
+    index = place * partner.lattice[12]
+    local = index - ti.floor(index + 0.5)
     x, y, z = line_weights(local[0]), line_weights(local[1]), line_weights(local[2])
     for n in ti.static(range(27)):
         weight = x[n // 9] * y[n // 3 % 3] * z[n % 3]
-        base = 3 * (rows[entry(cell, n // 3, 9)] + n % 3)
+        base = 3 * (cells.rows[entry(cell, n // 3, 9)] + n % 3)
         for c in ti.static(range(3)):
             quanta = ti.cast(-weight * push[c], ti.f64) / QUANTUM_N
-            ti.atomic_add(object_forces[base + c], ti.cast(ti.round(quanta), ti.i64))
+            ti.atomic_add(partner.object_forces[base + c], ti.cast(ti.round(quanta), ti.i64))
 
 
 @ti.func
-def _give_membrane(force, cell, point, slots: ti.template(), points: ti.template()):
+def _give_membrane(force, cell, point, cells: ti.template(), surface: ti.template()):
     """Add a force to the slots of the point's cell, which no other thread writes."""
     x, y, z = (
-        line_weights(points[POINT * point + LOCAL]),
-        line_weights(points[POINT * point + LOCAL + 1]),
-        line_weights(points[POINT * point + LOCAL + 2]),
+        line_weights(surface.points[POINT * point + LOCAL]),
+        line_weights(surface.points[POINT * point + LOCAL + 1]),
+        line_weights(surface.points[POINT * point + LOCAL + 2]),
     )
     base = entry(cell, 0, 81)
     for n in ti.static(range(27)):
         weight = x[n // 9] * y[n // 3 % 3] * z[n % 3]
         for c in ti.static(range(3)):
-            slots[base + (3 * n + c) * BLOCK] += weight * force[c]
+            cells.slots[base + (3 * n + c) * BLOCK] += weight * force[c]
 
 
 @ti.func
 def deposit_pass(
-    slots: ti.template(), node_slots: ti.template(), node_cases: ti.template(),
-    object_forces: ti.template(), nothing, nodes,
-):  # fmt: skip
+    nodes: ti.template(), cells: ti.template(), partner: ti.template(), nothing, count
+):
     """Put what the object's nodes gathered into one of the slots that belong to each."""
-    for node in range(nodes):
-        if node_cases[node] == OBJECT:
+    for node in range(count):
+        if nodes.node_cases[node] == OBJECT:
             slot = nothing
             for place in range(27):
                 if slot == nothing:
-                    slot = node_slots[entry(node, place, 27)]
+                    slot = nodes.node_slots[entry(node, place, 27)]
             for c in ti.static(range(3)):
-                gathered = object_forces[3 * node + c]
+                gathered = partner.object_forces[3 * node + c]
                 if gathered != 0 and slot != nothing:
-                    slots[slot + c * BLOCK] += ti.cast(gathered * QUANTUM_N, ti.f32)
-                object_forces[3 * node + c] = 0
+                    cells.slots[slot + c * BLOCK] += ti.cast(gathered * QUANTUM_N, ti.f32)
+                partner.object_forces[3 * node + c] = 0
 
 
 def _make_substep(linear):
@@ -148,31 +143,29 @@ def _make_substep(linear):
 
     @ti.kernel
     def soft_substep(
-        displacement: Floats, velocity: Floats, forces: Floats, slots: Floats, rows: Integers,
-        volumes: Floats, moduli: Floats, cell_cases: Integers, node_slots: Integers,
-        node_cases: Integers, masses: Floats, fixed: Integers, powers: Floats, starts: Integers,
+        displacement: Floats, velocity: Floats, forces: Floats, masses: Floats, fixed: Integers,
+        powers: Floats, node_slots: Integers, node_cases: Integers,
+        rows: Integers, volumes: Floats, moduli: Floats, cell_cases: Integers, slots: Floats,
+        starts: Integers,
         points: Floats, held: Integers, goals: Floats, anchors: Floats, states: Integers,
         point_forces: Floats,
-        poses: Floats, numbers: Floats, choices: Integers, coefficients: Floats, partner: Floats,
-        cell_map: Integers, extents: Integers, object_forces: Sums, cases: ti.i32, step: ti.i32,
+        poses: Floats, numbers: Floats, choices: Integers, coefficients: Floats,
+        lattice: Floats, cell_map: Integers, extents: Integers, object_forces: Sums,
+        case_count: ti.i32, step: ti.i32,
     ):  # fmt: skip
-        cells, nodes = cell_cases.shape[0], node_cases.shape[0]
-        nothing = slots.shape[0] - 81 * BLOCK
-        cell_pass(
-            displacement, rows, volumes, moduli, cell_cases, slots, starts, points, held, goals,
-            anchors, states, point_forces, poses, numbers, choices, coefficients, cells, cases,
-            step, linear,
-        )  # fmt: skip
-        soft_pass(
-            displacement, rows, cell_cases, slots, starts, points, held, anchors, states,
-            point_forces, poses, numbers, choices, coefficients, partner, cell_map, extents,
-            object_forces, cells, step * cases + MEMBRANE,
-        )  # fmt: skip
-        deposit_pass(slots, node_slots, node_cases, object_forces, nothing, nodes)
-        node_pass(
-            displacement, velocity, forces, slots, node_slots, node_cases, masses, fixed, powers,
-            numbers, choices, nodes,
-        )  # fmt: skip
+        nodes = ti.static(
+            Nodes(displacement, velocity, forces, masses, fixed, powers, node_slots, node_cases)
+        )
+        cells = ti.static(Cells(rows, volumes, moduli, cell_cases, slots, starts))
+        surface = ti.static(Surface(points, held, goals, anchors, states, point_forces))
+        cases = ti.static(Cases(poses, numbers, choices, coefficients))
+        partner = ti.static(Partner(lattice, cell_map, extents, object_forces))
+        cell_count, node_count = cell_cases.shape[0], node_cases.shape[0]
+        nothing, row = slots.shape[0] - 81 * BLOCK, step * case_count + MEMBRANE
+        cell_pass(nodes, cells, surface, cases, cell_count, case_count, step, linear)
+        soft_pass(nodes, cells, surface, cases, partner, cell_count, row)
+        deposit_pass(nodes, cells, partner, nothing, node_count)
+        node_pass(nodes, cells, cases, node_count)
 
     return soft_substep
 
@@ -183,31 +176,32 @@ SOFT_SUBSTEP = {linear: _make_substep(linear) for linear in (False, True)}
 
 @ti.kernel
 def commit_soft_anchors(
-    displacement: Floats, rows: Integers, cell_cases: Integers, starts: Integers,
-    points: Floats, held: Integers, anchors: Floats, states: Integers, slips: Floats,
-    poses: Floats, numbers: Floats, choices: Integers, coefficients: Floats, partner: Floats,
-    cell_map: Integers, extents: Integers,
-):  # fmt: skip
+    nodes: pack_of(Nodes),
+    cells: pack_of(Cells),
+    surface: pack_of(Surface),
+    cases: pack_of(Cases),
+    partner: pack_of(Partner),
+    slips: Floats,
+):
     """Close a settled frame: anchors follow the points that slid (`kernels.commit_anchors`)."""
-    for cell in range(cell_cases.shape[0]):
-        if cell_cases[cell] == MEMBRANE:
-            for point in range(starts[cell], starts[cell + 1]):
-                if held[point] == MEETS_SOFT:
-                    at = point_place(displacement, rows, points, cell, point)
+    for cell in range(cells.cell_cases.shape[0]):
+        if cells.cell_cases[cell] == MEMBRANE:
+            for point in range(cells.starts[cell], cells.starts[cell + 1]):
+                if surface.held[point] == MEETS_SOFT:
+                    at = point_place(nodes, cells, surface, cell, point)
                     place, hit, deformation, distance, gradient = meet(
-                        at, MEMBRANE, displacement, rows, poses, numbers, choices, coefficients,
-                        partner, cell_map, extents,
-                    )  # fmt: skip
-                    if hit != NOWHERE and distance < 0.0 and states[point] != FREE:
-                        anchor = ti.Vector([anchors[3 * point + c] for c in range(3)])
+                        at, MEMBRANE, nodes, cells, cases, partner
+                    )
+                    if hit != NOWHERE and distance < 0.0 and surface.states[point] != FREE:
+                        anchor = ti.Vector([surface.anchors[3 * point + c] for c in range(3)])
                         steep = deformation.inverse().transpose() @ gradient
-                        limit = -numbers[FRICTION] * distance * steep.norm()
+                        limit = -cases.numbers[FRICTION] * distance * steep.norm()
                         slip = friction_slip(place, anchor, deformation, gradient, limit)
                         normal = gradient / ti.max(gradient.norm(), 1e-9)
                         way = place - slip - anchor
                         slips[point] += (deformation @ (way - way.dot(normal) * normal)).norm()
-                        states[point] = HELD
+                        surface.states[point] = HELD
                         for c in ti.static(range(3)):
-                            anchors[3 * point + c] = place[c] - slip[c]
+                            surface.anchors[3 * point + c] = place[c] - slip[c]
                     else:
-                        states[point] = FREE
+                        surface.states[point] = FREE

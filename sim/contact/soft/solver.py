@@ -12,7 +12,7 @@ import numpy as np
 import taichi as ti
 
 from sim.contact.engine.batch import Case, floats, integers
-from sim.contact.engine.kernels import SUBSTEP_ARRAYS
+from sim.contact.engine.bundles import packed
 from sim.contact.engine.relaxation import Balance, Balances, Launcher, Relaxation
 from sim.contact.grid.layout import MEETS_SOFT
 from sim.contact.readout.frame import FrameOutcome
@@ -21,7 +21,7 @@ from sim.contact.readout.problem import Problem
 from sim.contact.soft import kernels as soft_kernels
 from sim.contact.soft.body import SoftObject, make_soft_object
 from sim.contact.soft.meeting import cells_at, deformed, meet
-from sim.contact.soft.meeting_functions import MEMBRANE, NOWHERE, OBJECT
+from sim.contact.soft.meeting_functions import MEMBRANE, NOWHERE, OBJECT, Partner
 from sim.contact.solver.load import least_load_N
 from sim.contact.solver.run import Run
 from sim.contact.solver.solver import Solver
@@ -55,24 +55,24 @@ class SoftRelaxation(Relaxation):
 
     def _launcher(self) -> Launcher:
         batch, soft, membrane = self.batch, self.soft, self.problem.domain
-        held = batch.held.to_numpy()
+        held = batch.surface.held.to_numpy()
         count = batch.spans[MEMBRANE].points
         held[:count][~membrane.points.bonded] = MEETS_SOFT
-        batch.held.from_numpy(held)
+        batch.surface.held.from_numpy(held)
         edge = [1.0 / soft.domain.grid_mm]
         origin_mm = soft.origin_mm - membrane.target_mm
         first_cell = -(-len(membrane.rows) // soft_kernels.BLOCK) * soft_kernels.BLOCK
         cells = np.where(soft.cell_map < 0, NOWHERE, soft.cell_map + first_cell)
-        self._arrays = {
-            "partner": floats(np.concatenate([origin_mm, soft.rotation.ravel(), edge])),
-            "cell_map": integers(cells),
-            "extents": integers(np.concatenate([soft.first_cell, soft.cell_map.shape])),
-            "object_forces": ti.ndarray(ti.i64, batch.displacement.shape[0]),
-        }
-        self._arrays["object_forces"].fill(0)
-        arrays = {name: getattr(batch, name) for name in SUBSTEP_ARRAYS}
+        partner = Partner(
+            lattice=floats(np.concatenate([origin_mm, soft.rotation.ravel(), edge])),
+            cell_map=integers(cells),
+            extents=integers(np.concatenate([soft.first_cell, soft.cell_map.shape])),
+            object_forces=ti.ndarray(ti.i64, batch.nodes.displacement.shape[0]),
+        )
+        partner.object_forces.fill(0)
+        self._partner = packed(partner)
         kernel = soft_kernels.SOFT_SUBSTEP[membrane.linear]
-        return Launcher(kernel, {**arrays, **self._arrays}, cases=2)
+        return Launcher(kernel, (*batch.bundles, partner), cases=2)
 
     def set_poses(self, case: int, rows: np.ndarray) -> None:
         """Poses of the holder in the next substeps."""
@@ -119,14 +119,8 @@ class SoftRelaxation(Relaxation):
 
     def commit(self, case: int) -> None:
         """Make the anchors of a settled frame the history of the next."""
-        batch, arrays = self.batch, self._arrays
         self._upload()
-        soft_kernels.commit_soft_anchors(
-            batch.displacement, batch.rows, batch.cell_cases, batch.starts, batch.points,
-            batch.held, batch.anchors, batch.states, batch.slips, batch.poses,
-            batch.numbers, batch.choices, batch.coefficients, arrays["partner"],
-            arrays["cell_map"], arrays["extents"],
-        )  # fmt: skip
+        soft_kernels.commit_soft_anchors(*self.batch.packs, self._partner, self.batch.slips)
 
 
 class SoftRun(Run):
