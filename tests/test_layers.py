@@ -67,20 +67,6 @@ MOST_OF_A_KERNEL = 10
 MANY_OF_A_KERNEL = {
     "sim.contact.engine.kernels._make_substep.substep": "in a compute graph, which has no bundles",
     "sim.contact.soft.kernels._make_substep.soft_substep": "the same",
-    # Not yet: delete this block when the kernels of light take bundles.
-    "sim.optics.raster.compose_kernels.describe": "not yet",
-    "sim.optics.raster.compose_kernels.expose": "not yet",
-    "sim.optics.raster.compose_kernels.gather_light": "not yet",
-    "sim.optics.raster.compose_kernels.light_of": "not yet",
-    "sim.optics.raster.compose_kernels.spread_ink": "not yet",
-    "sim.optics.raster.patch_kernels.place_vertices": "not yet",
-    "sim.optics.raster.raster_kernels.draw": "not yet",
-    "sim.optics.raster.raster_kernels.resolve": "not yet",
-    "sim.optics.raster.shade_kernels.shade_vertices": "not yet",
-    "sim.optics.raster.tree_kernels.build_tree": "not yet",
-    "sim.optics.raster.tree_kernels.nearest": "not yet",
-    "sim.optics.studio.detail_kernels.shade_points": "not yet",
-    # End of the block.
 }
 """Kernels that keep more, and why."""
 DOOR = ("workbench.cli.commands.serve", "ui.app")
