@@ -18,6 +18,7 @@ from typing import Any, Self
 
 import pytest
 
+from tests.ui.warm_start import WarmStart
 from tests.ui.widgets import DRAW_WHEN_LOOKED_AT, coarse_project, open_page, wait_until
 from workbench.proof.benchmarks.browser import FLAGS
 
@@ -34,19 +35,25 @@ def free_port() -> int:
 
 
 class Server:
-    """A workbench in its own process, as a user starts it."""
+    """A workbench in its own process, as a user starts it, or as a fork of `warm`."""
 
-    def __init__(self, project: Path, *words: str, tour: bool = False) -> None:
+    def __init__(
+        self, project: Path, *words: str, tour: bool = False, warm: WarmStart | None = None
+    ) -> None:
         self.project = project
         self.port = free_port()
         self.url = f"http://127.0.0.1:{self.port}"
         self.log = project.parent / f"server-{self.port}.log"
-        command = [sys.executable, "-u", "-m", "workbench.cli", "serve", *words]
-        command += ["--port", str(self.port), "--project", str(project), "--fast-scene"]
-        command += [] if tour else ["--no-tour"]
+        command = ["serve", *words, "--port", str(self.port), "--project", str(project)]
+        command += ["--fast-scene"] if tour else ["--fast-scene", "--no-tour"]
         started = time.monotonic()
-        with self.log.open("wb") as out:
-            self.process = subprocess.Popen(command, stdout=out, stderr=out)
+        self.process: Any
+        if warm is not None:
+            self.process = warm.start(command, project, self.log)
+        else:
+            cold = [sys.executable, "-u", "-m", "workbench.cli", *command]
+            with self.log.open("wb") as out:
+                self.process = subprocess.Popen(cold, stdout=out, stderr=out)
         self._wait()
         self.seconds_to_healthy = time.monotonic() - started
 
@@ -82,13 +89,21 @@ class Server:
         self.process.wait(10)
 
 
+@pytest.fixture(scope="package")
+def warm() -> Iterator[WarmStart]:
+    """What servers are forks of."""
+    start = WarmStart()
+    yield start
+    start.close()
+
+
 @pytest.fixture
-def start_server() -> Iterator[Callable[..., Server]]:
-    """Starts servers and stops them after the test."""
+def start_server(warm: WarmStart) -> Iterator[Callable[..., Server]]:
+    """Starts servers and stops them after the test; `cold` ones as a user does."""
     servers: list[Server] = []
 
-    def start(project: Path, *words: str, tour: bool = False) -> Server:
-        servers.append(Server(project, *words, tour=tour))
+    def start(project: Path, *words: str, tour: bool = False, cold: bool = False) -> Server:
+        servers.append(Server(project, *words, tour=tour, warm=None if cold else warm))
         return servers[-1]
 
     yield start
@@ -112,9 +127,9 @@ def browser() -> Iterator[Any]:
 
 
 @pytest.fixture(scope="package")
-def pressed_store(browser: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def pressed_store(browser: Any, warm: WarmStart, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The store of a coarse project once the browser has shown its first image."""
-    with Server(coarse_project(tmp_path_factory.mktemp("pressed"))) as server:
+    with Server(coarse_project(tmp_path_factory.mktemp("pressed")), warm=warm) as server:
         tab = browser.new_page()
         tab.add_init_script(DRAW_WHEN_LOOKED_AT)
         open_page(tab, server.url)
