@@ -37,6 +37,7 @@ UNTOUCHED = (ast.JoinedStr, ast.Raise, ast.Assert)
 LONG = ("tests/property", "tests/presets", "tests/convergence")
 """Where tests take longest."""
 MOST_FILES = 8
+"""Test files that are run for a change, the nearest first."""
 CHOSEN = "not slow and not ui and not gpu"
 SLOW_IMPORTS = (
     "scipy.spatial",
@@ -49,7 +50,6 @@ SLOW_IMPORTS = (
     "viser",
 )
 """Imported once, before any of our modules is."""
-"""Test files that are run for a change, the nearest first."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -208,6 +208,7 @@ def main() -> None:
     options.add_argument("--seed", type=int, default=1)
     options.add_argument("--files", type=int, default=8, help="test files for each change")
     options.add_argument("--limit-s", type=int, default=120, help="of the processor")
+    options.add_argument("--part", default="1/1", help="2/16: the second of sixteen, elsewhere")
     options.add_argument("--out", type=Path, required=True)
     asked = options.parse_args()
     files = [path for top in MUTATED for path in sorted((ROOT / top).rglob("*.py"))]
@@ -223,7 +224,8 @@ def main() -> None:
     os.chdir(ROOT)
     for module in SLOW_IMPORTS:
         importlib.import_module(module)
-    for mutant in drawn:
+    part, parts = map(int, asked.part.split("/"))
+    for mutant in drawn[part - 1 :: parts]:
         path, tests = ROOT / mutant.file, near_tests(mutant.file, imports)[: asked.files]
         before = path.read_bytes()
         end = mutant.first + len(mutant.old.encode())
