@@ -109,10 +109,10 @@ def _contact_force(point, moved, surface: ti.template(), cases: ti.template(), c
         slip = tangent_slip(place, gradient, anchor, limit)
         stiffness = surface.points[POINT * point + STIFFNESS]
         force = -stiffness * (rotation @ (distance * gradient + slip))
-    else:
-        gap = distance * cases.numbers[NUMBERS * case + INVERSE_EDGE]
-        if surface.states[point] == TOUCHED or gap > LIFTED:
-            surface.states[point] = FREE
+    elif surface.states[point] == TOUCHED or (
+        distance * cases.numbers[NUMBERS * case + INVERSE_EDGE] > LIFTED
+    ):
+        surface.states[point] = FREE
     return force
 
 

@@ -258,12 +258,12 @@ class Launcher:
         steps = [
             ti.graph.Arg(ti.graph.ArgKind.SCALAR, f"step_{step}", ti.i32) for step in range(STEPS)
         ]
+        names = inspect.signature(kernel).parameters
         self._graphs = {}
         for count in (1, STEPS):
             builder = ti.graph.GraphBuilder()
             for step in steps[:count]:
                 known = {**declared, "step": step}
-                names = inspect.signature(kernel).parameters
                 builder.dispatch(kernel, *(known[name] for name in names))
             self._graphs[count] = builder.compile()
         self._arguments = {
