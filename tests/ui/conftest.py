@@ -147,6 +147,14 @@ def pressed_project(pressed_store: Path, tmp_path: Path) -> Path:
 
 
 @pytest.fixture
+def unpressed_project(pressed_store: Path, tmp_path: Path) -> Path:
+    """A coarse project whose body alone is in its store: nothing is pressed before one asks."""
+    project = coarse_project(tmp_path)
+    shutil.copytree(pressed_store / "build", project / "store" / "build")
+    return project
+
+
+@pytest.fixture
 def page(browser: Any) -> Iterator[Any]:
     """A fresh tab that may download; its 3D view is drawn while a test looks at it."""
     context = browser.new_context(viewport={"width": 1280, "height": 1000}, accept_downloads=True)

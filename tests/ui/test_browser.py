@@ -29,7 +29,7 @@ Start = Callable[..., Server]
 
 def test_shape_press_and_look(tmp_path: Path, page: Any, start_server: Start) -> None:
     """Move a slider and press: the image changes, and the force is shown."""
-    server = start_server(coarse_project(tmp_path))
+    server = start_server(coarse_project(tmp_path), cold=True)
     open_page(page, server.url)
     wait_until(lambda: page.get_by_text("Contact ✓").count(), 180, "the example is pressed")
 
@@ -55,7 +55,7 @@ def test_refused_value_is_explained_and_the_design_kept(
 
     A good value of another slider puts the wall of the design back.
     """
-    server = start_server(coarse_project(tmp_path))
+    server = start_server(coarse_project(tmp_path), cold=True)
     open_page(page, server.url)
     set_number(page, "Outer radius mm", 6)
     set_number(page, "Elastomer mm", 5.5)
@@ -72,7 +72,7 @@ def test_cancel_stops_a_press_within_three_seconds(
     tmp_path: Path, page: Any, start_server: Start
 ) -> None:
     """Cancel during a long press: the button disappears within 3 s, and the next run works."""
-    server = start_server(coarse_project(tmp_path))
+    server = start_server(coarse_project(tmp_path), cold=True)
     open_page(page, server.url)
     wait_until(lambda: page.get_by_text("Contact ✓").count(), 180, "the example is pressed")
     tab(page, "Simulate").click()
@@ -97,7 +97,7 @@ def test_restart_after_kill_finds_design_and_results(
 ) -> None:
     """kill -9 during a press: the restart has the design, finished results, no half-written one."""
     project = coarse_project(tmp_path)
-    server = start_server(project)
+    server = start_server(project, cold=True)
     open_page(page, server.url)
     wait_until(lambda: page.get_by_text("Image ✓").count(), 180, "the example is pressed")
     tab(page, "Simulate").click()
@@ -107,7 +107,7 @@ def test_restart_after_kill_finds_design_and_results(
     button(page, "Cancel").wait_for(timeout=30_000)
     server.kill()
 
-    again = start_server(project)
+    again = start_server(project, cold=True)
     open_page(page, again.url)
     wait_until(lambda: page.get_by_text("Mesh ✓").count(), 30, "the mesh is found")
     page.get_by_text("Contact ○").first.wait_for()
@@ -123,7 +123,7 @@ def test_foreign_pages_cannot_drive_the_workbench(tmp_path: Path, start_server: 
     import urllib.error
     import urllib.request
 
-    server = start_server(coarse_project(tmp_path))
+    server = start_server(coarse_project(tmp_path), cold=True)
     for headers in ({"Host": "evil.example"}, {"Origin": "http://evil.example"}):
         request = urllib.request.Request(f"{server.url}/", headers=headers)
         with pytest.raises(urllib.error.HTTPError) as caught:

@@ -19,7 +19,6 @@ from tests.ui.widgets import (
     open_page,
     set_number,
     slider_value,
-    stop_first_press,
     tab,
     type_text,
     wait_until,
@@ -31,12 +30,13 @@ pytestmark = [pytest.mark.ui, pytest.mark.slow]
 Start = Callable[..., Server]
 
 
-def test_start_from_a_thumbnail_and_keep_it(tmp_path: Path, page: Any, start_server: Start) -> None:
+def test_start_from_a_thumbnail_and_keep_it(
+    unpressed_project: Path, page: Any, start_server: Start
+) -> None:
     """Gallery, trunk, silicone, name, save, duplicate, open: files and widgets agree."""
-    project = coarse_project(tmp_path)
+    project = unpressed_project
     server = start_server(project)
     open_page(page, server.url)
-    stop_first_press(page)
     button(page, "Gallery of designs").click()
     page.locator('[data-name="trunk"] img').click()
     wait_until(lambda: page.get_by_text("Lobe height mm").count(), 30, "the trunk's sliders")
@@ -100,11 +100,12 @@ def test_results_follow_by_themselves_once_edits_settle(
     wait_until(lambda: page.get_by_text("Image ✓").count(), 180, "the image follows by itself")
 
 
-def test_objects_are_chosen_from_thumbnails(tmp_path: Path, page: Any, start_server: Start) -> None:
+def test_objects_are_chosen_from_thumbnails(
+    unpressed_project: Path, page: Any, start_server: Start
+) -> None:
     """A click on the cube's thumbnail makes it the object, under its label."""
-    server = start_server(coarse_project(tmp_path))
+    server = start_server(unpressed_project)
     open_page(page, server.url)
-    stop_first_press(page)
     tab(page, "Simulate").click()
     button(page, "Gallery of objects").click()
     page.locator('[data-name="cube"] img').click()

@@ -26,7 +26,7 @@ def test_a_page_of_ones_own_is_a_tab(
     (tmp_path / "mine" / name).parent.mkdir(parents=True)
     (tmp_path / "mine" / name).write_text(FILES[name])
     monkeypatch.setenv("WORKBENCH_EXTENSIONS", str(tmp_path / "mine"))
-    open_page(page, start_server(pressed_project).url)
+    open_page(page, start_server(pressed_project, cold=True).url)
     tabs = page.get_by_role("tab").all_inner_texts()
     assert tabs.index("Weight") == tabs.index("Compare") + 1
     page.get_by_role("tab", name="Weight").click()

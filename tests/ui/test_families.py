@@ -13,10 +13,8 @@ from tests.ui.widgets import (
     button,
     changed_share,
     choose,
-    coarse_project,
     labels,
     open_page,
-    stop_first_press,
     tab,
     view,
     wait_until,
@@ -39,12 +37,11 @@ def switch(page: Any, name: str) -> None:
 
 
 def test_trunk_and_pad_bring_their_sliders_and_bodies(
-    tmp_path: Path, page: Any, start_server: Start
+    unpressed_project: Path, page: Any, start_server: Start
 ) -> None:
     """Finger to trunk to pad: sliders of the one go, those of the other come, the view changes."""
-    server = start_server(coarse_project(tmp_path))
+    server = start_server(unpressed_project)
     open_page(page, server.url)
-    stop_first_press(page)
     wait_until(lambda: page.get_by_text("Shape ✓").count(), SWITCH_S, "the finger is built")
     assert "Outer radius mm" in labels(page)
     views = [view(page)]
@@ -57,11 +54,12 @@ def test_trunk_and_pad_bring_their_sliders_and_bodies(
     assert "Saddle height mm" not in labels(page)
 
 
-def test_mesh_quality_and_worst_cell(tmp_path: Path, page: Any, start_server: Start) -> None:
+def test_mesh_quality_and_worst_cell(
+    unpressed_project: Path, page: Any, start_server: Start
+) -> None:
     """Check mesh shows numbers of three meshes; the worst cell moves the eye; tetrahedra cancel."""
-    server = start_server(coarse_project(tmp_path))
+    server = start_server(unpressed_project)
     open_page(page, server.url)
-    stop_first_press(page)
     tab(page, "Mesh").click()
     button(page, "Check mesh").click()
     button(page, "Show worst cell").wait_for(timeout=90_000)

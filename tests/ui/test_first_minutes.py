@@ -56,10 +56,10 @@ def test_the_tour_is_shown_once_and_again_on_request(
 
 
 def test_help_opens_on_every_panel_also_in_a_tab_that_follows(
-    tmp_path: Path, start_server: Start
+    unpressed_project: Path, start_server: Start
 ) -> None:
     """Each button opens its own page; the keyboard map names every command once, with its key."""
-    server = start_server(coarse_project(tmp_path))
+    server = start_server(unpressed_project)
     with Tab(server.url) as editor, Tab(server.url) as follower:
         editor.uuid("Help: Shape")
         for panel in pages():

@@ -9,7 +9,6 @@ from typing import Any
 import pytest
 
 from tests.ui.conftest import Server
-from tests.ui.widgets import coarse_project
 from workbench.proof.benchmarks.tab import Tab
 
 pytestmark = [pytest.mark.ui, pytest.mark.slow]
@@ -19,9 +18,9 @@ RADIUS, DEPTH, FIT = "Outer radius mm", "Depth mm", "Fit LEDs and camera to the 
 
 
 @pytest.fixture
-def server(tmp_path: Path, start_server: Start) -> Server:
+def server(unpressed_project: Path, start_server: Start) -> Server:
     """A coarse finger."""
-    return start_server(coarse_project(tmp_path))
+    return start_server(unpressed_project)
 
 
 def texts(tab: Tab) -> list[str]:

@@ -12,11 +12,9 @@ from tests.ui.conftest import Server
 from tests.ui.widgets import (
     changed_share,
     choose,
-    coarse_project,
     labels,
     open_page,
     slider_value,
-    stop_first_press,
     tab,
     upload,
     view,
@@ -31,7 +29,7 @@ TINTED = 0.01
 
 
 def test_bad_file_is_refused_and_a_box_becomes_a_sensor(
-    tmp_path: Path, page: Any, start_server: Start
+    tmp_path: Path, unpressed_project: Path, page: Any, start_server: Start
 ) -> None:
     """A file without triangles leaves the finger; a box is built; a click labels its face."""
     import trimesh
@@ -39,9 +37,8 @@ def test_bad_file_is_refused_and_a_box_becomes_a_sensor(
     bad, good = tmp_path / "bad.stl", tmp_path / "brick.stl"
     bad.write_bytes(b"solid nothing\nendsolid nothing\n")
     trimesh.creation.box((30.0, 24.0, 40.0)).export(good)
-    server = start_server(coarse_project(tmp_path))
+    server = start_server(unpressed_project)
     open_page(page, server.url)
-    stop_first_press(page)
     page.get_by_text("Own body (STEP or STL)").click()
     upload(page, "Load outer body", bad)
     wait_until(lambda: page.get_by_text("bad.stl has no faces").count(), 60, "the refusal is shown")
@@ -71,7 +68,7 @@ def test_bad_file_is_refused_and_a_box_becomes_a_sensor(
 
 
 def test_a_damaged_body_is_offered_a_repair_in_one_click(
-    tmp_path: Path, page: Any, start_server: Start
+    tmp_path: Path, unpressed_project: Path, page: Any, start_server: Start
 ) -> None:
     """Two blocks that were not united: refused with a remesh on offer, which a click makes."""
     import trimesh
@@ -81,9 +78,8 @@ def test_a_damaged_body_is_offered_a_repair_in_one_click(
     other.apply_translation((0.0, 0.0, 12.0))
     path = tmp_path / "pair.stl"
     trimesh.util.concatenate([block, other]).export(path)
-    server = start_server(coarse_project(tmp_path))
+    server = start_server(unpressed_project)
     open_page(page, server.url)
-    stop_first_press(page)
     page.get_by_text("Own body (STEP or STL)").click()
     assert not page.get_by_role("button", name="Repair and load").count()
     upload(page, "Load outer body", path)
@@ -97,7 +93,7 @@ def test_a_damaged_body_is_offered_a_repair_in_one_click(
 
 
 def test_unit_asked_for_and_leds_brought_inside(
-    tmp_path: Path, page: Any, start_server: Start
+    tmp_path: Path, unpressed_project: Path, page: Any, start_server: Start
 ) -> None:
     """A drum in inches is refused until its unit is chosen; its LEDs then move to fit."""
     import trimesh
@@ -105,9 +101,8 @@ def test_unit_asked_for_and_leds_brought_inside(
     drum = trimesh.creation.cylinder(12.0 / 25.4, 20.0 / 25.4, sections=48)
     path = tmp_path / "drum.stl"
     drum.export(path)
-    server = start_server(coarse_project(tmp_path))
+    server = start_server(unpressed_project)
     open_page(page, server.url)
-    stop_first_press(page)
     page.get_by_text("Own body (STEP or STL)").click()
     upload(page, "Load outer body", path)
     says = "an STL does not say which"

@@ -253,7 +253,7 @@ def test_kill_9_loses_nothing_that_was_kept(
     def start(number: int) -> tuple[Server, str]:
         mark = f"{os.getpid()}-{number}"
         monkeypatch.setenv(MARK, mark)
-        server = start_server(root)
+        server = start_server(root, cold=True)
         monkeypatch.delenv(MARK)
         return server, mark
 

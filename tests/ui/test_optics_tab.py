@@ -13,14 +13,12 @@ from tests.ui.conftest import Server
 from tests.ui.widgets import (
     button,
     choose,
-    coarse_project,
     control,
     image_source,
     labels,
     open_page,
     set_number,
     slider_value,
-    stop_first_press,
     tab,
     type_numbers,
     type_text,
@@ -33,12 +31,10 @@ Start = Callable[..., Server]
 
 
 def optics(page: Any, server: Server, *, pressed: bool) -> None:
-    """Open the page and go to Optics, with the example pressed or stopped."""
+    """Open the page and go to Optics, once the example that is pressed is on show."""
     open_page(page, server.url)
     if pressed:
         wait_until(lambda: page.get_by_text("Image ✓").count(), 110, "the example is pressed")
-    else:
-        stop_first_press(page)
     tab(page, "Optics").click()
 
 
@@ -82,9 +78,11 @@ def test_light_model_lamp_lens_and_views(
     wait_until(lambda: image_source(page) != first, 20, "the other camera sees something else")
 
 
-def test_maps_are_measured_shown_and_read(tmp_path: Path, page: Any, start_server: Start) -> None:
+def test_maps_are_measured_shown_and_read(
+    tmp_path: Path, unpressed_project: Path, page: Any, start_server: Start
+) -> None:
     """Measured without a press; a map has legend and score, a click on the skin tells its value."""
-    server = start_server(coarse_project(tmp_path))
+    server = start_server(unpressed_project)
     optics(page, server, pressed=False)
     page.get_by_role("tab", name="Maps").click()
     button(page, "Measure maps").click()

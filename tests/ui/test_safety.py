@@ -178,7 +178,7 @@ def test_another_host_needs_the_token_that_is_printed_once(
     for number in range(2):
         folder = tmp_path / str(number)
         folder.mkdir()
-        server = start_server(coarse_project(folder), "--host", "0.0.0.0")
+        server = start_server(coarse_project(folder), "--host", "0.0.0.0", cold=True)
         wait_until(lambda s=server: "token=" in s.log.read_text(), 20, "the link is printed")
         (token,) = set(re.findall(r"token=([\w-]{20,})", server.log.read_text()))
         tokens.add(token)

@@ -93,11 +93,11 @@ def test_of_two_servers_on_a_project_one_writes(tmp_path: Path, start_server: St
     """The second shows, names the first and writes nothing, until it takes over; a dead one's
     project is free.
     """
-    server = start_server(coarse_project(tmp_path))
+    server = start_server(coarse_project(tmp_path), cold=True)
     with Tab(server.url) as first:
         first.set(LENGTH, 21.0)
         wait_until(lambda: saved(server, "shape", "cylinder_mm") == 21.0, 10, "the first saves")
-        second = start_server(server.project)
+        second = start_server(server.project, cold=True)
         wait_until(lambda: server.url in second.log.read_text(), 20, "it names the first")
         with Tab(second.url) as other:
             other.uuid("Take over")
@@ -120,7 +120,7 @@ def test_of_two_servers_on_a_project_one_writes(tmp_path: Path, start_server: St
             time.sleep(1.5)
             assert saved(server, "shape", "cylinder_mm") == 30.0
     second.kill()
-    third = start_server(server.project)
+    third = start_server(server.project, cold=True)
     with Tab(third.url) as tab:
         tab.wait(lambda: tab.value(LENGTH) == 30.0, 20, "it begins where the killed one was")
         tab.set(LENGTH, 25.0)
@@ -223,7 +223,7 @@ def test_an_edit_of_the_last_moment_survives_a_stop_in_mid_job(
     tmp_path: Path, start_server: Start
 ) -> None:
     """Ctrl-C during a press, at once after an edit: the restart has the edit."""
-    server = start_server(coarse_project(tmp_path))
+    server = start_server(coarse_project(tmp_path), cold=True)
     with Tab(server.url) as editor:
         editor.uuid(LENGTH)
         wait_until(lambda: editor.has_seen("press: started"), 30, "the example is being pressed")
@@ -234,7 +234,7 @@ def test_an_edit_of_the_last_moment_survives_a_stop_in_mid_job(
         time.sleep(0.2)
         server.stop()
     assert saved(server, "shape", "cylinder_mm") == 20.0
-    again = start_server(server.project)
+    again = start_server(server.project, cold=True)
     with Tab(again.url) as tab_again:
         tab_again.wait(
             lambda: tab_again.find(LENGTH) and tab_again.value(LENGTH) == 20.0, 20, "it is there"
@@ -245,7 +245,7 @@ def test_a_reload_in_mid_job_shows_progress_and_then_the_result(
     tmp_path: Path, page: Any, start_server: Start
 ) -> None:
     """The job goes on without the page; the new page shows its bar, then its image."""
-    server = start_server(coarse_project(tmp_path))
+    server = start_server(coarse_project(tmp_path), cold=True)
     open_page(page, server.url)
     button(page, "Cancel").wait_for(timeout=60_000)
     page.reload()

@@ -75,7 +75,7 @@ def test_from_a_preset_to_a_report_and_a_mould(
 ) -> None:
     """Trunk, lobes, LEDs, bake, press, variant, wall, press, compare, report, mould: all files."""
     project = coarse_project(tmp_path)
-    server = start_server(project)
+    server = start_server(project, cold=True)
     open_page(page, server.url)
     stop_first_press(page)
     choose(page, "Start from", "trunk")
@@ -131,14 +131,13 @@ def edit_at_random(page: Any, rng: random.Random) -> list[tuple[str, float]]:
     return done
 
 
-def test_fifty_edits_and_back(tmp_path: Path, page: Any, start_server: Start) -> None:
+def test_fifty_edits_and_back(unpressed_project: Path, page: Any, start_server: Start) -> None:
     """Undo to the end gives the first design byte for byte, redo to the end the last one.
 
     The downloaded file is compared, and the widgets show what it says.
     """
-    server = start_server(coarse_project(tmp_path))
+    server = start_server(unpressed_project)
     open_page(page, server.url)
-    stop_first_press(page)
     page.get_by_text("Design files", exact=True).first.click()
     first = downloaded(page, "Download design")
     done = edit_at_random(page, random.Random(SEED))

@@ -13,7 +13,6 @@ import pytest
 
 from tests.ui.conftest import Server
 from tests.ui.inventory import HEADER, Control, controls, laid_out, names
-from tests.ui.widgets import coarse_project
 from ui.page.tour import STEPS
 from ui.panels.page import pages
 from workbench.proof.benchmarks.tab import Tab
@@ -40,10 +39,10 @@ def page_of(control: Control) -> str:
 
 
 def test_words_in_bold_are_names_and_all_names_are_helped(
-    tmp_path: Path, start_server: Start
+    unpressed_project: Path, start_server: Start
 ) -> None:
     """No text names what is not there; the help of a panel names each control of it."""
-    server = start_server(coarse_project(tmp_path))
+    server = start_server(unpressed_project)
     with Tab(server.url) as looking:
         there, found = names(laid_out(looking)), controls(looking)
     texts = {label: folder.help for label, folder in pages().items()}

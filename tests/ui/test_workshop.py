@@ -15,10 +15,8 @@ from tests.ui.conftest import Server
 from tests.ui.widgets import (
     button,
     changed_share,
-    coarse_project,
     control,
     open_page,
-    stop_first_press,
     tab,
     view,
     wait_until,
@@ -40,13 +38,14 @@ def download(page: Any, name: str) -> bytes:
     return Path(found.value.path()).read_bytes()
 
 
-def test_parts_checks_recipe_and_files(tmp_path: Path, page: Any, start_server: Start) -> None:
+def test_parts_checks_recipe_and_files(
+    unpressed_project: Path, page: Any, start_server: Start
+) -> None:
     """Parts can be hidden, a check moves the eye to its place, files are whole."""
     import trimesh
 
-    server = start_server(coarse_project(tmp_path))
+    server = start_server(unpressed_project)
     open_page(page, server.url)
-    stop_first_press(page)
     tab(page, "Make").click()
     button(page, "Make parts").click()
     button(page, "Download part STL").wait_for(timeout=150_000)
