@@ -15,11 +15,9 @@ from geometry.housing.led_holder import LEAST_WALL_MM
 from workbench.core.design.design import SensorDesign
 from workbench.core.press.press import ContactSettings
 from workbench.core.result.fabrication import Severity
-from workbench.pipeline.store import Store
 from workbench.project.named_designs import load_design, presets
-from workbench.project.project import STORE_VARIABLE
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("shared_results")]
 
 FAMILIES = ("trunk", "paw", "thumb", "tentacle", "pad", "digitac")
 STAGES = ["build", "mesh", "lattice", "bake", "press", "shoot"]
@@ -34,14 +32,11 @@ KNIFE_EDGES_MM = {"thumb": 0.3}
 
 
 @pytest.mark.parametrize("name", FAMILIES)
-def test_a_preset_is_pressed_seen_and_moulded(
-    workbench: Any, results: Store, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
-) -> None:
+def test_a_preset_is_pressed_seen_and_moulded(workbench: Any, tmp_path: Path, name: str) -> None:
     """Exit 0; all stages; a settled push outward; a dent in the image; closed single mould parts;
     no red check."""
     import cv2
 
-    monkeypatch.setenv(STORE_VARIABLE, str(results.root))
     done = workbench("run", name, *OPTIONS, tmp_path)
     assert done.code == 0, done.stderr
     summary = json.loads((tmp_path / "summary.json").read_text())
