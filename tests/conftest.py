@@ -62,6 +62,12 @@ def made(results: Store) -> Callable[[SensorDesign, str], Any]:
 
 
 @pytest.fixture(scope="session")
+def default_solid(made: Callable[[SensorDesign, str], Any]) -> Callable[[str], Solid]:
+    """A function that returns the default shape of a family."""
+    return lambda family: made(SensorDesign(family=family), "build")
+
+
+@pytest.fixture(scope="session")
 def build_finger() -> Callable[..., Solid]:
     """A function that builds a finger: shape parameters by name, and `layers`."""
     from geometry.body.solid import assemble
