@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 from collections.abc import Callable
 from typing import Any
@@ -10,8 +11,11 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from designs.family import family, resolve_shape
-from workbench.core.design.design import Layers, Meshing
+from workbench.core.design.design import Layers, Meshing, SensorDesign
+from workbench.core.press.press_case import PressCase
 from workbench.core.result.results import MembraneMesh, Solid
+from workbench.pipeline.store import Store
+from workbench.planning.plan import InlineRunner, evaluate, plan
 
 # Other work on the machine must not fail an example that is merely slow.
 settings.register_profile("patient", deadline=None, suppress_health_check=[HealthCheck.too_slow])
@@ -34,6 +38,33 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
 
         if not torch.cuda.is_available():
             pytest.skip("needs a CUDA device")
+
+
+@pytest.fixture(scope="session")
+def results(tmp_path_factory: pytest.TempPathFactory) -> Store:
+    """Results that tests look at, wherever they were computed: all workers of a test run have one
+    store. What is about computing itself, or makes results up, has a store of its own."""
+    base = tmp_path_factory.getbasetemp()
+    return Store((base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "results")
+
+
+@pytest.fixture(scope="session")
+def made(results: Store) -> Callable[[SensorDesign, str], Any]:
+    """A function of a design and a stage that returns the result, computed once in a test run."""
+
+    def result(design: SensorDesign, stage: str) -> Any:
+        case = PressCase()
+        for _ in evaluate(design, case, InlineRunner(results), wanted=(stage,)):
+            pass
+        return results.load(stage, plan(design, case)[stage].key)
+
+    return result
+
+
+@pytest.fixture(scope="session")
+def default_solid(made: Callable[[SensorDesign, str], Any]) -> Callable[[str], Solid]:
+    """A function that returns the default shape of a family."""
+    return lambda family: made(SensorDesign(family=family), "build")
 
 
 @pytest.fixture(scope="session")

@@ -20,8 +20,11 @@ def test_ball_on_a_layer_is_within_3_percent(poisson: float, limit: float) -> No
 
 @pytest.mark.slow
 def test_ball_on_a_layer_converges() -> None:
-    """Grids of sqrt(R d) / 4 and / 6: the difference shrinks, and what is left is below 2 %."""
-    balls = [layer.Ball(chi=0.6, cells=cells, flatness=20.0) for cells in (4.0, 6.0)]
+    """Grids of sqrt(R d) / 4 and / 5, at half the strain: off by -0.3 and +0.7 %, below 3 and 2 %.
+
+    Of / 6, which takes twice as long, it is +0.8 %: what strain, cut and penalty leave.
+    """
+    balls = [layer.Ball(chi=0.6, cells=cells, flatness=20.0) for cells in (4.0, 5.0)]
     exact_N = layer.exact_ball(balls[0]).force_N
     coarse, fine = (layer.press_ball(ball).force_N / exact_N - 1.0 for ball in balls)
     assert abs(coarse) < 0.03

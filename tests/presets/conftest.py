@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,6 +11,8 @@ from typing import Any
 import pytest
 
 from workbench.cli.command_line import main
+from workbench.pipeline.store import Store
+from workbench.project.project import STORE_VARIABLE
 
 COARSE = """\
 schema = 1
@@ -65,6 +67,14 @@ Command = Callable[..., Finished]
 def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A project folder shared by the tests of a module, so that a stage is computed once."""
     return tmp_path_factory.mktemp("project")
+
+
+@pytest.fixture(scope="module")
+def shared_results(results: Store) -> Iterator[None]:
+    """Commands find what other modules have computed: for those that look at what comes out."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv(STORE_VARIABLE, str(results.root))
+        yield
 
 
 @pytest.fixture

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
 
 from geometry.surface.surface import closest_point, face_areas
-from workbench.core.press.press_case import PressCase
-from workbench.pipeline.store import Store
-from workbench.planning.plan import InlineRunner, evaluate, plan
+from workbench.core.design.design import SensorDesign
 from workbench.project.aim import skin_place
 from workbench.project.named_designs import load_design, presets
 from workbench.view.scene_shapes import outer_faces
@@ -22,15 +21,13 @@ LARGEST = 40
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", presets())
-def test_the_middle_of_a_long_face_keeps_its_target(name: str, tmp_path: Path) -> None:
+def test_the_middle_of_a_long_face_keeps_its_target(
+    name: str, made: Callable[[SensorDesign, str], Any]
+) -> None:
     """The distance from target to press is 0 mm on the drawn skin, and the meshes' own on the
     solver's: below 0.1 mm. The nearest corner is millimetres away."""
-    design, case = load_design(name), PressCase()
-    store, calls = Store(tmp_path), plan(design, case)
-    for _ in evaluate(design, case, InlineRunner(store), wanted=("build", "mesh")):
-        pass
-    solid = store.load("build", calls["build"].key)
-    mesh = store.load("mesh", calls["mesh"].key)
+    design = load_design(name)
+    solid, mesh = made(design, "build"), made(design, "mesh")
     points, faces = outer_faces(solid.membrane)
     edges = points[faces] - np.roll(points[faces], 1, axis=1)
     long = np.argsort(-np.linalg.norm(edges, axis=2).max(axis=1))[:LARGEST]

@@ -121,7 +121,8 @@ def test_a_damaged_step_names_itself(workbench: Any, tmp_path: Path, role: str) 
 def test_a_file_in_inches_is_right_once_told(workbench: Any, tmp_path: Path) -> None:
     """`--unit inch`: the membrane is 40 mm high and 30 mm wide."""
     in_inches(tmp_path / "inches.stl")
-    words = ("--unit", "inch", "--out", tmp_path / "out")
+    # The membrane is the body's own skin, whatever the cells of its mesh.
+    words = ("--unit", "inch", "--set", "meshing.hex_mm=1.0", "--out", tmp_path / "out")
     done = workbench("export", tmp_path / "inches.stl", *words)
     assert done.code == 0, done.stderr
     membrane = trimesh.load_mesh(tmp_path / "out" / "membrane.stl")
@@ -134,7 +135,15 @@ def test_what_was_inferred_stands_in_the_summary(workbench: Any, tmp_path: Path)
     column = capsule(1.0 / 1000.0)
     column.faces = np.vstack([column.faces, column.faces[:1]])
     column.export(tmp_path / "metres.stl")
-    words = "--depth-mm 0.5 --frames 1 --grid-mm 1.0 --out".split()
+    # Neither light, image nor the fineness of the skin matters to what is said.
+    words = "--depth-mm 0.5 --frames 1 --grid-mm 1.0 --light-model direct".split()
+    for field in (
+        "meshing.hex_mm=1.0",
+        "optics.camera.width_px=160",
+        "optics.camera.height_px=120",
+    ):
+        words += ["--set", field]
+    words += ["--out"]
     done = workbench("run", tmp_path / "metres.stl", *words, tmp_path / "out")
     assert done.code == 0, done.stderr
     summary = json.loads((tmp_path / "out" / "summary.json").read_text())

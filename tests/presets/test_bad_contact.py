@@ -16,7 +16,7 @@ import trimesh
 
 from tests.presets.test_bad_motion import BALL, PRESS, refused, write
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("shared_results")]
 
 GRID = ("--grid-mm", "0.8")
 

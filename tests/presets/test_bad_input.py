@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 import trimesh
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("shared_results")]
 
 PRESS = "--target 0,0,16 --depth-mm 0.5 --frames 1 --grid-mm 0.8".split()
 

@@ -14,7 +14,7 @@ import pytest
 
 from workbench.core.press.trajectory import COLUMNS
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("shared_results")]
 
 BALL = "--indenter sphere --size-mm 4 --grid-mm 0.8".split()
 PRESS = "--target 0,0,16 --depth-mm 0.5 --frames 1".split()

@@ -50,6 +50,8 @@ def test_a_repaired_body_becomes_parts(workbench: Any, tmp_path: Path, name: str
     refused = workbench("export", path, *foreign.flags, "--out", out)
     assert refused.code == 2, refused.stderr
     assert "run again with --repair: the body is remeshed at" in refused.lines[-1]["hint"]
-    done = workbench("export", path, *foreign.flags, "--repair", "--out", out)
+    # Parts are made of the body itself: the fineness of its mesh is another matter.
+    cells = ("--set", "meshing.hex_mm=1.0")
+    done = workbench("export", path, *foreign.flags, "--repair", *cells, "--out", out)
     assert done.code == 0, done.stderr
     assert (out / "moulds" / "core.step").is_file()

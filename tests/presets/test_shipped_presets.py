@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -10,16 +11,13 @@ import numpy as np
 import pytest
 import trimesh
 
-from designs.family import resolve_shape
 from geometry.housing.led_holder import LEAST_WALL_MM
-from workbench.core.base.monitor import silent
+from workbench.core.design.design import SensorDesign
 from workbench.core.press.press import ContactSettings
 from workbench.core.result.fabrication import Severity
-from workbench.pipeline.stages.build import BuildInputs, build
-from workbench.pipeline.stages.housing import HousingInputs, housing
 from workbench.project.named_designs import load_design, presets
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("shared_results")]
 
 FAMILIES = ("trunk", "paw", "thumb", "tentacle", "pad", "digitac")
 STAGES = ["build", "mesh", "lattice", "bake", "press", "shoot"]
@@ -65,35 +63,22 @@ def test_a_preset_is_pressed_seen_and_moulded(workbench: Any, tmp_path: Path, na
 
 
 @pytest.mark.parametrize("name", sorted(presets()))
-def test_leds_and_camera_of_a_preset_have_their_gaps(name: str) -> None:
+def test_leds_and_camera_of_a_preset_have_their_gaps(
+    made: Callable[[SensorDesign, str], Any], name: str
+) -> None:
     """At least the 0.15 mm of `housing.clearance_mm` around every LED and the camera; the LEDs'
     holder stands, and every wall has 0.8 mm."""
     design = load_design(name)
-    shape = resolve_shape(design.family, design.shape)
-    solid = build(
-        BuildInputs(family=design.family, shape=shape, layers=design.layers), monitor=silent
-    )
-    camera, ring = design.optics.camera, design.optics.ring
-    made = housing(
-        HousingInputs(
-            solid=solid,
-            options=design.housing,
-            ring=ring,
-            camera_mm=camera.position_mm,
-            camera_wxyz=camera.wxyz,
-            printer=design.mould.printer,
-        ),
-        monitor=silent,
-    )
-    gaps = {check.name: check for check in made.checks if check.name.endswith("_clearance")}
+    housing = made(design, "housing")
+    gaps = {check.name: check for check in housing.checks if check.name.endswith("_clearance")}
     assert gaps.keys() == {"led_clearance", "camera_clearance"}
     for check in gaps.values():
         # The kernel's boxes and gaps are good to a thousandth.
         assert check.value >= design.housing.clearance_mm - 1e-3, check.message
-    assert all(check.severity is not Severity.BAD for check in made.checks)
-    (seat,) = (check for check in made.checks if check.name == "led_holder_seat")
+    assert all(check.severity is not Severity.BAD for check in housing.checks)
+    (seat,) = (check for check in housing.checks if check.name == "led_holder_seat")
     assert seat.severity is Severity.GOOD, seat.message
-    walls = {check.part: check for check in made.checks if check.name == "minimum_wall"}
+    walls = {check.part: check for check in housing.checks if check.name == "minimum_wall"}
     # Two lines of a nozzle, in every part; one knife edge is known, and its check warns of it.
     least_mm = KNIFE_EDGES_MM.get(name, LEAST_WALL_MM)
     assert min(check.value for check in walls.values()) >= least_mm - 1e-6

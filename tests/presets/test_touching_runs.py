@@ -12,7 +12,7 @@ import pytest
 from tests.made_indenters import on_a_foot, write_stl
 from tests.presets.conftest import Command
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("shared_results")]
 TOUCH = ("--target", "0,0,16", "--depth-mm", 0.6, "--frames", 2, "--grid-mm", 0.8)
 TURNED = ("--turn-deg", "180,0,0")
 

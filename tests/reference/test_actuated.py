@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,7 +12,7 @@ import pytest
 from sim.contact.press import press_membrane
 from sim.contact.studies.specimens import finger
 from workbench.core.base.monitor import silent
-from workbench.core.design.design import Elastomer
+from workbench.core.design.design import Elastomer, SensorDesign
 from workbench.core.press.actuation import Actuation, Place
 from workbench.core.press.indenter import Indenter
 from workbench.core.press.press import ContactSettings, Extent, Press
@@ -18,10 +20,7 @@ from workbench.core.press.press_case import PressCase
 from workbench.core.result.results import Label, MembraneMesh
 from workbench.core.result.sensing import Contact
 from workbench.edit.sequences import LIFT_FRAMES, find_sequence, sequence
-from workbench.pipeline.stages.build import build
 from workbench.pipeline.stages.lattice import LatticeInputs, lattice
-from workbench.pipeline.stages.mesh import MeshInputs, mesh
-from workbench.planning.plan import plan
 from workbench.project.named_designs import load_design
 
 pytestmark = pytest.mark.usefixtures("taichi_device")
@@ -84,14 +83,13 @@ def test_driving_the_wall_at_a_ball_is_pressing_the_ball(taichi_device: str) -> 
 
 
 @pytest.fixture(scope="module")
-def grip() -> tuple[MembraneMesh, Contact]:
+def grip(made: Callable[[SensorDesign, str], Any]) -> tuple[MembraneMesh, Contact]:
     """The trunk's grip on a coarse grid: two frames a phase, at its usual closing."""
     design = load_design("trunk").replace("meshing.hex_mm", 0.8)
     case = sequence(
         design, find_sequence(design, "grip"), frames=GRIP_FRAMES, settings={"grid_mm": 1.25}
     )
-    solid = build(plan(design, case)["build"].inputs, monitor=silent)
-    skins = mesh(MeshInputs(solid=solid, meshing=design.meshing), monitor=silent)
+    solid, skins = made(design, "build"), made(design, "mesh")
     points = lattice(LatticeInputs(solid=solid, grid_mm=case.settings.grid_mm), monitor=silent)
     contact = press_membrane(skins, points, design.material, case)
     return skins, contact

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 
@@ -21,18 +23,14 @@ LEANING = np.array(
 
 
 @pytest.fixture(scope="module")
-def pad() -> Solid:
+def pad(default_solid: Callable[[str], Solid]) -> Solid:
     """The default pad: its flat inner face is bonded to the window."""
-    from workbench.proof.validation.geometry.meshes import default_solid
-
     return default_solid("pad")
 
 
 @pytest.fixture(scope="module")
-def digitac() -> Solid:
+def digitac(default_solid: Callable[[str], Solid]) -> Solid:
     """The default pad with 31 pins."""
-    from workbench.proof.validation.geometry.meshes import default_solid
-
     return default_solid("digitac")
 
 

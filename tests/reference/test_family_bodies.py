@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -18,9 +19,8 @@ from designs.thumb import ThumbShape, nail_mm3
 from designs.trunk import TrunkShape
 from tests.families import expect_found_out, expect_refusal
 from workbench.core.base.errors import GeometryError
-from workbench.core.design.design import Layers
+from workbench.core.design.design import Layers, SensorDesign
 from workbench.core.result.results import Label
-from workbench.pipeline.building import build_solid
 
 SHARP = {"width_mm": 50.0, "depth_mm": 24.0, "lobe_mm": 12.0, "lobe_ratio": 0.6, "rim_mm": 3.0}
 """A trunk whose ridges, of radius 0.88 mm, are sharper than its rim."""
@@ -109,9 +109,11 @@ def test_trunk_without_lobes_is_an_elliptic_prism() -> None:
     assert shape.saddle.sharp_mm3 == pytest.approx(float(fine), rel=1e-6)
 
 
-def test_published_trunk_is_34_by_26_by_50_mm() -> None:
+def test_published_trunk_is_34_by_26_by_50_mm(
+    made: Callable[[SensorDesign, str], Any],
+) -> None:
     """With its foot of 14 mm; both lobes are marked, equal in area, above half their height."""
-    solid = build_solid(family("trunk"), TrunkShape(), Layers(elastomer_mm=2.5))
+    solid = made(SensorDesign(family="trunk", layers=Layers(elastomer_mm=2.5)), "build")
     points = np.concatenate([solid.membrane.points_mm, solid.base.points_mm])
     # Chords of 0.02 mm and 0.05 mm.
     assert np.ptp(points, axis=0) == pytest.approx([34.0, 26.0, 50.0], abs=0.05)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from geometry.volume.hexmesh import mesh_membrane
 from sim.contact.motion.approach import plan_approach
 from sim.contact.objects.collider import make_collider
 from sim.contact.readout.verdict import check_depth
@@ -22,7 +22,7 @@ from workbench.core.design.lighting import Lamp, LedMount
 from workbench.core.press.indenter import Indenter, IndenterKind
 from workbench.core.press.press import Press
 from workbench.core.press.press_case import PressCase
-from workbench.core.result.results import Solid
+from workbench.core.result.results import MembraneMesh, Solid
 from workbench.pipeline.building import build_solid
 from workbench.planning.fitting import fitted
 from workbench.planning.foresight import foresight_call
@@ -39,9 +39,15 @@ def body(design: SensorDesign) -> Solid:
 
 
 @pytest.fixture(scope="module")
-def finger() -> Solid:
+def finger(made: Callable[[SensorDesign, str], Any]) -> Solid:
     """R 15, wall 2, support 1: the cavity has 12 mm."""
-    return body(SensorDesign())
+    return made(SensorDesign(), "build")
+
+
+@pytest.fixture(scope="module")
+def coarse(made: Callable[[SensorDesign, str], Any]) -> MembraneMesh:
+    """The finger in cells of 0.8 mm."""
+    return made(SensorDesign(meshing=Meshing(hex_mm=0.8)), "mesh")
 
 
 def named(found: list[DesignError]) -> list[str]:
@@ -120,16 +126,19 @@ def test_a_target_off_the_skin_is_told_with_the_nearest_place(finger: Solid) -> 
 @pytest.mark.parametrize("kind", [IndenterKind.SPHERE, IndenterKind.CUBE, IndenterKind.CROSS])
 @pytest.mark.parametrize("target_mm", [(0.0, 10.0, 35.0), (0.0, 15.0, 13.0)])
 def test_a_depth_beyond_the_wall_is_told_as_the_solver_does(
-    finger: Solid, kind: IndenterKind, target_mm: tuple[float, float, float]
+    finger: Solid,
+    coarse: MembraneMesh,
+    kind: IndenterKind,
+    target_mm: tuple[float, float, float],
 ) -> None:
     """On the tip and in the middle of the straight wall, which has corners only at its ends."""
-    mesh = mesh_membrane(finger, Meshing(hex_mm=0.8))
+    indenter = Indenter(kind=kind)
+    collider = make_collider(indenter, grid_mm=0.5)
     for depth_mm in (0.5, 1.5, 2.6, 12.0):
-        press, indenter = Press(target_mm=target_mm, depth_mm=depth_mm), Indenter(kind=kind)
-        collider = make_collider(indenter, grid_mm=0.5)
+        press = Press(target_mm=target_mm, depth_mm=depth_mm)
         try:
-            approach = plan_approach(mesh.outer, collider, press)
-            check_depth(support_points_mm(mesh), approach)
+            approach = plan_approach(coarse.outer, collider, press)
+            check_depth(support_points_mm(coarse), approach)
             refused = False
         except DesignError:
             refused = True
@@ -138,13 +147,14 @@ def test_a_depth_beyond_the_wall_is_told_as_the_solver_does(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", list(presets()))
-def test_presets_fit_and_rough_skins_say_what_meshes_say(name: str) -> None:
+def test_presets_fit_and_rough_skins_say_what_meshes_say(
+    name: str, made: Callable[[SensorDesign, str], Any]
+) -> None:
     """As shipped nothing is said; random rings and cameras are judged as by the meshed skins."""
     design = load_design(name)
-    solid = body(design)
+    solid, mesh = made(design, "build"), made(design, "mesh")
     press = Press(target_mm=default_target_mm(design, solid))
     assert misfits(solid, design.optics, Indenter(), press) == []
-    mesh = mesh_membrane(solid, design.meshing)
     random = np.random.default_rng(5)
     for _ in range(20):
         radius_mm, x, z = random.uniform(1.0, 20.0), random.uniform(-15, 15), random.uniform(0, 30)

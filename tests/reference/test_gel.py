@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 
 import pytest
 
@@ -19,10 +20,8 @@ from workbench.core.result.results import Solid
 
 
 @pytest.fixture(scope="module")
-def digitac() -> Solid:
+def digitac(default_solid: Callable[[str], Solid]) -> Solid:
     """The default pad with pins."""
-    from workbench.proof.validation.geometry.meshes import default_solid
-
     return default_solid("digitac")
 
 

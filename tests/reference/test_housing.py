@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 
 import numpy as np
 import pytest
 
-from designs.family import resolve_shape
 from geometry.body import csg
 from geometry.body.csg_mesh import arrays, closed, evaluate, overlaps_mm3
 from geometry.housing.holder_seat import FARTHEST_MM, seat_gap
@@ -16,14 +16,11 @@ from geometry.housing.led_holder import Shells, opened, shadow, shaped_holder
 from geometry.mould.walls import thinnest_wall
 from geometry.surface.surface import mesh_volume
 from geometry.workshop.recipe import WantedMaterial, make_recipe
-from workbench.core.base.monitor import silent
 from workbench.core.design.camera import Camera
-from workbench.core.design.design import Layers
 from workbench.core.design.lighting import LedRing
 from workbench.core.design.making import Casting, Housing, Printer
 from workbench.core.result.fabrication import FabricationCheck, HousingSet, MouldSet, Severity
 from workbench.core.result.results import Solid
-from workbench.pipeline.stages.build import BuildInputs, build
 
 RING = csg.without(csg.cylinder(10.0, -1.0, 1.0), [csg.cylinder(5.0, -2.0, 2.0)])
 NOWHERE = csg.moved(csg.cylinder(1.0, 0.0, 1.0), (0.0, 0.0, -50.0))
@@ -149,15 +146,17 @@ def test_a_holder_held_together_by_a_skin_is_in_pieces(finger: Solid) -> None:
     assert check.value == pytest.approx(0.75, abs=0.05)
 
 
-def pad(height_mm: float, radius_mm: float, options: Housing) -> tuple[Solid, HousingSet]:
-    """The pad's rigid parts with a ring of tilted LEDs."""
-    solid = build(
-        BuildInputs(family="pad", shape=resolve_shape("pad", {}), layers=Layers(support_mm=1.0)),
-        monitor=silent,
-    )
+@pytest.fixture(scope="module")
+def pad(default_solid: Callable[[str], Solid]) -> Solid:
+    """The default pad, with a support of 1 mm."""
+    return default_solid("pad")
+
+
+def ringed(solid: Solid, height_mm: float, radius_mm: float) -> HousingSet:
+    """Rigid parts with a ring of tilted LEDs."""
     ring = LedRing(count=12, radius_mm=radius_mm, height_mm=height_mm, tilt_deg=-60.0)
     camera = Camera(position_mm=(0.0, 0.0, 0.3))
-    return solid, make_housing(solid, options, ring=ring, camera=camera, printer=Printer())
+    return make_housing(solid, Housing(), ring=ring, camera=camera, printer=Printer())
 
 
 @pytest.mark.parametrize(
@@ -166,15 +165,15 @@ def pad(height_mm: float, radius_mm: float, options: Housing) -> tuple[Solid, Ho
     [(13.0, 7.2, 10.85), (5.0, 7.2, 10.85), (13.0, 4.0, 6.8)],
 )
 def test_a_holder_above_the_base_stands_on_a_sleeve(
-    height_mm: float, radius_mm: float, outside_mm: float
+    pad: Solid, height_mm: float, radius_mm: float, outside_mm: float
 ) -> None:
     """The sleeve ends 0.15 mm below the holder, follows the wall, and overlaps nothing."""
-    solid, made = pad(height_mm, radius_mm, Housing())
+    made = ringed(pad, height_mm, radius_mm)
     check = named(made, "led_holder_seat")["led_ring_holder"]
     assert check.value == pytest.approx(0.15, abs=1e-3)
     assert check.severity is Severity.GOOD
     parts = {part.name: closed(part.name, part.points_mm, part.faces) for part in made.parts}
-    parts["skin"] = closed("skin", solid.membrane.points_mm, solid.membrane.faces)
+    parts["skin"] = closed("skin", pad.membrane.points_mm, pad.membrane.faces)
     assert max(overlaps_mm3(parts).values()) < 1e-6
     sleeve = parts["housing_base"].trim_by_plane((0.0, 0.0, 1.0), 0.01)
     box = sleeve.bounding_box()
@@ -214,32 +213,31 @@ def test_a_holder_in_the_foot_needs_no_sleeve(finger: Solid) -> None:
     assert base.points_mm[:, 2].max() == pytest.approx(0.0, abs=1e-6)
 
 
-def test_advice_for_a_pocket_at_the_cavity_wall_helps() -> None:
+def test_advice_for_a_pocket_at_the_cavity_wall_helps(pad: Solid) -> None:
     """0.46 mm at a ring of 7.6 mm: the message says 0.5 mm less, and 7.1 mm has 0.8 mm of wall."""
-    check = named(pad(13.0, 7.6, Housing())[1], "minimum_wall")["led_ring_holder"]
+    check = named(ringed(pad, 13.0, 7.6), "minimum_wall")["led_ring_holder"]
     assert check.value == pytest.approx(0.46, abs=0.02)
     assert "lower optics.ring.radius_mm by 0.5 mm" in check.message
     assert "housing.wall_mm" not in check.message
     assert check.severity is Severity.WARNING
-    check = named(pad(13.0, 7.1, Housing())[1], "minimum_wall")["led_ring_holder"]
+    check = named(ringed(pad, 13.0, 7.1), "minimum_wall")["led_ring_holder"]
     assert check.severity is Severity.GOOD
 
 
-def test_advice_for_crowded_leds_is_fewer() -> None:
+def test_advice_for_crowded_leds_is_fewer(pad: Solid) -> None:
     """12 LEDs of 1.6 mm on a ring of 4 mm are 2.1 mm apart: fewer of them, not thicker walls."""
-    check = named(pad(13.0, 4.0, Housing())[1], "minimum_wall")["led_ring_holder"]
+    check = named(ringed(pad, 13.0, 4.0), "minimum_wall")["led_ring_holder"]
     assert check.severity is Severity.WARNING
     assert "lower optics.ring.count" in check.message
     assert "housing.wall_mm" not in check.message
 
 
-def test_a_thin_ledge_goes_without_thinning_the_base_beside_it() -> None:
+def test_a_thin_ledge_goes_without_thinning_the_base_beside_it(
+    default_solid: Callable[[str], Solid],
+) -> None:
     """DIGITac: above the corners of the mount's seat, beyond the ring's, 1.35 mm of base are left;
     the ledge of 0.5 mm between the two seats is gone."""
-    solid = build(
-        BuildInputs(family="digitac", shape=resolve_shape("digitac", {}), layers=Layers()),
-        monitor=silent,
-    )
+    solid = default_solid("digitac")
     ring = LedRing(count=6, radius_mm=5.0, height_mm=1.3)
     camera = Camera(position_mm=(0.0, 0.0, 0.3))
     made = make_housing(solid, Housing(), ring=ring, camera=camera, printer=Printer())

@@ -2,36 +2,42 @@
 
 from __future__ import annotations
 
-import functools
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
 from scipy.spatial import ConvexHull
 
 from geometry.surface.surface import face_areas, is_watertight, mesh_volume
-from geometry.volume.hexmesh import mesh_membrane
 from geometry.volume.lattice import material_points
 from geometry.volume.quality import quality_report, skin_quality, tetrahedron_quality
 from geometry.volume.tets import boundary_faces, tetrahedra
 from sim.optics.camera.inside_skin import inside
-from workbench.core.design.design import Meshing
+from workbench.core.design.design import Meshing, SensorDesign
 from workbench.core.result.results import Label, MembraneMesh, Skin, Solid, VolumeMesh, region_masks
-from workbench.proof.validation.geometry.meshes import default_solid, family_names, worst_area_error
+from workbench.proof.validation.geometry.meshes import family_names, worst_area_error
 
 HEX_FAMILIES = ("finger", "pad", "paw", "thumb", "trunk")
 CELL_FACES = ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
 """Corners of each side of a hexahedron in VTK order, counter-clockwise from outside."""
 
 
-@functools.cache
-def coarse(family: str) -> MembraneMesh:
-    return mesh_membrane(default_solid(family), Meshing(hex_mm=0.6))
+Built = Callable[[str], Solid]
+Meshed = Callable[[str], MembraneMesh]
 
 
-def hexahedra(family: str) -> VolumeMesh:
-    hexes = coarse(family).hexes
-    assert hexes is not None, coarse(family).notice
-    return hexes
+@pytest.fixture(scope="module")
+def coarse(made: Callable[[SensorDesign, str], Any]) -> Meshed:
+    """A function that returns the meshes of a family's default shape at 0.6 mm."""
+    meshing = Meshing(hex_mm=0.6)
+    return lambda family: made(SensorDesign(family=family, meshing=meshing), "mesh")
+
+
+def hexahedra(meshes: MembraneMesh) -> VolumeMesh:
+    """The hexahedra of a shape that has some."""
+    assert meshes.hexes is not None, meshes.notice
+    return meshes.hexes
 
 
 def free_quads(cells: np.ndarray) -> np.ndarray:
@@ -44,7 +50,7 @@ def free_quads(cells: np.ndarray) -> np.ndarray:
     return faces[first[count == 1]]
 
 
-def test_exactly_these_families_have_hexahedra() -> None:
+def test_exactly_these_families_have_hexahedra(coarse: Meshed) -> None:
     """Suckers and pins cannot be layered; all other shapes can, and the others say why not."""
     found = {name for name in family_names() if coarse(name).hexes is not None}
     assert found == set(HEX_FAMILIES)
@@ -53,9 +59,9 @@ def test_exactly_these_families_have_hexahedra() -> None:
 
 
 @pytest.mark.parametrize("family", HEX_FAMILIES)
-def test_hexahedra_conform_and_their_boundary_is_the_skins(family: str) -> None:
+def test_hexahedra_conform_and_their_boundary_is_the_skins(family: str, coarse: Meshed) -> None:
     """Inner sides are shared by two cells; free ones are outer + inner + base, a closed surface."""
-    hexes = hexahedra(family)
+    hexes = hexahedra(coarse(family))
     quads = free_quads(hexes.cells)
     triangles = np.concatenate([quads[:, :3], quads[:, [0, 2, 3]]])
     assert is_watertight(triangles)
@@ -77,7 +83,7 @@ def test_hexahedra_conform_and_their_boundary_is_the_skins(family: str) -> None:
 
 
 @pytest.mark.parametrize("family", HEX_FAMILIES)
-def test_hexahedra_are_good(family: str) -> None:
+def test_hexahedra_are_good(family: str, default_solid: Built, coarse: Meshed) -> None:
     """Scaled Jacobian at least 0.3, 95 % of edges at most 1.6 h, volume ratio 1, at 0.6 mm."""
     report = quality_report(coarse(family), default_solid(family).volume_mm3).volume
     assert report is not None
@@ -89,7 +95,7 @@ def test_hexahedra_are_good(family: str) -> None:
 
 
 @pytest.mark.parametrize("family", [*HEX_FAMILIES, "digitac", "tentacle"])
-def test_regions_keep_their_area(family: str) -> None:
+def test_regions_keep_their_area(family: str, default_solid: Built, coarse: Meshed) -> None:
     """Every region of both skins has the area of the CAD tessellation's."""
     error, where = worst_area_error(default_solid(family).membrane, coarse(family))
     # 0.6 mm cells on a border that follows no edge: half a cell of 10 mm, averaged along it.
@@ -97,7 +103,7 @@ def test_regions_keep_their_area(family: str) -> None:
 
 
 @pytest.mark.parametrize("family", [*HEX_FAMILIES, "digitac", "tentacle"])
-def test_skins_point_out_of_the_sensor(family: str) -> None:
+def test_skins_point_out_of_the_sensor(family: str, default_solid: Built, coarse: Meshed) -> None:
     """The camera's place is inside all three skins, a point beside the sensor in none."""
     solid, meshes = default_solid(family), coarse(family)
     low, high = solid.support.points_mm.min(axis=0), solid.support.points_mm.max(axis=0)
@@ -124,7 +130,7 @@ def free_ends(skin: Skin) -> np.ndarray:
     return np.unique(edges[count == 1])
 
 
-def test_skins_of_a_body_without_hexahedra_lie_on_it() -> None:
+def test_skins_of_a_body_without_hexahedra_lie_on_it(default_solid: Built, coarse: Meshed) -> None:
     """Remeshed vertices lie on the source; edges near h; tips and backing come along."""
     solid, meshes = default_solid("digitac"), coarse("digitac")
     pins = meshes.inner.labels & Label.PIN != 0
@@ -140,12 +146,12 @@ def test_skins_of_a_body_without_hexahedra_lie_on_it() -> None:
     assert meshes.backing_mm == solid.backing_mm > 0.0
 
 
-def test_pad_is_closed_by_its_two_skins() -> None:
+def test_pad_is_closed_by_its_two_skins(default_solid: Built, coarse: Meshed) -> None:
     """Bonded face and sensing side, with its free sides, are a closed surface of the pad's volume.
 
     The inner skin points out of the sensor, so into the gel: turned, it closes the other.
     """
-    hexes, meshes = hexahedra("pad"), coarse("pad")
+    hexes, meshes = hexahedra(coarse("pad")), coarse("pad")
     outer_nodes = np.flatnonzero(hexes.labels & Label.OUTER)
     inner_nodes = np.flatnonzero(hexes.labels & Label.INNER)
     faces = np.concatenate(
@@ -158,9 +164,9 @@ def test_pad_is_closed_by_its_two_skins() -> None:
     assert not (hexes.labels & Label.BASE).any()
 
 
-def test_nodes_of_an_actuator_carry_its_number() -> None:
+def test_nodes_of_an_actuator_carry_its_number(coarse: Meshed) -> None:
     """The nodes of each lobe of the trunk are the vertices of the faces labelled so."""
-    hexes, outer = hexahedra("trunk"), coarse("trunk").outer
+    hexes, outer = hexahedra(coarse("trunk")), coarse("trunk").outer
     nodes = np.flatnonzero(hexes.labels & Label.OUTER)
     faces = region_masks(outer.labels, outer.numbers)
     marked = region_masks(hexes.labels, hexes.numbers)
@@ -169,7 +175,7 @@ def test_nodes_of_an_actuator_carry_its_number() -> None:
         assert np.array_equal(nodes[used], np.flatnonzero(marked[name]))
 
 
-def test_pins_own_the_material_points_inside_them() -> None:
+def test_pins_own_the_material_points_inside_them(default_solid: Built) -> None:
     """Points of a pin fill its volume: the hull of its faces; far points carry no label."""
     membrane = default_solid("digitac").membrane
     points = material_points(membrane, 0.25)

@@ -342,11 +342,14 @@ def test_a_folder_that_is_not_there_is_named(moulds: MouldSet, tmp_path: Path) -
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["pad", "digitac", "trunk", "thumb", "tentacle", "paw"])
-def test_every_family_has_a_mould(name: str) -> None:
+def test_every_family_has_a_mould(
+    name: str, default_solid: Callable[[str], Solid], monkeypatch: pytest.MonkeyPatch
+) -> None:
     """The row of validation misses no limit."""
-    from workbench.proof.validation.geometry.moulds import rows
+    from workbench.proof.validation.geometry import moulds
 
-    (row,) = rows([name])
+    monkeypatch.setattr(moulds, "default_solid", default_solid)
+    (row,) = moulds.rows([name])
     assert row.ok, row.case
 
 
@@ -377,9 +380,7 @@ def test_bolts_of_more_parts_and_of_wide_moulds() -> None:
     assert bolt_length_mm(96.2) is None
 
 
-def test_a_rod_says_what_it_is_for() -> None:
+def test_a_rod_says_what_it_is_for(default_solid: Callable[[str], Solid]) -> None:
     """`slider_0` of the trunk is the actuator rod for lobe 0."""
-    from workbench.proof.validation.geometry.meshes import default_solid
-
     rods = make_rods(default_solid("trunk"), Housing())
     assert [rod.title for rod in rods] == [f"actuator rod for lobe {n}" for n in (0, 1)]

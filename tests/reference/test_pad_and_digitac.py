@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,7 @@ from designs.plates import rectangle_distance
 from geometry.surface.surface import face_areas
 from tests.families import expect_found_out, expect_refusal
 from workbench.core.base.errors import DesignError
-from workbench.core.design.design import Layers
+from workbench.core.design.design import Layers, SensorDesign
 from workbench.core.result.results import Label
 from workbench.pipeline.building import build_solid, coarse_volume_mm3
 
@@ -208,14 +209,15 @@ def test_the_narrow_side_is_named_with_its_own_limit() -> None:
 
 
 @pytest.mark.slow
-def test_support_points_of_a_digitac_lie_on_its_window() -> None:
+def test_support_points_of_a_digitac_lie_on_its_window(
+    made: Callable[[SensorDesign, str], Any],
+) -> None:
     """The roots of pins as well: -0.08 to +0.001 mm, where pins' sides once made it 0.3 mm."""
-    from geometry.volume.hexmesh import mesh_membrane
     from sim.contact.region.backing import backed_faces, bonded_faces, support_points_mm
-    from workbench.core.design.design import Meshing
 
+    # That of the preset, which others mesh as well.
     shape, layers = DigitacShape(), Layers(elastomer_mm=1.2)
-    mesh = mesh_membrane(build_solid(family("digitac"), shape, layers), Meshing())
+    mesh = made(SensorDesign(family="digitac", layers=layers), "mesh")
     bonded = len(np.unique(mesh.inner.faces[bonded_faces(mesh)]))
     assert backed_faces(mesh).any()
     window = shape.loaf(layers.elastomer_mm + shape.gap_mm)
