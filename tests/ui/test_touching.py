@@ -52,7 +52,9 @@ def test_a_clicked_face_is_turned_to_the_skin(
     """A click on a side of a large cube that looks at the eye: its normal is down afterwards."""
     project = coarse_project(tmp_path)
     autosave = project / "designs" / "autosave.toml"
-    autosave.write_text(f"{COARSE}[press_case.indenter]\nkind = 'cube'\nsize_mm = 24.0\n")
+    # With sharp edges: the click must not find the facet of a rounded one.
+    cube = "[press_case.indenter]\nkind = 'cube'\nsize_mm = 24.0\nedge_radius_mm = 0.0\n"
+    autosave.write_text(f"{COARSE}{cube}")
     server = start_server(project)
     open_page(page, server.url)
     wait_until(lambda: page.get_by_text("Shape ✓").count(), 60, "the body is there")
