@@ -288,6 +288,18 @@ def test_affine_field_has_no_interior_force(taichi_device: str) -> None:
     assert np.abs(relaxation.node_forces()[interior]).max() < 2e-6 * scale_N
 
 
+def test_a_face_beyond_the_grid_is_near_its_last_samples_alone(taichi_device: str) -> None:
+    """One step over three layers: 3, 2 and 1 steps away, squared; what lies behind is untouched."""
+    from sim.contact.objects.mesh_distance_kernels import band_distance
+
+    memory = np.full((5, 3, 3), 99.0, dtype=np.float32)
+    wide = np.array([[[-40.0, -40.0, 3.0], [80.0, -40.0, 3.0], [-40.0, 80.0, 3.0]]])
+    band_distance((0.5 * wide).astype(np.float32), memory[:3], 0.5, 4.0)
+    steps = np.broadcast_to([3.0, 2.0, 1.0], (3, 3, 3))
+    np.testing.assert_allclose(memory[:3], (0.5 * steps) ** 2, rtol=RELATIVE)
+    assert (memory[3:] == 99.0).all()
+
+
 def test_mesh_distance_equals_the_twin(taichi_device: str) -> None:
     """The sampled distance of a box: band exact to 1e-5 mm, sign exact, at every sample."""
     from sim.contact.objects.mesh_distance import BAND_SAMPLES, _distance, _inside
