@@ -181,7 +181,7 @@ class _Course:
             label = f"frame {frame + 1} of {count}"
 
             def watch(progress: float, label: str = label) -> None:
-                monitor(min(progress / count, 1.0), label)
+                monitor(progress / count, label)
 
             effort.watch = lambda now=state.progress, watch=watch: watch(now)
             before = state

@@ -97,3 +97,33 @@ def test_gate_and_vents_of_a_pad_move_as_little_as_its_outline(pad: Solid) -> No
     )
     assert np.abs(other.gate_mm - one.gate_mm).max() < 0.16
     assert np.abs(other.vents_mm - one.vents_mm).max() < 0.16
+
+
+@pytest.mark.parametrize(
+    ("wall_mm", "throat_mm", "vent_mm"), [(1.0, 0.45, 0.4), (4.0, 1.8, 0.8), (6.0, 2.0, 0.8)]
+)
+def test_gate_and_vents_are_as_wide_as_the_wall_that_they_end_in_allows(
+    wall_mm: float, throat_mm: float, vent_mm: float
+) -> None:
+    """In a tube midway is half a wall of room: radii 0.9 and 0.8 of it, up to 2 and 0.8 mm."""
+    solids = [csg.cylinder(10.0 + wall_mm, 0.0, 25.0), csg.cylinder(10.0, 0.0, 20.0)]
+    outer, core = (
+        csg.Body(points_mm=points, faces=faces)
+        for points, faces in (arrays(evaluate(solid)) for solid in solids)
+    )
+    turn = np.linspace(0.0, 2.0 * np.pi, 720, endpoint=False)
+    circle = np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    cast = Cast(
+        outer=outer,
+        core=core,
+        base_mm=0.0,
+        sensing=outer,
+        loops_mm=((10.0 + wall_mm) * circle, 10.0 * circle),
+    )
+    channels = make_channels(cast, 3)
+    # Of points 0.4 mm apart along both outlines the middle is known to a hundredth of the room.
+    assert channels.throat_mm == pytest.approx(throat_mm, rel=0.01)
+    assert channels.vent_mm == pytest.approx(vent_mm, rel=0.01)
+    middle_mm = 10.0 + wall_mm / 2.0
+    places_mm = np.vstack([channels.gate_mm, channels.vents_mm])
+    assert np.linalg.norm(places_mm, axis=1) == pytest.approx(np.full(4, middle_mm), abs=0.05)

@@ -1,6 +1,7 @@
 """Each Taichi kernel against its NumPy twin."""
 
 import dataclasses
+import itertools
 
 import numpy as np
 import pytest
@@ -286,6 +287,81 @@ def test_affine_field_has_no_interior_force(taichi_device: str) -> None:
     scale_N = np.abs(stress).max() * domain.grid_mm**2
     assert interior.sum() >= 20
     assert np.abs(relaxation.node_forces()[interior]).max() < 2e-6 * scale_N
+
+
+@pytest.mark.parametrize("offset_mm", [0.0, 0.25])
+def test_a_cone_is_as_near_as_its_slant_or_its_top(taichi_device: str, offset_mm: float) -> None:
+    """A right cone from (0, 0, 0) to the rim (2, 2): inside, on its slant, above it, and beside.
+
+    An offset, which rounds its edges, is taken from the distance and leaves the gradient.
+    """
+    import taichi as ti
+    import taichi.math as tm
+
+    from sim.contact.objects.shape_distance_functions import CONE, signed_distance
+
+    @ti.kernel
+    def measure(
+        places: ti.types.ndarray(dtype=tm.vec3, ndim=1),  # pyright: ignore
+        size: tm.vec4,  # pyright: ignore
+        samples: ti.types.ndarray(dtype=ti.f32, ndim=1),  # pyright: ignore
+        out: ti.types.ndarray(dtype=tm.vec4, ndim=1),  # pyright: ignore
+    ):
+        for i in range(places.shape[0]):
+            none = ti.Vector([0, 0, 0])
+            distance, gradient = signed_distance(places[i], CONE, size, samples, none, 0)
+            out[i] = tm.vec4(distance, gradient)
+
+    root = 0.5**0.5
+    exact = {
+        (0.3, 0.4, 1.0): (-0.5 * root, 0.6 * root, 0.8 * root, -root),
+        (0.0, 0.0, 0.5): (-0.5 * root, 0.0, 0.0, -root),
+        (0.3, 0.4, 1.9): (-0.1, 0.0, 0.0, 1.0),
+        (0.6, 0.8, 1.0): (0.0, 0.6 * root, 0.8 * root, -root),
+        (1.0, 0.0, 0.0): (root, root, 0.0, -root),
+        (0.0, 0.0, -2.0): (2.0, 0.0, 0.0, -1.0),
+        (0.0, 1.0, 4.0): (2.0, 0.0, 0.0, 1.0),
+        (0.0, 5.0, 6.0): (5.0, 0.0, 0.6, 0.8),
+    }
+    places, found = np.array(list(exact), np.float32), np.zeros((len(exact), 4), np.float32)
+    measure(places, tm.vec4(2.0, 2.0, offset_mm, 0.0), np.zeros(1, np.float32), found)
+    wanted = np.array(list(exact.values())) - [offset_mm, 0.0, 0.0, 0.0]
+    np.testing.assert_allclose(found, wanted, atol=1e-6)
+
+
+@pytest.mark.parametrize("order", itertools.permutations(range(3)))
+def test_distances_to_the_seven_parts_of_a_triangle(
+    taichi_device: str, order: tuple[int, int, int]
+) -> None:
+    """To corners, edges and face of (0, 0), (4, 0), (0, 4), whichever corner comes first."""
+    from sim.contact.objects.mesh_distance_kernels import band_distance
+
+    exact = {
+        (-1, -2, 2): 1 + 4 + 4,
+        (6, -1, 0): 4 + 1,
+        (-1, 6, 1): 1 + 4 + 1,
+        (1, -2, 1): 4 + 1,
+        (-2, 3, 2): 4 + 4,
+        (4, 4, 1): 4**2 / 2 + 1,  # From the line x + y = 4.
+        (1, 2, 3): 9,
+    }
+    places = np.array(list(exact)) + 3
+    triangle = np.array([[0, 0, 0], [4, 0, 0], [0, 4, 0]], dtype=np.float32)[list(order)] + 3.0
+    squared = np.full((12, 12, 12), 1e3, dtype=np.float32)
+    band_distance(triangle[None], squared, 1.0, 5.0)
+    np.testing.assert_allclose(squared[tuple(places.T)], list(exact.values()), rtol=RELATIVE)
+
+
+def test_a_face_beyond_the_grid_is_near_its_last_samples_alone(taichi_device: str) -> None:
+    """One step over three layers: 3, 2 and 1 steps away, squared; what lies behind is untouched."""
+    from sim.contact.objects.mesh_distance_kernels import band_distance
+
+    memory = np.full((5, 3, 3), 99.0, dtype=np.float32)
+    wide = np.array([[[-40.0, -40.0, 3.0], [80.0, -40.0, 3.0], [-40.0, 80.0, 3.0]]])
+    band_distance((0.5 * wide).astype(np.float32), memory[:3], 0.5, 4.0)
+    steps = np.broadcast_to([3.0, 2.0, 1.0], (3, 3, 3))
+    np.testing.assert_allclose(memory[:3], (0.5 * steps) ** 2, rtol=RELATIVE)
+    assert (memory[3:] == 99.0).all()
 
 
 def test_mesh_distance_equals_the_twin(taichi_device: str) -> None:

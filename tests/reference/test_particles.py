@@ -12,7 +12,7 @@ from sim.contact.motion.approach import plan_approach
 from sim.contact.objects.collider import make_collider
 from sim.contact.particles import kernels
 from sim.contact.particles import reference as twin
-from sim.contact.particles.cloud import Cloud, make_cloud
+from sim.contact.particles.cloud import ROOM_CELLS, Cloud, make_cloud
 from sim.contact.particles.press import press_particles
 from sim.contact.particles.state import OBJECT_DENSITY, State
 from sim.contact.studies.specimens import flat_block
@@ -53,6 +53,15 @@ def twin_points(state: State, cloud: Cloud, body: np.ndarray, given: np.ndarray)
         kind=np.concatenate([cloud.kind, np.full(objects, kernels.OBJECT)]),
         given=np.concatenate([np.zeros((count, 3)), given]),
     )
+
+
+def test_the_grid_leaves_three_empty_cells_around_the_points() -> None:
+    """From each outermost point it is three to four cells to the grid's outermost nodes."""
+    cloud, _ = cloud_of()
+    low = cloud.place_mm.min(axis=0) / cloud.grid_mm - cloud.low
+    high = cloud.low + np.array(cloud.nodes) - 1 - cloud.place_mm.max(axis=0) / cloud.grid_mm
+    for room in (low, high):
+        assert (room >= ROOM_CELLS).all() and (room < ROOM_CELLS + 1).all()
 
 
 def test_substeps_equal_the_twin() -> None:

@@ -7,12 +7,12 @@ import pytest
 
 from sim.contact.engine import reference
 from sim.contact.press import press_membrane
-from sim.contact.readout.problem import make_problem
+from sim.contact.readout.problem import Problem, make_problem
 from sim.contact.soft.body import SoftObject, make_soft_object
 from sim.contact.soft.meeting import meet
 from sim.contact.soft.meeting_functions import MEMBRANE, OBJECT
 from sim.contact.soft.reference import commit_history, contact_forces
-from sim.contact.soft.solver import SoftRelaxation
+from sim.contact.soft.solver import SoftRelaxation, _shape
 from sim.contact.studies.specimens import flat_block
 from workbench.core.base.errors import DesignError
 from workbench.core.design.design import Elastomer
@@ -37,10 +37,14 @@ def press(soft: SoftBody | None, material: Elastomer = SMOOTH, path: Press = PRE
     )
 
 
-def prepared(material: Elastomer = SMOOTH) -> tuple[SoftRelaxation, SoftObject]:
+def made(material: Elastomer = SMOOTH) -> tuple[Problem, SoftObject]:
     ball = Indenter(size_mm=6.0, soft=SoftBody())
     problem = make_problem(MESH, POINTS, material, PressCase(indenter=ball, press=PRESS))
-    soft = make_soft_object(problem, ball)
+    return problem, make_soft_object(problem, ball)
+
+
+def prepared(material: Elastomer = SMOOTH) -> tuple[SoftRelaxation, SoftObject]:
+    problem, soft = made(material)
     return SoftRelaxation(problem, soft), soft
 
 
@@ -115,6 +119,27 @@ def test_action_equals_reaction() -> None:
     on_object = soft.rotation @ relaxation.node_forces(OBJECT).sum(axis=0, dtype=np.float64)
     assert balance.reaction_N[0, 2] > 0.05
     np.testing.assert_allclose(on_object, balance.reaction_N[0], atol=1e-5)
+
+
+def test_a_shifted_object_has_moved_by_its_shift_less_what_its_frame_has() -> None:
+    """By 0.1, -0.2, 0.3 mm at every place; by nothing in a frame that went along.
+
+    In one that turned by 90 degrees about z, (x, y) lies at (y, -x) after the shift.
+    """
+    _, soft = made()
+    shift_mm = np.array([0.1, -0.2, 0.3])
+    nodal_mm = np.tile(shift_mm, (len(soft.domain.masses), 1))
+    still = _shape(soft, nodal_mm, (soft.origin_mm, soft.rotation))
+    assert still.shape == (*soft.cell_map.shape, 3)
+    np.testing.assert_allclose(still, np.broadcast_to(shift_mm, still.shape), atol=1e-12)
+    along_mm = soft.origin_mm + soft.rotation @ shift_mm
+    np.testing.assert_allclose(_shape(soft, nodal_mm, (along_mm, soft.rotation)), 0.0, atol=1e-12)
+    quarter = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    turned = _shape(soft, nodal_mm, (soft.origin_mm, soft.rotation @ quarter))
+    cell = np.argwhere(soft.cell_map >= 0)[0]
+    x, y, _ = (cell + soft.first_cell) * soft.domain.grid_mm
+    exact = [y - 0.2 - x, -x - 0.1 - y, 0.3]
+    np.testing.assert_allclose(turned[tuple(cell)], exact, atol=1e-12)
 
 
 def test_stiff_object_presses_as_a_rigid_one() -> None:

@@ -49,6 +49,16 @@ def test_sphere_touches_the_finger_at_its_radius() -> None:
     assert approach.touch_mm == pytest.approx(3.0, abs=2 * sag_mm)
 
 
+@pytest.mark.parametrize("azimuth_deg", [0.0, 90.0])
+def test_the_press_at_45_degrees_is_one_step_of_a_millimetre(azimuth_deg: float) -> None:
+    """On the ball of radius 15 about (0, 0, 27), as far aside as upward: 15 / sqrt 2."""
+    press = at_45_degrees(azimuth_deg=azimuth_deg)
+    assert (press.frames, press.depth_mm) == (1, 1.0)
+    way = np.array(press.target_mm) - [0.0, 0.0, 27.0]
+    aside = [1.0, 0.0] if azimuth_deg == 0.0 else [0.0, 1.0]
+    assert way == pytest.approx(np.array([*aside, 1.0]) * 15.0 / np.sqrt(2.0), abs=1e-12)
+
+
 def test_target_is_projected_and_its_normal_is_smooth() -> None:
     """(0, 10, 35) lies on the ray to (0, 10, 8) / 12.81 from the centre of the tip."""
     approach = plan_approach(FINGER.outer, make_collider(Indenter(), grid_mm=0.5), Press())

@@ -1,6 +1,8 @@
 """Verdicts on settled frames, and what the numbers of a frame are relative to."""
 
 import dataclasses
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,7 +13,7 @@ from sim.contact.motion.approach import Approach, plan_approach
 from sim.contact.objects.collider import make_collider
 from sim.contact.readout.fields import volume_state
 from sim.contact.readout.frame import FrameOutcome
-from sim.contact.readout.outcome import SettledFrame, _friction, frame_outcome
+from sim.contact.readout.outcome import SettledFrame, _drives, _friction, frame_outcome
 from sim.contact.readout.problem import Problem, prepare
 from sim.contact.readout.verdict import check_depth, check_frame
 from sim.contact.region.quadrature import facets_of
@@ -107,6 +109,25 @@ def test_friction_ratio_comes_from_forces_alone() -> None:
     largest, sliding = _friction(pressing, aside, friction=0.3)
     assert largest == pytest.approx(0.5)
     assert sliding.tolist() == [True, False, False, False]
+
+
+def test_drives_pull_at_their_own_points_and_turn_about_their_own_axes() -> None:
+    """2 N along z at 3 mm along x turn by -6 N mm about y; two of 1 N at 0 and 4 mm turn about
+    their middle by nothing; one that no point follows does nothing."""
+    problem: Any = SimpleNamespace(
+        press=SimpleNamespace(
+            actuations=[
+                SimpleNamespace(about_mm=about_mm)
+                for about_mm in ((1.0, 0.0, 0.0), (0.0, 2.0, 5.0), (0.0, 0.0, 0.0))
+            ]
+        ),
+        domain=SimpleNamespace(points=SimpleNamespace(drive=np.array([0, -1, 1, 1]))),
+    )
+    forces = np.array([[0.0, 0.0, 2.0], [9.0, 9.0, 9.0], [1.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
+    places = np.array([[4.0, 0.0, 0.0], [7.0, 7.0, 7.0], [0.0, 0.0, 5.0], [0.0, 4.0, 5.0]])
+    forces_N, moments_Nmm = _drives(problem, forces, places)
+    np.testing.assert_array_equal(forces_N, [[0.0, 0.0, 2.0], [2.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
+    np.testing.assert_array_equal(moments_Nmm, [[0.0, -6.0, 0.0], [0.0] * 3, [0.0] * 3])
 
 
 def test_depth_that_reaches_the_support_is_refused() -> None:

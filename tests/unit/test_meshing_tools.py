@@ -66,6 +66,37 @@ def test_remeshed_box_keeps_its_corners_regions_and_sense() -> None:
     assert 0.35 < np.percentile(edges, 5) < np.percentile(edges, 95) < 0.7
 
 
+@pytest.mark.parametrize(("sides", "kept"), [(8, True), (12, False)])
+def test_edges_that_turn_by_more_than_35_degrees_stay(sides: int, kept: bool) -> None:
+    """Sides of a prism turn by 360 / sides: edges of 45 degrees keep the volume, 30 round off.
+
+    The volume is sides r^2 sin(360 / sides) h / 2; triangles across an edge lie inside it.
+    """
+    angle = 2.0 * np.pi / sides
+    around = 3.0 * np.exp(1j * angle * np.arange(sides))
+    low, high, next_low = np.arange(sides), sides + np.arange(sides), np.roll(np.arange(sides), -1)
+    points = np.zeros((2 * sides + 2, 3))
+    points[:-2, 0], points[:-2, 1] = np.tile(around.real, 2), np.tile(around.imag, 2)
+    points[sides : 2 * sides, 2] = points[-1, 2] = 4.0
+    below, above = np.full(sides, 2 * sides), np.full(sides, 2 * sides + 1)
+    faces = np.concatenate(
+        [
+            np.stack([low, next_low, high], axis=1),
+            np.stack([next_low, sides + next_low, high], axis=1),
+            np.stack([below, next_low, low], axis=1),
+            np.stack([above, high, sides + next_low], axis=1),
+        ]
+    )
+    exact_mm3 = sides * 3.0**2 * np.sin(angle) * 4.0 / 2.0
+    assert mesh_volume(points, faces) == pytest.approx(exact_mm3)
+    found_mm3 = mesh_volume(*meshlab.isotropic(points, faces, 0.7, None))
+    if kept:
+        assert found_mm3 == pytest.approx(exact_mm3, rel=1e-9)
+    else:
+        # A triangle across an edge has a sagitta of 0.7 / 4 tan 15 degrees = 0.05 mm of 3 at most.
+        assert 0.97 * exact_mm3 < found_mm3 < 0.999 * exact_mm3
+
+
 def test_tetrahedra_of_a_box_fill_it() -> None:
     """Cube of 64 mm3; its free faces enclose the same."""
     points, cells = tets._fill(remesh(box(), 1.5), 1.5)

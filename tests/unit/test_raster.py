@@ -1,7 +1,5 @@
 """Drawing what moved, against casting every ray; composition against its definition."""
 
-from __future__ import annotations
-
 import dataclasses
 
 import numpy as np
@@ -100,6 +98,35 @@ def drawn_and_cast(
     cast[twin.seen.pixel] = twin.seen.depth_z_mm
     assert np.array_equal(changed, twin.pixels)
     return drawn[changed], cast[changed], changed, view
+
+
+@pytest.mark.parametrize(("frame", "exact"), [(0, [10.0, 4.0, 6.0]), (1, [9.0, 13.0, 10.0])])
+def test_corners_are_blended_by_the_weights_of_the_second_and_third(
+    frame: int, exact: list[float]
+) -> None:
+    """At (1/4, 5/8): an eighth of the first corner, a quarter and five eighths of the others."""
+    import taichi as ti
+    import taichi.math as tm
+
+    from sim.optics.light.kernel_types import IntegerRows, Vectors
+    from sim.optics.raster.compose_kernels import blend
+
+    @ti.kernel
+    def blended(
+        values: Vectors,  # pyright: ignore
+        faces: IntegerRows,  # pyright: ignore
+        first: ti.i32,  # pyright: ignore
+        out: Vectors,  # pyright: ignore
+    ):
+        # Taichi reads these annotations, so they may not be put off to the future.
+        for i in range(1):
+            out[i] = blend(values, first, faces, 1, tm.vec2(0.25, 0.625))
+
+    one = [[8, 0, 0], [0, 8, 0], [0, 0, 8], [80, 16, 8]]
+    other = [[88, 24, 16], [8, 8, 16], [8, 16, 8], [16, 8, 8]]
+    faces, found = np.array([[0, 1, 2], [3, 1, 2]], np.int32), np.zeros((1, 3), np.float32)
+    blended(np.array([*one, *other], np.float32), faces, 4 * frame, found)
+    np.testing.assert_array_equal(found[0], exact)
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ import trimesh
 from geometry.intake.deviation import BETWEEN_STEPS, deviation
 from geometry.intake.intake import read_body
 from geometry.intake.repair import remeshed
-from geometry.intake.solid_angles import WindingNumber
+from geometry.intake.solid_angles import CELLS, WindingNumber, _cluster_of_each
 from geometry.intake.winding import grid_around, sampled, samples_of, winding_number
 from geometry.surface.isosurface import distance_mm
 from geometry.surface.meshlab import crossing_faces
@@ -53,6 +53,15 @@ def exact_winding(points: np.ndarray, faces: np.ndarray, places: np.ndarray) -> 
         + np.einsum("qfi,qfi->qf", c, a) * y
     )
     return 2.0 * np.arctan2(triple, below).sum(axis=1) / (4.0 * np.pi)
+
+
+@pytest.mark.parametrize("cell_mm", [0.25, 1.0, 6.0])
+def test_small_triangles_of_a_cell_are_one_cluster(cell_mm: float) -> None:
+    """Two in each of the cells that the longest side is divided into: pairs, at any size."""
+    begin = np.repeat(np.arange(CELLS), 2) + np.tile([0.0, 0.9], CELLS)
+    triangle = np.array([[0.0, 0.0, 0.0], [0.1, 0.0, 0.0], [0.0, 0.1, 0.0]])
+    corners = cell_mm * (triangle + begin[:, None, None] * [1.0, 0.0, 0.0])
+    np.testing.assert_array_equal(_cluster_of_each(corners), np.repeat(np.arange(CELLS), 2))
 
 
 @pytest.mark.parametrize("top_mm", [20.0, 5.0, 0.0])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from types import SimpleNamespace
 from typing import Any
 
 import cv2
@@ -102,6 +103,49 @@ def expect_in_frame(image: np.ndarray, *, fill: float) -> None:
     rows, columns = np.flatnonzero(drawn.any(axis=1)), np.flatnonzero(drawn.any(axis=0))
     shares = np.ptp(rows) / image.shape[0], np.ptp(columns) / image.shape[1]
     assert max(shares) > fill
+
+
+@pytest.mark.parametrize("margins", [(0.0, 0.0), (0.0, 0.2), (0.3, 0.1)])
+@pytest.mark.parametrize("wide", [True, False])
+def test_a_drawing_is_in_the_middle_of_what_its_margins_leave(
+    margins: tuple[float, float], wide: bool
+) -> None:
+    """Of a width of 2 from -1 to 1 that is -1 + 2 left to 1 - 2 right; 1 / 1.06 of it, or of the
+    height, is filled."""
+    plotter = SimpleNamespace(
+        window_size=(400, 250),
+        camera=SimpleNamespace(),
+        reset_camera_clipping_range=lambda: None,
+    )
+    # Seen along -X: Y to the right, Z up.
+    points = np.random.default_rng(4).uniform(-1.0, 1.0, (50, 3))
+    points += [7.0, -3.0, 2.0]
+    points *= [1.0, 5.0, 1.0] if wide else [1.0, 1.0, 5.0]
+    rendering.look(plotter, np.array([2.0, 0.0, 0.0]), points, margins)
+    half_height = plotter.camera.parallel_scale
+    across = (points - plotter.camera.focal_point)[:, 1] / (half_height * 400 / 250)
+    upward = (points - plotter.camera.focal_point)[:, 2] / half_height
+    left, right = -1.0 + 2.0 * margins[0], 1.0 - 2.0 * margins[1]
+    assert across.min() + across.max() == pytest.approx(left + right)
+    assert upward.min() + upward.max() == pytest.approx(0.0, abs=1e-12)
+    if wide:
+        assert np.ptp(across) == pytest.approx((right - left) / 1.06)
+    else:
+        assert np.ptp(upward) == pytest.approx(2.0 / 1.06)
+
+
+@pytest.mark.parametrize("channels", [3, 4])
+def test_a_png_keeps_the_colours_of_the_screen(channels: int) -> None:
+    """Red, green, blue and what shows through come back, in OpenCV's order of blue first."""
+    screen = np.random.default_rng(2).integers(0, 256, (5, 7, channels), dtype=np.uint8)
+    plotter = SimpleNamespace(
+        enable_anti_aliasing=lambda kind: None,
+        screenshot=lambda **asked: screen,
+        close=lambda: None,
+    )
+    image = decoded(rendering.png(plotter, clear=channels == 4))
+    np.testing.assert_array_equal(image[..., 2::-1], screen[..., :3])
+    np.testing.assert_array_equal(image[..., 3:], screen[..., 3:])
 
 
 @pytest.mark.slow

@@ -27,6 +27,15 @@ def test_rate_without_a_cosine_stays() -> None:
     assert rate_factor(500, 1000, settings) == rate_factor(999, 1000, settings) == 1.0
 
 
+def test_a_network_is_tuned_as_it_was_trained() -> None:
+    """The network and what an error counts are those of `small`; gradients and averages too."""
+    small, tune = PRESETS["small"], PRESETS["tune"]
+    for name in ("spec", "foot", "clip", "averaging", "batch", "cosine"):
+        assert getattr(tune, name) == getattr(small, name), name
+    # A tuned network starts near its goal.
+    assert tune.rate < small.rate and tune.epochs < small.epochs
+
+
 @pytest.mark.parametrize("turns", [2, 8])
 def test_turned_skins_and_patches_exclude_each_other(turns: int) -> None:
     """A patch has any angle already; one turn alone is no turn."""

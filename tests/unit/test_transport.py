@@ -64,8 +64,12 @@ def step(
     seed: int,
     event: int,
     tally: Tally | None = None,
+    power: tuple[float, float, float] = (1.0, 1.0, 1.0),
 ) -> tuple[reference.Photons, np.ndarray]:
-    """One event of photons 0, 1, ... by the kernel; the photons after it and the ledger."""
+    """One event of photons 0, 1, ... by the kernel; the photons after it and the ledger.
+
+    All are of one light of that power in red, green and blue.
+    """
     from sim.optics.transport import bundles, wavefront_kernels
 
     happen_to_all: Any = wavefront_kernels.happen_to_all
@@ -89,7 +93,7 @@ def step(
             axes=none,
             emission=none,
             in_shell=np.zeros(1, dtype=np.int32),
-            power=np.ones((1, 3), dtype=np.float32),
+            power=np.array([power], dtype=np.float32),
         ),
         bundles.books_of(tally)[0],
     )
@@ -186,6 +190,32 @@ def test_light_is_divided_among_bins_as_its_plain_twin_says(taichi_device: str) 
         lamp = tally.lamps[node, 0] / FIXED_POINT
         np.testing.assert_allclose(lamp[:3] / lamp[3], toward, atol=1e-5)
     assert not tally.bins[1].any()
+
+
+def test_a_node_receives_the_colours_of_the_lamp(taichi_device: str) -> None:
+    """A photon of 0.6 straight down at weights 0.5, 0.2, 0.3 of a lamp of 4, 0.5 and 0 W: at the
+    nodes 2.4 and 0.3 W so divided, and nothing in blue; virtual lights count photons, 0.6."""
+    skin = plane(0.0, 1.0, 1)
+    scene = build_scene((skin.points_mm, skin.normals, skin.faces), None, coating=Coating())
+    photons = reference.Photons(
+        origin=np.zeros((1, 3)),
+        direction=np.array([[0.0, 0.0, 1.0]]),
+        flux=np.array([0.6]),
+        fresh=np.ones(1, dtype=bool),
+        crossed=np.zeros(1, dtype=bool),
+        fate=np.full(1, FLYING),
+    )
+    hits = (
+        np.zeros(1, dtype=np.int32),
+        np.full(1, 0.2, dtype=np.float32),
+        np.full(1, 0.3, dtype=np.float32),
+    )
+    tally = tally_at_nodes(coarse_nodes(skin, 10), 1)
+    step(scene, photons, hits, 7, 0, tally, power=(4.0, 0.5, 0.0))
+    for node, share in zip(skin.faces[0], (0.5, 0.2, 0.3), strict=True):
+        found = tally.bins[0, node].sum(axis=-1) / FIXED_POINT
+        np.testing.assert_allclose(found, np.array([2.4, 0.3, 0.0]) * share, rtol=1e-5)
+        assert tally.lamps[node, 0, 3] / FIXED_POINT == pytest.approx(0.6 * share, rel=1e-5)
 
 
 def test_random_numbers_are_even_and_the_twins_equal(taichi_device: str) -> None:

@@ -52,7 +52,7 @@ def press_finger(
 def at_45_degrees(
     *, depth_mm: float = 1.0, frames: int = 1, azimuth_deg: float = 0.0, **path: object
 ) -> Press:
-    """A press on the tip at 45 degrees to the axis."""
+    """A press on the tip at 45 degrees to the axis, in one step unless more are asked for."""
     azimuth = math.radians(azimuth_deg)
     radius = 15.0 * math.sqrt(0.5)
     target_mm = (radius * math.cos(azimuth), radius * math.sin(azimuth), 27.0 + radius)
