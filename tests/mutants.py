@@ -5,8 +5,9 @@
 Run it in a clone that nobody works in: files of `sim` and `geometry` are changed and put back. A
 change is + to -, * to /, a number doubled, < to <=, another index, or a lost minus sign; numbers of
 messages and types are left alone. Near a file are the tests that import it, then those that import
-what imports it, and so on. A change that no such test notices within the time is a survivor: it
-needs a test, or has to be shown to change nothing. Where tests fail, the one that did is named.
+what imports it, and so on. A change that no such test notices is a survivor: it needs a test, or
+has to be shown to change nothing; where the time is up, nothing is known of it. Where tests fail,
+the one that did is named.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ import json
 import os
 import random
 import resource
+import signal
 import sys
 import traceback
 from collections.abc import Iterator
@@ -180,8 +182,10 @@ def verdict(tests: list[str], limit_s: int, report: Path) -> str:
     code = os.waitstatus_to_exitcode(status)
     lines = report.read_text(encoding="utf-8", errors="replace").splitlines()
     failed = [line for line in lines if line.startswith(("FAILED", "ERROR"))]
+    if -code in (signal.SIGXCPU, signal.SIGKILL):
+        return f"undecided: {limit_s} s of the processor are up"
     if code < 0:
-        return f"survived: {limit_s} s of the processor are up"
+        return f"FAILED by {signal.Signals(-code).name}"
     if code in (0, 5):
         return "survived"
     return failed[0] if failed else f"ERROR {lines[-3:]}"
