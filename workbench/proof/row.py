@@ -10,7 +10,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextvars import ContextVar
 from dataclasses import dataclass
-from typing import Any, overload
+from typing import Any, TypedDict, Unpack, overload
 
 from workbench.core.base.errors import WorkbenchError
 
@@ -42,6 +42,20 @@ Measurement = float | Callable[[], float]
 """A number, or a function that finds it; one that raises a WorkbenchError makes a failed row."""
 
 
+class Bounds(TypedDict, total=False):
+    """What a score may be seen between."""
+
+    null: Measurement | None
+    ceiling: float | None
+
+
+class Scale(Bounds, total=False):
+    """The same, and how an error is meant."""
+
+    relative: bool
+    """To the reference, which is the default; else in the unit of the value."""
+
+
 def compared(
     name: str,
     case: str,
@@ -50,15 +64,15 @@ def compared(
     *,
     unit: str,
     limit: float,
-    relative: bool = True,
-    null: Measurement | None = None,
-    ceiling: float | None = None,
+    **scale: Unpack[Scale],
 ) -> Row:
     """A value beside its reference; passes when the error is at most `limit`."""
     try:
-        value, reference, null = _measure(value), _measure(reference), _measure(null)
+        value, reference = _measure(value), _measure(reference)
+        null = _measure(scale.get("null"))
     except WorkbenchError as problem:
         return failed(name, case, unit=unit, why=problem.message)
+    relative = scale.get("relative", True)
     error = abs(value - reference) / (abs(reference) if relative else 1.0)
     return _told(
         Row(
@@ -68,7 +82,7 @@ def compared(
             unit=unit,
             reference=reference,
             null=null,
-            ceiling=ceiling,
+            ceiling=scale.get("ceiling"),
             error=error,
             error_kind="relative" if relative else "absolute",
             limit=limit,
@@ -86,12 +100,11 @@ def bounded(
     unit: str,
     limit: float,
     sense: str = "max",
-    null: Measurement | None = None,
-    ceiling: float | None = None,
+    **bounds: Unpack[Bounds],
 ) -> Row:
     """A value that must stay on one side of a limit."""
     try:
-        value, null = _measure(value), _measure(null)
+        value, null = _measure(value), _measure(bounds.get("null"))
     except WorkbenchError as problem:
         return failed(name, case, unit=unit, why=problem.message)
     good = value <= limit if sense == "max" else value >= limit
@@ -102,7 +115,7 @@ def bounded(
             value=value,
             unit=unit,
             null=null,
-            ceiling=ceiling,
+            ceiling=bounds.get("ceiling"),
             limit=limit,
             sense=sense,
             ok=math.isfinite(value) and good,
@@ -117,12 +130,11 @@ def stated(
     *,
     unit: str,
     reference: float | None = None,
-    null: Measurement | None = None,
-    ceiling: float | None = None,
+    **bounds: Unpack[Bounds],
 ) -> Row:
     """A value that nothing is asked of, for comparison; ok when there is one."""
     try:
-        value, null = _measure(value), _measure(null)
+        value, null = _measure(value), _measure(bounds.get("null"))
     except WorkbenchError as problem:
         return failed(name, case, unit=unit, why=problem.message)
     return _told(
@@ -133,7 +145,7 @@ def stated(
             unit=unit,
             reference=reference,
             null=null,
-            ceiling=ceiling,
+            ceiling=bounds.get("ceiling"),
             ok=math.isfinite(value),
         )
     )

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from typing import Unpack
 
 import numpy as np
 
-from workbench.core.base.errors import DesignError, shown
+from workbench.core.base.errors import Advice, DesignError, shown
 
 
 def expect(array: np.ndarray, shape: str, *, name: str = "array") -> np.ndarray:
@@ -35,21 +36,19 @@ def within(
     *,
     what: str,
     unit: str,
-    at: str,
-    hint: str = "",
+    **advice: Unpack[Advice],
 ) -> float:
     """Return the value if it is a finite number in [low, high].
 
     Raises:
-        DesignError: Naming value, limits and unit, if it is not.
+        DesignError: Naming value, limits and unit, if it is not; with `at` and `hint`, or with the
+            limits as a hint.
     """
     span = f"{low:g} to {high:g} {unit}".strip()
-    hint = hint or f"choose a value from {span}"
+    place: Advice = {**advice, "hint": advice.get("hint") or f"choose a value from {span}"}
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
-        raise DesignError(
-            f"{what} is {shown(value)}, which is not a finite number", hint=hint, at=at
-        )
+        raise DesignError(f"{what} is {shown(value)}, which is not a finite number", **place)
     if not low <= value <= high:
         given = f"{value:g} {unit}".strip()
-        raise DesignError(f"{what} {given} is outside {span}", hint=hint, at=at)
+        raise DesignError(f"{what} {given} is outside {span}", **place)
     return value

@@ -7,12 +7,12 @@ beside the widget and the command line can print it.
 from __future__ import annotations
 
 import re
-from typing import Any
+from typing import Any, TypedDict, Unpack
 
 LONGEST_ECHO = 80
+"""Characters of a value that a message repeats: a file may hold 100 KB where a number is due."""
 LONGEST_WORD = 300
 """Words of a message that are longer are cut: longer than the paths that people have."""
-"""Characters of a value that a message repeats: a file may hold 100 KB where a number is due."""
 HEAD, TAIL = 50, 27
 
 
@@ -32,6 +32,15 @@ def shortened(text: str) -> str:
 def _without_endless_words(text: str) -> str:
     """A text whose words are no longer than a path that the system takes: a name may be a file."""
     return re.sub(rf"\S{{{LONGEST_WORD},}}", lambda word: shortened(word[0]), text)
+
+
+class Advice(TypedDict, total=False):
+    """What an error says besides its message."""
+
+    hint: str
+    """What to do."""
+    at: str
+    """The field that it is about."""
 
 
 class WorkbenchError(Exception):
@@ -103,14 +112,13 @@ class SolveError(WorkbenchError):
         self,
         message: str,
         *,
-        hint: str = "",
-        at: str = "",
         frame: int = -1,
         residual: float = float("nan"),
         last_good: int = -1,
         partial: Any = None,
+        **advice: Unpack[Advice],
     ) -> None:
-        super().__init__(message, hint=hint, at=at)
+        super().__init__(message, **advice)
         self.frame = frame
         self.residual = residual
         self.last_good = last_good

@@ -23,6 +23,7 @@ import itertools
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import TypedDict, Unpack
 
 from workbench.core.base.errors import DesignError
 from workbench.core.press.motion import slide
@@ -50,6 +51,16 @@ class Visit:
     """Number of the shear direction at 45 degrees each from U toward V; None without shear."""
     recorded: range
     """Frames that are states of the data; the way down before a shear repeats others."""
+
+
+class FingerPoints(TypedDict, total=False):
+    """Where the finger is touched: the arguments of `finger_points_mm`."""
+
+    outer_radius_mm: float
+    cylinder_mm: float
+    paths: int
+    tip_deg: Sequence[float]
+    base_mm: Sequence[float]
 
 
 def finger_points_mm(
@@ -93,38 +104,25 @@ def finger_points_mm(
 
 def finger_algorithm(
     *,
-    outer_radius_mm: float = 15.0,
-    cylinder_mm: float = 27.0,
-    paths: int = PATHS,
-    tip_deg: Sequence[float] = TIP_DEG,
-    base_mm: Sequence[float] = BASE_MM,
     deepest_mm: float = 1.0,
     shear_mm: float = 0.5,
     directions: int = DIRECTIONS,
     step_mm: float = STEP_MM,
+    **points: Unpack[FingerPoints],
 ) -> Iterator[Visit]:
     """Algorithm 1: at each point one press by steps, then each depth sheared in each direction.
 
     Args:
-        outer_radius_mm: Radius of the skin.
-        cylinder_mm: Height of the seam between tip and base.
-        paths: Contact paths around the axis.
-        tip_deg: Angles from the axis on the tip.
-        base_mm: Ways from the seam toward the base.
         deepest_mm: Largest depth.
         shear_mm: Largest shear along U or V.
         directions: Shear directions, 0 for normal contact only.
         step_mm: Depth and shear from frame to frame.
+        points: `outer_radius_mm` of the skin, `cylinder_mm` (height of the seam between tip and
+            base), `paths` around the axis, `tip_deg` (angles from the axis on the tip) and
+            `base_mm` (ways from the seam toward the base), by keyword.
     """
-    points = finger_points_mm(
-        outer_radius_mm=outer_radius_mm,
-        cylinder_mm=cylinder_mm,
-        paths=paths,
-        tip_deg=tip_deg,
-        base_mm=base_mm,
-    )
     depths = _steps(deepest_mm, step_mm, at="deepest_mm")
-    for point, target_mm in enumerate(points):
+    for point, target_mm in enumerate(finger_points_mm(**points)):
         yield _straight(point, target_mm, depths, deepest_mm)
         for depth, direction in itertools.product(range(1, depths + 1), range(directions)):
             shears = _steps(shear_mm, step_mm, at="shear_mm")
