@@ -16,7 +16,6 @@ import secrets
 import signal
 import socket
 import threading
-import time
 import webbrowser
 from typing import Any
 
@@ -60,6 +59,7 @@ def serve(options: argparse.Namespace, project: Project) -> int:
     Raises:
         DesignError: If the port is taken or the design cannot be read.
     """
+    stop = asked_to_stop()
     check_port(options.host, options.port)
     session = Session(project)
     session.open(options.design, unit=options.unit)
@@ -108,7 +108,8 @@ def serve(options: argparse.Namespace, project: Project) -> int:
     if options.open:
         webbrowser.open(here)
     try:
-        wait_for_stop()
+        while not stop.wait(0.2):
+            pass
         session.autosave()
     finally:
         conductor.close()
@@ -170,13 +171,16 @@ def warm_up() -> None:
         importlib.import_module(module)
 
 
-def wait_for_stop() -> None:
-    """Sleep until Ctrl-C or a polite kill."""
+def asked_to_stop() -> threading.Event:
+    """Set by Ctrl-C or a polite kill, from now on.
+
+    While the page is laid out an exception of a signal may come where Python ignores it, and the
+    server would then run on.
+    """
     stop = threading.Event()
     for name in (signal.SIGINT, signal.SIGTERM):
         signal.signal(name, lambda *_: stop.set())
-    while not stop.is_set():
-        time.sleep(0.2)
+    return stop
 
 
 def check_port(host: str, port: int) -> None:
