@@ -5,6 +5,7 @@ Most of it speaks viser's protocol without a browser (`workbench.proof.benchmark
 
 from __future__ import annotations
 
+import contextlib
 import re
 import signal
 import subprocess
@@ -19,6 +20,7 @@ import pytest
 
 from tests.ui.conftest import Server
 from tests.ui.widgets import button, coarse_project, open_page, tab, wait_until
+from ui.page.editor import RELOAD_S
 from workbench.proof.benchmarks.tab import Tab
 
 pytestmark = [pytest.mark.ui, pytest.mark.slow]
@@ -176,10 +178,22 @@ def test_take_over_and_leave(server: Server, two: tuple[Tab, Tab]) -> None:
 def test_a_reload_keeps_the_place_of_the_editor(server: Server, two: tuple[Tab, Tab]) -> None:
     """The tab that comes within seconds of the editor's leaving edits; the follower follows on."""
     editor, follower = two
-    editor.close()
-    with Tab(server.url) as reloaded:
-        reloaded.uuid(LENGTH)
-        time.sleep(5.0)
+    with contextlib.ExitStack() as tabs:
+        for _ in range(3):
+            editor.close()
+            left = time.monotonic()
+            reloaded = tabs.enter_context(Tab(server.url))
+            reloaded.uuid(LENGTH)
+            in_time = time.monotonic() - left < RELOAD_S - 1.0
+            time.sleep(RELOAD_S + 1.0)
+            if in_time:
+                break
+            # A busy machine was too slow for the page to be back in time: once more.
+            if reloaded.find("Edit here"):
+                editor, follower = follower, reloaded
+            else:
+                editor = reloaded
+        assert in_time
         assert not reloaded.find("Edit here")
         assert follower.find("Edit here")
 
