@@ -59,7 +59,6 @@ def serve(options: argparse.Namespace, project: Project) -> int:
     Raises:
         DesignError: If the port is taken or the design cannot be read.
     """
-    stop = asked_to_stop()
     check_port(options.host, options.port)
     session = Session(project)
     session.open(options.design, unit=options.unit)
@@ -79,6 +78,8 @@ def serve(options: argparse.Namespace, project: Project) -> int:
             flush=True,
         )
     gate = Gate(port=options.port, hosts=(*LOOPBACK, options.host, *names), token=token)
+    # From here on: what is refused above leaves the caller's handlers as they were.
+    stop = asked_to_stop()
     # viser prints a link of its own, without the token.
     with guarded(gate), contextlib.redirect_stdout(io.StringIO()):
         server = viser.ViserServer(
