@@ -10,6 +10,8 @@ whatever the thread count. The plain twin is `particle_reference`.
 
 import taichi as ti
 
+from sim.contact.engine.bundles import Floats, Integers
+
 FIXED_POINT = float(1 << 36)
 """Units in one cell per substep times the mass of a point: 1.5e-11."""
 GROUPS = 3
@@ -17,8 +19,6 @@ GROUPS = 3
 OBJECT, SUPPORT, BORDER, FREE = 0, 1, 2, 3
 """What a point is: part of the object, held at the support, held at the border, or free."""
 
-Floats = ti.types.ndarray(dtype=ti.f32, ndim=1)
-Integers = ti.types.ndarray(dtype=ti.i32, ndim=1)
 Longs = ti.types.ndarray(dtype=ti.i64, ndim=1)
 
 Points = ti.types.argpack(

@@ -12,14 +12,13 @@ import numpy as np
 import taichi as ti
 import taichi.math as tm
 
+from sim.optics.light.kernel_types import Floats, Integers
 from sim.optics.transport.scene import Scene
 from sim.optics.transport.sources import Sources
 from sim.optics.transport.tally import Tally
 
 Points = ti.types.ndarray(dtype=tm.vec3, ndim=1)
 Triples = ti.types.ndarray(dtype=tm.ivec3, ndim=1)
-Floats = ti.types.ndarray(dtype=ti.f32, ndim=1)
-Integers = ti.types.ndarray(dtype=ti.i32, ndim=1)
 _Frames = ti.types.ndarray(dtype=tm.vec3, ndim=2)
 
 SceneArrays = ti.types.argpack(
