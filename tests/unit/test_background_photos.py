@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import io
 
 import cv2
@@ -9,10 +10,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from sim.optics.raster.display import encode
-from sim.optics.studio.background import photo_radiance
+from sim.optics.raster.display import encode, grey_table, looked_up
+from sim.optics.studio.background import photo_light, tied_exposure
 from workbench.core.base.errors import DesignError
-from workbench.core.design.camera import Camera
+from workbench.core.design.camera import Camera, ImageSensor
 from workbench.core.design.photo import Photo, photo
 
 CAMERA = Camera(width_px=64, height_px=48)
@@ -35,26 +36,45 @@ def picture(channels: int = 3, dtype: type = np.uint8) -> np.ndarray:
 def refusal(file: Photo) -> DesignError:
     """The error of a background."""
     with pytest.raises(DesignError) as caught:
-        photo_radiance(file, CAMERA, 0.7)
+        photo_light(file, CAMERA)
     assert caught.value.at == "optics.background" and caught.value.hint
     return caught.value
 
 
 def test_a_photograph_is_shown_as_it_is() -> None:
-    """Radiance developed with the same exposure is the file again, to the grey level."""
+    """Its light is shown as the file again, to the grey level, by each curve of a sensor."""
     image = picture()
-    radiance = photo_radiance(saved(image), CAMERA, 0.7)
-    assert radiance.dtype == np.float32
-    assert np.array_equal(encode(radiance, 0.7), image[:, :, ::-1])
+    light = photo_light(saved(image), CAMERA)
+    assert light.dtype == np.float32
+    assert np.array_equal(encode(light, 1.0), image[:, :, ::-1])
+    curve = (0.0, 0.3, 0.55, 0.75, 0.9, 1.0)
+    for sensor in (ImageSensor(gamma=1.8), ImageSensor(response=curve)):
+        light = photo_light(saved(image), dataclasses.replace(CAMERA, sensor=sensor))
+        assert np.array_equal(looked_up(light, grey_table(sensor)), image[:, :, ::-1])
+
+
+def test_each_colour_is_tied_to_the_photograph() -> None:
+    """Exposure and white balance are found again from light that both know, noise apart."""
+    random = np.random.default_rng(2)
+    rendered = random.uniform(0.01, 0.1, (4000, 3))
+    true = np.array([5.0, 2.0, 9.0])
+    taken = np.clip(true * rendered, 0.0, 1.0)
+    # Half of the blue would be cut off at white, and must not count.
+    taken[::2, 2] = 1.0
+    assert tied_exposure(taken, rendered) == pytest.approx(true, rel=1e-6)
+    no_blue = rendered * [1.0, 1.0, 0.0]
+    got = tied_exposure(taken, no_blue)
+    assert got[:2] == pytest.approx(true[:2])
+    assert true[1] < got[2] < true[0]
 
 
 def test_grey_and_16_bit_files_are_converted() -> None:
     """Grey fills the three colours; 65535 is 255, to half a grey level."""
     grey = picture(1)
-    shown = encode(photo_radiance(saved(grey), CAMERA, 1.0), 1.0)
+    shown = encode(photo_light(saved(grey), CAMERA), 1.0)
     assert np.array_equal(shown, np.repeat(grey, 3, axis=2))
     deep = picture(3, np.uint16)
-    shown = encode(photo_radiance(saved(deep), CAMERA, 1.0), 1.0)
+    shown = encode(photo_light(saved(deep), CAMERA), 1.0)
     # The display's table steps by 0.05 grey levels at most.
     assert np.abs(shown[:, :, ::-1] - deep / 257.0).max() <= 0.53
 
@@ -63,7 +83,7 @@ def test_transparent_places_are_black() -> None:
     """Nothing shines where the file has no picture."""
     image = picture(4)
     image[:, :, 3] = 0
-    assert not photo_radiance(saved(image), CAMERA, 1.0).any()
+    assert not photo_light(saved(image), CAMERA).any()
 
 
 def test_another_size_is_refused() -> None:

@@ -11,6 +11,7 @@ import pytest
 from sim.optics.camera.camera import focal_px
 from sim.optics.raster.display import choose_exposure, encode
 from sim.optics.raster.image_sensor import blur_px, defocus, develop, fixed_exposure, noisy
+from workbench.core.base.errors import DesignError
 from workbench.core.design.camera import Camera, ImageSensor, LensModel
 
 WIDTH, HEIGHT = 160, 120
@@ -166,4 +167,35 @@ def test_exposure_is_the_sensors_or_the_backgrounds() -> None:
         camera(ImageSensor(exposure=2.0, gain_dB=20.0)), background
     ) == pytest.approx(20.0)
     chosen = fixed_exposure(camera(ImageSensor(gain_dB=20.0)), background)
-    assert chosen == choose_exposure(background)
+    assert chosen == pytest.approx(choose_exposure(background))
+    assert chosen.shape == (3,)
+
+
+def test_a_gain_per_colour_balances_white() -> None:
+    """Twice the red at the same exposure; an exposure that is chosen keeps the ratio of gains."""
+    balanced = camera(ImageSensor(exposure=0.5, gain_rgb=(2.0, 1.0, 0.5)))
+    background = scene().reshape(-1, 3)
+    assert fixed_exposure(balanced, background) == pytest.approx([1.0, 0.5, 0.25])
+    free = fixed_exposure(camera(ImageSensor(gain_rgb=(2.0, 1.0, 0.5))), background)
+    assert free / free[1] == pytest.approx([2.0, 1.0, 0.5])
+    bright = (background * free).max(axis=1)
+    assert 0.5 < np.percentile(bright, 99.0) < 0.7, "sRGB 0.8 is 0.604 of the light"
+
+
+def test_a_measured_falloff_dims_by_its_polynomial() -> None:
+    """1 - 0.5 r^2 at the middle of the left edge, where r is 4 / 5 at 4 : 3."""
+    sensor = ImageSensor(falloff=(-0.5, 0.0, 0.0), gamma=1.0)
+    got = develop(np.ones((HEIGHT, WIDTH, 3), np.float32), camera(sensor), exposure=1.0)
+    radius = (WIDTH / 2 - 0.5) / np.hypot(WIDTH / 2, HEIGHT / 2)
+    assert got[HEIGHT // 2, 0, 0] / 255 == pytest.approx(1.0 - 0.5 * radius**2, abs=0.004)
+    with pytest.raises(DesignError, match=r"leaves -0\.5 of the light"):
+        ImageSensor(falloff=(-1.5, 0.0, 0.0))
+
+
+def test_a_measured_response_replaces_the_curve() -> None:
+    """Straight between its values, and refused where it does not rise."""
+    sensor = ImageSensor(response=(0.0, 0.6, 1.0))
+    flat = np.full((HEIGHT, WIDTH, 3), 0.3, np.float32)
+    assert (develop(flat, camera(sensor), exposure=1.0) == round(255 * 0.36)).all()
+    with pytest.raises(DesignError, match="does not rise"):
+        ImageSensor(response=(0.0, 0.6, 0.6))

@@ -7,17 +7,18 @@ import dataclasses
 import numpy as np
 import pytest
 
+from geometry.surface.rays import RayCaster
 from sim.optics.field.model import model_of
 from sim.optics.field.table import look_up
 from sim.optics.proof.specimen import dent, finger
 from sim.optics.raster.gbuffer import look, open_view
-from sim.optics.raster.shading import relight, shade, take
+from sim.optics.raster.shading import hidden_share, relight, shade, take
 from sim.optics.studio.render import Studio
 from tests.synthetic_light import SHADED, lit
 from workbench.core.base.errors import OpticsError
 from workbench.core.design.camera import Camera, ImageSensor
-from workbench.core.design.lighting import LedMount, LedRing, LightModel
-from workbench.core.design.optics import Optics
+from workbench.core.design.lighting import Ambient, LedMount, LedRing, LightModel
+from workbench.core.design.optics import Coating, Optics
 from workbench.core.design.photo import photo
 from workbench.core.result.light import LightField, NormalTable
 from workbench.core.result.results import MembraneMesh
@@ -60,7 +61,9 @@ def twin(
     if model is not LightModel.TABLE:
         if not model_of(model).paper:
             still = mesh.seen.points_mm[rows]
-            here = relight(here, still, seen.points_mm[rows], normals, patch=seen.patch)
+            finest = studio.imager.shader.lit.finest_shadow
+            points = seen.points_mm[rows]
+            here = relight(here, still, points, normals, patch=seen.patch, finest=finest)
         total += shade(model, here, Optics().coating, -normals, to_camera[rows])
     if model_of(model).tabulated and table is not None and light.scattered is not None:
         known = light.scattered
@@ -191,3 +194,43 @@ def test_a_photograph_is_the_background_where_nothing_moved(mesh: MembraneMesh) 
     assert studio.linear(moved) == pytest.approx(
         np.maximum(exact, 0.0), abs=1e-5 * float(exact.max())
     )
+
+
+def test_ambient_light_adds_the_same_everywhere(mesh: MembraneMesh) -> None:
+    """Power over area times albedo over pi, in the dent and beside it, of every physical model."""
+    power, albedo = 0.3, 0.5
+    coating = Coating(albedo=albedo, specular=0.0)
+    a, b, c = (mesh.outer.points_mm[mesh.outer.faces[:, k]] for k in range(3))
+    area_mm2 = np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2.0
+    moved = dent(mesh.outer, at_mm=(15.0, 0.0, 20.0), depth_mm=2.0, radius_mm=4.0)
+    for model in (LightModel.DIRECT, LightModel.HYBRID):
+        light, table = lit(mesh, model, LedRing())
+        found = []
+        for glow in (Ambient(), Ambient(power=power, colour="#ff0080")):
+            optics = Optics(camera=SMALL, light_model=model, coating=coating, ambient=glow)
+            studio = Studio(mesh, light, optics, table=table)
+            found.append(studio.radiance_at_vertices(moved))
+        # Linear light of #ff0080: its blue is 128 of 255.
+        exact = power / area_mm2 * albedo / np.pi * np.array([1.0, 0.0, 128 / 255])
+        assert found[1] - found[0] == pytest.approx(
+            np.broadcast_to(exact, found[0].shape), abs=2e-6 * float(found[0].max())
+        )
+
+
+def test_the_edge_of_a_shadow_is_as_wide_as_its_light() -> None:
+    """Behind a half plane the hidden share of a disc rises as its lens does, in eighths.
+
+    A plane's edge 4 mm away and a disc of radius 2 mm 8 mm away: the penumbra is 2 mm wide.
+    """
+    edge = np.array([[0.0, -50.0, 4.0], [0.0, 50.0, 4.0], [50.0, 50.0, 4.0], [50.0, -50.0, 4.0]])
+    patch = RayCaster(edge, np.array([[0, 1, 2], [0, 2, 3]]))
+    x = np.linspace(-1.5, 1.5, 61)
+    start = np.column_stack([x, 0.01 * x, np.zeros_like(x)])
+    line = np.tile([0.0, 0.0, 8.0], (len(x), 1))
+    got = hidden_share(patch, start, line, np.full(len(x), 2.0))
+    # The edge seen from x crosses the disc's plane at -2 x from its middle, in radii -x.
+    across = np.clip(-x, -1.0, 1.0)
+    exact = (np.arccos(across) - across * np.sqrt(1.0 - across**2)) / np.pi
+    assert np.abs(got - exact).max() <= 0.16, "a point of eight is an eighth"
+    assert np.abs(got - exact).mean() < 0.05
+    assert got[0] == 0.0 and got[-1] == 1.0

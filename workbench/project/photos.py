@@ -115,9 +115,9 @@ def check_photos(design: SensorDesign) -> None:
 @functools.lru_cache(maxsize=2)
 def _check_background(picture: Photo, width_px: int, height_px: int) -> None:
     """Every edit of a design asks: one of 12 million pixels takes a second to decode."""
-    from sim.optics.studio.background import photo_radiance
+    from sim.optics.studio.background import photo_light
 
-    photo_radiance(picture, Camera(width_px=width_px, height_px=height_px), 1.0)
+    photo_light(picture, Camera(width_px=width_px, height_px=height_px))
 
 
 @functools.lru_cache(maxsize=2)

@@ -16,7 +16,7 @@ import numpy as np
 from sim.optics.light.spectrum import linear_rgb
 from workbench.core.base.units import radians
 from workbench.core.design.leds import colour_sectors, lamp_cell_mm, lamp_points, led_places
-from workbench.core.design.lighting import Lamp, LedMount, LedRing
+from workbench.core.design.lighting import Ambient, Lamp, LedMount, LedRing
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -76,6 +76,11 @@ def _lamp_leds(lamp: Lamp) -> Leds:
         size_mm=np.full(count, lamp_cell_mm(lamp)),
         in_shell=np.full(count, lamp.mount is LedMount.SHELL),
     )
+
+
+def ambient_irradiance(ambient: Ambient, area_mm2: float) -> np.ndarray:
+    """Irradiance of a skin of an area that takes the ambient light's power evenly [1/mm2], (3,)."""
+    return ambient.power / area_mm2 * np.array(linear_rgb(ambient.colour))
 
 
 def cone_cosine(cone_deg: float) -> float:

@@ -14,7 +14,6 @@ import numpy as np
 from sim.optics.camera.camera import refracted_rays
 from sim.optics.maps import pixel_glare, seeing, signal
 from sim.optics.maps.skin_look import SkinLook
-from sim.optics.raster.image_sensor import vignette
 from sim.optics.studio.render import Studio
 from workbench.core.base.monitor import Monitor, part
 from workbench.core.design.camera import Camera
@@ -56,8 +55,9 @@ def display_light(studio: Studio, camera: Camera) -> Callable[[np.ndarray], np.n
     Wall and lens dim it; of vertices outside the image it is not dimmed.
     """
     pixel, seen = _pixels(studio, camera, camera)
-    share = studio.rays.transmittance[pixel] * vignette(camera).reshape(-1)[pixel]
-    dimmed = studio.exposure * np.where(seen, share, 1.0)[:, None]
+    share = studio.rays.transmittance[pixel]
+    exposure = studio.exposure.reshape(-1, 3)[pixel]
+    dimmed = exposure * np.where(seen, share, 1.0)[:, None]
     return lambda inward: dimmed * studio.shade_tilted(-inward)
 
 

@@ -20,7 +20,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from sim.optics.raster.display import srgb_encode
+from sim.optics.raster.display import shown
 from workbench.core.design.camera import ImageSensor
 
 TILT_DEG = 2.0
@@ -34,9 +34,7 @@ HALVINGS = 30
 
 def grey(linear: np.ndarray, sensor: ImageSensor) -> np.ndarray:
     """Grey level in [0, 255], not rounded, of display light of any shape."""
-    light = np.clip(linear, 0.0, 1.0)
-    shown = srgb_encode(light) if sensor.gamma == 0.0 else light ** (1.0 / sensor.gamma)
-    return 255.0 * shown
+    return 255.0 * shown(linear, sensor)
 
 
 def tilt_jacobian(

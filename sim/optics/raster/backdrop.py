@@ -31,7 +31,12 @@ class Backdrop:
     """Whether ink dims the remainder too; not that of a photograph."""
     background_rgb: np.ndarray
     """The background in grey levels, shape (N, 3), uint8."""
-    exposure: float
+    exposure: np.ndarray
+    """Display light per radiance of each colour, shape (3,), float32."""
+    lens_share: np.ndarray
+    """Share of its light that the lens keeps at each pixel, shape (N,), float32."""
+    curve: np.ndarray
+    """Grey levels of the image sensor at even steps of display light, uint8."""
     ink: np.ndarray
     """Covered share of each pixel of the background, shape (N,), float32."""
     marker: np.ndarray

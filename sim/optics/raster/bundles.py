@@ -74,6 +74,7 @@ Picture = ti.types.argpack(
     radiance=Vectors,
     undeformed=Vectors,
     transmittance=Floats,
+    lens_share=Floats,
     remainder=Vectors,
     ink=Floats,
     has_dots=ti.i32,
@@ -83,7 +84,12 @@ Picture = ti.types.argpack(
 """What an image is composed of: `Skin.faces`, radiance of vertices of all frames and at rest, and
 as in `Backdrop`; `ink` is the covered share of pixels of all frames, where there are dots."""
 Lights = ti.types.argpack(
-    light=FourRows, led=Vectors, led_axis=Vectors, led_rgb=Vectors, led_shape=Pairs
+    light=FourRows,
+    led=Vectors,
+    led_axis=Vectors,
+    led_rgb=Vectors,
+    led_shape=Pairs,
+    led_radius=Floats,
 )
 """Light as it was baked, shape (V, L), and its L LEDs, as in `VertexLight`."""
 ScatteredLight = ti.types.argpack(
@@ -95,11 +101,14 @@ Law = ti.types.argpack(
     diffuse=ti.f32,
     specular=ti.f32,
     gloss=ti.f32,
+    ambient=tm.vec3,
     least_mm=ti.f32,
     full_shadow_mm=ti.f32,
+    finest_shadow=ti.f32,
 )
 """How light becomes radiance: the light model, the coating (`gloss` is Phong's exponent or GGX's
-roughness), and the displacements between which shadows fade in [mm]."""
+roughness), the radiance that ambient light adds, the displacements between which shadows fade in
+[mm], and the least radius of a light over its distance that the mesh can show the shadow of [1]."""
 Spots = ti.types.argpack(corners=IntegerRows, shares=FloatRows, smooth=Vectors, tilted=Vectors)
 """Points of the skin, shape (P,): vertices of their triangles and weights, shape (P, 3), and two
 inward unit normals."""

@@ -132,11 +132,12 @@ def light_of(frame, number, at, vertices, face, seen: ti.template(), picture: ti
 def expose(
     seen: Seen,
     picture: Picture,
-    gain: ti.f32,
+    gain: tm.vec3,
     curve: Bytes,
     image: ti.types.ndarray(dtype=ti.u8, ndim=3),
 ):
-    """Write the pixels that changed into images of the background; `display.encode` is the twin.
+    """Write the pixels that changed into images of the background; `image_sensor.develop` is the
+    twin, of cameras without blur and noise.
 
     `image` has the shape (frames, N, 3).
     """
@@ -146,8 +147,9 @@ def expose(
         if face != SAME:
             frame, number = at // pixels, at % pixels
             light = light_of(frame, number, at, vertices, face, seen, picture)
+            light *= gain * picture.lens_share[number]
             for c in ti.static(range(3)):
-                entry = tm.clamp(light[c] * gain, 0.0, float(curve.shape[0] - 1)) + 0.5
+                entry = tm.clamp(light[c], 0.0, float(curve.shape[0] - 1)) + 0.5
                 image[frame, number, c] = curve[int(entry)]
 
 

@@ -3,11 +3,11 @@
 In this order, each left out at its default:
 
     defocus     a disc of c = focal_px aperture |1 / range - 1 / focus| pixels, a thin lens
-    vignetting  light falls to (1 - v) + v cos^4 of the angle to the optical axis
-    exposure    display light = radiance x exposure x 10^(gain / 20)
+    fall-off    light falls to ((1 - v) + v cos^4) (1 + k1 r^2 + k2 r^4 + k3 r^6)
+    exposure    display light = radiance x exposure x 10^(gain / 20) x gain of the colour
     noise       electrons N = Poisson(light well / g) + Normal(0, read), light = N g / well, with
                 g = 10^(gain / 20): variance of light = light g / well + (read g / well)^2
-    display     light^(1 / gamma), or the curve of sRGB, to 8 bits
+    display     light^(1 / gamma), a measured curve, or that of sRGB, to 8 bits
 
 Each pixel's light is spread by its own disc: images are shared out to layers of growing Gaussian
 blur with the disc's variance, c^2 / 16 along each axis, and summed, so no light is lost or made.
@@ -24,9 +24,9 @@ import hashlib
 import numpy as np
 
 from sim.optics.camera.camera import axis_cosines, focal_px
-from sim.optics.raster.display import LUT_STEPS, choose_exposure, encode
+from sim.optics.raster.display import choose_exposure, grey_table, looked_up
 from workbench.core.base.check import expect
-from workbench.core.design.camera import Camera
+from workbench.core.design.camera import Camera, falloff_share
 
 SHARP_PX = 0.1
 """Standard deviation up to which a whole image counts as sharp [px]: 1 % beside a step."""
@@ -42,7 +42,7 @@ def develop(
     linear: np.ndarray,
     camera: Camera,
     *,
-    exposure: float,
+    exposure: np.ndarray | float,
     range_mm: np.ndarray | None = None,
     frame: int = 0,
 ) -> np.ndarray:
@@ -51,7 +51,7 @@ def develop(
     Args:
         linear: Radiance, shape (H, W, 3), float32.
         camera: Lens and image sensor.
-        exposure: Display light per radiance, gain included, as `fixed_exposure` gives it.
+        exposure: Display light per radiance, gains included, as `fixed_exposure` gives it.
         range_mm: Length of each line of sight [mm], shape (H, W), NaN where it meets nothing;
             None leaves out the blur.
         frame: Number of the image, which its noise follows besides the seed.
@@ -60,24 +60,23 @@ def develop(
     sensor = camera.sensor
     if range_mm is not None and camera.aperture_mm > 0.0:
         linear = defocus(linear, blur_px(camera, range_mm) / 4.0)
-    if sensor.vignetting > 0.0:
-        linear = linear * vignette(camera)[:, :, None]
-    if not sensor.noise:
-        return _display(linear, exposure, sensor.gamma)
-    light = np.clip(linear * np.float32(exposure), 0.0, None)
-    return _display(noisy(light, camera, frame), 1.0, sensor.gamma)
+    light = linear * kept_light(camera)[:, :, None] * np.float32(exposure)
+    if sensor.noise:
+        light = noisy(np.clip(light, 0.0, None), camera, frame)
+    return looked_up(light, grey_table(sensor))
 
 
-def fixed_exposure(camera: Camera, background: np.ndarray) -> float:
-    """Display light per radiance: what the sensor is set to, else what suits the background.
+def fixed_exposure(camera: Camera, background: np.ndarray) -> np.ndarray:
+    """Display light per radiance of each colour, (3,): what the sensor is set to, or what suits.
 
     Args:
         camera: Its sensor.
-        background: Radiance of the pixels that see the skin, shape (P, 3).
+        background: Radiance of the pixels that see the skin, as it falls on the sensor, (P, 3).
     """
+    gain_rgb = np.array(camera.sensor.gain_rgb)
     if camera.sensor.exposure > 0.0:
-        return camera.sensor.exposure * _gain(camera)
-    return choose_exposure(background)
+        return camera.sensor.exposure * _gain(camera) * gain_rgb
+    return choose_exposure(background * gain_rgb, camera.sensor) * gain_rgb
 
 
 def blur_px(camera: Camera, range_mm: np.ndarray) -> np.ndarray:
@@ -151,21 +150,12 @@ def _gain(camera: Camera) -> float:
 
 
 @functools.lru_cache(maxsize=2)
-def vignette(camera: Camera) -> np.ndarray:
-    """Share of the light that each pixel keeps, shape (H, W), float32."""
-    cosine = np.maximum(axis_cosines(camera), 0.0).reshape(camera.height_px, camera.width_px)
-    share = camera.sensor.vignetting
-    return ((1.0 - share) + share * cosine**4).astype(np.float32)
-
-
-def _display(linear: np.ndarray, exposure: float, gamma: float) -> np.ndarray:
-    if gamma == 0.0:
-        return encode(linear, exposure)
-    scaled = np.clip(linear * np.float32(exposure * (LUT_STEPS - 1)), 0.0, LUT_STEPS - 1.0)
-    return _gamma_table(gamma)[(scaled + 0.5).astype(np.uint16)]
-
-
-@functools.lru_cache(maxsize=8)
-def _gamma_table(gamma: float) -> np.ndarray:
-    light = np.arange(LUT_STEPS) / (LUT_STEPS - 1)
-    return np.round(255.0 * light ** (1.0 / gamma)).astype(np.uint8)
+def kept_light(camera: Camera) -> np.ndarray:
+    """Share of the light that the lens keeps at each pixel, shape (H, W), float32."""
+    height, width, sensor = camera.height_px, camera.width_px, camera.sensor
+    cosine = np.maximum(axis_cosines(camera), 0.0).reshape(height, width)
+    natural = (1.0 - sensor.vignetting) + sensor.vignetting * cosine**4
+    row, column = np.ogrid[:height, :width]
+    away = np.hypot(column + 0.5 - width / 2, row + 0.5 - height / 2)
+    measured = falloff_share(sensor.falloff, away / (np.hypot(width, height) / 2))
+    return (natural * measured).astype(np.float32)

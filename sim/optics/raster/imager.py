@@ -16,7 +16,7 @@ import taichi as ti
 from sim.optics.light.device_arrays import empty, on_device
 from sim.optics.raster import bundles, compose_kernels
 from sim.optics.raster.backdrop import Backdrop
-from sim.optics.raster.display import LUT_STEPS, srgb_table
+from sim.optics.raster.display import LUT_STEPS
 from sim.optics.raster.markers import LEAST_COSINE
 from sim.optics.raster.raster import Raster
 from sim.optics.raster.shader import Shader
@@ -33,7 +33,7 @@ class Imager:
         self.raster, self.shader, self.backdrop = raster, shader, backdrop
         self.whole_shadows = False
         """Whether shadows do not fade toward skin that did not move: for absolute images."""
-        self._curve = on_device(srgb_table())
+        self._curve = on_device(backdrop.curve)
         inked = raster.frames * raster.pixels if len(backdrop.dots_mm) else 0
         self._ink, self._marker = empty(ti.f32, inked), empty(ti.i32, inked)
         self._eye = bundles.Eye(
@@ -54,6 +54,7 @@ class Imager:
             radiance=raster.radiance,
             undeformed=on_device(backdrop.undeformed, vector=3),
             transmittance=raster.transmittance,
+            lens_share=on_device(backdrop.lens_share),
             remainder=on_device(backdrop.remainder, vector=3),
             ink=self._ink,
             has_dots=int(len(backdrop.dots_mm) > 0),
@@ -124,7 +125,7 @@ class Imager:
 
     def expose(self, images: np.ndarray) -> None:
         """Write the grey levels of the frames looked at, shape (k, N, 3), uint8."""
-        gain = self.backdrop.exposure * (LUT_STEPS - 1)
+        gain = ti.math.vec3(*(self.backdrop.exposure * (LUT_STEPS - 1)).tolist())
         images[:] = self.backdrop.background_rgb
         expose: Any = compose_kernels.expose
         expose(self.raster.seen, self._picture, gain, self._curve, images)

@@ -11,11 +11,16 @@ the baked perpendicular irradiance:
 
 `direct` and `hybrid` fall into shadow where the moved patch comes between, the more the further
 the vertex moved itself: skin that did not move keeps its light, so a shadow fades toward it.
+A light is a disc that faces the vertex, and its shadow the share of the disc that is covered:
+Points of it are looked for, the outer four first, which mostly agree. Where the triangles could not
+show the penumbra the disc is larger, so that no shadow shows their edges.
 `shading.shade` and `shading.relight` are the plain twins. Left out: light that moved skin scatters.
 """
 
 # Taichi reads annotations and operators in its own way.
 # pyright: reportInvalidTypeForm=false, reportGeneralTypeIssues=false, reportIndexIssue=false
+
+import math
 
 import taichi as ti
 import taichi.math as tm
@@ -35,6 +40,9 @@ EDGE_ON = 1e-6
 """Cosine below which light grazes the skin: single-precision rounding of a tangential field."""
 SKIN_OFFSET_MM = 5e-3
 """Shadow rays start this far inside the skin [mm]; single precision resolves 4e-6 at 50 mm."""
+OUTER_POINTS, INNER_POINTS = math.sqrt(0.75), 0.5
+"""Radii of eight points that stand for equal parts of a unit disc, four each: the roots of the mean
+square radius outside and inside the circle that halves it [1]."""
 CLOSEST_MM = 1e-3
 """Least distance of a vertex to a light [mm]; nearer, 1/r^2 has no meaning."""
 
@@ -113,17 +121,46 @@ def scattered_to(vertex, inward, scattered: ti.template()):
 
 
 @ti.func
-def depth_of_shadow(travel, shadows, law: ti.template()):
-    """Share of a light that the patch can take from a vertex, by how far it moved [mm]."""
-    depth = 0.0
-    if shadows and law.way_of_lighting != FIELD:
-        fade = ti.log(ti.max(travel, law.least_mm) / law.least_mm) / ti.log(
-            law.full_shadow_mm / law.least_mm
-        )
-        depth = ti.min(fade, 1.0)
-        if shadows == EVERYWHERE:
-            depth = 1.0
-    return depth
+def share_moved(travel, law: ti.template()):
+    """0 of skin at rest to 1 of skin that moved far enough [mm] to take the whole shadow."""
+    fade = ti.log(ti.max(travel, law.least_mm) / law.least_mm) / ti.log(
+        law.full_shadow_mm / law.least_mm
+    )
+    return ti.min(fade, 1.0)
+
+
+@ti.func
+def hidden_share(
+    frame,
+    start,
+    way,
+    reach,
+    radius,
+    tree: ti.template(),
+    skin: ti.template(),
+    placed: ti.template(),
+):
+    """Share of a light's disc that the moved patch hides; `shading.hidden_share` is the twin."""
+    helper = tm.vec3(1.0, 0.0, 0.0)
+    if ti.abs(way.x) > 0.7:
+        helper = tm.vec3(0.0, 1.0, 0.0)
+    across = way.cross(helper).normalized()
+    along = way.cross(across)
+    hidden, parts = 0, 0
+    for point in range(8):
+        if point < 4 or (hidden > 0 and hidden < parts):
+            parts += 1
+            out = OUTER_POINTS * radius
+            turn = 0.5 * tm.pi * point
+            if point >= 4:
+                out = INNER_POINTS * radius
+                turn += 0.25 * tm.pi
+            line = reach * way + out * (ti.cos(turn) * across + ti.sin(turn) * along)
+            length = line.norm()
+            blocker, _far = nearest(frame, start, line / length, length, True, tree, skin, placed)
+            if blocker >= 0:
+                hidden += 1
+    return hidden / ti.cast(parts, ti.f32)
 
 
 @ti.kernel
@@ -146,11 +183,16 @@ def shade_vertices(
         frame, vertex = at // vertices, at % vertices
         here, was = posed.placed[at], skin.points[vertex]
         inward, view = -posed.turned[at], posed.to_camera[at]
-        total = tm.vec3(0.0)
+        total = law.ambient
         if law.way_of_lighting >= HYBRID:
-            total = scattered_to(vertex, inward, scattered)
+            total += scattered_to(vertex, inward, scattered)
         if law.way_of_lighting < TABLE:
-            depth = depth_of_shadow((here - was).norm(), shadows, law)
+            moved = share_moved((here - was).norm(), law)
+            depth = moved
+            if shadows == EVERYWHERE:
+                depth = 1.0
+            if shadows == NO_SHADOWS or law.way_of_lighting == FIELD:
+                depth = 0.0
             for number in range(lights.led.shape[0]):
                 if lights.light[vertex, number].w > 0.0:
                     way, reach, received = arriving(
@@ -159,10 +201,11 @@ def shade_vertices(
                     returned = returned_share(way, view, inward, law)
                     if returned > 0.0 and depth > 0.0:
                         start = here + SKIN_OFFSET_MM * inward
-                        blocker, _far = nearest(
-                            frame, start, way, reach, True, tree, skin, posed.placed
+                        # Skin at rest is shadowed from afar: penumbras there are wide enough.
+                        finest = moved * law.finest_shadow * reach
+                        radius = ti.max(lights.led_radius[number], finest)
+                        returned *= 1.0 - depth * hidden_share(
+                            frame, start, way, reach, radius, tree, skin, posed.placed
                         )
-                        if blocker >= 0:
-                            returned *= 1.0 - depth
                     total += returned * received * lights.led_rgb[number]
         radiance[at] = total

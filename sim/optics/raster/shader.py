@@ -29,6 +29,7 @@ class Shader:
             led_axis=on_device(lit.led_axis, vector=3),
             led_rgb=on_device(lit.led_rgb, vector=3),
             led_shape=on_device(lit.led_shape, vector=2),
+            led_radius=on_device(lit.led_radius_mm),
         )
         self.scattered = ScatteredLight(
             table=on_device(lit.table),
@@ -41,8 +42,10 @@ class Shader:
             diffuse=lit.diffuse,
             specular=lit.specular,
             gloss=lit.gloss,
+            ambient=ti.math.vec3(*lit.ambient.tolist()),
             least_mm=MOVED_MM,
             full_shadow_mm=FULL_SHADOW_MM,
+            finest_shadow=lit.finest_shadow,
         )
 
     @property
@@ -59,7 +62,7 @@ class Shader:
         """
         raster = self._raster
         if self.given:
-            _take(raster.radiance, radiance)
+            _take(raster.radiance, radiance, self.lit.ambient)
             return
         shadows = EVERYWHERE if whole else FADING
         self._run(raster.vertex_list, raster.vertex_entries, raster.posed, raster.radiance, shadows)
@@ -125,8 +128,8 @@ class Shader:
         )
 
 
-def _take(target: Any, radiance: np.ndarray | None) -> None:
-    """Copy given radiance (k, V, 3) to the front of a flat device array."""
+def _take(target: Any, radiance: np.ndarray | None, ambient: np.ndarray) -> None:
+    """Copy given radiance (k, V, 3) and the ambient (3,) to the front of a flat device array."""
     if radiance is None:
         raise OpticsError(
             "the light model photons needs the radiance of every frame",
@@ -135,5 +138,5 @@ def _take(target: Any, radiance: np.ndarray | None) -> None:
         )
     from sim.optics.raster.patch_kernels import copy_rows
 
-    rows = np.ascontiguousarray(radiance.reshape(-1, 3), dtype=np.float32)
+    rows = np.ascontiguousarray(radiance.reshape(-1, 3) + ambient, dtype=np.float32)
     copy_rows(readable(rows, vector=3), target)

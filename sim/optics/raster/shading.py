@@ -63,6 +63,7 @@ def relight(
     normals: np.ndarray,
     *,
     patch: RayCaster | None,
+    finest: float = 0.0,
 ) -> LightField:
     """The light of `direct` and `hybrid` at moved vertices; `shade_kernels` has the equations.
 
@@ -75,6 +76,7 @@ def relight(
         points_mm: Their deformed positions [mm], shape (N, 3).
         normals: Their outward unit normals, shape (N, 3).
         patch: Casts the moved triangles.
+        finest: Least radius of a light over its distance, `VertexLight.finest_shadow`.
     """
     start = points_mm - SKIN_OFFSET_MM * normals
     travel_mm = np.linalg.norm(points_mm - still_mm, axis=1)
@@ -101,10 +103,40 @@ def relight(
             ratio = emitted(line, distance, **lobe) / np.maximum(then, 1e-20)
         received = light.irradiance[number] * ratio
         if patch is not None:
-            shadow = patch.occluded(start, line, distance)
+            finest_mm = finest * distance * depth_of_shadow
+            radius_mm = np.maximum(light.led_size_mm[number] / 2.0, finest_mm)
+            shadow = hidden_share(patch, start, line * distance[:, None], radius_mm)
             received = received * (1.0 - depth_of_shadow * shadow)
         irradiance[number] = np.where(np.einsum("ij,ij->i", line, normals) < 0.0, received, 0.0)
     return dataclasses.replace(light, direction=direction, irradiance=irradiance)
+
+
+def hidden_share(
+    patch: RayCaster, start_mm: np.ndarray, line_mm: np.ndarray, radius_mm: np.ndarray
+) -> np.ndarray:
+    """Share of each light's disc that a patch hides, shape (N,): of four points, or of eight.
+
+    Args:
+        patch: Casts the moved triangles.
+        start_mm: Where the lights are looked at from, shape (N, 3).
+        line_mm: From there to the middle of the disc, which faces the place, shape (N, 3).
+        radius_mm: Of the discs, shape (N,).
+    """
+    way = line_mm / np.linalg.norm(line_mm, axis=1, keepdims=True)
+    helper = np.where(np.abs(way[:, :1]) > 0.7, [0.0, 1.0, 0.0], [1.0, 0.0, 0.0])
+    across = np.cross(way, helper)
+    across /= np.linalg.norm(across, axis=1, keepdims=True)
+    along = np.cross(way, across)
+    hidden = []
+    for out, first in ((np.sqrt(0.75), 0.0), (0.5, np.pi / 4.0)):
+        for turn in first + np.arange(4) * np.pi / 2.0:
+            aside = np.cos(turn) * across + np.sin(turn) * along
+            line = line_mm + out * radius_mm[:, None] * aside
+            length = np.linalg.norm(line, axis=1)
+            hidden.append(patch.occluded(start_mm, line / length[:, None], length))
+    share = np.array(hidden)
+    outer = share[:4].mean(axis=0)
+    return np.where((outer > 0.0) & (outer < 1.0), share.mean(axis=0), outer)
 
 
 def take(light: LightField, vertices: np.ndarray) -> LightField:

@@ -7,9 +7,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim.optics.field.model import model_of
+from sim.optics.field.table import mean_reflectance
+from sim.optics.light.lights import ambient_irradiance
 from workbench.core.base.errors import OpticsError
-from workbench.core.design.optics import Coating
+from workbench.core.design.optics import Optics
 from workbench.core.result.light import TILTS, LightField, NormalTable, Scattered
+from workbench.core.result.results import Skin
+
+SHADOW_SPAN_MM = 2.0
+"""Distance between what casts a shadow in a dent and what it falls on [mm]: dents of 1 to 3 mm."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -28,6 +34,8 @@ class VertexLight:
     """Shape (L, 3), float32."""
     led_shape: np.ndarray
     """Exponent and cosine of half the cone, shape (L, 2), float32."""
+    led_radius_mm: np.ndarray
+    """Of the emitting discs [mm], shape (L,), float32."""
     table: np.ndarray
     """Of this camera, shape (1, N, TILTS, TILTS, 3), float32."""
     nodes: np.ndarray
@@ -40,17 +48,22 @@ class VertexLight:
     specular: float
     gloss: float
     """Phong's exponent, or the roughness of GGX."""
+    ambient: np.ndarray
+    """Radiance of the skin in light that comes evenly from all sides, shape (3,), float32."""
+    finest_shadow: float
+    """Radius of a light over its distance whose penumbra is as wide as a triangle [1]."""
 
 
 def vertex_light(
-    light: LightField, table: NormalTable | None, coating: Coating, *, camera: int
+    light: LightField, table: NormalTable | None, optics: Optics, skin: Skin, *, camera: int
 ) -> VertexLight:
     """Arrays for one camera.
 
     Args:
         light: The baked field; `light.model` decides.
         table: For the models that look radiance up.
-        coating: Of the skin.
+        optics: Its coating and ambient light.
+        skin: What the light falls on.
         camera: Number of the camera in the table.
 
     Raises:
@@ -69,7 +82,7 @@ def vertex_light(
         scattered, values = _no_table(vertices)
     else:
         values = table.values[camera : camera + 1]
-    phong = model.paper
+    phong, coating = model.paper, optics.coating
     baked = np.concatenate([light.direction, light.irradiance[..., None]], axis=2)
     return VertexLight(
         way_of_lighting=int(model.shading),
@@ -78,6 +91,7 @@ def vertex_light(
         led_axis=light.led_axis.astype(np.float32),
         led_rgb=light.led_rgb.astype(np.float32),
         led_shape=np.column_stack([light.led_exponent, light.led_cone]).astype(np.float32),
+        led_radius_mm=(light.led_size_mm / 2.0).astype(np.float32),
         table=np.ascontiguousarray(values, dtype=np.float32),
         nodes=scattered.nodes.astype(np.int32),
         weights=scattered.weights.astype(np.float32),
@@ -85,7 +99,28 @@ def vertex_light(
         diffuse=coating.phong_diffuse if phong else coating.albedo,
         specular=coating.phong_specular if phong else coating.specular,
         gloss=coating.phong_exponent if phong else coating.roughness,
+        ambient=np.zeros(3, np.float32) if phong else ambient_radiance(optics, skin),
+        finest_shadow=_edge_mm(skin) / (2.0 * SHADOW_SPAN_MM),
     )
+
+
+def ambient_radiance(optics: Optics, skin: Skin) -> np.ndarray:
+    """Radiance of a skin whose whole area takes the power of the ambient light, (3,), float32.
+
+    The same from everywhere: irradiance times the mean reflectance, over pi.
+    """
+    falling = ambient_irradiance(optics.ambient, float(_areas_mm2(skin).sum()))
+    return (falling * mean_reflectance(optics.coating) / np.pi).astype(np.float32)
+
+
+def _areas_mm2(skin: Skin) -> np.ndarray:
+    a, b, c = (skin.points_mm[skin.faces[:, corner]] for corner in range(3))
+    return np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2.0
+
+
+def _edge_mm(skin: Skin) -> float:
+    """Edge of an equilateral triangle of the skin's median area [mm]."""
+    return float(np.sqrt(np.median(_areas_mm2(skin)) * 4.0 / np.sqrt(3.0)))
 
 
 def _no_table(vertices: int) -> tuple[Scattered, np.ndarray]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sim.optics.raster.display import encode
+from sim.optics.raster.display import looked_up
 from sim.optics.raster.imager import Imager
 from sim.optics.raster.markers import Coverage, centroids
 from sim.optics.raster.raster_kernels import SAME
@@ -100,9 +100,13 @@ class Studio:
         return self.imager.raster.view.to_camera
 
     @property
-    def exposure(self) -> float:
-        """From radiance behind the cavity wall to display light."""
-        return self.imager.backdrop.exposure
+    def exposure(self) -> np.ndarray:
+        """From radiance behind the cavity wall to display light, (H, W, 3), float32.
+
+        The exposure, the gain of each colour, and what the lens keeps at each pixel.
+        """
+        back = self.imager.backdrop
+        return (back.lens_share[:, None] * back.exposure).reshape(*self.imager.shape, 3)
 
     @property
     def vertex_pixels(self) -> np.ndarray:
@@ -216,8 +220,8 @@ class Studio:
         if develops_plainly(scene.camera) and not self._absolute:
             self.imager.expose(rgb[None])
             if fine is not None:
-                light = self._linear(fine)[fine.pixel]
-                rgb[fine.pixel] = encode(light, self.imager.backdrop.exposure)
+                light = self._linear(fine) * self.exposure.reshape(-1, 3)
+                rgb[fine.pixel] = looked_up(light[fine.pixel], self.imager.backdrop.curve)
         else:
             frames.rgb[number] = self._developed(number, fine)
         frames.moved[number].reshape(-1)[changed] = True

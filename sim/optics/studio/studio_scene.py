@@ -12,9 +12,9 @@ from sim.optics.camera.lens import ANGULAR
 from sim.optics.field.model import model_of
 from sim.optics.light.places import camera_field, check_camera
 from sim.optics.raster.backdrop import Backdrop, at_pixels, dots_of_faces
-from sim.optics.raster.display import choose_exposure, encode
+from sim.optics.raster.display import choose_exposure, encode, grey_table, looked_up
 from sim.optics.raster.gbuffer import GBuffer, Hits, describe
-from sim.optics.raster.image_sensor import develop, fixed_exposure
+from sim.optics.raster.image_sensor import develop, fixed_exposure, kept_light
 from sim.optics.raster.imager import Imager
 from sim.optics.raster.markers import TIP_REFLECTANCE, Coverage, Dots, dots_at, ink, print_dots
 from sim.optics.raster.raster import Raster
@@ -24,7 +24,7 @@ from sim.optics.raster.skin_view import SkinView, open_skin_view
 from sim.optics.raster.vertex_light import vertex_light
 from workbench.core.base.errors import OpticsError
 from workbench.core.base.monitor import Monitor
-from workbench.core.design.camera import Camera
+from workbench.core.design.camera import LEAST_KEPT, Camera
 from workbench.core.design.lighting import LightModel
 from workbench.core.design.optics import Optics
 from workbench.core.result.light import LightField, NormalTable
@@ -85,15 +85,13 @@ class _Printed:
 
 
 def develops_plainly(camera: Camera) -> bool:
-    """Whether the image sensor adds nothing: sRGB, no noise, no fall-off, no blur."""
-    sensor = camera.sensor
-    added = sensor.noise or sensor.vignetting > 0.0 or sensor.gamma != 0.0
-    return not added and camera.aperture_mm == 0.0
+    """Whether each pixel's grey level follows from its own light alone: no noise and no blur."""
+    return not camera.sensor.noise and camera.aperture_mm == 0.0
 
 
 def behind_photo(camera: Camera) -> Camera:
-    """The camera whose blur, fall-off and noise a photograph of its own holds already."""
-    sensor = dataclasses.replace(camera.sensor, vignetting=0.0, noise=False)
+    """The camera whose blur and noise a photograph of its own holds already."""
+    sensor = dataclasses.replace(camera.sensor, noise=False)
     return dataclasses.replace(camera, aperture_mm=0.0, sensor=sensor)
 
 
@@ -118,7 +116,7 @@ def open_scene(
     monitor(0.2, "light on the skin")
     raster = Raster(view)
     number = _number_of(camera, optics, table)
-    shader = Shader(raster, vertex_light(light, table, optics.coating, camera=number))
+    shader = Shader(raster, vertex_light(light, table, optics, mesh.seen, camera=number))
     if shader.given:
         if radiance is None:
             raise OpticsError(
@@ -126,7 +124,7 @@ def open_scene(
                 hint="trace its photons first",
                 at="optics.light_model",
             )
-        undeformed = radiance.astype(np.float32)
+        undeformed = radiance.astype(np.float32) + shader.lit.ambient
     else:
         undeformed = shader.undeformed()
     radiances = _Radiances(
@@ -175,7 +173,7 @@ def _background_radiance(
     if not model.paper or model.straight:
         return undeformed
     lines = straight(light, mesh.seen.points_mm)
-    return Shader(raster, vertex_light(lines, None, optics.coating, camera=0)).undeformed()
+    return Shader(raster, vertex_light(lines, None, optics, mesh.seen, camera=0)).undeformed()
 
 
 def _background_buffer(mesh: MembraneMesh, camera: Camera, view: SkinView) -> GBuffer:
@@ -239,22 +237,31 @@ def _backdrop(
     foreground = at_pixels(view, radiances.undeformed)
     # White tips on black skin are what must not be overexposed; black dots never are.
     bright = bare * factor if gain > 1.0 else bare
-    exposure = fixed_exposure(camera, bright[seen.pixel])
-    _expect_light(bright[seen.pixel], view.transmittance[seen.pixel], exposure)
+    lens_share = kept_light(camera).reshape(-1)
+    falling = bright[seen.pixel] * lens_share[seen.pixel, None]
+    exposure = fixed_exposure(camera, falling)
+    _expect_light(falling, view.transmittance[seen.pixel], exposure)
     background, remainder, inked = bare * factor, bare - foreground, 1
     if optics.background is not None:
-        from sim.optics.studio.background import photo_radiance
+        from sim.optics.studio.background import photo_light, tied_exposure
 
-        photo = photo_radiance(optics.background, camera, exposure)
-        background = np.ascontiguousarray(photo.reshape(-1, 3), dtype=np.float32)
+        photo = photo_light(optics.background, camera).reshape(-1, 3)
+        # Where the lens keeps nothing a photograph is dark, and must not be divided by that.
+        lens_share = np.maximum(lens_share, LEAST_KEPT)
+        if camera.sensor.exposure == 0.0:
+            exposure = tied_exposure(photo[seen.pixel], falling)
+        background = (photo / (exposure * lens_share[:, None])).astype(np.float32)
         remainder, inked = background - foreground * factor, 0
+    curve = grey_table(camera.sensor)
     return Backdrop(
         undeformed=radiances.undeformed,
         background=background,
         remainder=remainder,
         inked_background=inked,
-        background_rgb=encode(background, exposure),
-        exposure=float(exposure),
+        background_rgb=looked_up(background * (exposure * lens_share[:, None]), curve),
+        exposure=exposure.astype(np.float32),
+        lens_share=lens_share,
+        curve=curve,
         ink=coverage.ink,
         marker=coverage.marker,
         ink_gain=gain,
@@ -269,7 +276,7 @@ def _backdrop(
     )
 
 
-def _expect_light(shown: np.ndarray, transmittance: np.ndarray, exposure: float) -> None:
+def _expect_light(shown: np.ndarray, transmittance: np.ndarray, exposure: np.ndarray) -> None:
     """Refuse a background that would be black.
 
     Raises:
@@ -281,7 +288,7 @@ def _expect_light(shown: np.ndarray, transmittance: np.ndarray, exposure: float)
             hint="turn the camera so that it looks at the wall less flatly",
             at="optics.camera.wxyz",
         )
-    if not shown.any() or exposure == 0.0:
+    if not shown.any() or not exposure.any():
         raise OpticsError(
             "no light reaches the part of the skin that the camera sees: the image would be black",
             hint="tilt or move the LEDs so that they shine on the skin (tilt_deg 0 is up)",
@@ -290,7 +297,7 @@ def _expect_light(shown: np.ndarray, transmittance: np.ndarray, exposure: float)
     if not encode(shown, exposure).any():
         chosen = choose_exposure(shown)
         raise OpticsError(
-            f"exposure {exposure:g} leaves the whole image black",
+            f"exposure {exposure.max():g} leaves the whole image black",
             hint=f"set exposure to 0, which chooses {chosen:.3g} here",
             at="optics.camera.sensor.exposure",
         )

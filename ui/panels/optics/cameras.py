@@ -106,10 +106,14 @@ class CameraFolders:
         fields.number("Exposure", f"{sensor}.exposure", step=0.1, hint=hint)
         hint = "Of signal and noise"
         fields.slider("Gain dB", f"{sensor}.gain_dB", span=(0.0, 48.0, 1.0), hint=hint)
+        hint = "Red, green and blue: the white balance; a photographed background sets its own"
+        fields.point("Gain rgb", f"{sensor}.gain_rgb", step=0.05, hint=hint)
         hint = "2.2, 1 for linear images, or 0 for the curve of sRGB"
         fields.number("Gamma", f"{sensor}.gamma", step=0.1, hint=hint)
         hint = "Share of the lens's natural fall-off to the corners"
         fields.slider("Vignetting", f"{sensor}.vignetting", span=(0.0, 1.0, 0.05), hint=hint)
+        hint = "Measured: light times 1 + k1 r^2 + k2 r^4 + k3 r^6, r = 1 at the corner"
+        fields.point("Fall-off k", f"{sensor}.falloff", step=0.05, hint=hint)
         fields.check("Noise", f"{sensor}.noise", hint="Shot and read noise of the image sensor")
         hint = "Electrons of a white pixel at no gain"
         fields.number("Full well e", f"{sensor}.full_well_e", step=1000.0, hint=hint)

@@ -1,4 +1,4 @@
-"""Further lights: points, lines and areas; one of them is edited at a time."""
+"""Further lights: ambient light, and points, lines and areas, one of which is edited at a time."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from workbench.edit.item_fields import without_item
 from workbench.edit.light_edit import colour_words, new_lamp, read_colour
 from workbench.system.names import NONE
 
-LAMPS = "design.optics.lamps"
+LAMPS, AMBIENT = "design.optics.lamps", "design.optics.ambient"
 
 
 class LampsFolder:
@@ -48,6 +48,19 @@ class LampsFolder:
                 hint="Takes the lamp that is edited; Undo brings it back",
             )
             self.drop.on_click(desk.guarded(self._remove))
+            self._ambient()
+
+    def _ambient(self) -> None:
+        fields = self.desk.fields
+        hint = "That falls on the whole skin evenly from all sides, in units of a ring LED's"
+        fields.slider("Ambient power", f"{AMBIENT}.power", span=(0.0, 20.0, 0.05), hint=hint)
+        fields.text(
+            "Ambient colour",
+            f"{AMBIENT}.colour",
+            read=lambda text: read_colour(text, at="optics.ambient.colour"),
+            write=lambda colour: colour_words((colour,)),
+            hint="red, #ff0000, 525nm, 525nm/35nm or 5600K",
+        )
 
     @property
     def lamps(self) -> tuple[Lamp, ...]:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import enum
+import itertools
 import math
 from dataclasses import dataclass, field
+from typing import Any
 
 from workbench.core.base.check import within
 from workbench.core.base.errors import DesignError
@@ -32,6 +34,8 @@ WIDEST_DEG = {
 """Largest field of view of each lens model [degree]."""
 COEFFICIENTS = {LensModel.OPENCV: (4, 5), LensModel.OPENCV_FISHEYE: (4,)}
 """How many distortion coefficients each lens model takes, besides none at all."""
+LEAST_KEPT, MOST_KEPT = 0.02, 4.0
+"""Shares of light between which a measured fall-off may lie [1]: a photograph is divided by it."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -42,10 +46,18 @@ class ImageSensor:
     """Display light per radiance; 0 chooses it so that the background is well exposed."""
     gain_dB: float = 0.0
     """Amplification of signal and noise [dB]. With exposure 0 it stands for a shorter exposure."""
+    gain_rgb: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    """Amplification of each colour: the white balance. A photograph as background sets its own."""
     gamma: float = 0.0
     """Display value = light^(1 / gamma); 0 is the curve of sRGB."""
+    response: tuple[float, ...] = ()
+    """Measured curve instead of `gamma`: rising display values in [0, 1] at even steps of light
+    from none to white, straight between them; () is none."""
     vignetting: float = 0.0
     """Share of the natural fall-off cos^4 of the angle to the optical axis, in [0, 1]."""
+    falloff: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Measured fall-off on top: light times 1 + k1 r^2 + k2 r^4 + k3 r^6, with the distance r from
+    the middle of the image over half its diagonal."""
     noise: bool = False
     """Draw the noise of each image from the numbers below."""
     full_well_e: float = 10_000.0
@@ -67,11 +79,52 @@ class ImageSensor:
                 at=f"{at}.gamma",
             )
         within(self.vignetting, 0.0, 1.0, what="vignetting", unit="", at=f"{at}.vignetting")
+        for gain in self.gain_rgb:
+            within(gain, 0.01, 100.0, what="gain of a colour", unit="", at=f"{at}.gain_rgb")
+        self._check_response(f"{at}.response")
+        self._check_falloff(f"{at}.falloff")
         at_well = f"{at}.full_well_e"
         within(self.full_well_e, 10.0, 1e7, what="full well", unit="electrons", at=at_well)
         at_read = f"{at}.read_noise_e"
         within(self.read_noise_e, 0.0, 1e4, what="read noise", unit="electrons", at=at_read)
         within(self.seed, 0, 2**31 - 1, what="seed", unit="", at=f"{at}.seed")
+
+    def _check_response(self, at: str) -> None:
+        if not self.response:
+            return
+        within(len(self.response), 2, 1025, what="values of the response", unit="", at=at)
+        for value in self.response:
+            within(value, 0.0, 1.0, what="value of the response", unit="", at=at)
+        if any(after <= before for before, after in itertools.pairwise(self.response)):
+            raise DesignError(
+                "the response does not rise from each value to the next",
+                hint="give display values at even steps of light, from 0 for none to 1 for white",
+                at=at,
+            )
+
+    def _check_falloff(self, at: str) -> None:
+        for value in self.falloff:
+            within(value, -10.0, 10.0, what="coefficient of the fall-off", unit="", at=at)
+        kept = [falloff_share(self.falloff, step / 100.0) for step in range(101)]
+        if not LEAST_KEPT <= min(kept) <= max(kept) <= MOST_KEPT:
+            worst = min(kept) if min(kept) < LEAST_KEPT else max(kept)
+            raise DesignError(
+                f"the fall-off leaves {worst:.3g} of the light somewhere between the middle and "
+                f"the corner, beyond {LEAST_KEPT:g} to {MOST_KEPT:g}",
+                hint="fit 1 + k1 r^2 + k2 r^4 + k3 r^6 to the light of an evenly lit sheet, r = 1 "
+                "at the corner",
+                at=at,
+            )
+
+
+def falloff_share(coefficients: tuple[float, float, float], radius: Any) -> Any:
+    """Share of light kept at a radius [1], of numbers or arrays: `ImageSensor.falloff`.
+
+    Source: the even polynomial of lens profiles; Goldman, IEEE PAMI 32 (2010) 2276, eq. 3.
+    """
+    square = radius * radius
+    k1, k2, k3 = coefficients
+    return 1.0 + square * (k1 + square * (k2 + square * k3))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -215,6 +215,20 @@ class Lamp:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
+class Ambient:
+    """Light that falls on the skin evenly from all sides: from a glowing base or from outside."""
+
+    power: float = 0.0
+    """Power that falls on the whole skin, in units of a ring LED's."""
+    colour: str = "#ffffff"
+
+    def __post_init__(self) -> None:
+        at = "optics.ambient"
+        within(self.power, 0.0, 1e3, what="ambient power", unit="", at=f"{at}.power")
+        check_colour(self.colour, at=f"{at}.colour")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
 class Baking:
     """How finely traced light is gathered; used by `table`, `hybrid` and `photons`."""
 

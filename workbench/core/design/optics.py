@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from workbench.core.base.check import within
 from workbench.core.design.camera import Camera
-from workbench.core.design.lighting import Baking, Lamp, LedRing, LightModel
+from workbench.core.design.lighting import Ambient, Baking, Lamp, LedRing, LightModel
 from workbench.core.design.photo import Photo
 
 BEST = LightModel("hybrid")
@@ -107,6 +107,7 @@ class Optics:
     ring: LedRing = field(default_factory=LedRing)
     lamps: tuple[Lamp, ...] = ()
     """Further lights."""
+    ambient: Ambient = field(default_factory=Ambient)
     coating: Coating = field(default_factory=Coating)
     markers: Markers = field(default_factory=Markers)
     refractive_index: float = 1.41

@@ -119,7 +119,7 @@ class TactileFrames:
     """Pixels that see a displaced part of the skin, shape (1 + K, H, W), bool."""
     marker_uv_px: np.ndarray
     """Marker centres [px], shape (1 + K, M, 2), float32; NaN when hidden."""
-    exposure: float
+    exposure: np.ndarray
     """Gain from linear radiance to display value, chosen once per design."""
     marker_mm: np.ndarray = field(default_factory=lambda: _none(0, 3))
     """Reference places of the markers or tips of pins [mm], shape (M, 3), float32."""
