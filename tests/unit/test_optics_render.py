@@ -60,7 +60,7 @@ def test_a_dent_shows_in_every_colour(mesh: MembraneMesh, model: LightModel) -> 
     frames = render(mesh, Optics(camera=SMALL, light_model=model))
     change = np.abs(frames.rgb[2].astype(int) - frames.rgb[0]).max(axis=(0, 1))
     assert (change >= 10).all()
-    assert np.isfinite(frames.normal).all() and np.isfinite(frames.exposure)
+    assert np.isfinite(frames.normal).all() and np.isfinite(frames.exposure).all()
 
 
 def test_frame_zero_is_the_background_alone(mesh: MembraneMesh) -> None:

@@ -1,8 +1,9 @@
 """Picture files of a design: read from disk, kept in the project, named in design files.
 
-A design file names a picture in `optics.background` or `optics.markers.picture`: a file beside it
-or in the project folder or its `pictures`, or `builtin:NAME` for one that is shipped. A project
-keeps each picture once, as its hash and the designer's name.
+A design file names a picture in `optics.background` or `optics.markers.picture`, and what one built
+sensor shows in `optics.unit`: a file beside it or in the project folder or its `pictures`, or
+`builtin:NAME` for one that is shipped. A project keeps each once, as its hash and the designer's
+name.
 """
 
 from __future__ import annotations
@@ -19,12 +20,13 @@ from workbench.core.base.mapping import suggest
 from workbench.core.design.camera import Camera
 from workbench.core.design.design import SensorDesign
 from workbench.core.design.photo import MOST_BYTES, Photo, photo
+from workbench.core.design.unit import Unit, unit
 from workbench.system.named_files import BRING_IT, find_file
 from workbench.system.uploads import own_name
 
 FOLDER = "pictures"
 BUILTIN = "builtin:"
-FIELDS = ("optics.background", "optics.markers.picture")
+FIELDS = ("optics.background", "optics.markers.picture", "optics.unit")
 """Where a design holds pictures."""
 KEPT = re.compile(r"[0-9a-f]{32}-(.+)")
 """Name that a project gives a picture."""
@@ -44,8 +46,8 @@ def shipped_photos() -> Mapping[str, Photo]:
 
 def read_photo(
     name: Any, *, roots: Sequence[Path] = (Path(),), enclosed: bool = False, at: str
-) -> Photo:
-    """The picture that a design file names.
+) -> Photo | Unit:
+    """The picture, or the unit, that a design file names.
 
     Args:
         name: Path, or `builtin:` and the name of a shipped one.
@@ -88,7 +90,8 @@ def read_photo(
                 at=at,
             )
         kept = KEPT.fullmatch(path.name)
-        return photo(kept[1] if kept else path.name, path.read_bytes(), at=at)
+        make = unit if at == "optics.unit" else photo
+        return make(kept[1] if kept else path.name, path.read_bytes(), at=at)
     except (OSError, ValueError) as error:
         # A path that is too long, or holds a zero, is refused by the system itself.
         raise DesignError(
@@ -106,10 +109,19 @@ def check_photos(design: SensorDesign) -> None:
     """
     camera = design.optics.camera
     for field, picture in design_photos(design).items():
-        if field == "optics.background":
+        if isinstance(picture, Unit):
+            _check_background(_idle(picture), camera.width_px, camera.height_px)
+        elif field == "optics.background":
             _check_background(picture, camera.width_px, camera.height_px)
         else:
             _check_readable(picture, field)
+
+
+def _idle(unit: Unit) -> Photo:
+    """What a unit shows at rest."""
+    from sim.optics.studio.unit_residual import read_unit
+
+    return read_unit(unit).idle
 
 
 @functools.lru_cache(maxsize=2)
@@ -175,14 +187,15 @@ def add_names(table: dict[str, Any], design: SensorDesign) -> None:
         owner[last] = kept_name(picture)
 
 
-def design_photos(design: SensorDesign) -> dict[str, Photo]:
-    """The pictures of a design by field."""
+def design_photos(design: SensorDesign) -> dict[str, Photo | Unit]:
+    """The pictures of a design, and its unit, by field."""
     optics = design.optics
-    held = dict(zip(FIELDS, (optics.background, optics.markers.picture), strict=True))
+    files = optics.background, optics.markers.picture, optics.unit
+    held = dict(zip(FIELDS, files, strict=True))
     return {field: picture for field, picture in held.items() if picture is not None}
 
 
-def kept_name(picture: Photo) -> str:
+def kept_name(picture: Photo | Unit) -> str:
     """Where a project keeps a picture, relative to its folder; a shipped one by its own name."""
     for name, shipped in shipped_photos().items():
         if shipped == picture:

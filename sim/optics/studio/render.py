@@ -16,7 +16,7 @@ from sim.optics.raster.markers import Coverage, centroids
 from sim.optics.raster.raster_kernels import SAME
 from sim.optics.studio.absolute import cast_change
 from sim.optics.studio.detail import Detail, DetailPixels
-from sim.optics.studio.studio_scene import StudioScene, develops_plainly, open_scene
+from sim.optics.studio.studio_scene import StudioScene, open_scene
 from workbench.core.base.check import expect
 from workbench.core.base.errors import OpticsError
 from workbench.core.base.monitor import Monitor, silent
@@ -135,7 +135,7 @@ class Studio:
             OpticsError: If a displacement is not finite.
         """
         self._check(displacement_mm)
-        if develops_plainly(self._scene.camera) and not self._absolute:
+        if self._scene.plain and not self._absolute:
             return self.imager.images(displacement_mm, radiance)
         rows, columns = self.imager.shape
         found = np.empty((len(displacement_mm), rows, columns, 3), dtype=np.uint8)
@@ -217,7 +217,7 @@ class Studio:
         scene, raster, axis = self._scene, self.imager.raster, self.imager.backdrop.axis
         changed = raster.seen.triangle.to_numpy()[: raster.pixels] != SAME
         rgb = frames.rgb[number].reshape(-1, 3)
-        if develops_plainly(scene.camera) and not self._absolute:
+        if scene.plain and not self._absolute:
             self.imager.expose(rgb[None])
             if fine is not None:
                 light = self._linear(fine) * self.exposure.reshape(-1, 3)
@@ -264,7 +264,12 @@ class Studio:
         face = raster.seen.triangle.to_numpy()[: raster.pixels]
         away = raster.view.travelled_mm + raster.seen.away_mm.to_numpy()[: raster.pixels]
         range_mm = np.where(face == SAME, self._scene.range_mm, np.where(face >= 0, away, np.nan))
-        return self._scene.develop(linear, range_mm, number)
+        rgb = self._scene.develop(linear, range_mm, number)
+        if self._scene.unit is not None:
+            normal = np.zeros((raster.pixels, 3), dtype=np.float32)
+            self.imager.describe(normal, np.zeros(raster.pixels, dtype=np.float32))
+            self._scene.add_residual(rgb, normal, face != SAME)
+        return rgb
 
 
 def _blank(scene: StudioScene, count: int) -> TactileFrames:

@@ -11,17 +11,18 @@ from sim.optics.camera.camera import focal_px, rotation_camera_to_sensor
 from sim.optics.camera.lens import ANGULAR
 from sim.optics.field.model import model_of
 from sim.optics.light.places import camera_field, check_camera
-from sim.optics.raster.backdrop import Backdrop, at_pixels, dots_of_faces
+from sim.optics.raster.backdrop import Backdrop, at_pixels
 from sim.optics.raster.display import choose_exposure, encode, grey_table, looked_up
 from sim.optics.raster.gbuffer import GBuffer, Hits, describe
 from sim.optics.raster.image_sensor import develop, fixed_exposure, kept_light
 from sim.optics.raster.imager import Imager
-from sim.optics.raster.markers import TIP_REFLECTANCE, Coverage, Dots, dots_at, ink, print_dots
 from sim.optics.raster.raster import Raster
 from sim.optics.raster.shader import Shader
 from sim.optics.raster.shading import straight
 from sim.optics.raster.skin_view import SkinView, open_skin_view
 from sim.optics.raster.vertex_light import vertex_light
+from sim.optics.studio.printed import Printed, printed_on
+from sim.optics.studio.unit_residual import UnitResidual, places, read_unit, slopes
 from workbench.core.base.errors import OpticsError
 from workbench.core.base.monitor import Monitor
 from workbench.core.design.camera import LEAST_KEPT, Camera
@@ -29,9 +30,6 @@ from workbench.core.design.lighting import LightModel
 from workbench.core.design.optics import Optics
 from workbench.core.result.light import LightField, NormalTable
 from workbench.core.result.results import MembraneMesh
-
-LEAST_ALBEDO = 0.01
-"""Darkest skin that white tips are compared with [1]: carbon-black silicone returns 2 to 5 %."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -46,6 +44,29 @@ class StudioScene:
     """Length of each pixel's line of sight to the undeformed skin [mm], shape (N,); NaN."""
     dots_mm: np.ndarray
     """Reference places of dots or tips [mm], shape (M, 3), float64."""
+    unit: UnitResidual | None
+    """What the built sensor shows beyond its design's light."""
+
+    @property
+    def plain(self) -> bool:
+        """Whether each pixel's grey level follows from its own light alone."""
+        return develops_plainly(self.camera) and self.unit is None
+
+    def add_residual(self, rgb: np.ndarray, normal: np.ndarray, changed: np.ndarray) -> None:
+        """Add the unit's residual to an image (H, W, 3), uint8, in place, where it changed, (N,).
+
+        Args:
+            normal: Unit normals facing the camera, (N, 3), where it changed; 0 without skin.
+        """
+        if self.unit is None:
+            return
+        rest = np.zeros((len(changed), 3), dtype=np.float32)
+        rest[self.seen.pixel] = self.seen.normal
+        pixel = np.flatnonzero(changed & rest.any(axis=1) & normal.any(axis=1))
+        slope = slopes(normal[pixel], rest[pixel], self.camera)
+        change = self.unit.change(slope, places(pixel, rgb.shape[1], rgb.shape[0]))
+        flat = rgb.reshape(-1, 3)
+        flat[pixel] = np.clip(np.round(flat[pixel] + change), 0, 255).astype(np.uint8)
 
     def develop(self, linear: np.ndarray, range_mm: np.ndarray, number: int) -> np.ndarray:
         """Grey levels of linear light (N, 3) behind the image sensor, shape (H, W, 3), uint8."""
@@ -67,21 +88,6 @@ class _Radiances:
     """As the vertices of a frame are shaded."""
     behind: np.ndarray
     """As the background is; another where the light model renders it by straight lines."""
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class _Printed:
-    """What is printed on the seen skin, and which pixels see it."""
-
-    dots: Dots
-    gain: float
-    """Radiance of inked skin over that of bare skin [1]."""
-    coverage: Coverage
-    """Of the background."""
-    start: np.ndarray
-    """Where the dots of each triangle begin in `of`, int32."""
-    of: np.ndarray
-    """Numbers of the dots that each triangle can hold, one triangle after the other, int32."""
 
 
 def develops_plainly(camera: Camera) -> bool:
@@ -133,10 +139,13 @@ def open_scene(
     )
     monitor(0.25, "background")
     seen = _background_buffer(mesh, camera, view)
-    printed = _printed(mesh, LightModel(light.model), optics, camera, view, seen)
+    printed = printed_on(mesh, LightModel(light.model), optics, camera, view, seen)
     # The photograph is what the first camera saw; the others' backgrounds are rendered.
     if camera != optics.camera:
-        optics = dataclasses.replace(optics, background=None)
+        optics = dataclasses.replace(optics, background=None, unit=None)
+    unit = None if optics.unit is None else read_unit(optics.unit)
+    if unit is not None and optics.background is None:
+        optics = dataclasses.replace(optics, background=unit.idle)
     backdrop = _backdrop(optics, camera, view, seen, radiances, printed)
     range_mm = np.full(len(view.direction), np.nan, dtype=np.float32)
     first = view.layer_start[seen.pixel]
@@ -149,6 +158,7 @@ def open_scene(
         seen=seen,
         range_mm=range_mm,
         dots_mm=printed.dots.centres_mm,
+        unit=unit,
     )
     if develops_plainly(camera):
         return scene
@@ -188,48 +198,13 @@ def _background_buffer(mesh: MembraneMesh, camera: Camera, view: SkinView) -> GB
     return describe(found, view.faces, mesh.seen.normals, camera, view.rays)
 
 
-def _dots(
-    mesh: MembraneMesh, model: LightModel, optics: Optics, camera: Camera
-) -> tuple[Dots, float]:
-    """What is printed on the seen skin: tips of pins, else markers; and its gain."""
-    if len(mesh.tips_mm):
-        coating = optics.coating
-        albedo = coating.phong_diffuse if model_of(model).paper else coating.albedo
-        dots = dots_at(mesh.seen, mesh.tips_mm, mesh.tip_radius_mm, camera)
-        return dots, TIP_REFLECTANCE / max(albedo, LEAST_ALBEDO)
-    return print_dots(mesh.seen, optics.markers, camera), optics.markers.reflectance
-
-
-def _printed(
-    mesh: MembraneMesh,
-    model: LightModel,
-    optics: Optics,
-    camera: Camera,
-    view: SkinView,
-    seen: GBuffer,
-) -> _Printed:
-    """Dots or tips as the pixels `seen` see them."""
-    dots, gain = _dots(mesh, model, optics, camera)
-    by_number = np.empty_like(dots.inked)
-    by_number[:] = dots.inked[view.face_number]
-    coverage = ink(
-        seen,
-        dots=dataclasses.replace(dots, inked=by_number),
-        skin=dataclasses.replace(mesh.seen, faces=view.faces),
-        camera=camera,
-        rays=view.rays,
-    )
-    start, of = dots_of_faces(dots, mesh.seen, view)
-    return _Printed(dots=dots, gain=gain, coverage=coverage, start=start, of=of)
-
-
 def _backdrop(
     optics: Optics,
     camera: Camera,
     view: SkinView,
     seen: GBuffer,
     radiances: _Radiances,
-    printed: _Printed,
+    printed: Printed,
 ) -> Backdrop:
     dots, gain, coverage = printed.dots, printed.gain, printed.coverage
     factor = (1.0 + (gain - 1.0) * coverage.ink)[:, None].astype(np.float32)

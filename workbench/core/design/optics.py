@@ -9,6 +9,7 @@ from workbench.core.base.check import within
 from workbench.core.design.camera import Camera
 from workbench.core.design.lighting import Ambient, Baking, Lamp, LedRing, LightModel
 from workbench.core.design.photo import Photo
+from workbench.core.design.unit import Unit
 
 BEST = LightModel("hybrid")
 """Light of a new design."""
@@ -116,6 +117,9 @@ class Optics:
     baking: Baking = field(default_factory=Baking)
     background: Photo | None = None
     """Photograph of the real sensor at rest, to which the contact is added; None renders it."""
+    unit: Unit | None = None
+    """How one built sensor differs from the design: its image at rest, which stands behind the
+    contact where there is no `background`, and a residual. `workbench calibrate` writes it."""
     composition: Composition = Composition.OVER_BACKGROUND
     detail: bool = True
     """Show textures of the object that are finer than the grid of the contact solver."""

@@ -1,0 +1,81 @@
+"""Exposure and white balance that drift from photo to photo, told by skin that nothing touched.
+
+Many cameras choose both anew for each photograph, and show it in the whole image: grey levels of
+untouched skin are those at rest times a gain plus an offset, colour by colour. What a contact
+changes is then looked for in the photograph with that taken back.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from workbench.calibration.photo_set import Circle
+
+BEYOND = 2.3
+"""Skin is untouched beyond this many radii of the contact's circle [1]."""
+FEWEST_PX = 500
+"""Untouched pixels that tell a gain and an offset; with fewer, only the offset, or nothing."""
+MILD = 0.5
+"""Prior: a gain of 1 with this standard deviation times 255 grey levels' worth of offset [1]."""
+CUT_OFF = 252
+"""Grey level from which a colour may have been cut off."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Drift:
+    """Grey levels of a photograph of untouched skin: gain times those at rest plus offset."""
+
+    gain: np.ndarray
+    """Shape (3,)."""
+    offset: np.ndarray
+    """[grey level], shape (3,)."""
+
+    def applied(self, grey: np.ndarray) -> np.ndarray:
+        """What an image (H, W, 3) at rest's exposure is in the photograph's."""
+        return grey * self.gain + self.offset
+
+
+NO_DRIFT = Drift(gain=np.ones(3), offset=np.zeros(3))
+
+
+def untouched(shape: tuple[int, ...], circle: Circle) -> np.ndarray:
+    """Pixels that a contact leaves alone, shape (H, W), bool."""
+    row, column = np.ogrid[: shape[0], : shape[1]]
+    away = np.hypot(column - circle.column_px, row - circle.row_px)
+    return away > BEYOND * circle.radius_px
+
+
+def measured_drift(image: np.ndarray, idle: np.ndarray, circle: Circle) -> Drift:
+    """The drift of a photograph (H, W, 3) from the one at rest.
+
+    Least squares in two rounds, the second without the tenth that fits worst: dirt, the rim.
+    """
+    far = untouched(image.shape, circle)
+    gain, offset = np.ones(3), np.zeros(3)
+    if far.sum() < FEWEST_PX:
+        return NO_DRIFT
+    for colour in range(3):
+        use = far & (image[..., colour] < CUT_OFF) & (idle[..., colour] < CUT_OFF)
+        if use.sum() < FEWEST_PX:
+            continue
+        rest = idle[..., colour][use].astype(np.float64)
+        now = image[..., colour][use].astype(np.float64)
+        kept = np.ones(len(rest), dtype=bool)
+        for _ in range(2):
+            gain[colour], offset[colour] = _line(rest[kept], now[kept])
+            error = np.abs(gain[colour] * rest + offset[colour] - now)
+            kept = error <= np.quantile(error, 0.9)
+    return Drift(gain=gain, offset=offset)
+
+
+def _line(rest: np.ndarray, now: np.ndarray) -> tuple[float, float]:
+    """Gain and offset; the gain stays near 1 where the image at rest is too even to tell."""
+    mean_rest, mean_now = rest.mean(), now.mean()
+    spread = float(((rest - mean_rest) ** 2).mean())
+    together = float(((rest - mean_rest) * (now - mean_now)).mean())
+    # One grey level of noise against a gain that is mild: a ridge of (1 / MILD)^2 grey levels^2.
+    ridge = 1.0 / MILD**2
+    gain = (together + ridge) / (spread + ridge)
+    return gain, float(mean_now - gain * mean_rest)
