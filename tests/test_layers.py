@@ -35,7 +35,7 @@ RANKS = """
 
     workbench.view  workbench.pipeline  workbench.pipeline.stages  workbench.planning
     workbench.project  workbench.edit  workbench.live  workbench.report  workbench.report.exports
-    workbench.variants
+    workbench.variants  workbench.calibration
     workbench.learning  workbench.learning.dataset  workbench.learning.training
     workbench.proof  workbench.proof.validation  workbench.proof.validation.geometry
     workbench.proof.validation.optics  workbench.proof.validation.contact

@@ -1,0 +1,236 @@
+"""How the skin moves under each photographed ball, by depth, from the contact solver.
+
+The depth of a press is seldom known. The circle that is seen says it roughly: a contact of radius a
+under a ball of radius R is about a^2 / R deep on an elastic half space (Hertz), where the skin
+around sinks in, and R - sqrt(R^2 - a^2), the cap's height, where only the skin under the ball
+moves. Circles drawn by hand are off by a tenth, depths then by a fifth, so the ball is pressed to
+`BEYOND_HERTZ` times Hertz's depth, in frames of equal depth; between two frames displacement is
+linear in depth.
+
+On flat parts a press at one place serves the others: the skin moves alike, and is carried over.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from workbench.calibration.photo_set import BallPhoto
+from workbench.calibration.seen_places import ContactPlace, SeenPlaces
+from workbench.core.base.errors import DesignError, WorkbenchError
+from workbench.core.base.monitor import Monitor, part
+from workbench.core.design.design import SensorDesign
+from workbench.core.press.indenter import Indenter
+from workbench.core.press.press import ContactSettings, Press
+from workbench.core.press.press_case import PressCase
+from workbench.core.result.results import MembraneMesh
+from workbench.core.result.sensing import Contact
+from workbench.pipeline.store import Store
+from workbench.planning.plan import InlineRunner, evaluate, plan
+
+FRAMES = 8
+BEYOND_HERTZ, SHORT_OF_CAP = 1.4, 0.6
+"""Depths that are allowed: up to this many times Hertz's, down to this share of the cap's [1]."""
+OF_WALL = 0.8
+"""Most of the wall that a ball may be pressed into [1]."""
+OF_BALL = 0.95
+"""Most of the ball's radius [1]: deeper, its equator touches."""
+FINEST_MM, COARSEST_MM = 0.5, 0.8
+"""Grid of the contact solver: a third of the contact's radius, between these."""
+FLAT_RADII = 3.0
+"""Contact radii, plus the wall, around a place that must be flat for a press to be carried over."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class BallPress:
+    """The skin under one ball."""
+
+    photo: BallPhoto
+    place: ContactPlace
+    least_mm: float
+    """Depth that the circle allows at least; that of the photograph where it is known."""
+    most_mm: float
+    guess_mm: float
+    """Depth by Hertz's contact of the circle's radius, as far as ball and wall allow."""
+    depths_mm: np.ndarray
+    """Of the frames, the first is 0, shape (K + 1,)."""
+    displacement_mm: np.ndarray
+    """Of the seen skin's vertices, shape (K + 1, V, 3), float32."""
+    normal_N: np.ndarray
+    """Force along the normal, shape (K + 1,)."""
+
+    def displaced_mm(self, depth_mm: float) -> np.ndarray:
+        """Displacement at a depth [mm], shape (V, 3)."""
+        low, share = self._between(depth_mm)
+        one, other = self.displacement_mm[low], self.displacement_mm[low + 1]
+        return ((1.0 - share) * one + share * other).astype(np.float32)
+
+    def force_N(self, depth_mm: float) -> float:
+        """Force along the normal at a depth [N]."""
+        low, share = self._between(depth_mm)
+        return float((1.0 - share) * self.normal_N[low] + share * self.normal_N[low + 1])
+
+    def _between(self, depth_mm: float) -> tuple[int, float]:
+        place = np.interp(depth_mm, self.depths_mm, np.arange(len(self.depths_mm)))
+        low = min(int(place), len(self.depths_mm) - 2)
+        return low, float(place - low)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Carried:
+    """A press that serves other flat places with the same ball."""
+
+    press: BallPress
+    ball_mm: float
+
+
+def press_balls(
+    design: SensorDesign,
+    mesh: MembraneMesh,
+    photos: list[tuple[BallPhoto, ContactPlace]],
+    store: Store,
+    monitor: Monitor,
+) -> list[BallPress]:
+    """Press each ball where its photograph shows it; what is stored is read.
+
+    Raises:
+        DesignError: With the photograph's name, if a ball cannot be pressed there.
+    """
+    places = SeenPlaces(mesh, design.optics)
+    found: list[BallPress] = []
+    carried: list[_Carried] = []
+    for number, (photo, place) in enumerate(photos):
+        span = part(monitor, number / len(photos), (number + 1) / len(photos))
+        span(0.0, f"press of {photo.name}, {number + 1} of {len(photos)}")
+        span_mm = _depths(photo, place, places.wall_mm(place))
+        far_mm = FLAT_RADII * place.radius_mm + places.wall_mm(place)
+        flat = places.flat_to_mm(place) > far_mm
+        known = [
+            each.press
+            for each in carried
+            if flat
+            and each.ball_mm == photo.ball_mm
+            and each.press.depths_mm[-1] >= span_mm[1] - 1e-9
+            and each.press.place.normal @ place.normal > 0.999999
+        ]
+        if known:
+            found.append(_carry(known[0], photo, place, mesh, span_mm))
+            continue
+        deepest = span_mm[1]
+        if flat:
+            # One press for all of them: as deep as the deepest may be.
+            deepest = max(
+                _depths(other, there, places.wall_mm(there))[1]
+                for other, there in photos
+                if other.ball_mm == photo.ball_mm and there.normal @ place.normal > 0.999999
+            )
+        contact = _pressed(design, photo, place, deepest, store, span)
+        press = _ball_press(photo, place, mesh, contact, deepest, span_mm)
+        found.append(press)
+        if flat:
+            carried.append(_Carried(press=press, ball_mm=photo.ball_mm))
+    monitor(1.0, "balls pressed")
+    return found
+
+
+def _depths(photo: BallPhoto, place: ContactPlace, wall_mm: float) -> tuple[float, float, float]:
+    """Least and most depth of a press, and Hertz's [mm]."""
+    if photo.depth_mm is not None:
+        return photo.depth_mm, photo.depth_mm, photo.depth_mm
+    ball, seen = photo.ball_mm / 2.0, place.radius_mm
+    limit = min(OF_WALL * wall_mm, OF_BALL * ball)
+    inside = min(seen, 0.98 * ball)
+    cap = ball - math.sqrt(ball**2 - inside**2)
+    hertz = seen**2 / ball
+    least, most = SHORT_OF_CAP * min(cap, limit), min(BEYOND_HERTZ * hertz, limit)
+    return least, most, min(max(hertz, least), most)
+
+
+def _pressed(
+    design: SensorDesign,
+    photo: BallPhoto,
+    place: ContactPlace,
+    depth_mm: float,
+    store: Store,
+    monitor: Monitor,
+) -> Contact:
+    grid_mm = min(max(place.radius_mm / 3.0, FINEST_MM), COARSEST_MM)
+    x, y, z = (float(value) for value in place.point_mm)
+    case = PressCase(
+        indenter=Indenter(size_mm=photo.ball_mm),
+        press=Press(target_mm=(x, y, z), depth_mm=depth_mm, frames=FRAMES),
+        settings=ContactSettings(grid_mm=grid_mm),
+    )
+    try:
+        for _ in evaluate(
+            design,
+            case,
+            InlineRunner(store),
+            wanted=("press",),
+            monitor=lambda stage, fraction, note="": monitor(fraction, f"{photo.name}: {note}"),
+        ):
+            pass
+    except WorkbenchError as error:
+        if isinstance(error, DesignError) or error.exit_code == DesignError.exit_code:
+            error.message = f"{photo.name}: {error.message}"
+        raise
+    return store.load("press", plan(design, case)["press"].key)
+
+
+def _ball_press(
+    photo: BallPhoto,
+    place: ContactPlace,
+    mesh: MembraneMesh,
+    contact: Contact,
+    depth_mm: float,
+    span_mm: tuple[float, float, float],
+) -> BallPress:
+    moved = mesh.seen_displacement_mm(contact)
+    return BallPress(
+        photo=photo,
+        place=place,
+        least_mm=span_mm[0],
+        most_mm=span_mm[1],
+        guess_mm=span_mm[2],
+        depths_mm=np.linspace(0.0, depth_mm, len(moved) + 1),
+        displacement_mm=np.concatenate([np.zeros_like(moved[:1]), moved]),
+        normal_N=np.append(0.0, contact.normal_N),
+    )
+
+
+def _carry(
+    press: BallPress,
+    photo: BallPhoto,
+    place: ContactPlace,
+    mesh: MembraneMesh,
+    span_mm: tuple[float, float, float],
+) -> BallPress:
+    """The same press at another place of the same flat part."""
+    from scipy.interpolate import LinearNDInterpolator
+
+    skin = mesh.seen
+    normal = place.normal
+    side = np.cross(normal, [1.0, 0.0, 0.0] if abs(normal[0]) < 0.7 else [0.0, 1.0, 0.0])
+    side /= np.linalg.norm(side)
+    plane = np.column_stack([side, np.cross(normal, side)])
+    level = np.abs((skin.points_mm - place.point_mm) @ normal) < 0.05
+    spots = skin.points_mm[level] @ plane
+    moved = press.displacement_mm[:, level]
+    # A press moves nothing beyond its region: outside the hull of what is known there is none.
+    known = LinearNDInterpolator(
+        spots - press.place.point_mm @ plane, np.moveaxis(moved, 0, 1), fill_value=0.0
+    )
+    carried = np.zeros_like(press.displacement_mm)
+    carried[:, level] = np.moveaxis(known(spots - place.point_mm @ plane), 1, 0)
+    return BallPress(
+        photo=photo,
+        place=place,
+        least_mm=span_mm[0],
+        most_mm=span_mm[1],
+        guess_mm=span_mm[2],
+        depths_mm=press.depths_mm,
+        displacement_mm=carried,
+        normal_N=press.normal_N,
+    )

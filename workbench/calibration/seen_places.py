@@ -1,0 +1,101 @@
+"""Where on the skin at rest a pixel looks, and how large a pixel is there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sim.optics.raster.skin_view import SkinView, open_skin_view
+from workbench.calibration.photo_set import Circle
+from workbench.core.base.errors import DesignError
+from workbench.core.design.optics import Optics
+from workbench.core.result.results import MembraneMesh
+
+FLAT = 0.9995
+"""Least cosine between normals of skin that counts as flat [1]: 1.8 degrees."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ContactPlace:
+    """Where a contact is on the skin."""
+
+    point_mm: np.ndarray
+    """Shape (3,)."""
+    normal: np.ndarray
+    """Outward unit normal, shape (3,)."""
+    radius_mm: float
+    """Of the circle that is seen."""
+
+
+class SeenPlaces:
+    """One camera before one skin."""
+
+    def __init__(self, mesh: MembraneMesh, optics: Optics) -> None:
+        """Cast the camera's rays.
+
+        Raises:
+            DesignError: If the camera sees nothing of the skin.
+        """
+        self._mesh = mesh
+        self._view: SkinView = open_skin_view(mesh, optics.camera, index=optics.refractive_index)
+        view = self._view
+        self._seen = np.diff(view.layer_start) > 0
+
+    def place(self, circle: Circle, name: str) -> ContactPlace:
+        """Where a circle of a photograph is.
+
+        Raises:
+            DesignError: With the photograph's name, if its middle sees no skin.
+        """
+        view = self._view
+        column = min(max(round(circle.column_px), 0), view.width_px - 1)
+        row = min(max(round(circle.row_px), 0), view.height_px - 1)
+        number = row * view.width_px + column
+        if not self._seen[number]:
+            raise DesignError(
+                f"{name} has its contact at column {column}, row {row}, where the camera of the "
+                "design sees no skin",
+                hint="correct the circle, or the camera's place and field of view",
+                at="--photos",
+            )
+        point, normal = self._at(number)
+        step = max(2, round(circle.radius_px / 2))
+        sizes = []
+        for away in (step, -step, step * view.width_px, -step * view.width_px):
+            other = number + away
+            inside = 0 <= column + away < view.width_px if abs(away) == step else True
+            if inside and 0 <= other < len(self._seen) and self._seen[other]:
+                sizes.append(np.linalg.norm(self._at(other)[0] - point) / step)
+        # People draw the circle's shorter half width where perspective makes it an ellipse.
+        mm_per_px = float(np.median(sizes)) if sizes else 0.0
+        return ContactPlace(point_mm=point, normal=normal, radius_mm=mm_per_px * circle.radius_px)
+
+    def flat_to_mm(self, place: ContactPlace) -> float:
+        """How far around a place seen and inner skin are flat and parallel [mm]."""
+        nearest = np.inf
+        for skin in (self._mesh.outer, self._mesh.inner):
+            bent = np.abs(skin.normals @ place.normal) < FLAT
+            # Vertices of other faces of the body, such as the far wall, end the flat part too.
+            away = np.linalg.norm(skin.points_mm[bent] - place.point_mm, axis=1)
+            nearest = min(nearest, float(away.min(initial=np.inf)))
+        return nearest
+
+    def wall_mm(self, place: ContactPlace) -> float:
+        """Thickness of the wall along the inward normal [mm]; inf where nothing is behind."""
+        from geometry.surface.rays import RayCaster
+
+        inner = self._mesh.inner
+        start = (place.point_mm - 1e-3 * place.normal)[None]
+        caster = RayCaster(inner.points_mm, inner.faces)
+        return float(caster.hits(start, -place.normal[None])[0][0])
+
+    def _at(self, number: int) -> tuple[np.ndarray, np.ndarray]:
+        """Point and outward unit normal that a pixel sees."""
+        view = self._view
+        layer = view.layer_start[number]
+        corners = view.faces[view.layer_face[layer]]
+        weights = view.layer_weights[layer]
+        normal = weights @ view.normals[corners]
+        point = view.origin_mm[number] + view.layer_mm[layer] * view.direction[number]
+        return point.astype(np.float64), (normal / np.linalg.norm(normal)).astype(np.float64)
