@@ -15,7 +15,7 @@ ROOT = Path(__file__).parent.parent
 TOP = ("workbench", "designs", "geometry", "sim", "ui")
 RANKS = """
     workbench.core  workbench.core.base
-    workbench.core.objects  workbench.core.objects.kinds
+    workbench.core.objects  workbench.core.objects.kinds  workbench.core.objects.released
     workbench.core.design  workbench.core.result  workbench.core.press
     workbench.system
 

@@ -49,6 +49,7 @@ NOUNS = {
         choice="IndenterKind",
         defaults=("workbench/core/press/indenter.py",),
     ),
+    "released object": Noun(package="workbench.core.objects.released", record="KIND"),
     "map": Noun(package="sim.optics.maps.kinds", record="MAP"),
     "stage": Noun(
         package="workbench.pipeline.stages",
