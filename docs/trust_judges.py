@@ -36,6 +36,7 @@ learned_sparse_equals_dense exact_background cad_volume outer_area skin_on_surfa
 _OUTSIDE = """
 finger_45 published_mode sheared_sphere shear_force finger_45_normal_force refinement
 refinement_calculix calculix calculix_same_mesh mitsuba mitsuba_product mitsuba_octant
+membrane_shape membrane_shape_95 indenter_shape
 """
 _LIMIT = "mpm_against_fem_limit mpm_refinement fem_refinement"
 _ITSELF = """
