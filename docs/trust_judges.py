@@ -43,7 +43,8 @@ _ITSELF = """
 region_error residual frame_size mirror mirror_symmetry rotation increments submodel submodel_worst
 determinism cpu_gpu mpm_against_fem plane_closed_form direct_table table_brightness contact_tangent
 friction_tangent contact_energy raster newton_projection frame_depth published_depth map_sensitivity
-surface_detail ceiling hybrid table direct linear plane_target plane_source geodesic rest_image gain
+surface_detail ceiling hybrid table direct linear plane_target plane_source
+plane_normal geodesic rest_image gain
 gain_value fem_matrix_repeated surface_volume hex_volume lattice_volume
 """
 _NONE = """
