@@ -16,7 +16,8 @@ TOP = ("workbench", "designs", "geometry", "sim", "ui")
 RANKS = """
     workbench.core  workbench.core.base
     workbench.core.objects  workbench.core.objects.kinds  workbench.core.objects.released
-    workbench.core.design  workbench.core.result  workbench.core.press
+    workbench.core.design  workbench.core.catalogue  workbench.core.catalogue.cameras
+    workbench.core.catalogue.leds  workbench.core.result  workbench.core.press
     workbench.system
 
     geometry  geometry.formats  geometry.drawing  geometry.surface  geometry.body

@@ -44,9 +44,9 @@ class Group(enum.StrEnum):
     """One of the indenters 1 to 10, with which the paper's networks were trained."""
     UNSEEN = "unseen"
     """One of the indenters 11 to 14, kept for testing."""
+    OTHER = "other"
     RELEASED = "released"
     """One of the fourteen heads whose files were released with the paper, in their own sizes."""
-    OTHER = "other"
 
 
 def half_of(size_mm: float, edge_mm: float) -> float:
