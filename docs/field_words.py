@@ -13,13 +13,14 @@ from typing import Any
 
 from workbench.core.base.records import names
 from workbench.core.design.lighting import LightModel
+from workbench.core.objects.kind import PACKAGES
 from workbench.core.press.indenter import IndenterKind
 
-FILES: dict[Any, str] = {
-    LightModel: "sim.optics.field.models",
-    IndenterKind: "workbench.core.objects.kinds",
+FILES: dict[Any, dict[str, str]] = {
+    LightModel: {"sim.optics.field.models": ""},
+    IndenterKind: PACKAGES,
 }
-"""Choices that are the files of a package."""
+"""Choices that are the files of packages, and what stands before their names."""
 
 
 @functools.cache
@@ -51,12 +52,13 @@ def one_line(text: str) -> str:
     return re.sub(r"\s+", " ", text).strip().replace("|", "\\|")
 
 
-def of_files(package: str) -> dict[str, str]:
-    """What each file of a package says in its first sentence, by its name in capitals."""
+def of_files(packages: dict[str, str]) -> dict[str, str]:
+    """What each file of packages says in its first sentence, by its choice in capitals."""
     found = {}
-    for name in names(package):
-        doc = importlib.import_module(f"{package}.{name}").__doc__ or ""
-        found[name.upper()] = one_line(doc.partition("\n\n")[0])
+    for package, before in packages.items():
+        for name in names(package):
+            doc = importlib.import_module(f"{package}.{name}").__doc__ or ""
+            found[f"{before}{name}".upper()] = one_line(doc.partition("\n\n")[0])
     return found
 
 

@@ -8,13 +8,20 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from docs import generate_api, generate_command_line, generate_fields, generate_trust
+from docs import (
+    generate_api,
+    generate_command_line,
+    generate_fields,
+    generate_parts,
+    generate_trust,
+)
 
 FOLDER = Path(__file__).parent
 PAGES: dict[str, Callable[[], str]] = {
     "api.md": generate_api.page,
     "command-line.md": generate_command_line.page,
     "fields.md": generate_fields.page,
+    "parts.md": generate_parts.page,
     "trust.md": generate_trust.page,
 }
 

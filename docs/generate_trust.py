@@ -30,6 +30,7 @@ ROOMS = {
     "robustness": ("630 presses, then 500 to see that memory stays flat", "wants a GPU"),
     "robustness_sample": ("40 of these presses", "minutes"),
     "optics_mitsuba": ("the photon tracer beside Mitsuba 3; needs the extra `mitsuba`", "4 min"),
+    "published": ("bodies of the presets and heads of objects beside those released", "2 min"),
 }
 """What each room of `workbench validate` measures, and about how long that takes undisturbed."""
 EACH = ("hybrid", "mpm_against_fem", "finger_45")

@@ -36,13 +36,15 @@ learned_sparse_equals_dense exact_background cad_volume outer_area skin_on_surfa
 _OUTSIDE = """
 finger_45 published_mode sheared_sphere shear_force finger_45_normal_force refinement
 refinement_calculix calculix calculix_same_mesh mitsuba mitsuba_product mitsuba_octant
+membrane_shape membrane_shape_95 indenter_shape
 """
 _LIMIT = "mpm_against_fem_limit mpm_refinement fem_refinement"
 _ITSELF = """
 region_error residual frame_size mirror mirror_symmetry rotation increments submodel submodel_worst
 determinism cpu_gpu mpm_against_fem plane_closed_form direct_table table_brightness contact_tangent
 friction_tangent contact_energy raster newton_projection frame_depth published_depth map_sensitivity
-surface_detail ceiling hybrid table direct linear plane_target plane_source geodesic rest_image gain
+surface_detail ceiling hybrid table direct linear plane_target plane_source
+plane_normal geodesic rest_image gain
 gain_value fem_matrix_repeated surface_volume hex_volume lattice_volume
 """
 _NONE = """

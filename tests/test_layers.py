@@ -15,8 +15,9 @@ ROOT = Path(__file__).parent.parent
 TOP = ("workbench", "designs", "geometry", "sim", "ui")
 RANKS = """
     workbench.core  workbench.core.base
-    workbench.core.objects  workbench.core.objects.kinds
-    workbench.core.design  workbench.core.result  workbench.core.press
+    workbench.core.objects  workbench.core.objects.kinds  workbench.core.objects.released
+    workbench.core.design  workbench.core.catalogue  workbench.core.catalogue.cameras
+    workbench.core.catalogue.leds  workbench.core.result  workbench.core.press
     workbench.system
 
     geometry  geometry.formats  geometry.drawing  geometry.surface  geometry.body
@@ -41,6 +42,7 @@ RANKS = """
     workbench.proof.validation.optics  workbench.proof.validation.contact
     workbench.proof.validation.fem  workbench.proof.benchmarks
     workbench.learning.evaluation  workbench.proof.validation.learned
+    workbench.proof.validation.published
 
     workbench.door  workbench
 

@@ -49,6 +49,9 @@ NOUNS = {
         choice="IndenterKind",
         defaults=("workbench/core/press/indenter.py",),
     ),
+    "released object": Noun(package="workbench.core.objects.released", record="KIND"),
+    "camera": Noun(package="workbench.core.catalogue.cameras", record="CAMERA"),
+    "LED": Noun(package="workbench.core.catalogue.leds", record="LED"),
     "map": Noun(package="sim.optics.maps.kinds", record="MAP"),
     "stage": Noun(
         package="workbench.pipeline.stages",

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 import pytest
 
+from geometry.surface.surface import vertex_normals
 from sim.optics.field.bake import bake_light
-from sim.optics.field.lines import tangential_from
+from sim.optics.field.lines import from_axis, tangential_from
 from sim.optics.light.geodesic import SkinWays
 from sim.optics.light.section_curve import level_curves, plane_section, tangent_toward
-from sim.optics.proof.checks import plane_closed_form
+from sim.optics.proof.plane_checks import against_curves, plane_closed_form
 from sim.optics.proof.specimen import finger
 from workbench.core.design.lighting import LedRing, LightModel
 from workbench.core.result.results import MembraneMesh, Skin
@@ -21,13 +24,57 @@ def mesh() -> MembraneMesh:
     return finger(edge_mm=0.8)
 
 
-@pytest.mark.parametrize("model", [LightModel.PLANE_TARGET, LightModel.PLANE_SOURCE])
+PLANES = [LightModel.PLANE_TARGET, LightModel.PLANE_SOURCE, LightModel.PLANE_NORMAL]
+
+
+@pytest.mark.parametrize("model", PLANES)
 def test_planes_in_closed_form_are_the_cut_curves(mesh: MembraneMesh, model: LightModel) -> None:
-    """At most 1 degree median; measured 0.01 to 0.03, and 0.25 at the 95th percentile."""
+    """At most 0.1 degrees median; measured 0.01 to 0.03, and 0.25 at the 95th percentile."""
     found = plane_closed_form(model, mesh, LedRing())
     assert found.targets > 200
     assert found.median_deg < 0.1
     assert found.percentile_95_deg < 1.0
+
+
+@pytest.fixture(scope="module")
+def square() -> MembraneMesh:
+    """A half ball stretched to twice its width along Y: normals are not ways from the axis."""
+    ball = finger(edge_mm=0.8, cylinder_mm=1.0)
+    skins = {
+        part: Skin(
+            points_mm=(skin := getattr(ball, part)).points_mm * [1.0, 2.0, 1.0],
+            faces=skin.faces,
+            normals=vertex_normals(skin.points_mm * [1.0, 2.0, 1.0], skin.faces),
+        )
+        for part in ("outer", "inner", "cavity")
+    }
+    return dataclasses.replace(ball, **skins)
+
+
+RING = LedRing(radius_mm=10.0, phase_deg=20.0)
+
+
+@pytest.mark.parametrize("model", PLANES)
+def test_a_wrong_field_is_off_the_curves(square: MembraneMesh, model: LightModel) -> None:
+    """The model's own is within half a degree, one through another normal and a line are not, and
+    the reversed field is half a turn away.
+    """
+    own = bake_light(square, RING, model=model)
+    assert against_curves(own, model, square.seen).median_deg < 0.5
+    for other in [*PLANES, LightModel.LINEAR]:
+        if other is not model:
+            wrong = bake_light(square, RING, model=other)
+            assert against_curves(wrong, model, square.seen).median_deg > 4.0
+    reversed_field = dataclasses.replace(own, direction=-own.direction)
+    assert against_curves(reversed_field, model, square.seen).median_deg > 179.0
+
+
+def test_the_source_plane_is_taken_from_the_axis() -> None:
+    """(3, 4, 9) from the axis: (0.6, 0.8, 0); on the axis there is none, and light is straight."""
+    assert from_axis(np.array([3.0, 4.0, 9.0])) == pytest.approx([0.6, 0.8, 0.0])
+    assert not from_axis(np.array([0.0, 0.0, 9.0])).any()
+    line, up = np.array([[0.6, 0.0, 0.8]]), np.array([[0.0, 0.0, 1.0]])
+    assert tangential_from(line, up, np.zeros(3)) == pytest.approx(line)
 
 
 def test_plane_source_by_hand() -> None:

@@ -11,6 +11,7 @@ import pytest
 
 from tests.ui.conftest import Server
 from tests.ui.widgets import (
+    boxes,
     button,
     choose,
     control,
@@ -76,6 +77,24 @@ def test_light_model_lamp_lens_and_views(
     choose(page, "Camera", "camera 2")
     choose(page, "Show", "image")
     wait_until(lambda: image_source(page) != first, 20, "the other camera sees something else")
+
+
+def test_bought_parts_set_their_numbers(
+    unpressed_project: Path, page: Any, start_server: Start
+) -> None:
+    """A module sets pixels and view, an LED colours; a number of one's own makes it no module."""
+    server = start_server(unpressed_project)
+    optics(page, server, pressed=False)
+    assert control(page, "Module").input_value() == "own numbers"
+    choose(page, "Module", "Raspberry Pi Camera Module 2")
+    wait_until(lambda: control(page, "Width px").input_value() == "1640", 20, "it is taken")
+    choose(page, "LED type", "Kingbright KP-1608PBC")
+    told = boxes(page, "LED colours").first
+    wait_until(lambda: told.input_value() == "468nm/25nm", 20, "the LEDs are blue")
+    set_number(page, "View deg", 80)
+    wait_until(
+        lambda: control(page, "Module").input_value() == "own numbers", 20, "it is no module"
+    )
 
 
 def test_maps_are_measured_shown_and_read(

@@ -22,8 +22,10 @@ from workbench.edit.indenter_edit import (
 
 
 def test_gallery_holds_every_object_once() -> None:
-    """10 seen, 4 unseen, the other primitives, and the everyday objects."""
+    """10 seen, 4 unseen, 14 as released with their sizes, other primitives, everyday objects."""
     names = gallery()
+    assert sum(label.startswith("released") for label in names) == 14
+    assert names["released: sphere r27 12 mm"] == "released_sphere_r27"
     assert sum(label.startswith("seen") for label in names) == len(SEEN) == 10
     assert sum(label.startswith("unseen") for label in names) == len(UNSEEN) == 4
     primitives = {kind.value for kind in IndenterKind if kind is not IndenterKind.MESH}
@@ -37,6 +39,15 @@ def test_another_object_keeps_size_and_texture() -> None:
     waves = Texture(pattern=Pattern.WAVES, height_mm=0.1)
     cube = another("cube", Indenter(size_mm=9.0, texture=waves))
     assert (cube.kind, cube.size_mm, cube.texture) == (IndenterKind.CUBE, 9.0, waves)
+
+
+def test_a_released_head_has_its_own_size() -> None:
+    """4 mm of the bar after a ball of 9 mm, and 6 mm of what is then chosen; textures stay."""
+    waves = Texture(pattern=Pattern.WAVES, height_mm=0.1)
+    bar = another("released_cube", Indenter(size_mm=9.0, texture=waves))
+    assert (bar.size_mm, bar.texture) == (4.0, waves)
+    assert another("released_hexagon", bar).size_mm == pytest.approx(7.1056)
+    assert another("torus", bar).size_mm == 6.0
 
 
 def test_a_small_object_has_smaller_edges() -> None:

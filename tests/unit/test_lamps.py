@@ -105,7 +105,7 @@ def test_a_lamp_lights_the_skin_like_a_led(mesh: MembraneMesh) -> None:
     assert np.array_equal(one.direction, other.direction)
 
 
-@pytest.mark.parametrize("model", [LightModel.LINEAR, LightModel.PLANE_SOURCE, LightModel.GEODESIC])
+@pytest.mark.parametrize("model", [LightModel.LINEAR, LightModel.PLANE_NORMAL, LightModel.GEODESIC])
 def test_every_point_of_light_has_its_field(mesh: MembraneMesh, model: LightModel) -> None:
     """Two LEDs and a lamp of four points are six unit fields."""
     lamp = Lamp(kind=LampKind.LINE, samples=4)

@@ -117,7 +117,7 @@ def test_numbers_are_read_or_refused() -> None:
 
 
 def test_every_light_model_has_a_line() -> None:
-    """All eight, each told in at most 80 characters."""
+    """All nine, each told in at most 80 characters."""
     assert set(models()) == set(LightModel)
     assert max(len(model.hint) for model in models().values()) <= 80
     assert len({model.place for model in models().values()}) == len(models())

@@ -24,6 +24,7 @@ TOWARD_THE_LIGHT = (
     LightModel.LINEAR,
     LightModel.PLANE_TARGET,
     LightModel.PLANE_SOURCE,
+    LightModel.PLANE_NORMAL,
     LightModel.DIRECT,
 )
 """Models whose light arrives from the side of the LED; a shortest way may go round the body."""

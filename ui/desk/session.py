@@ -127,6 +127,15 @@ class Session:
         design = self.design.replace("optics", optics)
         self._commit(dataclasses.replace(self.state, design=design), "design.optics")
 
+    def change_design(self, design: SensorDesign) -> None:
+        """Take several fields of the design as one step of undo.
+
+        Raises:
+            DesignError: If the design is refused; the state is as before.
+        """
+        check_design(design)
+        self._commit(dataclasses.replace(self.state, design=design), "design")
+
     def change_press(self, **values: Any) -> None:
         """Set several fields of the press as one step of undo.
 

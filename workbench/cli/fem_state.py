@@ -15,7 +15,7 @@ from workbench.project.project import Project
 from workbench.project.state import State
 from workbench.system.terminal import Progress
 
-OTHER_SOLVER = (*SETTINGS, "extent", "method", "light_model")
+OTHER_SOLVER = (*SETTINGS, "extent", "method", "light_model", "camera", "led")
 """Options of `run` that finite elements have no use for."""
 
 

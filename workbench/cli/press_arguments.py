@@ -13,7 +13,8 @@ from workbench.core.press.press import Extent, Method
 
 INDENTERS = (
     "sphere, cylinder_end, cylinder_side, cube, cone, cross, triangle, pacman, hexagon, ellipsoid, "
-    "double_cylinder, diamond, flower, ring, rhombus, torus; mug, screwdriver, banana; or the path "
+    "double_cylinder, diamond, flower, ring, rhombus, torus; as released with the paper: "
+    "released_cube, released_flower ... (docs/contact.md); mug, screwdriver, banana; or the path "
     "of an STL, OBJ or STEP file"
 )
 TEXTURES = (
@@ -53,6 +54,10 @@ def add_press_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--material-law", choices=[law.value for law in Law], help="of the design")
     models = [model.value for model in LightModel]
     sub.add_argument("--light-model", choices=models, help="of the design")
+    text = "a bought camera: its pixels, lens and size (docs/parts.md)"
+    sub.add_argument("--camera", metavar="NAME", help=text)
+    text = "bought LEDs of the ring, one or one for each sector: colour, lobe, size (docs/parts.md)"
+    sub.add_argument("--led", metavar="NAME,...", help=text)
 
 
 def _object_options(sub: argparse.ArgumentParser) -> None:
@@ -112,13 +117,20 @@ def _solver_options(sub: argparse.ArgumentParser) -> None:
 
 
 def changed_design(options: argparse.Namespace, design: SensorDesign) -> SensorDesign:
-    """The design with the fields, the light model and the material's law that the options name.
+    """The design with the parts, fields, light model and material's law that the options name.
+
+    Fields that are set come after what a bought part brings.
 
     Raises:
         DesignError: If there is no such field, or the design does not take its value.
     """
+    from workbench.edit.catalogue import with_camera, with_leds
     from workbench.edit.typed_fields import with_typed
 
+    if options.camera:
+        design = with_camera(design, options.camera)
+    if options.led:
+        design = with_leds(design, options.led.split(","))
     design = with_typed(design, options.set)
     if options.light_model:
         design = design.replace("optics.light_model", LightModel(options.light_model))

@@ -20,6 +20,7 @@ from workbench.proof.validation.geometry import room as geometry
 from workbench.proof.validation.learned import forces
 from workbench.proof.validation.optics import mitsuba_witness
 from workbench.proof.validation.optics import room as optics
+from workbench.proof.validation.published import room as published
 
 ROOMS: dict[str, Callable[[], list[Row]]] = {
     "geometry": geometry.rows,
@@ -33,6 +34,7 @@ ROOMS: dict[str, Callable[[], list[Row]]] = {
     "robustness": robustness.rows,
     "robustness_sample": robustness.sample_rows,
     "optics_mitsuba": mitsuba_witness.rows,
+    "published": published.rows,
 }
 
 REFERENCES = (("optics", "mitsuba"), ("fem", "calculix"))

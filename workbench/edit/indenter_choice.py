@@ -11,7 +11,7 @@ import numpy as np
 from workbench.core.base.check import within
 from workbench.core.base.errors import DesignError, shown
 from workbench.core.base.mapping import suggest
-from workbench.core.objects.kind import kinds
+from workbench.core.objects.kind import kind_of, kinds
 from workbench.core.press.indenter import (
     DEFAULT_EDGE_RADIUS_MM,
     DEFAULT_SIZE_MM,
@@ -48,9 +48,9 @@ def choose_indenter(
 ) -> Indenter:
     """A primitive or an everyday object by name, or the closed mesh of an STL, OBJ or STEP file.
 
-    Without a size a primitive has 6 mm, and all others their own size in mm. The edge radius
-    shrinks with small primitives so that the default always fits; a mesh keeps its edges unless
-    one is stated.
+    Without a size a primitive has 6 mm; a released head and all others have their own size in mm.
+    The edge radius shrinks with small primitives so that the default always fits; a mesh keeps its
+    edges unless one is stated.
 
     Args:
         name: "sphere", "cross", "key" ..., or the path of a file.
@@ -170,7 +170,7 @@ def load_heights(path: Path) -> HeightImage:
 def _primitive(
     kind: IndenterKind, size_mm: float | None, edge_radius_mm: float | None, texture: Texture
 ) -> Indenter:
-    size = DEFAULT_SIZE_MM if size_mm is None else size_mm
+    size = (kind_of(kind).own_mm or DEFAULT_SIZE_MM) if size_mm is None else size_mm
     widest = widest_edge_mm(kind, size)
     if widest is None:
         # It has no edge; a value here would only split one press into two keys.

@@ -7,11 +7,10 @@ import dataclasses
 from workbench.core.base.errors import DesignError
 from workbench.core.design.design import SensorDesign
 from workbench.core.design.imported import IMPORTED, ImportedBody, body_file
+from workbench.core.objects.kind import Group, kind_of
 from workbench.core.press.indenter import (
     DEFAULT_EDGE_RADIUS_MM,
     OF_TRIANGLES,
-    SEEN,
-    UNSEEN,
     Indenter,
     IndenterKind,
     widest_edge_mm,
@@ -37,13 +36,23 @@ SAFE = 1.0 / 1.01
 
 
 def gallery() -> dict[str, str]:
-    """Names of all objects by their label, in the order of the paper's figure, then the others."""
+    """Names of all objects by their label: the paper's by group, then the others."""
     from geometry.objects.everyday import EVERYDAY
 
-    others = [kind for kind in IndenterKind if kind not in (*SEEN, *UNSEEN, OF_TRIANGLES)]
-    groups = (("seen", SEEN), ("unseen", UNSEEN), ("other", others))
-    found = {f"{group}: {_words(kind)}": kind.value for group, kinds in groups for kind in kinds}
+    found = {
+        f"{group}: {_label(kind)}": kind.value
+        for group in Group
+        for kind in IndenterKind
+        if kind_of(kind).group is group and kind is not OF_TRIANGLES
+    }
     return {**found, **{f"everyday: {_words(name)}": name for name in EVERYDAY}}
+
+
+def _label(kind: IndenterKind) -> str:
+    """What a kind is called under the heading of its group; a released head with its size."""
+    record = kind_of(kind)
+    words = _words(kind.removeprefix(f"{record.group}_"))
+    return words if record.own_mm is None else f"{words} {record.own_mm:.3g} mm"
 
 
 def _words(name: str) -> str:
@@ -51,13 +60,16 @@ def _words(name: str) -> str:
 
 
 def another(name: str, now: Indenter) -> Indenter:
-    """An object of the gallery with the texture, softness and, of a primitive, size of this one.
+    """An object of the gallery with the texture and softness of this one.
+
+    Also with its size, where both are shapes that any size does for.
 
     Raises:
         DesignError: If the texture does not fit it.
     """
-    primitive = name in {kind.value for kind in IndenterKind}
-    size_mm = now.size_mm if primitive and now.mesh is None else None
+    sized = {kind.value for kind in IndenterKind if kind_of(kind).own_mm is None}
+    keeps = name in sized and now.kind in sized and now.mesh is None
+    size_mm = now.size_mm if keeps else None
     chosen = choose_indenter(name, size_mm=size_mm, texture=now.texture)
     return dataclasses.replace(chosen, soft=now.soft)
 

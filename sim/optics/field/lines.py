@@ -20,6 +20,7 @@ DEGENERATE_SINE = 1e-3
 """Sine of the angle of L and n below which their plane is not defined in single precision."""
 SKIN_OFFSET_MM = 5e-3
 """Shadow rays start this far inside the skin [mm]; single precision resolves 4e-6 at 50 mm."""
+ON_AXIS_MM = 1e-9
 
 
 def toward(
@@ -55,15 +56,22 @@ def normal_at(skin: Skin, place_mm: np.ndarray) -> np.ndarray:
     return skin.normals[nearest]
 
 
+def from_axis(place_mm: np.ndarray) -> np.ndarray:
+    """Unit way from the sensor's axis to a place [mm], shape (3,); 0 for a place on the axis."""
+    way = place_mm * [1.0, 1.0, 0.0]
+    length_mm = float(np.linalg.norm(way))
+    return way / length_mm if length_mm > ON_AXIS_MM else np.zeros(3)
+
+
 def tangential_from(
     direction: np.ndarray, normals: np.ndarray, source_normal: np.ndarray
 ) -> np.ndarray:
-    """`plane_source` at each target, shape (N, 3): along n_T x (n_S x (T - S)), toward the light.
+    """Tangents at each target, shape (N, 3): along n_T x (n_S x (T - S)), toward the light.
 
     Args:
         direction: Unit vectors from the targets to the light, shape (N, 3).
         normals: Unit normals of the targets, shape (N, 3).
-        source_normal: n_S, shape (3,).
+        source_normal: n_S, shape (3,); of length 1, or 0 where it is not defined.
     """
     plane = np.cross(source_normal, -direction)
     tangent = np.cross(normals, plane)

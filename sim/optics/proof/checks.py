@@ -1,22 +1,18 @@
 """Validation of the optics room: each function measures one thing and returns its number(s).
 
 Projection, Snell, Fresnel, irradiance and depth are compared with closed forms, the fields with the
-properties that define them. `view_checks`, `sensor_checks`, `map_checks`, `transport_checks`
-and `baked_light_checks` have the rest.
+properties that define them. `plane_checks`, `view_checks`, `sensor_checks`, `map_checks`,
+`transport_checks` and `baked_light_checks` have the rest.
 """
 
 from __future__ import annotations
-
-import dataclasses
 
 import numpy as np
 
 from sim.optics.camera.camera import focal_px, pixel_centres, project, refracted_rays, unproject
 from sim.optics.camera.refraction import refract
 from sim.optics.field.bake import bake_light
-from sim.optics.field.lines import normal_at
 from sim.optics.light.lights import place_leds
-from sim.optics.light.section_curve import plane_section, tangent_toward
 from sim.optics.proof.specimen import finger
 from sim.optics.raster.gbuffer import open_view
 from workbench.core.design.camera import Camera, LensModel
@@ -25,10 +21,6 @@ from workbench.core.result.results import MembraneMesh
 
 ANGLES_DEG = np.linspace(0.0, 89.0, 90)
 SILICONE_INDEX = 1.41
-NEAREST_MM = 2.0
-"""Distance from the light below which no section curve is compared [mm]."""
-LEAST_PLANE = 0.1
-"""Sine of light and normal below which a plane is too ill defined to compare on a mesh [1]."""
 TURN = (0.9, 0.3, -0.3, 0.1)
 """Quaternion of the round trip's camera, before it is made a unit one."""
 DISTORTIONS: dict[LensModel, tuple[tuple[float, ...], ...]] = {
@@ -117,64 +109,6 @@ def tangency_error_deg(mesh: MembraneMesh, ring: LedRing) -> float:
     # Where the light falls along the normal there is no plane and the field is the straight line.
     fallback = (light.direction == straight.direction).all(axis=2)
     return float(np.degrees(np.arcsin(np.abs(sine[~fallback]).max())))
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class PlaneCheck:
-    """The closed form of a plane field against the curve in which the plane cuts the mesh."""
-
-    median_deg: float
-    """Median angle between closed form and cut curve as lines, without their sense [degree]."""
-    percentile_95_deg: float
-    straight_deg: float
-    """The null: the median of the straight line to the light [degree]."""
-    other_sense_1: float
-    """Share of targets at which the shorter way along the curve to where it comes nearest to the
-    light sets out the other way [1]. A light on the far side is then reached over the tip, so this
-    is not small on a convex skin either."""
-    targets: int
-
-
-def plane_closed_form(
-    model: LightModel, mesh: MembraneMesh, ring: LedRing, *, targets: int = 300, seed: int = 7
-) -> PlaneCheck:
-    """`plane_target` or `plane_source` against the cut mesh, the published way, at random targets.
-
-    Targets nearer than 2 mm to the light have no curve to speak of and are left out, as are those
-    at which the plane is not defined, and those within a step of the skin's border.
-    """
-    skin, light = mesh.seen, bake_light(mesh, ring, model=model)
-    edges = skin.points_mm[skin.faces[:, 0]] - skin.points_mm[skin.faces[:, 1]]
-    step_mm = 1.5 * float(np.linalg.norm(edges, axis=1).mean())
-    random = np.random.default_rng(seed)
-    angles, straight, turned = [], [], 0
-    for vertex in random.choice(len(skin.points_mm), targets, replace=False):
-        led = int(random.integers(len(light.led_mm)))
-        target, source = skin.points_mm[vertex], light.led_mm[led]
-        normal = (
-            skin.normals[vertex] if model is LightModel("plane_target") else normal_at(skin, source)
-        )
-        across = np.cross(normal, source - target)
-        away = float(np.linalg.norm(source - target))
-        if away < NEAREST_MM or np.linalg.norm(across) < LEAST_PLANE * away:
-            continue
-        curve = plane_section(skin, target, across / np.linalg.norm(across))
-        cut = None if curve is None else tangent_toward(curve, target, source, step_mm=step_mm)
-        if cut is None:
-            continue
-        cosine = float(cut @ light.direction[led, vertex])
-        angles.append(np.degrees(np.arccos(min(1.0, abs(cosine)))))
-        along = abs(float(cut @ (source - target))) / away
-        straight.append(np.degrees(np.arccos(min(1.0, along))))
-        turned += cosine < 0.0
-    median, high = np.percentile(angles, (50.0, 95.0))
-    return PlaneCheck(
-        median_deg=float(median),
-        percentile_95_deg=float(high),
-        straight_deg=float(np.median(straight)),
-        other_sense_1=turned / len(angles),
-        targets=len(angles),
-    )
 
 
 def irradiance_error(mesh: MembraneMesh, ring: LedRing) -> float:

@@ -6,9 +6,12 @@ from typing import Any
 
 from ui.desk.desk import Desk
 from ui.page.callbacks import put
+from ui.panels.optics.bought import Bought
 from ui.panels.optics.handles import Handle
+from workbench.core.catalogue.camera_part import camera_parts
 from workbench.core.design.camera import COEFFICIENTS, Camera, LensModel
 from workbench.edit.camera_edit import LENSES, angles_of, further_camera, with_lens, wxyz_of
+from workbench.edit.catalogue import camera_name, with_camera
 from workbench.edit.item_fields import without_item
 from workbench.edit.light_edit import number_words, read_numbers
 
@@ -30,6 +33,13 @@ class CameraFolders:
                 "Edited", ("camera 1",), visible=False, hint="The camera whose numbers stand below"
             )
             self.choice.on_update(desk.guarded(self._choose))
+            self.bought = Bought(
+                desk,
+                "Module",
+                {name: part.title for name, part in camera_parts().items()},
+                name=lambda: camera_name(self.camera),
+                take=lambda design, name: with_camera(design, name, number=self.number),
+            )
             self.handle = Handle(desk, "Camera handle", path=lambda: self.path, turns=True)
             self._place()
             self._lens()
@@ -160,6 +170,7 @@ class CameraFolders:
         self.desk.fields.rebind(self.path, path)
         self.path = path
         self.handle.follow()
+        self.bought.refresh()
         self._show_turn()
         sensor = f"{path}.sensor"
         for name in ("full_well_e", "read_noise_e", "seed"):

@@ -9,12 +9,15 @@ import viser
 from sim.optics.field.model import model_of, models
 from ui.desk.desk import Desk
 from ui.panels.optics.appearance import AppearanceFolders
+from ui.panels.optics.bought import Bought
 from ui.panels.optics.cameras import CameraFolders
 from ui.panels.optics.handles import RING, Handle
 from ui.panels.optics.lamps import LampsFolder
 from ui.panels.optics.led_table import LedTable
 from ui.panels.page import Page
+from workbench.core.catalogue.led_part import led_parts
 from workbench.core.design.lighting import LedMount
+from workbench.edit.catalogue import led_name, with_leds
 from workbench.edit.light_edit import colour_words, read_colours
 
 BAKING = "design.optics.baking"
@@ -60,6 +63,13 @@ class OpticsPanel:
     def _ring(self) -> None:
         fields = self.desk.fields
         up = (False, False, True)
+        self.bought = Bought(
+            self.desk,
+            "LED type",
+            {name: part.title for name, part in led_parts().items()},
+            name=lambda: led_name(self.desk.session.design.optics.ring),
+            take=lambda design, name: with_leds(design, (name,)),
+        )
         self.handle = Handle(self.desk, "Ring handle", path=lambda: RING, axes=up)
         hint = "0 for a sensor that has only further lights"
         fields.slider("LEDs", f"{RING}.count", span=(0, 24, 1), whole=True, hint=hint)
@@ -114,6 +124,7 @@ class OpticsPanel:
         fields.reveal(f"{BAKING}.seed", model.traced)
         fields.reveal(f"{BAKING}.nodes", model.tabulated)
         self.handle.follow()
+        self.bought.refresh()
         self.leds.refresh()
         self.lamps.refresh()
         self.cameras.refresh()

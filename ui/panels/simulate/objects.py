@@ -37,7 +37,11 @@ from workbench.live.requests import Finished
 JOB = "object"
 LOADED = "loaded mesh"
 PLAIN = tuple(p.value for p in Pattern if p is not Pattern.IMAGE)
-GROUPS = {"seen": "The paper's, seen in training", "unseen": "The paper's, unseen in training"}
+GROUPS = {
+    "seen": "The paper's, seen in training",
+    "unseen": "The paper's, unseen in training",
+    "released": "The paper's, in the sizes that were released",
+}
 """Headings of the gallery, by the first word of a label."""
 SPAN_MM, MESH_SPAN_MM = 30.0, 300.0
 """Ends of the size slider."""
@@ -57,7 +61,9 @@ class ObjectFolder:
         gui, guarded = desk.server.gui, desk.guarded
         now = desk.session.case.indenter
         with gui.add_folder("Object"):
-            hint = "The paper's objects, seen or unseen in training; others; everyday objects"
+            hint = (
+                "The paper's objects, seen or unseen in training or as released; others; everyday"
+            )
             self.kind = gui.add_dropdown(
                 "Object shape", (*self.names, LOADED), initial_value=self._label(now), hint=hint
             )

@@ -1,9 +1,10 @@
 """A kind of object: its edges, its extent, its signed distance, and how the kernels know it.
 
-A kind is one file of `workbench.core.objects.kinds`; its name stands in designs, `KIND` says the
-rest. Body frame as in `workbench.core.press.press`: origin at the shape's centre, +Z away from the
-skin. Lengths are functions of the size, which is the largest width, and of the edge radius [mm].
-Edges are rounded exactly: a sharp body made smaller by the radius, its distance lowered by it.
+A kind is one file of `workbench.core.objects.kinds`, or of `workbench.core.objects.released` with
+`released_` before its name; its name stands in designs, `KIND` says the rest. Body frame as in
+`workbench.core.press.press`: origin at the shape's centre, +Z away from the skin. Lengths are
+functions of the size, which is the largest width, and of the edge radius [mm]. Edges are rounded
+exactly: a sharp body made smaller by the radius, its distance lowered by it.
 """
 
 from __future__ import annotations
@@ -18,6 +19,8 @@ from workbench.core.base.records import records
 
 Distance = Callable[[np.ndarray], np.ndarray]
 """Signed distances [mm], shape (N,), of places (N, 3) in the body frame."""
+PACKAGES = {"workbench.core.objects.kinds": "", "workbench.core.objects.released": "released_"}
+"""Where kinds are, and what stands before the names of their files."""
 USUAL_EDGE_SHARE = 0.25
 """Largest edge radius over the size of a body that is as thick as wide."""
 
@@ -42,6 +45,8 @@ class Group(enum.StrEnum):
     UNSEEN = "unseen"
     """One of the indenters 11 to 14, kept for testing."""
     OTHER = "other"
+    RELEASED = "released"
+    """One of the fourteen heads whose files were released with the paper, in their own sizes."""
 
 
 def half_of(size_mm: float, edge_mm: float) -> float:
@@ -76,6 +81,8 @@ class Kind:
     """What the kernels need of a shape that they know in closed form, shape (8,)."""
     corners_mm: Callable[[float], Sequence[tuple[float, float]]] | None = None
     """Corners (radius, height) of the sharp section of a body of revolution, from axis to axis."""
+    own_mm: float | None = None
+    """Size of the object that was made; None: any will do."""
     aliases: tuple[str, ...] = ()
     """Other words that it is chosen by."""
     of_triangles: bool = False
@@ -90,10 +97,14 @@ class Kind:
 
 def kinds() -> dict[str, Kind]:
     """All kinds by name, in the order of lists."""
-    found = records("workbench.core.objects.kinds", "KIND")
+    found = {
+        before + name: kind
+        for package, before in PACKAGES.items()
+        for name, kind in records(package, "KIND").items()
+    }
     return {name: found[name] for name in sorted(found, key=lambda name: found[name].place)}
 
 
 def kind_of(name: str) -> Kind:
     """What a kind says of itself."""
-    return records("workbench.core.objects.kinds", "KIND")[str(name)]
+    return kinds()[str(name)]

@@ -14,6 +14,9 @@ import numpy as np
 
 Profile = Callable[[np.ndarray], np.ndarray]
 """Signed distances [mm], shape (N,), of places (N, 2)."""
+ARC_POINTS = 33
+"""Points that bracket the foot on a quarter of an ellipse."""
+HALVINGS = 40
 
 
 def polygon(place: np.ndarray, corners: np.ndarray) -> np.ndarray:
@@ -46,6 +49,54 @@ def arc(
     y = np.abs(offset @ np.array([-across[1], across[0]]))
     end = np.hypot(x - radius * np.cos(half), y - radius * np.sin(half))
     return np.where(np.arctan2(y, x) <= half, np.abs(np.hypot(x, y) - radius), end)
+
+
+def ellipse_arc(place: np.ndarray, semi_axes: tuple[float, float]) -> np.ndarray:
+    """Distance of places (N, 2) to the quarter of an ellipse from its tip on +X to that on +Y.
+
+    Of places below the X axis too, whose nearest may be the tip. The nearest of a few points
+    brackets the foot, the sign of the slope of the distance along the arc halves the bracket.
+    """
+    a, b = semi_axes
+    angle: np.ndarray = np.linspace(0.0, 0.5 * np.pi, ARC_POINTS)
+    far = (place[:, :1] - a * np.cos(angle)) ** 2 + (place[:, 1:] - b * np.sin(angle)) ** 2
+    middle: np.ndarray = angle[np.argmin(far, axis=1)]
+    low: np.ndarray = np.maximum(middle - angle[1], 0.0)
+    high: np.ndarray = np.minimum(middle + angle[1], angle[-1])
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        x, y = a * np.cos(middle), b * np.sin(middle)
+        # The product of the way to the place and the arc's tangent (-y a / b, x b / a).
+        nearer = (place[:, 1] - y) * x * b / a > (place[:, 0] - x) * y * a / b
+        low = np.asarray(np.where(nearer, middle, low))
+        high = np.asarray(np.where(nearer, high, middle))
+    return np.hypot(place[:, 0] - a * np.cos(middle), place[:, 1] - b * np.sin(middle))
+
+
+def bitten(radius_mm: float, half_angle: float, shrink_mm: float) -> Profile:
+    """A disc with a mouth toward +X that opens by `half_angle` [rad] to each side, shrunk."""
+    radius = radius_mm - shrink_mm
+    apex = np.array([-shrink_mm / np.sin(half_angle), 0.0])
+    lip = np.array([np.cos(half_angle), np.sin(half_angle)])
+    along = -apex @ lip + np.sqrt((apex @ lip) ** 2 + radius**2 - apex @ apex)
+    corner = apex + along * lip
+    half = np.pi - float(np.arctan2(corner[1], corner[0]))
+
+    def distance(place: np.ndarray) -> np.ndarray:
+        upper = np.stack([place[:, 0], np.abs(place[:, 1])], axis=1)
+        jaw = segment(upper, apex, corner)
+        unsigned = np.minimum(jaw, arc(upper, np.zeros(2), radius, np.pi, half))
+        in_mouth = turn(lip, upper - apex) < 0.0
+        inside = (np.linalg.norm(place, axis=1) < radius) & ~in_mouth
+        return np.where(inside, -unsigned, unsigned)
+
+    return distance
+
+
+def meet(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """Distance to what is in both of two bodies whose faces stand at right angles, shape (N,)."""
+    over = np.stack([first, second])
+    return np.minimum(over.max(axis=0), 0.0) + np.hypot(*np.maximum(over, 0.0))
 
 
 def inset(corners: np.ndarray, by_mm: float) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Bodies that are a plane figure between two planes, as high as their size.
+"""Bodies that are a plane figure between two planes, as high as their size where not said.
 
 Outside both, the distance is that of a right angle. Left out: inside a re-entrant corner the depth
 is that to the shrunk body, not to the corner.
@@ -11,30 +11,43 @@ from collections.abc import Callable
 import numpy as np
 
 from workbench.core.objects.kind import Distance
-from workbench.core.objects.plane import Profile, inset, polygon
+from workbench.core.objects.plane import Profile, inset, meet, polygon
+
+Section = Callable[[float, float], Profile]
+"""Of the size and the length by which it is shrunk [mm], a figure's distance."""
 
 
-def prism(section: Callable[[float, float], Profile]) -> Callable[[float, float], Distance]:
+def prism(section: Section, *, length: float = 1.0) -> Callable[[float, float], Distance]:
     """Distance of a prism.
 
     Args:
-        section: Of the size and the length by which it is shrunk [mm], the figure's distance.
+        section: The figure across Z.
+        length: From end to end, over the size.
     """
 
     def of(size_mm: float, edge_mm: float) -> Distance:
-        figure, half_mm = section(size_mm, edge_mm), 0.5 * size_mm - edge_mm
+        figure, half_mm = section(size_mm, edge_mm), 0.5 * length * size_mm - edge_mm
         return lambda place: extruded(place, figure, half_mm) - edge_mm
+
+    return of
+
+
+def lying(section: Section, *, length: float) -> Callable[[float, float], Distance]:
+    """Distance of a prism along X, whose section lies across it: places (y, z)."""
+
+    def of(size_mm: float, edge_mm: float) -> Distance:
+        along = prism(section, length=length)(size_mm, edge_mm)
+        return lambda place: along(place[:, [1, 2, 0]])
 
     return of
 
 
 def extruded(place: np.ndarray, section: Profile, half_mm: float) -> np.ndarray:
     """Distance to a figure between the planes at `half_mm`, shape (N,)."""
-    over = np.stack([section(place[:, :2]), np.abs(place[:, 2]) - half_mm])
-    return np.minimum(over.max(axis=0), 0.0) + np.hypot(*np.maximum(over, 0.0))
+    return meet(section(place[:, :2]), np.abs(place[:, 2]) - half_mm)
 
 
-def polygonal(corners: Callable[[float], np.ndarray]) -> Callable[[float, float], Profile]:
+def polygonal(corners: Callable[[float], np.ndarray]) -> Section:
     """Section of a polygon whose corners (C, 2), counter-clockwise, follow from the size."""
 
     def of(size_mm: float, shrink_mm: float) -> Profile:

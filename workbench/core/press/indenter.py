@@ -22,7 +22,7 @@ from workbench.core.press.texture import SMOOTH, Texture
 
 
 class IndenterKind(enum.StrEnum):
-    """Shapes: the files of `workbench.core.objects.kinds`.
+    """Shapes: the files of `workbench.core.objects.kinds`, and the heads that were released.
 
     Body +Z points away from the skin, the body origin is the shape's centre. `size_mm` is the
     largest width. Prisms stand on their end and are as high as wide.

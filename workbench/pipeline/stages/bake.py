@@ -57,7 +57,7 @@ def bake(given: BakeInputs, *, monitor: Monitor) -> LightField:
 STAGE = Stage(
     name="bake",
     label="Light",
-    version=3,
+    version=4,
     place=4,
     lane="sim",
     run=bake,

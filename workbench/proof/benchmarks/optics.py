@@ -40,6 +40,7 @@ BAKES_S = {
     LightModel("linear"): 5.0,
     LightModel("plane_target"): 5.0,
     LightModel("plane_source"): 5.0,
+    LightModel("plane_normal"): 5.0,
     LightModel("geodesic"): 10.0,
     LightModel("direct"): 5.0,
 }

@@ -32,7 +32,7 @@ def bake(lights: Lights, monitor: Monitor) -> Baked:
 
 
 MODEL = Model(
-    place=4,
+    place=5,
     hint="1/r², shadows and gloss, no scattered light; quick",
     shading=Shading.DIRECT,
     bake=bake,

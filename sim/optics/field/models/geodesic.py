@@ -25,7 +25,7 @@ def bake(lights: Lights, monitor: Monitor) -> Baked:
 
 
 MODEL = Model(
-    place=3,
+    place=4,
     hint="along the shortest way on the skin; the paper's geodesic field",
     shading=Shading.FIELD,
     bake=bake,

@@ -6,7 +6,7 @@ from sim.optics.field.gathered import gathered
 from sim.optics.field.model import Model, Shading
 
 MODEL = Model(
-    place=6,
+    place=7,
     hint="traced photons, with sharp shadows of each LED; the best quick images",
     shading=Shading.HYBRID,
     bake=gathered,

@@ -6,7 +6,7 @@ from sim.optics.field.gathered import gathered
 from sim.optics.field.model import Model, Shading
 
 MODEL = Model(
-    place=5,
+    place=6,
     hint="traced photons in a table over the skin's tilt; quickest images",
     shading=Shading.TABLE,
     bake=gathered,

@@ -40,6 +40,7 @@ MODELS = (
     LightModel("linear"),
     LightModel("plane_target"),
     LightModel("plane_source"),
+    LightModel("plane_normal"),
     LightModel("geodesic"),
 )
 BELOW_CEILING = {LightModel("hybrid"): 0.012, LightModel("table"): 0.02}

@@ -1,0 +1,1 @@
+"""Cameras and LEDs that can be bought: what their makers say of them, and where."""

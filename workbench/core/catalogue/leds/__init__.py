@@ -1,0 +1,1 @@
+"""LEDs, one file each: its name chooses it, `LED` says the rest."""

@@ -1,0 +1,1 @@
+"""The paper's fourteen indenters as released, one file each; `released_` stands before its name."""

@@ -1,0 +1,1 @@
+"""Our bodies beside those that were released with the paper."""
