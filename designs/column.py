@@ -161,6 +161,14 @@ def column_body(column: Column, *, what: str) -> Any:
     return expect_volume(body, column.volume_mm3, what=what)
 
 
+def dome_faces(column: Column) -> tuple[list[Any], list[Any]]:
+    """The four faces of a straight column's tip, and the four edges of the ring below them."""
+    from build123d import Pos
+
+    ring = [_ring_edge(column, quarter) for quarter in range(4)]
+    return _patches(column)[4:], [Pos(0, 0, column.length_mm) * edge for edge in ring]
+
+
 def _quarter(number: int) -> tuple[np.ndarray, np.ndarray]:
     """Control points (3, 2) and weights of a quarter of the unit circle; seams at 45 degrees."""
     start = math.pi / 2 * number - math.pi / 4
