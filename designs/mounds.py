@@ -116,9 +116,10 @@ class Dome:
 
     @property
     def outline_mm(self) -> np.ndarray:
-        """Places around its foot, shape (AROUND, 2)."""
+        """Places around its foot, shape (AROUND, 3)."""
         turn = np.linspace(0.0, 2.0 * np.pi, AROUND, endpoint=False)
-        return self.place_mm + np.column_stack([np.cos(turn), np.sin(turn)]) * self.half_mm
+        plan = self.place_mm + np.column_stack([np.cos(turn), np.sin(turn)]) * self.half_mm
+        return np.column_stack([plan, np.full(AROUND, self.from_mm)])
 
     def distance(self, points_mm: np.ndarray) -> np.ndarray:
         """Signed distance to the whole ellipsoid, first order, shape (N,)."""

@@ -49,7 +49,6 @@ straight lines between its heel lobes, whose place a fillet takes; claws.
 
 from __future__ import annotations
 
-import itertools
 import math
 from dataclasses import dataclass, replace
 from typing import Any
@@ -198,8 +197,7 @@ def _check_gaps(shape: PawShape, outline: Arcs, heel: Block) -> None:
     edges = [toe.outline_mm for toe in toes]
     gaps = {
         "shape.toe_spread_deg": min(
-            float(np.linalg.norm(a[:, None] - b[None], axis=2).min())
-            for a, b in itertools.pairwise(edges)
+            float(toe.distance(edge).min()) for toe, edge in zip(toes, edges[1:], strict=False)
         ),
         "shape.toe_ring_mm": float(min(heel.arcs.distance(edge).min() for edge in edges)),
         "shape.margin_mm": -shape.rim_mm

@@ -22,18 +22,18 @@ class PawShape:
         21.0, (14.0, 50.0, 0.5), "mm", "Height", "From the base to the flat", "SimTac mesh"
     )
     margin_mm: float = slider(
-        3.4, (1.5, 8.0, 0.1), "mm", "Margin", "Of the body round beads and heel pad", "SimTac mesh"
+        3.4, (2.0, 7.0, 0.1), "mm", "Margin", "Of the body round beads and heel pad", "SimTac mesh"
     )
     rim_mm: float = slider(
-        2.0, (0.5, 4.0, 0.1), "mm", "Rim radius", "Rounding of the body's rim", "SimTac mesh"
+        2.0, (0.5, 3.0, 0.1), "mm", "Rim radius", "Rounding of the body's rim", "SimTac mesh"
     )
     valley_mm: float = slider(
-        0.6, (0.4, 4.0, 0.1), "mm", "Valley radius", "Fillet between lobes of the body"
+        0.6, (0.4, 3.0, 0.1), "mm", "Valley radius", "Fillet between lobes of the body"
     )
     toe_count: float = slider(4.0, (2.0, 5.0, 1.0), "", "Toes", "Number of toes", "SimTac mesh")
     toe_ring_mm: float = slider(
         9.8,
-        (6.0, 20.0, 0.1),
+        (8.0, 18.0, 0.1),
         "mm",
         "Toe ring",
         "Distance of toe beads from the axis",
@@ -41,35 +41,35 @@ class PawShape:
     )
     toe_spread_deg: float = slider(
         147.0,
-        (60.0, 170.0, 1.0),
+        (90.0, 165.0, 1.0),
         "degree",
         "Toe spread",
         "From the first to the last",
         "SimTac mesh",
     )
     toe_width_mm: float = slider(
-        6.0, (3.0, 12.0, 0.1), "mm", "Toe width", "Of a toe bead, along X", "SimTac mesh"
+        6.0, (4.0, 10.0, 0.1), "mm", "Toe width", "Of a toe bead, along X", "SimTac mesh"
     )
     toe_length_mm: float = slider(
-        8.4, (3.0, 14.0, 0.1), "mm", "Toe length", "Of a toe bead, along Y", "SimTac mesh"
+        8.4, (4.0, 12.0, 0.1), "mm", "Toe length", "Of a toe bead, along Y", "SimTac mesh"
     )
     toe_pad_mm: float = slider(
-        3.0, (0.5, 5.0, 0.1), "mm", "Toe height", "How far toe beads stand out", "SimTac mesh"
+        3.0, (0.5, 4.0, 0.1), "mm", "Toe height", "How far toe beads stand out", "SimTac mesh"
     )
     heel_mm: float = slider(
-        4.9, (2.5, 9.0, 0.1), "mm", "Heel radius", "Of the two hind lobes", "SimTac mesh"
+        4.9, (3.0, 8.0, 0.1), "mm", "Heel radius", "Of the two hind lobes", "SimTac mesh"
     )
     heel_apart_mm: float = slider(
-        9.4, (5.0, 20.0, 0.1), "mm", "Heel lobes apart", "Between the hind lobes", "SimTac mesh"
+        9.4, (6.0, 16.0, 0.1), "mm", "Heel lobes apart", "Between the hind lobes", "SimTac mesh"
     )
     heel_back_mm: float = slider(
-        6.6, (3.0, 14.0, 0.1), "mm", "Heel back", "Of the hind lobes behind the axis", "SimTac mesh"
+        6.6, (4.0, 12.0, 0.1), "mm", "Heel back", "Of the hind lobes behind the axis", "SimTac mesh"
     )
     heel_front_mm: float = slider(
-        4.2, (2.0, 8.0, 0.1), "mm", "Heel front", "Radius of the front lobe", "SimTac mesh"
+        4.2, (3.0, 7.0, 0.1), "mm", "Heel front", "Radius of the front lobe", "SimTac mesh"
     )
     heel_pad_mm: float = slider(
-        2.0, (0.5, 4.0, 0.1), "mm", "Heel height", "How far the heel pad stands out", "SimTac mesh"
+        2.0, (0.5, 3.0, 0.1), "mm", "Heel height", "How far the heel pad stands out", "SimTac mesh"
     )
     base_height_mm: float = slider(
         8.0, (2.0, 40.0, 0.5), "mm", "Foot height", "Rigid foot that carries camera and LEDs"
