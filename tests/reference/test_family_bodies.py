@@ -26,7 +26,7 @@ from workbench.core.result.results import Label
 SHARP = {"width_mm": 50.0, "depth_mm": 24.0, "lobe_mm": 12.0, "lobe_ratio": 0.6, "rim_mm": 3.0}
 """A trunk whose ridges, of radius 0.88 mm, are sharper than its rim."""
 EDGED = {"rim_mm": 3.0, "margin_mm": 4.0, "toe_width_mm": 4.0, "toe_length_mm": 11.0}
-"""A paw whose core is so narrow in its toes that its own rim is sharp under the body's round one."""
+"""A paw whose core is so narrow in its toes that its rim is sharp under the body's."""
 BENT = Column(
     foot_mm=(13.0, 11.0), head_mm=(12.0, 8.0), length_mm=30.0, tip_mm=9.0, bend_mm=(2.0, 6.0)
 )
