@@ -22,8 +22,8 @@ from typing import Any
 
 import numpy as np
 
-from designs.outline import QUARTER
 from designs.shells import sewn
+from geometry.body.outline import QUARTER
 from workbench.core.base.booleans import expect_volume
 from workbench.core.result.marks import Field
 
@@ -159,14 +159,6 @@ def column_body(column: Column, *, what: str) -> Any:
     ring = Wire([_ring_edge(column, quarter) for quarter in range(4)])
     body = sewn([*_patches(column), Face(ring)], what=what)
     return expect_volume(body, column.volume_mm3, what=what)
-
-
-def dome_faces(column: Column) -> tuple[list[Any], list[Any]]:
-    """The four faces of a straight column's tip, and the four edges of the ring below them."""
-    from build123d import Pos
-
-    ring = [_ring_edge(column, quarter) for quarter in range(4)]
-    return _patches(column)[4:], [Pos(0, 0, column.length_mm) * edge for edge in ring]
 
 
 def _quarter(number: int) -> tuple[np.ndarray, np.ndarray]:

@@ -1,9 +1,9 @@
 """What stands on a flat: prisms on arcs with a rounded rim, and half ellipsoids, face by face.
 
 A prism's sides are cylinders about the arcs' centres and its rim is of tori, so no fillet of the
-kernel is asked for; its volume is that of `designs/prisms.py`. A half ellipsoid is the tip of a
-column (`designs/column.py`), of volume 2/3 pi a b h. Several make one body when the flat that they
-stand on leaves out what is below them: `stacked`.
+kernel is asked for; its volume is that of `designs/prisms.py`. A half ellipsoid is of four rational
+patches, its volume 2/3 pi a b h. Several make one body when the flat that they stand on leaves out
+what is below them: `stacked`.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ from typing import Any
 import numpy as np
 
 from designs import distance
-from designs.arcs import Arcs
-from designs.column import Column, dome_faces
 from designs.prisms import rounded_prism_mm3
 from designs.shells import sewn
+from geometry.body.arcs import Arcs
+from geometry.body.outline import QUARTER
 from workbench.core.base.booleans import expect_volume
 from workbench.core.base.errors import GeometryError
 
@@ -133,14 +133,29 @@ class Dome:
 
     def faces(self) -> tuple[list[Any], Any]:
         """Its faces above the flat, and its outline on the flat as a wire."""
-        from build123d import Pos, Wire
+        from build123d import Edge, Face, Wire
 
-        column = Column(
-            foot_mm=self.half_mm, head_mm=self.half_mm, length_mm=1.0, tip_mm=self.rise_mm
-        )
-        roof, ring = dome_faces(column)
-        place = Pos(*self.place_mm, self.from_mm - column.length_mm)
-        return [place * face for face in roof], Wire([place * edge for edge in ring])
+        roof, ring = [], []
+        for number in range(4):
+            circle = _quarter(number) * self.half_mm
+            across = (1.0, QUARTER, 1.0)
+            # Control rows of a quarter ellipse upward: foot, corner over it, apex.
+            rows = [(1.0, 0.0, 1.0), (1.0, self.rise_mm, QUARTER), (0.0, self.rise_mm, 1.0)]
+            points = [
+                [(*(self.place_mm + share * spot), self.from_mm + height) for spot in circle]
+                for share, height, _ in rows
+            ]
+            weights = [[row[2] * weight for weight in across] for row in rows]
+            roof.append(Face.make_bezier_surface(points, weights))  # pyright: ignore[reportArgumentType]
+            ring.append(Edge.make_bezier(*points[0], weights=list(across)))
+        return roof, Wire(ring)
+
+
+def _quarter(number: int) -> np.ndarray:
+    """Control points of a quarter of the unit circle, shape (3, 2)."""
+    start = math.pi / 2 * number
+    ends = [np.array([math.cos(turn), math.sin(turn)]) for turn in (start, start + math.pi / 2)]
+    return np.array([ends[0], ends[0] + ends[1], ends[1]])
 
 
 def block_body(block: Block, *, what: str) -> Any:

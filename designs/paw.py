@@ -40,8 +40,8 @@
 
 Toe beads are half ellipsoids, the heel pad is a low prism whose rim is rounded all the way down.
 The body's outline is theirs moved outward by the margin, with ovals of arcs for the ellipses
-(`designs/arcs.py`); the core's is the body's moved inward by the wall. All of it is exact: planes,
-cylinders, tori, ellipsoids (`designs/mounds.py`).
+(`geometry/body/arcs.py`); the core's is the body's moved inward by the wall. All of it is exact:
+planes, cylinders, tori, ellipsoids (`designs/mounds.py`).
 
 Source of the defaults: measured on the released SimTac mesh of the paw (MIT). Leaves out: the V of
 straight lines between its heel lobes, whose place a fillet takes; claws.
@@ -55,12 +55,12 @@ from typing import Any
 
 import numpy as np
 
-from designs.arcs import Arcs, Lobe
 from designs.bodies import WALL_SHARE, Bodies, Fields
 from designs.mounds import Block, block_body, stacked
 from designs.paw_shape import PawShape, outlines
 from designs.prisms import elliptic_foot
 from designs.shells import hollow
+from geometry.body.arcs import Arcs, Lobe
 from workbench.core.base.errors import DesignError
 from workbench.core.design.design import Layers
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from designs.arcs import Arcs, Lobe, around
 from designs.mounds import Block, Dome
 from designs.sliders import slider
+from geometry.body.arcs import Arcs, Lobe, around
 from workbench.core.base.errors import DesignError
 
 

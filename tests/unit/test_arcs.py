@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import shapely
 
-from designs.arcs import Arcs, Lobe, around
+from geometry.body.arcs import Arcs, Lobe, around
 
 
 def polygon(arcs: Arcs) -> shapely.Polygon:
