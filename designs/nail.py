@@ -4,7 +4,8 @@
             y0 - flank (z0 - z))
 
 is a field that arches across and goes up along a straight line, with flanks that fall off beside it
-and below its lower end z0. The line runs out of the back near the top, so that end is open.
+and below its lower end z0. The line begins a depth before the back, or more where a back that is
+hollow along its height would come through, and runs out of it above: that end is open.
 
     volume = integral of max(0, Y - back) over x and z,   back the digit's own y there.
 
@@ -23,24 +24,23 @@ from designs.digit import Digit
 from workbench.core.base.booleans import cut, expect_volume, intersect
 from workbench.core.base.errors import DesignError, GeometryError
 
-ARCH = 0.088
-"""How far the field's middle lies behind its sides, over its width: SimTac mesh."""
+ARCH = 0.95
+"""How far the field's middle lies behind its sides, over the depth: SimTac mesh."""
 FLANK = 0.85
 """Slope of the flanks, y over x and z: SimTac mesh."""
 ENDS = 0.72
-"""Height above the root of the tip where the field runs out, over the tip's: SimTac mesh."""
+"""Height above the root of the tip where the field runs out at the latest, over the tip's: SimTac
+mesh."""
 FEW, MANY = (24, 48), (300, 600)
 """Cells across and along, to look at the nail and to integrate it: the latter good to 2e-4."""
-SUNK = np.linspace(0.0, 0.8, 33)
-"""Places along the middle, from the lower end to where it runs out."""
+PLACES = 41
+"""Places along the middle where the back is looked at."""
 LIMIT = 0.01
 """Tolerance of the nail's volume: the kernel integrates trimmed faces to some 1e-3 of it."""
 WALL_SHARE = 0.4
 """Least wall under the nail over the elastomer wall."""
 WIDE_SHARE = 0.5
 """Share of the corners that the field leaves out on either side."""
-SHALLOWEST_MM = 0.1
-"""Least depth along the middle [mm]: silicone shows no less."""
 LOWEST_MM = 2.0
 """Lowest end of the lower flank [mm]."""
 BEYOND_MM = 30.0
@@ -56,38 +56,38 @@ class Nail:
     """Height of the field's lower end."""
     width_mm: float
     depth_mm: float
-    """How far the middle of the lower end lies before the back."""
-
-    @property
-    def high_mm(self) -> float:
-        """Height where the field's middle runs out of the back."""
-        return self.digit.length_mm + ENDS * self.digit.tip_mm
+    """How far the middle of the lower end lies before the back, at least."""
 
     @property
     def line(self) -> tuple[float, float]:
         """y0 [mm] and rise of the field's middle."""
-        low, high = self.digit.back_mm(np.zeros(2), np.array([self.low_mm, self.high_mm])).tolist()
-        start = low + self.depth_mm
-        return start, (high - start) / (self.high_mm - self.low_mm)
+        end = self.digit.length_mm + ENDS * self.digit.tip_mm - self.low_mm
+        share = np.linspace(0.0, 1.0, PLACES)
+        back = self.digit.back_mm(0.0 * share, self.low_mm + end * share)
+        (low, high), over, away = back[[0, -1]].tolist(), back[1:-1], share[1:-1]
+        hollow = (over - low - (high - low) * away) / (1.0 - away)
+        depth = self.depth_mm + max(0.0, float(hollow.max()))
+        # Nowhere deeper than at its lower end: a rounded back lets it run out below the end.
+        rise = min(high - low - depth, float(((over - low) / away).min()))
+        return low + depth, rise / end
+
+    @property
+    def arch_mm(self) -> float:
+        """How far the field's middle lies behind its sides."""
+        return ARCH * self.depth_mm
 
     def before_mm(self, x_mm: np.ndarray, z_mm: np.ndarray) -> np.ndarray:
         """Y over x and z [mm]."""
         start, rise = self.line
         half, beside = self.width_mm / 2, np.abs(x_mm)
-        arch = ARCH * self.width_mm * np.minimum(beside / half, 1.0) ** 2
+        arch = self.arch_mm * np.minimum(beside / half, 1.0) ** 2
         field = start + rise * (z_mm - self.low_mm) + arch - FLANK * np.maximum(beside - half, 0.0)
         return np.minimum(field, start - FLANK * (self.low_mm - z_mm))
 
     @property
     def foot_mm(self) -> float:
         """Height at which the lower flank comes out of the back, at least."""
-        return self.low_mm - (self.depth_mm + ARCH * self.width_mm) / FLANK
-
-    @property
-    def least_mm(self) -> float:
-        """Least depth of the field's middle before the back, but for where it runs out [mm]."""
-        z = self.low_mm + SUNK * (self.high_mm - self.low_mm)
-        return float((self.before_mm(0.0 * z, z) - self.digit.back_mm(0.0 * z, z)).min())
+        return self.low_mm - (self.depth_mm + self.arch_mm) / FLANK
 
     def places_mm(self, cells: tuple[int, int] = FEW) -> tuple[np.ndarray, float]:
         """Places on the nail in even cells [mm], shape (N, 3), and the volume behind them [mm3]."""
@@ -116,8 +116,8 @@ class Nail:
         start, rise = self.line
         x, y, z = np.abs(points_mm[:, 0]), points_mm[:, 1], points_mm[:, 2]
         half = self.width_mm / 2
-        arch = ARCH * self.width_mm * np.minimum(x / half, 1.0) ** 2
-        bend = np.where(x < half, 2.0 * ARCH * self.width_mm * x / half**2, -FLANK)
+        arch = self.arch_mm * np.minimum(x / half, 1.0) ** 2
+        bend = np.where(x < half, 2.0 * self.arch_mm * x / half**2, -FLANK)
         field = start + rise * (z - self.low_mm) + arch - FLANK * np.maximum(x - half, 0.0)
         across = (y - field) / np.sqrt(1.0 + rise**2 + bend**2)
         below = (y - start + FLANK * (self.low_mm - z)) / np.hypot(1.0, FLANK)
@@ -145,20 +145,13 @@ def check_nail(nail: Nail, core: Digit, elastomer_mm: float) -> None:
             hint="lower shape.nail_mm or raise shape.length_mm",
             at="shape.nail_mm",
         )
-    if nail.least_mm < SHALLOWEST_MM:
-        raise DesignError(
-            f"the nail comes out of the back: it is {nail.least_mm:.2g} mm deep where least, not "
-            f"{SHALLOWEST_MM:g} mm",
-            hint="raise shape.nail_depth_mm, or lower shape.lean_deg",
-            at="shape.nail_depth_mm",
-        )
     wall_mm, limit_mm = nail.wall_mm(core), WALL_SHARE * elastomer_mm
     if wall_mm < limit_mm:
         raise DesignError(
             f"the nail leaves {wall_mm:.2g} mm of wall, less than {limit_mm:.2g} mm, "
             f"{WALL_SHARE:g} times the elastomer wall",
-            hint="lower shape.nail_depth_mm or shape.nail_width_mm, or raise layers.elastomer_mm",
-            at="shape.nail_depth_mm",
+            hint="lower shape.nail_ratio or shape.nail_width_mm, or raise layers.elastomer_mm",
+            at="shape.nail_ratio",
         )
 
 
@@ -173,8 +166,8 @@ def without_nail(body: Any, nail: Nail) -> Any:
     if abs(taken_mm3 - wanted_mm3) > LIMIT * wanted_mm3:
         raise GeometryError(
             f"the nail takes {taken_mm3:.4g} mm3 instead of {wanted_mm3:.4g} mm3",
-            hint="change shape.nail_depth_mm or shape.nail_mm a little",
-            at="shape.nail_depth_mm",
+            hint="change shape.nail_ratio or shape.nail_mm a little",
+            at="shape.nail_ratio",
         )
     return expect_volume(found, body.volume - wanted_mm3, what="nail", relative=1e-3)
 
@@ -187,7 +180,7 @@ def _tool(nail: Nail) -> Any:
     side = nail.digit.half_mm[0] + 1.0
     low, high = nail.low_mm - BEYOND_MM, nail.digit.top_mm + 1.0
     middle = start + rise * (low - nail.low_mm)
-    edge = middle + ARCH * nail.width_mm
+    edge = middle + nail.arch_mm
     end, back = edge - FLANK * (side - half), start - nail.digit.half_mm[1] - BEYOND_MM
     # A parabola through the field's ends has its control point as far beyond its middle.
     arch = Edge.make_bezier((half, edge, low), (0.0, 2 * middle - edge, low), (-half, edge, low))

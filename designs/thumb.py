@@ -28,10 +28,10 @@ between flanks, running out over the tip.
 | `tip_mm`         | height of the tip above that                                  |
 | `tip_lean_deg`   | how far the tip leans toward +Y                               |
 | `taper`          | depth at the root of the tip over that at the base            |
-| `tip_wall_mm`    | elastomer at the top of the tip                               |
+| `tip_more_mm`    | how much thicker the elastomer is at the top of the tip       |
 | `nail_mm`        | length of the nail below the root of the tip                  |
 | `nail_width_mm`  | width of the nail's field                                     |
-| `nail_depth_mm`  | how deep the field lies under the back at its lower end       |
+| `nail_ratio`     | depth of the nail at its lower end over the elastomer wall    |
 | `base_height_mm` | height of the foot                                            |
 | `base_lip_mm`    | how far the foot stands out beyond the skin                   |
 
@@ -82,24 +82,24 @@ TARGET_RISE = 0.35
 class ThumbShape:
     """The thumb's own parameters."""
 
-    width_mm: float = slider(27.0, (16.0, 40.0, 0.5), "mm", "Width", "Size along X", MESH)
+    width_mm: float = slider(27.0, (20.0, 40.0, 0.5), "mm", "Width", "Size along X", MESH)
     depth_mm: float = slider(
-        22.6, (14.0, 36.0, 0.1), "mm", "Depth", "Size along Y at the base", MESH
+        22.6, (18.0, 36.0, 0.1), "mm", "Depth", "Size along Y at the base", MESH
     )
     corner_mm: float = slider(
-        7.4, (3.0, 12.0, 0.1), "mm", "Corner radius", "Of the section, square to the lean", MESH
+        7.4, (3.0, 8.0, 0.1), "mm", "Corner radius", "Of the section, square to the lean", MESH
     )
     lean_deg: float = slider(
         22.0, (0.0, 25.0, 0.5), "degree", "Lean", "Toward the pad, from the base on", MESH
     )
     straight_mm: float = slider(
-        16.5, (2.0, 30.0, 0.5), "mm", "Straight part", "Height where the lean gives way", MESH
+        16.5, (2.0, 20.0, 0.5), "mm", "Straight part", "Height where the lean gives way", MESH
     )
     length_mm: float = slider(
-        30.0, (20.0, 60.0, 0.5), "mm", "Length", "From base to the root of the tip", MESH
+        30.0, (24.0, 60.0, 0.5), "mm", "Length", "From base to the root of the tip", MESH
     )
     tip_mm: float = slider(
-        13.7, (8.0, 24.0, 0.1), "mm", "Tip height", "Of the rounded end above that", MESH
+        13.7, (10.0, 24.0, 0.1), "mm", "Tip height", "Of the rounded end above that", MESH
     )
     tip_lean_deg: float = slider(
         -4.0, (-10.0, 15.0, 0.5), "degree", "Tip lean", "Of the tip, toward the pad", MESH
@@ -107,17 +107,17 @@ class ThumbShape:
     taper: float = slider(
         0.92, (0.8, 1.0, 0.01), "", "Taper", "Depth at the root of the tip over the base's", MESH
     )
-    tip_wall_mm: float = slider(
-        8.0, (1.0, 12.0, 0.5), "mm", "Tip wall", "Elastomer at the top of the tip", MESH
+    tip_more_mm: float = slider(
+        4.5, (0.0, 8.0, 0.5), "mm", "Thicker tip", "Elastomer at the top over that at the sides"
     )
     nail_mm: float = slider(
         8.0, (4.0, 14.0, 0.5), "mm", "Nail length", "From the root of the tip down the back", MESH
     )
     nail_width_mm: float = slider(
-        15.4, (6.0, 24.0, 0.1), "mm", "Nail width", "Of the nail's field", MESH
+        15.4, (6.0, 18.0, 0.1), "mm", "Nail width", "Of the nail's field", MESH
     )
-    nail_depth_mm: float = slider(
-        1.4, (0.2, 2.5, 0.1), "mm", "Nail depth", "Of its lower end under the back", MESH
+    nail_ratio: float = slider(
+        0.4, (0.1, 0.45, 0.01), "", "Nail depth", "At its lower end, over the elastomer wall", MESH
     )
     base_height_mm: float = slider(
         8.0, (2.0, 40.0, 0.5), "mm", "Foot height", "Rigid foot that carries camera and LEDs"
@@ -126,8 +126,8 @@ class ThumbShape:
         3.0, (0.0, 15.0, 0.5), "mm", "Foot lip", "How far the foot stands out beyond the skin"
     )
 
-    def digit(self, inset_mm: float, top_mm: float) -> Digit:
-        """The body, or what hollows it, less by an inset at its sides and another at the top."""
+    def digit(self, inset_mm: float) -> Digit:
+        """The body, or what hollows it, less by an inset and by more at the top."""
         lean, half = math.radians(self.lean_deg), (self.width_mm / 2, self.depth_mm / 2)
         corner = max(self.corner_mm - inset_mm, CORE_CORNER_MM)
         # Level sections of a leaning wall are thicker than the wall.
@@ -137,19 +137,18 @@ class ThumbShape:
             root_mm=(half[0] - inset_mm, self.taper * half[1] - inset_mm),
             straight_mm=self.straight_mm,
             length_mm=self.length_mm,
-            tip_mm=self.tip_mm - top_mm,
+            tip_mm=self.tip_mm - inset_mm - (self.tip_more_mm if inset_mm else 0.0),
             lean=math.tan(lean),
             tip_lean=math.tan(math.radians(self.tip_lean_deg)),
         )
 
-    @property
-    def nail(self) -> Nail:
-        """The nail on the body."""
+    def nail(self, elastomer_mm: float) -> Nail:
+        """The nail on the body, over a wall."""
         return Nail(
-            digit=self.digit(0.0, 0.0),
+            digit=self.digit(0.0),
             low_mm=self.length_mm - self.nail_mm,
             width_mm=self.nail_width_mm,
-            depth_mm=self.nail_depth_mm,
+            depth_mm=self.nail_ratio * elastomer_mm,
         )
 
 
@@ -169,7 +168,7 @@ class Thumb:
         """
         _check_sizes(shape)
         _check_room(shape, layers)
-        check_nail(shape.nail, _core(shape, layers), layers.elastomer_mm)
+        check_nail(shape.nail(layers.elastomer_mm), _core(shape, layers), layers.elastomer_mm)
 
     def soften(self, shape: ThumbShape) -> None:
         """There is no fillet to make smaller."""
@@ -178,7 +177,7 @@ class Thumb:
     def target(self, shape: ThumbShape, layers: Layers) -> tuple[float, float, float]:
         """On the pad, in the lower part of the tip."""
         z_mm = shape.length_mm + TARGET_RISE * shape.tip_mm
-        middle, _, half, _, _ = shape.digit(0.0, 0.0).sections(np.array([z_mm]))[0].tolist()
+        middle, _, half, _, _ = shape.digit(0.0).sections(np.array([z_mm]))[0].tolist()
         return 0.0, middle + half, z_mm
 
     def build(self, shape: ThumbShape, layers: Layers) -> Bodies:
@@ -189,8 +188,8 @@ class Thumb:
             GeometryError: If the CAD kernel returned something else than asked for.
         """
         self.check(shape, layers)
-        whole = digit_body(shape.digit(0.0, 0.0), what="outer body")
-        outer = without_nail(whole, shape.nail)
+        whole = digit_body(shape.digit(0.0), what="outer body")
+        outer = without_nail(whole, shape.nail(layers.elastomer_mm))
         core = digit_body(_core(shape, layers), what="core")
         return Bodies(
             membrane=hollow(outer, core, what="elastomer"),
@@ -203,7 +202,8 @@ class Thumb:
     def fields(self, shape: ThumbShape, layers: Layers) -> Fields:
         """Digits and the nail as signed distance fields."""
         self.check(shape, layers)
-        whole, nail, core = shape.digit(0.0, 0.0), shape.nail, _core(shape, layers)
+        whole, core = shape.digit(0.0), _core(shape, layers)
+        nail = shape.nail(layers.elastomer_mm)
 
         def outer(points_mm: np.ndarray) -> np.ndarray:
             return np.maximum(whole.distance(points_mm), -nail.distance(points_mm))
@@ -221,12 +221,11 @@ class Thumb:
 
 
 def _core(shape: ThumbShape, layers: Layers) -> Digit:
-    return shape.digit(layers.elastomer_mm, shape.tip_wall_mm)
+    return shape.digit(layers.elastomer_mm)
 
 
 def _cavity(shape: ThumbShape, layers: Layers) -> Digit:
-    support_mm = layers.support_mm
-    return shape.digit(layers.elastomer_mm + support_mm, shape.tip_wall_mm + support_mm)
+    return shape.digit(layers.elastomer_mm + layers.support_mm)
 
 
 def _check_sizes(shape: ThumbShape) -> None:
@@ -252,23 +251,15 @@ def _check_sizes(shape: ThumbShape) -> None:
 def _check_room(shape: ThumbShape, layers: Layers) -> None:
     """Refuse walls that leave no room inside, and tips that are blades."""
     both_mm = layers.elastomer_mm + layers.support_mm
-    if shape.tip_wall_mm < layers.elastomer_mm:
-        raise DesignError(
-            f"the wall at the top of the tip, {shape.tip_wall_mm:g} mm, is less than the elastomer "
-            f"wall, {layers.elastomer_mm:g} mm",
-            hint="raise shape.tip_wall_mm or lower layers.elastomer_mm",
-            at="shape.tip_wall_mm",
-        )
-    dome_mm = shape.tip_mm - shape.tip_wall_mm - layers.support_mm
-    if dome_mm < DOME_MM:
-        raise DesignError(
-            f"a tip of {shape.tip_mm:g} mm less {shape.tip_wall_mm:g} mm of wall and "
-            f"{layers.support_mm:g} mm of support leaves {dome_mm:.3g} mm of cavity, less than "
-            f"{DOME_MM:g} mm",
-            hint="lower shape.tip_wall_mm or layers.support_mm, or raise shape.tip_mm",
-            at="shape.tip_wall_mm",
-        )
     cavity = _cavity(shape, layers)
+    if cavity.tip_mm < DOME_MM:
+        raise DesignError(
+            f"a tip of {shape.tip_mm:g} mm less {both_mm:g} mm of support and elastomer wall and "
+            f"{shape.tip_more_mm:g} mm more leaves {cavity.tip_mm:.3g} mm of cavity, less than "
+            f"{DOME_MM:g} mm",
+            hint="lower shape.tip_more_mm or layers.elastomer_mm, or raise shape.tip_mm",
+            at="shape.tip_more_mm",
+        )
     room_mm = min(*cavity.half_mm, *cavity.root_mm)
     if room_mm < CAVITY_MM:
         raise DesignError(
@@ -278,7 +269,7 @@ def _check_room(shape: ThumbShape, layers: Layers) -> None:
             "shape.depth_mm or shape.taper",
             at="layers.elastomer_mm",
         )
-    for digit in (shape.digit(0.0, 0.0), _core(shape, layers), cavity):
+    for digit in (shape.digit(0.0), _core(shape, layers), cavity):
         share = float(digit.rows[2, 1, 3]) / digit.root_mm[1]
         if share < CROWN_SHARE:
             raise DesignError(
