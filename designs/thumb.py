@@ -74,8 +74,8 @@ CORE_CORNER_MM = 0.5
 CROWN_SHARE = 0.1
 """Least depth where the sides of the rise would meet the plane of the top, over that at the root of
 the tip: a tip with less is a blade."""
-TARGET_RISE = 0.35
-"""Height of the first press in the tip: higher its wall is thick, lower it is seen aslant."""
+TARGET_RISE = 0.55
+"""Height of the first press in the tip, over its own: lower the camera sees it aslant."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -93,7 +93,7 @@ class ThumbShape:
         22.0, (0.0, 25.0, 0.5), "degree", "Lean", "Toward the pad, from the base on", MESH
     )
     straight_mm: float = slider(
-        16.5, (2.0, 20.0, 0.5), "mm", "Straight part", "Height where the lean gives way", MESH
+        16.5, (2.0, 30.0, 0.5), "mm", "Straight part", "Height where the lean gives way", MESH
     )
     length_mm: float = slider(
         30.0, (24.0, 60.0, 0.5), "mm", "Length", "From base to the root of the tip", MESH
@@ -175,7 +175,7 @@ class Thumb:
         return None
 
     def target(self, shape: ThumbShape, layers: Layers) -> tuple[float, float, float]:
-        """On the pad, in the lower part of the tip."""
+        """On the pad, in the middle of the tip."""
         z_mm = shape.length_mm + TARGET_RISE * shape.tip_mm
         middle, _, half, _, _ = shape.digit(0.0).sections(np.array([z_mm]))[0].tolist()
         return 0.0, middle + half, z_mm

@@ -1,4 +1,4 @@
-"""Trunk, paw, thumb and tentacle: closed forms, features that must not be lost, marks."""
+"""Trunk and tentacle: closed forms, features that must not be lost, marks."""
 
 from __future__ import annotations
 
@@ -9,13 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from designs import saddle, suckers, tentacle, thumb, trunk
+from designs import saddle, suckers, tentacle, trunk
 from designs.column import Column, column_body, column_field
-from designs.family import family, resolve_shape
-from designs.paw_shape import PawShape, outlines
 from designs.prisms import rounded_prism_mm3
 from designs.tentacle import TentacleShape
-from designs.thumb import ThumbShape, nail_mm3
 from designs.trunk import TrunkShape
 from geometry.body.solid import tessellate
 from tests.families import expect_found_out, expect_refusal
@@ -25,8 +22,6 @@ from workbench.core.result.results import Label
 
 SHARP = {"width_mm": 50.0, "depth_mm": 24.0, "lobe_mm": 12.0, "lobe_ratio": 0.6, "rim_mm": 3.0}
 """A trunk whose ridges, of radius 0.88 mm, are sharper than its rim."""
-EDGED = {"rim_mm": 3.0, "margin_mm": 4.0, "toe_width_mm": 4.0, "toe_length_mm": 11.0}
-"""A paw whose core is so narrow in its toes that its rim is sharp under the body's."""
 BENT = Column(
     foot_mm=(13.0, 11.0), head_mm=(12.0, 8.0), length_mm=30.0, tip_mm=9.0, bend_mm=(2.0, 6.0)
 )
@@ -131,68 +126,9 @@ def test_published_trunk_is_34_by_26_by_50_mm(
     assert not np.any(driven & membrane.has(Label.INNER))
 
 
-def test_nail_takes_what_the_closed_form_says() -> None:
-    """Straight thumb: segment of the ellipse times the length, and half an ellipsoid's cap."""
-    shape, layers = ThumbShape(taper=1.0, bend_mm=0.0), Layers()
-    share = shape.nail_ratio * 2.0 / 11.0
-    segment = math.acos(1 - share) - (1 - share) * math.sqrt(2 * share - share**2)
-    cap = 13.0 * 11.0 * 12.0 * math.pi * share**2 * (3 - share) / 6
-    exact = 13.0 * 11.0 * segment * 10.0 + cap
-    assert nail_mm3(shape, layers) == pytest.approx(exact, rel=1e-12)
-    bodies = family("thumb").build(shape, layers)
-    removed = shape.column.volume_mm3 - bodies.outer.volume
-    # The kernel integrates the trimmed body to about 1e-6, that is 0.01 mm3 of some 60.
-    assert removed == pytest.approx(exact, rel=2e-3)
-
-
-def test_a_paw_is_its_block_its_beads_and_its_heel_pad() -> None:
-    """Beads 2/3 pi a b h each; the pad A h - (1 - pi/4) r^2 (P - 2 pi c r) with r = h = 2."""
-    shape = PawShape()
-    outline, heel = outlines(shape)
-    beads = 4 * 2 / 3 * math.pi * 3.0 * 4.2 * 3.0
-    assert sum(toe.volume_mm3 for toe in shape.toes) == pytest.approx(beads, rel=1e-12)
-    pad = rounded_prism_mm3(heel.arcs.area_mm2, heel.arcs.perimeter_mm, 2.0, 2.0)
-    block = rounded_prism_mm3(outline.area_mm2, outline.perimeter_mm, 21.0, 2.0)
-    body = family("paw").build(shape, Layers()).outer
-    # Planes, cylinders, tori and rational patches: the kernel integrates them to 1e-6.
-    assert body.volume == pytest.approx(block + beads + pad, rel=1e-6)
-    assert body.bounding_box().max.Z == pytest.approx(24.0, abs=1e-3)
-
-
-def test_paws_of_other_proportions_are_as_exact() -> None:
-    """Low round pads, and five toes in wide valleys: on the fields everywhere."""
-    low = {"toe_pad_mm": 1.0, "heel_pad_mm": 1.0, "toe_width_mm": 6.0, "toe_length_mm": 6.0}
-    many = {"toe_count": 5.0, "toe_spread_deg": 165.0, "toe_ring_mm": 12.0, "valley_mm": 2.0}
-    for values in (low, many, {}):
-        shape, layers = resolve_shape("paw", values), Layers()
-        fields = family("paw").fields(shape, layers)
-        bodies = family("paw").build(shape, layers)
-        for body, field in ((bodies.outer, fields.outer), (bodies.core, fields.core)):
-            points = tessellate(body).points_mm
-            points = points[points[:, 2] > 1e-3]
-            assert np.abs(field(points)).max() < 1e-9
-
-
-def test_the_wall_of_a_paw_is_thick_under_its_beads_and_even_elsewhere() -> None:
-    """From the core's flat 3 + 2 mm to a bead's top and 2 + 2 to the pad's; 2 mm at its sides."""
-    shape, layers = PawShape(), Layers()
-    fields = family("paw").fields(shape, layers)
-    x, y = shape.toes[0].place_mm
-    for place, wall_mm in (((x, y), 5.0), ((0.0, -4.0), 4.0), ((0.0, 8.0), 2.0)):
-        column = np.column_stack([np.tile(place, (6001, 1)), np.linspace(15.0, 25.0, 6001)])
-        in_wall = (fields.outer(column) < 0.0) & (fields.core(column) > 0.0)
-        # Steps of a 600th of a millimetre.
-        assert in_wall.sum() / 600.0 == pytest.approx(wall_mm, abs=0.005)
-    spots = np.column_stack(
-        [outlines(shape)[0].points_mm, np.full(len(outlines(shape)[0].points_mm), 9.0)]
-    )
-    assert fields.core(spots) == pytest.approx(2.0, abs=1e-9)
-
-
 @pytest.mark.parametrize(
     ("module", "name", "boolean", "feature", "says"),
     [
-        (thumb, "thumb", "cut", "nail", "nail"),
         (tentacle, "tentacle", "fuse", "sucker", "rim of sucker 1"),
         (suckers, "tentacle", "cut", "cup", "rim of sucker 1"),
         (saddle, "trunk", "cut", "saddle", "saddle: expected"),
@@ -221,31 +157,6 @@ def test_one_lost_sucker_is_named() -> None:
     [
         ("trunk", {"depth_mm": 20.0}, {"elastomer_mm": 5.5}, "layers.elastomer_mm"),
         ("trunk", SHARP, {"elastomer_mm": 0.8, "support_mm": 0.4}, "shape.rim_mm"),
-        ("paw", {"toe_count": 3.5}, {}, "shape.toe_count"),
-        ("paw", {"toe_pad_mm": 4.0, "toe_width_mm": 5.0}, {}, "shape.toe_pad_mm"),
-        (
-            "paw",
-            {"toe_width_mm": 4.0, "toe_length_mm": 12.0, "margin_mm": 2.5},
-            {},
-            "shape.toe_length_mm",
-        ),
-        ("paw", {"heel_pad_mm": 3.0, "heel_front_mm": 3.0}, {}, "shape.heel_pad_mm"),
-        ("paw", {"rim_mm": 3.0, "margin_mm": 3.0}, {}, "shape.rim_mm"),
-        ("paw", EDGED, {"elastomer_mm": 0.8}, "shape.rim_mm"),
-        ("paw", {"toe_width_mm": 9.0}, {}, "shape.toe_spread_deg"),
-        ("paw", {"toe_count": 2.0, "toe_spread_deg": 160.0}, {}, "shape.toe_spread_deg"),
-        ("paw", {"heel_front_mm": 7.0}, {}, "shape.toe_ring_mm"),
-        ("paw", {"heel_apart_mm": 16.0, "heel_mm": 3.0}, {}, "shape.heel_apart_mm"),
-        ("paw", {"toe_width_mm": 5.0, "toe_length_mm": 11.0, "rim_mm": 3.0}, {}, "shape.margin_mm"),
-        ("paw", {}, {"elastomer_mm": 5.5, "support_mm": 4.0}, "layers.elastomer_mm"),
-        (
-            "paw",
-            {"height_mm": 14.0},
-            {"elastomer_mm": 6.0, "support_mm": 5.0},
-            "layers.elastomer_mm",
-        ),
-        ("thumb", {"tip_mm": 8.0}, {"elastomer_mm": 5.0}, "layers.elastomer_mm"),
-        ("thumb", {"taper": 0.75, "bend_mm": 0.0, "length_mm": 16.0}, {}, "shape.nail_ratio"),
         ("tentacle", {"tip_radius_mm": 15.0}, {}, "shape.tip_radius_mm"),
         ("tentacle", {"sucker_count": 6.0}, {}, "shape.sucker_count"),
         ("tentacle", {"sucker_count": 2.5}, {}, "shape.sucker_count"),
