@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,7 +14,7 @@ from designs.paw_shape import PawShape, outlines
 from designs.prisms import rounded_prism_mm3
 from geometry.body.solid import tessellate
 from tests.families import expect_refusal
-from workbench.core.design.design import Layers
+from workbench.core.design.design import Layers, SensorDesign
 
 EDGED = {"rim_mm": 3.0, "margin_mm": 4.0, "toe_width_mm": 4.0, "toe_length_mm": 11.0}
 """A paw whose core is so narrow in its toes that its rim is sharp under the body's."""
@@ -60,6 +62,21 @@ def test_the_wall_of_a_paw_is_thick_under_its_beads_and_even_elsewhere() -> None
         [outlines(shape)[0].points_mm, np.full(len(outlines(shape)[0].points_mm), 9.0)]
     )
     assert fields.core(spots) == pytest.approx(2.0, abs=1e-9)
+
+
+def test_beads_are_layered_where_rays_from_the_axis_pass_them_by(
+    made: Callable[[SensorDesign, str], Any],
+) -> None:
+    """At 0.4 mm: hexahedra of the body's volume, up to the tops of the beads."""
+    hexes = made(SensorDesign(family="paw"), "mesh").hexes
+    assert hexes is not None
+    solid = made(SensorDesign(family="paw"), "build")
+    # Chords of 0.4 mm, and one row of cells on the upright foot of each bead.
+    assert hexes.volume_mm3 == pytest.approx(solid.volume_mm3, rel=0.005)
+    assert hexes.quality.min() > 0.3
+    for toe in PawShape().toes:
+        aside = np.linalg.norm(hexes.points_mm[:, :2] - toe.place_mm, axis=1)
+        assert hexes.points_mm[aside < 0.6, 2].max() == pytest.approx(24.0, abs=0.05)
 
 
 @pytest.mark.parametrize(
