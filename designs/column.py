@@ -22,8 +22,8 @@ from typing import Any
 
 import numpy as np
 
-from designs.outline import QUARTER
 from designs.shells import sewn
+from geometry.body.outline import QUARTER
 from workbench.core.base.booleans import expect_volume
 from workbench.core.result.marks import Field
 

@@ -38,8 +38,8 @@ from typing import Any
 import numpy as np
 
 from designs.bodies import Bodies, Fields
-from designs.outline import upright_and_dome
 from designs.sliders import slider
+from geometry.body.outline import upright_and_dome
 from workbench.core.base.booleans import cut, expect_volume
 from workbench.core.base.errors import DesignError
 from workbench.core.design.design import Layers

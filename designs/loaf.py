@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from designs.outline import upright_and_dome
+from geometry.body.outline import upright_and_dome
 from workbench.core.base.booleans import expect_volume, fuse
 
 

@@ -17,7 +17,7 @@ from geometry.surface.surface import face_areas
 from geometry.surface.transfer import node_regions
 from geometry.volume.hexquality import hex_volumes, scaled_jacobian
 from geometry.volume.relax import relaxed
-from geometry.volume.sheets import Sheets, cap_sheets
+from geometry.volume.sheets import Sheets, cap_sheets, offset_sheets
 from geometry.volume.skins import (
     cavity_skin,
     labelled_faces,
@@ -86,14 +86,31 @@ def mesh_membrane(solid: Solid, meshing: Meshing, monitor: Monitor = silent) -> 
 
 
 def _hexahedra(solid: Solid, meshing: Meshing, monitor: Monitor) -> tuple[VolumeMesh, Skin, Skin]:
-    """Hexahedra with their outer and inner skin.
+    """Hexahedra with their outer and inner skin, by the first kind of sheets that does.
 
     Raises:
         MeshingError: If the shape cannot be divided so.
     """
+    if is_slab(solid.membrane):
+        return _between(slab_sheets(solid.membrane, meshing.hex_mm), solid, meshing, monitor)
+    try:
+        return _between(cap_sheets(solid.membrane, meshing.hex_mm), solid, meshing, monitor)
+    except MeshingError as problem:
+        try:
+            return _between(offset_sheets(solid.membrane, meshing.hex_mm), solid, meshing, monitor)
+        except MeshingError:
+            raise problem from None
+
+
+def _between(
+    sheets: Sheets, solid: Solid, meshing: Meshing, monitor: Monitor
+) -> tuple[VolumeMesh, Skin, Skin]:
+    """Hexahedra between two sheets, with their outer and inner skin.
+
+    Raises:
+        MeshingError: If the sheets miss part of the body, or a cell is inverted.
+    """
     membrane = solid.membrane
-    sheets_of = slab_sheets if is_slab(membrane) else cap_sheets
-    sheets = sheets_of(membrane, meshing.hex_mm)
     chord = _chord_share(membrane, meshing.hex_mm)
     _expect_cover(sheets.inside, sheets.quads, part_of(membrane, Label.INNER), chord)
     if sheets.rim is Label.BASE:

@@ -10,7 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.volume.ogrid import axis_of, on_base, ray_grid
+from geometry.surface.surface import vertex_normals
+from geometry.volume.curved import CurvedSurface
+from geometry.volume.ogrid import LIFT_MM, RayGrid, axis_of, on_base, ray_grid
 from geometry.volume.skins import curved_region, labelled_faces
 from workbench.core.result.results import Label, LabelledSurface
 
@@ -37,13 +39,43 @@ def cap_sheets(membrane: LabelledSurface, spacing_mm: float) -> Sheets:
     Raises:
         MeshingError: If a ray misses a face.
     """
+    grid, inside, outer = _inner_sheet(membrane, spacing_mm)
+    outside = outer.points(grid.origins, grid.directions)
+    return _cap(grid, inside, outside)
+
+
+def offset_sheets(membrane: LabelledSurface, spacing_mm: float) -> Sheets:
+    """Sheets of a cap whose outer nodes lie along the inner face's normals.
+
+    Rays from the axis pass by what stands steeply on a flat top (a paw's beads), these do not.
+
+    Raises:
+        MeshingError: If a ray misses a face.
+    """
+    grid, inside, outer = _inner_sheet(membrane, spacing_mm)
+    normals = vertex_normals(inside, np.concatenate([grid.quads[:, :3], grid.quads[:, [0, 2, 3]]]))
+    start = inside.copy()
+    start[grid.ring, 2] = LIFT_MM
+    normals[grid.ring, 2] = 0.0
+    normals[grid.ring] /= np.linalg.norm(normals[grid.ring], axis=1, keepdims=True)
+    return _cap(grid, inside, outer.points(start, normals))
+
+
+def _inner_sheet(
+    membrane: LabelledSurface, spacing_mm: float
+) -> tuple[RayGrid, np.ndarray, CurvedSurface]:
+    """Rays of a cap, where they meet the inner face, and the outer face."""
     outer = curved_region(membrane, Label.OUTER)
     inner = curved_region(membrane, Label.INNER)
     inner_points = membrane.points_mm[labelled_faces(membrane, Label.INNER)].reshape(-1, 3)
     grid = ray_grid(outer, axis_of(inner_points), spacing_mm)
+    return grid, on_base(inner.points(grid.origins, grid.directions), grid), outer
+
+
+def _cap(grid: RayGrid, inside: np.ndarray, outside: np.ndarray) -> Sheets:
     return Sheets(
-        inside=on_base(inner.points(grid.origins, grid.directions), grid),
-        outside=on_base(outer.points(grid.origins, grid.directions), grid),
+        inside=inside,
+        outside=on_base(outside, grid),
         quads=grid.quads,
         ring=grid.ring,
         rim=Label.BASE,

@@ -1,4 +1,4 @@
-"""Trunk, paw, thumb and tentacle: closed forms, features that must not be lost, marks."""
+"""Trunk and tentacle: closed forms, features that must not be lost, marks."""
 
 from __future__ import annotations
 
@@ -9,14 +9,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from designs import paw, saddle, suckers, tentacle, thumb, trunk
+from designs import saddle, suckers, tentacle, trunk
 from designs.column import Column, column_body, column_field
-from designs.family import family
-from designs.paw import PawShape
 from designs.prisms import rounded_prism_mm3
 from designs.tentacle import TentacleShape
-from designs.thumb import ThumbShape, nail_mm3
 from designs.trunk import TrunkShape
+from geometry.body.solid import tessellate
 from tests.families import expect_found_out, expect_refusal
 from workbench.core.base.errors import GeometryError
 from workbench.core.design.design import Layers, SensorDesign
@@ -43,8 +41,6 @@ def test_straight_column_is_a_capped_cylinder() -> None:
 
 def test_column_field_vanishes_on_the_kernels_surface_with_slope_one() -> None:
     """f = 0 and |grad f| = 1 at every vertex above the base."""
-    from geometry.body.solid import tessellate
-
     points = tessellate(column_body(BENT, what="column")).points_mm
     points = points[points[:, 2] > 1e-3]
     field = column_field(BENT)
@@ -130,39 +126,11 @@ def test_published_trunk_is_34_by_26_by_50_mm(
     assert not np.any(driven & membrane.has(Label.INNER))
 
 
-def test_nail_takes_what_the_closed_form_says() -> None:
-    """Straight thumb: segment of the ellipse times the length, and half an ellipsoid's cap."""
-    shape, layers = ThumbShape(taper=1.0, bend_mm=0.0), Layers()
-    share = shape.nail_ratio * 2.0 / 11.0
-    segment = math.acos(1 - share) - (1 - share) * math.sqrt(2 * share - share**2)
-    cap = 13.0 * 11.0 * 12.0 * math.pi * share**2 * (3 - share) / 6
-    exact = 13.0 * 11.0 * segment * 10.0 + cap
-    assert nail_mm3(shape, layers) == pytest.approx(exact, rel=1e-12)
-    bodies = family("thumb").build(shape, layers)
-    removed = shape.column.volume_mm3 - bodies.outer.volume
-    # The kernel integrates the trimmed body to about 1e-6, that is 0.01 mm3 of some 60.
-    assert removed == pytest.approx(exact, rel=2e-3)
-
-
-def test_pads_add_what_the_closed_form_says() -> None:
-    """Four caps pi h (3 a^2 + h^2) / 6 and a drawn-out one stand on the top."""
-    shape = PawShape()
-    caps = 4 * math.pi * 2.0 * (3 * 9.0 + 4.0) / 6
-    ball = (4.5**2 + 4.0) / 4.0
-    segment = ball**2 * math.acos((ball - 2.0) / ball) - (ball - 2.0) * 4.5
-    large = math.pi * 2.0 * (3 * 4.5**2 + 4.0) / 6 + 4.5 * segment
-    assert shape.pads.volume_mm3 == pytest.approx(caps + large, rel=1e-12)
-    top = family("paw").build(shape, Layers()).outer.bounding_box().max.Z
-    assert top == pytest.approx(26.0, abs=1e-3)
-
-
 @pytest.mark.parametrize(
     ("module", "name", "boolean", "feature", "says"),
     [
-        (thumb, "thumb", "cut", "nail", "nail"),
         (tentacle, "tentacle", "fuse", "sucker", "rim of sucker 1"),
         (suckers, "tentacle", "cut", "cup", "rim of sucker 1"),
-        (paw, "paw", "fuse", "pads", "pads: expected"),
         (saddle, "trunk", "cut", "saddle", "saddle: expected"),
     ],
 )
@@ -189,17 +157,6 @@ def test_one_lost_sucker_is_named() -> None:
     [
         ("trunk", {"depth_mm": 20.0}, {"elastomer_mm": 5.5}, "layers.elastomer_mm"),
         ("trunk", SHARP, {"elastomer_mm": 0.8, "support_mm": 0.4}, "shape.rim_mm"),
-        ("paw", {"pad_mm": 4.0}, {}, "shape.pad_mm"),
-        ("paw", {"toe_pad_mm": 5.0, "radius_mm": 11.0}, {}, "shape.toe_pad_mm"),
-        ("paw", {"large_pad_mm": 8.0}, {}, "shape.large_pad_mm"),
-        (
-            "paw",
-            {"radius_mm": 11.0},
-            {"elastomer_mm": 5.5, "support_mm": 4.0},
-            "layers.elastomer_mm",
-        ),
-        ("thumb", {"tip_mm": 8.0}, {"elastomer_mm": 5.0}, "layers.elastomer_mm"),
-        ("thumb", {"taper": 0.75, "bend_mm": 0.0, "length_mm": 16.0}, {}, "shape.nail_ratio"),
         ("tentacle", {"tip_radius_mm": 15.0}, {}, "shape.tip_radius_mm"),
         ("tentacle", {"sucker_count": 6.0}, {}, "shape.sucker_count"),
         ("tentacle", {"sucker_count": 2.5}, {}, "shape.sucker_count"),

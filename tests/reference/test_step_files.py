@@ -63,7 +63,7 @@ def test_a_loaf_of_any_dome_reads_back(dome_mm: float) -> None:
 def test_a_surface_of_revolution_of_an_ellipse_is_caught() -> None:
     """Half an ellipsoid of 201.06 mm3, revolved as an ellipse: what the kernel gets wrong.
 
-    If a later kernel gets it right, `designs.outline` may draw ellipses again.
+    If a later kernel gets it right, `geometry.body.outline` may draw ellipses again.
     """
     body = _spun_ellipse(4.0, 6.0)
     assert body.volume == pytest.approx(2.0 / 3.0 * math.pi * 16.0 * 6.0)

@@ -93,11 +93,11 @@ PAW_DENTS = (
         name="edge",
         kind=DentKind.EDGE,
         from_mm=(0, 0, 10),
-        toward=(0.6, -0.3, 0.8),
+        toward=(0.15, -0.35, 0.95),
         depth_mm=1.1,
     ),
 )
-"""On the shipped paw: the sphere on its side, the edge on its sole."""
+"""On the shipped paw: the sphere on a toe's side, the edge on the heel pad."""
 
 
 def dented(skin: Skin, dent: Dent) -> np.ndarray:
