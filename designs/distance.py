@@ -13,7 +13,9 @@ def ellipse(points_mm: np.ndarray, half_x_mm: float, half_y_mm: float) -> np.nda
     x, y = points_mm[:, 0] / half_x_mm, points_mm[:, 1] / half_y_mm
     norm = np.sqrt(x * x + y * y)
     slope = np.hypot(x / half_x_mm, y / half_y_mm)
-    return norm * (norm - 1.0) / np.maximum(slope, 1e-9)
+    # In the very middle both vanish: there half the narrower axis is as far as any.
+    scale = np.where(slope > 1e-9, norm / np.maximum(slope, 1e-9), min(half_x_mm, half_y_mm))
+    return scale * (norm - 1.0)
 
 
 def rounded_both(

@@ -14,16 +14,18 @@ from designs.column import Column, column_body, column_field
 from designs.family import family
 from designs.paw import PawShape
 from designs.prisms import rounded_prism_mm3
+from designs.saddle import saddle_field
 from designs.tentacle import TentacleShape
 from designs.thumb import ThumbShape, nail_mm3
 from designs.trunk import TrunkShape
+from geometry.surface.surface import face_areas
 from tests.families import expect_found_out, expect_refusal
 from workbench.core.base.errors import GeometryError
 from workbench.core.design.design import Layers, SensorDesign
 from workbench.core.result.results import Label
 
-SHARP = {"width_mm": 50.0, "depth_mm": 24.0, "lobe_mm": 12.0, "lobe_ratio": 0.6, "rim_mm": 3.0}
-"""A trunk whose ridges, of radius 0.88 mm, are sharper than its rim."""
+ROUND = {"width_mm": 50.0, "depth_mm": 30.0, "lobe_mm": 2.0, "rim_mm": 4.0}
+"""A trunk whose rim takes much of the corner over a thin wall."""
 BENT = Column(
     foot_mm=(13.0, 11.0), head_mm=(12.0, 8.0), length_mm=30.0, tip_mm=9.0, bend_mm=(2.0, 6.0)
 )
@@ -79,14 +81,16 @@ def test_wall_share_of_a_column_is_that_of_its_slope() -> None:
         assert wall / 0.1 == pytest.approx(exact, rel=0.02)
 
 
-def test_a_rim_on_a_square_edge_leaves_what_the_closed_form_says() -> None:
-    """Flat trunk: sqrt(2) t - (sqrt(2) - 1) (R - r) over the core's rim."""
-    shape, layers = TrunkShape(lobe_mm=0.0, depth_mm=20.0, rim_mm=3.0), Layers(elastomer_mm=1.0)
-    core_mm = 0.3 * 9.0**2 / 16.0
-    exact = math.sqrt(2.0) - (math.sqrt(2.0) - 1.0) * (3.0 - core_mm)
-    assert exact < 0.85
-    # Between its axes the inset ellipse is not quite parallel: 1 % of the wall of 1 mm.
-    assert trunk.least_wall_mm(shape, layers) == pytest.approx(exact, abs=0.015)
+def test_a_rim_over_a_core_leaves_what_the_closed_form_says() -> None:
+    """At the ends of a low saddle it is sqrt(2) t - (sqrt(2) - 1) (R - r).
+
+    There the roof is level and its corner with the side square; toward the lobes more is left.
+    """
+    shape, layers = TrunkShape(**ROUND), Layers(elastomer_mm=0.5)
+    core_mm = 0.3 * 14.5**2 / 24.5
+    exact = 0.5 * math.sqrt(2.0) - (math.sqrt(2.0) - 1.0) * (4.0 - core_mm)
+    assert exact < 0.12
+    assert trunk.least_wall_mm(shape, layers) == pytest.approx(exact, abs=0.005)
 
 
 def test_rounded_prism_volume() -> None:
@@ -99,34 +103,59 @@ def test_rounded_prism_volume() -> None:
     assert found == pytest.approx(exact, rel=1e-12)
 
 
-def test_trunk_without_lobes_is_an_elliptic_prism() -> None:
-    """V = pi a b h with lobe 0; a lobe adds its mean over the ellipse, checked by a fine sum."""
-    flat = TrunkShape(lobe_mm=0.0)
-    assert flat.saddle.sharp_mm3 == pytest.approx(math.pi * 17.0 * 13.0 * 30.0, rel=1e-12)
-    y = np.linspace(-13.0, 13.0, 200001)
-    shape = TrunkShape()
-    fine = np.trapezoid(shape.saddle.roof_mm(y) * 34.0 * np.sqrt(1.0 - (y / 13.0) ** 2), y)
-    assert shape.saddle.sharp_mm3 == pytest.approx(float(fine), rel=1e-6)
+def test_a_trunk_with_low_lobes_is_an_elliptic_prism() -> None:
+    """V = pi a b h as the lobes vanish; lobes add their mean over the ellipse, by a fine sum."""
+    flat = TrunkShape(lobe_mm=1e-6).saddle
+    assert flat.sharp_mm3 == pytest.approx(math.pi * 17.5 * 15.0 * 28.75, rel=1e-6)
+    y = np.linspace(-15.0, 15.0, 200001)
+    saddle = TrunkShape().saddle
+    fine = np.trapezoid(saddle.roof_mm(y) * 35.0 * np.sqrt(1.0 - (y / 15.0) ** 2), y)
+    assert saddle.sharp_mm3 == pytest.approx(float(fine), rel=1e-6)
 
 
-def test_published_trunk_is_34_by_26_by_50_mm(
+def test_saddle_and_rim_touch_side_and_each_other() -> None:
+    """R = (13.125^2 + 6.25^2) / 12.5 - 1.875 = 15.031 mm; the field is 0 on both arcs at x = 0."""
+    saddle = TrunkShape().saddle
+    assert saddle.arc_mm == pytest.approx(15.03125, abs=1e-9)
+    field = saddle_field(saddle)
+    peak, arc, rim = 13.125, saddle.arc_mm, 1.875
+    flank = math.atan2(peak, arc + rim - 6.25 + 0.0)
+    turn = np.linspace(-flank, flank, 41) * 0.999
+    trough = np.column_stack([0 * turn, arc * np.sin(turn), 28.75 + arc - arc * np.cos(turn)])
+    assert np.abs(field(trough)).max() < 1e-9
+    # The rim goes from the upright side over the crest down to the saddle.
+    turn = np.linspace(0.0, math.pi / 2 + flank, 41) * 0.999
+    crest = np.column_stack([0 * turn, peak + rim * np.cos(turn), 33.125 + rim * np.sin(turn)])
+    assert np.abs(field(crest)).max() < 1e-6
+    assert field(np.array([[0.0, peak, 36.0]]))[0] == pytest.approx(1.0, abs=1e-6)
+
+
+def test_published_trunk_is_35_by_30_by_50_mm(
     made: Callable[[SensorDesign, str], Any],
 ) -> None:
-    """With its foot of 14 mm; both lobes are marked, equal in area, above half their height."""
+    """With its foot of 15 mm; top and back of both lobes are marked, equal on both sides."""
     solid = made(SensorDesign(family="trunk", layers=Layers(elastomer_mm=2.5)), "build")
     points = np.concatenate([solid.membrane.points_mm, solid.base.points_mm])
     # Chords of 0.02 mm and 0.05 mm.
-    assert np.ptp(points, axis=0) == pytest.approx([34.0, 26.0, 50.0], abs=0.05)
+    assert np.ptp(points, axis=0) == pytest.approx([35.0, 30.0, 50.0], abs=0.05)
     membrane = solid.membrane
     corners = membrane.points_mm[membrane.faces]
-    area = 0.5 * np.linalg.norm(
-        np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1
-    )
+    area = face_areas(membrane.points_mm, membrane.faces)
     driven = membrane.has(Label.ACTUATOR)
-    first, second = (area[driven & (membrane.numbers == number)].sum() for number in (0, 1))
+    areas = [area[driven & (membrane.numbers == number)].sum() for number in range(4)]
     # The tessellation is not symmetric: chords of 0.1 rad are good to 1e-3.
-    assert first == pytest.approx(second, rel=5e-3)
-    assert corners[driven][:, :, 2].min() == pytest.approx(33.0, abs=1e-3)
+    assert areas[0] == pytest.approx(areas[1], rel=5e-3)
+    assert areas[2] == pytest.approx(areas[3], rel=5e-3)
+    # Down to the height of the core's top, and two thirds of the width, as on the released mesh.
+    assert corners[driven][:, :, 2].min() == pytest.approx(28.75 - 2.5, abs=1e-3)
+    assert np.abs(corners[driven & (membrane.numbers >= 2)][:, :, 0]).max() == pytest.approx(
+        0.67 * 17.5, abs=1e-3
+    )
+    # Backs end where the tops begin, at half the height of the lobes, and look outward.
+    backs = driven & (membrane.numbers >= 2)
+    assert corners[backs][:, :, 2].max() == pytest.approx(28.75 + 3.125, abs=1e-3)
+    assert corners[driven & ~backs][:, :, 2].min() == pytest.approx(28.75 + 3.125, abs=1e-3)
+    assert np.abs(corners[backs][:, :, 1]).min() > 8.0
     assert not np.any(driven & membrane.has(Label.INNER))
 
 
@@ -188,7 +217,9 @@ def test_one_lost_sucker_is_named() -> None:
     ("name", "shape", "layers", "at"),
     [
         ("trunk", {"depth_mm": 20.0}, {"elastomer_mm": 5.5}, "layers.elastomer_mm"),
-        ("trunk", SHARP, {"elastomer_mm": 0.8, "support_mm": 0.4}, "shape.rim_mm"),
+        ("trunk", ROUND, {"elastomer_mm": 0.5}, "shape.rim_mm"),
+        ("trunk", {"lobe_mm": 9.0, "depth_mm": 24.0}, {}, "shape.lobe_mm"),
+        ("trunk", {"width_mm": 50.0, "depth_mm": 20.0, "rim_mm": 2.0}, {}, "shape.rim_mm"),
         ("paw", {"pad_mm": 4.0}, {}, "shape.pad_mm"),
         ("paw", {"toe_pad_mm": 5.0, "radius_mm": 11.0}, {}, "shape.toe_pad_mm"),
         ("paw", {"large_pad_mm": 8.0}, {}, "shape.large_pad_mm"),
