@@ -160,7 +160,8 @@ def test_the_backs_of_the_lobes_follow_their_drives(grip: tuple[MembraneMesh, Co
         chosen = chosen[facing[chosen]]
         wanted_mm = drive.displacement_mm(outer.points_mm[chosen], closed + 1.0)
         off_mm = np.linalg.norm(contact.displacement_mm[closed, chosen] - wanted_mm, axis=1)
-        assert len(chosen) > 50
+        # Tops of two lobes and their backs, on cells of 0.8 mm.
+        assert len(chosen) > 30
         assert off_mm.mean() < 0.15
         # The lobes themselves closed toward each other.
         assert contact.least_volume_ratio[closed] > 0.5
