@@ -59,10 +59,16 @@ class Arm:
         half_x, half_y = self.half_mm
         return half_y * np.sqrt(np.maximum(1.0 - np.square(x_mm / half_x), 0.0))
 
+    def beyond_mm(self, points_mm: np.ndarray) -> np.ndarray:
+        """Distance of points from the plane of the end, away from the arm [mm], shape (N,)."""
+        # The plane holds the bend's axis.
+        aside = points_mm[:, 1] - self.bend_radius_mm
+        return math.cos(self.turn) * points_mm[:, 2] + math.sin(self.turn) * aside
+
     def least_wall_mm(self, wall_mm: float) -> float:
         """Thinnest place between the arm's side and that of its inset [mm]."""
         turn = np.linspace(0.0, np.pi, AROUND)
-        inner = np.subtract(self.half_mm, wall_mm)
+        inner = np.array(self.half_mm) - wall_mm
         section = inner * np.column_stack([np.cos(turn), np.sin(turn)])
         return float(-distance.ellipse(section, *self.half_mm).max())
 
@@ -70,7 +76,7 @@ class Arm:
         """Corners of the box around it [mm], shape (3,) each."""
         angles = np.linspace(0.0, self.turn, AROUND)
         half_x, half_y = self.half_mm
-        spots = [self.place_mm(a, u, x) for a in angles for u in (-half_y, half_y) for x in (0.0,)]
+        spots = [self.place_mm(a, out) for a in angles.tolist() for out in (-half_y, half_y)]
         low, high = np.min(spots, axis=0), np.max(spots, axis=0)
         low[0], high[0] = -half_x, half_x
         return low, high
@@ -100,12 +106,11 @@ def arm_body(arm: Arm, *, what: str) -> Any:
 
 def arm_field(arm: Arm) -> Field:
     """Signed distance to an arm above z = 0, first order at its side."""
-    rise, run = math.cos(arm.turn), math.sin(arm.turn)
 
     def field(points_mm: np.ndarray) -> np.ndarray:
-        aside, z = points_mm[:, 1] - arm.bend_radius_mm, points_mm[:, 2]
-        out = np.hypot(aside, z) - arm.bend_radius_mm
+        from_axis_mm = np.hypot(points_mm[:, 1] - arm.bend_radius_mm, points_mm[:, 2])
+        out = from_axis_mm - arm.bend_radius_mm
         side = distance.ellipse(np.column_stack([points_mm[:, 0], out]), *arm.half_mm)
-        return np.maximum(side, rise * z + run * aside)
+        return np.maximum(side, arm.beyond_mm(points_mm))
 
     return field

@@ -1,4 +1,4 @@
-"""Suckers along a bent arm: cylinders toward and away from the bend's axis, with a cup in their end.
+"""Suckers along a bent arm: cylinders that point away from the bend's axis, with a cup in the end.
 
 They stand in one or two rows on the side away from the axis. What a sucker adds is a quadrature of
 its length over the arm's side, so the volume of the whole is known; and because a small one could
@@ -7,6 +7,7 @@ be missed by that, each is looked for by the flat faces of its rim and of its cu
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from typing import Any, NamedTuple
@@ -16,7 +17,12 @@ import numpy as np
 from designs import distance
 from designs.arm import Arm
 from workbench.core.base.booleans import cut
-from workbench.core.base.errors import GeometryError
+from workbench.core.base.errors import DesignError, GeometryError
+
+BETWEEN_MM = 0.5
+"""Smallest gap between suckers, and from a sucker to base, end and side of the arm [mm]."""
+LEAST_WALL_MM = 0.4
+"""Thinnest wall of a sucker beside its cup [mm]."""
 
 
 class Sucker(NamedTuple):
@@ -47,8 +53,10 @@ class Sucker(NamedTuple):
 
     def gap_mm(self, other: Sucker) -> float:
         """Room between two suckers [mm], the least of that at the roots and at the rims."""
-        apart = [other.place_mm(o.out_mm) - self.place_mm(self.out_mm) for o in (other,)]
-        apart.append(other.centre_mm - self.centre_mm)
+        apart = [
+            other.centre_mm - self.centre_mm,
+            other.place_mm(other.out_mm) - self.place_mm(self.out_mm),
+        ]
         return min(float(np.linalg.norm(a)) for a in apart) - self.radius_mm - other.radius_mm
 
 
@@ -91,6 +99,41 @@ def suckers_along(arm: Arm, row: Row, places_mm: Sequence[float]) -> list[Sucker
                 )
             )
     return found
+
+
+def check_suckers(arm: Arm, suckers: Sequence[Sucker]) -> None:
+    """Refuse suckers that touch or stand over an edge of the arm, and whose wall is too thin.
+
+    Raises:
+        DesignError: Naming the field, its value and its limit.
+    """
+    first, last = suckers[0], suckers[-1]
+    thinnest_mm = first.radius_mm - first.cup_radius_mm
+    if first.cup_mm and thinnest_mm < LEAST_WALL_MM:
+        raise DesignError(
+            f"a sucker's wall is {thinnest_mm:.2g} mm beside its cup, less than "
+            f"{LEAST_WALL_MM:g} mm",
+            hint="lower shape.cup_ratio or raise shape.sucker_radius_mm",
+            at="shape.cup_ratio",
+        )
+    beside_mm = arm.half_mm[0] - abs(float(first.centre_mm[0])) - first.radius_mm
+    if beside_mm < BETWEEN_MM:
+        raise DesignError(
+            f"suckers reach to {beside_mm:.3g} mm from the arm's side, at least {BETWEEN_MM:g} mm "
+            "must be left",
+            hint="lower shape.sucker_radius_mm or shape.row_mm, or raise shape.width_mm",
+            at="shape.sucker_radius_mm",
+        )
+    gaps = [first.lowest_mm, -float(arm.beyond_mm(last.centre_mm[None])[0]) - last.radius_mm]
+    gaps += [one.gap_mm(two) for one, two in itertools.combinations(suckers, 2)]
+    if min(gaps) < BETWEEN_MM:
+        raise DesignError(
+            f"the suckers stand {min(gaps):.2g} mm apart or from the arm's ends, less than "
+            f"{BETWEEN_MM:g} mm",
+            hint="lower shape.sucker_count or shape.sucker_radius_mm, or fit shape.pitch_deg and "
+            "shape.row_mm to them",
+            at="shape.sucker_count",
+        )
 
 
 def sucker_mm3(arm: Arm, sucker: Sucker) -> float:

@@ -40,7 +40,6 @@ muscle ring inside a sucker, screw holes in the foot.
 
 from __future__ import annotations
 
-import itertools
 import math
 from dataclasses import dataclass
 from typing import Any
@@ -55,6 +54,7 @@ from designs.sliders import slider
 from designs.suckers import (
     Row,
     Sucker,
+    check_suckers,
     expect_suckers,
     sucker_body,
     sucker_distance,
@@ -69,10 +69,6 @@ CAVITY_MM = 4.0
 """Smallest half width of the cavity: room for a small camera and LEDs [mm]."""
 HOLLOW_MM = 4.0
 """Smallest radius of the bend's inner side [mm]."""
-BETWEEN_MM = 0.5
-"""Smallest gap between suckers, and from a sucker to base, end and side of the arm [mm]."""
-LEAST_WALL_MM = 0.4
-"""Thinnest wall of a sucker beside its cup [mm]."""
 VOLUME_ERROR = 1e-4
 """The kernel integrates the trimmed side to some 1e-5."""
 SIMTAC = "measured on the released SimTac mesh of the tentacle"
@@ -172,16 +168,16 @@ class Tentacle:
                     hint=f"choose {round(count)}",
                     at=f"shape.{name}",
                 )
-        _check_suckers(shape)
+        check_suckers(shape.arm, shape.suckers)
 
     def soften(self, shape: TentacleShape) -> None:
         """There is no fillet to make smaller."""
         return None
 
     def target(self, shape: TentacleShape, layers: Layers) -> tuple[float, float, float]:
-        """The end of the sucker that is nearest to the arm's end: the camera looks toward it."""
-        last = shape.suckers[-round(shape.rows)]
-        x, y, z = last.place_mm(last.out_mm - last.cup_mm).tolist()
+        """The end of the lowest sucker at +X: of all ends the camera sees it from nearest."""
+        first = shape.suckers[0]
+        x, y, z = first.place_mm(first.out_mm - first.cup_mm).tolist()
         return x, y, z
 
     def build(self, shape: TentacleShape, layers: Layers) -> Bodies:
@@ -273,41 +269,6 @@ def _check_walls(shape: TentacleShape, layers: Layers) -> None:
             f"{2 * CAVITY_MM:g} mm",
             hint="raise shape.turn_deg or shape.bend_radius_mm, or lower the layers",
             at="shape.turn_deg",
-        )
-
-
-def _check_suckers(shape: TentacleShape) -> None:
-    """Refuse suckers that touch or stand over an edge, and whose wall is too thin."""
-    thinnest_mm = shape.sucker_radius_mm * (1.0 - shape.cup_ratio)
-    if shape.cup_depth and thinnest_mm < LEAST_WALL_MM:
-        raise DesignError(
-            f"a sucker's wall is {thinnest_mm:.2g} mm beside its cup, less than "
-            f"{LEAST_WALL_MM:g} mm",
-            hint="lower shape.cup_ratio or raise shape.sucker_radius_mm",
-            at="shape.cup_ratio",
-        )
-    beside_mm = shape.width_mm / 2 - shape.places_mm[0] - shape.sucker_radius_mm
-    if beside_mm < BETWEEN_MM:
-        raise DesignError(
-            f"suckers reach to {beside_mm:.3g} mm from the arm's side, at least {BETWEEN_MM:g} mm "
-            "must be left",
-            hint="lower shape.sucker_radius_mm or shape.row_mm, or raise shape.width_mm",
-            at="shape.sucker_radius_mm",
-        )
-    suckers, turn = shape.suckers, shape.arm.turn
-    last = suckers[-1]
-    # The end lies across the arm: its plane holds the bend's axis.
-    place = last.centre_mm - [0.0, shape.bend_radius_mm, 0.0]
-    to_end_mm = -(math.cos(turn) * place[2] + math.sin(turn) * place[1]) - last.radius_mm
-    gaps = [suckers[0].lowest_mm, float(to_end_mm)]
-    gaps += [one.gap_mm(two) for one, two in itertools.combinations(suckers, 2)]
-    if min(gaps) < BETWEEN_MM:
-        raise DesignError(
-            f"the suckers stand {min(gaps):.2g} mm apart or from the arm's ends, less than "
-            f"{BETWEEN_MM:g} mm",
-            hint="lower shape.sucker_count or shape.sucker_radius_mm, or fit shape.pitch_deg and "
-            "shape.row_mm to them",
-            at="shape.sucker_count",
         )
 
 
