@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from designs import paw, saddle, suckers, tentacle, thumb, trunk
+from designs.arm import arm_body, arm_field
 from designs.column import Column, column_body, column_field
 from designs.family import family
 from designs.paw import PawShape
@@ -26,6 +27,8 @@ from workbench.core.result.results import Label
 
 ROUND = {"width_mm": 50.0, "depth_mm": 30.0, "lobe_mm": 2.0, "rim_mm": 4.0}
 """A trunk whose rim takes much of the corner over a thin wall."""
+CUPS = {"cup_depth": 0.6}
+"""A tentacle whose suckers are cupped."""
 BENT = Column(
     foot_mm=(13.0, 11.0), head_mm=(12.0, 8.0), length_mm=30.0, tip_mm=9.0, bend_mm=(2.0, 6.0)
 )
@@ -186,31 +189,72 @@ def test_pads_add_what_the_closed_form_says() -> None:
 
 
 @pytest.mark.parametrize(
-    ("module", "name", "boolean", "feature", "says"),
+    ("module", "design", "boolean", "feature", "says"),
     [
         (thumb, "thumb", "cut", "nail", "nail"),
         (tentacle, "tentacle", "fuse", "sucker", "rim of sucker 1"),
-        (suckers, "tentacle", "cut", "cup", "rim of sucker 1"),
+        (suckers, ("tentacle", CUPS), "cut", "cup", "rim of sucker 1"),
         (paw, "paw", "fuse", "pads", "pads: expected"),
         (saddle, "trunk", "cut", "saddle", "saddle: expected"),
     ],
 )
 def test_a_kernel_that_returns_the_uncut_body_is_found_out(
-    monkeypatch: pytest.MonkeyPatch, module: Any, name: str, boolean: str, feature: str, says: str
+    monkeypatch: pytest.MonkeyPatch, module: Any, design: Any, boolean: str, feature: str, says: str
 ) -> None:
     """The boolean's own checks are taken away too: the feature's check must still see it."""
-    expect_found_out(monkeypatch, name, Layers(), (module, boolean, feature), says)
+    expect_found_out(monkeypatch, design, Layers(), (module, boolean, feature), says)
 
 
 def test_one_lost_sucker_is_named() -> None:
     """A body without its second sucker fails as sucker 2."""
-    shape = TentacleShape()
+    shape = TentacleShape(rows=1.0, **CUPS)
     first, _, third = shape.suckers
-    body = column_body(shape.column, what="arm")
+    body = arm_body(shape.arm, what="arm")
     for sucker in (first, third):
         body = body + suckers.sucker_body(sucker)
     with pytest.raises(GeometryError, match="rim of sucker 2"):
         suckers.expect_suckers(body, shape.suckers)
+
+
+def test_a_bent_arm_has_the_volume_of_pappus() -> None:
+    """V = pi 18 13 40 rad(80) = 41057.5 mm3; inset by 3.2 its end is 3.2 mm thick or more."""
+    arm = TentacleShape().arm
+    exact = math.pi * 18.0 * 13.0 * 40.0 * math.radians(80.0)
+    assert arm.volume_mm3 == pytest.approx(exact, rel=1e-12)
+    assert arm_body(arm, what="arm").volume == pytest.approx(exact, rel=1e-7)
+    core = arm.inset(3.2)
+    nearest = core.place_mm(core.turn, -core.half_mm[1])
+    # Along the circle to the end's plane it is a little more than straight to it.
+    assert arm_field(arm)(nearest[None])[0] == pytest.approx(-3.2, rel=2e-3)
+
+
+def test_arm_field_vanishes_on_the_kernels_surface() -> None:
+    """f = 0 at every vertex above the base, side and end; 1 mm off the end it is 1."""
+    from geometry.body.solid import tessellate
+
+    arm = TentacleShape().arm
+    points = tessellate(arm_body(arm, what="arm")).points_mm
+    field = arm_field(arm)
+    assert np.abs(field(points[points[:, 2] > 1e-3])).max() < 1e-6
+    ridge, end = arm.place_mm(0.7, 14.0), arm.place_mm(arm.turn, 0.0)
+    ahead = np.array([0.0, math.sin(arm.turn), math.cos(arm.turn)])
+    # k (k - 1) / |grad k| with k = 14 / 13 is 1.08 mm: second order.
+    assert field(ridge[None])[0] == pytest.approx(1.0, abs=0.1)
+    assert field((end + ahead)[None])[0] == pytest.approx(1.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("cup_depth", [0.0, 0.6])
+def test_suckers_add_what_the_quadrature_says(cup_depth: float) -> None:
+    """Six cylinders over the bent side, each the same by symmetry, as the kernel has it to 1e-4."""
+    shape = TentacleShape(cup_depth=cup_depth)
+    parts = [suckers.sucker_mm3(shape.arm, sucker) for sucker in shape.suckers]
+    assert parts == pytest.approx([parts[0]] * 6, rel=1e-9)
+    outer = family("tentacle").build(shape, Layers()).outer
+    assert outer.volume - shape.arm.volume_mm3 == pytest.approx(sum(parts), rel=1e-3)
+    # Over the ridge of a nearly flat side a sucker is a whole cylinder.
+    flat = TentacleShape(rows=1.0, bend_radius_mm=1e5, width_mm=2e5).arm
+    alone = suckers.suckers_along(flat, suckers.Row(1, 0.0, 4.0, 5.0, 0.5, 0.0), (0.0,))[0]
+    assert suckers.sucker_mm3(flat, alone) == pytest.approx(math.pi * 16.0 * 5.0, rel=1e-4)
 
 
 @pytest.mark.parametrize(
@@ -231,17 +275,16 @@ def test_one_lost_sucker_is_named() -> None:
         ),
         ("thumb", {"tip_mm": 8.0}, {"elastomer_mm": 5.0}, "layers.elastomer_mm"),
         ("thumb", {"taper": 0.75, "bend_mm": 0.0, "length_mm": 16.0}, {}, "shape.nail_ratio"),
-        ("tentacle", {"tip_radius_mm": 15.0}, {}, "shape.tip_radius_mm"),
-        ("tentacle", {"sucker_count": 6.0}, {}, "shape.sucker_count"),
+        ("tentacle", {"bend_radius_mm": 20.0, "depth_mm": 34.0}, {}, "shape.bend_radius_mm"),
+        ("tentacle", {"sucker_count": 4.0}, {}, "shape.sucker_count"),
         ("tentacle", {"sucker_count": 2.5}, {}, "shape.sucker_count"),
-        ("tentacle", {"cup_ratio": 0.8, "sucker_ratio": 0.2}, {}, "shape.cup_ratio"),
-        (
-            "tentacle",
-            {"base_radius_mm": 24.0, "tip_radius_mm": 6.0, "length_mm": 20.0, "sucker_count": 1.0},
-            {},
-            "shape.length_mm",
-        ),
-        ("tentacle", {"tip_radius_mm": 5.0}, {"elastomer_mm": 3.0}, "layers.elastomer_mm"),
+        ("tentacle", {"rows": 1.5}, {}, "shape.rows"),
+        ("tentacle", {"row_mm": 16.0}, {}, "shape.sucker_count"),
+        ("tentacle", {"turn_deg": 66.0}, {}, "shape.sucker_count"),
+        ("tentacle", {"row_mm": 20.0}, {}, "shape.sucker_radius_mm"),
+        ("tentacle", {"cup_ratio": 0.8, "sucker_radius_mm": 1.5, **CUPS}, {}, "shape.cup_ratio"),
+        ("tentacle", {"depth_mm": 18.0}, {"elastomer_mm": 5.0}, "layers.elastomer_mm"),
+        ("tentacle", {"turn_deg": 15.0, "sucker_count": 1.0}, {}, "shape.turn_deg"),
     ],
 )
 def test_contradictions_are_refused_with_their_place(
