@@ -71,8 +71,8 @@ SOFTER = 0.75
 CORE_RIM_SHARE = 0.3
 """Most of the core's smallest bend that its rim radius may take."""
 CLOSE_DEG = 14.0
-"""How far the lobes close [degree]: 2 mm at the top of a lobe of 6 mm. Measured, least J: at 20
-degrees 0.76, 0.61 and 0.37 on grids of 1, 0.8 and 0.6 mm; on 1 mm 0.46 at 30 and 0.13 at 45."""
+"""How far the lobes close [degree]: 2.1 mm at the top of a lobe of 6.25 mm over a wall of 2.5 mm.
+Measured with the ball of the grip on its grid of 0.8 mm: least J 0.73."""
 HELD_SHARE = 1.5
 """Diameter of the held ball over the distance of the crests from the middle."""
 HELD_DEPTH_SHARE = 0.2

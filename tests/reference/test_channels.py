@@ -81,16 +81,16 @@ def test_every_pin_is_vented_in_the_middle_of_its_tip(digitac: Solid, draft_deg:
 
 
 def test_gate_and_vents_of_a_pad_stand_2_mm_inside_its_edge(pad: Solid) -> None:
-    """At (0, 10 - 2), (-12 + 2, 0), (0, -10 + 2) and (12 - 2, 0) of 24 x 20 mm."""
+    """At (0, 10 - 2), (-10 + 2, 0), (0, -10 + 2) and (10 - 2, 0) of 20 x 20 mm."""
     channels = make_channels(make_cast(pad, MouldOptions(shrink_percent=0.0)), 3)
     assert channels.gate_mm == pytest.approx([0.0, 8.0], abs=1e-6)
     assert channels.throat_mm == pytest.approx(0.9 * 2.0)
-    wanted = np.array([[-10.0, 0.0], [0.0, -8.0], [10.0, 0.0]])
+    wanted = np.array([[-8.0, 0.0], [0.0, -8.0], [8.0, 0.0]])
     assert channels.vents_mm == pytest.approx(wanted, abs=1e-6)
 
 
 def test_gate_and_vents_of_a_pad_move_as_little_as_its_outline(pad: Solid) -> None:
-    """1 % of shrinkage moves an outline of 12 x 10 mm by at most 0.16 mm, and them no more."""
+    """1 % of shrinkage moves an outline of 10 x 10 mm by at most 0.16 mm, and them no more."""
     one, other = (
         make_channels(make_cast(pad, MouldOptions(shrink_percent=percent)), 4)
         for percent in (0.0, 1.0)
