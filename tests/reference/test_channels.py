@@ -67,10 +67,10 @@ def test_air_in_a_groove_is_let_out_on_its_floor() -> None:
 
 @pytest.mark.parametrize("draft_deg", [0.0, 0.5, 3.0])
 def test_every_pin_is_vented_in_the_middle_of_its_tip(digitac: Solid, draft_deg: float) -> None:
-    """31 holes on the axes of 31 pins, which the draft moves toward the middle by tan(draft) h."""
+    """28 holes on the axes of 28 pins, which the draft moves toward the middle by tan(draft) h."""
     options = MouldOptions(shrink_percent=0.0, draft_deg=draft_deg)
     channels = make_channels(make_cast(digitac, options), 3)
-    assert len(digitac.tips_mm) == len(channels.pockets_mm) == 31
+    assert len(digitac.tips_mm) == len(channels.pockets_mm) == 28
     assert len(channels.trapped_mm) == 0
     apart = channels.pockets_mm[:, None, :2] - digitac.tips_mm[None, :, :2]
     off_mm = np.linalg.norm(apart, axis=2).min(axis=1)
