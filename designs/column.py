@@ -61,25 +61,6 @@ class Column:
         return min(*self.foot_mm, *self.head_mm, self.tip_mm)
 
     @property
-    def apex_mm(self) -> tuple[float, float, float]:
-        """Highest point [mm]."""
-        lean = 1.0 + 2.0 * self.tip_mm / self.length_mm
-        return (*(bend * lean for bend in self.bend_mm), self.length_mm + self.tip_mm)  # pyright: ignore[reportReturnType]
-
-    @property
-    def wall_share(self) -> float:
-        """Thinnest wall of a round column over its inset, along the normal.
-
-        A side of slope s leaves 1 / sqrt(1 + s^2): s changes evenly from that of the taper at the
-        base to that of the bend at the root of the tip. A sphere sheared by s leaves the shear's
-        least stretch (sqrt(s^2 + 4) - s) / 2.
-        """
-        narrowing = max(abs(a - b) for a, b in zip(self.foot_mm, self.head_mm, strict=True))
-        taper, bend = (2.0 * v / self.length_mm for v in (narrowing, math.hypot(*self.bend_mm)))
-        side = 1.0 / math.hypot(1.0, max(taper, bend))
-        return min(side, (math.hypot(bend, 2.0) - bend) / 2.0)
-
-    @property
     def volume_mm3(self) -> float:
         """Closed form of the module docstring [mm3]; the integral is Gauss's, exact here."""
         node, weight = np.polynomial.legendre.leggauss(4)
@@ -97,11 +78,6 @@ class Column:
         """Centre line [mm], shape (N, 2); straight on within the tip."""
         u = z_mm[:, None] / self.length_mm
         return np.array(self.bend_mm) * np.where(u < 1.0, u * u, 2.0 * u - 1.0)
-
-    def slopes(self, z_mm: np.ndarray) -> np.ndarray:
-        """Slope of the centre line dx/dz, dy/dz, shape (N, 2)."""
-        u = np.clip(z_mm / self.length_mm, 0.0, 1.0)[:, None]
-        return np.array(self.bend_mm) * 2.0 * u / self.length_mm
 
     def box_mm(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
         """Corners of the box around it [mm], by the extremes of its sections."""

@@ -60,30 +60,6 @@ def test_column_field_vanishes_on_the_kernels_surface_with_slope_one() -> None:
     assert np.linalg.norm(slope, axis=0) == pytest.approx(1.0, abs=1e-5)
 
 
-def test_wall_share_of_a_column_is_that_of_its_slope() -> None:
-    """Slope 2 (24 - 6) / 20 = 1.8 leaves 1 / sqrt(1 + 1.8^2) = 0.486; a tip sheared by 1.2, 0.566.
-
-    Both are measured on the fields too, the wall being the distance from core to outside.
-    """
-    for foot, head, bend, exact in ((24.0, 6.0, 0.0, 0.4856), (10.0, 10.0, 12.0, 0.5662)):
-        column = Column(
-            foot_mm=(foot, foot),
-            head_mm=(head, head),
-            length_mm=20.0,
-            tip_mm=head,
-            bend_mm=(0.0, bend),
-        )
-        assert column.wall_share == pytest.approx(exact, abs=1e-4)
-        core = column.inset(0.1)
-        z = np.concatenate([np.linspace(0.0, 20.0, 801), 20.0 + np.linspace(0.0, head - 0.1, 801)])
-        above = np.clip((z - 20.0) / (head - 0.1), 0.0, 1.0)
-        width = core.half_axes(z)[:, 1] * np.sqrt(1.0 - above**2)
-        sides = [np.column_stack([0.0 * z, core.centres(z)[:, 1] + s * width, z]) for s in (-1, 1)]
-        wall = -column_field(column)(np.concatenate(sides)).max()
-        # A wall of 0.1 mm on radii of 6 mm and more: first order is good to 2 %.
-        assert wall / 0.1 == pytest.approx(exact, rel=0.02)
-
-
 def test_a_rim_over_a_core_leaves_what_the_closed_form_says() -> None:
     """At the ends of a low saddle it is sqrt(2) t - (sqrt(2) - 1) (R - r).
 
