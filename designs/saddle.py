@@ -44,7 +44,7 @@ TOP_SHARE = 0.5
 SIDES = (1.0, -1.0)
 """Protrusions: at +Y and at -Y."""
 FLATTEST = 0.55
-"""Least cosine of the steepest slope of the roof: the kernel rounds no sharper edge."""
+"""Least cosine of the steepest slope of the roof: the kernel rounds few sharper edges."""
 BEND_SHARE = 0.45
 """Largest rim over the narrowest bend of the outline."""
 RIM_STEPS = 4
