@@ -15,6 +15,8 @@ A TacTip in the body of a DIGIT: the camera does not read shading but the motion
 |------------------|-----------------------------------------------------------------|
 | `width_mm`       | size across the loaf (X)                                        |
 | `length_mm`      | size along the loaf (Y)                                         |
+| `front_mm`       | length of the elliptic end at +Y                                |
+| `back_mm`        | length of the elliptic end at -Y                                |
 | `wall_mm`        | height of the upright part of the skin                          |
 | `dome_mm`        | height of the elliptic dome over it                             |
 | `pin_rows`       | pins across                                                     |
@@ -26,13 +28,14 @@ A TacTip in the body of a DIGIT: the camera does not read shading but the motion
 | `base_height_mm` | height of the foot                                              |
 | `base_lip_mm`    | how far the foot stands out beyond the skin                     |
 
-The loaf is half an ellipse, extruded along Y and revolved at both ends. Between skin and window is
-the gap, filled with gel of `material.backing_MPa` (0: air). Pins (`designs/pins.py`) are parallel
-to Z and not normal to the skin, so that the core pulls out of a cast. The window is the support of
-the other families.
+The loaf is half an ellipse, drawn along Y, with an elliptic end at either side. Between skin and
+window is the gap, filled with gel of `material.backing_MPa` (0: air). Pins (`designs/pins.py`) are
+parallel to Z and not normal to the skin, so that the core pulls out of a cast. The window is the
+support of the other families.
 
-Sources: DigiTac (Lepora and others, RA-L 2022): about 20 x 26 mm of skin on a DIGIT, pins of about
-1 mm on a regular grid with white tips. Counts, gap and clamp are our choice.
+Sources: outside, skin of 1 mm and pins measured on the released SimTac mesh (MIT), 19.5 x 26.4 x
+9.25 mm, one end round and one shorter; DigiTac (Lepora and others, RA-L 2022): pins of about 1 mm
+on a regular grid with white tips. Counts, gap and clamp are our choice.
 Leaves out: the hard rim of the printed skin, mushroom heads of pins.
 """
 
@@ -45,10 +48,10 @@ import numpy as np
 
 from designs.bodies import Bodies, Fields
 from designs.loaf import Loaf, loaf_body, loaf_shell
-from designs.pins import Pins, check_pins, expect_pins, pin_bodies, pin_field, pin_regions
+from designs.pins import CLEAR_MM, Pins, check_pins, expect_pins, pin_bodies, pin_field, pin_regions
 from designs.plates import bored_plate
 from designs.sliders import slider
-from workbench.core.base.booleans import cut, fuse
+from workbench.core.base.booleans import cut, fuse, intersect
 from workbench.core.base.errors import DesignError
 from workbench.core.design.design import Layers
 from workbench.core.result.marks import Marks, Region
@@ -56,8 +59,11 @@ from workbench.core.result.results import Label
 
 CAVITY_MM = 2.5
 """Smallest half width and height of the cavity under the window [mm]."""
+LEAST_END_MM = 0.3
+"""Shortest end of the cavity [mm]: shorter ones leave the kernel slivers."""
 ROOT_SHARE = 0.5
 """How deep a pin is rooted in the skin, over the skin's thickness."""
+SIMTAC = "measured on the released SimTac mesh of the DigiTac"
 DIGITAC = "DigiTac (Lepora and others, RA-L 2022)"
 
 
@@ -65,10 +71,16 @@ DIGITAC = "DigiTac (Lepora and others, RA-L 2022)"
 class DigitacShape:
     """The DigiTac's own parameters."""
 
-    width_mm: float = slider(20.0, (16.0, 40.0, 0.5), "mm", "Width", "Across the loaf", DIGITAC)
-    length_mm: float = slider(26.0, (18.0, 60.0, 0.5), "mm", "Length", "Along the loaf", DIGITAC)
-    wall_mm: float = slider(4.0, (2.0, 15.0, 0.25), "mm", "Upright part", "Below the dome")
-    dome_mm: float = slider(7.0, (5.0, 15.0, 0.25), "mm", "Dome", "Height of the curved part")
+    width_mm: float = slider(19.5, (16.0, 40.0, 0.5), "mm", "Width", "Across the loaf", SIMTAC)
+    length_mm: float = slider(26.4, (18.0, 60.0, 0.1), "mm", "Length", "Along the loaf", SIMTAC)
+    front_mm: float = slider(9.7, (4.0, 20.0, 0.1), "mm", "Front end", "Length at +Y", SIMTAC)
+    back_mm: float = slider(5.1, (4.0, 20.0, 0.1), "mm", "Back end", "Length at -Y", SIMTAC)
+    wall_mm: float = slider(
+        0.0, (0.0, 15.0, 0.25), "mm", "Upright part", "Below the dome; 0 for none", SIMTAC
+    )
+    dome_mm: float = slider(
+        9.25, (5.0, 15.0, 0.25), "mm", "Dome", "Height of the curved part", SIMTAC
+    )
     pin_rows: float = slider(5.0, (1.0, 9.0, 1.0), "", "Pin rows", "Pins across the loaf")
     pin_columns: float = slider(7.0, (1.0, 13.0, 1.0), "", "Pin columns", "Pins along the loaf")
     pin_radius_mm: float = slider(
@@ -96,10 +108,12 @@ class DigitacShape:
         return self.pin_length_mm + self.pin_gap_mm
 
     def loaf(self, inset_mm: float) -> Loaf:
-        """The loaf whose half width and dome are smaller by the inset."""
+        """The loaf whose half width, ends and dome are smaller by the inset."""
+        half_mm = self.length_mm / 2
         return Loaf(
             half_mm=self.width_mm / 2 - inset_mm,
-            straight_mm=self.length_mm - self.width_mm,
+            straight_mm=(self.back_mm - half_mm, half_mm - self.front_mm),
+            ends_mm=(self.back_mm - inset_mm, self.front_mm - inset_mm),
             wall_mm=self.wall_mm,
             dome_mm=self.dome_mm - inset_mm,
         )
@@ -132,10 +146,11 @@ class Digitac:
         Raises:
             DesignError: Naming the field, its value and its limit.
         """
-        if shape.length_mm < shape.width_mm:
+        ends_mm = shape.front_mm + shape.back_mm
+        if shape.length_mm < ends_mm:
             raise DesignError(
-                f"length {shape.length_mm:g} mm is less than the width {shape.width_mm:g} mm",
-                hint="raise shape.length_mm or lower shape.width_mm",
+                f"length {shape.length_mm:g} mm is less than both ends together, {ends_mm:g} mm",
+                hint="raise shape.length_mm, or lower shape.front_mm or shape.back_mm",
                 at="shape.length_mm",
             )
         for name in ("pin_rows", "pin_columns"):
@@ -147,22 +162,24 @@ class Digitac:
                     at=f"shape.{name}",
                 )
         _check_room(shape, layers)
-        if shape.clamp_mm > shape.wall_mm:
+        pins = shape.pins(layers)
+        check_pins(pins, shape.loaf(layers.elastomer_mm + shape.gap_mm))
+        lowest_mm = min(tip[2] for tip in pins.tips_mm)
+        if lowest_mm - shape.clamp_mm < CLEAR_MM:
             raise DesignError(
-                f"clamp {shape.clamp_mm:g} mm is higher than the upright part of "
-                f"{shape.wall_mm:g} mm",
+                f"clamp {shape.clamp_mm:g} mm is higher than the lowest pin, whose tip is at "
+                f"{lowest_mm:.2f} mm, less {CLEAR_MM:g} mm",
                 hint="lower shape.clamp_mm or raise shape.wall_mm",
                 at="shape.clamp_mm",
             )
-        check_pins(shape.pins(layers), shape.loaf(layers.elastomer_mm + shape.gap_mm))
 
     def soften(self, shape: DigitacShape) -> None:
         """There is no fillet to make smaller."""
         return None
 
     def target(self, shape: DigitacShape, layers: Layers) -> tuple[float, float, float]:
-        """The middle of the dome."""
-        return 0.0, 0.0, shape.wall_mm + shape.dome_mm
+        """The ridge over the camera."""
+        return 0.0, 0.0, float(shape.loaf(0.0).roof_mm(np.zeros((1, 2)))[0])
 
     def build(self, shape: DigitacShape, layers: Layers) -> Bodies:
         """Build the five bodies.
@@ -208,7 +225,7 @@ class Digitac:
             return -np.minimum(shell, ring)
 
         outside = shape.loaf(0.0)
-        half, long = outside.half_mm, outside.half_mm + outside.straight_mm / 2
+        half, long = outside.half_mm, shape.length_mm / 2
         return Fields(
             outer=outside.distance,
             core=core,
@@ -226,6 +243,8 @@ def _check_room(shape: DigitacShape, layers: Layers) -> None:
     inside_mm = layers.elastomer_mm + shape.gap_mm + layers.support_mm
     for what, whole_mm, least_mm, at in (
         ("half width", shape.width_mm / 2, CAVITY_MM, "shape.width_mm"),
+        ("front end", shape.front_mm, LEAST_END_MM, "shape.front_mm"),
+        ("back end", shape.back_mm, LEAST_END_MM, "shape.back_mm"),
         ("height", shape.wall_mm + shape.dome_mm, CAVITY_MM, "shape.dome_mm"),
         ("dome", shape.dome_mm, CAVITY_MM / 5, "shape.dome_mm"),
     ):
@@ -264,9 +283,9 @@ def _window(shape: DigitacShape, layers: Layers) -> Any:
         shape.loaf(skin_mm + gap_mm), shape.loaf(skin_mm + gap_mm + layers.support_mm)
     )
     inside, middle = shape.loaf(skin_mm), shape.loaf(skin_mm + gap_mm + layers.support_mm / 2)
-    ring = cut(
-        inside.prism(0.0, shape.clamp_mm), middle.prism(0.0, shape.clamp_mm), what="clamp ring"
-    )
+    # Wider than the loaf, whose side is upright where it begins.
+    slab = shape.loaf(-1.0).prism(0.0, shape.clamp_mm)
+    ring = intersect(loaf_shell(inside, middle), slab, what="clamp ring")
     return fuse(window, ring, what="clamp ring to the window")
 
 

@@ -13,21 +13,16 @@ def ellipse(points_mm: np.ndarray, half_x_mm: float, half_y_mm: float) -> np.nda
     x, y = points_mm[:, 0] / half_x_mm, points_mm[:, 1] / half_y_mm
     norm = np.sqrt(x * x + y * y)
     slope = np.hypot(x / half_x_mm, y / half_y_mm)
-    return norm * (norm - 1.0) / np.maximum(slope, 1e-9)
+    # In the very middle both vanish: there half the narrower axis is as far as any.
+    scale = np.where(slope > 1e-9, norm / np.maximum(slope, 1e-9), min(half_x_mm, half_y_mm))
+    return scale * (norm - 1.0)
 
 
-def rounded_both(
-    first: np.ndarray, second: np.ndarray, radius_mm: float, cosine: np.ndarray | float = 0.0
-) -> np.ndarray:
-    """What is inside both, with the edge between them rounded; exact between two planes.
-
-    With u and v the distances from the planes moved inward by r, and c the cosine between their
-    normals, a point beyond both feet has the distance sqrt((u^2 + v^2 - 2 c u v) / (1 - c^2)) - r.
-    """
+def rounded_both(first: np.ndarray, second: np.ndarray, radius_mm: float) -> np.ndarray:
+    """What is inside both, with the edge between them rounded; exact between two planes at right
+    angles: beyond both moved inward by r, the distance is that from where these meet, less r."""
     u, v = first + radius_mm, second + radius_mm
-    beyond = (u > cosine * v) & (v > cosine * u) & ((u > 0.0) | (v > 0.0))
-    square = (u**2 + v**2 - 2.0 * cosine * u * v) / np.maximum(1.0 - np.square(cosine), 1e-6)
-    return np.where(beyond, np.sqrt(np.maximum(square, 0.0)) - radius_mm, np.maximum(first, second))
+    return np.where((u > 0.0) & (v > 0.0), np.hypot(u, v) - radius_mm, np.maximum(first, second))
 
 
 def cylinder(

@@ -27,7 +27,8 @@ The dome is part of a sphere that meets the upright edges of the slab at `layers
 the gel is thinnest there. Its sides are free; only the underside is bonded.
 
 Sources: GelSight (Yuan and others, Sensors 2017): a gel slab on an acrylic plate with the camera
-behind it. Width and depth are our choice; they hold the 18.6 x 14.3 mm field of a GelSight Mini.
+behind it. The defaults are the flat block of the released SimTac GelSight, 20 x 20 x 4 mm (MIT),
+its upright edges rounded by half a millimetre for the mould.
 Leaves out: bevelled gel rims, tilted cameras and mirrors.
 """
 
@@ -56,13 +57,13 @@ GELSIGHT = "GelSight (Yuan and others, Sensors 2017)"
 class PadShape:
     """The pad's own parameters."""
 
-    width_mm: float = slider(24.0, (10.0, 60.0, 0.5), "mm", "Width", "Size along X")
+    width_mm: float = slider(20.0, (10.0, 60.0, 0.5), "mm", "Width", "Size along X")
     depth_mm: float = slider(20.0, (10.0, 60.0, 0.5), "mm", "Depth", "Size along Y")
     corner_mm: float = slider(
-        3.0, (1.0, 8.0, 0.25), "mm", "Corner radius", "Radius of the upright edges"
+        0.5, (0.25, 8.0, 0.25), "mm", "Corner radius", "Radius of the upright edges"
     )
     dome_mm: float = slider(
-        1.0, (0.0, 4.0, 0.1), "mm", "Dome", "Rise of the middle over the corners; 0 is flat"
+        0.0, (0.0, 4.0, 0.1), "mm", "Dome", "Rise of the middle over the corners; 0 is flat"
     )
     standoff_mm: float = slider(
         18.0, (8.0, 50.0, 0.5), "mm", "Standoff", "From camera to the top of the plate", GELSIGHT

@@ -23,10 +23,10 @@ BETWEEN_MM = 0.6
 CLEAR_MM = 0.1
 """Least distance from a tip's rim to the window, and least length of a pin on its short side
 [mm]: the dome falls under a pin, so both are less there than on the pin's axis."""
-REACH_SHARE = 0.7
+REACH_SHARE = 0.65
 """How far out the outermost pins stand, over the half width of the dome."""
 DOME_SHARE = 0.8
-"""Farthest a pin's axis stands out on the dome, over the half width: it falls steeply beyond."""
+"""Farthest a pin's rim stands out on the dome, over the outline: it falls steeply beyond."""
 RIM_PLACES = 32
 """Places on a tip's rim that are looked at; the farthest out is off by at most 0.5 % of r."""
 
@@ -50,28 +50,37 @@ class Pins:
     """How far a pin reaches into the skin."""
 
     @property
-    def reach_mm(self) -> tuple[float, float]:
-        """Farthest pin axes from the middle along X and Y [mm]."""
-        across = REACH_SHARE * self.inside.half_mm
-        return across, across + self.inside.straight_mm / 2
+    def spans_mm(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Places of the outermost pin axes along X and along Y [mm]."""
+        inside = self.inside
+        across = REACH_SHARE * inside.half_mm
+        low, high = inside.straight_mm
+        back, front = (REACH_SHARE * end for end in inside.ends_mm)
+        return (-across, across), (low - back, high + front)
 
     @property
     def tips_mm(self) -> list[Tip]:
         """Axis (x, y) and height of the tip of each pin [mm], row by row."""
-        reach_x, reach_y = self.reach_mm
+        span_x, span_y = self.spans_mm
         places = []
-        for x in _spread(self.rows, reach_x):
-            for y in _spread(self.columns, reach_y):
-                roof = float(self.inside.roof_mm(np.array([[x, y]]))[0])
-                rim = float(self.inside.share(np.array([[x, y]]))[0])
+        for x in _spread(self.rows, span_x):
+            for y in _spread(self.columns, span_y):
+                axis = np.array([x, y, 0.0])
+                roof_mm = float(self.inside.roof_mm(axis[None])[0])
                 # A pin nearer the dome's rim would leave it sideways.
-                if rim <= DOME_SHARE:
-                    places.append((float(x), float(y), roof - self.length_mm))
+                if self.inside.share(axis + self.radius_mm * _circle()).max() <= DOME_SHARE:
+                    places.append((float(x), float(y), roof_mm - self.length_mm))
         return places
 
 
-def _spread(count: int, reach: float) -> np.ndarray:
-    return np.linspace(-reach, reach, count) if count > 1 else np.zeros(1)
+def _circle() -> np.ndarray:
+    """Places around a unit circle in the plane z = 0, shape (RIM_PLACES, 3)."""
+    turn = np.linspace(0.0, 2 * np.pi, RIM_PLACES, endpoint=False)
+    return np.column_stack([np.cos(turn), np.sin(turn), np.zeros(RIM_PLACES)])
+
+
+def _spread(count: int, span_mm: tuple[float, float]) -> np.ndarray:
+    return np.linspace(*span_mm, count) if count > 1 else np.array([sum(span_mm) / 2])
 
 
 def check_pins(pins: Pins, window: Loaf) -> None:
@@ -81,8 +90,8 @@ def check_pins(pins: Pins, window: Loaf) -> None:
         DesignError: Naming the field, its value and its limit.
     """
     counts = (("pin_rows", pins.rows), ("pin_columns", pins.columns))
-    for (name, count), reach in zip(counts, pins.reach_mm, strict=True):
-        pitch_mm = 2 * reach / (count - 1) if count > 1 else math.inf
+    for (name, count), (low, high) in zip(counts, pins.spans_mm, strict=True):
+        pitch_mm = (high - low) / (count - 1) if count > 1 else math.inf
         least_mm = 2 * pins.radius_mm + BETWEEN_MM
         if pitch_mm < least_mm:
             raise DesignError(
@@ -99,9 +108,7 @@ def check_pins(pins: Pins, window: Loaf) -> None:
             hint="choose 1 or 3 and more for shape.pin_rows or shape.pin_columns",
             at="shape.pin_rows",
         )
-    turn = np.linspace(0.0, 2 * np.pi, RIM_PLACES, endpoint=False)
-    circle = np.column_stack([np.cos(turn), np.sin(turn), np.zeros(RIM_PLACES)])
-    _check_rims((tips[:, None] + pins.radius_mm * circle).reshape(-1, 3), pins, window)
+    _check_rims((tips[:, None] + pins.radius_mm * _circle()).reshape(-1, 3), pins, window)
 
 
 def _check_rims(rims_mm: np.ndarray, pins: Pins, window: Loaf) -> None:
@@ -115,7 +122,6 @@ def _check_rims(rims_mm: np.ndarray, pins: Pins, window: Loaf) -> None:
             hint="raise shape.pin_length_mm, or lower shape.pin_radius_mm or shape.dome_mm",
             at="shape.pin_length_mm",
         )
-    # The clamp ring comes no nearer: pins end within the inner 80 % of the dome.
     clear_mm = window.distance(rims_mm).min()
     if clear_mm < CLEAR_MM:
         raise DesignError(

@@ -1,94 +1,114 @@
-"""Tentacle: a tapered, bent arm with tubular suckers along one side.
+"""Tentacle: a piece of an octopus's bent arm with rows of suckers on the outside of the bend.
 
-An octopus feels through its suckers: each is a short tube with an open cup at its end.
+An octopus feels through its suckers: short, thick stubs with a flat or cupped end.
 
-              .-.             z = length_mm + tip_mm
-             /   \\
-            |     |=]         suckers on the +Y side, smaller toward the tip
-           |  .-.  |
-           | |   | |==]
-          |  |   |  |         outside in: elastomer, support (rigid, clear), cavity
-          |  |   |  |===]
-         |  |     |  |
-     ____|__|_____|__|____    z = 0, base plane
-    |       | cam |       |
-    |_______|_____|_______|   z = -base_height_mm, the rigid foot
+                    /\\ sucker
+              _.---/  \\--.         the arm bends toward +Y; suckers stand away from the bend's axis
+         [ ].'             `-.
+          .'  .-----------.   \\    outside in: elastomer, support (rigid, clear), cavity
+      [  /  .'     .---.   \\   \\
+      [_|  |     .'     `.  \\   |  the end is flat, across the arm
+        |  |    |         `--'--'
+     ___|__|____|________________  z = 0, base plane: the other end, level
+    |     | cam |     |            +Y to the right, seen along X
+    |_____|_____|_____|            z = -base_height_mm, the rigid foot
 
-| parameter        | meaning                                                       |
-|------------------|---------------------------------------------------------------|
-| `base_radius_mm` | radius of the arm at the base                                 |
-| `tip_radius_mm`  | radius of the arm at the root of its rounded tip              |
-| `length_mm`      | height at which the tip begins                                |
-| `bend_mm`        | shift of the centre line toward +Y at `length_mm`             |
-| `sucker_count`   | number of suckers, evenly spaced                              |
-| `sucker_ratio`   | radius of a sucker over the arm's radius at its place         |
-| `sucker_mm`      | how far the suckers stand out                                 |
-| `cup_ratio`      | radius of the cup over that of the sucker                     |
-| `cup_depth`      | depth of the cup over how far the sucker stands out           |
-| `base_height_mm` | height of the foot                                            |
-| `base_lip_mm`    | how far the foot stands out beyond the skin                   |
+| parameter          | meaning                                                     |
+|--------------------|-------------------------------------------------------------|
+| `width_mm`         | size of the arm's section along X                           |
+| `depth_mm`         | size of the section in the plane of the bend                |
+| `bend_radius_mm`   | from the bend's axis to the middle of the arm               |
+| `turn_deg`         | angle through which the arm bends, from foot to end         |
+| `rows`             | rows of suckers, one or two                                 |
+| `row_mm`           | distance of two rows                                        |
+| `sucker_count`     | suckers in a row                                            |
+| `pitch_deg`        | angle between neighbours about the bend's axis              |
+| `sucker_radius_mm` | radius of a sucker                                          |
+| `sucker_mm`        | how far suckers stand out of the arm's ridge                |
+| `cup_ratio`        | radius of the cup over that of the sucker                   |
+| `cup_depth`        | depth of the cup over how far the sucker stands out; 0 flat |
+| `base_height_mm`   | height of the foot                                          |
+| `base_lip_mm`      | how far the foot stands out beyond the skin                 |
 
-The arm is the bent column of `designs/column.py`, with a core smaller by the wall. A sucker
-(`designs/suckers.py`) is a cylinder along the normal of the arm's side, bored by its cup.
+The arm is that of `designs/arm.py`, with a core smaller by the wall, which slides out along its own
+arc. A sucker (`designs/suckers.py`) is a cylinder toward the bend's axis, bored by its cup.
 
-Source of the defaults: our choice, an arm of the size of the finger. Leaves out: two rows of
-suckers, the muscle ring inside a sucker, screw holes in the foot.
+Source of the defaults: the released SimTac mesh of the tentacle (MIT), 36 x 26 mm bent by 80
+degrees at a radius of 40 mm, two rows of three flat suckers. Leaves out: taper, a rounded tip, the
+muscle ring inside a sucker, screw holes in the foot.
 """
 
 from __future__ import annotations
 
-import itertools
+import math
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from designs.arm import Arm, arm_body, arm_field
 from designs.bodies import WALL_SHARE, Bodies, Fields
-from designs.column import Column, column_body, column_field
 from designs.prisms import elliptic_foot
 from designs.shells import hollow
 from designs.sliders import slider
-from designs.suckers import Sucker, expect_suckers, sucker_body, sucker_distance, suckers_along
-from workbench.core.base.booleans import fuse
+from designs.suckers import (
+    Row,
+    Sucker,
+    check_suckers,
+    expect_suckers,
+    sucker_body,
+    sucker_distance,
+    sucker_mm3,
+    suckers_along,
+)
+from workbench.core.base.booleans import expect_volume, fuse
 from workbench.core.base.errors import DesignError
 from workbench.core.design.design import Layers
 
-CAVITY_MM = 2.0
-"""Smallest half width of the cavity: room for a small camera [mm]."""
-BETWEEN_MM = 0.5
-"""Smallest gap between suckers, and from a sucker to the base [mm]."""
-LEAST_WALL_MM = 0.4
-"""Thinnest wall of a sucker beside its cup [mm]."""
+CAVITY_MM = 4.0
+"""Smallest half width of the cavity: room for a small camera and LEDs [mm]."""
+HOLLOW_MM = 4.0
+"""Smallest radius of the bend's inner side [mm]."""
+VOLUME_ERROR = 1e-4
+"""The kernel integrates the trimmed side to some 1e-5."""
+SIMTAC = "measured on the released SimTac mesh of the tentacle"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class TentacleShape:
     """The tentacle's own parameters."""
 
-    base_radius_mm: float = slider(
-        14.0, (9.0, 24.0, 0.5), "mm", "Base radius", "Radius of the arm at the base"
+    width_mm: float = slider(
+        36.0, (20.0, 60.0, 0.5), "mm", "Width", "Size of the arm along X", SIMTAC
     )
-    tip_radius_mm: float = slider(
-        8.0, (5.0, 16.0, 0.5), "mm", "Tip radius", "Radius of the arm where its tip begins"
+    depth_mm: float = slider(
+        26.0, (18.0, 48.0, 0.5), "mm", "Depth", "Size of the arm in the plane of the bend", SIMTAC
     )
-    length_mm: float = slider(
-        40.0, (20.0, 80.0, 0.5), "mm", "Arm length", "From base to the root of the tip"
+    bend_radius_mm: float = slider(
+        40.0, (20.0, 200.0, 1.0), "mm", "Bend radius", "From the bend's axis to the arm", SIMTAC
     )
-    bend_mm: float = slider(
-        6.0, (0.0, 12.0, 0.5), "mm", "Bend", "Shift of the centre line toward the suckers"
+    turn_deg: float = slider(
+        80.0, (10.0, 90.0, 1.0), "degree", "Bend", "Angle from the foot to the end", SIMTAC
     )
-    sucker_count: float = slider(3.0, (1.0, 6.0, 1.0), "", "Suckers", "Suckers along the arm")
-    sucker_ratio: float = slider(
-        0.38, (0.2, 0.5, 0.01), "", "Sucker size", "Radius of a sucker over the arm's there"
+    rows: float = slider(2.0, (1.0, 2.0, 1.0), "", "Rows", "Rows of suckers", SIMTAC)
+    row_mm: float = slider(
+        18.0, (4.0, 36.0, 0.5), "mm", "Row distance", "Between the axes of two rows", SIMTAC
+    )
+    sucker_count: float = slider(3.0, (1.0, 6.0, 1.0), "", "Suckers", "Suckers in a row", SIMTAC)
+    pitch_deg: float = slider(
+        23.0, (3.0, 45.0, 0.5), "degree", "Pitch", "Angle between suckers of a row", SIMTAC
+    )
+    sucker_radius_mm: float = slider(
+        8.0, (1.5, 10.0, 0.25), "mm", "Sucker radius", "Radius of a sucker", SIMTAC
     )
     sucker_mm: float = slider(
-        3.0, (1.0, 6.0, 0.25), "mm", "Sucker height", "How far the suckers stand out"
+        5.0, (1.0, 8.0, 0.25), "mm", "Sucker height", "How far they stand out of the ridge", SIMTAC
     )
     cup_ratio: float = slider(
         0.65, (0.4, 0.8, 0.05), "", "Cup size", "Radius of the cup over that of the sucker"
     )
     cup_depth: float = slider(
-        0.6, (0.2, 0.8, 0.05), "", "Cup depth", "Over how far the sucker stands out"
+        0.0, (0.0, 0.8, 0.05), "", "Cup depth", "Over how far the sucker stands out; 0 is flat"
     )
     base_height_mm: float = slider(
         8.0, (2.0, 40.0, 0.5), "mm", "Foot height", "Rigid foot that carries camera and LEDs"
@@ -98,28 +118,31 @@ class TentacleShape:
     )
 
     @property
-    def column(self) -> Column:
-        """The arm without its suckers; its tip is half a sphere, sheared by the bend."""
-        base, tip = self.base_radius_mm, self.tip_radius_mm
-        return Column(
-            foot_mm=(base, base),
-            head_mm=(tip, tip),
-            length_mm=self.length_mm,
-            tip_mm=tip,
-            bend_mm=(0.0, self.bend_mm),
+    def arm(self) -> Arm:
+        """The arm without its suckers."""
+        return Arm(
+            half_mm=(self.width_mm / 2, self.depth_mm / 2),
+            bend_radius_mm=self.bend_radius_mm,
+            turn=math.radians(self.turn_deg),
         )
+
+    @property
+    def places_mm(self) -> tuple[float, ...]:
+        """X of each row [mm]."""
+        return (0.0,) if self.rows == 1 else (self.row_mm / 2, -self.row_mm / 2)
 
     @property
     def suckers(self) -> list[Sucker]:
         """All suckers from the base up."""
-        return suckers_along(
-            self.column,
-            round(self.sucker_count),
-            ratio=self.sucker_ratio,
+        row = Row(
+            count=round(self.sucker_count),
+            pitch=math.radians(self.pitch_deg),
+            radius_mm=self.sucker_radius_mm,
             out_mm=self.sucker_mm,
             cup_ratio=self.cup_ratio,
             cup_depth=self.cup_depth,
         )
+        return suckers_along(self.arm, row, self.places_mm)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -131,36 +154,31 @@ class Tentacle:
     shape_type: type = TentacleShape
 
     def check(self, shape: TentacleShape, layers: Layers) -> None:
-        """Refuse arms that widen or narrow too fast, walls without room, and suckers that touch.
+        """Refuse walls without room, bends that are too tight, and suckers that touch.
 
         Raises:
             DesignError: Naming the field, its value and its limit.
         """
-        if shape.tip_radius_mm > shape.base_radius_mm:
-            raise DesignError(
-                f"tip radius {shape.tip_radius_mm:g} mm is more than the base radius "
-                f"{shape.base_radius_mm:g} mm",
-                hint="lower shape.tip_radius_mm or raise shape.base_radius_mm",
-                at="shape.tip_radius_mm",
-            )
-        both_mm = layers.elastomer_mm + layers.support_mm
-        if shape.tip_radius_mm - both_mm < CAVITY_MM:
-            raise DesignError(
-                f"support and elastomer wall together {both_mm:g} mm leave less than "
-                f"{CAVITY_MM:g} mm of cavity inside the tip radius {shape.tip_radius_mm:g} mm",
-                hint="lower layers.elastomer_mm or layers.support_mm, or raise shape.tip_radius_mm",
-                at="layers.elastomer_mm",
-            )
-        _check_slope(shape, layers)
-        _check_suckers(shape)
+        _check_walls(shape, layers)
+        for name in ("rows", "sucker_count"):
+            count = getattr(shape, name)
+            if count != round(count):
+                raise DesignError(
+                    f"{name.replace('_', ' ')} {count:g} is not a whole number",
+                    hint=f"choose {round(count)}",
+                    at=f"shape.{name}",
+                )
+        check_suckers(shape.arm, shape.suckers)
 
     def soften(self, shape: TentacleShape) -> None:
         """There is no fillet to make smaller."""
         return None
 
     def target(self, shape: TentacleShape, layers: Layers) -> tuple[float, float, float]:
-        """The end of the arm: dents of the suckers lie where the camera does not see them."""
-        return shape.column.apex_mm
+        """The end of the lowest sucker at +X: of all ends the camera sees it from nearest."""
+        first = shape.suckers[0]
+        x, y, z = first.place_mm(first.out_mm - first.cup_mm).tolist()
+        return x, y, z
 
     def build(self, shape: TentacleShape, layers: Layers) -> Bodies:
         """Build the five bodies.
@@ -171,13 +189,15 @@ class Tentacle:
                 or its cup is missing.
         """
         self.check(shape, layers)
-        outer = column_body(shape.column, what="arm")
-        for number, sucker in enumerate(shape.suckers):
+        arm, suckers = shape.arm, shape.suckers
+        outer = arm_body(arm, what="arm")
+        for number, sucker in enumerate(suckers):
             outer = fuse(outer, sucker_body(sucker), what=f"sucker {number + 1}")
-        expect_suckers(outer, shape.suckers)
-        core = column_body(shape.column.inset(layers.elastomer_mm), what="core")
-        both_mm = layers.elastomer_mm + layers.support_mm
-        cavity = column_body(shape.column.inset(both_mm), what="cavity")
+        expect_suckers(outer, suckers)
+        whole_mm3 = arm.volume_mm3 + sum(sucker_mm3(arm, sucker) for sucker in suckers)
+        expect_volume(outer, whole_mm3, what="arm and suckers", relative=VOLUME_ERROR)
+        core = arm_body(arm.inset(layers.elastomer_mm), what="core")
+        cavity = arm_body(arm.inset(layers.elastomer_mm + layers.support_mm), what="cavity")
         return Bodies(
             membrane=hollow(outer, core, what="elastomer"),
             outer=outer,
@@ -187,26 +207,26 @@ class Tentacle:
         )
 
     def fields(self, shape: TentacleShape, layers: Layers) -> Fields:
-        """A bent column and bored cylinders as signed distance fields."""
+        """A bent arm and bored cylinders as signed distance fields."""
         self.check(shape, layers)
-        column = shape.column
-        arm, suckers = column_field(column), shape.suckers
+        arm, suckers = shape.arm, shape.suckers
+        bare = arm_field(arm)
 
         def outer(points_mm: np.ndarray) -> np.ndarray:
-            whole = arm(points_mm)
+            whole = bare(points_mm)
             for sucker in suckers:
                 whole = np.minimum(whole, sucker_distance(sucker, points_mm))
             return whole
 
-        low, high = (np.array(corner) for corner in column.box_mm())
+        low, high = arm.box_mm()
         for sucker in suckers:
             rim = sucker.place_mm(sucker.out_mm)
             reach = sucker.radius_mm * np.sqrt(1.0 - sucker.axis**2)
             low, high = np.minimum(low, rim - reach), np.maximum(high, rim + reach)
         return Fields(
             outer=outer,
-            core=column_field(column.inset(layers.elastomer_mm)),
-            cavity=column_field(column.inset(layers.elastomer_mm + layers.support_mm)),
+            core=arm_field(arm.inset(layers.elastomer_mm)),
+            cavity=arm_field(arm.inset(layers.elastomer_mm + layers.support_mm)),
             base=_foot(shape, layers),
             wall_mm=layers.elastomer_mm,
             low_mm=tuple(low.tolist()),
@@ -214,51 +234,47 @@ class Tentacle:
         )
 
 
-def _check_slope(shape: TentacleShape, layers: Layers) -> None:
-    """Refuse tapers and bends so steep that the wall, even level by level, gets thin."""
-    share = shape.column.wall_share
-    if share < WALL_SHARE:
+def _check_walls(shape: TentacleShape, layers: Layers) -> None:
+    """Refuse arms that bend about themselves, and walls that leave no room in them."""
+    both_mm = layers.elastomer_mm + layers.support_mm
+    inner_mm = shape.bend_radius_mm - shape.depth_mm / 2
+    if inner_mm < HOLLOW_MM:
         raise DesignError(
-            f"taper and bend over {shape.length_mm:g} mm thin the elastomer wall to "
-            f"{share * layers.elastomer_mm:.2f} mm, less than {WALL_SHARE:.0%} of "
-            f"{layers.elastomer_mm:g} mm",
-            hint="raise shape.length_mm or shape.tip_radius_mm, or lower shape.base_radius_mm",
-            at="shape.length_mm",
+            f"the inner side of the bend has a radius of {inner_mm:g} mm, less than "
+            f"{HOLLOW_MM:g} mm",
+            hint="raise shape.bend_radius_mm or lower shape.depth_mm",
+            at="shape.bend_radius_mm",
         )
-
-
-def _check_suckers(shape: TentacleShape) -> None:
-    """Refuse suckers that touch each other or the base, or whose wall is too thin."""
-    if shape.sucker_count != round(shape.sucker_count):
+    for name in ("width", "depth"):
+        half_mm = getattr(shape, f"{name}_mm") / 2
+        if half_mm - both_mm < CAVITY_MM:
+            raise DesignError(
+                f"support and elastomer wall together {both_mm:g} mm leave less than "
+                f"{CAVITY_MM:g} mm of cavity inside the half {name} {half_mm:g} mm",
+                hint=f"lower layers.elastomer_mm or layers.support_mm, or raise shape.{name}_mm",
+                at="layers.elastomer_mm",
+            )
+    least_mm = shape.arm.least_wall_mm(layers.elastomer_mm)
+    if least_mm < WALL_SHARE * layers.elastomer_mm:
         raise DesignError(
-            f"sucker count {shape.sucker_count:g} is not a whole number",
-            hint=f"choose {round(shape.sucker_count)}",
-            at="shape.sucker_count",
+            f"so flat a section thins the elastomer wall to {least_mm:.2f} mm, less than "
+            f"{WALL_SHARE:.0%} of {layers.elastomer_mm:g} mm",
+            hint="bring shape.width_mm and shape.depth_mm nearer each other",
+            at="shape.depth_mm",
         )
-    suckers = shape.suckers
-    thinnest_mm = min(sucker.radius_mm for sucker in suckers) * (1.0 - shape.cup_ratio)
-    if thinnest_mm < LEAST_WALL_MM:
+    cavity_mm = shape.arm.inset(both_mm).turn * (inner_mm + both_mm)
+    if cavity_mm < 2 * CAVITY_MM:
         raise DesignError(
-            f"the smallest sucker's wall is {thinnest_mm:.2g} mm beside its cup, less than "
-            f"{LEAST_WALL_MM:g} mm",
-            hint="lower shape.cup_ratio or raise shape.sucker_ratio",
-            at="shape.cup_ratio",
-        )
-    gaps = [suckers[0].lowest_mm]
-    gaps += [one.gap_mm(two) for one, two in itertools.pairwise(suckers)]
-    if min(gaps) < BETWEEN_MM:
-        raise DesignError(
-            f"the suckers stand {min(gaps):.2g} mm apart or from the base, less than "
-            f"{BETWEEN_MM:g} mm",
-            hint="lower shape.sucker_count or shape.sucker_ratio, or raise shape.length_mm",
-            at="shape.sucker_count",
+            f"the inner side of the cavity is {cavity_mm:.3g} mm long, less than "
+            f"{2 * CAVITY_MM:g} mm",
+            hint="raise shape.turn_deg or shape.bend_radius_mm, or lower the layers",
+            at="shape.turn_deg",
         )
 
 
 def _foot(shape: TentacleShape, layers: Layers) -> Any:
-    radius_mm = shape.base_radius_mm
-    cavity_mm = radius_mm - layers.elastomer_mm - layers.support_mm
-    half = radius_mm, radius_mm
+    half = shape.arm.half_mm
+    cavity_mm = min(half) - layers.elastomer_mm - layers.support_mm
     return elliptic_foot(half, cavity_mm, shape.base_height_mm, shape.base_lip_mm)
 
 

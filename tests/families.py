@@ -22,7 +22,7 @@ def expect_refusal(name: str, shape: dict[str, float], layers: dict[str, float],
 
 def expect_found_out(
     monkeypatch: pytest.MonkeyPatch,
-    name: str,
+    design: str | tuple[str, dict[str, float]],
     layers: Layers,
     broken: tuple[Any, str, str],
     says: str,
@@ -30,6 +30,7 @@ def expect_found_out(
     """A boolean that returns the uncut body is found out by the family's own check.
 
     Args:
+        design: The family in its default shape, or with values of its own.
         broken: Module, name of its boolean, and the beginning of the feature's name.
     """
     module, boolean, feature = broken
@@ -39,5 +40,6 @@ def expect_found_out(
         return body if what.startswith(feature) else real(body, tool, what=what, **rest)
 
     monkeypatch.setattr(module, boolean, lazy)
+    name, shape = design if isinstance(design, tuple) else (design, {})
     with pytest.raises(GeometryError, match=says):
-        family(name).build(resolve_shape(name, {}), layers)
+        family(name).build(resolve_shape(name, shape), layers)

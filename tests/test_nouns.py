@@ -56,8 +56,9 @@ NOUNS = {
     "stage": Noun(
         package="workbench.pipeline.stages",
         record="STAGE",
-        # These make calls that no plan has: drawings for lists, the parts of a deck.
+        # These make calls that no plan has: drawings for lists, the parts of a deck, light alone.
         readers=(
+            "workbench/calibration/lit_studio.py",
             "workbench/report/thumbnails.py",
             "workbench/report/fem_case.py",
             "workbench/learning/dataset/solving.py",

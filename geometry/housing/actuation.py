@@ -1,7 +1,7 @@
 """Sliders that push the lobes of bodies with actuators, as in the paper's trunk sensor.
 
-One per actuator region: a rod that slides upright through a guide beside the foot, an arm over the
-top of the skin, and a paddle whose face is parallel to the region at its middle.
+One per side with actuator regions: a rod that slides upright through a guide beside the foot, an
+arm over the top of the skin, and a paddle whose face is parallel to its regions at their middle.
 
         post   arm
           .-----------.
@@ -22,7 +22,7 @@ import numpy as np
 from geometry.body import csg
 from geometry.surface.surface import face_areas
 from workbench.core.design.making import Housing
-from workbench.core.result.results import Label, Solid
+from workbench.core.result.results import Label, LabelledSurface, Solid
 
 ROD_MM = 2.0
 """Radius of rod, arm and post [mm]."""
@@ -40,6 +40,8 @@ SMALLEST_PADDLE_MM, LARGEST_PADDLE_MM = 2.5, 6.0
 OVERLAP_MM = 2.0
 """How far a guide reaches into the foot [mm]."""
 APART_MM = 25.0
+SAME_SIDE = 0.9
+"""Cosine between the directions to two regions above which one slider pushes both."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -58,21 +60,43 @@ class ActuatorRod:
 
 
 def make_rods(solid: Solid, options: Housing) -> tuple[ActuatorRod, ...]:
-    """A slider for each actuator on the outer face, in the order of their numbers."""
+    """A slider for each side with actuators on the outer face, in the order of their numbers.
+
+    Regions on one side, such as the rim and the back of a lobe, share a slider.
+    """
     membrane = solid.membrane
     driven = membrane.has(Label.ACTUATOR) & membrane.has(Label.OUTER)
-    return tuple(
-        _rod(int(number), solid, options) for number in np.unique(membrane.numbers[driven])
-    )
+    sides: list[tuple[np.ndarray, list[int]]] = []
+    for number in np.unique(membrane.numbers[driven]).tolist():
+        way = _side_of(number, membrane)
+        shared = next((numbers for other, numbers in sides if way @ other > SAME_SIDE), None)
+        if shared is None:
+            sides.append((way, [number]))
+        else:
+            shared.append(number)
+    return tuple(_rod(k, numbers, solid, options) for k, (_, numbers) in enumerate(sides))
 
 
-def _rod(number: int, solid: Solid, options: Housing) -> ActuatorRod:
+def _side_of(number: int, membrane: LabelledSurface) -> np.ndarray:
+    """Horizontal unit direction from the middle of the skin to a region."""
+    spot = _paddle_place(membrane.points_mm, membrane.faces[_own(number, membrane)])[0]
+    return _aside(spot - _middle(membrane.points_mm), number)
+
+
+def _own(number: int, membrane: LabelledSurface) -> np.ndarray:
+    return membrane.has(Label.ACTUATOR) & (membrane.numbers == number)
+
+
+def _middle(points: np.ndarray) -> np.ndarray:
+    return (points.min(axis=0) + points.max(axis=0)) / 2
+
+
+def _rod(count: int, numbers: list[int], solid: Solid, options: Housing) -> ActuatorRod:
     membrane = solid.membrane
-    region = membrane.has(Label.ACTUATOR) & (membrane.numbers == number)
+    region = np.any([_own(number, membrane) for number in numbers], axis=0)
     spot, normal, radius = _paddle_place(membrane.points_mm, membrane.faces[region])
     skin, foot = membrane.points_mm, solid.base.points_mm
-    middle = (skin.min(axis=0) + skin.max(axis=0)) / 2
-    aside = _aside(spot - middle, number)
+    aside = _aside(spot - _middle(skin), numbers[0])
     across = spot[:2] - (spot[:2] @ aside) * aside
     # Beyond everything on that side, along the line through the paddle.
     reach = max(float((p[:, :2] @ aside).max()) for p in (skin, foot))
@@ -91,8 +115,8 @@ def _rod(number: int, solid: Solid, options: Housing) -> ActuatorRod:
     beam = csg.along(bar, arm, (*behind[:2], top))
     shaft = csg.moved(csg.cylinder(ROD_MM, bottom, top + ROD_MM), (*rod_xy, 0.0))
     return ActuatorRod(
-        name=f"slider_{number}",
-        title=f"actuator rod for lobe {number}",
+        name=f"slider_{count}",
+        title=f"actuator rod for lobe {count}",
         body=csg.Union(parts=(shaft, beam, post, paddle)),
         guide=_guide(rod_xy, aside, reach, bottom, options),
         bore=csg.moved(csg.cylinder(ROD_MM + gap, bottom - 1.0, top), (*rod_xy, 0.0)),

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from workbench.core.base.errors import MeshingError
-from workbench.core.result.marks import Region
+from workbench.core.result.marks import Field, Region
 from workbench.core.result.results import Label, LabelledSurface
 
 NEAR = 1e-3
@@ -26,8 +26,8 @@ def mark_regions(surface: LabelledSurface, regions: Sequence[Region]) -> Labelle
         MeshingError: If a region has no face; a mark that vanishes must not pass unseen.
     """
     for region in regions:
-        if region.imprint:
-            surface = imprint(surface, region)
+        for border in (region.borders or (region.inside,)) if region.imprint else ():
+            surface = imprint(surface, border, within=region.within)
     labels, numbers = surface.labels.copy(), surface.numbers.copy()
     centre = surface.points_mm[surface.faces].mean(axis=1)
     for region in regions:
@@ -47,21 +47,21 @@ def mark_regions(surface: LabelledSurface, regions: Sequence[Region]) -> Labelle
     )
 
 
-def imprint(surface: LabelledSurface, region: Region) -> LabelledSurface:
-    """The surface with its triangles cut along a region's boundary.
+def imprint(surface: LabelledSurface, border: Field, *, within: Label) -> LabelledSurface:
+    """The surface with its triangles cut along a border.
 
-    Every edge of a face within the region's side that the boundary crosses gets one new vertex.
+    Every edge of a face within OUTER or INNER that the border crosses gets one new vertex.
     """
     faces = surface.faces.astype(np.int64)
-    value = np.asarray(region.inside(surface.points_mm), dtype=np.float64)
+    value = np.asarray(border(surface.points_mm), dtype=np.float64)
     start, stop = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
     low, high = np.minimum(start, stop), np.maximum(start, stop)
     share = value[low] / np.where(value[low] == value[high], 1.0, value[low] - value[high])
     crossed = (value[low] > 0.0) != (value[high] > 0.0)
     crossed &= (share > NEAR) & (share < 1.0 - NEAR)
-    # Only edges of a face on the region's side are cut, but then for both of their faces.
+    # Only edges of a face on that side are cut, but then for both of their faces.
     key = low * len(surface.points_mm) + high
-    wanted = np.repeat(surface.has(region.within), 3) & crossed
+    wanted = np.repeat(surface.has(within), 3) & crossed
     cut, place = np.unique(key[wanted], return_index=True)
     ends = np.column_stack([low[wanted][place], high[wanted][place]])
     along = share[wanted][place][:, None]

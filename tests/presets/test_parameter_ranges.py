@@ -104,21 +104,19 @@ def test_bodies_at_sampled_ends_are_whole(name: str) -> None:
 
 
 @pytest.mark.slow
-def test_a_fillet_larger_than_the_wall_is_made_smaller_and_told() -> None:
-    """Rim of 3 mm, wall of 0.5 mm: half the radius, a notice with both, and a closed body."""
-    shape = resolve_shape("trunk", {"rim_mm": 3.0})
-    solid = build(
-        BuildInputs(family="trunk", shape=shape, layers=Layers(elastomer_mm=0.5)), monitor=silent
-    )
+def test_a_fillet_on_too_steep_a_saddle_is_made_smaller_and_told() -> None:
+    """Rim of 4 mm at a slope of 55 degrees: 3/4 of it, a notice with both, and a closed body."""
+    shape = resolve_shape("trunk", {"lobe_mm": 5.75, "rim_mm": 4.0})
+    solid = build(BuildInputs(family="trunk", shape=shape, layers=Layers()), monitor=silent)
     assert is_watertight(solid.membrane.faces)
-    assert solid.notice == "Rim radius 3 mm could not be built; 1.5 mm was"
+    assert solid.notice == "Rim radius 4 mm could not be built; 3 mm was"
 
 
 @pytest.mark.parametrize(
     ("table", "says"),
     [
         ("[layers]\nelastomer_mm = 0.0\n", "elastomer wall 0 mm is outside 0.2 to 20 mm"),
-        ("[shape]\nrim_mm = 5.0\n", "Rim radius 5 mm is outside 0.5 to 3 mm"),
+        ("[shape]\nrim_mm = 5.0\n", "Rim radius 5 mm is outside 0.5 to 4 mm"),
     ],
 )
 def test_the_command_names_value_limit_and_remedy(tmp_path: Path, table: str, says: str) -> None:

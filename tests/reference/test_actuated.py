@@ -115,7 +115,7 @@ def test_the_trunk_squeezes_a_ball_evenly_and_lets_it_go(
     # The mesh is not quite symmetric: by 2 % of the squeeze.
     np.testing.assert_allclose(left_N[closed], right_N[closed], rtol=0.02)
     assert np.abs(contact.reaction_N[closed, :2]).max() < 0.02 * left_N[closed]
-    first_N, second_N = contact.actuator_N[closed]
+    first_N, second_N = contact.actuator_N[closed, :2] + contact.actuator_N[closed, 2:]
     np.testing.assert_allclose(first_N * [1, -1, 1], second_N, atol=0.02 * np.abs(first_N).max())
     assert first_N[1] < 0.0 < second_N[1]
     # Opened, the ball stands in the saddle as before; friction has shifted the skin a little.
@@ -160,7 +160,8 @@ def test_the_backs_of_the_lobes_follow_their_drives(grip: tuple[MembraneMesh, Co
         chosen = chosen[facing[chosen]]
         wanted_mm = drive.displacement_mm(outer.points_mm[chosen], closed + 1.0)
         off_mm = np.linalg.norm(contact.displacement_mm[closed, chosen] - wanted_mm, axis=1)
-        assert len(chosen) > 50
+        # Tops of two lobes and their backs, on cells of 0.8 mm.
+        assert len(chosen) > 30
         assert off_mm.mean() < 0.15
         # The lobes themselves closed toward each other.
         assert contact.least_volume_ratio[closed] > 0.5

@@ -165,14 +165,19 @@ def test_pad_is_closed_by_its_two_skins(default_solid: Built, coarse: Meshed) ->
 
 
 def test_nodes_of_an_actuator_carry_its_number(coarse: Meshed) -> None:
-    """The nodes of each lobe of the trunk are the vertices of the faces labelled so."""
+    """The nodes of each driven part of the trunk are the vertices of the faces labelled so.
+
+    Where the top of a lobe meets its back, the higher number has the nodes.
+    """
     hexes, outer = hexahedra(coarse("trunk")), coarse("trunk").outer
     nodes = np.flatnonzero(hexes.labels & Label.OUTER)
     faces = region_masks(outer.labels, outer.numbers)
     marked = region_masks(hexes.labels, hexes.numbers)
-    for name in ("actuator_0", "actuator_1"):
-        used = np.unique(outer.faces[faces[name]])
-        assert np.array_equal(nodes[used], np.flatnonzero(marked[name]))
+    for top, back in (("actuator_0", "actuator_2"), ("actuator_1", "actuator_3")):
+        upper, lower = (np.unique(outer.faces[faces[name]]) for name in (top, back))
+        assert len(np.intersect1d(upper, lower)) > 3
+        assert np.array_equal(nodes[lower], np.flatnonzero(marked[back]))
+        assert np.array_equal(nodes[np.setdiff1d(upper, lower)], np.flatnonzero(marked[top]))
 
 
 def test_pins_own_the_material_points_inside_them(default_solid: Built) -> None:

@@ -26,7 +26,9 @@ from workbench.pipeline.building import build_solid, coarse_volume_mm3
 THIN = {"elastomer_mm": 1.2}
 WIDE_PINS = {"pin_rows": 3.0, "pin_columns": 5.0, "pin_radius_mm": 0.8}
 LONG_PINS = {"pin_rows": 4.0, "pin_columns": 1.0, "pin_length_mm": 3.0, "width_mm": 26.0}
-LOAF = Loaf(half_mm=10.0, straight_mm=6.0, wall_mm=4.0, dome_mm=7.0)
+LOW = {"wall_mm": 4.0, "dome_mm": 7.0, "back_mm": 9.7}
+"""A DigiTac with an upright wall and two round ends."""
+LOAF = Loaf(half_mm=10.0, straight_mm=(-2.0, 4.0), ends_mm=(5.0, 10.0), wall_mm=4.0, dome_mm=7.0)
 
 
 def test_flat_pad_is_a_rounded_plate() -> None:
@@ -69,21 +71,29 @@ def test_a_steep_dome_on_a_high_pad_cuts_only_its_top(name: str) -> None:
         assert coarse_volume_mm3(fields, 0.3) == pytest.approx(exact, rel=2e-3)
 
 
-def test_loaf_has_the_volume_of_prism_and_half_ellipsoid() -> None:
-    """2 a w s + pi/2 a b s + pi a^2 (w + 2/3 b) = 3866.3 mm3 by the kernel, to 1e-6."""
-    exact = 2 * 10 * 4 * 6 + math.pi / 2 * 10 * 7 * 6 + math.pi * 100 * (4 + 14 / 3)
+def test_loaf_has_the_volume_of_prism_and_quarter_ellipsoids() -> None:
+    """2 a w s + pi/2 a d s + pi/2 a (f + b) (w + 2/3 d) = 3182.0 mm3 by the kernel, to 1e-6."""
+    exact = 2 * 10 * 4 * 6 + math.pi / 2 * 10 * 7 * 6 + math.pi / 2 * 10 * 15 * (4 + 14 / 3)
     assert LOAF.volume_mm3 == pytest.approx(exact, rel=1e-12)
     assert loaf_body(LOAF).volume == pytest.approx(exact, rel=1e-6)
-    inside = dataclasses.replace(LOAF, half_mm=8.8, dome_mm=5.8)
+    inside = dataclasses.replace(LOAF, half_mm=8.8, ends_mm=(3.8, 8.8), dome_mm=5.8)
     shell = loaf_shell(LOAF, inside)
     assert shell.volume == pytest.approx(exact - inside.volume_mm3, rel=1e-6)
 
 
+@pytest.mark.parametrize("change", [{"wall_mm": 0.0}, {"straight_mm": (1.0, 1.0)}])
+def test_a_loaf_may_have_no_wall_and_no_straight_part(change: dict[str, Any]) -> None:
+    """Half an ellipsoid on a wall, or half a dome on the plane: both as in closed form."""
+    loaf = dataclasses.replace(LOAF, **change)
+    assert loaf_body(loaf).volume == pytest.approx(loaf.volume_mm3, rel=1e-6)
+    assert loaf.prism(-2.0, 1.0).volume == pytest.approx(3.0 * loaf.area_mm2, rel=1e-6)
+
+
 def test_loaf_field_is_zero_on_its_roof() -> None:
     """Points on the roof have distance 0; 0.1 mm above the ridge it is 0.1 mm to first order."""
-    plan = np.array([[0.0, 0.0], [3.0, 4.0], [9.0, 1.0], [0.0, 12.5]])
+    plan = np.array([[0.0, 0.0], [3.0, 4.0], [9.0, 1.0], [0.0, 12.5], [4.0, -5.5], [0.0, -6.9]])
     roof = np.column_stack([plan, LOAF.roof_mm(plan)])
-    assert LOAF.distance(roof) == pytest.approx([0.0] * 4, abs=1e-12)
+    assert LOAF.distance(roof) == pytest.approx([0.0] * 6, abs=1e-12)
     # k (k - 1) / |grad k| with k = 7.1 / 7: second order is 1.4 % of 0.1 mm.
     assert LOAF.distance(np.array([[0.0, 0.0, 11.1]]))[0] == pytest.approx(0.1, rel=0.03)
 
@@ -118,7 +128,7 @@ def test_digitac_pins_are_marked_one_by_one() -> None:
 
 
 def test_corner_pins_are_left_out() -> None:
-    """Of 5 x 7 pins those beyond 80 % of the dome are missing; none stands near the rim."""
+    """Of 5 x 7 pins those that reach beyond 80 % of the dome are missing."""
     shape, layers = DigitacShape(), Layers(elastomer_mm=1.2)
     pins = np.array(shape.pins(layers).tips_mm)
     inside = shape.loaf(1.2)
@@ -139,7 +149,8 @@ def test_a_kernel_that_returns_the_uncut_body_is_found_out(
     monkeypatch: pytest.MonkeyPatch, module: Any, name: str, boolean: str, feature: str, says: str
 ) -> None:
     """The boolean's own checks are taken away too: the family's check must still see it."""
-    expect_found_out(monkeypatch, name, Layers(elastomer_mm=1.2), (module, boolean, feature), says)
+    broken, shape = (module, boolean, feature), {"dome_mm": 9.0 if name == "digitac" else 1.0}
+    expect_found_out(monkeypatch, (name, shape), Layers(elastomer_mm=1.2), broken, says)
 
 
 @pytest.mark.parametrize(
@@ -147,12 +158,23 @@ def test_a_kernel_that_returns_the_uncut_body_is_found_out(
     [
         ("pad", {"corner_mm": 8.0, "depth_mm": 12.0}, {}, "shape.corner_mm"),
         ("pad", {"standoff_mm": 8.0}, {"support_mm": 4.5}, "layers.support_mm"),
-        ("digitac", {"length_mm": 19.0}, {}, "shape.length_mm"),
+        ("digitac", {"length_mm": 19.0, "back_mm": 9.7}, {}, "shape.length_mm"),
         ("digitac", {"pin_rows": 2.0, "pin_columns": 2.0}, THIN, "shape.pin_rows"),
         ("digitac", {"dome_mm": 15.0, **WIDE_PINS}, THIN, "shape.pin_length_mm"),
-        ("digitac", {"dome_mm": 6.0, "pin_gap_mm": 0.2, **LONG_PINS}, THIN, "shape.pin_gap_mm"),
+        (
+            "digitac",
+            {**LOW, "dome_mm": 6.0, "pin_gap_mm": 0.2, **LONG_PINS},
+            THIN,
+            "shape.pin_gap_mm",
+        ),
         ("digitac", {"pin_rows": 2.5}, {}, "shape.pin_rows"),
-        ("digitac", {"pin_length_mm": 3.0}, {"elastomer_mm": 3.0}, "shape.dome_mm"),
+        (
+            "digitac",
+            {**LOW, "width_mm": 24.0, "pin_length_mm": 3.0},
+            {"elastomer_mm": 3.0},
+            "shape.dome_mm",
+        ),
+        ("digitac", {"back_mm": 4.5}, {}, "shape.back_mm"),
         ("digitac", {"clamp_mm": 6.0}, {"elastomer_mm": 1.0}, "shape.clamp_mm"),
         (
             "digitac",
@@ -203,7 +225,7 @@ def test_every_accepted_pin_is_clear_of_window_and_skin() -> None:
 
 def test_the_narrow_side_is_named_with_its_own_limit() -> None:
     """Half of 16 mm less 5.7 mm of walls is 2.3 mm, and 2.5 mm are needed there."""
-    shape = DigitacShape(width_mm=16.0, dome_mm=12.0, wall_mm=6.0)
+    shape = DigitacShape(width_mm=16.0, dome_mm=12.0, wall_mm=6.0, back_mm=9.7)
     with pytest.raises(DesignError, match=r"2\.3 mm of the half width of 8 mm, less than 2\.5 mm"):
         digitac.FAMILY.check(shape, Layers(support_mm=2.0, elastomer_mm=2.0))
 

@@ -54,7 +54,9 @@ def test_a_loaf_of_any_dome_reads_back(dome_mm: float) -> None:
     """Half-ellipse prism and half-ellipsoid on their wall, lower and higher than half the width."""
     from designs.loaf import Loaf, loaf_body
 
-    loaf = Loaf(half_mm=9.0, straight_mm=12.0, wall_mm=5.0, dome_mm=dome_mm)
+    loaf = Loaf(
+        half_mm=9.0, straight_mm=(-6.0, 6.0), ends_mm=(5.0, 9.0), wall_mm=5.0, dome_mm=dome_mm
+    )
     found = read_back(step_bytes([loaf_body(loaf)], "loaf"))
     assert (found.solids, found.valid) == (1, True)
     assert found.volume_mm3 == pytest.approx(loaf.volume_mm3, rel=1e-6)

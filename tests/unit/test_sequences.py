@@ -38,17 +38,22 @@ def test_the_grip_closes_after_the_press_and_opens_before_the_lift() -> None:
         assert [drive.share(frame) for frame in (0, 4, 6, 8, 12, 14)] == [0, 0, 0.5, 1, 0, 0]
 
 
-@pytest.mark.parametrize("lobe_mm", [2.0, 6.0, 12.0])
+@pytest.mark.parametrize("lobe_mm", [2.0, 6.0, 9.0])
 def test_the_lobes_close_toward_each_other_as_mirror_images(lobe_mm: float) -> None:
-    """The top of the lobe at +Y goes toward -Y by lobe x sin(turn), the other one as far to +Y."""
+    """The top of the lobe at +Y goes toward -Y by arm x sin(turn), the other one as far to +Y.
+
+    The arm is lobe and wall: a lobe turns at the height of the core's top. Its top and its back
+    move as one: actuators 0 and 2 at +Y, 1 and 3 at -Y.
+    """
     design = load_design("trunk").replace("shape.lobe_mm", lobe_mm)
     press = sequence(design, find_sequence(design, "grip")).press
     shape = resolve_shape(design.family, design.shape)
-    for sign, drive in zip((1.0, -1.0), press.actuations, strict=True):
-        top = np.array([[3.0, sign * shape.peak_mm, shape.valley_mm + lobe_mm]])
+    assert [drive.region for drive in press.actuations] == [f"actuator_{n}" for n in range(4)]
+    for sign, drive in zip((1.0, -1.0, 1.0, -1.0), press.actuations, strict=True):
+        top = np.array([[3.0, sign * shape.saddle.peak_mm, shape.valley_mm + lobe_mm]])
         (moved,) = drive.displacement_mm(top, 10.0)
-        angle = np.radians(drive.turn_deg)
-        expected = [0.0, -sign * lobe_mm * np.sin(angle), -lobe_mm * (1.0 - np.cos(angle))]
+        angle, arm_mm = np.radians(drive.turn_deg), lobe_mm + design.layers.elastomer_mm
+        expected = [0.0, -sign * arm_mm * np.sin(angle), -arm_mm * (1.0 - np.cos(angle))]
         np.testing.assert_allclose(moved, expected, atol=1e-12)
         assert drive.facing == (0.0, sign, 0.0)
 

@@ -11,11 +11,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from workbench.calibration.light_basis import SAMPLED
 from workbench.calibration.light_sources import NO_RING
 from workbench.calibration.powers import Powers
 from workbench.core.design.design import SensorDesign
 from workbench.core.design.lighting import Ambient, Lamp
+from workbench.core.design.optics import BEST
 from workbench.core.design.unit import Unit
 
 
@@ -53,7 +53,7 @@ def fitted_design(
             lamps=tuple(lamps),
             ambient=Ambient(colour=colour, power=power),
             camera=dataclasses.replace(optics.camera, sensor=sensor),
-            light_model=SAMPLED,
+            light_model=BEST,
             background=None,
             unit=None,
         ),

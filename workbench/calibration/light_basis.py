@@ -9,24 +9,20 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from sim.optics.raster.image_sensor import kept_light
 from workbench.calibration.ball_presses import BallPress
 from workbench.calibration.light_sources import NO_RING
+from workbench.calibration.lit_studio import lit_studio
 from workbench.calibration.photo_set import Circle
 from workbench.core.base.monitor import Monitor, part
 from workbench.core.design.design import SensorDesign
-from workbench.core.design.lighting import Ambient, Baking, Lamp, LightModel
-from workbench.core.design.optics import Optics
-from workbench.core.press.press_case import PressCase
+from workbench.core.design.lighting import Ambient, Baking, Lamp
+from workbench.core.design.optics import BEST, Optics
 from workbench.core.result.results import MembraneMesh
-from workbench.pipeline.devices import start_device
-from workbench.pipeline.stages import table
 from workbench.pipeline.store import Store
-from workbench.planning.plan import InlineRunner, evaluate, plan
 
 BOX = 1.45
 """Half width of a contact's box over the radius of its circle [1]."""
@@ -37,7 +33,6 @@ LEVELS = 5
 PHOTONS = 1_000_000
 """Of a bake of three lights; what is fitted is smooth over the image."""
 PRIMARIES = ("#ff0000", "#00ff00", "#0000ff")
-SAMPLED = LightModel("hybrid")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -116,7 +111,6 @@ def open_basis(
     Raises:
         WorkbenchError: From the stages that trace.
     """
-    start_device(monitor)
     camera = design.optics.camera
     width, height = camera.width_px, camera.height_px
     pixels = [sampled(*contact_box(circle, width, height), width) for _, circle in presses]
@@ -130,7 +124,7 @@ def open_basis(
         span = part(monitor, first / len(lights), min(first + 3, len(lights)) / len(lights))
         group = lights[first : first + 3]
         note = f"lights {first + 1} to {first + len(group)} of {len(lights)}"
-        studio = _studio(design, mesh, group, store, part(span, 0.0, 0.7), note)
+        studio = lit_studio(_in_light_of(design, group), mesh, store, part(span, 0.0, 0.7), note)
         back = studio.imager.backdrop
         lit = studio.imager.shader.lit.ambient.mean() * studio.rays.transmittance[:, None]
         glow = keep * lit * back.background.any(axis=1)[:, None]
@@ -167,40 +161,13 @@ def _levels(press: BallPress) -> np.ndarray:
     return np.linspace(press.least_mm, press.most_mm, LEVELS)
 
 
-def _studio(
-    design: SensorDesign,
-    mesh: MembraneMesh,
-    group: Sequence[Lamp],
-    store: Store,
-    monitor: Monitor,
-    what: str,
-) -> Any:
+def _in_light_of(design: SensorDesign, group: Sequence[Lamp]) -> SensorDesign:
     """The design in the light of up to three lights, one in each colour."""
-    from sim.optics.studio.render import Studio
-
     lamps = tuple(
         dataclasses.replace(lamp, colour=colour)
         for lamp, colour in zip(group, PRIMARIES, strict=False)
     )
-    optics = plain_optics(design.optics, lamps)
-    lit = dataclasses.replace(design, optics=optics)
-
-    def told(stage: str, fraction: float, note: str) -> None:
-        monitor(0.8 * fraction, f"{what}: {note or stage}")
-
-    runner = InlineRunner(store)
-    for _ in evaluate(lit, PressCase(), runner, wanted=("bake",), monitor=told):
-        pass
-    calls = plan(lit, PressCase())
-    inputs = table.table_inputs(optics, calls["mesh"].ref, calls["bake"].ref)
-    call = table.STAGE.call(inputs)
-    runner.run(call, part(monitor, 0.8, 1.0))
-    return Studio(
-        mesh,
-        store.load("bake", calls["bake"].key),
-        optics,
-        table=store.load("table", call.key),
-    )
+    return dataclasses.replace(design, optics=plain_optics(design.optics, lamps))
 
 
 def plain_optics(optics: Optics, lamps: tuple[Lamp, ...]) -> Optics:
@@ -213,7 +180,7 @@ def plain_optics(optics: Optics, lamps: tuple[Lamp, ...]) -> Optics:
         ambient=Ambient(power=1.0),
         background=None,
         unit=None,
-        light_model=SAMPLED,
+        light_model=BEST,
         baking=Baking(photons=PHOTONS, seed=optics.baking.seed),
         markers=dataclasses.replace(optics.markers, visible=False),
     )

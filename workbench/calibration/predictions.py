@@ -8,15 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim.optics.studio.unit_residual import places, slopes
+from workbench.calibration.lit_studio import lit_studio
 from workbench.calibration.residual import Slopes
 from workbench.core.base.monitor import Monitor, part
 from workbench.core.design.design import SensorDesign
-from workbench.core.press.press_case import PressCase
 from workbench.core.result.results import MembraneMesh
-from workbench.pipeline.devices import start_device
-from workbench.pipeline.stages import table
 from workbench.pipeline.store import Store
-from workbench.planning.plan import InlineRunner, evaluate, plan
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -43,23 +40,8 @@ def predict(
     Raises:
         WorkbenchError: From the stages that trace.
     """
-    start_device(monitor)
-    from sim.optics.studio.render import Studio
-
-    def told(stage: str, fraction: float, note: str) -> None:
-        monitor(0.6 * fraction, f"calibrated light: {note or stage}")
-
-    runner, optics = InlineRunner(store), design.optics
-    for _ in evaluate(design, PressCase(), runner, wanted=("bake",), monitor=told):
-        pass
-    calls = plan(design, PressCase())
-    inputs = table.table_inputs(optics, calls["mesh"].ref, calls["bake"].ref)
-    if inputs is None:
-        raise ValueError(f"the light model {optics.light_model} is not one that is calibrated")
-    call = table.STAGE.call(inputs)
-    runner.run(call, part(monitor, 0.6, 0.7))
-    light = store.load("bake", calls["bake"].key)
-    studio = Studio(mesh, light, optics, table=store.load("table", call.key))
+    optics = design.optics
+    studio = lit_studio(design, mesh, store, part(monitor, 0.0, 0.7), "calibrated light")
     images, tilts, rest = [], [], np.zeros(0)
     for number, displaced in enumerate(moved):
         monitor(0.7 + 0.3 * number / len(moved), f"prediction {number + 1} of {len(moved)}")

@@ -27,6 +27,9 @@ class Region:
     """Positive at points of the region; its zero set is the boundary."""
     imprint: bool = False
     """Cut triangles along the boundary; False where the boundary is an edge of the body anyway."""
+    borders: tuple[Field, ...] = ()
+    """What triangles are cut along one after the other, if other than the zero set of `inside`:
+    a boundary with corners, or one of which a part is an edge of the body anyway."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -1,0 +1,50 @@
+"""The studio of a design: its light and the table of it from the store, or traced first."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from workbench.core.base.monitor import Monitor, part
+from workbench.core.design.design import SensorDesign
+from workbench.core.press.press_case import PressCase
+from workbench.core.result.results import MembraneMesh
+from workbench.pipeline.devices import start_device
+from workbench.pipeline.stages import table
+from workbench.pipeline.store import Store
+from workbench.planning.plan import InlineRunner, evaluate, plan
+
+if TYPE_CHECKING:
+    from sim.optics.studio.render import Studio
+
+
+def lit_studio(
+    design: SensorDesign, mesh: MembraneMesh, store: Store, monitor: Monitor, note: str
+) -> Studio:
+    """Camera and light of a design whose light model looks radiance up.
+
+    Args:
+        mesh: Of the design.
+        store: Keeps light and table.
+        monitor: Progress and cancellation.
+        note: What the light is for, for people.
+
+    Raises:
+        WorkbenchError: From the stages that trace.
+    """
+    start_device(monitor)
+    from sim.optics.studio.render import Studio
+
+    def told(stage: str, fraction: float, words: str) -> None:
+        monitor(0.8 * fraction, f"{note}: {words or stage}")
+
+    runner, optics = InlineRunner(store), design.optics
+    for _ in evaluate(design, PressCase(), runner, wanted=("bake",), monitor=told):
+        pass
+    calls = plan(design, PressCase())
+    inputs = table.table_inputs(optics, calls["mesh"].ref, calls["bake"].ref)
+    if inputs is None:
+        raise ValueError(f"the light model {optics.light_model} looks nothing up")
+    call = table.STAGE.call(inputs)
+    runner.run(call, part(monitor, 0.8, 1.0))
+    light = store.load("bake", calls["bake"].key)
+    return Studio(mesh, light, optics, table=store.load("table", call.key))
