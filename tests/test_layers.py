@@ -50,7 +50,7 @@ RANKS = """
     ui.panels  ui.panels.compare  ui.panels.make  ui.panels.mesh  ui.panels.optics  ui.panels.shape
     ui.panels.simulate  ui.panels.view  ui.panels.results
     ui
-    workbench.cli  workbench.cli.commands
+    workbench.cli  workbench.cli.groups  workbench.cli.commands
 """.split()
 """Packages, the lowest first: a module imports its own package and those before it."""
 MOST_MODULES = 25

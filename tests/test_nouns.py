@@ -67,6 +67,7 @@ NOUNS = {
         ),
     ),
     "command": Noun(package="workbench.cli.commands", record="COMMAND"),
+    "command of a group": Noun(package="workbench.cli.groups", record="COMMAND"),
     "export": Noun(package="workbench.report.exports", record="EXPORT"),
     "family": Noun(package="designs", record="FAMILY"),
 }

@@ -116,7 +116,7 @@ def test_a_set_of_another_stiffness_has_the_same_cases(tmp_path: Path) -> None:
     """`--young` changes the key and the modulus, neither the cases nor their split."""
     import argparse
 
-    from workbench.cli.commands.dataset_make import chosen_recipe
+    from workbench.cli.groups.dataset_make import chosen_recipe
     from workbench.learning.dataset.cases import cases_of
     from workbench.project.project import Project
 

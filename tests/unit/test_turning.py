@@ -15,7 +15,7 @@ from sim.contact.objects.collider import make_collider
 from sim.contact.objects.object_measures import exact_distance, lowest_mm
 from sim.contact.objects.sampling import box_mm
 from workbench.cli.command_line import parser
-from workbench.cli.commands.dataset_make import chosen_recipe
+from workbench.cli.groups.dataset_make import chosen_recipe
 from workbench.core.base.digest import digest
 from workbench.core.base.errors import DesignError
 from workbench.core.design.turning import touching_with, turn_angles, turn_matrix

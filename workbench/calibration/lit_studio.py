@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def lit_studio(
-    design: SensorDesign, mesh: MembraneMesh, store: Store, monitor: Monitor, note: str
+    design: SensorDesign, mesh: MembraneMesh, store: Store, monitor: Monitor, what: str
 ) -> Studio:
     """Camera and light of a design whose light model looks radiance up.
 
@@ -26,7 +26,7 @@ def lit_studio(
         mesh: Of the design.
         store: Keeps light and table.
         monitor: Progress and cancellation.
-        note: What the light is for, for people.
+        what: What the light is for, for people.
 
     Raises:
         WorkbenchError: From the stages that trace.
@@ -34,8 +34,8 @@ def lit_studio(
     start_device(monitor)
     from sim.optics.studio.render import Studio
 
-    def told(stage: str, fraction: float, words: str) -> None:
-        monitor(0.8 * fraction, f"{note}: {words or stage}")
+    def told(stage: str, fraction: float, note: str) -> None:
+        monitor(0.8 * fraction, f"{what}: {note or stage}")
 
     runner, optics = InlineRunner(store), design.optics
     for _ in evaluate(design, PressCase(), runner, wanted=("bake",), monitor=told):

@@ -1,7 +1,8 @@
 """A command: what may be typed behind its name, and what it does with that.
 
-A command is one file of `workbench.cli.commands` with a `COMMAND`. The file `train_make` is
-`workbench train make`: the part before the underscore has a file of its own with a `GROUP`.
+A command is one file of `workbench.cli.commands` with a `COMMAND`. Of two words it is one of
+`workbench.cli.groups`: the file `train_make` is `workbench train make`, and the part before the
+underscore has a file of its own with a `GROUP`.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from dataclasses import dataclass
 from workbench.core.base.records import records
 from workbench.project.project import Project
 
-PACKAGE = "workbench.cli.commands"
+PACKAGE, GROUPS = "workbench.cli.commands", "workbench.cli.groups"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -43,12 +44,7 @@ class Group:
 
 def commands() -> dict[str, Command | Group]:
     """Commands and groups by the first word, in the order of the help."""
-    alone = {
-        name: command
-        for name, command in records(PACKAGE, "COMMAND").items()
-        if name.partition("_")[0] not in records(PACKAGE, "GROUP")
-    }
-    found: dict[str, Command | Group] = {**alone, **records(PACKAGE, "GROUP")}
+    found: dict[str, Command | Group] = {**records(PACKAGE, "COMMAND"), **records(GROUPS, "GROUP")}
     return {name: found[name] for name in sorted(found, key=lambda name: found[name].place)}
 
 
@@ -56,7 +52,7 @@ def members(group: str) -> dict[str, Command]:
     """Commands of a group by their second word, in the order of the help."""
     found = {
         name.removeprefix(f"{group}_"): command
-        for name, command in records(PACKAGE, "COMMAND").items()
+        for name, command in records(GROUPS, "COMMAND").items()
         if name.startswith(f"{group}_")
     }
     return {name: found[name] for name in sorted(found, key=lambda name: found[name].place)}

@@ -1,0 +1,1 @@
+"""Commands of two words, and the groups that share the first: one file each."""
