@@ -12,6 +12,7 @@ unknowns of their own: each is chosen anew for the powers, and the powers for th
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -24,16 +25,16 @@ from workbench.core.design.camera import ImageSensor
 
 REST = 0.01
 """Weight of the image at rest against the presses, each over its number of samples [1]."""
-ROUNDS = 6
-"""Of powers and depths in turn; depths settle within three or four."""
+ROUNDS = 200
+"""Of powers and depths in turn, at most: they trade a little, so they settle slowly."""
+SETTLED_MM = 2e-5
+"""Change of every depth in a round at which they have settled [mm]."""
 LEAST_SHARE = 0.01
 """Lights that give less than this of the strongest one's change are left out [1]."""
 CUT_OFF, DARK = 252.0, 2.0
 """Grey levels beyond which a colour may have been cut off."""
 RIDGE = 1e-6
 """Of the mean square of a light: lights beside each other are hard to tell apart [1]."""
-STEPS = 9
-"""Depths between the least and the most that are tried for each press."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -84,7 +85,7 @@ def fit_powers(
         depths = [
             _best_depth(each, what, found) for each, what in zip(basis.presses, change, strict=True)
         ]
-        if np.allclose(before, depths, atol=1e-3):
+        if np.allclose(before, depths, atol=SETTLED_MM):
             break
     error, null = _errors(basis, depths, change, found)
     monitor(1.0, "powers and depths found")
@@ -176,23 +177,22 @@ def _non_negative(square: np.ndarray, product: np.ndarray) -> np.ndarray:
 
 
 def _best_depth(samples: PressSamples, what: _Change, powers: np.ndarray) -> float:
-    """Depth at which the press changes the light most as photographed [mm]."""
-    if len(samples.depths_mm) == 1:
-        return float(samples.depths_mm[0])
+    """Depth at which the press changes the light most as photographed [mm].
 
-    def error(depth_mm: float) -> float:
-        left = (samples.at(depth_mm) @ powers.T - what.light) * what.weight
-        return float((left**2).sum())
-
-    tried = np.linspace(samples.depths_mm[0], samples.depths_mm[-1], STEPS)
-    errors = [error(depth) for depth in tried]
-    best = int(np.argmin(errors))
-    if not 0 < best < STEPS - 1:
-        return float(tried[best])
-    low, middle, high = errors[best - 1 : best + 2]
-    bend = low - 2.0 * middle + high
-    aside = 0.5 * (low - high) / bend if bend > 0.0 else 0.0
-    return float(tried[best] + aside * (tried[1] - tried[0]))
+    Between two levels the change is linear in depth, so the least square is a closed form there.
+    """
+    levels = [((change @ powers.T) - what.light) * what.weight for change in samples.change]
+    best, depth_mm = float((levels[0] ** 2).sum()), float(samples.depths_mm[0])
+    for number, (low, high) in enumerate(itertools.pairwise(levels)):
+        step = high - low
+        share = -float((low * step).sum()) / max(float((step**2).sum()), 1e-30)
+        share = min(max(share, 0.0), 1.0)
+        error = float(((low + share * step) ** 2).sum())
+        if error < best:
+            best = error
+            one, other = samples.depths_mm[number : number + 2]
+            depth_mm = float(one + share * (other - one))
+    return depth_mm
 
 
 def _errors(
