@@ -9,7 +9,17 @@ from pathlib import Path
 ROOT = Path(__file__).parent.parent
 DOCS = ROOT / "docs"
 BY_HAND = (
-    *("browser", "contact", "data-sets", "designs", "forces", "formats", "making", "maps"),
+    *(
+        "browser",
+        "calibration",
+        "contact",
+        "data-sets",
+        "designs",
+        "forces",
+        "formats",
+        "making",
+        "maps",
+    ),
     "optics",
 )
 """Pages that no generator writes; those about the program's inside have tests of their own."""

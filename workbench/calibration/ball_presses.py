@@ -39,6 +39,10 @@ OF_BALL = 0.95
 """Most of the ball's radius [1]: deeper, its equator touches."""
 FINEST_MM, COARSEST_MM = 0.5, 0.8
 """Grid of the contact solver: a third of the contact's radius, between these."""
+EDGE_MM = 1.0
+"""Skin that is looked at around what moves, when a press is carried over [mm]."""
+FACING = 0.3
+"""Least cosine of skin with the direction of the press for it to be carried over [1]."""
 FLAT_RADII = 3.0
 """Contact radii, plus the wall, around a place that must be flat for a press to be carried over."""
 
@@ -200,6 +204,14 @@ def _ball_press(
     )
 
 
+def carried(
+    press: BallPress, photo: BallPhoto, place: ContactPlace, mesh: MembraneMesh
+) -> BallPress:
+    """The same press at another place: of the same flat part, or a fraction of a contact away."""
+    span_mm = press.least_mm, press.most_mm, press.guess_mm
+    return _carry(press, photo, place, mesh, span_mm)
+
+
 def _carry(
     press: BallPress,
     photo: BallPhoto,
@@ -207,23 +219,27 @@ def _carry(
     mesh: MembraneMesh,
     span_mm: tuple[float, float, float],
 ) -> BallPress:
-    """The same press at another place of the same flat part."""
+    """What moves about one place, moved to another, in the plane that touches the skin there."""
     from scipy.interpolate import LinearNDInterpolator
 
-    skin = mesh.seen
+    skin, still = mesh.seen, np.zeros_like(press.displacement_mm)
+    moves = np.abs(press.displacement_mm).max(axis=(0, 2)) > 0.0
+    away = np.linalg.norm(skin.points_mm - press.place.point_mm, axis=1)
+    reach_mm = float(away[moves].max(initial=0.0)) + EDGE_MM
     normal = place.normal
     side = np.cross(normal, [1.0, 0.0, 0.0] if abs(normal[0]) < 0.7 else [0.0, 1.0, 0.0])
     side /= np.linalg.norm(side)
     plane = np.column_stack([side, np.cross(normal, side)])
-    level = np.abs((skin.points_mm - place.point_mm) @ normal) < 0.05
-    spots = skin.points_mm[level] @ plane
-    moved = press.displacement_mm[:, level]
+    faces_it = skin.normals @ normal > FACING
+    there = faces_it & (away < reach_mm)
+    here = faces_it & (np.linalg.norm(skin.points_mm - place.point_mm, axis=1) < reach_mm)
     # A press moves nothing beyond its region: outside the hull of what is known there is none.
     known = LinearNDInterpolator(
-        spots - press.place.point_mm @ plane, np.moveaxis(moved, 0, 1), fill_value=0.0
+        (skin.points_mm[there] - press.place.point_mm) @ plane,
+        np.moveaxis(press.displacement_mm[:, there], 0, 1),
+        fill_value=0.0,
     )
-    carried = np.zeros_like(press.displacement_mm)
-    carried[:, level] = np.moveaxis(known(spots - place.point_mm @ plane), 1, 0)
+    still[:, here] = np.moveaxis(known((skin.points_mm[here] - place.point_mm) @ plane), 1, 0)
     return BallPress(
         photo=photo,
         place=place,
@@ -231,6 +247,6 @@ def _carry(
         most_mm=span_mm[1],
         guess_mm=span_mm[2],
         depths_mm=press.depths_mm,
-        displacement_mm=carried,
+        displacement_mm=still,
         normal_N=press.normal_N,
     )

@@ -19,20 +19,20 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim.optics.studio.unit_residual import unit_bytes
-from workbench.calibration.ball_presses import BallPress, press_balls
+from workbench.calibration.ball_presses import BallPress, carried, press_balls
 from workbench.calibration.contact_circle import find_circle
+from workbench.calibration.contact_shift import MOST
 from workbench.calibration.drift import CUT_OFF, Drift, measured_drift, untouched
 from workbench.calibration.fitted_design import fitted_design, with_unit
 from workbench.calibration.light_basis import LightBasis, open_basis
 from workbench.calibration.light_sources import candidates, single_lights
 from workbench.calibration.photo_set import IDLE, BallPhoto, Circle, PhotoSet
-from workbench.calibration.powers import Powers, Targets, fit_powers, worth_keeping
+from workbench.calibration.powers import Powers, Targets, fit_powers, shifts_px, worth_keeping
 from workbench.calibration.predictions import Predictions, predict
 from workbench.calibration.residual import REACH, fit_residual
 from workbench.calibration.seen_places import SeenPlaces
 from workbench.core.base.errors import DesignError
 from workbench.core.base.monitor import Monitor, part
-from workbench.core.design.camera import ImageSensor
 from workbench.core.design.design import SensorDesign
 from workbench.core.design.unit import unit
 from workbench.core.press.press_case import PressCase
@@ -111,19 +111,32 @@ def calibrate(
     fitted = [k for k, each in enumerate(seen) if not each.photo.held_out]
     of_fitted = [(presses[k], seen[k].circle) for k in fitted]
     targets = [seen[k] for k in fitted]
-    known = lights != "unknown"
+    known, sensor = lights != "unknown", design.optics.camera.sensor
     found = None
     if known:
-        span = part(monitor, 0.45, 0.6 if lights == "auto" else 0.85)
+        span = part(monitor, 0.45, 0.55)
         sources = single_lights(design.optics)
         basis = open_basis(design, mesh, sources, of_fitted, store, span)
-        found = fit_powers(basis, _targets(basis, targets, photos), _sensor(design), span)
+        found = fit_powers(basis, _targets(basis, targets, photos), sensor, span)
     if found is None or (lights == "auto" and found.error_grey > BADLY * found.null_grey):
-        known, span = False, part(monitor, 0.6, 0.85)
+        known, span = False, part(monitor, 0.55, 0.7)
         basis = open_basis(design, mesh, candidates(mesh), of_fitted, store, span)
-        found = fit_powers(basis, _targets(basis, targets, photos), _sensor(design), span)
+        found = fit_powers(basis, _targets(basis, targets, photos), sensor, span)
         basis = basis.only(worth_keeping(basis, found))
-        found = fit_powers(basis, _targets(basis, targets, photos), _sensor(design), span)
+        found = fit_powers(basis, _targets(basis, targets, photos), sensor, span)
+    # Where each contact is in its photograph is known better now than its circle said.
+    away = shifts_px(basis, _targets(basis, targets, photos), found, sensor, photos.idle.shape[1])
+    # Held-out photographs share what is common to all: how circles are drawn or found here.
+    shifts = dict.fromkeys(range(len(seen)), np.median(away, axis=0))
+    shifts.update(zip(fitted, away, strict=True))
+    for number, shift in shifts.items():
+        seen[number] = _shifted(seen[number], shift, photos.idle)
+        place = places.place(seen[number].circle, seen[number].photo.name)
+        presses[number] = carried(presses[number], seen[number].photo, place, mesh)
+    of_fitted = [(presses[k], seen[k].circle) for k in fitted]
+    targets, span = [seen[k] for k in fitted], part(monitor, 0.7, 0.85)
+    basis = open_basis(design, mesh, basis.lights, of_fitted, store, span)
+    found = fit_powers(basis, _targets(basis, targets, photos), sensor, span)
     calibrated = fitted_design(design, basis.lights, found, known=known)
     depths = _depths(presses, fitted, found)
     moved = [press.displaced_mm(depth) for press, depth in zip(presses, depths, strict=True)]
@@ -182,8 +195,18 @@ def _mesh(design: SensorDesign, store: Store, monitor: Monitor) -> MembraneMesh:
     return store.load("mesh", plan(design, PressCase())["mesh"].key)
 
 
-def _sensor(design: SensorDesign) -> ImageSensor:
-    return design.optics.camera.sensor
+def _shifted(seen: SeenPhoto, shift_px: np.ndarray, idle: np.ndarray) -> SeenPhoto:
+    """A photograph with its contact elsewhere, if that is the same contact."""
+    circle, (height, width) = seen.circle, idle.shape[:2]
+    if not np.hypot(*shift_px) <= MOST * circle.radius_px:
+        return seen
+    moved = Circle(
+        column_px=float(np.clip(circle.column_px + shift_px[0], 0, width - 1)),
+        row_px=float(np.clip(circle.row_px + shift_px[1], 0, height - 1)),
+        radius_px=circle.radius_px,
+    )
+    drift = measured_drift(seen.photo.image, idle, moved)
+    return SeenPhoto(photo=seen.photo, circle=moved, drift=drift)
 
 
 def _targets(basis: LightBasis, seen: Sequence[SeenPhoto], photos: PhotoSet) -> Targets:

@@ -40,7 +40,7 @@ class PressSamples:
     """One press in the light of each of L lights."""
 
     pixel: np.ndarray
-    """Numbers of the sampled pixels, shape (N,)."""
+    """Numbers of the sampled pixels, row by row of an even grid, shape (N,)."""
     depths_mm: np.ndarray
     """Shape (D,)."""
     change: np.ndarray
@@ -127,7 +127,7 @@ def open_basis(
         studio = lit_studio(_in_light_of(design, group), mesh, store, part(span, 0.0, 0.7), note)
         back = studio.imager.backdrop
         lit = studio.imager.shader.lit.ambient.mean() * studio.rays.transmittance[:, None]
-        glow = keep * lit * back.background.any(axis=1)[:, None]
+        glow = keep * lit * (back.background.max(axis=1, keepdims=True) > 0.0)
         whole = keep * back.background[:, : len(group)] - glow
         rest.append(whole[rest_pixel])
         ambient = glow[:, 0]

@@ -19,6 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim.optics.raster.display import light_of, shown
+from workbench.calibration.contact_shift import contact_shift
 from workbench.calibration.light_basis import LightBasis, PressSamples
 from workbench.core.base.monitor import Monitor
 from workbench.core.design.camera import ImageSensor
@@ -96,6 +97,25 @@ def fit_powers(
         error_grey=error,
         null_grey=null,
     )
+
+
+def shifts_px(
+    basis: LightBasis, targets: Targets, powers: Powers, sensor: ImageSensor, width_px: int
+) -> np.ndarray:
+    """How far each contact is from its circle, along columns and rows [px], shape (J, 2)."""
+    found = []
+    for samples, depth, (photo, idle) in zip(
+        basis.presses, powers.depths_mm, targets.presses, strict=True
+    ):
+        row, column = samples.pixel // width_px, samples.pixel % width_px
+        grid = len(np.unique(row)), len(np.unique(column))
+        step = np.diff(np.unique(column))[:1].sum()
+        light = light_of(np.clip(idle / 255.0, 0.0, 1.0), sensor)
+        predicted = 255.0 * shown(light + samples.at(depth) @ powers.lights.T, sensor)
+        usable = (photo < CUT_OFF) & (photo > DARK) & (predicted < CUT_OFF)
+        shaped = [each.reshape(*grid, 3) for each in (predicted - idle, photo - idle, usable)]
+        found.append(step * contact_shift(*shaped))
+    return np.array(found)
 
 
 def worth_keeping(basis: LightBasis, powers: Powers) -> np.ndarray:
