@@ -14,6 +14,7 @@ from docs.field_words import choices, field_docs, one_line
 from workbench.core.design.design import SensorDesign
 from workbench.core.design.imported import IMPORTED, ImportedBody
 from workbench.core.design.photo import Photo
+from workbench.core.design.unit import Unit
 from workbench.core.press.indenter import IndenterMesh
 from workbench.core.press.press_case import PressCase
 from workbench.core.press.texture import HeightImage
@@ -25,7 +26,7 @@ each heading below is a table of it, and what is left out has the default. A hea
 brackets may stand several times. On the command line `--set` takes a field by its table and name:
 `--set optics.ring.count=6`.
 """
-FILES = (Photo, ImportedBody)
+FILES = (Photo, Unit, ImportedBody)
 """Fields that a design file gives by the name of a file."""
 ARRAYS = (IndenterMesh, HeightImage)
 """Fields that the workbench keeps for itself, beside the design."""

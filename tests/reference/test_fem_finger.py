@@ -13,7 +13,14 @@ from workbench.core.base.version import VERSION
 from workbench.core.press.fem import DRAFT_MM
 from workbench.core.press.indenter import IndenterKind
 from workbench.proof.validation.fem import fem_matrix
-from workbench.proof.validation.fem.fem_cases import MatrixCase, every_case, object_of, press_of
+from workbench.proof.validation.fem.fem_cases import (
+    FAMILIES,
+    MatrixCase,
+    body_digest,
+    every_case,
+    object_of,
+    press_of,
+)
 from workbench.proof.validation.fem.fem_presses import (
     FRAMES,
     MIRROR,
@@ -103,6 +110,7 @@ def record_of(tmp_path: Path, **changes: object) -> Path:
         "version": "0",
         "made": "2000-01-01",
         "conditions": fem_matrix.conditions(),
+        "bodies": {family: body_digest(family) for family in FAMILIES},
         "cases": {case.name: told for case in every_case()},
     }
     path = tmp_path / "record.json"
@@ -115,6 +123,15 @@ def test_without_a_record_the_rows_fail_and_say_why(tmp_path: Path) -> None:
     assert [row.ok for row in rows] == [False] * 3
     assert "there is no record" in rows[0].case
     assert not any(row.ok for row in fem_matrix.repeated_rows(tmp_path / "none.json"))
+
+
+def test_a_record_of_another_body_is_none(tmp_path: Path) -> None:
+    """Of three families one was reshaped since: its row fails, the others stand."""
+    bodies = {family: body_digest(family) for family in FAMILIES} | {"trunk": "another"}
+    rows = fem_matrix.recorded_rows(record_of(tmp_path, bodies=bodies))
+    (row,) = [row for row in rows if row.name == "fem_matrix" and not row.ok]
+    assert "not recorded since" in row.case and row.case.startswith("trunk")
+    assert not any(row.case.startswith("trunk") for row in rows if row.ok)
 
 
 def test_times_on_a_gpu_are_not_taken_for_those_of_a_processor(tmp_path: Path) -> None:

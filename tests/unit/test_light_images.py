@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from workbench.core.base.errors import StoreError
 from workbench.core.design.lighting import LightModel
-from workbench.proof.validation.optics import light_models
+from workbench.proof.validation.optics import light_images, light_models
 from workbench.proof.validation.optics.light_images import (
     Score,
     box_around,
@@ -61,6 +62,13 @@ def test_recorded_photons_leave_less_noise_than_models_are_judged_by(scene: obje
     assert set(frames) == {"flat", *dents}
     assert all(frame.ceiling.ssim_1 >= 0.995 for frame in frames.values())
     assert all(frame.photons >= 1e9 for frame in frames.values())
+
+
+def test_images_of_another_body_are_not_compared_with(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A family that was reshaped since: the file is refused, and a row that needs it fails."""
+    monkeypatch.setattr(light_images, "body_digest", lambda body: f"another {body}")
+    with pytest.raises(StoreError, match="shows another body as trunk shell"):
+        reference.__wrapped__("trunk shell")
 
 
 @pytest.mark.slow

@@ -90,7 +90,7 @@ class LedRing:
     cone_deg: float = 180.0
     """Full angle of the cone that an LED shines into [degree]; 180 is the half space."""
     size_mm: float = 1.5
-    """Diameter of an LED's emitting disc [mm]; for traced photons and for glare."""
+    """Diameter of an LED's emitting disc [mm]; for traced photons, shadows and glare."""
     colours: tuple[str, ...] = ("#ff0000", "#00ff00", "#0000ff")
     """Linear RGB of each sector as #rrggbb, or its light as `525nm`, `525nm/35nm`, `5600K`."""
     mount: LedMount = LedMount.CAVITY
@@ -154,7 +154,7 @@ class Lamp:
     emission_exponent: float = 1.0
     cone_deg: float = 180.0
     size_mm: float = 1.5
-    """Diameter of the emitting disc of a point [mm]; for traced photons and for glare."""
+    """Diameter of the emitting disc of a point [mm]; for traced photons, shadows and glare."""
     mount: LedMount = LedMount.CAVITY
 
     def __post_init__(self) -> None:
@@ -221,6 +221,7 @@ class Ambient:
     power: float = 0.0
     """Power that falls on the whole skin, in units of a ring LED's."""
     colour: str = "#ffffff"
+    """Linear RGB as #rrggbb, or its light as `525nm`, `525nm/35nm`, `5600K`."""
 
     def __post_init__(self) -> None:
         at = "optics.ambient"

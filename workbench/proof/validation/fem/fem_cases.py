@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from workbench.core.base.digest import digest
 from workbench.core.base.errors import MeshingError, WorkbenchError
 from workbench.core.base.monitor import silent
 from workbench.core.design.design import Elastomer, Meshing
@@ -128,6 +129,14 @@ def membrane(family: str, hex_mm: float) -> MembraneMesh:
     """
     solid = finger_solid() if family == "finger" else default_solid(family)
     return mesh(MeshInputs(solid=solid, meshing=Meshing(hex_mm=hex_mm)), monitor=silent)
+
+
+def body_digest(family: str) -> str:
+    """Of the default shape and layers of a family: what a record of it belongs to."""
+    from designs.family import resolve_shape
+    from workbench.core.design.design import Layers
+
+    return digest([family, resolve_shape(family, {}), Layers()])
 
 
 def press_of(case: MatrixCase) -> Press:

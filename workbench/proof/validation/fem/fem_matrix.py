@@ -33,12 +33,13 @@ from workbench.proof.validation.fem.fem_cases import (
     SHEAR_MM,
     TWIST_DEG,
     MatrixCase,
+    body_digest,
     every_case,
 )
 from workbench.proof.validation.fem.fem_solving import conditions, solve_case
 
 RECORD = Path(__file__).with_name("fem_matrix.json")
-PARTS = {"version", "made", "conditions", "cases"}
+PARTS = {"version", "made", "conditions", "bodies", "cases"}
 LEAST = 31
 """Of the 32 cases of a family."""
 REPEATED = 2
@@ -64,6 +65,10 @@ def recorded_rows(path: Path = RECORD) -> list[Row]:
 
 
 def _family_rows(family: str, record: dict[str, Any]) -> Iterator[Row]:
+    if record["bodies"].get(family) != body_digest(family):
+        why = "not recorded since the family's default body was changed"
+        yield failed("fem_matrix", family, why=why)
+        return
     cases = [case for case in every_case() if case.family == family]
     found = {case.name: record["cases"].get(case.name) for case in cases}
     done = {
@@ -112,7 +117,11 @@ def repeated_rows(path: Path = RECORD) -> list[Row]:
         record = read_record(path)
     except StoreError as error:
         return [failed("fem_matrix_repeated", "two cases", why=error.message)]
-    known = {case.name: case for case in every_case()}
+    known = {
+        case.name: case
+        for case in every_case()
+        if record["bodies"].get(case.family) == body_digest(case.family)
+    }
     done = {n: outcome for n, outcome in record["cases"].items() if outcome["ok"] and n in known}
     by_cost = sorted(done, key=lambda name: (_by_gpu(done[name]), done[name]["cpu_s"]))
     cheapest = by_cost[:REPEATED]
@@ -157,9 +166,7 @@ def read_record(path: Path) -> dict[str, Any]:
         raise StoreError(f"there is no record {path.name}", hint=hint, at=str(path)) from error
     except (OSError, ValueError) as error:
         raise StoreError(f"{path.name}: {error}", hint=hint, at=str(path)) from error
-    if not isinstance(record, dict) or not {"version", "made", "conditions", "cases"} <= set(
-        record
-    ):
+    if not isinstance(record, dict) or not set(record) >= PARTS:
         raise StoreError(f"{path.name} is no record of the matrix", hint=hint, at=str(path))
     return record
 
@@ -196,13 +203,19 @@ def solve_all(todo: Sequence[MatrixCase], path: Path, jobs: int, hex_mm: float) 
 
 def _begun(path: Path, hex_mm: float) -> dict[str, Any]:
     """The record of a file, or an empty one."""
-    fresh = {"version": VERSION, "made": "", "conditions": conditions(hex_mm), "cases": {}}
+    fresh = {
+        "version": VERSION,
+        "made": "",
+        "conditions": conditions(hex_mm),
+        "bodies": {family: body_digest(family) for family in FAMILIES},
+        "cases": {},
+    }
     if not path.exists():
         return fresh
     record = read_record(path)
-    if (record["version"], record["conditions"]) != (fresh["version"], fresh["conditions"]):
+    if any(record[name] != fresh[name] for name in ("version", "conditions", "bodies")):
         raise StoreError(
-            f"{path} was made by version {record['version']} with other settings or paths",
+            f"{path} was made by version {record['version']} with other settings, paths or bodies",
             hint="name another file",
             at=str(path),
         )

@@ -19,6 +19,7 @@ from sim.optics.raster.display import choose_exposure, encode
 from sim.optics.studio.metrics import psnr_dB, ssim
 from sim.optics.studio.render import Studio
 from workbench.core.base.errors import OpticsError, StoreError
+from workbench.proof.validation.optics.light_scenes import body_digest
 
 FILE = Path(__file__).with_name("photon_reference.npz")
 CLEAR_MM = 0.1
@@ -87,15 +88,14 @@ def reference(scene: str) -> SceneReference:
     """What photons showed of a scene.
 
     Raises:
-        StoreError: If the file is missing or knows no such scene.
+        StoreError: If the file is missing, knows no such scene, or saw another body in it.
     """
+    hint = "write it: python -m workbench.proof.validation.optics.photon_reference"
     if not FILE.exists():
-        raise StoreError(
-            f"{FILE.name} is missing",
-            hint="write it: python -m workbench.proof.validation.optics.photon_reference",
-        )
+        raise StoreError(f"{FILE.name} is missing", hint=hint)
     frames, exposure, device = {}, 0.0, ""
     with np.load(FILE) as data:
+        body = str(data[f"{scene}|body"]) if f"{scene}|body" in data.files else ""
         heads = [n.removesuffix("|light") for n in data.files if n.startswith(f"{scene}|")]
         for head in (h for h in heads if f"{h}|light" in data.files):
             numbers = data[f"{head}|numbers"]
@@ -111,7 +111,9 @@ def reference(scene: str) -> SceneReference:
             )
             exposure, device = float(numbers[9]), str(data["device"])
     if "flat" not in frames:
-        raise StoreError(f"{FILE.name} knows no scene {scene}", hint="write it anew")
+        raise StoreError(f"{FILE.name} knows no scene {scene}", hint=hint)
+    if body != body_digest(scene.split(maxsplit=1)[0]):
+        raise StoreError(f"{FILE.name} shows another body as {scene} than today's", hint=hint)
     return SceneReference(frames=frames, exposure=exposure, device=device)
 
 

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from workbench.core.base.digest import digest
 from workbench.core.base.frames import quaternion
 from workbench.core.base.monitor import silent
 from workbench.core.design.camera import Camera
@@ -22,6 +23,8 @@ from workbench.core.design.design import Meshing, SensorDesign
 from workbench.core.design.lighting import Baking, Lamp, LampKind, LedMount, LedRing, LightModel
 from workbench.core.design.optics import Optics
 from workbench.core.result.results import MembraneMesh, Skin
+from workbench.pipeline.stages.build import BuildInputs, build
+from workbench.pipeline.stages.mesh import MeshInputs, mesh
 
 WIDTH_PX, HEIGHT_PX = 320, 240
 COLOURS = ("#ff0000", "#00ff00", "#0000ff")
@@ -55,17 +58,22 @@ SCENES = tuple(
 @functools.cache
 def mesh_of(body: str) -> MembraneMesh:
     """The body at 0.4 mm, built by the workbench's own stages."""
+    solid = build(_build_inputs(body), monitor=silent)
+    return mesh(MeshInputs(solid=solid, meshing=Meshing()), monitor=silent)
+
+
+def body_digest(body: str) -> str:
+    """Of the family's parameters and layers: what a recorded image of the body belongs to."""
+    return digest(_build_inputs(body))
+
+
+def _build_inputs(body: str) -> BuildInputs:
     from designs.family import resolve_shape
-    from workbench.pipeline.stages.build import BuildInputs, build
-    from workbench.pipeline.stages.mesh import MeshInputs, mesh
     from workbench.project.named_designs import load_design
 
     design = SensorDesign() if body == "finger" else load_design(body)
     shape = resolve_shape(design.family, design.shape)
-    solid = build(
-        BuildInputs(family=design.family, shape=shape, layers=design.layers), monitor=silent
-    )
-    return mesh(MeshInputs(solid=solid, meshing=Meshing()), monitor=silent)
+    return BuildInputs(family=design.family, shape=shape, layers=design.layers)
 
 
 def optics_of(scene: LightScene, model: LightModel, *, seed: int = 1) -> Optics:

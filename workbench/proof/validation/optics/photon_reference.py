@@ -3,10 +3,11 @@
 Billions of photons take a GPU minutes and two CPU cores hours, so what they showed is shipped as
 `photon_reference.npz`. Three steps write it anew, each where it can run:
 
-    python -m workbench.proof.validation.optics.photon_reference scenes FILE      needs the CAD
-    kernel python -m workbench.proof.validation.optics.photon_reference trace FILE OUT   wants a GPU
-    python -m workbench.proof.validation.optics.photon_reference images OUT       writes the shipped
-    file
+    python -m workbench.proof.validation.optics.photon_reference STEP
+
+with the steps `scenes FILE`, which needs the CAD kernel, `trace FILE OUT [PHOTONS [SCENE ...]]`,
+which wants a GPU, and `images FILE OUT`, which draws into the shipped file what was traced. Each
+scene keeps the digest of its body: of another one, nothing is compared.
 
 Radiance at the vertices is traced in two halves with different photons, so that the score of one
 half against the other is known: the ceiling of what any model can reach. The images are drawn by
@@ -34,6 +35,7 @@ from workbench.proof.validation.optics.light_images import dent_box, flat_exposu
 from workbench.proof.validation.optics.light_scenes import (
     SCENES,
     LightScene,
+    body_digest,
     mesh_of,
     optics_of,
     skins_of,
@@ -158,17 +160,18 @@ def write_images(scenes: Path, traced: Path, file: Path) -> None:
 
     Args:
         scenes: Written by its step `scenes`.
-        traced: Folder of its step `trace`; scenes that are not there are left out.
+        traced: Folder of its step `trace`; of scenes that are not there the file keeps what it has.
         file: Target.
     """
     from workbench.pipeline.devices import open_device
 
     open_device()
-    arrays: dict[str, np.ndarray] = {}
+    arrays = dict(np.load(file)) if file.exists() else {}
     for scene, (mesh, optics, frames) in read_scenes(scenes).items():
         path = traced / f"{scene.replace(' ', '_')}_flat.npz"
         if path.exists():
-            arrays |= _scene_arrays(scene, mesh, optics, frames, traced)
+            kept = {name: a for name, a in arrays.items() if not name.startswith(f"{scene}|")}
+            arrays = kept | _scene_arrays(scene, mesh, optics, frames, traced)
             arrays["device"] = np.array(str(np.load(path)["device"]))
     np.savez_compressed(file, allow_pickle=False, **arrays)
 
@@ -193,7 +196,8 @@ def _scene_arrays(
     studio = Studio(mesh, light, optics, radiance=rest)
     flat = studio.linear(np.zeros((1, *rest.shape), dtype=np.float32), radiance=rest[None])[0]
     exposure = flat_exposure(flat)
-    found: dict[str, np.ndarray] = {}
+    body = scene.split(maxsplit=1)[0]
+    found: dict[str, np.ndarray] = {f"{scene}|body": np.array(body_digest(body))}
     for name, displacement in frames.items():
         halves = data[name]["halves"]
         drawn = [
