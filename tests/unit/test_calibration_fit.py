@@ -14,6 +14,7 @@ from sim.optics.studio.unit_residual import (
     slopes,
     unit_bytes,
 )
+from workbench.calibration.contact_shift import contact_shift
 from workbench.calibration.light_basis import LightBasis, PressSamples, sampled
 from workbench.calibration.polynomial import fit_polynomial, terms
 from workbench.calibration.powers import Targets, fit_powers, worth_keeping
@@ -179,3 +180,24 @@ def test_an_empty_residual_changes_nothing() -> None:
         unit("u.npz", unit_bytes(idle, np.zeros((0, 4)), np.zeros((0, 3)), REACH))
     )
     assert not kept.change(np.ones((5, 2)), np.ones((5, 2))).any()
+
+
+@pytest.mark.parametrize("true", [(1.3, -0.8), (0.0, 2.5), (-3.2, 0.4)])
+def test_a_contact_is_moved_to_where_it_was_photographed(true: tuple[float, float]) -> None:
+    """A dent in three colours, drawn anew elsewhere, with noise: to a tenth of a pixel."""
+
+    def dent(column: float, row: float) -> np.ndarray:
+        y, x = np.mgrid[:60, :70].astype(float)
+        bump = np.exp(-((x - column) ** 2 + (y - row) ** 2) / 120.0)
+        return bump[..., None] * np.stack([x - column, y - row, column - x + y - row], axis=-1)
+
+    noise = np.random.default_rng(4).normal(0.0, 0.2, (60, 70, 3))
+    taken = dent(34.0 + true[0], 31.0 + true[1]) + noise
+    found = contact_shift(dent(34.0, 31.0), taken, np.ones(taken.shape, dtype=bool))
+    assert found == pytest.approx(true, abs=0.1)
+
+
+def test_an_even_image_tells_no_shift() -> None:
+    """Without slopes there is nothing to move."""
+    flat = np.ones((20, 20, 3))
+    assert not contact_shift(0.0 * flat, flat, flat > 0.0).any()

@@ -33,6 +33,8 @@ CIRCLES = (
     (LedMount.CAVITY, 0.55, (-0.7, 0.7)),
 )
 """Mount, height over that of the support or cavity, and outward and upward part of the axis."""
+OVER_BASE = 0.5
+"""Height over that of the support from which a candidate is not at its base [1]."""
 PLATE_EDGE = 0.08
 """Twice the distance of a candidate from the edge of a plate, over the plate's radius [1]."""
 JUST_ABOVE_MM = 0.2
@@ -87,6 +89,9 @@ def _candidate(
     probe = around + height_mm * UP
     cavity = wall_radius(mesh.cavity, probe)
     if mount is LedMount.SHELL:
+        if height_mm > OVER_BASE * plate_mm(mesh) and np.isfinite(wall_radius(mesh.inner, probe)):
+            # High up only the edge of a plate takes LEDs, not the dome of a finger.
+            return None
         inner = _support_mm(mesh, around, height_mm)
         # A plate is solid from edge to edge: the lights stand at its edge.
         solid_mm = inner - cavity if np.isfinite(cavity) else PLATE_EDGE * inner
@@ -119,8 +124,12 @@ def _support_mm(mesh: MembraneMesh, around: np.ndarray, height_mm: float) -> flo
     inner = wall_radius(mesh.inner, around + height_mm * UP)
     if np.isfinite(inner):
         return inner
-    foot_mm = float(mesh.inner.points_mm[:, 2].max())
-    return wall_radius(mesh.outer, around + (foot_mm + JUST_ABOVE_MM) * UP)
+    return wall_radius(mesh.outer, around + (plate_mm(mesh) + JUST_ABOVE_MM) * UP)
+
+
+def plate_mm(mesh: MembraneMesh) -> float:
+    """Height of the support's top [mm]."""
+    return float(mesh.inner.points_mm[:, 2].max())
 
 
 def _three(vector: np.ndarray) -> tuple[float, float, float]:
