@@ -7,7 +7,7 @@ from sim.optics.field.model import Model, Shading
 
 MODEL = Model(
     place=7,
-    hint="traced photons, with sharp shadows of each LED; the best quick images",
+    hint="traced photons, with the soft shadow of each LED; the best quick images",
     shading=Shading.HYBRID,
     bake=gathered,
 )
