@@ -37,7 +37,7 @@ DIMENSIONLESS = set(
     # Ratios, shares and coefficients.
     "Tip ratio,Poisson,Friction,Albedo,Gloss,Roughness,Phong diffuse,Phong specular,"
     "Phong exponent,Ink,Vignetting,Gamma,Region error,Explode,Exposure,"
-    "LED power,LED factor,Lamp power,"
+    "LED power,LED factor,Lamp power,Ambient power,Gain rgb,Fall-off k,"
     # Directions of any length.
     "Shines along,Lies along,"
     # A scale of its own, and numbers in the unit of the parameter that is chosen above them.
