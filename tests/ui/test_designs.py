@@ -58,7 +58,7 @@ def test_start_from_a_thumbnail_and_keep_it(
     set_number(page, "Width mm", 40)
     button(page, "Gallery of designs").click()
     page.locator('[data-name="soft trunk (yours)"]').click()
-    wait_until(lambda: slider_value(page, "Width mm") == 34, 20, "the kept design is open")
+    wait_until(lambda: slider_value(page, "Width mm") == 35, 20, "the kept design is open")
 
 
 def test_an_image_preview_follows_the_sliders(
