@@ -12,6 +12,7 @@ On flat parts a press at one place serves the others: the skin moves alike, and 
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from dataclasses import dataclass
 
@@ -19,7 +20,9 @@ import numpy as np
 
 from workbench.calibration.photo_set import BallPhoto
 from workbench.calibration.seen_places import ContactPlace, SeenPlaces
-from workbench.core.base.errors import DesignError, WorkbenchError
+from workbench.calibration.stored import stored
+from workbench.core.base.errors import DesignError
+from workbench.core.base.frames import tangent
 from workbench.core.base.monitor import Monitor, part
 from workbench.core.design.design import SensorDesign
 from workbench.core.press.indenter import Indenter
@@ -28,7 +31,6 @@ from workbench.core.press.press_case import PressCase
 from workbench.core.result.results import MembraneMesh
 from workbench.core.result.sensing import Contact
 from workbench.pipeline.store import Store
-from workbench.planning.plan import InlineRunner, evaluate, plan
 
 FRAMES = 8
 BEYOND_HERTZ, SHORT_OF_CAP = 1.4, 0.6
@@ -82,17 +84,9 @@ class BallPress:
         return low, float(place - low)
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class _Carried:
-    """A press that serves other flat places with the same ball."""
-
-    press: BallPress
-    ball_mm: float
-
-
 def press_balls(
     design: SensorDesign,
-    mesh: MembraneMesh,
+    places: SeenPlaces,
     photos: list[tuple[BallPhoto, ContactPlace]],
     store: Store,
     monitor: Monitor,
@@ -102,9 +96,9 @@ def press_balls(
     Raises:
         DesignError: With the photograph's name, if a ball cannot be pressed there.
     """
-    places = SeenPlaces(mesh, design.optics)
+    mesh = places.mesh
     found: list[BallPress] = []
-    carried: list[_Carried] = []
+    on_flat: list[BallPress] = []
     for number, (photo, place) in enumerate(photos):
         span = part(monitor, number / len(photos), (number + 1) / len(photos))
         span(0.0, f"press of {photo.name}, {number + 1} of {len(photos)}")
@@ -112,12 +106,12 @@ def press_balls(
         far_mm = FLAT_RADII * place.radius_mm + places.wall_mm(place)
         flat = places.flat_to_mm(place) > far_mm
         known = [
-            each.press
-            for each in carried
+            each
+            for each in on_flat
             if flat
-            and each.ball_mm == photo.ball_mm
-            and each.press.depths_mm[-1] >= span_mm[1] - 1e-9
-            and each.press.place.normal @ place.normal > 0.999999
+            and each.photo.ball_mm == photo.ball_mm
+            and each.depths_mm[-1] >= span_mm[1] - 1e-9
+            and each.place.normal @ place.normal > 0.999999
         ]
         if known:
             found.append(_carry(known[0], photo, place, mesh, span_mm))
@@ -134,7 +128,7 @@ def press_balls(
         press = _ball_press(photo, place, mesh, contact, deepest, span_mm)
         found.append(press)
         if flat:
-            carried.append(_Carried(press=press, ball_mm=photo.ball_mm))
+            on_flat.append(press)
     monitor(1.0, "balls pressed")
     return found
 
@@ -168,19 +162,16 @@ def _pressed(
         settings=ContactSettings(grid_mm=grid_mm),
     )
     try:
-        for _ in evaluate(
+        return stored(
             design,
             case,
-            InlineRunner(store),
-            wanted=("press",),
-            monitor=lambda stage, fraction, note="": monitor(fraction, f"{photo.name}: {note}"),
-        ):
-            pass
-    except WorkbenchError as error:
-        if isinstance(error, DesignError) or error.exit_code == DesignError.exit_code:
-            error.message = f"{photo.name}: {error.message}"
+            "press",
+            store,
+            lambda fraction, note="": monitor(fraction, f"{photo.name}: {note}"),
+        )
+    except DesignError as error:
+        error.message = f"{photo.name}: {error.message}"
         raise
-    return store.load("press", plan(design, case)["press"].key)
 
 
 def _ball_press(
@@ -227,8 +218,7 @@ def _carry(
     away = np.linalg.norm(skin.points_mm - press.place.point_mm, axis=1)
     reach_mm = float(away[moves].max(initial=0.0)) + EDGE_MM
     normal = place.normal
-    side = np.cross(normal, [1.0, 0.0, 0.0] if abs(normal[0]) < 0.7 else [0.0, 1.0, 0.0])
-    side /= np.linalg.norm(side)
+    side = tangent(normal)
     plane = np.column_stack([side, np.cross(normal, side)])
     faces_it = skin.normals @ normal > FACING
     there = faces_it & (away < reach_mm)
@@ -240,13 +230,12 @@ def _carry(
         fill_value=0.0,
     )
     still[:, here] = np.moveaxis(known((skin.points_mm[here] - place.point_mm) @ plane), 1, 0)
-    return BallPress(
+    return dataclasses.replace(
+        press,
         photo=photo,
         place=place,
         least_mm=span_mm[0],
         most_mm=span_mm[1],
         guess_mm=span_mm[2],
-        depths_mm=press.depths_mm,
         displacement_mm=still,
-        normal_N=press.normal_N,
     )

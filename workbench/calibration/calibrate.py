@@ -31,6 +31,7 @@ from workbench.calibration.powers import Powers, Targets, fit_powers, shifts_px,
 from workbench.calibration.predictions import Predictions, predict
 from workbench.calibration.residual import REACH, fit_residual
 from workbench.calibration.seen_places import SeenPlaces
+from workbench.calibration.stored import stored
 from workbench.core.base.errors import DesignError
 from workbench.core.base.monitor import Monitor, part
 from workbench.core.design.design import SensorDesign
@@ -38,7 +39,6 @@ from workbench.core.design.unit import unit
 from workbench.core.press.press_case import PressCase
 from workbench.core.result.results import MembraneMesh
 from workbench.pipeline.store import Store
-from workbench.planning.plan import InlineRunner, evaluate, plan
 
 NO_RESIDUAL = np.zeros((0, 4)), np.zeros((0, 3))
 BADLY = 0.5
@@ -57,7 +57,7 @@ class SeenPhoto:
     @property
     def at_rest(self) -> np.ndarray:
         """Grey levels at rest's exposure, shape (H, W, 3), float64."""
-        return (self.photo.image - self.drift.offset) / self.drift.gain
+        return self.drift.taken_back(self.photo.image)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -104,10 +104,10 @@ def calibrate(
     """
     _expect_size(design, photos)
     seen = [_seen(photo, photos.idle) for photo in photos.photos]
-    mesh = _mesh(design, store, part(monitor, 0.0, 0.05))
+    mesh: MembraneMesh = stored(design, PressCase(), "mesh", store, part(monitor, 0.0, 0.05))
     places = SeenPlaces(mesh, design.optics)
     located = [(each.photo, places.place(each.circle, each.photo.name)) for each in seen]
-    presses = press_balls(design, mesh, located, store, part(monitor, 0.05, 0.45))
+    presses = press_balls(design, places, located, store, part(monitor, 0.05, 0.45))
     fitted = [k for k, each in enumerate(seen) if not each.photo.held_out]
     of_fitted = [(presses[k], seen[k].circle) for k in fitted]
     targets = [seen[k] for k in fitted]
@@ -180,19 +180,9 @@ def _seen(photo: BallPhoto, idle: np.ndarray) -> SeenPhoto:
         circle = find_circle(photo.image.astype(np.float64) - idle, photo.name)
     drift = measured_drift(photo.image, idle, circle)
     if photo.circle is None:
-        corrected = (photo.image - drift.offset) / drift.gain
-        circle = find_circle(corrected - idle, photo.name)
+        circle = find_circle(drift.taken_back(photo.image) - idle, photo.name)
         drift = measured_drift(photo.image, idle, circle)
     return SeenPhoto(photo=photo, circle=circle, drift=drift)
-
-
-def _mesh(design: SensorDesign, store: Store, monitor: Monitor) -> MembraneMesh:
-    def told(stage: str, fraction: float, note: str) -> None:
-        monitor(fraction, note or stage)
-
-    for _ in evaluate(design, PressCase(), InlineRunner(store), wanted=("mesh",), monitor=told):
-        pass
-    return store.load("mesh", plan(design, PressCase())["mesh"].key)
 
 
 def _shifted(seen: SeenPhoto, shift_px: np.ndarray, idle: np.ndarray) -> SeenPhoto:

@@ -36,6 +36,10 @@ class Drift:
         """What an image (H, W, 3) at rest's exposure is in the photograph's."""
         return grey * self.gain + self.offset
 
+    def taken_back(self, grey: np.ndarray) -> np.ndarray:
+        """What an image (H, W, 3) at the photograph's exposure is in rest's, float64."""
+        return (grey - self.offset) / self.gain
+
 
 NO_DRIFT = Drift(gain=np.ones(3), offset=np.zeros(3))
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from workbench.calibration.stored import stored
 from workbench.core.base.monitor import Monitor, part
 from workbench.core.design.design import SensorDesign
 from workbench.core.press.press_case import PressCase
@@ -11,7 +12,7 @@ from workbench.core.result.results import MembraneMesh
 from workbench.pipeline.devices import start_device
 from workbench.pipeline.stages import table
 from workbench.pipeline.store import Store
-from workbench.planning.plan import InlineRunner, evaluate, plan
+from workbench.planning.plan import InlineRunner, plan
 
 if TYPE_CHECKING:
     from sim.optics.studio.render import Studio
@@ -34,17 +35,14 @@ def lit_studio(
     start_device(monitor)
     from sim.optics.studio.render import Studio
 
-    def told(stage: str, fraction: float, note: str) -> None:
-        monitor(0.8 * fraction, f"{what}: {note or stage}")
+    def told(fraction: float, note: str = "") -> None:
+        monitor(0.8 * fraction, f"{what}: {note}")
 
-    runner, optics = InlineRunner(store), design.optics
-    for _ in evaluate(design, PressCase(), runner, wanted=("bake",), monitor=told):
-        pass
+    light, optics = stored(design, PressCase(), "bake", store, told), design.optics
     calls = plan(design, PressCase())
     inputs = table.table_inputs(optics, calls["mesh"].ref, calls["bake"].ref)
     if inputs is None:
         raise ValueError(f"the light model {optics.light_model} looks nothing up")
     call = table.STAGE.call(inputs)
-    runner.run(call, part(monitor, 0.8, 1.0))
-    light = store.load("bake", calls["bake"].key)
+    InlineRunner(store).run(call, part(monitor, 0.8, 1.0))
     return Studio(mesh, light, optics, table=store.load("table", call.key))

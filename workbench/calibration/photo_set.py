@@ -9,6 +9,7 @@ from __future__ import annotations
 import csv
 import io
 import math
+from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -142,9 +143,8 @@ def _rows(folder: Path) -> list[dict[str, str]]:
         )
     rows = [{key: (row.get(key) or "").strip() for key in COLUMNS} for row in reader]
     rows = [row for row in rows if any(row.values())]
-    twice = [row["photo"] for k, row in enumerate(rows) if row in rows[:k]] or [
-        name for name in {r["photo"] for r in rows} if sum(r["photo"] == name for r in rows) > 1
-    ]
+    names = Counter(row["photo"] for row in rows)
+    twice = [name for name, times in names.items() if times > 1]
     if twice:
         raise DesignError(
             f"{folder / TABLE} names {shown(twice[0])} twice",

@@ -20,6 +20,7 @@ import numpy as np
 
 from sim.optics.raster.display import light_of, shown
 from workbench.calibration.contact_shift import contact_shift
+from workbench.calibration.drift import CUT_OFF
 from workbench.calibration.light_basis import LightBasis, PressSamples
 from workbench.core.base.monitor import Monitor
 from workbench.core.design.camera import ImageSensor
@@ -32,8 +33,8 @@ SETTLED_MM = 2e-5
 """Change of every depth in a round at which they have settled [mm]."""
 LEAST_SHARE = 0.01
 """Lights that give less than this of the strongest one's change are left out [1]."""
-CUT_OFF, DARK = 252.0, 2.0
-"""Grey levels beyond which a colour may have been cut off."""
+DARK = 2.0
+"""Grey level below which a colour may have been cut off; above it is `drift.CUT_OFF`."""
 RIDGE = 1e-6
 """Of the mean square of a light: lights beside each other are hard to tell apart [1]."""
 

@@ -37,7 +37,7 @@ class SeenPlaces:
         Raises:
             DesignError: If the camera sees nothing of the skin.
         """
-        self._mesh = mesh
+        self.mesh = mesh
         self._view: SkinView = open_skin_view(mesh, optics.camera, index=optics.refractive_index)
         view = self._view
         self._seen = np.diff(view.layer_start) > 0
@@ -74,7 +74,7 @@ class SeenPlaces:
     def flat_to_mm(self, place: ContactPlace) -> float:
         """How far around a place seen and inner skin are flat and parallel [mm]."""
         nearest = np.inf
-        for skin in (self._mesh.outer, self._mesh.inner):
+        for skin in (self.mesh.outer, self.mesh.inner):
             bent = np.abs(skin.normals @ place.normal) < FLAT
             # Vertices of other faces of the body, such as the far wall, end the flat part too.
             away = np.linalg.norm(skin.points_mm[bent] - place.point_mm, axis=1)
@@ -85,7 +85,7 @@ class SeenPlaces:
         """Thickness of the wall along the inward normal [mm]; inf where nothing is behind."""
         from geometry.surface.rays import RayCaster
 
-        inner = self._mesh.inner
+        inner = self.mesh.inner
         start = (place.point_mm - 1e-3 * place.normal)[None]
         caster = RayCaster(inner.points_mm, inner.faces)
         return float(caster.hits(start, -place.normal[None])[0][0])

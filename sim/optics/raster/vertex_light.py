@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from geometry.surface.surface import face_areas
 from sim.optics.field.model import model_of
 from sim.optics.field.table import mean_reflectance
 from sim.optics.light.lights import ambient_irradiance
@@ -109,18 +110,16 @@ def ambient_radiance(optics: Optics, skin: Skin) -> np.ndarray:
 
     The same from everywhere: irradiance times the mean reflectance, over pi.
     """
-    falling = ambient_irradiance(optics.ambient, float(_areas_mm2(skin).sum()))
+    falling = ambient_irradiance(
+        optics.ambient, float(face_areas(skin.points_mm, skin.faces).sum())
+    )
     return (falling * mean_reflectance(optics.coating) / np.pi).astype(np.float32)
-
-
-def _areas_mm2(skin: Skin) -> np.ndarray:
-    a, b, c = (skin.points_mm[skin.faces[:, corner]] for corner in range(3))
-    return np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2.0
 
 
 def _edge_mm(skin: Skin) -> float:
     """Edge of an equilateral triangle of the skin's median area [mm]."""
-    return float(np.sqrt(np.median(_areas_mm2(skin)) * 4.0 / np.sqrt(3.0)))
+    area_mm2 = np.median(face_areas(skin.points_mm, skin.faces))
+    return float(np.sqrt(area_mm2 * 4.0 / np.sqrt(3.0)))
 
 
 def _no_table(vertices: int) -> tuple[Scattered, np.ndarray]:
