@@ -18,6 +18,10 @@ PEAK = 255.0
 """Largest grey level."""
 CONTACT_SHARE = 0.1
 """Share of the largest change of depth at which a pixel belongs to the contact [1]."""
+EDGE_PX = 5
+"""Side of the square whose median leaves out edges behind which the skin jumps to another depth."""
+REGION_SHARE = 0.1
+"""Pixels of a region of the contact over those of the largest one [1], at least."""
 FEWEST_LIGHTS = 3
 """Directions of light that determine a normal (photometric stereo)."""
 SSIM_WINDOW_PX = 11
@@ -70,13 +74,31 @@ def contact_pixels(frames: TactileFrames, number: int) -> np.ndarray:
     """Moved pixels whose depth_z changed by a tenth of the largest change or more, (H, W) bool.
 
     The faint rim of a dent reaches far and would dilute the scores. A pixel that gained or lost
-    the skin changed as much as any.
+    the skin changed as much as any. An edge of the skin far from the contact, which moves by a
+    hundredth and shows another depth behind it, neither says how much is large nor belongs to it.
     """
     moved = frames.moved[number]
     change = np.abs(frames.depth_z_mm[number] - frames.depth_z_mm[0])
-    change = np.where(moved, np.nan_to_num(change, nan=np.inf), 0.0)
-    largest = change[np.isfinite(change)].max(initial=0.0)
-    return moved & (change >= CONTACT_SHARE * largest)
+    change = np.where(moved, np.nan_to_num(change, nan=np.inf), 0.0).astype(np.float32)
+    return _main_regions(moved & (change >= CONTACT_SHARE * _largest(change)))
+
+
+def _largest(change: np.ndarray) -> float:
+    """The largest finite change that is more than an edge; the largest, where all are edges."""
+    import cv2
+
+    finite = np.where(np.isfinite(change), change, np.float32(0.0))
+    return float(cv2.medianBlur(finite, EDGE_PX).max(initial=0.0) or finite.max(initial=0.0))
+
+
+def _main_regions(chosen: np.ndarray) -> np.ndarray:
+    """Connected pixels without the regions that are small beside the largest, (H, W) bool."""
+    import cv2
+
+    _, region, found, _ = cv2.connectedComponentsWithStats(chosen.astype(np.uint8), connectivity=8)
+    areas = found[:, cv2.CC_STAT_AREA]
+    areas[0] = 0
+    return chosen & (areas >= REGION_SHARE * areas.max())[region]
 
 
 def lit_share(skin: Skin, light: LightField, count: int = FEWEST_LIGHTS) -> float:
