@@ -22,6 +22,8 @@ EDGE_PX = 5
 """Side of the square whose median leaves out edges behind which the skin jumps to another depth."""
 REGION_SHARE = 0.1
 """Pixels of a region of the contact over those of the largest one [1], at least."""
+DEEP_SHARE = 1.0 / 3.0
+"""Largest change of a region over the largest of all [1], at least."""
 FEWEST_LIGHTS = 3
 """Directions of light that determine a normal (photometric stereo)."""
 SSIM_WINDOW_PX = 11
@@ -75,30 +77,39 @@ def contact_pixels(frames: TactileFrames, number: int) -> np.ndarray:
 
     The faint rim of a dent reaches far and would dilute the scores. A pixel that gained or lost
     the skin changed as much as any. An edge of the skin far from the contact, which moves by a
-    hundredth and shows another depth behind it, neither says how much is large nor belongs to it.
+    hundredth and shows another depth behind it, neither says how much is large nor belongs to it;
+    nor does a wall that the press bends a little.
     """
+    import cv2
+
     moved = frames.moved[number]
     change = np.abs(frames.depth_z_mm[number] - frames.depth_z_mm[0])
     change = np.where(moved, np.nan_to_num(change, nan=np.inf), 0.0).astype(np.float32)
-    return _main_regions(moved & (change >= CONTACT_SHARE * _largest(change)))
-
-
-def _largest(change: np.ndarray) -> float:
-    """The largest finite change that is more than an edge; the largest, where all are edges."""
-    import cv2
-
     finite = np.where(np.isfinite(change), change, np.float32(0.0))
-    return float(cv2.medianBlur(finite, EDGE_PX).max(initial=0.0) or finite.max(initial=0.0))
+    smooth = cv2.medianBlur(finite, EDGE_PX)
+    if not smooth.any():
+        smooth = finite
+    chosen = moved & (change >= CONTACT_SHARE * smooth.max(initial=0.0))
+    return _main_regions(chosen, smooth)
 
 
-def _main_regions(chosen: np.ndarray) -> np.ndarray:
-    """Connected pixels without the regions that are small beside the largest, (H, W) bool."""
+def _main_regions(chosen: np.ndarray, change: np.ndarray) -> np.ndarray:
+    """Connected pixels without the regions that are small or shallow beside the main one, (H, W).
+
+    Args:
+        chosen: Shape (H, W), bool.
+        change: Of each pixel, without edges, shape (H, W).
+    """
     import cv2
 
-    _, region, found, _ = cv2.connectedComponentsWithStats(chosen.astype(np.uint8), connectivity=8)
-    areas = found[:, cv2.CC_STAT_AREA]
-    areas[0] = 0
-    return chosen & (areas >= REGION_SHARE * areas.max())[region]
+    count, region, found, _ = cv2.connectedComponentsWithStats(
+        chosen.astype(np.uint8), connectivity=8
+    )
+    areas, deepest = found[:, cv2.CC_STAT_AREA], np.zeros(count)
+    np.maximum.at(deepest, region, change)
+    areas[0] = deepest[0] = 0
+    large = areas >= REGION_SHARE * areas.max()
+    return chosen & (large & (deepest >= DEEP_SHARE * deepest.max()))[region]
 
 
 def lit_share(skin: Skin, light: LightField, count: int = FEWEST_LIGHTS) -> float:
