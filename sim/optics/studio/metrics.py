@@ -22,7 +22,7 @@ EDGE_PX = 5
 """Side of the square whose median leaves out edges behind which the skin jumps to another depth."""
 REGION_SHARE = 0.1
 """Pixels of a region of the contact over those of the largest one [1], at least."""
-DEEP_SHARE = 1.0 / 3.0
+DEEP_SHARE = 0.5
 """Largest change of a region over the largest of all [1], at least."""
 FEWEST_LIGHTS = 3
 """Directions of light that determine a normal (photometric stereo)."""
