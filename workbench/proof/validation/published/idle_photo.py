@@ -1,4 +1,4 @@
-"""The GelTip's preset at rest beside the photograph of it: nothing is fitted to the photograph here.
+"""The preset of the GelTip at rest beside the photograph of it: nothing is fitted in this row.
 
 The preset states its exposure, so grey levels are compared as they are. Structure is what is left
 of each colour without its fall-off from the middle: without the constant and the r^2 of its own
