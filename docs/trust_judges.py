@@ -48,8 +48,8 @@ plane_normal geodesic rest_image gain
 gain_value fem_matrix_repeated surface_volume hex_volume lattice_volume
 """
 _NONE = """
-release_substeps penetration dent_change contact_seen fem_matrix fem_matrix_cpu fem_matrix_residual watertight
-hex_scaled_jacobian mould_overlap mould_watertight mould_thinnest_wall memory_growth
+release_substeps penetration dent_change fem_matrix fem_matrix_cpu fem_matrix_residual watertight
+hex_scaled_jacobian mould_overlap mould_watertight mould_thinnest_wall memory_growth contact_seen
 """
 JUDGES = {
     **dict.fromkeys(_EXACT.split(), Judge.EXACT),

@@ -70,7 +70,7 @@ def test_change_is_looked_at_a_little_beyond_the_contact() -> None:
         normal=nothing,
         moved=moved,
         marker_uv_px=nothing,
-        exposure=1.0,
+        exposure=np.ones(3, np.float32),
     )
     found = seen_change(frames)
     # Half pixels are rounded: the box has 28 to 30 pixels.
