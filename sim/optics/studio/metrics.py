@@ -102,9 +102,10 @@ def _main_regions(chosen: np.ndarray, change: np.ndarray) -> np.ndarray:
     """
     import cv2
 
-    count, region, found, _ = cv2.connectedComponentsWithStats(
+    count, labels, found, _ = cv2.connectedComponentsWithStats(
         chosen.astype(np.uint8), connectivity=8
     )
+    region = np.asarray(labels, dtype=np.int32)
     areas, deepest = found[:, cv2.CC_STAT_AREA], np.zeros(count)
     np.maximum.at(deepest, region, change)
     areas[0] = deepest[0] = 0
