@@ -36,7 +36,7 @@ learned_sparse_equals_dense exact_background cad_volume outer_area skin_on_surfa
 _OUTSIDE = """
 finger_45 published_mode sheared_sphere shear_force finger_45_normal_force refinement
 refinement_calculix calculix calculix_same_mesh mitsuba mitsuba_product mitsuba_octant
-membrane_shape membrane_shape_95 indenter_shape
+membrane_shape membrane_shape_95 indenter_shape idle_photo idle_photo_structure
 """
 _LIMIT = "mpm_against_fem_limit mpm_refinement fem_refinement"
 _ITSELF = """
@@ -49,7 +49,7 @@ gain_value fem_matrix_repeated surface_volume hex_volume lattice_volume
 """
 _NONE = """
 release_substeps penetration dent_change fem_matrix fem_matrix_cpu fem_matrix_residual watertight
-hex_scaled_jacobian mould_overlap mould_watertight mould_thinnest_wall memory_growth
+hex_scaled_jacobian mould_overlap mould_watertight mould_thinnest_wall memory_growth contact_seen
 """
 JUDGES = {
     **dict.fromkeys(_EXACT.split(), Judge.EXACT),

@@ -84,6 +84,20 @@ def test_contact_is_where_depth_changed_by_a_tenth_of_the_most_since_the_rest() 
     assert contact_box(np.zeros((3, 4), dtype=bool)) is None
 
 
+def test_edges_and_bent_walls_are_no_contact() -> None:
+    """A spot of 12 pixels square, 0.5 mm deep. Left out: a line that jumps by 7 mm, a wall as large
+    as the spot that moves by 0.2 mm, and a strip of 6 pixels by 2 as deep as the spot."""
+    still = np.full((60, 60), 30.0)
+    pressed = still.copy()
+    pressed[10:22, 10:22] -= 0.5
+    pressed[40, :] -= 7.0
+    pressed[25:37, 30:42] -= 0.2
+    pressed[50:56, 5:7] -= 0.5
+    found = contact_pixels(frames(still, pressed, moved=np.ones((60, 60), dtype=bool)), 1)
+    assert contact_box(found) == (slice(10, 22), slice(10, 22))
+    assert found.sum() == 144
+
+
 def test_stiffness_is_force_over_the_deepest_inward_way() -> None:
     """2 N at 0.4 mm inward is 5 N/mm; of skin that only moves outward nothing can be said."""
     moved_mm = np.array([[[0.0, 0.0, 0.1], [0.3, 0.0, -0.4]]])

@@ -83,9 +83,10 @@ def test_collapse_equals_its_plain_twin(taichi_device: str) -> None:
     views = np.array([[0.0, 0.6, 0.8], [0.96, 0.0, 0.28]], dtype=np.float32)
     values = np.zeros((2, TILTS, TILTS, 3), dtype=np.float32)
     directions = bin_directions().astype(np.float32)
+    coating = Coating(albedo=0.6, specular=0.04, roughness=0.35)
     collapse_nodes(received, directions, views, 0.6, 0.04, 0.35, values)
     # 384 products of single precision, summed.
-    np.testing.assert_allclose(values, collapse(received, views, Coating()), rtol=2e-4)
+    np.testing.assert_allclose(values, collapse(received, views, coating), rtol=2e-4)
 
 
 def test_even_light_makes_a_matte_skin_as_bright_as_its_albedo() -> None:

@@ -30,7 +30,9 @@ from workbench.core.result.results import MembraneMesh
 
 PHOTONS = 60_000
 TRANSPORT = Transport(
-    coating=Coating(), refractive_index=1.41, baking=Baking(photons=PHOTONS, nodes=400)
+    coating=Coating(albedo=0.6, specular=0.04, roughness=0.35),
+    refractive_index=1.41,
+    baking=Baking(photons=PHOTONS, nodes=400),
 )
 CAMERA = Camera(position_mm=(1.0, 2.0, 0.3))
 

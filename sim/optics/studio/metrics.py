@@ -18,6 +18,12 @@ PEAK = 255.0
 """Largest grey level."""
 CONTACT_SHARE = 0.1
 """Share of the largest change of depth at which a pixel belongs to the contact [1]."""
+EDGE_PX = 5
+"""Side of the square whose median leaves out edges behind which the skin jumps to another depth."""
+REGION_SHARE = 0.1
+"""Pixels of a region of the contact over those of the largest one [1], at least."""
+DEEP_SHARE = 0.5
+"""Largest change of a region over the largest of all [1], at least."""
 FEWEST_LIGHTS = 3
 """Directions of light that determine a normal (photometric stereo)."""
 SSIM_WINDOW_PX = 11
@@ -70,13 +76,41 @@ def contact_pixels(frames: TactileFrames, number: int) -> np.ndarray:
     """Moved pixels whose depth_z changed by a tenth of the largest change or more, (H, W) bool.
 
     The faint rim of a dent reaches far and would dilute the scores. A pixel that gained or lost
-    the skin changed as much as any.
+    the skin changed as much as any. An edge of the skin far from the contact, which moves by a
+    hundredth and shows another depth behind it, neither says how much is large nor belongs to it;
+    nor does a wall that the press bends a little.
     """
+    import cv2
+
     moved = frames.moved[number]
     change = np.abs(frames.depth_z_mm[number] - frames.depth_z_mm[0])
-    change = np.where(moved, np.nan_to_num(change, nan=np.inf), 0.0)
-    largest = change[np.isfinite(change)].max(initial=0.0)
-    return moved & (change >= CONTACT_SHARE * largest)
+    change = np.where(moved, np.nan_to_num(change, nan=np.inf), 0.0).astype(np.float32)
+    finite = np.where(np.isfinite(change), change, np.float32(0.0))
+    smooth = cv2.medianBlur(finite, EDGE_PX)
+    if not smooth.any():
+        smooth = finite
+    chosen = moved & (change >= CONTACT_SHARE * smooth.max(initial=0.0))
+    return _main_regions(chosen, smooth)
+
+
+def _main_regions(chosen: np.ndarray, change: np.ndarray) -> np.ndarray:
+    """Connected pixels without the regions that are small or shallow beside the main one, (H, W).
+
+    Args:
+        chosen: Shape (H, W), bool.
+        change: Of each pixel, without edges, shape (H, W).
+    """
+    import cv2
+
+    count, labels, found, _ = cv2.connectedComponentsWithStats(
+        chosen.astype(np.uint8), connectivity=8
+    )
+    region = np.asarray(labels, dtype=np.int32)
+    areas, deepest = found[:, cv2.CC_STAT_AREA], np.zeros(count)
+    np.maximum.at(deepest, region, change)
+    areas[0] = deepest[0] = 0
+    large = areas >= REGION_SHARE * areas.max()
+    return chosen & (large & (deepest >= DEEP_SHARE * deepest.max()))[region]
 
 
 def lit_share(skin: Skin, light: LightField, count: int = FEWEST_LIGHTS) -> float:

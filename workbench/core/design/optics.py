@@ -17,13 +17,17 @@ BEST = LightModel("hybrid")
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Coating:
-    """How the skin's inner face reflects light."""
+    """How the skin's inner face reflects light.
 
-    albedo: float = 0.6
+    The defaults stand for silicone ink with aluminium flakes, the semi-specular skin that shows
+    the slightest tilt. Our choice, not measured: a matte grey skin has 0.6, 0.04 and 0.35.
+    """
+
+    albedo: float = 0.1
     """Diffuse reflectance in [0, 1], grey."""
-    specular: float = 0.04
+    specular: float = 0.4
     """Reflectance at normal incidence of the glossy lobe; 0.04 is a dielectric of index 1.5."""
-    roughness: float = 0.35
+    roughness: float = 0.2
     """GGX alpha in (0, 1]; used by all but the paper's fields."""
     phong_diffuse: float = 0.6
     """k_d of the paper's Eq. 4; used by the paper's fields."""

@@ -21,7 +21,7 @@ from workbench.core.base.monitor import silent
 from workbench.core.design.camera import Camera
 from workbench.core.design.design import Meshing, SensorDesign
 from workbench.core.design.lighting import Baking, Lamp, LampKind, LedMount, LedRing, LightModel
-from workbench.core.design.optics import Optics
+from workbench.core.design.optics import Coating, Optics
 from workbench.core.result.results import MembraneMesh, Skin
 from workbench.pipeline.stages.build import BuildInputs, build
 from workbench.pipeline.stages.mesh import MeshInputs, mesh
@@ -33,6 +33,8 @@ SIZE_MM = {LedMount.CAVITY: 1.5, LedMount.SHELL: 0.6}
 """Discs of the LEDs; in the shell they must fit into its 1 mm."""
 CAVITY_SHARE = 0.75
 """Radius of cavity LEDs over that of the cavity, as on the finger."""
+MATTE = Coating(albedo=0.6, specular=0.04, roughness=0.35)
+"""The skin of the shipped references: it scatters far more than the default one."""
 AZIMUTHS_DEG = tuple(base + turn for base in (90, 210, 330) for turn in (-40, 0, 40))
 
 
@@ -82,6 +84,7 @@ def optics_of(scene: LightScene, model: LightModel, *, seed: int = 1) -> Optics:
         camera=camera_of(scene.body),
         ring=LedRing(count=0),
         lamps=lamps_of(mesh_of(scene.body), scene.mount),
+        coating=MATTE,
         light_model=model,
         baking=Baking(seed=seed),
     )

@@ -3,7 +3,12 @@
 from __future__ import annotations
 
 from workbench.proof.row import Row
-from workbench.proof.validation.optics import light_models, optics_physics, optics_views
+from workbench.proof.validation.optics import (
+    contact_seen,
+    light_models,
+    optics_physics,
+    optics_views,
+)
 
 
 def rows() -> list[Row]:
@@ -13,4 +18,9 @@ def rows() -> list[Row]:
 
     open_device()
     mesh = finger(edge_mm=0.5)
-    return [*optics_physics.rows(mesh), *optics_views.rows(mesh), *light_models.rows()]
+    return [
+        *optics_physics.rows(mesh),
+        *optics_views.rows(mesh),
+        *light_models.rows(),
+        *contact_seen.rows(),
+    ]

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from workbench.proof.row import Row
-from workbench.proof.validation.published import indenters, membranes
+from workbench.proof.validation.published import idle_photo, indenters, membranes
 
 
 def rows() -> list[Row]:
     """All rows of the room."""
-    return [*membranes.rows(), *indenters.rows()]
+    return [*membranes.rows(), *indenters.rows(), *idle_photo.rows()]
