@@ -175,9 +175,16 @@ class Tentacle:
         return None
 
     def target(self, shape: TentacleShape, layers: Layers) -> tuple[float, float, float]:
-        """The end of the lowest sucker at +X: of all ends the camera sees it from nearest."""
-        first = shape.suckers[0]
-        x, y, z = first.place_mm(first.out_mm - first.cup_mm).tolist()
+        """The skin amid the four lowest suckers, or the end of the lowest one of a single row.
+
+        On a sucker the whole end gives way, so that its image changes little over a wide place.
+        """
+        first, arm = shape.suckers[0], shape.arm
+        place = first.place_mm(first.out_mm - first.cup_mm)
+        if shape.rows > 1 and shape.sucker_count > 1:
+            middle = arm.turn / 2 - math.radians(shape.pitch_deg) * (shape.sucker_count / 2 - 1)
+            place = arm.place_mm(middle, arm.half_mm[1])
+        x, y, z = place.tolist()
         return x, y, z
 
     def build(self, shape: TentacleShape, layers: Layers) -> Bodies:
