@@ -13,6 +13,7 @@ from ui.page.imaging import placeholder, scale_bar, table
 from ui.page.offer import offer
 from ui.panels.results.probe import Probe
 from workbench.core.result.sensing import Shot, TactileFrames
+from workbench.view.close_up import close_up
 from workbench.view.image_views import View, crossed, looked, unseen_words, views, visible_change
 from workbench.view.map_display import scores
 from workbench.view.metric_rules import rule
@@ -55,6 +56,8 @@ class ImageTab:
         self.rest = gui.add_image(placeholder(), format="jpeg", visible=False)
         self.turns = Blink(desk.server, self.image, self.rest, period_s=BLINK_S)
         self.legend = gui.add_html("")
+        self.close_text = gui.add_markdown("", visible=False)
+        self.close = gui.add_image(placeholder(), format="jpeg", visible=False)
         self.change_text = gui.add_markdown("")
         self.change = gui.add_image(placeholder(*CHANGE_COMES), format="jpeg")
         self.measures = gui.add_folder("Measures", expand_by_default=False, visible=False)
@@ -88,6 +91,7 @@ class ImageTab:
         """Show no image."""
         self.forget()
         self.change_text.content = self.legend.content = ""
+        self.close.visible = self.close_text.visible = False
         self.image.image = placeholder(*IMAGE_COMES)
         self.change.image = placeholder(*CHANGE_COMES)
         self.camera.visible = self.view.visible = self.measures.visible = False
@@ -123,6 +127,7 @@ class ImageTab:
         nothing = unseen_words(np.asarray(images[number]), np.asarray(images[0])) if number else ""
         unseen = f" · **{nothing}**" if nothing else ""
         bar = found.bar
+        near = None if frames is None else close_up(frames, number)
         words = f"<div style='font-size:12px;margin:2px 12px'>{found.words}</div>"
         scale = "" if bar is None else scale_bar(bar.low, bar.high, bar.unit)
         with self.desk.server.atomic():
@@ -131,6 +136,10 @@ class ImageTab:
                 rest = looked(what, images, 0, frames, beside=number)
                 self.rest.image = self._crossed(rest.rgb)
             self.legend.content = scale + words if found.words else ""
+            self.close.visible = self.close_text.visible = near is not None
+            if near is not None:
+                self.close_text.content = f"The contact, × {near.times:.0f}: at rest, and as it is"
+                self.close.image = near.rgb
             # Once is enough.
             self.change.visible = self.change_text.visible = what is not View.DIFFERENCE
             self.change_text.content = f"Difference to the background, × {gain}{unseen}"
