@@ -67,6 +67,14 @@ class Actuated(Protocol):
         ...
 
 
+@runtime_checkable
+class Faced(Protocol):
+    """What a family offers whose face is not where most have theirs, at +Y."""
+
+    eye: tuple[float, float, float]
+    """Direction from the body to the eye that sees its face."""
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Slider:
     """One parameter as a user interface shows it."""
@@ -107,6 +115,12 @@ def sequences(name: str, shape: Any, layers: Layers) -> dict[str, Sequence]:
     """The sequences of a family by name; none where nothing is driven."""
     chosen = family(name)
     return dict(chosen.sequences(shape, layers)) if isinstance(chosen, Actuated) else {}
+
+
+def eye(name: str) -> tuple[float, float, float] | None:
+    """Direction from the body of a family to the eye; None where the drawing's own is good."""
+    chosen = family(name)
+    return chosen.eye if isinstance(chosen, Faced) else None
 
 
 def sliders(name: str) -> list[Slider]:

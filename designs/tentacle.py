@@ -151,6 +151,8 @@ class Tentacle:
 
     name: str = "tentacle"
     title: str = "Octopus tentacle"
+    eye: tuple[float, float, float] = (1.6, -1.8, 0.9)
+    """Suckers stand at -Y."""
     shape_type: type = TentacleShape
 
     def check(self, shape: TentacleShape, layers: Layers) -> None:

@@ -158,6 +158,8 @@ class Thumb:
 
     name: str = "thumb"
     title: str = "Thumb"
+    eye: tuple[float, float, float] = (1.6, -1.8, 0.9)
+    """The nail is at -Y."""
     shape_type: type = ThumbShape
 
     def check(self, shape: ThumbShape, layers: Layers) -> None:

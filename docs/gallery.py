@@ -16,7 +16,7 @@ from typing import Any
 import cv2  # noqa: TID253 (a program of its own, not part of the package)
 import numpy as np
 
-from designs.family import family
+from designs.family import eye, family
 from geometry.drawing.sensor_drawings import exploded_sensor, membrane_drawing
 from workbench.core.design.design import SensorDesign
 from workbench.core.press.indenter import Indenter
@@ -81,7 +81,7 @@ def row(design: SensorDesign, found: Mapping[str, Any]) -> np.ndarray:
     write(canvas, family(design.family).title, (MARGIN_PX, 32), 22, INK, weight=600)
     paste(
         canvas,
-        drawn(membrane_drawing, (solid,), MEMBRANE_PX, clear=False),
+        drawn(membrane_drawing, (solid,), MEMBRANE_PX, clear=False, eye=eye(design.family)),
         (MARGIN_PX, TITLE_PX + 4),
     )
     x = MARGIN_PX + MEMBRANE_PX[0] + GUTTER_PX

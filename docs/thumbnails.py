@@ -13,6 +13,7 @@ import cv2  # noqa: TID253 (a program of its own, not part of the package)
 import numpy as np
 import tomli_w
 
+from designs.family import eye
 from geometry.drawing.rendering import canvas, draw, look, png
 from geometry.drawing.sensor_drawings import membrane_drawing
 from workbench.core.base.monitor import silent
@@ -36,8 +37,10 @@ def thumbnails() -> Iterator[tuple[str, str, np.ndarray]]:
     """Name, key and PNG bytes of each, at `FINER` times the size."""
     size = (FINER * SIZE_PX, FINER * SIZE_PX)
     for name in choices():
-        solid = build(plan(load_design(name), PressCase())["build"].inputs, monitor=silent)
-        yield f"start-{name}", start_key(name), membrane_drawing(solid, size)
+        design = load_design(name)
+        solid = build(plan(design, PressCase())["build"].inputs, monitor=silent)
+        drawing = membrane_drawing(solid, size, eye=eye(design.family))
+        yield f"start-{name}", start_key(name), drawing
     for name in gallery().values():
         points, faces = display_mesh(another(name, Indenter()))
         plotter = canvas(size)

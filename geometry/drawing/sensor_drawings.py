@@ -16,7 +16,7 @@ from workbench.core.result.results import Label, LabelledSurface, Skin, Solid
 SIZE_PX = (1200, 900)
 MEMBRANE_PX = (480, 480)
 EYE = np.array([1.6, 1.8, 0.9])
-"""Direction from the body to the eye; families aim at +Y, where suckers and finger pads are."""
+"""Direction from the body to the eye; most families aim at +Y."""
 COLOURS = {
     "membrane": "#f08a6c",
     "support": "#a9d6ea",
@@ -42,12 +42,17 @@ LEGEND_SHARE = 0.24
 
 
 def membrane_drawing(
-    solid: Solid, size_px: tuple[int, int] = MEMBRANE_PX, *, clear: bool = True
+    solid: Solid,
+    size_px: tuple[int, int] = MEMBRANE_PX,
+    *,
+    clear: bool = True,
+    eye: tuple[float, float, float] | None = None,
 ) -> np.ndarray:
     """The membrane, actuator regions tinted; one with pins is clear, so that they show.
 
     Args:
         clear: Whether the ground is transparent instead of white.
+        eye: Direction from the body to the eye, where it is not `EYE`.
     """
     membrane = solid.membrane
     pins, driven = membrane.has(Label.PIN), membrane.has(Label.ACTUATOR)
@@ -59,7 +64,7 @@ def membrane_drawing(
         chosen = driven & (membrane.numbers == number)
         _draw_faces(plotter, membrane, chosen, ACTUATORS[int(number) % len(ACTUATORS)], opacity)
     _draw_faces(plotter, membrane, pins, PIN, 1.0)
-    look(plotter, EYE, membrane.points_mm)
+    look(plotter, EYE if eye is None else np.array(eye), membrane.points_mm)
     return png(plotter, clear=clear)
 
 
