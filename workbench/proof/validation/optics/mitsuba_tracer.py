@@ -126,7 +126,9 @@ def _through_type(mi: Any) -> type:
             way = met.to_world(mi.Vector3f(bent.x, bent.y, bent.z * side))
             inside = met.spawn_ray(way)
             lit = active & met.is_valid()
-            light, seen, _ = self.path.sample(scene, sampler, mi.RayDifferential3f(inside), medium, lit)
+            light, seen, _ = self.path.sample(
+                scene, sampler, mi.RayDifferential3f(inside), medium, lit
+            )
             share = (1.0 - reflected) / self.index**2
             return dr.select(lit, light * share, 0.0), seen & lit, []
 
@@ -164,7 +166,9 @@ def _batch(mi: Any, scene: Any, integrator: Any, samples: int, seed: int) -> np.
 def main(words: list[str]) -> None:
     """Render FOLDER with SAMPLES in each of BATCHES."""
     folder = Path(words[0])
-    np.savez(folder / "batches.npz", allow_pickle=False, **render(folder, int(words[1]), int(words[2])))
+    np.savez(
+        folder / "batches.npz", allow_pickle=False, **render(folder, int(words[1]), int(words[2]))
+    )
 
 
 if __name__ == "__main__":
