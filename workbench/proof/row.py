@@ -36,6 +36,8 @@ class Row:
     sense: str | None = None
     """`max`: at most the limit is good; `min`: at least."""
     ok: bool = False
+    against: str | None = None
+    """What the row is judged by, `itself` for the product another way: see `proof.judge`."""
 
 
 Measurement = float | Callable[[], float]
@@ -222,11 +224,12 @@ def as_text(rows: Sequence[Row]) -> str:
         ValueError: If two rows have the same name and case.
     """
     _expect_unique(rows)
-    head = ("", "row", "case", "value", "unit", "reference", "null", "error", "limit")
+    head = ("", "row", "against", "case", "value", "unit", "reference", "null", "error", "limit")
     body = [
         (
             "ok" if row.ok else "FAIL",
             row.name,
+            row.against or "-",
             row.case,
             _number(row.value),
             row.unit,

@@ -31,7 +31,7 @@ from workbench.core.design.camera import Camera, ImageSensor
 from workbench.core.design.optics import Coating
 
 Lobe = Callable[[Coating, np.ndarray, np.ndarray, np.ndarray], np.ndarray]
-"""Radiance per perpendicular irradiance of (N, 3) directions to light and eye and (N, 3) normals."""
+"""Of a coating, directions to the light, normals, directions to the eye: as `coating.glossy`."""
 TILTS_DEG = (0.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 70.0, 80.0)
 TURNS_DEG = (0.0, 30.0, 90.0, 135.0, 180.0)
 STEPS = 400

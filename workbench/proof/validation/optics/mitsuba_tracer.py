@@ -37,8 +37,8 @@ def open_mitsuba() -> Any:
     """Mitsuba with both plugins registered."""
     mi: Any = importlib.import_module("mitsuba")
     mi.set_variant(VARIANT)
-    mi.register_bsdf("coated_ink", lambda properties: _ink_type(mi)(properties))
-    mi.register_integrator("through_wall", lambda properties: _through_type(mi)(properties))
+    mi.register_bsdf("coated_ink", _ink_type(mi))
+    mi.register_integrator("through_wall", _through_type(mi))
     return mi
 
 

@@ -1,7 +1,7 @@
 """Presets at rest beside the photographs of such sensors that ship.
 
 The GelTip's preset was fitted to its photograph, so its grey levels are compared as they are:
-`published.idle_photo`. Besides, the colours must not be those of another light: each colour's share
+`idle_photo`. Besides, the colours must not be those of another light: each colour's share
 of all light in the image over that in the photograph.
 
 Of the elephant's trunk there are two photographs of prototypes whose LEDs, lenses and exposures
@@ -23,7 +23,7 @@ import numpy as np
 from workbench.project.named_designs import load_design
 from workbench.project.photos import shipped_photos
 from workbench.proof.row import Row, bounded
-from workbench.proof.validation.published import idle_photo
+from workbench.proof.validation.optics import idle_photo
 
 TRUNK_PHOTOS = ("elephant_bkg_640_480_real.png", "elephant_bkg_640_480_1_real.png")
 TRUNK_FOV_DEG = 76.0
