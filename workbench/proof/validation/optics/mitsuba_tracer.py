@@ -13,7 +13,7 @@ Mitsuba's own parts and without any of the product's code:
 It needs a variant that compiles, `llvm_ad_rgb`, so LLVM 16 or newer: where it is not found by
 itself, DRJIT_LIBLLVM_PATH names the library.
 
-    python -m workbench.proof.validation.optics.mitsuba_tracer FOLDER SAMPLES BATCHES
+    python -m workbench.proof.validation.optics.mitsuba_tracer FOLDER SAMPLES BATCHES [SEED]
 
 renders the scene in FOLDER, in as many batches of as many samples of each pixel, to `batches.npz`:
 linear RGB (batch, H, W, 3) without mirror images, and `whole`, one batch of everything.
@@ -135,8 +135,15 @@ def _through_type(mi: Any) -> type:
     return Through
 
 
-def render(folder: Path, samples: int, batches: int) -> dict[str, np.ndarray]:
-    """Batches of the scene in a folder, and one of everything that a path tracer shows."""
+def render(folder: Path, samples: int, batches: int, first: int) -> dict[str, np.ndarray]:
+    """Batches of the scene in a folder, and one of everything that a path tracer shows.
+
+    Args:
+        folder: As `mitsuba_record.write_folder` leaves it.
+        samples: Of each pixel in a batch.
+        batches: How many.
+        first: Seed of the first one; the others follow.
+    """
     mi = open_mitsuba()
     scene = mi.load_file(str(folder / "scene.xml"))
     index = float((folder / "index.txt").read_text())
@@ -144,10 +151,10 @@ def render(folder: Path, samples: int, batches: int) -> dict[str, np.ndarray]:
     if index != 1.0:
         wall = str(folder / "wall.ply")
         through = mi.load_dict({"type": "through_wall", "wall": wall, "index": index})
-    found = [_batch(mi, scene, through, samples, seed) for seed in range(1, batches + 1)]
+    found = [_batch(mi, scene, through, samples, seed) for seed in range(first, first + batches)]
     return {
         "batches": np.stack(found),
-        "whole": _batch(mi, scene, scene.integrator(), samples, batches + 1),
+        "whole": _batch(mi, scene, scene.integrator(), samples, first + batches),
         "samples": np.array(samples),
         "version": np.array(mi.__version__),
     }
@@ -165,10 +172,9 @@ def _batch(mi: Any, scene: Any, integrator: Any, samples: int, seed: int) -> np.
 
 def main(words: list[str]) -> None:
     """Render FOLDER with SAMPLES in each of BATCHES."""
-    folder = Path(words[0])
-    np.savez(
-        folder / "batches.npz", allow_pickle=False, **render(folder, int(words[1]), int(words[2]))
-    )
+    folder, (samples, batches, *seed) = Path(words[0]), map(int, words[1:])
+    found = render(folder, samples, batches, *(seed or [1]))
+    np.savez(folder / "batches.npz", allow_pickle=False, **found)
 
 
 if __name__ == "__main__":

@@ -25,7 +25,7 @@ from workbench.proof.validation.optics.recorded_images import best_image, photon
 from workbench.proof.validation.optics.recorded_scenes import SCENES, RecordedScene, cells
 
 TOTAL_LIMIT = {"photons": 0.01, str(BEST): 0.03}
-PLACES_LIMIT = {"photons": 0.04, str(BEST): 0.06}
+PLACES_LIMIT = {"photons": 0.03, str(BEST): 0.05}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
