@@ -64,9 +64,10 @@ GAPS = """## What no row shows
 - References of the light models come from the same tracer as the bake, so they show what the
   models lose, not what the tracer leaves out; for that there are figures that Mitsuba recorded
   (`mitsuba_recorded`) and, where it is installed, the room `optics_mitsuba`.
-- Images leave out mirror images of the skin in the wall of the cavity (2 to 12 % of the light,
-  which a path tracer and a real sensor show), shadows of a dent on skin that did not move (unless
-  `composition = "absolute"`), absorption in the elastomer, polarisation and lens flare.
+- Images leave out mirror images of skin and LEDs in the wall of the cavity (5 to 17 % of the light,
+  which a path tracer and a real sensor show: `mitsuba_recorded_whole`), shadows of a dent on skin
+  that did not move (unless `composition = "absolute"`), absorption in the elastomer, polarisation
+  and lens flare.
 - Defaults that are our choice and not sourced: camera and LED positions, coating reflectances,
   Phong constants.
 - Learned forces are judged by our finite elements, not by a force sensor.

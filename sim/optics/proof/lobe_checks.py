@@ -62,9 +62,16 @@ def on_device(
     from sim.optics.light import device_arrays
     from sim.optics.proof.lobe_kernels import reflect_all
 
-    rows = [device_arrays.on_device(way, vector=3) for way in (to_light, to_eye, normal)]
     found = device_arrays.on_device(np.zeros(len(to_light), dtype=np.float32))
-    reflect_all(found, *rows, coating.albedo, coating.specular, coating.roughness)
+    reflect_all(
+        found,
+        device_arrays.on_device(to_light, vector=3),
+        device_arrays.on_device(to_eye, vector=3),
+        device_arrays.on_device(normal, vector=3),
+        coating.albedo,
+        coating.specular,
+        coating.roughness,
+    )
     return found.to_numpy()
 
 
