@@ -149,7 +149,7 @@ def refraction_errors(
         worst_share = max(worst_share, abs(balance["absorbed"] - share))
         cosine = float(np.clip(-mean @ bent, -1.0, 1.0))
         worst_deg = max(worst_deg, math.degrees(math.acos(cosine)))
-    return worst_share, worst_deg
+    return float(worst_share), worst_deg
 
 
 def total_reflection_error(*, refractive_index: float = 1.41, photons: int = 100_000) -> float:
@@ -168,7 +168,7 @@ def total_reflection_error(*, refractive_index: float = 1.41, photons: int = 100
         (share,) = exact_transmittance(np.radians([angle_deg]), refractive_index, 1.0)
         reflected = _ledger(scene, leds, photons)["absorbed"]
         worst = max(worst, abs(reflected - (1.0 - share)))
-    return worst
+    return float(worst)
 
 
 def _raw(skin: Skin) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
