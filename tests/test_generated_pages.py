@@ -116,6 +116,8 @@ def test_every_row_that_a_source_names_has_its_judge() -> None:
                 name = node.args[0]
                 if isinstance(name, ast.Constant):
                     assert judge(str(name.value)), path
+                elif isinstance(name, ast.JoinedStr) and isinstance(name.values[0], ast.Constant):
+                    assert judge(f"{name.values[0].value}of_a_case"), path
 
 
 @pytest.mark.parametrize("room", [record.room for record in records()])

@@ -5,12 +5,13 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from workbench.cli import validate_rooms
 from workbench.cli.command_line import main
 from workbench.proof.judge import Judge, judge, judged
-from workbench.proof.row import Row, bounded
+from workbench.proof.row import Row, as_json, bounded
 
 
 def _rows() -> list[Row]:
@@ -42,6 +43,12 @@ def test_json_and_table_tell_it(
     head, hybrid, *_ = capsys.readouterr().out.splitlines()
     assert head.split()[:3] == ["row", "against", "case"]
     assert hybrid.split()[:3] == ["ok", "hybrid", "itself"]
+
+
+def test_numpy_numbers_reach_json() -> None:
+    """A verdict about one of them is a plain true or false."""
+    row = bounded("hybrid", "c", lambda: np.float64(1.0), unit="1", limit=2.0)
+    assert json.loads(as_json([row]))[0]["ok"] is True
 
 
 @pytest.mark.parametrize("name", ["hybrid", "table", "raster", "ceiling", "cpu_gpu", "rest_image"])

@@ -158,7 +158,9 @@ def _measure(value: Measurement) -> float: ...
 @overload
 def _measure(value: Measurement | None) -> float | None: ...
 def _measure(value: Measurement | None) -> float | None:
-    return value() if callable(value) else value
+    found = value() if callable(value) else value
+    # NumPy's numbers make verdicts that JSON cannot hold.
+    return None if found is None else float(found)
 
 
 def failed(name: str, case: str, *, unit: str = "", why: str = "") -> Row:
