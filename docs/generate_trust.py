@@ -11,9 +11,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 from typing import Any
 
-from docs.trust_judges import Judge, judge
 from docs.trust_record import records
 from workbench.proof.benchmarks.records import Record
+from workbench.proof.judge import Judge, judge
 
 ROOMS = {
     "geometry": ("bodies, meshes and moulds against closed forms; 1400 random sensors", "10 min"),
@@ -22,7 +22,10 @@ ROOMS = {
         "the contact solver: bonded layers, friction, balance, invariances",
         "an hour or more",
     ),
-    "optics": ("lenses, refraction, photons, drawing, every light model", "15 min"),
+    "optics": (
+        "lenses, lobes, refraction, photons, every light model, Mitsuba's figures, photographs",
+        "20 min",
+    ),
     "fem": ("the finite elements, and the contact solver beside them", "5 min"),
     "fem_fine": ("the same on the finest meshes", "10 min more"),
     "fem_calculix": ("our finite elements beside CalculiX; needs `ccx`", "minutes"),
@@ -37,7 +40,7 @@ EACH = ("hybrid", "mpm_against_fem", "finger_45")
 """Rows of which every case is shown: what most results rest on."""
 MEANING = {
     Judge.EXACT: "an exact answer: a formula, a law, a definition",
-    Judge.OUTSIDE: "another program or a publication",
+    Judge.OUTSIDE: "another program, a publication or a photograph",
     Judge.LIMIT: "what our own values tend to on ever finer meshes",
     Judge.ITSELF: "the product another way: consistent, which need not be right",
     Judge.NONE: "a number that the project set itself: a count, a time, a rate",
@@ -59,10 +62,12 @@ GAPS = """## What no row shows
 
 - No image has been compared with a photograph of a contact on a real sensor.
 - References of the light models come from the same tracer as the bake, so they show what the
-  models lose, not what the tracer leaves out; for that there is the room `optics_mitsuba`.
-- Images leave out mirror images of the skin in the wall of the cavity (2 to 12 % of the light,
-  which a path tracer and a real sensor show), shadows of a dent on skin that did not move (unless
-  `composition = "absolute"`), absorption in the elastomer, polarisation and lens flare.
+  models lose, not what the tracer leaves out; for that there are figures that Mitsuba recorded
+  (`mitsuba_recorded`) and, where it is installed, the room `optics_mitsuba`.
+- Images leave out mirror images of skin and LEDs in the wall of the cavity (5 to 17 % of the light,
+  which a path tracer and a real sensor show: `mitsuba_recorded_whole`), shadows of a dent on skin
+  that did not move (unless `composition = "absolute"`), absorption in the elastomer, polarisation
+  and lens flare.
 - Defaults that are our choice and not sourced: camera and LED positions, coating reflectances,
   Phong constants.
 - Learned forces are judged by our finite elements, not by a force sensor.

@@ -14,13 +14,13 @@ import pytest
 import workbench as wb
 from docs.generate import PAGES
 from docs.generate_trust import ROOMS
-from docs.trust_judges import judge
 from docs.trust_record import records
 from tests.pages import DOCS, ROOT, page
 from workbench.cli import validate_rooms as validate
 from workbench.core.design.design import SensorDesign
 from workbench.core.design.lighting import LightModel
 from workbench.edit.typed_fields import with_typed
+from workbench.proof.judge import judge
 
 ROWS = [(record.room, row) for record in records() for row in record.rows]
 SPECIFIC = 8
@@ -116,6 +116,8 @@ def test_every_row_that_a_source_names_has_its_judge() -> None:
                 name = node.args[0]
                 if isinstance(name, ast.Constant):
                     assert judge(str(name.value)), path
+                elif isinstance(name, ast.JoinedStr) and isinstance(name.values[0], ast.Constant):
+                    assert judge(f"{name.values[0].value}of_a_case"), path
 
 
 @pytest.mark.parametrize("room", [record.room for record in records()])

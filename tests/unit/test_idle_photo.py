@@ -11,8 +11,8 @@ import pytest
 from workbench.core.design.lighting import Baking
 from workbench.core.result.sensing import TactileFrames
 from workbench.project.named_designs import load_design
+from workbench.proof.validation.optics import idle_photo
 from workbench.proof.validation.optics.contact_seen import seen_change
-from workbench.proof.validation.published import idle_photo
 
 FEW = Baking(photons=400_000)
 

@@ -36,6 +36,8 @@ class Row:
     sense: str | None = None
     """`max`: at most the limit is good; `min`: at least."""
     ok: bool = False
+    against: str | None = None
+    """What the row is judged by, `itself` for the product another way: see `proof.judge`."""
 
 
 Measurement = float | Callable[[], float]
@@ -156,7 +158,9 @@ def _measure(value: Measurement) -> float: ...
 @overload
 def _measure(value: Measurement | None) -> float | None: ...
 def _measure(value: Measurement | None) -> float | None:
-    return value() if callable(value) else value
+    found = value() if callable(value) else value
+    # NumPy's numbers make verdicts that JSON cannot hold.
+    return None if found is None else float(found)
 
 
 def failed(name: str, case: str, *, unit: str = "", why: str = "") -> Row:
@@ -222,11 +226,12 @@ def as_text(rows: Sequence[Row]) -> str:
         ValueError: If two rows have the same name and case.
     """
     _expect_unique(rows)
-    head = ("", "row", "case", "value", "unit", "reference", "null", "error", "limit")
+    head = ("", "row", "against", "case", "value", "unit", "reference", "null", "error", "limit")
     body = [
         (
             "ok" if row.ok else "FAIL",
             row.name,
+            row.against or "-",
             row.case,
             _number(row.value),
             row.unit,

@@ -45,9 +45,11 @@ def virtual_light_errors(*, photons: int = 1_000_000) -> tuple[float, float]:
     direction, irradiance, _ = gather_light(mesh, leds, transport)
     differences, angles = [], []
     for number, place in enumerate(leds.position_mm):
-        line, distance = toward(place, mesh.seen.points_mm)
-        cone, exponent = float(leds.cone[number]), float(leds.exponent[number])
-        exact = emitted(line, distance, axis=leds.axis[number], exponent=exponent, cone=cone)
+        line = place - mesh.seen.points_mm
+        square = (line**2).sum(axis=1)
+        line /= np.sqrt(square)[:, None]
+        # Lambert's law: cos / (pi r^2) of an LED of power 1.
+        exact = np.maximum(-line @ leds.axis[number], 0.0) / (np.pi * square)
         lit = exact > 0.1 * exact.mean()
         differences.append(np.abs(irradiance[number, lit] / exact[lit] - 1.0))
         cosine = np.einsum("ij,ij->i", direction[number, lit], line[lit])

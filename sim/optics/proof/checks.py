@@ -79,19 +79,32 @@ def snell_error() -> float:
 
 
 def fresnel_error() -> float:
-    """Largest error [1] of the transmittance against the trigonometric form of Fresnel.
-
-    Rs = (sin(a - b) / sin(a + b))^2, Rp = (tan(a - b) / tan(a + b))^2, and at normal incidence
-    T = 4 n / (1 + n)^2.
-    """
+    """Largest error [1] of the transmittance into silicone against `exact_transmittance`."""
     _, transmittance = _at_angles(1.0, SILICONE_INDEX)
-    normal = 4.0 * SILICONE_INDEX / (1.0 + SILICONE_INDEX) ** 2
-    inside = np.radians(ANGLES_DEG[1:])
-    bent = np.arcsin(np.sin(inside) / SILICONE_INDEX)
-    reflect_s = (np.sin(inside - bent) / np.sin(inside + bent)) ** 2
-    reflect_p = (np.tan(inside - bent) / np.tan(inside + bent)) ** 2
-    exact = np.append(normal, 1.0 - 0.5 * (reflect_s + reflect_p))
+    exact = exact_transmittance(np.radians(ANGLES_DEG), 1.0, SILICONE_INDEX)
     return float(np.abs(transmittance - exact).max())
+
+
+def exact_transmittance(angle: np.ndarray, index_from: float, index_to: float) -> np.ndarray:
+    """Share of unpolarised light that passes, by the trigonometric form of Fresnel, shape (N,).
+
+    Rs = (sin(a - b) / sin(a + b))^2, Rp = (tan(a - b) / tan(a + b))^2; at normal incidence
+    T = 4 n m / (n + m)^2, and beyond the critical angle 0.
+
+    Args:
+        angle: From the normal, shape (N,), in [0, pi / 2).
+        index_from: Where the light comes from [1].
+        index_to: Behind the surface [1].
+    """
+    found = np.full(len(angle), 4.0 * index_from * index_to / (index_from + index_to) ** 2)
+    sine = np.sin(angle) * index_from / index_to
+    found[sine >= 1.0] = 0.0
+    slanted = (angle > 0.0) & (sine < 1.0)
+    a, b = angle[slanted], np.arcsin(sine[slanted])
+    reflect_s = (np.sin(a - b) / np.sin(a + b)) ** 2
+    reflect_p = (np.tan(a - b) / np.tan(a + b)) ** 2
+    found[slanted] = 1.0 - 0.5 * (reflect_s + reflect_p)
+    return found
 
 
 def _at_angles(index_from: float, index_to: float) -> tuple[np.ndarray, np.ndarray]:

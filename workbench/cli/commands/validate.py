@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from functools import partial
 from pathlib import Path
 
 from workbench.cli.command import Command
@@ -30,11 +31,12 @@ def run(options: argparse.Namespace, project: Project) -> int:
     """Compare with closed forms."""
     from workbench.cli.validate_rooms import ROOMS as ALL
     from workbench.cli.validate_rooms import room_of, with_data
+    from workbench.proof.judge import judged
 
     if options.reference:
         options.room = room_of(options.room, options.reference)
     rooms = ALL if options.data is None else with_data(options.room, options.data)
-    return print_rows(options, rooms)
+    return print_rows(options, {name: partial(judged, rows) for name, rows in rooms.items()})
 
 
 COMMAND = Command(place=5, run=run, options=options)

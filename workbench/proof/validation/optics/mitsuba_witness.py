@@ -2,7 +2,8 @@
 
 A matte finger with three wide LEDs, at index 1.41 and without refraction, at rest and with a dent,
 is rendered by both (`mitsuba_images`) and compared in rings about the image's centre, in octants
-and where the dent is. Nothing is fitted: power, areas and units are equal.
+and where the dent is. Nothing is fitted: power, areas and units are equal. Then the scenes of the
+shipped record are rendered again (`mitsuba_again`).
 
 Mitsuba's standard error is that of two halves with different seeds: a mean of N pixels a_i, b_i
 has sqrt(sum (a_i - b_i)^2) / (2 N). A region counts where that is below 1 %; the others are stated.
@@ -17,6 +18,7 @@ import numpy as np
 
 from workbench.core.base.errors import DeviceError
 from workbench.proof.row import Row, compared, failed, stated
+from workbench.proof.validation.optics import mitsuba_again
 from workbench.proof.validation.optics.mitsuba_images import (
     CAMERA,
     CASES,
@@ -40,7 +42,7 @@ def rows() -> list[Row]:
         why = f"Mitsuba is not installed: {REMEDY}"
         return [failed("mitsuba", "the whole room", unit="1", why=why)]
     open_device()
-    return [row for case in CASES for row in case_rows(case)]
+    return [*(row for case in CASES for row in case_rows(case)), *mitsuba_again.rows()]
 
 
 def case_rows(case: Case) -> list[Row]:

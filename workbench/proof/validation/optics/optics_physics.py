@@ -167,7 +167,7 @@ def _photons() -> list[Row]:
         found.append(
             compared(
                 "flat_furnace",
-                f"{what}: share of even light returned; exact: quadrature of the lobes",
+                f"{what}: share of even light returned; exact: quadrature of Walter's formula",
                 lambda flat=flat: flat()[0],
                 lambda flat=flat: flat()[1],
                 unit="1",

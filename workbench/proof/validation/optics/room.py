@@ -1,4 +1,4 @@
-"""Optics: lenses, refraction, light and images against closed forms, definitions and photons."""
+"""Optics: against closed forms, figures of Mitsuba, photographs, and itself another way."""
 
 from __future__ import annotations
 
@@ -6,8 +6,11 @@ from workbench.proof.row import Row
 from workbench.proof.validation.optics import (
     contact_seen,
     light_models,
+    lobe_rows,
     optics_physics,
     optics_views,
+    photographs,
+    recorded_rows,
 )
 
 
@@ -20,7 +23,10 @@ def rows() -> list[Row]:
     mesh = finger(edge_mm=0.5)
     return [
         *optics_physics.rows(mesh),
+        *lobe_rows.rows(),
+        *recorded_rows.rows(),
         *optics_views.rows(mesh),
         *light_models.rows(),
         *contact_seen.rows(),
+        *photographs.rows(),
     ]

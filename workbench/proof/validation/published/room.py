@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from workbench.proof.row import Row
-from workbench.proof.validation.published import idle_photo, indenters, membranes
+from workbench.proof.validation.optics import idle_photo
+from workbench.proof.validation.published import indenters, membranes
 
 
 def rows() -> list[Row]:

@@ -1,12 +1,17 @@
 """What each row of `workbench validate` is judged by: an exact answer, others, or ourselves.
 
 A comparison of the product with itself says that it is consistent, not that it is right; it is
-called so. Where the cases of a row differ, a part of the case decides.
+called so, in the table, in `--json` as `against`, and on the page `trust.md`. Where the cases of a
+row differ, a part of the case decides.
 """
 
 from __future__ import annotations
 
+import dataclasses
 import enum
+from collections.abc import Callable, Sequence
+
+from workbench.proof.row import Row
 
 
 class Judge(enum.StrEnum):
@@ -15,7 +20,7 @@ class Judge(enum.StrEnum):
     EXACT = "closed form"
     """An exact answer: a formula, a law of nature, a definition."""
     OUTSIDE = "outside reference"
-    """Another program or a publication: CalculiX, Mitsuba, an independent finite-element solver."""
+    """Another program, a publication or a photograph: CalculiX, Mitsuba, the released bodies."""
     LIMIT = "converged limit"
     """What our own values tend to on ever finer meshes."""
     ITSELF = "itself"
@@ -31,17 +36,20 @@ release_force patch_test rigid_rotation stiffness_tripled moment_of_smooth_spher
 projection field_of_view snell fresnel optical_axis plane_tangency irradiance depth_z energy furnace
 flat_furnace reciprocity plane_irradiance slab total_reflection sensor_noise defocus spectrum
 hertz_force hertz_radius hertz_force_order hertz_radius_order release virtual_leds
-learned_sparse_equals_dense exact_background cad_volume outer_area skin_on_surface
+learned_sparse_equals_dense exact_background cad_volume outer_area skin_on_surface coating_lobe
+coating_reciprocity coating_energy coating_head_on led_flux led_share vignetting plane_closed_form
 """
 _OUTSIDE = """
 finger_45 published_mode sheared_sphere shear_force finger_45_normal_force refinement
 refinement_calculix calculix calculix_same_mesh mitsuba mitsuba_product mitsuba_octant
-membrane_shape membrane_shape_95 indenter_shape idle_photo idle_photo_structure
+mitsuba_recorded mitsuba_recorded_places mitsuba_recorded_error mitsuba_recorded_whole
+mitsuba_record_again membrane_shape membrane_shape_95 indenter_shape idle_photo idle_photo_structure
+idle_photo_balance idle_photo_oval
 """
 _LIMIT = "mpm_against_fem_limit mpm_refinement fem_refinement"
 _ITSELF = """
 region_error residual frame_size mirror mirror_symmetry rotation increments submodel submodel_worst
-determinism cpu_gpu mpm_against_fem plane_closed_form direct_table table_brightness contact_tangent
+determinism cpu_gpu mpm_against_fem direct_table table_brightness contact_tangent
 friction_tangent contact_energy raster newton_projection frame_depth published_depth map_sensitivity
 surface_detail ceiling hybrid table direct linear plane_target plane_source
 plane_normal geodesic rest_image gain
@@ -92,3 +100,15 @@ def judge(name: str, case: str = "") -> Judge:
             if name.startswith(beginning):
                 return found
     return JUDGES[name]
+
+
+def judged(rows: Callable[[], Sequence[Row]]) -> list[Row]:
+    """The rows of a room, each with what it is judged by; None of one that nobody entered."""
+    return [dataclasses.replace(row, against=_known(row)) for row in rows()]
+
+
+def _known(row: Row) -> str | None:
+    try:
+        return judge(row.name, row.case).value
+    except KeyError:
+        return None
