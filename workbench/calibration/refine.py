@@ -34,7 +34,7 @@ from workbench.calibration.unknowns import Unknown, moved_scene
 from workbench.core.base.monitor import Monitor, part
 
 ROUNDS = 2
-"""Times that all derivatives are taken for steps; once more for the covariance."""
+"""Times that all derivatives are taken."""
 STEPS = 3
 """Steps with the same derivatives."""
 HALVES = 2
@@ -64,13 +64,13 @@ def refine(task: Task, first: Fit, monitor: Monitor) -> Refined:
     Raises:
         WorkbenchError: From the stages that trace.
     """
-    fit, steps = first, 0
+    fit, steps, slopes = first, 0, []
     for number in range(ROUNDS):
-        span = part(monitor, number / (ROUNDS + 0.5), (number + 1) / (ROUNDS + 0.5))
+        span = part(monitor, number / ROUNDS, (number + 1) / ROUNDS)
         slopes = slopes_of(task, fit, part(span, 0.0, 0.5))
-        over = whitening(task.images, residuals(task.images, fit.basis, fit.powers))
         before = fit.values
         for step in range(STEPS):
+            over = whitening(task.images, residuals(task.images, fit.basis, fit.powers))
             turn = part(span, 0.5 + 0.5 * step / STEPS, 0.5 + 0.5 * (step + 1) / STEPS)
             better = _step(task, fit, _normal(task, fit, slopes, over), over, turn)
             if better is None:
@@ -80,7 +80,7 @@ def refine(task: Task, first: Fit, monitor: Monitor) -> Refined:
                 break
         if _settled(task, before, fit.values):
             break
-    slopes = slopes_of(task, fit, part(monitor, ROUNDS / (ROUNDS + 0.5), 1.0))
+    # The last derivatives were taken near enough for the covariance.
     over = whitening(task.images, residuals(task.images, fit.basis, fit.powers))
     monitor(1.0, "camera, lights and coating fitted")
     return Refined(
