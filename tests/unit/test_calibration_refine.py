@@ -12,7 +12,7 @@ from workbench.calibration.ball_presses import BallPress
 from workbench.calibration.derivatives import Fit
 from workbench.calibration.determined import directions, parameters
 from workbench.calibration.elasticity import LEAST_SCATTER, fitted_young
-from workbench.calibration.gauss_newton import Rows, alike_samples, normal_equations
+from workbench.calibration.gauss_newton import Rows, Spectrum, normal_equations, spectrum_of
 from workbench.calibration.light_basis import LightBasis, PressSamples
 from workbench.calibration.light_sources import single_lights
 from workbench.calibration.photo_rows import (
@@ -21,6 +21,7 @@ from workbench.calibration.photo_rows import (
     Whitening,
     active_powers,
     image_rows,
+    misfit,
     residuals,
 )
 from workbench.calibration.photo_set import BallPhoto, Circle
@@ -68,14 +69,44 @@ def test_a_value_that_nothing_tells_keeps_its_prior() -> None:
     assert normal.covariance()[2, 2] > 1e6
 
 
-def test_alike_samples_of_noise_and_of_boxes() -> None:
-    """White noise: 1. Noise that is constant over boxes of k x k: the triangles sum to k^2."""
-    noise = np.random.default_rng(2).normal(size=(64, 64))
-    assert alike_samples(noise) == pytest.approx(1.0)
-    boxes = np.kron(noise, np.ones((4, 4)))
-    # The sum ends where likeness falls below .1, which cuts the triangles' feet.
-    assert alike_samples(boxes) == pytest.approx(16.0, rel=0.15)
-    assert alike_samples(np.zeros((8, 8))) == 1.0
+def test_a_spectrum_whitens_what_it_was_taken_of() -> None:
+    """Noise smoothed over boxes: each wave over its deviation has a mean square of 1.
+
+    White noise of deviation 3 has the variance 9 in every band.
+    """
+    noise = np.random.default_rng(2).normal(size=(64, 48))
+    white = spectrum_of([(3.0 * noise.reshape(-1, 1), (64, 48))], 1e-6)
+    # The slowest bands have few waves; others hundreds, of which falling takes the largest.
+    assert white.value[4:] == pytest.approx(np.full(len(white.value) - 4, 9.0), rel=0.3)
+    wide = np.fft.irfft2(np.fft.rfft2(noise) * decay(64, 48), (64, 48)).reshape(-1, 1)
+    spectrum = spectrum_of([(wide, (64, 48))], 1e-12)
+    assert spectrum.value[0] > 100.0 * spectrum.value[-1]
+    whole = spectrum.over(wide, (64, 48))
+    assert (whole**2).sum() == pytest.approx(wide.size, rel=0.15)
+
+
+def decay(height: int, width: int) -> np.ndarray:
+    """A filter that passes slow waves."""
+    down, right = np.fft.fftfreq(height)[:, None], np.fft.rfftfreq(width)[None, :]
+    return np.exp(-4.0 * np.hypot(down, right))
+
+
+@pytest.mark.parametrize("grid", [(6, 8), (5, 7), (1, 4)])
+def test_waves_keep_the_sum_of_squares(grid: tuple[int, int]) -> None:
+    """With variance 1 everywhere, products of columns stay what they were."""
+    values = np.random.default_rng(3).normal(size=(grid[0] * grid[1], 3))
+    whole = Spectrum(value=np.ones(4)).over(values, grid)
+    assert whole.T @ whole == pytest.approx(values.T @ values)
+
+
+def test_an_edge_stands_out_of_what_is_smooth() -> None:
+    """Smooth residuals of deviation 1 hide a smooth change of .1, not a step of .1."""
+    spectrum = Spectrum(value=np.concatenate([[50.0, 10.0, 1.0], np.full(21, 0.01)]))
+    row, column = np.mgrid[:32, :32]
+    smooth = 0.1 * np.cos(2.0 * np.pi * column / 32.0).reshape(-1, 1)
+    edge = 0.1 * np.where((row + column) % 2, 1.0, -1.0).reshape(-1, 1)
+    told = [float((spectrum.over(each, (32, 32)) ** 2).sum()) for each in (smooth, edge)]
+    assert told[0] < 0.6 and told[1] == pytest.approx(0.1**2 * 1024 / 0.01)
 
 
 def basis_of(random: np.random.Generator) -> LightBasis:
@@ -93,7 +124,7 @@ def basis_of(random: np.random.Generator) -> LightBasis:
 
 
 def test_rows_are_the_derivatives_of_the_residuals() -> None:
-    """By powers, depth and an unknown whose slopes are given: central differences agree."""
+    """They give half the gradient of the misfit, which central differences give too."""
     random = np.random.default_rng(5)
     basis = basis_of(random)
     images = tuple(
@@ -113,40 +144,41 @@ def test_rows_are_the_derivatives_of_the_residuals() -> None:
         null_grey=0.0,
     )
     given = Slopes(rest=random.normal(size=(24, 3)), presses=(random.normal(size=(25, 3)),))
-    over = Whitening(rest=2.0, press=4.0)
-    rows = image_rows(images, (basis, powers), [given], over)
+    falling = np.linspace(4.0, 1.0, 24)
+    over = Whitening(rest=Spectrum(value=falling), press=Spectrum(value=2.0 * falling))
     active = active_powers(powers)
-    whole = np.zeros((3 * (24 + 25), 4 + len(active)))
-    start = 0
-    for each in rows:
-        whole[start : start + len(each.residual), each.value] = each.slope
-        start += len(each.residual)
+    count = 4 + len(active)
+    rows = image_rows(images, (basis, powers), [given], over)
+    product = normal_equations(rows, np.zeros(count), np.full(count, np.inf)).product
 
-    def left(lights: np.ndarray, ambient: np.ndarray, depth: float) -> np.ndarray:
+    def half(lights: np.ndarray, ambient: np.ndarray, depth: float) -> float:
         moved = dataclasses.replace(
             powers, lights=lights, ambient=ambient, depths_mm=np.array([depth])
         )
-        rest, press = residuals(images, basis, moved)
-        return np.concatenate([rest.T.ravel() / over.rest, press.T.ravel() / over.press])
+        return 0.5 * misfit(images, residuals(images, basis, moved), over)
 
-    step = 1e-4
+    step = 1e-3
     for number, (colour, light) in enumerate(active):
         ends = []
         for sign in (1.0, -1.0):
-            all_powers = np.column_stack([powers.lights, powers.ambient])
-            all_powers[colour, light] += sign * step
-            ends.append(left(all_powers[:, :2], all_powers[:, 2], 0.5))
-        assert whole[:, 4 + number] == pytest.approx((ends[0] - ends[1]) / (2 * step), abs=1e-6)
-    deeper, less = (left(powers.lights, powers.ambient, 0.5 + s * step) for s in (1.0, -1.0))
+            whole = np.column_stack([powers.lights, powers.ambient])
+            whole[colour, light] += sign * step
+            ends.append(half(whole[:, :2], whole[:, 2], 0.5))
+        assert product[4 + number] == pytest.approx((ends[0] - ends[1]) / (2 * step), rel=1e-5)
+    deeper, less = (half(powers.lights, powers.ambient, 0.5 + s * step) for s in (1.0, -1.0))
     # Between depths light is interpolated in single precision.
-    assert whole[:, 1] == pytest.approx((deeper - less) / (2 * step), abs=2e-3)
-    expected = np.concatenate(
-        [
-            (given.rest * images[0].weight).T.ravel() / over.rest,
-            (given.presses[0] * images[1].weight).T.ravel() / over.press,
+    assert product[1] == pytest.approx((deeper - less) / (2 * step), rel=1e-3)
+    slopes = [given.rest, *given.presses]
+    ends = []
+    for sign in (1.0, -1.0):
+        moved = [
+            left + sign * step * slope * image.weight
+            for image, left, slope in zip(
+                images, residuals(images, basis, powers), slopes, strict=True
+            )
         ]
-    )
-    assert whole[:, 0] == pytest.approx(expected)
+        ends.append(0.5 * misfit(images, moved, over))
+    assert product[0] == pytest.approx((ends[0] - ends[1]) / (2 * step), rel=1e-6)
 
 
 def unknown(name: str, prior_sd: float) -> Unknown:

@@ -6,8 +6,10 @@ and standard deviations s on the values z, a step solves
     (J' J + 1 / s^2) step = -(J' r + z / s^2),
 
 and the inverse of the same matrix is the covariance of what is then known (Laplace; Gelman et al.,
-Bayesian Data Analysis, 3rd ed., chapter 4). Residuals beside each other are alike: an image of N
-samples is as good as N / A independent ones, A the area that its residuals' autocorrelation covers.
+Bayesian Data Analysis, 3rd ed., chapter 4). Residuals beside each other are alike: what light does
+not explain is smooth over an image. They are independent as waves, each over its own standard
+deviation (generalised least squares with a stationary covariance), so what is smooth counts as few
+residuals and an edge as many.
 """
 
 from __future__ import annotations
@@ -17,8 +19,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-LEAST_LIKENESS = 0.1
-"""Autocorrelation from which residuals count as independent [1]."""
+BANDS = 24
+"""Of frequency in a spectrum."""
+HIGHEST = float(np.sqrt(0.5))
+"""Frequency of the finest pattern on a grid [1 / sample]."""
 LOOSE = 1e-9
 """Ridge over the diagonal: values that nothing tells stay where they are."""
 
@@ -74,25 +78,51 @@ def normal_equations(rows: Sequence[Rows], now: np.ndarray, prior_sd: np.ndarray
     return Normal(square=square, product=product)
 
 
-def alike_samples(residual: np.ndarray) -> float:
-    """Area that residuals on a regular grid, shape (H, W), are alike over [sample], at least 1.
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Spectrum:
+    """Variance of residuals by frequency; white residuals have their variance at each."""
 
-    The autocorrelation, averaged over rings, is summed up to where it first falls below
-    `LEAST_LIKENESS`. Missing samples are 0.
+    value: np.ndarray
+    """At even steps of frequency from 0 to `HIGHEST`, falling, shape (B,)."""
+
+    def over(self, values: np.ndarray, grid: tuple[int, int]) -> np.ndarray:
+        """Columns (N, K) of values on a grid over their standard deviations, (N', K)."""
+        coefficients, frequency, count = _waves(values, grid)
+        at = frequency / HIGHEST * (len(self.value) - 1)
+        variance = np.interp(at, np.arange(len(self.value)), self.value)
+        whole = coefficients * np.sqrt(count / variance)[..., None]
+        flat = whole.reshape(-1, values.shape[1])
+        return np.concatenate([np.real(flat), np.imag(flat)])
+
+
+def spectrum_of(residuals: Sequence[tuple[np.ndarray, tuple[int, int]]], least: float) -> Spectrum:
+    """The spectrum of residuals (N, C), each with its grid.
+
+    Their mean square in each band of frequency, made to fall: what is fitted takes from the slow
+    ones, which must not count as known for that. `least` is the variance that is left at best.
     """
-    height, width = residual.shape
-    spectrum = np.abs(np.fft.rfft2(residual, (2 * height, 2 * width))) ** 2
-    together = np.fft.irfft2(spectrum, (2 * height, 2 * width))
-    if together[0, 0] <= 0.0:
-        return 1.0
-    down = np.minimum(np.arange(2 * height), 2 * height - np.arange(2 * height))
-    right = np.minimum(np.arange(2 * width), 2 * width - np.arange(2 * width))
-    away = np.hypot(down[:, None], right[None, :])
-    reach = min(height, width) // 2
-    ring = np.round(away).astype(int).ravel()
-    count = np.bincount(ring)[: reach + 1]
-    mean = np.bincount(ring, weights=together.ravel())[: reach + 1] / np.maximum(count, 1)
-    likeness = mean / together[0, 0]
-    below = np.flatnonzero(likeness < LEAST_LIKENESS)
-    end = int(below[0]) if len(below) else len(likeness)
-    return max(float((count * likeness)[:end].sum()), 1.0)
+    power, modes = np.zeros(BANDS), np.zeros(BANDS)
+    for values, grid in residuals:
+        coefficients, frequency, count = _waves(values, grid)
+        band = np.round(frequency / HIGHEST * (BANDS - 1)).astype(int)
+        square = (np.abs(coefficients) ** 2).mean(axis=-1) * count
+        power += np.bincount(band.ravel(), weights=square.ravel(), minlength=BANDS)
+        modes += np.bincount(band.ravel(), weights=count.ravel(), minlength=BANDS)
+    mean = np.where(modes > 0.0, power / np.maximum(modes, 1.0), 0.0)
+    falling = np.maximum.accumulate(mean[::-1])[::-1]
+    return Spectrum(value=np.maximum(falling, least))
+
+
+def _waves(values: np.ndarray, grid: tuple[int, int]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Coefficients (H, W / 2 + 1, K) of waves, their frequency [1 / sample] and their number.
+
+    The sum of squares is that of the values, where each counts as often as it stands for.
+    """
+    height, width = grid
+    coefficients = np.fft.rfft2(values.reshape(height, width, -1), axes=(0, 1), norm="ortho")
+    frequency = np.hypot(np.fft.fftfreq(height)[:, None], np.fft.rfftfreq(width)[None, :])
+    count = np.full(frequency.shape, 2.0)
+    count[:, 0] = 1.0
+    if width % 2 == 0:
+        count[:, -1] = 1.0
+    return coefficients, frequency, count

@@ -14,7 +14,7 @@ import numpy as np
 
 from sim.optics.raster.display import light_of
 from workbench.calibration.drift import CUT_OFF
-from workbench.calibration.gauss_newton import Rows, alike_samples
+from workbench.calibration.gauss_newton import Rows, Spectrum, spectrum_of
 from workbench.calibration.light_basis import LightBasis, PressSamples
 from workbench.calibration.powers import Powers, Targets, grey_per_light, photo_change
 from workbench.core.design.camera import ImageSensor
@@ -53,10 +53,15 @@ class Slopes:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Whitening:
-    """What an independent residual's standard deviation is [grey level]."""
+    """What residuals are like [grey level^2]."""
 
-    rest: float
-    press: float
+    rest: Spectrum
+    press: Spectrum
+
+    @property
+    def of_press(self) -> float:
+        """Variance of the image at rest over that of presses, where they are smooth [1]."""
+        return float(self.rest.value[0] / self.press.value[0])
 
 
 def images_of(
@@ -93,29 +98,27 @@ def residuals(images: Sequence[Image], basis: LightBasis, powers: Powers) -> lis
     return left
 
 
+def press_error(images: Sequence[Image], basis: LightBasis, powers: Powers) -> float:
+    """Root mean square of what is left in the presses [grey level]."""
+    left = residuals(images, basis, powers)[1:]
+    count = sum(int((image.weight > 0.0).sum()) for image in images[1:])
+    return float(np.sqrt(sum(float((each**2).sum()) for each in left) / max(count, 1)))
+
+
 def whitening(images: Sequence[Image], left: Sequence[np.ndarray]) -> Whitening:
-    """Standard deviations that count as many residuals as are independent.
-
-    Of N alike over A samples, N / A are; each then counts 1 / A of its square.
-    """
-    alike = [
-        float(np.median([alike_samples(each[:, c].reshape(image.grid)) for c in range(3)]))
-        for image, each in zip(images, left, strict=True)
-    ]
-    errors = [
-        float((each**2).sum() / max((image.weight > 0.0).sum(), 1))
-        for image, each in zip(images, left, strict=True)
-    ]
-    rest = max(errors[0], LEAST_GREY**2) * alike[0]
-    press = max(float(np.mean(errors[1:])), LEAST_GREY**2) * float(np.median(alike[1:]))
-    return Whitening(rest=float(np.sqrt(rest)), press=float(np.sqrt(press)))
+    """Spectra of what is left."""
+    pairs = [(each, image.grid) for each, image in zip(left, images, strict=True)]
+    least = LEAST_GREY**2
+    return Whitening(rest=spectrum_of(pairs[:1], least), press=spectrum_of(pairs[1:], least))
 
 
-def misfit(left: Sequence[np.ndarray], over: Whitening) -> float:
+def misfit(images: Sequence[Image], left: Sequence[np.ndarray], over: Whitening) -> float:
     """Sum of the squares over their variances."""
-    rest, *presses = left
-    whole = float((rest**2).sum()) / over.rest**2
-    return whole + sum(float((each**2).sum()) for each in presses) / over.press**2
+    spectra = [over.rest] + [over.press] * (len(left) - 1)
+    return sum(
+        float((spectrum.over(each, image.grid) ** 2).sum())
+        for image, each, spectrum in zip(images, left, spectra, strict=True)
+    )
 
 
 def active_powers(powers: Powers) -> np.ndarray:
@@ -142,11 +145,11 @@ def image_rows(
     whole = np.column_stack([basis.rest, basis.ambient])
     for colour in range(3):
         mine = np.flatnonzero(active[:, 0] == colour)
-        by_unknown = np.array([each.rest[:, colour] for each in slopes]).reshape(count, -1).T
+        by_unknown = np.array([each.rest[:, colour] for each in slopes]).reshape(count, len(rest.light)).T
         slope = np.hstack([by_unknown, whole[:, active[mine, 1]]])
-        slope = slope * rest.weight[:, colour, None] / over.rest
+        slope = slope * rest.weight[:, colour, None]
         value = np.concatenate([unknown, first_power + mine])
-        found.append(Rows(residual=left[0][:, colour] / over.rest, slope=slope, value=value))
+        found.append(_rows(left[0][:, colour], slope, value, (over.rest, rest.grid)))
     for number, (image, samples) in enumerate(zip(images[1:], basis.presses, strict=True)):
         depth = powers.depths_mm[number]
         lights = samples.at(depth)
@@ -158,11 +161,22 @@ def image_rows(
             by_unknown = [each.presses[number][:, colour] for each in slopes]
             columns = [*by_unknown, deeper[:, colour], right[:, colour], down[:, colour]]
             slope = np.column_stack([*columns, lights[:, active[mine, 1]]])
-            slope = slope * image.weight[:, colour, None] / over.press
+            slope = slope * image.weight[:, colour, None]
             value = np.concatenate([unknown, own, first_power + mine])
-            residual = left[number + 1][:, colour] / over.press
-            found.append(Rows(residual=residual, slope=slope, value=value))
+            residual = left[number + 1][:, colour]
+            found.append(_rows(residual, slope, value, (over.press, image.grid)))
     return found
+
+
+def _rows(
+    residual: np.ndarray,
+    slope: np.ndarray,
+    value: np.ndarray,
+    over: tuple[Spectrum, tuple[int, int]],
+) -> Rows:
+    spectrum, grid = over
+    whole = spectrum.over(np.column_stack([residual, slope]), grid)
+    return Rows(residual=whole[:, 0], slope=whole[:, 1:], value=value)
 
 
 def _by_depth(samples: PressSamples, depth_mm: float) -> np.ndarray:

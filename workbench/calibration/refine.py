@@ -25,11 +25,12 @@ from workbench.calibration.photo_rows import (
     active_powers,
     image_rows,
     misfit,
+    press_error,
     residuals,
     whitening,
 )
 from workbench.calibration.photo_set import Circle
-from workbench.calibration.powers import fit_powers
+from workbench.calibration.powers import Powers, fit_powers
 from workbench.calibration.unknowns import Unknown, moved_scene
 from workbench.core.base.monitor import Monitor, part
 
@@ -41,6 +42,9 @@ HALVES = 2
 """Times that a step is halved before it is given up."""
 ENOUGH = 0.1
 """Largest change of an unknown over its prior's deviation at which all have settled [1]."""
+POLISHES = 3
+FIXED = 1e-9
+"""Standard deviation before of what stays as it is."""
 CIRCLE_SD = 0.1
 """Of a circle's middle over its radius [1]: circles are found or drawn that well."""
 
@@ -132,7 +136,7 @@ def _error(task: Task, fit: Fit, over: Whitening) -> float:
     circles = np.array([CIRCLE_SD * each.radius_px for each in task.boxes])
     off = float(((fit.values / sizes) ** 2).sum())
     off += float(((shifts_of(task, fit) / circles[:, None]) ** 2).sum())
-    return misfit(left, over) + off
+    return misfit(task.images, left, over) + off
 
 
 def _step(task: Task, fit: Fit, normal: Normal, over: Whitening, monitor: Monitor) -> Fit | None:
@@ -182,10 +186,38 @@ def _fitted(
         depths_mm=np.clip(depths_mm, low, high),
         rest=_rest_weight(task, basis, whitened),
     )
+    powers = _polished(task, basis, powers, whitened)
     return Fit(values=values, scene=scene, circles=tuple(seen), basis=basis, powers=powers)
 
 
 def _rest_weight(task: Task, basis: LightBasis, over: Whitening) -> float:
     """Weight of the image at rest in `fit_powers` that goes with the variances."""
     samples = sum(len(each.pixel) for each in basis.presses)
-    return (over.press / over.rest) ** 2 * len(basis.rest_pixel) / max(samples, 1)
+    return len(basis.rest_pixel) / max(samples, 1) / over.of_press
+
+
+def _polished(task: Task, basis: LightBasis, powers: Powers, over: Whitening) -> Powers:
+    """Powers and depths that fit best where residuals are independent as waves."""
+    count = len(task.presses)
+    low, high = np.array([(each.least_mm, each.most_mm) for each in task.presses]).T
+    error = misfit(task.images, residuals(task.images, basis, powers), over)
+    for _ in range(POLISHES):
+        active = active_powers(powers)
+        rows = image_rows(task.images, (basis, powers), [], over)
+        sizes = np.concatenate(
+            [np.maximum(high - low, FIXED), np.full(2 * count, FIXED), np.full(len(active), np.inf)]
+        )
+        step = normal_equations(rows, np.zeros(len(sizes)), sizes).step()
+        whole = np.column_stack([powers.lights, powers.ambient])
+        whole[tuple(active.T)] = np.maximum(whole[tuple(active.T)] + step[3 * count :], 0.0)
+        trial = dataclasses.replace(
+            powers,
+            lights=whole[:, :-1],
+            ambient=whole[:, -1],
+            depths_mm=np.clip(powers.depths_mm + step[:count], low, high),
+        )
+        now = misfit(task.images, residuals(task.images, basis, trial), over)
+        if not now < error:
+            break
+        powers, error = trial, now
+    return dataclasses.replace(powers, error_grey=press_error(task.images, basis, powers))
