@@ -12,7 +12,12 @@ from workbench.calibration.ball_presses import BallPress
 from workbench.calibration.derivatives import Fit
 from workbench.calibration.determined import directions, parameters
 from workbench.calibration.elasticity import LEAST_SCATTER, fitted_young
-from workbench.calibration.gauss_newton import Rows, Spectrum, normal_equations, spectrum_of
+from workbench.calibration.gauss_newton import (
+    Rows,
+    alike_samples,
+    huber_shares,
+    normal_equations,
+)
 from workbench.calibration.light_basis import LightBasis, PressSamples
 from workbench.calibration.light_sources import single_lights
 from workbench.calibration.photo_rows import (
@@ -23,6 +28,7 @@ from workbench.calibration.photo_rows import (
     image_rows,
     misfit,
     residuals,
+    whitening,
 )
 from workbench.calibration.photo_set import BallPhoto, Circle
 from workbench.calibration.powers import Powers
@@ -69,44 +75,40 @@ def test_a_value_that_nothing_tells_keeps_its_prior() -> None:
     assert normal.covariance()[2, 2] > 1e6
 
 
-def test_a_spectrum_whitens_what_it_was_taken_of() -> None:
-    """Noise smoothed over boxes: each wave over its deviation has a mean square of 1.
-
-    White noise of deviation 3 has the variance 9 in every band.
-    """
-    noise = np.random.default_rng(2).normal(size=(64, 48))
-    white = spectrum_of([(3.0 * noise.reshape(-1, 1), (64, 48))], 1e-6)
-    # The slowest bands have few waves; others hundreds, of which falling takes the largest.
-    assert white.value[4:] == pytest.approx(np.full(len(white.value) - 4, 9.0), rel=0.3)
-    wide = np.fft.irfft2(np.fft.rfft2(noise) * decay(64, 48), (64, 48)).reshape(-1, 1)
-    spectrum = spectrum_of([(wide, (64, 48))], 1e-12)
-    assert spectrum.value[0] > 100.0 * spectrum.value[-1]
-    whole = spectrum.over(wide, (64, 48))
-    assert (whole**2).sum() == pytest.approx(wide.size, rel=0.15)
+def test_alike_samples_of_noise_and_of_patches() -> None:
+    """White noise: 1. Noise that is even over patches of 4 x 4: 16, less what slow waves lose."""
+    noise = np.random.default_rng(2).normal(size=(16, 64, 64))
+    grid = 64, 64
+    white = alike_samples([(each.reshape(-1, 1), grid) for each in noise])
+    # Falling makes the slow waves' variance that of the largest band.
+    assert white == pytest.approx(1.0, abs=0.1)
+    patches = np.kron(noise[:, :16, :16], np.ones((4, 4)))
+    found = alike_samples([(each.reshape(-1, 1), grid) for each in patches])
+    assert found == pytest.approx(16.0, rel=0.15)
+    assert alike_samples([(np.zeros((64, 3)), (8, 8))]) == 1.0
 
 
-def decay(height: int, width: int) -> np.ndarray:
-    """A filter that passes slow waves."""
-    down, right = np.fft.fftfreq(height)[:, None], np.fft.rfftfreq(width)[None, :]
-    return np.exp(-4.0 * np.hypot(down, right))
+def test_residuals_that_stand_out_count_less() -> None:
+    """Of normal ones 1.2 % lie beyond 2.5 deviations; one of 25 deviations counts a tenth."""
+    values = np.random.default_rng(6).normal(size=20_000)
+    values[0] = 25.0
+    shares = huber_shares(values)
+    assert shares[0] == pytest.approx(0.1, rel=0.03)
+    assert (shares < 1.0).mean() == pytest.approx(0.0124, abs=0.003)
+    assert (huber_shares(np.zeros(5)) == 1.0).all()
 
 
-@pytest.mark.parametrize("grid", [(6, 8), (5, 7), (1, 4)])
-def test_waves_keep_the_sum_of_squares(grid: tuple[int, int]) -> None:
-    """With variance 1 everywhere, products of columns stay what they were."""
-    values = np.random.default_rng(3).normal(size=(grid[0] * grid[1], 3))
-    whole = Spectrum(value=np.ones(4)).over(values, grid)
-    assert whole.T @ whole == pytest.approx(values.T @ values)
-
-
-def test_an_edge_stands_out_of_what_is_smooth() -> None:
-    """Smooth residuals of deviation 1 hide a smooth change of .1, not a step of .1."""
-    spectrum = Spectrum(value=np.concatenate([[50.0, 10.0, 1.0], np.full(21, 0.01)]))
-    row, column = np.mgrid[:32, :32]
-    smooth = 0.1 * np.cos(2.0 * np.pi * column / 32.0).reshape(-1, 1)
-    edge = 0.1 * np.where((row + column) % 2, 1.0, -1.0).reshape(-1, 1)
-    told = [float((spectrum.over(each, (32, 32)) ** 2).sum()) for each in (smooth, edge)]
-    assert told[0] < 0.6 and told[1] == pytest.approx(0.1**2 * 1024 / 0.01)
+def test_many_photographs_of_one_error_count_as_one() -> None:
+    """Presses with the same residual: four of them weigh as much as one alone."""
+    random = np.random.default_rng(8)
+    left = random.normal(size=(100, 3))
+    image = Image(light=left, weight=np.ones((100, 3)), grid=(10, 10), step_px=1)
+    told = []
+    for count in (1, 4):
+        all_left = [left] * (1 + count)
+        over = whitening([image] * (1 + count), all_left)
+        told.append(misfit(all_left[1:], dataclasses.replace(over, rest=over.press)))
+    assert told[0] == pytest.approx(told[1])
 
 
 def basis_of(random: np.random.Generator) -> LightBasis:
@@ -144,8 +146,8 @@ def test_rows_are_the_derivatives_of_the_residuals() -> None:
         null_grey=0.0,
     )
     given = Slopes(rest=random.normal(size=(24, 3)), presses=(random.normal(size=(25, 3)),))
-    falling = np.linspace(4.0, 1.0, 24)
-    over = Whitening(rest=Spectrum(value=falling), press=Spectrum(value=2.0 * falling))
+    shares = tuple(random.uniform(0.1, 1.0, each.light.shape) for each in images)
+    over = Whitening(rest=2.0, press=4.0, shares=shares)
     active = active_powers(powers)
     count = 4 + len(active)
     rows = image_rows(images, (basis, powers), [given], over)
@@ -155,7 +157,7 @@ def test_rows_are_the_derivatives_of_the_residuals() -> None:
         moved = dataclasses.replace(
             powers, lights=lights, ambient=ambient, depths_mm=np.array([depth])
         )
-        return 0.5 * misfit(images, residuals(images, basis, moved), over)
+        return 0.5 * misfit(residuals(images, basis, moved), over)
 
     step = 1e-3
     for number, (colour, light) in enumerate(active):
@@ -177,7 +179,7 @@ def test_rows_are_the_derivatives_of_the_residuals() -> None:
                 images, residuals(images, basis, powers), slopes, strict=True
             )
         ]
-        ends.append(0.5 * misfit(images, moved, over))
+        ends.append(0.5 * misfit(moved, over))
     assert product[0] == pytest.approx((ends[0] - ends[1]) / (2 * step), rel=1e-6)
 
 

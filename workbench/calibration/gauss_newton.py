@@ -6,10 +6,8 @@ and standard deviations s on the values z, a step solves
     (J' J + 1 / s^2) step = -(J' r + z / s^2),
 
 and the inverse of the same matrix is the covariance of what is then known (Laplace; Gelman et al.,
-Bayesian Data Analysis, 3rd ed., chapter 4). Residuals beside each other are alike: what light does
-not explain is smooth over an image. They are independent as waves, each over its own standard
-deviation (generalised least squares with a stationary covariance), so what is smooth counts as few
-residuals and an edge as many.
+Bayesian Data Analysis, 3rd ed., chapter 4). Residuals beside each other are alike, so an
+image of N samples is as good as N / A independent ones, A the samples that are alike.
 """
 
 from __future__ import annotations
@@ -19,10 +17,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-BANDS = 24
-"""Of frequency in a spectrum."""
+BANDS, SLOW = 24, 3
+"""Of frequency in a spectrum, and those that count as slow."""
 HIGHEST = float(np.sqrt(0.5))
 """Frequency of the finest pattern on a grid [1 / sample]."""
+HUBER, NORMAL_MEDIAN = 2.5, 0.6745
+"""Standard deviations beyond which a residual counts less [1]; median size of normal ones [1]."""
 LOOSE = 1e-9
 """Ridge over the diagonal: values that nothing tells stay where they are."""
 
@@ -78,51 +78,37 @@ def normal_equations(rows: Sequence[Rows], now: np.ndarray, prior_sd: np.ndarray
     return Normal(square=square, product=product)
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Spectrum:
-    """Variance of residuals by frequency; white residuals have their variance at each."""
+def alike_samples(residuals: Sequence[tuple[np.ndarray, tuple[int, int]]]) -> float:
+    """Samples that residuals (N, C), each on its grid, are alike over, at least 1.
 
-    value: np.ndarray
-    """At even steps of frequency from 0 to `HIGHEST`, falling, shape (B,)."""
-
-    def over(self, values: np.ndarray, grid: tuple[int, int]) -> np.ndarray:
-        """Columns (N, K) of values on a grid over their standard deviations, (N', K)."""
-        coefficients, frequency, count = _waves(values, grid)
-        at = frequency / HIGHEST * (len(self.value) - 1)
-        variance = np.interp(at, np.arange(len(self.value)), self.value)
-        whole = coefficients * np.sqrt(count / variance)[..., None]
-        flat = whole.reshape(-1, values.shape[1])
-        return np.concatenate([np.real(flat), np.imag(flat)])
-
-
-def spectrum_of(residuals: Sequence[tuple[np.ndarray, tuple[int, int]]], least: float) -> Spectrum:
-    """The spectrum of residuals (N, C), each with its grid.
-
-    Their mean square in each band of frequency, made to fall: what is fitted takes from the slow
-    ones, which must not count as known for that. `least` is the variance that is left at best.
+    The variance of slow waves over that of all: 1 of noise, the area of a patch where they are
+    even over patches. The spectrum is made to fall first (isotonic regression, weighted by the
+    number of waves): what is fitted takes from the slow waves, which must not count as known.
     """
+    from scipy.optimize import isotonic_regression
+
     power, modes = np.zeros(BANDS), np.zeros(BANDS)
-    for values, grid in residuals:
-        coefficients, frequency, count = _waves(values, grid)
-        band = np.round(frequency / HIGHEST * (BANDS - 1)).astype(int)
-        square = (np.abs(coefficients) ** 2).mean(axis=-1) * count
-        power += np.bincount(band.ravel(), weights=square.ravel(), minlength=BANDS)
-        modes += np.bincount(band.ravel(), weights=count.ravel(), minlength=BANDS)
-    mean = np.where(modes > 0.0, power / np.maximum(modes, 1.0), 0.0)
-    falling = np.maximum.accumulate(mean[::-1])[::-1]
-    return Spectrum(value=np.maximum(falling, least))
+    for values, (height, width) in residuals:
+        waves = np.fft.fft2(values.reshape(height, width, -1), axes=(0, 1), norm="ortho")
+        away = np.hypot(np.fft.fftfreq(height)[:, None], np.fft.fftfreq(width)[None, :])
+        band = np.round(away / HIGHEST * (BANDS - 1)).astype(int).ravel()
+        square = (np.abs(waves) ** 2).mean(axis=-1).ravel()
+        power += np.bincount(band, weights=square, minlength=BANDS)
+        modes += np.bincount(band, minlength=BANDS)
+    weight = np.maximum(modes, 1e-6)
+    falling = isotonic_regression(power / weight, weights=weight, increasing=False).x
+    whole = float(power.sum() / weight.sum())
+    slow = float((falling * weight)[:SLOW].sum() / weight[:SLOW].sum())
+    return max(slow / whole, 1.0) if whole > 0.0 else 1.0
 
 
-def _waves(values: np.ndarray, grid: tuple[int, int]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Coefficients (H, W / 2 + 1, K) of waves, their frequency [1 / sample] and their number.
+def huber_shares(residual: np.ndarray) -> np.ndarray:
+    """Share that each residual counts for, those not 0 alone telling how large they are, (...).
 
-    The sum of squares is that of the values, where each counts as often as it stands for.
+    1 within `HUBER` standard deviations, by the median of their sizes, falling as 1 / size beyond:
+    Huber, Ann. Math. Statist. 35 (1964) 73.
     """
-    height, width = grid
-    coefficients = np.fft.rfft2(values.reshape(height, width, -1), axes=(0, 1), norm="ortho")
-    frequency = np.hypot(np.fft.fftfreq(height)[:, None], np.fft.rfftfreq(width)[None, :])
-    count = np.full(frequency.shape, 2.0)
-    count[:, 0] = 1.0
-    if width % 2 == 0:
-        count[:, -1] = 1.0
-    return coefficients, frequency, count
+    size = np.abs(residual)
+    some = size[size > 0.0]
+    limit = HUBER * float(np.median(some)) / NORMAL_MEDIAN if some.size else np.inf
+    return np.where(size > limit, limit / np.maximum(size, 1e-300), 1.0)

@@ -14,7 +14,7 @@ import numpy as np
 
 from sim.optics.raster.display import light_of
 from workbench.calibration.drift import CUT_OFF
-from workbench.calibration.gauss_newton import Rows, Spectrum, spectrum_of
+from workbench.calibration.gauss_newton import Rows, alike_samples, huber_shares
 from workbench.calibration.light_basis import LightBasis, PressSamples
 from workbench.calibration.powers import Powers, Targets, grey_per_light, photo_change
 from workbench.core.design.camera import ImageSensor
@@ -23,6 +23,8 @@ DIM = 10.0
 """Grey level below which a photograph is dark, where the camera sees no skin."""
 OF_MEDIAN = 0.5
 """The image at rest counts no dark place more than one of this share of its median light."""
+PATCHES = 64
+"""Independent residuals of an image at most: the light model errs over eighths of its sides."""
 LEAST_GREY = 0.7
 """Error that is left at best: rounding of two photographs and their noise [grey level]."""
 
@@ -53,15 +55,17 @@ class Slopes:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Whitening:
-    """What residuals are like [grey level^2]."""
+    """How much each residual counts."""
 
-    rest: Spectrum
-    press: Spectrum
+    rest: float
+    """Standard deviation of what counts as one [grey level]."""
+    press: float
+    shares: tuple[np.ndarray, ...]
+    """Of every residual's square, for what stands out, (N, 3) for each image."""
 
-    @property
-    def of_press(self) -> float:
-        """Variance of the image at rest over that of presses, where they are smooth [1]."""
-        return float(self.rest.value[0] / self.press.value[0])
+    def over(self, number: int) -> np.ndarray:
+        """One over the deviations of an image's residuals, (N, 3); image 0 is at rest."""
+        return np.sqrt(self.shares[number]) / (self.press if number else self.rest)
 
 
 def images_of(
@@ -106,19 +110,36 @@ def press_error(images: Sequence[Image], basis: LightBasis, powers: Powers) -> f
 
 
 def whitening(images: Sequence[Image], left: Sequence[np.ndarray]) -> Whitening:
-    """Spectra of what is left."""
-    pairs = [(each, image.grid) for each, image in zip(left, images, strict=True)]
-    least = LEAST_GREY**2
-    return Whitening(rest=spectrum_of(pairs[:1], least), press=spectrum_of(pairs[1:], least))
+    """Deviations with which residuals count as many as are independent.
 
-
-def misfit(images: Sequence[Image], left: Sequence[np.ndarray], over: Whitening) -> float:
-    """Sum of the squares over their variances."""
-    spectra = [over.rest] + [over.press] * (len(left) - 1)
-    return sum(
-        float((spectrum.over(each, image.grid) ** 2).sum())
-        for image, each, spectrum in zip(images, left, spectra, strict=True)
+    What light leaves is mostly the light model's own error, smooth and in part taken up by what is
+    fitted, so an image has no more than `PATCHES` independent ones. In presses it is common to all:
+    many photographs do not make it less, and all of them together count as one.
+    """
+    shares = [huber_shares(each) for each in left]
+    robust = [
+        (np.sqrt(share) * each, image.grid)
+        for share, each, image in zip(shares, left, images, strict=True)
+    ]
+    sizes = [image.grid[0] * image.grid[1] / PATCHES for image in images]
+    alike = (
+        max(alike_samples(robust[:1]), sizes[0]),
+        len(images[1:]) * max(alike_samples(robust[1:]), float(np.mean(sizes[1:]))),
     )
+    squares = [float((each**2).sum()) for each, _ in robust]
+    counts = [float((image.weight > 0.0).sum()) for image in images]
+    rest = squares[0] / max(counts[0], 1.0)
+    press = sum(squares[1:]) / max(sum(counts[1:]), 1.0)
+    one, other = (
+        float(np.sqrt(max(square, LEAST_GREY**2) * area))
+        for square, area in zip((rest, press), alike, strict=True)
+    )
+    return Whitening(rest=one, press=other, shares=tuple(shares))
+
+
+def misfit(left: Sequence[np.ndarray], over: Whitening) -> float:
+    """Sum of the squares over their variances."""
+    return sum(float(((each * over.over(k)) ** 2).sum()) for k, each in enumerate(left))
 
 
 def active_powers(powers: Powers) -> np.ndarray:
@@ -145,11 +166,12 @@ def image_rows(
     whole = np.column_stack([basis.rest, basis.ambient])
     for colour in range(3):
         mine = np.flatnonzero(active[:, 0] == colour)
-        by_unknown = np.array([each.rest[:, colour] for each in slopes]).reshape(count, len(rest.light)).T
-        slope = np.hstack([by_unknown, whole[:, active[mine, 1]]])
-        slope = slope * rest.weight[:, colour, None]
+        by_unknown = [each.rest[:, colour] for each in slopes]
+        slope = np.column_stack([*by_unknown, whole[:, active[mine, 1]]])
+        share = over.over(0)[:, colour]
+        slope = slope * (rest.weight[:, colour] * share)[:, None]
         value = np.concatenate([unknown, first_power + mine])
-        found.append(_rows(left[0][:, colour], slope, value, (over.rest, rest.grid)))
+        found.append(Rows(residual=left[0][:, colour] * share, slope=slope, value=value))
     for number, (image, samples) in enumerate(zip(images[1:], basis.presses, strict=True)):
         depth = powers.depths_mm[number]
         lights = samples.at(depth)
@@ -161,22 +183,12 @@ def image_rows(
             by_unknown = [each.presses[number][:, colour] for each in slopes]
             columns = [*by_unknown, deeper[:, colour], right[:, colour], down[:, colour]]
             slope = np.column_stack([*columns, lights[:, active[mine, 1]]])
-            slope = slope * image.weight[:, colour, None]
+            share = over.over(number + 1)[:, colour]
+            slope = slope * (image.weight[:, colour] * share)[:, None]
             value = np.concatenate([unknown, own, first_power + mine])
-            residual = left[number + 1][:, colour]
-            found.append(_rows(residual, slope, value, (over.press, image.grid)))
+            residual = left[number + 1][:, colour] * share
+            found.append(Rows(residual=residual, slope=slope, value=value))
     return found
-
-
-def _rows(
-    residual: np.ndarray,
-    slope: np.ndarray,
-    value: np.ndarray,
-    over: tuple[Spectrum, tuple[int, int]],
-) -> Rows:
-    spectrum, grid = over
-    whole = spectrum.over(np.column_stack([residual, slope]), grid)
-    return Rows(residual=whole[:, 0], slope=whole[:, 1:], value=value)
 
 
 def _by_depth(samples: PressSamples, depth_mm: float) -> np.ndarray:
