@@ -162,9 +162,10 @@ def _whose_lights(
         powers = found.powers
         if lights == "known" or powers.error_grey <= BADLY * powers.null_grey:
             return True, found
-    found = work.light(contacts, candidates(work.mesh), span["candidates"])
+    traced, solving = part(span["candidates"], 0.0, 0.95), part(span["candidates"], 0.95, 1.0)
+    found = work.light(contacts, candidates(work.mesh), traced)
     kept = found.basis.only(worth_keeping(found.basis, found.powers))
-    return False, work.powers(contacts, kept, span["candidates"])
+    return False, work.powers(contacts, kept, solving)
 
 
 def _task(work: Work, contacts: Contacts, light: Light, *, known: bool) -> tuple[Task, Fit]:

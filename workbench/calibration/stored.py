@@ -11,7 +11,7 @@ from workbench.core.result.results import MembraneMesh
 from workbench.pipeline.devices import start_device
 from workbench.pipeline.stages import table
 from workbench.pipeline.store import Store
-from workbench.planning.plan import InlineRunner, evaluate, plan
+from workbench.planning.plan import InlineRunner, evaluate, needed, plan
 
 if TYPE_CHECKING:
     from sim.optics.studio.render import Studio
@@ -26,12 +26,16 @@ def stored(
         WorkbenchError: From the first stage that fails; what was done before stays stored.
     """
 
-    def told(stage: str, fraction: float, note: str) -> None:
-        monitor(fraction, note or stage)
+    calls = plan(design, case)
+    missing = [each for each in needed(calls, (stage,)) if not store.has(each, calls[each].key)]
+
+    def told(name: str, fraction: float, note: str) -> None:
+        done = missing.index(name) if name in missing else 0
+        monitor((done + fraction) / max(len(missing), 1), note or name)
 
     for _ in evaluate(design, case, InlineRunner(store), wanted=(stage,), monitor=told):
         pass
-    return store.load(stage, plan(design, case)[stage].key)
+    return store.load(stage, calls[stage].key)
 
 
 def lit_studio(

@@ -92,21 +92,21 @@ def unknowns(scene: Scene, *, known: bool) -> list[Unknown]:
     axes, found = ("along x", "along y", "in height"), []
     for axis, where in enumerate(axes):
         name, kind = f"camera {where}", Kind.CAMERA_PLACE
-        found.append(_unknown(name, "mm", kind, (0.5, 0.2, 0.1), axis=axis))
+        found.append(_unknown(name, "mm", kind, (0.5, 0.5, 0.1), axis=axis))
     for axis, about in enumerate("xyz"):
         name, kind = f"camera turned about {about}", Kind.CAMERA_TURN
-        found.append(_unknown(name, "deg", kind, (1.0, 0.4, 0.2), axis=axis))
+        found.append(_unknown(name, "deg", kind, (1.0, 1.0, 0.2), axis=axis))
     width_deg = scene.camera.fov_x_deg
-    sizes = 0.01 * width_deg, 0.004 * width_deg, 0.005 * width_deg
+    sizes = 0.01 * width_deg, 0.01 * width_deg, 0.005 * width_deg
     found.append(_unknown("field of view", "deg", Kind.FIELD_OF_VIEW, sizes))
     found.append(_unknown("fall-off of the lens", "", Kind.FALLOFF, (0.2, 0.1, 0.05)))
-    found.append(_unknown("lobe of the lights", "", Kind.LOBE, (0.5, 0.3, 0.1)))
-    found.append(_unknown("log of the roughness", "", Kind.ROUGHNESS, (0.5, 0.2, 0.1)))
-    found.append(_unknown("log of gloss over albedo", "", Kind.GLOSS, (1.0, 0.3, 0.2)))
+    found.append(_unknown("lobe of the lights", "", Kind.LOBE, (0.5, 0.5, 0.1)))
+    found.append(_unknown("log of the roughness", "", Kind.ROUGHNESS, (0.5, 0.3, 0.1)))
+    found.append(_unknown("log of gloss over albedo", "", Kind.GLOSS, (1.0, 0.5, 0.2)))
     for light in range(len(scene.lights) if known else 0):
         for axis, where in enumerate(("outward", "around", "in height")):
             name, kind = f"light {light + 1} {where}", Kind.LED_PLACE
-            found.append(_unknown(name, "mm", kind, (0.4, 0.2, 0.1), axis=axis, light=light))
+            found.append(_unknown(name, "mm", kind, (0.4, 0.3, 0.1), axis=axis, light=light))
     return found
 
 
