@@ -107,7 +107,7 @@ def test_many_photographs_of_one_error_count_as_one() -> None:
     for count in (1, 4):
         all_left = [left] * (1 + count)
         over = whitening([image] * (1 + count), all_left)
-        told.append(misfit(all_left[1:], dataclasses.replace(over, rest=over.press)))
+        told.append(misfit([image] * (1 + count), all_left, dataclasses.replace(over, rest=1e9)))
     assert told[0] == pytest.approx(told[1])
 
 
@@ -157,7 +157,7 @@ def test_rows_are_the_derivatives_of_the_residuals() -> None:
         moved = dataclasses.replace(
             powers, lights=lights, ambient=ambient, depths_mm=np.array([depth])
         )
-        return 0.5 * misfit(residuals(images, basis, moved), over)
+        return 0.5 * misfit(images, residuals(images, basis, moved), over)
 
     step = 1e-3
     for number, (colour, light) in enumerate(active):
@@ -179,7 +179,7 @@ def test_rows_are_the_derivatives_of_the_residuals() -> None:
                 images, residuals(images, basis, powers), slopes, strict=True
             )
         ]
-        ends.append(0.5 * misfit(moved, over))
+        ends.append(0.5 * misfit(images, moved, over))
     assert product[0] == pytest.approx((ends[0] - ends[1]) / (2 * step), rel=1e-6)
 
 

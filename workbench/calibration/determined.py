@@ -66,6 +66,9 @@ def parameters(found: Refined) -> tuple[Parameter, ...]:
     units = [each.unit for each in found.among] + [""] * len(shares)
     result = []
     for k, name in enumerate(names):
+        if k >= count and values[k] <= 0.0:
+            # A light that does not shine has no power to be known.
+            continue
         determined = bool(2.0 * sd[k] <= wanted[k])
         prior_sd = found.among[k].prior_sd if k < count else None
         likeness = covariance[k] / np.maximum(sd * sd[k], 1e-300)

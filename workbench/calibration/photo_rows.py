@@ -23,10 +23,12 @@ DIM = 10.0
 """Grey level below which a photograph is dark, where the camera sees no skin."""
 OF_MEDIAN = 0.5
 """The image at rest counts no dark place more than one of this share of its median light."""
+BLUR = 2.0
+"""Standard deviation of the blur that photograph and prediction are compared with [sample]."""
 PATCHES = 64
 """Independent residuals of an image at most: the light model errs over eighths of its sides."""
-LEAST_GREY = 0.7
-"""Error that is left at best: rounding of two photographs and their noise [grey level]."""
+LEAST_GREY = 0.3
+"""Error that is left at best: rounding of two photographs and their noise, blurred [grey level]."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -118,7 +120,7 @@ def whitening(images: Sequence[Image], left: Sequence[np.ndarray]) -> Whitening:
     """
     shares = [huber_shares(each) for each in left]
     robust = [
-        (np.sqrt(share) * each, image.grid)
+        (blurred(np.sqrt(share) * each, image.grid), image.grid)
         for share, each, image in zip(shares, left, images, strict=True)
     ]
     sizes = [image.grid[0] * image.grid[1] / PATCHES for image in images]
@@ -137,9 +139,26 @@ def whitening(images: Sequence[Image], left: Sequence[np.ndarray]) -> Whitening:
     return Whitening(rest=one, press=other, shares=tuple(shares))
 
 
-def misfit(left: Sequence[np.ndarray], over: Whitening) -> float:
+def misfit(images: Sequence[Image], left: Sequence[np.ndarray], over: Whitening) -> float:
     """Sum of the squares over their variances."""
-    return sum(float(((each * over.over(k)) ** 2).sum()) for k, each in enumerate(left))
+    return sum(
+        float((blurred(each * over.over(k), image.grid) ** 2).sum())
+        for k, (image, each) in enumerate(zip(images, left, strict=True))
+    )
+
+
+def blurred(values: np.ndarray, grid: tuple[int, int]) -> np.ndarray:
+    """Columns (N, K) of samples on a grid as they are compared: the finest patterns are left out.
+
+    They are those of photons and of the mesh's triangles, in derivatives too, where they would pass
+    for something that the photographs tell.
+    """
+    from scipy.ndimage import gaussian_filter1d
+
+    image = values.reshape(*grid, -1)
+    for axis in (0, 1):
+        image = gaussian_filter1d(image, BLUR, axis=axis, mode="nearest")
+    return image.reshape(values.shape)
 
 
 def active_powers(powers: Powers) -> np.ndarray:
@@ -171,7 +190,7 @@ def image_rows(
         share = over.over(0)[:, colour]
         slope = slope * (rest.weight[:, colour] * share)[:, None]
         value = np.concatenate([unknown, first_power + mine])
-        found.append(Rows(residual=left[0][:, colour] * share, slope=slope, value=value))
+        found.append(_rows(left[0][:, colour] * share, slope, value, rest.grid))
     for number, (image, samples) in enumerate(zip(images[1:], basis.presses, strict=True)):
         depth = powers.depths_mm[number]
         lights = samples.at(depth)
@@ -187,8 +206,15 @@ def image_rows(
             slope = slope * (image.weight[:, colour] * share)[:, None]
             value = np.concatenate([unknown, own, first_power + mine])
             residual = left[number + 1][:, colour] * share
-            found.append(Rows(residual=residual, slope=slope, value=value))
+            found.append(_rows(residual, slope, value, image.grid))
     return found
+
+
+def _rows(
+    residual: np.ndarray, slope: np.ndarray, value: np.ndarray, grid: tuple[int, int]
+) -> Rows:
+    whole = blurred(np.column_stack([residual, slope]), grid)
+    return Rows(residual=whole[:, 0], slope=whole[:, 1:], value=value)
 
 
 def _by_depth(samples: PressSamples, depth_mm: float) -> np.ndarray:

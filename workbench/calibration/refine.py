@@ -136,7 +136,7 @@ def _error(task: Task, fit: Fit, over: Whitening) -> float:
     circles = np.array([CIRCLE_SD * each.radius_px for each in task.boxes])
     off = float(((fit.values / sizes) ** 2).sum())
     off += float(((shifts_of(task, fit) / circles[:, None]) ** 2).sum())
-    return misfit(left, over) + off
+    return misfit(task.images, left, over) + off
 
 
 def _step(task: Task, fit: Fit, normal: Normal, over: Whitening, monitor: Monitor) -> Fit | None:
@@ -200,7 +200,7 @@ def _polished(task: Task, basis: LightBasis, powers: Powers, over: Whitening) ->
     """Powers and depths that fit best with the same weights."""
     count = len(task.presses)
     low, high = np.array([(each.least_mm, each.most_mm) for each in task.presses]).T
-    error = misfit(residuals(task.images, basis, powers), over)
+    error = misfit(task.images, residuals(task.images, basis, powers), over)
     for _ in range(POLISHES):
         active = active_powers(powers)
         rows = image_rows(task.images, (basis, powers), [], over)
@@ -216,7 +216,7 @@ def _polished(task: Task, basis: LightBasis, powers: Powers, over: Whitening) ->
             ambient=whole[:, -1],
             depths_mm=np.clip(powers.depths_mm + step[:count], low, high),
         )
-        now = misfit(residuals(task.images, basis, trial), over)
+        now = misfit(task.images, residuals(task.images, basis, trial), over)
         if not now < error:
             break
         powers, error = trial, now
