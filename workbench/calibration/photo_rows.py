@@ -27,8 +27,9 @@ BLUR = 2.0
 """Standard deviation of the blur that photograph and prediction are compared with [sample]."""
 PATCHES = 64
 """Independent residuals of an image at most: the light model errs over eighths of its sides."""
-LEAST_GREY = 0.3
-"""Error that is left at best: rounding of two photographs and their noise, blurred [grey level]."""
+LEAST_GREY = 2.5
+"""Error that is left at best [grey level]: the light model against photons of another program, 40
+to 47 dB for contacts; a fit that leaves less has taken the model's errors for something else."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
