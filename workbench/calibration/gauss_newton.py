@@ -21,7 +21,7 @@ BANDS, SLOW = 24, 3
 """Of frequency in a spectrum, and those that count as slow."""
 HIGHEST = float(np.sqrt(0.5))
 """Frequency of the finest pattern on a grid [1 / sample]."""
-HUBER, NORMAL_MEDIAN = 2.5, 0.6745
+LIMIT, NORMAL_MEDIAN = 2.5, 0.6745
 """Standard deviations beyond which a residual counts less [1]; median size of normal ones [1]."""
 LOOSE = 1e-9
 """Ridge over the diagonal: values that nothing tells stay where they are."""
@@ -102,13 +102,14 @@ def alike_samples(residuals: Sequence[tuple[np.ndarray, tuple[int, int]]]) -> fl
     return max(slow / whole, 1.0) if whole > 0.0 else 1.0
 
 
-def huber_shares(residual: np.ndarray) -> np.ndarray:
-    """Share that each residual counts for, those not 0 alone telling how large they are, (...).
+def robust_shares(residual: np.ndarray) -> np.ndarray:
+    """Share of its square that each residual counts for, (...); 0s do not tell how large they are.
 
-    1 within `HUBER` standard deviations, by the median of their sizes, falling as 1 / size beyond:
-    Huber, Ann. Math. Statist. 35 (1964) 73.
+    1 within `LIMIT` standard deviations, by the median of their sizes, falling as 1 / size^4
+    beyond: what the model has wrong in one place, such as a wall, must not pull all else there. A
+    redescending estimate; Huber and Ronchetti, Robust Statistics, 2nd ed., section 4.8.
     """
     size = np.abs(residual)
     some = size[size > 0.0]
-    limit = HUBER * float(np.median(some)) / NORMAL_MEDIAN if some.size else np.inf
-    return np.where(size > limit, limit / np.maximum(size, 1e-300), 1.0)
+    limit = LIMIT * float(np.median(some)) / NORMAL_MEDIAN if some.size else np.inf
+    return np.where(size > limit, (limit / np.maximum(size, 1e-300)) ** 4, 1.0)

@@ -14,7 +14,7 @@ import numpy as np
 
 from sim.optics.raster.display import light_of
 from workbench.calibration.drift import CUT_OFF
-from workbench.calibration.gauss_newton import Rows, alike_samples, huber_shares
+from workbench.calibration.gauss_newton import Rows, alike_samples, robust_shares
 from workbench.calibration.light_basis import LightBasis, PressSamples
 from workbench.calibration.powers import Powers, Targets, grey_per_light, photo_change
 from workbench.core.design.camera import ImageSensor
@@ -119,7 +119,7 @@ def whitening(images: Sequence[Image], left: Sequence[np.ndarray]) -> Whitening:
     fitted, so an image has no more than `PATCHES` independent ones. In presses it is common to all:
     many photographs do not make it less, and all of them together count as one.
     """
-    shares = [huber_shares(each) for each in left]
+    shares = [robust_shares(each) for each in left]
     robust = [
         (blurred(np.sqrt(share) * each, image.grid), image.grid)
         for share, each, image in zip(shares, left, images, strict=True)
