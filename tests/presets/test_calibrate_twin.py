@@ -164,7 +164,7 @@ def run(photos: Path, tmp_path_factory: pytest.TempPathFactory) -> Run:
 
     def until_slopes(fraction: float, note: str = "") -> None:
         if "roughness" in note:
-            raise Cancelled
+            raise Cancelled("stopped by the test")
 
     with pytest.raises(Cancelled):
         calibrate(given, where, store, lights="known", monitor=until_slopes)

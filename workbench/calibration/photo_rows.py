@@ -25,8 +25,8 @@ OF_MEDIAN = 0.5
 """The image at rest counts no dark place more than one of this share of its median light."""
 BLUR = 2.0
 """Standard deviation of the blur that photograph and prediction are compared with [sample]."""
-PATCHES = 64
-"""Independent residuals of an image at most: the light model errs over eighths of its sides."""
+PATCHES = 25
+"""Independent residuals of an image at most: the light model errs over fifths of its sides."""
 LEAST_GREY = 2.5
 """Error that is left at best [grey level]: the light model against photons of another program, 40
 to 47 dB for contacts; a fit that leaves less has taken the model's errors for something else."""
