@@ -29,9 +29,9 @@ def stored(
     calls = plan(design, case)
     missing = [each for each in needed(calls, (stage,)) if not store.has(each, calls[each].key)]
 
-    def told(name: str, fraction: float, note: str) -> None:
-        done = missing.index(name) if name in missing else 0
-        monitor((done + fraction) / max(len(missing), 1), note or name)
+    def told(stage: str, fraction: float, note: str) -> None:
+        done = missing.index(stage) if stage in missing else 0
+        monitor((done + fraction) / max(len(missing), 1), note or stage)
 
     for _ in evaluate(design, case, InlineRunner(store), wanted=(stage,), monitor=told):
         pass
