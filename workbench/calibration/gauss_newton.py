@@ -111,5 +111,7 @@ def robust_shares(residual: np.ndarray) -> np.ndarray:
     """
     size = np.abs(residual)
     some = size[size > 0.0]
-    limit = LIMIT * float(np.median(some)) / NORMAL_MEDIAN if some.size else np.inf
-    return np.where(size > limit, (limit / np.maximum(size, 1e-300)) ** 4, 1.0)
+    if not some.size:
+        return np.ones(residual.shape)
+    limit = LIMIT * float(np.median(some)) / NORMAL_MEDIAN
+    return (limit / np.maximum(size, limit)) ** 4
