@@ -64,6 +64,7 @@ def predict(
                 pixel=pixel,
             )
         )
+    monitor(1.0, "predictions drawn")
     return Predictions(rest=rest, images=tuple(images), slopes=tuple(tilts))
 
 
