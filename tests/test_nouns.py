@@ -58,7 +58,7 @@ NOUNS = {
         record="STAGE",
         # These make calls that no plan has: drawings for lists, the parts of a deck, light alone.
         readers=(
-            "workbench/calibration/lit_studio.py",
+            "workbench/calibration/stored.py",
             "workbench/report/thumbnails.py",
             "workbench/report/fem_case.py",
             "workbench/learning/dataset/solving.py",

@@ -68,7 +68,8 @@ def test_hidden_powers_are_found(photos: Path, tmp_path: Path) -> None:
     (tmp_path / "pad.toml").write_text(_toml(design()))
     out = tmp_path / "out"
     words = [str(tmp_path / "pad.toml"), "--photos", str(photos), "--out", str(out)]
-    assert main(["calibrate", *words, "--hold-out", "p5,p6", "--lights", "known"]) == 0
+    words += ["--lights", "known", "--refine", "powers"]
+    assert main(["calibrate", *words, "--hold-out", "p5,p6"]) == 0
     figures = json.loads((out / "calibration.json").read_text())
     powers = np.array([each["power_rgb"] for each in figures["fitted"]["lights"]])
     strongest = powers.argmax(axis=1)
@@ -89,8 +90,9 @@ def test_the_calibrated_design_is_a_design(photos: Path, tmp_path: Path) -> None
     (tmp_path / "pad.toml").write_text(_toml(design()))
     out = tmp_path / "out"
     words = [str(tmp_path / "pad.toml"), "--photos", str(photos), "--out", str(out)]
-    assert main(["calibrate", *words, "--lights", "known"]) == 0
+    assert main(["calibrate", *words, "--lights", "known", "--refine", "powers"]) == 0
     found = design_from_toml((out / "calibrated.toml").read_text(), roots=(out,))
+    assert found.optics.ring.count == 6 and not found.optics.lamps, "the ring stays where it is"
     assert found.optics.unit is not None and found.optics.unit.name == "unit.npz"
     idle = cv2.imread(str(photos / "idle.png"))[:, :, ::-1]
     assert np.array_equal(wb.evaluate(found, press=wb.Press(frames=1)).images[0], idle)

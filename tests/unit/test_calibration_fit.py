@@ -14,7 +14,7 @@ from sim.optics.studio.unit_residual import (
     slopes,
     unit_bytes,
 )
-from workbench.calibration.contact_shift import contact_shift
+from workbench.calibration.contact_circle import contact_shift
 from workbench.calibration.light_basis import LightBasis, PressSamples, sampled
 from workbench.calibration.polynomial import fit_polynomial, terms
 from workbench.calibration.powers import Targets, fit_powers, worth_keeping

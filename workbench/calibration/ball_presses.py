@@ -203,6 +203,13 @@ def carried(
     return _carry(press, photo, place, mesh, span_mm)
 
 
+def _turn(before: np.ndarray, after: np.ndarray) -> np.ndarray:
+    """Smallest rotation of one unit vector onto another, less than opposite: a matrix (3, 3)."""
+    cross = np.cross(before, after)
+    skew = np.cross(np.eye(3), cross)
+    return np.eye(3) + skew + skew @ skew / (1.0 + before @ after)
+
+
 def _carry(
     press: BallPress,
     photo: BallPhoto,
@@ -218,18 +225,21 @@ def _carry(
     away = np.linalg.norm(skin.points_mm - press.place.point_mm, axis=1)
     reach_mm = float(away[moves].max(initial=0.0)) + EDGE_MM
     normal = place.normal
-    side = tangent(normal)
-    plane = np.column_stack([side, np.cross(normal, side)])
-    faces_it = skin.normals @ normal > FACING
-    there = faces_it & (away < reach_mm)
-    here = faces_it & (np.linalg.norm(skin.points_mm - place.point_mm, axis=1) < reach_mm)
+    turn = _turn(press.place.normal, normal)
+    side = tangent(press.place.normal)
+    plane = np.column_stack([side, np.cross(press.place.normal, side)])
+    there = (skin.normals @ press.place.normal > FACING) & (away < reach_mm)
+    here = (skin.normals @ normal > FACING) & (
+        np.linalg.norm(skin.points_mm - place.point_mm, axis=1) < reach_mm
+    )
     # A press moves nothing beyond its region: outside the hull of what is known there is none.
     known = LinearNDInterpolator(
         (skin.points_mm[there] - press.place.point_mm) @ plane,
         np.moveaxis(press.displacement_mm[:, there], 0, 1),
         fill_value=0.0,
     )
-    still[:, here] = np.moveaxis(known((skin.points_mm[here] - place.point_mm) @ plane), 1, 0)
+    found = known((skin.points_mm[here] - place.point_mm) @ turn @ plane)
+    still[:, here] = np.moveaxis(found, 1, 0) @ turn.T
     return dataclasses.replace(
         press,
         photo=photo,

@@ -2,7 +2,7 @@
 
 Many cameras choose both anew for each photograph, and show it in the whole image: grey levels of
 untouched skin are those at rest times a gain plus an offset, colour by colour. What a contact
-changes is then looked for in the photograph with that taken back.
+changes is then looked for in the photograph with that taken back, and so is the contact itself.
 """
 
 from __future__ import annotations
@@ -11,7 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from workbench.calibration.photo_set import Circle
+from workbench.calibration.contact_circle import MOST_SHIFT, find_circle
+from workbench.calibration.photo_set import BallPhoto, Circle
 
 BEYOND = 2.3
 """Skin is untouched beyond this many radii of the contact's circle [1]."""
@@ -83,3 +84,43 @@ def _line(rest: np.ndarray, now: np.ndarray) -> tuple[float, float]:
     ridge = 1.0 / MILD**2
     gain = (together + ridge) / (spread + ridge)
     return gain, float(mean_now - gain * mean_rest)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SeenPhoto:
+    """A photograph with what was found in it."""
+
+    photo: BallPhoto
+    circle: Circle
+    drift: Drift
+
+    @property
+    def at_rest(self) -> np.ndarray:
+        """Grey levels at rest's exposure, shape (H, W, 3), float64."""
+        return self.drift.taken_back(self.photo.image)
+
+
+def seen_photo(photo: BallPhoto, idle: np.ndarray) -> SeenPhoto:
+    """Where the contact is and how the exposure drifted: each is looked for without the other."""
+    circle = photo.circle
+    if circle is None:
+        circle = find_circle(photo.image.astype(np.float64) - idle, photo.name)
+    drift = measured_drift(photo.image, idle, circle)
+    if photo.circle is None:
+        circle = find_circle(drift.taken_back(photo.image) - idle, photo.name)
+        drift = measured_drift(photo.image, idle, circle)
+    return SeenPhoto(photo=photo, circle=circle, drift=drift)
+
+
+def shifted(seen: SeenPhoto, shift_px: np.ndarray, idle: np.ndarray) -> SeenPhoto:
+    """A photograph with its contact elsewhere, if that is the same contact."""
+    circle, (height, width) = seen.circle, idle.shape[:2]
+    if not np.hypot(*shift_px) <= MOST_SHIFT * circle.radius_px:
+        return seen
+    moved = Circle(
+        column_px=float(np.clip(circle.column_px + shift_px[0], 0, width - 1)),
+        row_px=float(np.clip(circle.row_px + shift_px[1], 0, height - 1)),
+        radius_px=circle.radius_px,
+    )
+    drift = measured_drift(seen.photo.image, idle, moved)
+    return SeenPhoto(photo=seen.photo, circle=moved, drift=drift)

@@ -20,7 +20,7 @@ from workbench.core.design.unit import Unit
 
 
 def fitted_design(
-    design: SensorDesign, lights: Sequence[Lamp], powers: Powers, *, known: bool
+    design: SensorDesign, lights: Sequence[Lamp], powers: Powers, *, ring: bool
 ) -> SensorDesign:
     """The design with fitted lights.
 
@@ -28,20 +28,20 @@ def fitted_design(
         design: As given.
         lights: Those of `powers`.
         powers: Of each light and of the ambient.
-        known: Whether the lights are the design's own, the ring's first: the ring then stays.
+        ring: Whether the first lights are the ring's, in its places: the ring then stays.
     """
     strongest = float(powers.lights.max())
     relative = powers.lights / strongest
-    optics, count = design.optics, design.optics.ring.count if known else 0
-    ring = NO_RING
+    optics, count = design.optics, design.optics.ring.count if ring else 0
+    leds = NO_RING
     if count:
-        colours, sizes = zip(*(_colour(relative[:, k]) for k in range(count)), strict=True)
-        ring = dataclasses.replace(optics.ring, power=1.0, powers=sizes, colours=colours)
+        colours, sizes = zip(*(light_colour(relative[:, k]) for k in range(count)), strict=True)
+        leds = dataclasses.replace(optics.ring, power=1.0, powers=sizes, colours=colours)
     lamps = []
     for number, lamp in enumerate(lights[count:], start=count):
-        colour, power = _colour(relative[:, number])
+        colour, power = light_colour(relative[:, number])
         lamps.append(dataclasses.replace(lamp, colour=colour, power=power))
-    colour, power = _colour(powers.ambient / strongest)
+    colour, power = light_colour(powers.ambient / strongest)
     sensor = dataclasses.replace(
         optics.camera.sensor, exposure=strongest, gain_dB=0.0, gain_rgb=(1.0, 1.0, 1.0)
     )
@@ -49,7 +49,7 @@ def fitted_design(
         design,
         optics=dataclasses.replace(
             optics,
-            ring=ring,
+            ring=leds,
             lamps=tuple(lamps),
             ambient=Ambient(colour=colour, power=power),
             camera=dataclasses.replace(optics.camera, sensor=sensor),
@@ -65,7 +65,7 @@ def with_unit(design: SensorDesign, unit: Unit) -> SensorDesign:
     return dataclasses.replace(design, optics=dataclasses.replace(design.optics, unit=unit))
 
 
-def _colour(rgb: np.ndarray) -> tuple[str, float]:
+def light_colour(rgb: np.ndarray) -> tuple[str, float]:
     """Linear light as `#rrggbb` and a power; black has power 0."""
     power = float(rgb.max(initial=0.0))
     if power <= 0.0:

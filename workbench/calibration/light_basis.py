@@ -15,8 +15,8 @@ import numpy as np
 from sim.optics.raster.image_sensor import kept_light
 from workbench.calibration.ball_presses import BallPress
 from workbench.calibration.light_sources import NO_RING
-from workbench.calibration.lit_studio import lit_studio
 from workbench.calibration.photo_set import Circle
+from workbench.calibration.stored import lit_studio
 from workbench.core.base.monitor import Monitor, part
 from workbench.core.design.design import SensorDesign
 from workbench.core.design.lighting import Ambient, Baking, Lamp
@@ -92,10 +92,28 @@ def contact_box(circle: Circle, width: int, height: int) -> tuple[slice, slice]:
 def sampled(rows: slice, columns: slice, width: int) -> np.ndarray:
     """Numbers of about `PIXELS` pixels evenly over a box, shape (N,)."""
     count = (rows.stop - rows.start) * (columns.stop - columns.start)
-    step = max(1, round(np.sqrt(count / PIXELS)))
+    step = _step(count)
     row = np.arange(rows.start, rows.stop, step)
     column = np.arange(columns.start, columns.stop, step)
     return (row[:, None] * width + column).ravel()
+
+
+def around(light: np.ndarray, width: int) -> np.ndarray:
+    """Light of all pixels (H W, C) averaged over what a sample at rest stands for, same shape.
+
+    So edges of the skin move the samples beside them smoothly.
+    """
+    import cv2
+
+    image = light.reshape(-1, width, light.shape[1])
+    step = _step(image.shape[0] * width)
+    kept = cv2.blur(image, (step, step), borderType=cv2.BORDER_REPLICATE)
+    return kept.reshape(light.shape)
+
+
+def _step(pixels: int) -> int:
+    """Pixels from sample to sample."""
+    return max(1, round(float(np.sqrt(pixels / PIXELS))))
 
 
 def open_basis(
@@ -111,46 +129,93 @@ def open_basis(
     Raises:
         WorkbenchError: From the stages that trace.
     """
-    camera = design.optics.camera
-    width, height = camera.width_px, camera.height_px
-    pixels = [sampled(*contact_box(circle, width, height), width) for _, circle in presses]
-    depths = [_levels(press) for press, _ in presses]
-    rest_pixel = sampled(slice(0, height), slice(0, width), width)
-    rest: list[np.ndarray] = []
-    ambient = np.zeros(0)
-    changes: list[list[np.ndarray]] = [[] for _ in presses]
-    keep = kept_light(camera).reshape(-1, 1)
+    parts = []
     for first in range(0, len(lights), 3):
-        span = part(monitor, first / len(lights), min(first + 3, len(lights)) / len(lights))
         group = lights[first : first + 3]
+        span = part(monitor, first / len(lights), (first + len(group)) / len(lights))
         note = f"lights {first + 1} to {first + len(group)} of {len(lights)}"
-        studio = lit_studio(_in_light_of(design, group), mesh, store, part(span, 0.0, 0.7), note)
-        back = studio.imager.backdrop
-        lit = studio.imager.shader.lit.ambient.mean() * studio.rays.transmittance[:, None]
-        glow = keep * lit * (back.background.max(axis=1, keepdims=True) > 0.0)
-        whole = keep * back.background[:, : len(group)] - glow
-        rest.append(whole[rest_pixel])
-        ambient = glow[:, 0]
-        for number, (press, _) in enumerate(presses):
-            span(0.7 + 0.3 * number / len(presses), f"{note}: {press.photo.name}")
-            moved = np.stack([press.displaced_mm(depth) for depth in depths[number]])
-            drawn = studio.linear(moved).reshape(len(moved), -1, 3)[..., : len(group)]
-            at = pixels[number]
-            changes[number].append(keep[at] * drawn[:, at] - whole[at] - glow[at])
+        lamps = tuple(
+            dataclasses.replace(lamp, colour=colour)
+            for lamp, colour in zip(group, PRIMARIES, strict=False)
+        )
+        alone = dataclasses.replace(design, optics=plain_optics(design.optics, lamps))
+        parts.append(drawn(alone, mesh, presses, store, part(span, 0.0, 1.0), note))
     monitor(1.0, "lights drawn")
+    count, (first, *_) = len(lights), parts
     return LightBasis(
         lights=tuple(lights),
-        rest_pixel=rest_pixel,
-        rest=np.concatenate(rest, axis=1).astype(np.float32),
-        ambient=ambient[rest_pixel].astype(np.float32),
+        rest_pixel=first.rest_pixel,
+        rest=np.concatenate([each.rest for each in parts], axis=1)[:, :count],
+        ambient=first.ambient,
         presses=tuple(
-            PressSamples(
-                pixel=pixels[number],
-                depths_mm=depths[number],
-                change=np.concatenate(changes[number], axis=2).astype(np.float32),
+            dataclasses.replace(
+                each[0],
+                change=np.concatenate([one.change for one in each], axis=2)[:, :, :count],
             )
-            for number in range(len(presses))
+            for each in zip(*(each.presses for each in parts), strict=True)
         ),
+    )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Drawn:
+    """A design in its own light, in three colours, without its ambient light."""
+
+    rest_pixel: np.ndarray
+    rest: np.ndarray
+    """Light on the image sensor at rest, shape (N, 3), float32."""
+    ambient: np.ndarray
+    """The same of ambient light of power 1, shape (N,), float32."""
+    presses: tuple[PressSamples, ...]
+    """With a colour in the place of each light."""
+
+
+def drawn(
+    design: SensorDesign,
+    mesh: MembraneMesh,
+    presses: Sequence[tuple[BallPress, Circle]],
+    store: Store,
+    monitor: Monitor,
+    note: str,
+) -> Drawn:
+    """Trace a design with `plain_optics` and draw it at rest and pressed.
+
+    Args:
+        design: With ambient light of power 1.
+        mesh: Of the design.
+        presses: Each with the circle whose box is drawn.
+        store: Keeps light and table.
+        monitor: Progress and cancellation.
+        note: What the light is for, for people.
+
+    Raises:
+        WorkbenchError: From the stages that trace.
+    """
+    camera = design.optics.camera
+    width, height = camera.width_px, camera.height_px
+    keep = kept_light(camera).reshape(-1, 1)
+    studio = lit_studio(design, mesh, store, part(monitor, 0.0, 0.7), note)
+    back = studio.imager.backdrop
+    lit = studio.imager.shader.lit.ambient.mean() * studio.rays.transmittance[:, None]
+    glow = keep * lit * (back.background.max(axis=1, keepdims=True) > 0.0)
+    whole = keep * back.background - glow
+    rest_pixel = sampled(slice(0, height), slice(0, width), width)
+    found = []
+    for number, (press, circle) in enumerate(presses):
+        monitor(0.7 + 0.3 * number / len(presses), f"{note}: {press.photo.name}")
+        pixel = sampled(*contact_box(circle, width, height), width)
+        depths_mm = _levels(press)
+        moved = np.stack([press.displaced_mm(depth) for depth in depths_mm])
+        images = studio.linear(moved).reshape(len(moved), -1, 3)[:, pixel]
+        change = keep[pixel] * images - whole[pixel] - glow[pixel]
+        found.append(
+            PressSamples(pixel=pixel, depths_mm=depths_mm, change=change.astype(np.float32))
+        )
+    return Drawn(
+        rest_pixel=rest_pixel,
+        rest=around(whole, width)[rest_pixel].astype(np.float32),
+        ambient=around(glow, width)[rest_pixel, 0].astype(np.float32),
+        presses=tuple(found),
     )
 
 
@@ -161,16 +226,7 @@ def _levels(press: BallPress) -> np.ndarray:
     return np.linspace(press.least_mm, press.most_mm, LEVELS)
 
 
-def _in_light_of(design: SensorDesign, group: Sequence[Lamp]) -> SensorDesign:
-    """The design in the light of up to three lights, one in each colour."""
-    lamps = tuple(
-        dataclasses.replace(lamp, colour=colour)
-        for lamp, colour in zip(group, PRIMARIES, strict=False)
-    )
-    return dataclasses.replace(design, optics=plain_optics(design.optics, lamps))
-
-
-def plain_optics(optics: Optics, lamps: tuple[Lamp, ...]) -> Optics:
+def plain_optics(optics: Optics, lamps: tuple[Lamp, ...], photons: int = PHOTONS) -> Optics:
     """The design's optics in other light, without photograph, ink and further cameras."""
     return dataclasses.replace(
         optics,
@@ -181,6 +237,6 @@ def plain_optics(optics: Optics, lamps: tuple[Lamp, ...]) -> Optics:
         background=None,
         unit=None,
         light_model=BEST,
-        baking=Baking(photons=PHOTONS, seed=optics.baking.seed),
+        baking=Baking(photons=photons, seed=optics.baking.seed),
         markers=dataclasses.replace(optics.markers, visible=False),
     )

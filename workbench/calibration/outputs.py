@@ -11,8 +11,10 @@ from typing import Any
 import numpy as np
 
 from workbench.calibration.calibrate import Calibration
+from workbench.calibration.determined import directions, parameters
 from workbench.calibration.report import report
 from workbench.calibration.scores import Scored, score
+from workbench.core.design.camera import Camera
 from workbench.core.design.lighting import Lamp
 from workbench.project.design_toml import design_to_toml
 from workbench.report.image_files import png_bytes
@@ -47,13 +49,7 @@ def write_calibration(
 def calibration_figures(found: Calibration, scored: Scored) -> dict[str, Any]:
     """The figures of a calibration by name, as JSON holds them."""
     return {
-        "photos": [
-            {
-                name: round(value, 4) if isinstance(value, float) else value
-                for name, value in dataclasses.asdict(each).items()
-            }
-            for each in scored.photos
-        ],
+        "photos": [_plain(each) for each in scored.photos],
         "idle": {"psnr_dB": scored.idle_psnr_dB, "ssim": scored.idle_ssim},
         "fitted": {
             "lights_known": found.known,
@@ -62,7 +58,48 @@ def calibration_figures(found: Calibration, scored: Scored) -> dict[str, Any]:
             "exposure": float(found.powers.lights.max()),
             "error_grey": found.powers.error_grey,
             "null_grey": found.powers.null_grey,
+            "camera": _camera(found.design.optics.camera),
+            "coating": {
+                name: round(getattr(found.design.optics.coating, name), 4)
+                for name in ("albedo", "specular", "roughness")
+            },
+            "young": None if found.young is None else _plain(found.young),
+            **_known(found),
         },
+    }
+
+
+def _camera(camera: Camera) -> dict[str, Any]:
+    return {
+        "position_mm": _rounded(np.array(camera.position_mm)),
+        "wxyz": [round(value, 6) for value in camera.wxyz],
+        "fov_x_deg": round(camera.fov_x_deg, 4),
+        "falloff": _rounded(np.array(camera.sensor.falloff)),
+    }
+
+
+def _known(found: Calibration) -> dict[str, Any]:
+    """What the photographs say of each unknown; empty where powers alone were fitted."""
+    if found.refined is None:
+        return {"parameters": [], "directions": [], "steps": 0}
+    return {
+        "parameters": [_plain(each) for each in parameters(found.refined)],
+        "directions": [
+            {
+                "singular_value": round(each.singular_value, 3),
+                "parts": {name: round(share, 3) for name, share in each.parts},
+            }
+            for each in directions(found.refined)
+        ],
+        "steps": found.refined.steps,
+    }
+
+
+def _plain(record: Any) -> dict[str, Any]:
+    """A flat record as JSON holds it."""
+    return {
+        name: round(value, 4) if isinstance(value, float) else value
+        for name, value in dataclasses.asdict(record).items()
     }
 
 

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim.optics.raster.display import light_of, shown
-from workbench.calibration.contact_shift import contact_shift
+from workbench.calibration.contact_circle import contact_shift
 from workbench.calibration.drift import CUT_OFF
 from workbench.calibration.light_basis import LightBasis, PressSamples
 from workbench.core.base.monitor import Monitor
@@ -66,14 +66,31 @@ class Targets:
 
 
 def fit_powers(
-    basis: LightBasis, targets: Targets, sensor: ImageSensor, monitor: Monitor
+    basis: LightBasis,
+    targets: Targets,
+    sensor: ImageSensor,
+    monitor: Monitor,
+    *,
+    depths_mm: np.ndarray | None = None,
+    rest: float = REST,
 ) -> Powers:
-    """Powers of all lights of a basis."""
+    """Powers of all lights of a basis.
+
+    Args:
+        basis: The lights, each alone.
+        targets: The photographs.
+        sensor: Of the camera that took them.
+        monitor: Progress and cancellation.
+        depths_mm: Where depths begin, shape (J,); None begins in the middle of what is allowed.
+        rest: Weight of the image at rest against the presses, each over its number of samples.
+    """
     depths = [0.5 * (each.depths_mm[0] + each.depths_mm[-1]) for each in basis.presses]
-    change = [_change(photo, idle, sensor) for photo, idle in targets.presses]
+    if depths_mm is not None:
+        depths = list(depths_mm)
+    change = [photo_change(photo, idle, sensor) for photo, idle in targets.presses]
     rest_square, rest_product = _rest_terms(basis, targets, sensor)
     samples = sum(len(each.pixel) for each in basis.presses)
-    weight = REST * samples / max(len(basis.rest_pixel), 1)
+    weight = rest * samples / max(len(basis.rest_pixel), 1)
     found, ambient = np.zeros((3, len(basis.lights))), np.zeros(3)
     for number in range(ROUNDS):
         monitor(number / ROUNDS, f"powers and depths, round {number + 1}")
@@ -135,7 +152,7 @@ def worth_keeping(basis: LightBasis, powers: Powers) -> np.ndarray:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class _Change:
+class Change:
     """What a press changed at its samples."""
 
     light: np.ndarray
@@ -144,20 +161,20 @@ class _Change:
     """Grey levels per light, 0 where a colour may be cut off, shape (N, 3)."""
 
 
-def _change(photo: np.ndarray, idle: np.ndarray, sensor: ImageSensor) -> _Change:
+def photo_change(photo: np.ndarray, idle: np.ndarray, sensor: ImageSensor) -> Change:
     now, before = (light_of(np.clip(x / 255.0, 0.0, 1.0), sensor) for x in (photo, idle))
     usable = (photo < CUT_OFF) & (photo > DARK)
-    return _Change(light=now - before, weight=np.where(usable, _slope(now, sensor), 0.0))
+    return Change(light=now - before, weight=np.where(usable, grey_per_light(now, sensor), 0.0))
 
 
-def _slope(light: np.ndarray, sensor: ImageSensor) -> np.ndarray:
+def grey_per_light(light: np.ndarray, sensor: ImageSensor) -> np.ndarray:
     """Grey levels per light of the display curve, not steeper than at 2 % of white."""
     at = np.clip(light, 0.02, 0.98)
     return 255.0 * (shown(at + 0.01, sensor) - shown(at - 0.01, sensor)) / 0.02
 
 
 def _press_terms(
-    basis: LightBasis, depths: Sequence[float], change: Sequence[_Change], colour: int
+    basis: LightBasis, depths: Sequence[float], change: Sequence[Change], colour: int
 ) -> tuple[np.ndarray, np.ndarray]:
     """Square (L, L) and product (L,) of the normal equations of one colour."""
     count = len(basis.lights)
@@ -176,7 +193,7 @@ def _rest_terms(
     """The same of the image at rest, with ambient light as the last, for each colour."""
     light = light_of(targets.idle / 255.0, sensor)
     usable = (targets.idle < CUT_OFF) & (targets.idle > DARK) & (basis.ambient[:, None] > 0.0)
-    weight = np.where(usable, _slope(light, sensor), 0.0)
+    weight = np.where(usable, grey_per_light(light, sensor), 0.0)
     whole = np.column_stack([basis.rest, basis.ambient]).astype(np.float64)
     squares, products = [], []
     for colour in range(3):
@@ -197,7 +214,7 @@ def _non_negative(square: np.ndarray, product: np.ndarray) -> np.ndarray:
     return found / size
 
 
-def _best_depth(samples: PressSamples, what: _Change, powers: np.ndarray) -> float:
+def _best_depth(samples: PressSamples, what: Change, powers: np.ndarray) -> float:
     """Depth at which the press changes the light most as photographed [mm].
 
     Between two levels the change is linear in depth, so the least square is a closed form there.
@@ -217,7 +234,7 @@ def _best_depth(samples: PressSamples, what: _Change, powers: np.ndarray) -> flo
 
 
 def _errors(
-    basis: LightBasis, depths: Sequence[float], change: Sequence[_Change], powers: np.ndarray
+    basis: LightBasis, depths: Sequence[float], change: Sequence[Change], powers: np.ndarray
 ) -> tuple[float, float]:
     """Root mean squares in grey levels of what is left, and of the change itself."""
     left, whole, count = 0.0, 0.0, 0

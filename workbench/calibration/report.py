@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from workbench.calibration.calibrate import Calibration
+from workbench.calibration.determined import directions, parameters
 from workbench.calibration.light_basis import contact_box
 from workbench.calibration.scores import PhotoScore, Scored
 from workbench.report.html_page import page, photograph
@@ -35,6 +36,7 @@ def report(found: Calibration, scored: Scored, idle: np.ndarray) -> str:
         _summary(scored),
         WORDS,
         _lights(found),
+        _unknowns(found),
         "<h2>At rest</h2><div class='images'>",
         photograph(idle, "photograph", width=300),
         photograph(found.rest, "the fitted light alone", width=300),
@@ -82,6 +84,37 @@ def _lights(found: Calibration) -> str:
         f"<h2>Lights {whose}</h2>{_grid(rows)}<p>Powers over the strongest. They leave {left:.0f} "
         "% of what the contacts change. Power, albedo of the coating and exposure scale all light "
         "alike: photographs cannot tell them apart.</p>"
+    )
+
+
+def _unknowns(found: Calibration) -> str:
+    """What the photographs determine and what they do not, and Young's modulus."""
+    young = ""
+    if found.young is not None:
+        presses = f"{found.young.presses} presses" if found.young.presses > 1 else "one press"
+        young = (
+            f"<p>Young's modulus from the force of {presses}: <b>{found.young.young_MPa:.3f} "
+            f"&plusmn; {found.young.sd_MPa:.3f} MPa</b>.</p>"
+        )
+    if found.refined is None:
+        return young
+    rows: list[Sequence[str]] = [("unknown", "fitted", "known to", "before", "determined")]
+    for each in parameters(found.refined):
+        before = "" if each.prior_sd is None else f"{each.prior_sd:.2g} {each.unit}"
+        value, sd = f"{each.value:+.3f} {each.unit}", f"{each.sd:.2g} {each.unit}"
+        rows.append((each.name, value, sd, before, "yes" if each.determined else each.words))
+    seen: list[Sequence[str]] = [("singular value", "combination")]
+    for each in directions(found.refined):
+        parts = ", ".join(f"{share:+.2f} {name}" for name, share in each.parts)
+        seen.append((f"{each.singular_value:.1f}", parts))
+    return (
+        f"<h2>What the photographs determine</h2>{young}{_grid(rows)}<p>Fitted values are added to "
+        "those of the design; powers are over the mean of all lights. <i>known to</i>: one "
+        "standard deviation after the fit, <i>before</i>: what was known without photographs. "
+        "Determined is what twice its deviation is small enough to rely on.</p>"
+        f"<details><summary>Combinations that the photographs see</summary>{_grid(seen)}<p>Of "
+        "unknowns over what was known before: a combination of singular value 1 is told by the "
+        "photographs as well as it was known before, one far below 1 not at all.</p></details>"
     )
 
 

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim.optics.studio.metrics import psnr_dB, ssim
-from workbench.calibration.calibrate import Calibration, SeenPhoto
-from workbench.calibration.drift import untouched
+from workbench.calibration.calibrate import Calibration
+from workbench.calibration.drift import SeenPhoto, untouched
 from workbench.calibration.light_basis import contact_box
 from workbench.calibration.polynomial import fit_polynomial, terms
 

@@ -59,7 +59,7 @@ class SeenPlaces:
                 hint="correct the circle, or the camera's place and field of view",
                 at="--photos",
             )
-        point, normal = self._at(number)
+        point, normal = self._between(circle, number)
         step = max(2, round(circle.radius_px / 2))
         sizes = []
         for away in (step, -step, step * view.width_px, -step * view.width_px):
@@ -89,6 +89,22 @@ class SeenPlaces:
         start = (place.point_mm - 1e-3 * place.normal)[None]
         caster = RayCaster(inner.points_mm, inner.faces)
         return float(caster.hits(start, -place.normal[None])[0][0])
+
+    def _between(self, circle: Circle, nearest: int) -> tuple[np.ndarray, np.ndarray]:
+        """Point and normal at a circle's middle between four pixels, or of the nearest one."""
+        view = self._view
+        left = min(max(int(circle.column_px), 0), view.width_px - 2)
+        top = min(max(int(circle.row_px), 0), view.height_px - 2)
+        right = min(max(circle.column_px - left, 0.0), 1.0)
+        down = min(max(circle.row_px - top, 0.0), 1.0)
+        first = top * view.width_px + left
+        numbers = [first, first + 1, first + view.width_px, first + view.width_px + 1]
+        if not self._seen[numbers].all():
+            return self._at(nearest)
+        shares = np.outer([1.0 - down, down], [1.0 - right, right]).ravel()
+        points, normals = zip(*(self._at(number) for number in numbers), strict=True)
+        normal = shares @ np.array(normals)
+        return shares @ np.array(points), normal / np.linalg.norm(normal)
 
     def _at(self, number: int) -> tuple[np.ndarray, np.ndarray]:
         """Point and outward unit normal that a pixel sees."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 from pathlib import Path
+from typing import Any
 
 from workbench.cli.command import Command
 from workbench.cli.options import DESIGN, OUT
@@ -12,6 +13,7 @@ from workbench.cli.press_arguments import add_set_option
 from workbench.project.project import Project
 from workbench.system.terminal import Progress, say
 
+REFINE = ("all", "powers")
 LIGHTS = ("auto", "known", "unknown")
 
 
@@ -25,6 +27,8 @@ def options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--hold-out", default="", metavar="NAME,NAME", help=text)
     text = "the design's lights, candidates around the body, or those that explain (default: auto)"
     sub.add_argument("--lights", choices=LIGHTS, default="auto", help=text)
+    text = "all: camera, places of known lights, lobe, coating as well; powers: these alone (all)"
+    sub.add_argument("--refine", choices=REFINE, default="all", help=text)
     add_set_option(sub)
     sub.add_argument("--json", action="store_true", help="progress and figures as JSON lines")
 
@@ -49,6 +53,7 @@ def run(options: argparse.Namespace, project: Project) -> int:
         photos,
         project.store,
         lights=options.lights,
+        refining=options.refine,
         monitor=lambda fraction, note="": printer("calibrate", fraction, note),
     )
     figures, scored = write_calibration(options.out, found, photos.idle)
@@ -61,8 +66,22 @@ def run(options: argparse.Namespace, project: Project) -> int:
             f"{each.photo:20} {each.depth_mm:5.2f} mm  {each.psnr_dB:5.1f} dB  polynomial "
             f"{each.polynomial_psnr_dB:5.1f}  null {each.null_psnr_dB:5.1f}{held}"
         )
+    _say_known(figures["fitted"])
     say(f"open {options.out / REPORT}")
     return 0
+
+
+def _say_known(fitted: dict[str, Any]) -> None:
+    """What the photographs determine, in a few lines."""
+    young, known = fitted["young"], fitted["parameters"]
+    if young is not None:
+        say(f"Young's modulus {young['young_MPa']:.3f} MPa, known to {young['sd_MPa']:.3f}")
+    if known:
+        sure = [each["name"] for each in known if each["determined"]]
+        say(f"determined: {len(sure)} of {len(known)} unknowns")
+    for each in known:
+        if not each["determined"]:
+            say(f"{each['name']:28} {each['value']:+.3f} {each['unit']}  {each['words']}")
 
 
 COMMAND = Command(place=4, run=run, options=options)
