@@ -202,15 +202,13 @@ class KeptPhotos:
         """Refuse pictures of another size than the one at rest, or than the first."""
         sizes = {name: image.shape[1::-1] for name, image in pictures.items()}
         first = next((name for name in sizes if is_idle(name)), "")
-        if not first and self.has_idle:
-            first, sizes = IDLE, {IDLE: self.image(IDLE).shape[1::-1], **sizes}
-        elif not first and self.photos:
-            name = self.photos[0].photo
-            first, sizes = name, {name: self.image(name).shape[1::-1], **sizes}
-        elif first and self.photos:
-            sizes = {
-                each.photo: self.image(each.photo).shape[1::-1] for each in self.photos
-            } | sizes
+        if not first:
+            there = [IDLE] * self.has_idle + [each.photo for each in self.photos]
+            if there:
+                first = there[0]
+                sizes[first] = self.image(first).shape[1::-1]
+        else:
+            sizes |= {each.photo: self.image(each.photo).shape[1::-1] for each in self.photos}
         first = first or next(iter(sizes), "")
         for name, (width, height) in sizes.items():
             if (width, height) != sizes[first]:

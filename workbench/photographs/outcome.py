@@ -1,4 +1,4 @@
-"""A calibration that was written, as the page shows it: scores in words, lights, pictures, files."""
+"""A calibration that was written, as the page shows it: scores in words, lights, files."""
 
 from __future__ import annotations
 

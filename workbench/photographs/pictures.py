@@ -44,13 +44,17 @@ def strip(photo: np.ndarray, predicted: np.ndarray) -> np.ndarray:
     return beside(*(sized(part)[0] for part in parts))
 
 
-def blended(idle: np.ndarray, expected: np.ndarray) -> np.ndarray:
-    """Half of each: what does not lie on its like is seen twice; the second takes the first's size."""
+def blended(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """Half of each of two images of one size: what does not lie on its like is seen twice."""
+    return ((first.astype(np.uint16) + second) // 2).astype(np.uint8)
+
+
+def as_large(image: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """An image at the size of another one."""
     import cv2
 
-    first, _ = sized(idle)
-    second = cv2.resize(expected, first.shape[1::-1], interpolation=cv2.INTER_AREA)
-    return ((first.astype(np.uint16) + second) // 2).astype(np.uint8)
+    size = other.shape[1], other.shape[0]
+    return cv2.resize(np.ascontiguousarray(image), size, interpolation=cv2.INTER_AREA)
 
 
 def sized(image: np.ndarray) -> tuple[np.ndarray, float]:

@@ -16,7 +16,7 @@ from workbench.core.base.errors import Cancelled
 from workbench.live.image_preview import ImagePreview, image_preview_call
 from workbench.live.requests import Finished
 from workbench.photographs.kept_photos import KeptPhotos
-from workbench.photographs.pictures import beside, blended, sized
+from workbench.photographs.pictures import as_large, beside, blended, sized
 
 JOB = "expected view"
 BESIDE, BLENDED = "Side by side", "On each other"
@@ -65,11 +65,9 @@ class CameraFolder:
         if self.expected is None or not self.kept.has_idle:
             return
         idle, _ = sized(self.kept.image(IDLE))
-        both = blended(idle, self.expected)
-        if self.view.value != BLENDED:
-            # Twice the blend less the photograph would lose a grey level; so each as it is.
-            both = beside(*_alike(idle, self.expected))
-        self.image.image = both
+        expected = as_large(self.expected, idle)
+        on_each_other = self.view.value == BLENDED
+        self.image.image = (blended if on_each_other else beside)(idle, expected)
         self.image.visible = True
 
     def _take_size(self, event: Any) -> None:
@@ -101,10 +99,3 @@ def wrong_size(width_px: int, height_px: int, photos_px: tuple[int, int]) -> str
         f"pixels, the photographs {photos_px[0]} x {photos_px[1]}. Press *Take size of "
         "photographs* and set the field of view that goes with them on *Optics*.</span>"
     )
-
-
-def _alike(idle: np.ndarray, expected: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Both at the size of the first."""
-    import cv2
-
-    return idle, cv2.resize(expected, idle.shape[1::-1], interpolation=cv2.INTER_AREA)

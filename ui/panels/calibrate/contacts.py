@@ -105,9 +105,7 @@ class ContactsFolder:
             if now is None or (now.by_hand and now.circle != each.circle):
                 continue
             changed.append(
-                dataclasses.replace(
-                    now, circle=each.circle, reason=each.reason, drift=each.drift
-                )
+                dataclasses.replace(now, circle=each.circle, reason=each.reason, drift=each.drift)
             )
         self.kept.put(*changed)
         self.refresh()

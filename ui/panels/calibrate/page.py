@@ -1,4 +1,4 @@
-"""Calibrate: photographs of the built sensor, their contacts, the fit, and the calibrated design."""
+"""Calibrate: photographs of the built sensor, their contacts, the fit, the design that comes."""
 
 from __future__ import annotations
 
