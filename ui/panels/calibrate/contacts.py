@@ -205,8 +205,8 @@ def said(each: KeptPhoto) -> str:
         remedy = "Click on its middle, or set this photograph to be left out."
         return f"<span style='color:{AMBER}'>No contact: {reason}. {remedy}</span>"
     how = "set by hand" if each.by_hand else "found"
-    gain = ", ".join(f"{100.0 * (value - 1.0):+.0f} %" for value in each.drift.gain)
-    offset = ", ".join(f"{value:+.0f}" for value in each.drift.offset)
+    gain = ", ".join(f"{round(100.0 * (value - 1.0)):+d} %" for value in each.drift.gain)
+    offset = ", ".join(f"{round(value):+d}" for value in each.drift.offset)
     return (
         f"Contact {how}: {each.circle.radius_px:.1f} px, ball {each.ball_mm:g} mm.<br>"
         f"Exposure since the idle photo, red, green, blue: {gain}; {offset} grey levels. "
