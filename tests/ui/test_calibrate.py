@@ -100,6 +100,7 @@ def opened(page: Any, server: Server) -> None:
 
 def shot(page: Any, folder: Path, name: str) -> None:
     import os
+
     if os.environ.get("SHOTS"):
         size = page.viewport_size
         page.set_viewport_size({"width": 1440, "height": 900})
@@ -141,7 +142,7 @@ def test_from_photographs_to_the_calibrated_design(
     was = slider_value(page, "Contact column px")
     picture = pictures(page, "Contact column px").first
     box = picture.bounding_box()
-    picture.click(position={"x": 0.25 * box["width"], "y": 0.25 * box["height"]})
+    picture.click(position={"x": 0.253 * box["width"], "y": 0.253 * box["height"]})
     wait_until(lambda: slider_value(page, "Contact column px") == SIZE_PX[0] / 4, 20, "it moves")
     assert slider_value(page, "Contact row px") == SIZE_PX[1] / 4
     wait_until(says(page, re.compile("Contact set by hand")), 20, "by hand")

@@ -1,4 +1,4 @@
-"""Photographs of a calibration in a project: what comes is checked, kept, corrected, found again."""
+"""Photographs of a calibration in a project: checked as they come, kept, corrected, found again."""
 
 from __future__ import annotations
 
@@ -38,9 +38,7 @@ def test_what_was_put_in_is_found_again(tmp_path: Path) -> None:
     """After a restart: circle, use and diameter; the command line reads the same folder."""
     first = kept(tmp_path, 7)
     circle = Circle(column_px=40.0, row_px=30.5, radius_px=8.0)
-    first.put(
-        *(dataclasses.replace(each, circle=circle, by_hand=True) for each in first.photos)
-    )
+    first.put(*(dataclasses.replace(each, circle=circle, by_hand=True) for each in first.photos))
     one, two, *_ = first.photos
     first.put(dataclasses.replace(one, use=Use.LEAVE), dataclasses.replace(two, use=Use.HOLD))
     again = KeptPhotos(tmp_path)
