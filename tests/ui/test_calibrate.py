@@ -32,6 +32,7 @@ from tests.ui.widgets import (
     wait_until,
 )
 from ui.panels.calibrate.intake import EMPTY
+from workbench.photographs.kept_photos import KeptPhotos
 from workbench.project.design_toml import design_to_toml
 from workbench.project.project import Project
 
@@ -181,8 +182,8 @@ def test_from_photographs_to_the_calibrated_design(
 
 def middle_px(project: Path, name: str) -> tuple[int, int]:
     """Column and row about which a photograph has changed from rest."""
-    folder = project / "calibration" / "photos"
-    image, idle = (cv2.imread(str(folder / n)).astype(float) for n in (name, "idle.png"))
+    kept = KeptPhotos(project)
+    image, idle = (kept.image(each).astype(float) for each in (name, "idle.png"))
     change = np.abs(image - idle).sum(axis=2)
     change[change < 0.2 * change.max()] = 0.0
     row, column = np.indices(change.shape)
