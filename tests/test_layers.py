@@ -36,7 +36,7 @@ RANKS = """
 
     workbench.view  workbench.pipeline  workbench.pipeline.stages  workbench.planning
     workbench.project  workbench.edit  workbench.live  workbench.report  workbench.report.exports
-    workbench.variants  workbench.calibration
+    workbench.variants  workbench.calibration  workbench.photographs
     workbench.learning  workbench.learning.dataset  workbench.learning.training
     workbench.proof  workbench.proof.validation  workbench.proof.validation.geometry
     workbench.proof.validation.optics  workbench.proof.validation.contact
@@ -48,7 +48,7 @@ RANKS = """
 
     ui.page  ui.scene  ui.desk
     ui.panels  ui.panels.compare  ui.panels.make  ui.panels.mesh  ui.panels.optics  ui.panels.shape
-    ui.panels.simulate  ui.panels.view  ui.panels.results
+    ui.panels.simulate  ui.panels.view  ui.panels.results  ui.panels.calibrate
     ui
     workbench.cli  workbench.cli.groups  workbench.cli.commands
 """.split()

@@ -135,7 +135,7 @@ def build_desk(
         desk = Desk(server, session, conductor, editor, fast=fast)
         Followers(desk)
         tabs = gui.add_tab_group()
-        # Six labels without icons fit on one row.
+        # Without icons seven labels take two rows at most.
         for label, build in ((label, found[label].page.build) for label in found):
             if build is not None:
                 with tabs.add_tab(label):

@@ -1,4 +1,4 @@
-"""Clicks on the tactile image, which viser's images do not have: they fill the pixel's boxes.
+"""Clicks on an image, which viser's images do not have: they fill the pixel's boxes.
 
 A piece of HTML beside the image installs one handler in the page. It turns the place of a click
 into a column and a row of the camera and types both into the sliders' boxes, so that all else goes
@@ -11,7 +11,7 @@ from __future__ import annotations
 import html
 
 COLUMN, ROW = "Pixel column px", "Pixel row px"
-"""Labels of the sliders that are filled."""
+"""Labels of the sliders that a click on the tactile image fills."""
 PIXEL_GIF = "data:image/gif;base64,R0lGODlhAQABAIAAAAAAAP///yH5BAEAAAAALAAAAAABAAEAAAIBRAA7"
 """An image that loads at once, by which the page runs the handler's script."""
 TARGET = "probe-image"
@@ -19,28 +19,30 @@ TARGET = "probe-image"
 INSTALL = """
 document.removeEventListener('click', window.probeImage, true);
 window.probeImage = event => {
-  const mark = document.querySelector('.probe-image');
-  if (!mark || event.target.tagName !== 'IMG' || !event.target.src.startsWith('blob:')) return;
-  let tab = mark;
-  while (tab && !tab.querySelector('img[src^="blob:"]')) tab = tab.parentElement;
-  if (!tab || !tab.contains(event.target)) return;
-  const box = event.target.getBoundingClientRect();
-  const shares = {
-    'Pixel column px': (event.clientX - box.left) / box.width,
-    'Pixel row px': (event.clientY - box.top) / box.height,
-  };
-  event.stopPropagation();
-  for (const label of tab.querySelectorAll('label[for]')) {
-    const slider = document.getElementById(label.htmlFor);
-    const share = shares[label.innerText.trim() || label.textContent.trim()];
-    if (share === undefined || !slider) continue;
-    const most = Number(slider.querySelector('[role=slider]').getAttribute('aria-valuemax'));
-    const input = slider.parentElement.querySelector('input:not([type=hidden])');
-    const value = Math.min(most, Math.max(0, Math.floor(share * (most + 1))));
-    const own = Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, 'value');
-    own.set.call(input, String(value));
-    input.dispatchEvent(new Event('input', {bubbles: true}));
-    input.dispatchEvent(new Event('focusout', {bubbles: true}));
+  if (event.target.tagName !== 'IMG' || !event.target.src.startsWith('blob:')) return;
+  for (const mark of document.querySelectorAll('.probe-image')) {
+    let tab = mark;
+    while (tab && !tab.querySelector('img[src^="blob:"]')) tab = tab.parentElement;
+    if (!tab || !tab.contains(event.target)) continue;
+    const box = event.target.getBoundingClientRect();
+    const shares = {
+      [mark.dataset.column]: (event.clientX - box.left) / box.width,
+      [mark.dataset.row]: (event.clientY - box.top) / box.height,
+    };
+    event.stopPropagation();
+    for (const label of tab.querySelectorAll('label[for]')) {
+      const slider = document.getElementById(label.htmlFor);
+      const share = shares[label.innerText.trim() || label.textContent.trim()];
+      if (share === undefined || !slider) continue;
+      const most = Number(slider.querySelector('[role=slider]').getAttribute('aria-valuemax'));
+      const input = slider.parentElement.querySelector('input:not([type=hidden])');
+      const value = Math.min(most, Math.max(0, Math.floor(share * (most + 1))));
+      const own = Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, 'value');
+      own.set.call(input, String(value));
+      input.dispatchEvent(new Event('input', {bubbles: true}));
+      input.dispatchEvent(new Event('focusout', {bubbles: true}));
+    }
+    return;
   }
 };
 document.addEventListener('click', window.probeImage, true);
@@ -49,10 +51,17 @@ document.addEventListener('click', window.probeImage, true);
 CROSSHAIR = '<style>div:has(> .{0}) ~ div img[src^="blob:"]{{cursor:crosshair}}</style>'
 
 
-def image_clicks(on: bool) -> str:
-    """What stands before the images, as HTML: the handler where clicks are wanted, or nothing."""
+def image_clicks(on: bool, *, column: str = COLUMN, row: str = ROW) -> str:
+    """What stands before the images, as HTML: the handler where clicks are wanted, or nothing.
+
+    Args:
+        on: Whether clicks are wanted.
+        column: Label of the slider of columns that a click fills.
+        row: The same of rows.
+    """
     if not on:
         return ""
     script = html.escape(" ".join(INSTALL.split()), quote=True)
     loads = f'<img alt="" style="display:none" src="{PIXEL_GIF}" onload="{script}">'
-    return f'<div class="{TARGET}">{CROSSHAIR.format(TARGET)}{loads}</div>'
+    names = f'data-column="{html.escape(column)}" data-row="{html.escape(row)}"'
+    return f'<div class="{TARGET}" {names}>{CROSSHAIR.format(TARGET)}{loads}</div>'

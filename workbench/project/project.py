@@ -9,6 +9,7 @@
   bodies/    files of imported bodies by hash
   pictures/  backgrounds and patterns of markers by hash
   indenters/ meshes of STL indenters by key
+  calibration/ photographs of the built sensor, and the last calibration
   crash/     one file per bug that reached the edge
 ```
 """
