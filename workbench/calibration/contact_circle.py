@@ -1,9 +1,10 @@
 """Finding the contact in a photograph: where its difference from rest looks like a dent.
 
-Light changes in proportion to the slope of the skin, whatever the lights are: the change of each
-colour is some a dz/dx + b dz/dy. The slopes of a dent of radius r are known: z' = rho / r inside
-and falling as (r / rho)^3 outside. At each place and radius the change is projected onto the two
-slopes, and where they explain most of its square, all colours together, there is the contact.
+Light changes with the slope of the skin, whatever the lights are: on a matte skin in proportion, on
+a glossy one whatever is steep loses its highlight as well. So the change of each colour is some
+a dz/dx + b dz/dy + c |grad z|^2. The slopes of a dent of radius r are known: z' = rho / r inside and
+falling as (r / rho)^3 outside. At each place and radius the change is projected onto the three, and
+where they explain most of its square, all colours together, there is the contact.
 
 Circles are found or drawn to a tenth of their radius. Once light and depth are known, the predicted
 change is moved over the photograph until both agree best: Gauss-Newton in the shift,
@@ -73,10 +74,10 @@ def _best_place(change: np.ndarray, radius_px: float) -> tuple[float, float, flo
         size = (width // step, height // step)
         small = cv2.resize(change, size, interpolation=cv2.INTER_AREA)
     explained = np.zeros(small.shape[:2])
-    for slope in slopes(radius_px / step):
+    for shape in dent_shapes(radius_px / step):
         for colour in range(3):
             border = cv2.BORDER_CONSTANT
-            found = cv2.filter2D(small[..., colour], cv2.CV_32F, slope, borderType=border)
+            found = cv2.filter2D(small[..., colour], cv2.CV_32F, shape, borderType=border)
             explained += found.astype(np.float64) ** 2
     row, column = np.unravel_index(int(explained.argmax()), explained.shape)
     share = explained[row, column] / max(float((small.astype(np.float64) ** 2).sum()), 1e-9)
@@ -84,8 +85,11 @@ def _best_place(change: np.ndarray, radius_px: float) -> tuple[float, float, flo
     return float(share), float(middle[0]), float(middle[1]), float(radius_px)
 
 
-def slopes(radius_px: float) -> tuple[np.ndarray, np.ndarray]:
-    """Slopes of a dent along columns and rows, each of unit length, float32."""
+def dent_shapes(radius_px: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Slopes of a dent along columns and rows, and their square, each of unit length, float32.
+
+    They are at right angles to each other: the first two are odd, the last is even.
+    """
     reach = int(np.ceil(REACH * radius_px))
     row, column = np.mgrid[-reach : reach + 1, -reach : reach + 1].astype(np.float64)
     away = np.hypot(column, row) / radius_px
@@ -93,11 +97,11 @@ def slopes(radius_px: float) -> tuple[np.ndarray, np.ndarray]:
     size *= np.clip((REACH - away) / 0.4, 0.0, 1.0)
     # Direction times size: away is at least 1 px / radius where it is not 0.
     share = size / np.maximum(away * radius_px, 1e-9)
-    along, across = share * column, share * row
-    return (
-        (along / np.linalg.norm(along)).astype(np.float32),
-        (across / np.linalg.norm(across)).astype(np.float32),
+    along, across, square = (
+        (part / np.linalg.norm(part)).astype(np.float32)
+        for part in (share * column, share * row, size**2)
     )
+    return along, across, square
 
 
 def contact_shift(predicted: np.ndarray, taken: np.ndarray, usable: np.ndarray) -> np.ndarray:
