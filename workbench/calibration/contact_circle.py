@@ -1,10 +1,10 @@
 """Finding the contact in a photograph: where its difference from rest looks like a dent.
 
-Light changes with the slope of the skin, whatever the lights are: on a matte skin in proportion, on
-a glossy one whatever is steep loses its highlight as well. So the change of each colour is some
-a dz/dx + b dz/dy + c |grad z|^2. The slopes of a dent of radius r are known: z' = rho / r inside and
-falling as (r / rho)^3 outside. At each place and radius the change is projected onto the three, and
-where they explain most of its square, all colours together, there is the contact.
+Light changes with the slope of the skin, whatever the lights are: on a matte skin in proportion,
+and on a glossy one what is steep loses its highlight as well. So the change of each colour is some
+a dz/dx + b dz/dy + c |grad z|^2. The slopes of a dent of radius r are known: z' = rho / r inside
+and falling as (r / rho)^3 outside. At each place and radius the change is projected onto the three,
+and where they explain most of its square, all colours together, there is the contact.
 
 Circles are found or drawn to a tenth of their radius. Once light and depth are known, the predicted
 change is moved over the photograph until both agree best: Gauss-Newton in the shift,

@@ -101,15 +101,31 @@ class SeenPhoto:
 
 
 def seen_photo(photo: BallPhoto, idle: np.ndarray) -> SeenPhoto:
-    """Where the contact is and how the exposure drifted: each is looked for without the other."""
-    circle = photo.circle
-    if circle is None:
-        circle = find_circle(photo.image.astype(np.float64) - idle, photo.name)
-    drift = measured_drift(photo.image, idle, circle)
-    if photo.circle is None:
-        circle = find_circle(drift.taken_back(photo.image) - idle, photo.name)
-        drift = measured_drift(photo.image, idle, circle)
+    """Where the contact is and how the exposure drifted, looked for where it is not given."""
+    circle, drift = seen_contact(photo.name, photo.image, idle, photo.circle)
     return SeenPhoto(photo=photo, circle=circle, drift=drift)
+
+
+def seen_contact(
+    name: str, image: np.ndarray, idle: np.ndarray, circle: Circle | None
+) -> tuple[Circle, Drift]:
+    """A contact and the drift about it: each is looked for without the other.
+
+    Args:
+        name: Of the photograph.
+        image: Shape (H, W, 3), uint8.
+        idle: At rest, same shape.
+        circle: The contact, if it is known.
+
+    Raises:
+        DesignError: With the photograph's name, if nothing looks like a contact.
+    """
+    if circle is not None:
+        return circle, measured_drift(image, idle, circle)
+    circle = find_circle(image.astype(np.float64) - idle, name)
+    drift = measured_drift(image, idle, circle)
+    circle = find_circle(drift.taken_back(image) - idle, name)
+    return circle, measured_drift(image, idle, circle)
 
 
 def shifted(seen: SeenPhoto, shift_px: np.ndarray, idle: np.ndarray) -> SeenPhoto:

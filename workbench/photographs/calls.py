@@ -13,8 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from workbench.calibration.contact_circle import find_circle
-from workbench.calibration.drift import NO_DRIFT, Drift, measured_drift
+from workbench.calibration.drift import NO_DRIFT, Drift, seen_contact
 from workbench.calibration.photo_set import IDLE, Circle
 from workbench.core.base.errors import DesignError
 from workbench.core.base.monitor import Monitor, part
@@ -124,16 +123,11 @@ class Calibrate:
 
 def found_contact(name: str, image: np.ndarray, idle: np.ndarray, circle: Circle | None) -> Found:
     """The contact of a photograph (H, W, 3), looked for again once its drift is known."""
-    if circle is not None:
-        drift = measured_drift(image, idle, circle)
-        return Found(photo=name, circle=circle, drift=drift)
     try:
-        circle = find_circle(image.astype(np.float64) - idle, name)
-        drift = measured_drift(image, idle, circle)
-        circle = find_circle(drift.taken_back(image) - idle, name)
+        circle, drift = seen_contact(name, image, idle, circle)
     except DesignError as error:
         return Found(photo=name, circle=None, reason=error.message)
-    return Found(photo=name, circle=circle, drift=measured_drift(image, idle, circle))
+    return Found(photo=name, circle=circle, drift=drift)
 
 
 def _image(folder: Path, name: str) -> np.ndarray:

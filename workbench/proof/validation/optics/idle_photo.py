@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from workbench.calibration.lit_studio import lit_studio
+from workbench.calibration.stored import lit_studio
 from workbench.core.base.monitor import silent
 from workbench.core.design.design import SensorDesign
 from workbench.core.press.press_case import PressCase
