@@ -222,12 +222,12 @@ def test_a_command_says_it_before_it_meshes(
 
 
 def test_fit_makes_a_command_run_on(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """The ring of 14 mm becomes 10.5: no refusal, and the change is told."""
+    """The ring of 14 mm, in the clear shell, becomes 12.5: no refusal, and the change is told."""
     words = ["--set", "optics.ring.radius_mm=14", "--fit", "--depth-mm", "2.6"]
     out, project = tmp_path / "out", tmp_path / "project"
     main(["run", "geltip", "--out", str(out), "--project", str(project), *words])
     told = capsys.readouterr().err
-    assert "LED ring: radius 10.5 mm instead of 14 mm" in told
+    assert "LED ring: radius 12.497 mm instead of 14 mm" in told
     # The depth is what ends it: of the LEDs nothing is said any more.
     assert "reaches the support" in told
     assert "LED 1" not in told

@@ -138,17 +138,11 @@ def test_from_photographs_to_the_calibrated_design(
     press(page, "Find contact again")
     wait_until(lambda: slider_value(page, "Contact column px") == was, 30, "it is found again")
 
-    # The finder misses a contact half in the dark, which the picture shows: it is put right.
+    # A contact off the middle, half in the dark, is found where the image changed.
     choose(page, "Photo", "p5.png")
     column, row = middle_px(project, "p5.png")
-    picture = pictures(page, "Contact column px").first
-    box = picture.bounding_box()
-    place = {
-        "x": (column + 0.5) / SIZE_PX[0] * box["width"],
-        "y": (row + 0.5) / SIZE_PX[1] * box["height"],
-    }
-    picture.click(position=place)
-    wait_until(lambda: slider_value(page, "Contact row px") == row, 20, "it is put right")
+    wait_until(lambda: abs(slider_value(page, "Contact row px") - row) < 3, 20, "its row")
+    assert abs(slider_value(page, "Contact column px") - column) < 3
     choose(page, "Used to", "hold it out as a test")
     wait_until(says(page, re.compile("6 photographs of balls, 1 held out")), 20, "held out")
     choose(page, "Lights are", "the design's own")
@@ -162,7 +156,7 @@ def test_from_photographs_to_the_calibrated_design(
     assert [each["photo"] for each in held] == ["p5.png"]
     gains_dB = {e["photo"]: e["psnr_dB"] - e["null_psnr_dB"] for e in figures["photos"]}
     # How well so few photons and pixels fit is not the page's: `tests/presets` asks 10 dB.
-    assert min(gains_dB.values()) > 0.0, gains_dB
+    assert min(gains_dB.values()) > 3.0, gains_dB
     unfold(page, "Lights found")
     page.get_by_text("Show lights in 3D").click()
     with page.expect_download() as download:

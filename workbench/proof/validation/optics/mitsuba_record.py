@@ -92,7 +92,7 @@ def figures(folder: Path) -> dict[str, np.ndarray]:
         "whole": whole.astype(np.float32),
         "samples": samples,
         "version": version,
-        "scene": np.array((folder / "scene.xml").read_text()),
+        "scene": np.array((folder / "scene.xml").read_text(encoding="utf-8")),
     }
 
 

@@ -146,7 +146,7 @@ def render(folder: Path, samples: int, batches: int, first: int) -> dict[str, np
     """
     mi = open_mitsuba()
     scene = mi.load_file(str(folder / "scene.xml"))
-    index = float((folder / "index.txt").read_text())
+    index = float((folder / "index.txt").read_text(encoding="utf-8"))
     through = scene.integrator()
     if index != 1.0:
         wall = str(folder / "wall.ply")
