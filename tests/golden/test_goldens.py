@@ -17,7 +17,7 @@ from workbench.core.base.codec import pack
 from workbench.core.design.camera import Camera
 from workbench.core.design.design import Meshing, SensorDesign
 from workbench.core.design.lighting import Baking, LedRing
-from workbench.core.design.optics import Optics
+from workbench.core.design.optics import Coating, Optics
 from workbench.core.press.press import ContactSettings, Press
 from workbench.core.press.press_case import PressCase
 from workbench.pipeline.store import Store
@@ -31,6 +31,8 @@ DESIGN = SensorDesign(
     optics=Optics(
         camera=Camera(width_px=64, height_px=48),
         ring=LedRing(radius_mm=3.0),
+        # The coating of the recorded numbers, which is no longer that of a new design.
+        coating=Coating(albedo=0.6, specular=0.04, roughness=0.35),
         baking=Baking(photons=200_000, nodes=1000),
     ),
 )
