@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 import workbench as wb
+from tests.photographed_pad import photographed_pad
 from workbench.calibration.photo_set import COLUMNS
 from workbench.cli import main
 from workbench.project.design_toml import design_from_toml
@@ -29,18 +30,7 @@ HIDDEN = (1.15, 0.85, 1.0, 0.9, 1.2, 1.05)
 
 def design() -> wb.Design:
     """A small flat pad, seen by a small camera."""
-    found = wb.load("pad")
-    for field, value in {
-        "optics.camera.width_px": 240,
-        "optics.camera.height_px": 180,
-        "optics.ring.count": 6,
-        "optics.ring.powers": (),
-        "optics.ring.colours": ("#ff0000", "#00ff00", "#0000ff"),
-        "optics.lamps": (),
-        "optics.baking.photons": 1_000_000,
-    }.items():
-        found = found.replace(field, value)
-    return found
+    return photographed_pad(240, 180, 1_000_000)
 
 
 @pytest.fixture(scope="module")

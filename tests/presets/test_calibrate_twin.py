@@ -18,6 +18,7 @@ import numpy as np
 import pytest
 
 import workbench as wb
+from tests.photographed_pad import photographed_pad
 from workbench.calibration.calibrate import calibrate
 from workbench.calibration.light_sources import NO_RING, single_lights
 from workbench.calibration.outputs import calibration_figures
@@ -46,18 +47,7 @@ POWER, LED_MM, CAMERA_MM, CAMERA_DEG = 0.03, 0.1, 0.1, 0.2
 
 def design() -> wb.Design:
     """The flat pad with six LEDs, seen by a small camera."""
-    found = wb.load("pad")
-    for field, value in {
-        "optics.camera.width_px": 240,
-        "optics.camera.height_px": 180,
-        "optics.ring.count": 6,
-        "optics.ring.powers": (),
-        "optics.ring.colours": ("#ff0000", "#00ff00", "#0000ff"),
-        "optics.lamps": (),
-        "optics.baking.photons": 1_500_000,
-    }.items():
-        found = found.replace(field, value)
-    return found
+    return photographed_pad(240, 180, 1_500_000)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -17,6 +17,7 @@ import numpy as np
 import pytest
 
 import workbench as wb
+from tests.photographed_pad import photographed_pad
 from tests.ui.conftest import Server
 from tests.ui.widgets import (
     button,
@@ -46,20 +47,8 @@ CALIBRATED_S = 400
 
 
 def design() -> wb.Design:
-    """A small flat pad, seen by a small camera, with few photons."""
-    found = wb.load("pad")
-    for field, value in {
-        "meshing.hex_mm": 0.8,
-        "optics.camera.width_px": SIZE_PX[0],
-        "optics.camera.height_px": SIZE_PX[1],
-        "optics.ring.count": 6,
-        "optics.ring.powers": (),
-        "optics.ring.colours": ("#ff0000", "#00ff00", "#0000ff"),
-        "optics.lamps": (),
-        "optics.baking.photons": 100_000,
-    }.items():
-        found = found.replace(field, value)
-    return found
+    """A small flat pad in a coarse mesh, seen by a small camera, with few photons."""
+    return photographed_pad(*SIZE_PX, 100_000).replace("meshing.hex_mm", 0.8)
 
 
 @pytest.fixture(scope="module")

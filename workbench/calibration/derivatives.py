@@ -12,6 +12,7 @@ Where a contact is on the skin follows from its circle and the camera.
 from __future__ import annotations
 
 import dataclasses
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -91,7 +92,7 @@ def slopes_of(task: Task, fit: Fit, monitor: Monitor) -> list[Slopes]:
     common = [k for k, each in enumerate(task.among) if each.kind is not Kind.LED_PLACE]
     places = [k for k, each in enumerate(task.among) if each.kind is Kind.LED_PLACE]
     axes = sorted({task.among[k].axis for k in places})
-    works = len(common) + 1 + 2 * len(axes)
+    works = len(common) + 1 + (1 + len(axes) if axes else 0)
     found: dict[int, Slopes] = {}
     base = _together(task, fit.scene, fit, still, part(monitor, 0.0, 1.0 / works))
     for number, k in enumerate(common, start=1):
@@ -102,12 +103,18 @@ def slopes_of(task: Task, fit: Fit, monitor: Monitor) -> list[Slopes]:
         if task.among[k].kind.of_camera:
             seen = placed(task, scene, presses, fit.circles)
         found[k] = _difference(_together(task, scene, fit, seen, span), base, by.get(k, np.inf))
-    for number, axis in enumerate(axes):
-        start = (len(common) + 1 + 2 * number) / works
-        span = part(monitor, start, start + 2 / works)
-        found |= _by_places(
-            task, fit, [k for k in places if task.among[k].axis == axis], still, span
-        )
+    if axes:
+        ends = np.linspace((len(common) + 1) / works, 1.0, len(axes) + 2)
+        spans = [part(monitor, *pair) for pair in itertools.pairwise(ends.tolist())]
+        alone = _alone(task, fit, fit.scene, still, spans[0])
+        for axis, span in zip(axes, spans[1:], strict=True):
+            chosen = [k for k in places if task.among[k].axis == axis]
+            scene, by = _nudged(task, fit, chosen)
+            now = _alone(task, fit, scene, still, span)
+            # Without room for a step, nothing is learned of it.
+            found |= {
+                k: _by_place(task.among[k], fit, (now, alone), by.get(k, np.inf)) for k in chosen
+            }
     return [found[k] for k in range(len(task.among))]
 
 
@@ -171,35 +178,30 @@ def _difference(now: list[np.ndarray], still: list[np.ndarray], by: float) -> Sl
     return Slopes(rest=rest, presses=tuple(presses))
 
 
-def _by_places(
+def _alone(
     task: Task,
     fit: Fit,
-    chosen: Sequence[int],
+    scene: Scene,
     presses: Sequence[tuple[BallPress, Circle]],
     monitor: Monitor,
-) -> dict[int, Slopes]:
-    """By the places of several lights along one axis each."""
-    scene, by = _nudged(task, fit, chosen)
-    bases = []
-    for number, lights in enumerate((fit.scene.lights, scene.lights)):
-        span = part(monitor, number / 2, (number + 1) / 2)
-        bases.append(
-            open_basis(fit.scene.of(task.design), task.mesh, lights, presses, task.store, span)
-        )
-    still, now = bases
-    found = {}
-    for k in chosen:
-        light = task.among[k].light
-        power = fit.powers.lights[:, light]
-        pairs = [(now.rest, still.rest)]
-        pairs += [
-            (one.change[0], other.change[0])
-            for one, other in zip(now.presses, still.presses, strict=True)
-        ]
-        # Without room for a step, nothing is learned of it.
-        over = by.get(k, np.inf)
-        rest, *changes = [
-            np.outer((one[:, light] - other[:, light]) / over, power) for one, other in pairs
-        ]
-        found[k] = Slopes(rest=rest, presses=tuple(changes))
-    return found
+) -> LightBasis:
+    """Each light of a scene alone, seen as in the fit."""
+    lit = fit.scene.of(task.design)
+    return open_basis(lit, task.mesh, scene.lights, presses, task.store, monitor)
+
+
+def _by_place(
+    unknown: Unknown, fit: Fit, bases: tuple[LightBasis, LightBasis], by: float
+) -> Slopes:
+    """By the place of a light along one axis, from the lights alone after a step and before."""
+    (now, still), light = bases, unknown.light
+    power = fit.powers.lights[:, light]
+    pairs = [(now.rest, still.rest)]
+    pairs += [
+        (one.change[0], other.change[0])
+        for one, other in zip(now.presses, still.presses, strict=True)
+    ]
+    rest, *changes = [
+        np.outer((one[:, light] - other[:, light]) / by, power) for one, other in pairs
+    ]
+    return Slopes(rest=rest, presses=tuple(changes))

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from workbench.calibration.outputs import DESIGN, FIGURES, FILES, PREDICTED
+from workbench.calibration.outputs import DESIGN, FIGURES, FILES, PREDICTED, REPORT
 from workbench.core.base.errors import DesignError
 from workbench.core.design.design import SensorDesign
 from workbench.photographs.photo_files import decoded
@@ -57,7 +57,7 @@ class Outcome:
 
     def report(self) -> bytes:
         """The page of the report."""
-        return self._read("report.html")
+        return self._read(REPORT)
 
     def archive(self) -> bytes:
         """All files as a zip."""
