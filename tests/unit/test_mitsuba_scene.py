@@ -210,9 +210,9 @@ def test_no_scene_of_an_impossible_design_is_written(
 
 @pytest.mark.slow
 def test_export_writes_the_scene(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """`workbench export geltip --mitsuba`: XML and both surfaces beside the other files."""
+    """`workbench export pad --mitsuba`: XML and both surfaces beside the other files."""
     out = tmp_path / "out"
-    words = ["export", "geltip", "--mitsuba", "--out", str(out), "--json"]
+    words = ["export", "pad", "--mitsuba", "--out", str(out), "--json"]
     assert main([*words, "--project", str(tmp_path / "p")]) == 0
     rows = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
     files = [row["file"] for row in rows if "file" in row]
