@@ -113,13 +113,8 @@ def test_the_table_of_direct_light_shades_as_direct_light_does() -> None:
     assert mean < 0.004
 
 
-TOO_WIDE = "5.2 %, as the row table_brightness says: bins widen the default coating's narrow lobe"
-
-
-@pytest.mark.parametrize(
-    "in_shell", [pytest.param(False, marks=pytest.mark.xfail(strict=True, reason=TOO_WIDE)), True]
-)
+@pytest.mark.parametrize("in_shell", [False, True])
 def test_the_table_at_rest_is_as_bright_as_photons_are(in_shell: bool) -> None:
     """Radiance from the bake's table and from photons gathered at the vertices: the same mean."""
-    # 150,000 photons make 0.3 %; bins widen the coating's lobe and nodes 2 mm apart blur.
-    assert baked_light_checks.table_error(in_shell=in_shell, photons=150_000) < 0.03
+    # 150,000 photons make 0.3 %; nodes 2 mm apart blur. Bins as they are gathered make 6 %.
+    assert baked_light_checks.table_error(in_shell=in_shell, photons=150_000) < 0.015

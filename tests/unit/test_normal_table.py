@@ -13,7 +13,7 @@ from sim.optics.field.table import (
     mean_reflectance,
     tilted_normals,
 )
-from sim.optics.light.bins import bin_shares
+from sim.optics.light.bins import bin_cosines, bin_shares, sharpened
 from workbench.core.design.optics import Coating
 from workbench.core.result.light import AZIMUTHS, SINES, TILT_SPAN, TILTS
 
@@ -112,3 +112,36 @@ def test_below_the_horizon_lies_skin_that_receives_the_same() -> None:
     light[0, 0, -1] = 2.0
     below = filled(light, light, matte)[0, :, BINS:].sum(axis=1)
     np.testing.assert_allclose(below, [2.0 * np.pi * 0.5 * 2.0 / np.pi, 0.0, 0.0], rtol=1e-6)
+
+
+def test_light_is_summed_with_a_lobe_without_the_width_of_bins() -> None:
+    """Even light times a lobe quadratic in the cosine: the exact integral.
+
+    Sums over bins as they are gathered err by h^2 f'' / 12, sharpened ones only at the two ends.
+    """
+    centres = bin_cosines()
+    fine = np.linspace(centres[1], centres[-2], 200_001)
+    low, share = bin_shares(fine)
+    rows = np.bincount(low, 1.0 - share, len(centres))
+    rows += np.bincount(low + 1, share, len(centres))
+    light = np.zeros((1, 3, len(centres), AZIMUTHS))
+    light[:] = (rows / len(fine))[:, None] / AZIMUTHS
+    lobe = np.repeat(centres**2, AZIMUTHS)
+    light, exact = light.reshape(1, 3, -1), np.mean(fine**2)
+    blurred, clear = light[0, 0] @ lobe, sharpened(light)[0, 0] @ lobe
+    assert abs(clear / exact - 1.0) < 0.1 * abs(blurred / exact - 1.0)
+
+
+def test_sharpening_keeps_all_light_and_narrows_a_beam() -> None:
+    """The sum stays; a beam between two bins returns the peak of a narrow lobe, not less."""
+    rng = np.random.default_rng(3)
+    light = rng.random((2, 3, BINS))
+    np.testing.assert_allclose(sharpened(light).sum(axis=2), light.sum(axis=2), rtol=1e-6)
+    beam = np.zeros((1, 3, BINS))
+    row = 6 * AZIMUTHS
+    beam[..., row + 3 : row + 5] = 0.5
+    turn = 2.0 * np.pi * (np.arange(AZIMUTHS) - 3.5) / AZIMUTHS
+    width = 0.5
+    lobe = np.tile(np.exp(-0.5 * (np.angle(np.exp(1j * turn)) / width) ** 2), len(SINES) - 1)
+    blurred, clear = (beam[0, 0] * lobe).sum(), (sharpened(beam)[0, 0] * lobe).sum()
+    assert blurred < clear

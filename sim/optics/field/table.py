@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sim.optics.field.model import Shading, model_of
-from sim.optics.light.bins import bin_cosines
+from sim.optics.light.bins import bin_cosines, sharpened
 from workbench.core.base.monitor import Monitor, silent
 from workbench.core.design.camera import Camera
 from workbench.core.design.lighting import LightModel
@@ -128,7 +128,7 @@ def filled(gathered: np.ndarray, whole: np.ndarray, coating: Coating) -> np.ndar
     matte = mean_reflectance(coating) / np.pi * (whole @ cosines)
     solid_angle = np.repeat(-np.diff(HORIZON), AZIMUTHS) * 2.0 * np.pi / AZIMUTHS
     below = matte[:, :, None] * solid_angle
-    return np.concatenate([gathered, below], axis=2, dtype=np.float32)
+    return np.concatenate([sharpened(gathered), below], axis=2, dtype=np.float32)
 
 
 def mean_reflectance(coating: Coating) -> float:

@@ -96,7 +96,7 @@ def collapse(
         for d in range(directions.shape[0]):
             light = tm.vec3(received[node, 0, d], received[node, 1, d], received[node, 2, d])
             toward = directions[d]
-            if normal.dot(toward) > 0.0 and light.sum() > 0.0:
+            if normal.dot(toward) > 0.0:
                 total += light * reflected(toward, view, normal, albedo, specular, roughness)
         for c in ti.static(range(3)):
             values[node, row, column, c] = total[c]

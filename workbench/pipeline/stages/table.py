@@ -64,7 +64,7 @@ def table(given: TableInputs, *, monitor: Monitor) -> NormalTable:
 STAGE = Stage(
     name="table",
     label="Light table",
-    version=2,
+    version=3,
     place=5,
     lane="sim",
     run=table,

@@ -252,7 +252,7 @@ def _tables() -> list[Row]:
                 f"finger, {'shell' if in_shell else 'cavity'} LEDs: table at rest against photons",
                 functools.partial(checks.table_error, in_shell=in_shell, photons=150_000),
                 unit="1",
-                limit=0.03,
+                limit=0.015,
             )
             for in_shell in (False, True)
         ),
