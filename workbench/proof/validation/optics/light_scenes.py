@@ -3,7 +3,8 @@
 Finger, trunk and paw as the families build them, at 0.4 mm. The finger has its camera on the axis;
 trunk and paw have one beside the axis and tilted. LEDs sit in the cavity or in the shell, three
 neighbours in each of red, green and blue; in the shell of a body that is not round they are placed
-in the middle of the wall at their azimuth, one by one. The images are 320 x 240.
+in the middle of the wall at their azimuth, one by one. The skin is matte in all six, and in four
+more it has the coating of a new design, whose lobe is narrow. The images are 320 x 240.
 """
 
 from __future__ import annotations
@@ -34,7 +35,10 @@ SIZE_MM = {LedMount.CAVITY: 1.5, LedMount.SHELL: 0.6}
 CAVITY_SHARE = 0.75
 """Radius of cavity LEDs over that of the cavity, as on the finger."""
 MATTE = Coating(albedo=0.6, specular=0.04, roughness=0.35)
-"""The skin of the shipped references: it scatters far more than the default one."""
+"""It scatters far more than the coating of a new design."""
+INK = Coating(albedo=0.1, specular=0.4, roughness=0.2)
+"""The coating of a new design when the references were recorded: flakes in ink, most of whose light
+goes into a lobe."""
 AZIMUTHS_DEG = tuple(base + turn for base in (90, 210, 330) for turn in (-40, 0, 40))
 
 
@@ -45,15 +49,23 @@ class LightScene:
     body: str
     """`finger`, `trunk` or `paw`."""
     mount: LedMount
+    coating: Coating = MATTE
 
     @property
     def name(self) -> str:
-        """For rows and files, for example `finger shell`."""
-        return f"{self.body} {self.mount.value}"
+        """For rows and files, for example `finger shell` or `finger shell ink`."""
+        return f"{self.body} {self.mount.value}{' ink' if self.coating == INK else ''}"
 
 
-SCENES = tuple(
-    LightScene(body=body, mount=mount) for body in ("finger", "trunk", "paw") for mount in LedMount
+SCENES = (
+    *(
+        LightScene(body=body, mount=mount)
+        for body in ("finger", "trunk", "paw")
+        for mount in LedMount
+    ),
+    *(LightScene(body="finger", mount=mount, coating=INK) for mount in LedMount),
+    LightScene(body="trunk", mount=LedMount.SHELL, coating=INK),
+    LightScene(body="paw", mount=LedMount.CAVITY, coating=INK),
 )
 
 
@@ -84,7 +96,7 @@ def optics_of(scene: LightScene, model: LightModel, *, seed: int = 1) -> Optics:
         camera=camera_of(scene.body),
         ring=LedRing(count=0),
         lamps=lamps_of(mesh_of(scene.body), scene.mount),
-        coating=MATTE,
+        coating=scene.coating,
         light_model=model,
         baking=Baking(seed=seed),
     )
