@@ -2,14 +2,28 @@
 
 from __future__ import annotations
 
+import re
+import tempfile
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import cv2  # noqa: TID253 (a program of its own, not part of the package)
 import numpy as np
 
-from docs.page_shots import LONG_S, SIZE, command, fresh, number, quiet, shoot, tick
-from tests.ui.widgets import button, choose, control, press, set_number, tab, type_text, wait_until
+from docs.page_shots import LONG_S, SIZE, command, fresh, number, pressed, quiet, shoot, tick
+from docs.photo_set import photo_set
+from tests.ui.widgets import (
+    button,
+    choose,
+    control,
+    press,
+    set_number,
+    tab,
+    type_text,
+    upload,
+    wait_until,
+)
 
 
 def first(page: Any) -> None:
@@ -127,17 +141,26 @@ def maps(page: Any) -> None:
     tab(page, "Tactile image").click()
 
 
+def calibrate(page: Any) -> None:
+    """Photographs of a built finger, a contact found in one, and the design over the idle photo."""
+    tab(page, "Calibrate").click()
+    with tempfile.TemporaryDirectory() as folder:
+        upload(page, "Load photographs", photo_set(Path(folder)))
+        found = page.get_by_text(re.compile(r"Contact found: [\d.]+ px")).locator("visible=true")
+        wait_until(found.count, LONG_S, "contacts are found")
+    control(page, "Photo").scroll_into_view_if_needed()
+    page.mouse.move(200, 500)
+    page.mouse.wheel(0, 260)
+    shoot(page, "calibrate")
+
+
 def compare(page: Any) -> None:
     """Two walls: variants, score card, both in the view."""
     tab(page, "Compare").click()
     keep(page, "thick")
     tab(page, "Shape").click()
     set_number(page, "Elastomer mm", 1.5)
-    page.wait_for_timeout(5_000)
-    if page.get_by_text("Image ○").count():
-        # Not so in a project that has pressed this wall before.
-        press(page, "Update results")
-    fresh(page, "Image")
+    pressed(page)
     tab(page, "Compare").click()
     keep(page, "thin")
     tick(page, "Show B in 3D")
@@ -208,6 +231,7 @@ STEPS: dict[str, Callable[[Any], None]] = {
     "optics": optics,
     "contact": contact,
     "maps": maps,
+    "calibrate": calibrate,
     "compare": compare,
     "sweep": sweep,
     "make": make,
