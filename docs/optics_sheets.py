@@ -33,7 +33,7 @@ from workbench.project.aim import default_target_mm
 from workbench.project.named_designs import load_design
 from workbench.project.project import Project
 from workbench.view.colour_scale import NOTHING_GREY, viridis
-from workbench.view.image_views import View, looked
+from workbench.view.image_views import View, looked, visible_change
 from workbench.view.map_display import is_flag, map_look
 
 FOLDER = Path(__file__).parent
@@ -49,7 +49,7 @@ BAR_PX = (224, 12)
 FINER = 2
 """Drawings are made this many times larger and averaged down, for smooth edges."""
 EYE = np.array([1.0, 0.15, 0.7])
-"""From where the skin is looked at; LED 1 stands at the lower right."""
+"""From where the skin is looked at; LED 1 lights the side that is seen."""
 SHOWN = (
     "visible",
     "mm_per_pixel",
@@ -83,18 +83,19 @@ def computed(name: str, project: Project, *wanted: str) -> tuple[SensorDesign, d
 
 def contact_row(design: SensorDesign, frames: TactileFrames, force_N: float) -> np.ndarray:
     """One preset: image at rest, pressed, change and normals; shape (H, W, 3), BGR."""
-    change = looked(View.DIFFERENCE, frames.rgb, FRAMES, frames)
     normals = looked(View.NORMALS, frames.rgb, FRAMES, frames)
     pressed = frames.rgb[FRAMES].copy()
     low, high = window(np.abs(pressed.astype(np.int16) - frames.rgb[0]))
-    close = change.rgb[low[1] : high[1], low[0] : high[0]]
+    rows, columns = slice(low[1], high[1]), slice(low[0], high[0])
+    # Of the close-up alone: a few grey levels all over the image would ask for too much gain.
+    close, gain = visible_change(pressed[rows, columns], frames.rgb[0][rows, columns])
     cv2.rectangle(pressed, low, high, FRAME, round(pressed.shape[1] / PHOTO_PX[0]))
     images = (frames.rgb[0], pressed, close, normals.rgb)
     width = len(images) * (PHOTO_PX[0] + GUTTER_PX) - GUTTER_PX
     row = blank((width, LINE_PX + PHOTO_PX[1]))
     write(row, f"{family(design.family).title} ({design.name})", (4, 24), 19, INK, weight=600)
     for column, (rgb, text) in enumerate(
-        zip(images, ("", f"{force_N:.2f} N", change.words.split(", ")[-1], ""), strict=True)
+        zip(images, ("", f"{force_N:.2f} N", f"× {gain}", ""), strict=True)
     ):
         x = column * (PHOTO_PX[0] + GUTTER_PX)
         write(row, text, (x + 4, 24), 17, FAINT)

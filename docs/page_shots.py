@@ -9,7 +9,7 @@ import cv2  # noqa: TID253 (a program of its own, not part of the package)
 import numpy as np
 from playwright.sync_api import TimeoutError as TooLate
 
-from tests.ui.widgets import control, wait_until
+from tests.ui.widgets import control, press, wait_until
 
 FOLDER = Path(__file__).parent / "screens"
 SIZE = {"width": 1440, "height": 900}
@@ -50,6 +50,17 @@ def tick(page: Any, label: str) -> None:
 def fresh(page: Any, stage: str) -> None:
     """Until a stage is up to date."""
     wait_until(lambda: page.get_by_text(f"{stage} ✓").count(), LONG_S, f"{stage} is up to date")
+
+
+def pressed(page: Any) -> None:
+    """Until the image is up to date; asked for where nothing computes it already.
+
+    A store that has results of other designs starts no first press of its own.
+    """
+    page.wait_for_timeout(5_000)
+    if page.get_by_text("Image ○").count():
+        press(page, "Update results")
+    fresh(page, "Image")
 
 
 def quiet(page: Any) -> None:

@@ -2,14 +2,29 @@
 
 from __future__ import annotations
 
+import re
+import tempfile
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import cv2  # noqa: TID253 (a program of its own, not part of the package)
 import numpy as np
 
-from docs.page_shots import LONG_S, SIZE, command, fresh, number, quiet, shoot, tick
-from tests.ui.widgets import button, choose, control, press, set_number, tab, type_text, wait_until
+from docs.page_shots import LONG_S, SIZE, command, fresh, number, pressed, quiet, shoot, tick
+from docs.photo_set import photo_set
+from tests.ui.widgets import (
+    button,
+    choose,
+    control,
+    press,
+    set_number,
+    slider_value,
+    tab,
+    type_text,
+    upload,
+    wait_until,
+)
 
 
 def first(page: Any) -> None:
@@ -32,16 +47,17 @@ def preview(page: Any) -> None:
     """Body and preview of the image while a slider moves; then back."""
     tab(page, "Shape").click()
     quiet(page)
-    box = control(page, "Outer radius mm").bounding_box()
+    box = control(page, "Elastomer mm").bounding_box()
     y = box["y"] + box["height"] * 0.35
-    page.mouse.move(box["x"] + 0.375 * box["width"], y)
+    # From 2.0 to some 1.5 mm, as the tutorial says, on a slider from 0.8 to 6 mm.
+    page.mouse.move(box["x"] + 0.231 * box["width"], y)
     page.mouse.down()
-    page.mouse.move(box["x"] + 0.5 * box["width"], y, steps=12)
+    page.mouse.move(box["x"] + 0.165 * box["width"], y, steps=12)
     page.wait_for_timeout(6_000)
     shoot(page, "preview", aside=False)
     page.mouse.up()
     # A press may have been aimed anew, which is a step of its own.
-    while not page.get_by_text("Image ✓").count():
+    while slider_value(page, "Elastomer mm") != 2.0 or not page.get_by_text("Image ✓").count():
         press(page, "Undo")
         page.wait_for_timeout(5_000)
 
@@ -55,9 +71,9 @@ def section(page: Any) -> None:
     page.wait_for_timeout(6_000)
     press(page, "Measure distance")
     x, y = wall(page)
-    page.mouse.click(x - 2, y)
+    page.mouse.click(x - 1, y)
     page.get_by_text("Click the second point").wait_for()
-    page.mouse.click(x + 14, y)
+    page.mouse.click(x + 16, y)
     page.get_by_text("Click the second point").wait_for(state="hidden")
     shoot(page, "section")
     page.keyboard.press("Escape")
@@ -127,17 +143,26 @@ def maps(page: Any) -> None:
     tab(page, "Tactile image").click()
 
 
+def calibrate(page: Any) -> None:
+    """Photographs of a built finger, a contact found in one, and the design over the idle photo."""
+    tab(page, "Calibrate").click()
+    with tempfile.TemporaryDirectory() as folder:
+        upload(page, "Load photographs", photo_set(Path(folder)))
+        found = page.get_by_text(re.compile(r"Contact found: [\d.]+ px")).locator("visible=true")
+        wait_until(found.count, LONG_S, "contacts are found")
+    control(page, "Photo").scroll_into_view_if_needed()
+    page.mouse.move(200, 500)
+    page.mouse.wheel(0, 260)
+    shoot(page, "calibrate")
+
+
 def compare(page: Any) -> None:
     """Two walls: variants, score card, both in the view."""
     tab(page, "Compare").click()
     keep(page, "thick")
     tab(page, "Shape").click()
     set_number(page, "Elastomer mm", 1.5)
-    page.wait_for_timeout(5_000)
-    if page.get_by_text("Image ○").count():
-        # Not so in a project that has pressed this wall before.
-        press(page, "Update results")
-    fresh(page, "Image")
+    pressed(page)
     tab(page, "Compare").click()
     keep(page, "thin")
     tick(page, "Show B in 3D")
@@ -161,11 +186,11 @@ def sweep(page: Any) -> None:
     choose(page, "Parameter", "Layers: elastomer [mm]")
     # The program suggests a span a moment later.
     page.wait_for_timeout(2_000)
-    for label, value in (("From", 1.5), ("To", 2.5)):
+    for label, value in (("From", 1.5), ("To", 2.3)):
         number(page, label, value)
     set_number(page, "Steps", 3)
     press(page, "Run sweep")
-    wait_until(lambda: page.get_by_text("Finished: 3 points").count(), LONG_S, "the sweep is done")
+    wait_until(lambda: page.get_by_text("Finished: 3 points.").count(), LONG_S, "the sweep is done")
     button(page, "Run sweep").scroll_into_view_if_needed()
     page.mouse.move(200, 500)
     page.mouse.wheel(0, 420)
@@ -208,6 +233,7 @@ STEPS: dict[str, Callable[[Any], None]] = {
     "optics": optics,
     "contact": contact,
     "maps": maps,
+    "calibrate": calibrate,
     "compare": compare,
     "sweep": sweep,
     "make": make,

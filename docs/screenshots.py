@@ -17,7 +17,7 @@ from pathlib import Path
 
 from playwright.sync_api import sync_playwright
 
-from docs.page_shots import FOLDER, SIZE, fresh, quiet
+from docs.page_shots import FOLDER, SIZE, pressed, quiet
 from docs.screen_steps import STEPS
 from tests.ui.conftest import Server
 from tests.ui.widgets import tab
@@ -50,7 +50,8 @@ def main(wanted: list[str]) -> None:
             page.set_default_timeout(60_000)
             page.goto(server.url)
             tab(page, "Shape").wait_for()
-            fresh(page, "Image")
+            quiet(page)
+            pressed(page)
             quiet(page)
             for name in wanted or STEPS:
                 STEPS[name](page)
