@@ -20,7 +20,9 @@ AZIMUTHS = 24
 """Bins of direction about the normal."""
 SINES = (0.0, 0.02, 0.05, 0.09, 0.15, 0.23, 0.34, 0.48, 0.65, 0.82, 0.93, 0.98, 1.0)
 """Borders of the bins of direction in the cosine to the normal, dense near grazing."""
-TILTS = 9
+TILTS = 17
+"""Steps of 6 degrees: with 9 a lobe of roughness .2 lost .5 to 2.6 dB in dents, with 25 it gained
+nothing more."""
 TILT_SPAN = 0.85
 """Largest tangential component of a normal in the table [1]: tilted by 58 degrees."""
 FLATTEST = 0.02

@@ -5,9 +5,12 @@ the null (the background) and the ceiling (half of the photons against the other
 `table` are baked with three seeds, and the worst counts. On the finger one scalar gain per scene is
 fitted on the sphere, the other dents are held out; on trunk and paw the physical models get none.
 Asked is what the project set itself: on the finger `hybrid` at most 0.012 below the ceiling and 38
-dB, `table` 0.02 below; on trunk and paw `hybrid` 0.98 and 36 dB; both better than the null. The
-paper's fields and `direct` are stated only. Images are absolute: what a dent changes on skin that
-did not move, its shadow and the light it takes away, is in the photons' images and counts.
+dB, `table` 0.02 below; on trunk and paw `hybrid` 0.98 and 36 dB; both better than the null. On the
+narrow lobe of ink `hybrid` shall reach 0.94 and 30 dB: there a dent mirrors what it lights itself,
+which light baked at rest does not know, so it stays 3 to 8 dB behind the same dent in a matte skin,
+and `table`, gains and the image at rest are stated only. The paper's fields and `direct` are stated
+only. Images are absolute: what a dent changes on skin that did not move, its shadow and the light
+it takes away, is in the photons' images and counts.
 """
 
 from __future__ import annotations
@@ -29,7 +32,13 @@ from workbench.pipeline.stages.bake import BakeInputs, bake
 from workbench.pipeline.stages.table import TableInputs, table
 from workbench.proof.row import Row, bounded, failed, stated
 from workbench.proof.validation.optics.light_images import Score, fitted_gain, reference, score
-from workbench.proof.validation.optics.light_scenes import SCENES, LightScene, mesh_of, optics_of
+from workbench.proof.validation.optics.light_scenes import (
+    INK,
+    SCENES,
+    LightScene,
+    mesh_of,
+    optics_of,
+)
 from workbench.proof.validation.optics.photon_reference import frames_of
 
 SEEDS = (1, 2, 3)
@@ -45,6 +54,7 @@ MODELS = (
 )
 BELOW_CEILING = {LightModel("hybrid"): 0.012, LightModel("table"): 0.02}
 FINGER_DB, ANY_SSIM, ANY_DB = 38.0, 0.98, 36.0
+INK_SSIM, INK_DB = 0.94, 30.0
 GAINS = (0.95, 1.08)
 REST_SSIM, REST_DB = 0.97, 41.0
 FEWEST_CEILING = 0.995
@@ -109,20 +119,33 @@ def _dent_rows(
     similar, decibel = f"SSIM: {case}{seeds}", f"PSNR: {case}{seeds}"
     beside = {"null": null.ssim_1, "ceiling": ceiling.ssim_1}
     beside_dB = {"null": null.psnr_dB, "ceiling": ceiling.psnr_dB}
-    asked_dB = FINGER_DB if on_finger else ANY_DB
-    if model in BELOW_CEILING:
-        least = ceiling.ssim_1 - BELOW_CEILING[model] if on_finger else ANY_SSIM
+    least, asked_dB = _asked(scene, model, ceiling)
+    if least is not None:
         limit = max(least, null.ssim_1)
         row = functools.partial(bounded, limit=limit, sense="min", **beside)
         yield row(model.value, similar, worst.ssim_1, unit="1")
     else:
         yield stated(model.value, similar, worst.ssim_1, unit="1", **beside)
-    if model is LightModel("hybrid"):
+    if asked_dB is not None:
         limit = max(asked_dB, null.psnr_dB)
         row = functools.partial(bounded, limit=limit, sense="min", **beside_dB)
         yield row(model.value, decibel, worst.psnr_dB, unit="dB")
     else:
         yield stated(model.value, decibel, worst.psnr_dB, unit="dB", **beside_dB)
+
+
+def _asked(
+    scene: LightScene, model: LightModel, ceiling: Score
+) -> tuple[float | None, float | None]:
+    """Least SSIM and PSNR [dB] of a dent; None where a figure is stated only."""
+    hybrid = model is LightModel("hybrid")
+    if model not in BELOW_CEILING or (scene.coating == INK and not hybrid):
+        return None, None
+    if scene.coating == INK:
+        return INK_SSIM, INK_DB
+    on_finger = scene.body == "finger"
+    least = ceiling.ssim_1 - BELOW_CEILING[model] if on_finger else ANY_SSIM
+    return least, (FINGER_DB if on_finger else ANY_DB) if hybrid else None
 
 
 def _rest_rows(scene: LightScene, model: LightModel, shown: list[Rendered]) -> Iterator[Row]:
@@ -135,11 +158,14 @@ def _rest_rows(scene: LightScene, model: LightModel, shown: list[Rendered]) -> I
         ("PSNR", worst.psnr_dB, "dB", REST_DB, ceiling.psnr_dB),
     ):
         of = f"{what}: {case}"
-        yield bounded(name, of, value, unit=unit, limit=limit, sense="min", ceiling=best)
+        if scene.coating == INK:
+            yield stated(name, of, value, unit=unit, ceiling=best)
+        else:
+            yield bounded(name, of, value, unit=unit, limit=limit, sense="min", ceiling=best)
     gains = [one.fitted for one in shown]
     off = max(gains, key=lambda gain: abs(np.log(gain)) if gain > 0.0 else np.inf)
     case = f"{model.value}, {scene.name}, fitted on the sphere, farthest from 1 of {len(gains)}"
-    if model is LightModel("hybrid") and scene.body == "finger":
+    if model is LightModel("hybrid") and scene.body == "finger" and scene.coating != INK:
         low, high = GAINS
         inside = f"{case}; limits {low:g} to {high:g}"
         # Distance to the nearer limit: positive inside.
