@@ -72,7 +72,7 @@ def maps(given: MapsInputs, *, monitor: Monitor) -> DesignerMaps:
 STAGE = Stage(
     name="maps",
     label="Maps",
-    version=2,
+    version=3,
     place=13,
     lane="sim",
     run=maps,
