@@ -11,6 +11,8 @@ Measured on the default press: starting from the last displacement at another pl
 375 substeps, more than from rest, and is off by 2.6 to 5.3 % in force with the old contact
 history, 5.4 to 7.3 % with a fresh one; a region wide enough for several places costs twice the
 time of one. So a move along the skin starts from rest.
+A frame is gone in one piece, also where the object rubs; 0.4 mm at mu 0.5 reads 1 % less force
+than the full press, which rests each 0.1 mm.
 Left out: strokes, trajectories and driven regions; the full press has them.
 """
 
@@ -128,6 +130,7 @@ class LiveContact:
         else:
             self.way = Way.ANEW
             problem = make_problem(mesh, points, material, case)
+            problem = dataclasses.replace(problem, whole_frames=True)
             # Placing takes a third of a second, in which a newer request may have come.
             monitor(0.0, "the region is ready")
             kept = _Kept(key=key, problem=problem, relaxation=relaxation_of([problem]))

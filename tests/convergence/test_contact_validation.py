@@ -76,11 +76,11 @@ def test_finger_at_45_degrees_is_that_of_finite_elements() -> None:
 
 
 @pytest.mark.slow
-def test_force_of_a_press_depends_on_its_steps_through_friction() -> None:
-    """One step of 1 mm lets points slide straight to where they end: 2 % less than ten steps."""
+def test_force_of_a_press_does_not_depend_on_its_frames() -> None:
+    """1 mm in one frame and in ten, with friction; in one piece, one frame reads 2 % too little."""
     once_N = finger.finger_45(active_radius_mm=9.0, frames=1)
     steps_N = finger.finger_45(active_radius_mm=9.0)
-    assert 0.005 < steps_N / once_N - 1.0 < 0.03
+    assert once_N == pytest.approx(steps_N, rel=5e-3)
 
 
 @pytest.mark.slow

@@ -9,7 +9,7 @@ import pytest
 from sim.contact.engine.relaxation import Balances, Relaxation
 from sim.contact.press import press_membrane
 from sim.contact.readout.problem import make_problem
-from sim.contact.solver.run import Run
+from sim.contact.solver.run import INCREMENT_MM, Run
 from sim.contact.solver.solver import relaxation_of
 from sim.contact.studies.finger import at_45_degrees, penetration_and_balance, press_finger
 from sim.contact.studies.specimens import flat_block
@@ -181,7 +181,7 @@ def test_settled_frame_is_the_one_that_was_tested(monkeypatch: pytest.MonkeyPatc
         return dataclasses.replace(seen[-1], unbalanced_N=seen[-1].unbalanced_N + excess)
 
     monkeypatch.setattr(Relaxation, "evaluate", spoilt)
-    contact = press_block(dataclasses.replace(PRESS, frames=1))
+    contact = press_block(dataclasses.replace(PRESS, depth_mm=INCREMENT_MM, frames=1))
     assert len(seen) == 2
     assert contact.residual[-1] < SETTINGS.tolerance
 

@@ -109,6 +109,8 @@ def start_server(warm: WarmStart) -> Iterator[Callable[..., Server]]:
     yield start
     for server in servers:
         server.stop()
+        # Shown by pytest beside a test that failed.
+        print(server.log.read_text()[-4000:])
 
 
 @pytest.fixture(scope="package")

@@ -65,6 +65,30 @@ def test_difference_is_about_mid_grey() -> None:
     assert (change[0] == 128).all()
 
 
+def test_a_contact_is_not_blown_out_by_a_faint_change_all_over() -> None:
+    """60 levels on a hundredth of the image and 1 everywhere: twice, so that 120 do not saturate.
+
+    Nineteen of twenty changed values are 1; they alone would ask for eight times.
+    """
+    before = np.full((100, 100, 3), 100, np.uint8)
+    after = before + 1
+    after[40:50, 40:50] = 160
+    change, gain = visible_change(after, before)
+    assert gain == 2
+    assert change.max() < 255
+
+
+def test_a_sparkle_does_not_hide_a_contact() -> None:
+    """One pixel of +150 beside a hundred of +15: it saturates, they are strengthened 8 times."""
+    before = np.full((100, 100, 3), 100, np.uint8)
+    after = before.copy()
+    after[40:50, 40:50] = 115
+    after[0, 0] = 250
+    change, gain = visible_change(after, before)
+    assert gain == 8
+    assert tuple(change[45, 45]) == (248, 248, 248)
+
+
 def test_a_plain_grey_difference_says_so() -> None:
     """Of a frame that changes nothing beyond rounding; not of the background, nor of a real one."""
     given = frames()

@@ -176,7 +176,7 @@ def test_mitsuba_reads_the_scene(tmp_path: Path, mesh: MembraneMesh) -> None:
 
 
 def test_the_notice_names_what_the_scene_leaves_out() -> None:
-    """Markers, the photograph and further cameras, where the design has them."""
+    """Markers, ambient light, the photograph and further cameras, where the design has them."""
     plain = SensorDesign()
     assert scene_notice(plain) == ""
     photo = shipped_photos()["geltip_idle_640x480.png"]
@@ -185,6 +185,7 @@ def test_the_notice_names_what_the_scene_leaves_out() -> None:
         "the scene of Mitsuba leaves out markers and the photographed background"
     )
     assert scene_notice(plain.replace("optics.cameras", (TURNED,))).endswith("further cameras")
+    assert scene_notice(plain.replace("optics.ambient.power", 0.2)).endswith("the ambient light")
 
 
 @pytest.mark.slow

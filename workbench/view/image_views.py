@@ -19,6 +19,8 @@ ROUNDING_GREY = 1
 """Change of the grey level that rounding alone can make."""
 MOST_GAIN = 8
 """A change is strengthened so much at most."""
+SATURATING = 0.1
+"""Share of the whole change in grey levels that may saturate."""
 ARROW_SHARE = 0.08
 """Length of the longest arrow over the width of the image, at most."""
 
@@ -113,11 +115,14 @@ def looked(
 def visible_change(image: np.ndarray, background: np.ndarray) -> tuple[np.ndarray, int]:
     """The change about mid grey, and the factor that makes it visible (at most 8).
 
-    The brightest twentieth of the changed pixels may saturate, as one sparkle would hide the rest.
+    What saturates is a tenth of the change at most, as one sparkle would hide the rest. Counted by
+    pixels instead, a faint change all over the image would have a strong contact blown out.
     """
     change = image.astype(np.int16) - background.astype(np.int16)
-    size = np.abs(change[change != 0])
-    gain = max(1, min(MOST_GAIN, int(127 // np.percentile(size, 95)))) if size.size else 1
+    largest_first = -np.sort(-np.abs(change), axis=None)
+    together = np.cumsum(largest_first, dtype=np.int64)
+    most = int(largest_first[np.searchsorted(together, SATURATING * together[-1])])
+    gain = max(1, min(MOST_GAIN, 127 // most)) if most else 1
     return np.clip(128 + gain * change, 0, 255).astype(np.uint8), gain
 
 

@@ -1,9 +1,10 @@
 """Quasi-static presses, frame by frame, one or many at once.
 
 Each frame moves the object along its path in a short ramp and then relaxes until the forces
-balance. Where the path goes straight on, the displacement is first extrapolated along it. A frame
-has settled when the out-of-balance force is below `tolerance` of the load, its sum below half a
-percent, and the reaction has stopped changing (`load`).
+balance; where it rubs, a long frame does so every `run.INCREMENT_MM`. Where nothing rubs and the
+path goes straight on, the displacement is first extrapolated along it. A frame has settled when the
+out-of-balance force is below `tolerance` of the load, its sum below half a percent, and the
+reaction has stopped changing (`load`).
 Many presses are relaxed in one launch; each settles, moves on and fails by itself.
 Left out: self-contact, inertia, viscosity; speed enters nowhere.
 """
@@ -29,6 +30,8 @@ from workbench.core.result.sensing import Contact
 PATIENCE = 300
 """Substeps without a lower residual before the fictitious masses are doubled."""
 MOST_RETRIES = 4
+ENOUGH = 300
+"""Substeps after which a state within a frame is left, settled or not."""
 
 
 def solve(problems: Sequence[Problem], *, monitor: Monitor = silent) -> list[Contact | SolveError]:
@@ -162,9 +165,11 @@ class Solver:
             change_N = np.linalg.norm(balances.reaction_N - self.before_N, axis=1)
             change = change_N / self.load.of_reaction(balances, load_N)
         self.before_N[looked] = balances.reaction_N[looked]
-        still = looked & (change < FORCE_CHANGE) & self.load.balanced(balances, load_N)
+        passing = self._passing()
+        calm = (change < FORCE_CHANGE) & self.load.balanced(balances, load_N)
+        still = looked & (calm | passing)
         if still.any():
-            looked &= ~self._close(still)
+            looked &= ~self._close(still, passing)
         lower = looked & (self.residual < self.lowest)
         self.lowest[lower] = self.residual[lower]
         self.lowest_at[lower] = self.spent[lower]
@@ -178,12 +183,17 @@ class Solver:
             error = self.runs[case].unsettled(float(self.residual[case]), net, float(change[case]))
             self.end(case, error)
 
-    def _close(self, still: np.ndarray) -> np.ndarray:
+    def _passing(self) -> np.ndarray:
+        """Which presses are within a frame and have rested there long enough, (B,) bool."""
+        within = np.array([run.on_the_way for run in self.runs])
+        return within & (self.spent >= ENOUGH)
+
+    def _close(self, still: np.ndarray, passing: np.ndarray) -> np.ndarray:
         """End the frame of presses whose forces balance where the nodes are now; which did."""
         # The balance was from before the last move.
         final = self.relaxation.evaluate(still)
         load_N = self._load_N(final, still & final.finite)
-        settled = still & final.finite & self.load.balanced(final, load_N)
+        settled = still & final.finite & (self.load.balanced(final, load_N) | passing)
         for case in np.flatnonzero(still).tolist():
             if not final.finite[case]:
                 self._unstable(case)
@@ -198,6 +208,12 @@ class Solver:
         if not np.isfinite(self.relaxation.snapshot(case)).all():
             self._unstable(case)
             return
+        self.retries[case] = 0
+        self.relaxation.relieve(case)
+        if run.on_the_way:
+            run.go_on()
+            self._begin(case)
+            return
         outcome = self.read_frame(case, balance, load_N)
         try:
             check_frame(outcome, problem.approach, frame, grid_mm=problem.domain.grid_mm)
@@ -206,8 +222,6 @@ class Solver:
             return
         run.finish(outcome)
         self.load.peak_N[case] = max(self.load.peak_N[case], load_N)
-        self.retries[case] = 0
-        self.relaxation.relieve(case)
         if run.frame < problem.approach.frame_count:
             self._begin(case)
         else:

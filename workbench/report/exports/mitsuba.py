@@ -35,6 +35,7 @@ def notice(design: SensorDesign) -> str:
     check_scene(place_leds(optics.ring, optics.lamps), optics.camera)
     held = {
         "markers": optics.markers.visible,
+        "the ambient light": optics.ambient.power > 0.0,
         "the photographed background": optics.background is not None,
         "further cameras": bool(optics.cameras),
     }
