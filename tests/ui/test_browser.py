@@ -88,6 +88,7 @@ def test_cancel_stops_a_press_within_three_seconds(
     assert time.monotonic() - clicked < 3.5
     page.get_by_text("Contact ○").first.wait_for()
     set_number(page, "Frames", 1)
+    wait_until(lambda: slider_value(page, "Frames") == 1, 10, "one frame is asked for")
     button(page, "Run press").click()
     wait_until(lambda: page.get_by_text("Contact ✓").count(), 180, "the next press is done")
 

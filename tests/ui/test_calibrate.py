@@ -140,6 +140,7 @@ def test_from_photographs_to_the_calibrated_design(
     choose(page, "Used to", "hold it out as a test")
     wait_until(says(page, re.compile("6 photographs of balls, 1 held out")), 20, "held out")
     choose(page, "Lights are", "the design's own")
+    choose(page, "Fitted are", "powers and colours of the lights")
     press(page, "Calibrate")
     button(page, "Stop calibration").wait_for(timeout=20_000)
     wait_until(says(page, re.compile("predicted to")), CALIBRATED_S, "it is calibrated")

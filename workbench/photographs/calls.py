@@ -83,7 +83,8 @@ class Calibrate:
     folder: Path
     held_out: tuple[str, ...]
     lights: str
-    """As `workbench.calibration.calibrate` takes it."""
+    refining: str
+    """As `workbench.calibration.calibrate` takes them."""
     out: Path
 
     @property
@@ -113,7 +114,14 @@ class Calibrate:
         table = (self.folder / TABLE).read_bytes()
         photos = read_photo_set(self.folder, self.held_out)
         span = part(monitor, 0.0, 0.97)
-        found = calibrate(self.design, photos, store, lights=self.lights, monitor=span)
+        found = calibrate(
+            self.design,
+            photos,
+            store,
+            lights=self.lights,
+            refining=self.refining,
+            monitor=span,
+        )
         monitor(0.97, "report")
         prepare(self.out, clear=FILES)
         write_calibration(self.out, found, photos.idle)

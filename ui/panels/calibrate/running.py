@@ -22,6 +22,11 @@ LIGHTS = {
     "looked for around the body": "unknown",
 }
 """Words, and what the calibration calls it."""
+FITTED = {
+    "all that the photographs tell": "all",
+    "powers and colours of the lights": "powers",
+}
+"""The same of what is fitted."""
 STOPPED = "Stopped; *Calibrate* goes on where it was."
 
 
@@ -38,6 +43,8 @@ class RunFolder:
         with self.folder:
             hint = "Where the design's LEDs are not those of the sensor, have them looked for"
             self.lights = gui.add_dropdown("Lights are", tuple(LIGHTS), hint=hint)
+            hint = "Powers and colours alone: in a third of the time, camera and LEDs stay in place"
+            self.fitted = gui.add_dropdown("Fitted are", tuple(FITTED), hint=hint)
             hint = "Minutes: balls are pressed, light is traced, both are stored"
             self.start = gui.add_button("Calibrate", icon=viser.Icon.ADJUSTMENTS, hint=hint)
             self.start.on_click(guarded(self._begin))
@@ -68,6 +75,7 @@ class RunFolder:
             folder=kept.folder,
             held_out=kept.held_out,
             lights=LIGHTS[self.lights.value],
+            refining=FITTED[self.fitted.value],
             out=kept.out,
         )
         self.ending = ""
