@@ -68,7 +68,7 @@ def press(given: PressInputs, *, monitor: Monitor) -> Contact:
 STAGE = Stage(
     name="press",
     label="Contact",
-    version=7,
+    version=8,
     place=7,
     lane="sim",
     run=press,

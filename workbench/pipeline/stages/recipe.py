@@ -68,7 +68,7 @@ def recipe(given: RecipeInputs, *, monitor: Monitor) -> Recipe:
 STAGE = Stage(
     name="recipe",
     label="Recipe",
-    version=3,
+    version=4,
     place=16,
     lane="cad",
     run=recipe,
