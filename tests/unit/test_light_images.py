@@ -15,6 +15,7 @@ from workbench.proof.validation.optics.light_images import (
     flat_exposure,
     reference,
     score,
+    true_gain,
 )
 from workbench.proof.validation.optics.light_scenes import SCENES
 
@@ -36,6 +37,17 @@ def test_the_gain_is_that_of_least_squares() -> None:
     truth[0, 0] = 2.0
     assert fitted_gain(truth / 2.0, truth, WHOLE) == pytest.approx(2.0)
     assert fitted_gain(0.0 * truth, truth, WHOLE) == 0.0
+
+
+def test_noise_of_a_bake_does_not_count_as_gain() -> None:
+    """Noise of .3 of a change that is right: least squares read .92, a pair of bakes 1.00."""
+    random = np.random.default_rng(0)
+    truth = random.normal(size=(200, 200, 3))
+    one, other = (truth + 0.3 * random.normal(size=truth.shape) for _ in range(2))
+    assert fitted_gain(one, truth, WHOLE) == pytest.approx(1.0 / 1.09, abs=0.01)
+    assert true_gain(one, other, truth) == pytest.approx(1.0, abs=0.01)
+    assert true_gain(2.0 * one, 2.0 * other, truth) == pytest.approx(0.5, abs=0.01)
+    assert true_gain(0.0 * one, other, truth) == 0.0
 
 
 def test_the_box_has_six_pixels_about_the_dent_and_stays_in_the_image() -> None:

@@ -72,6 +72,23 @@ def fitted_gain(change: np.ndarray, truth: np.ndarray, box: Box) -> float:
     return float((ours * theirs).sum()) / square if square > 0.0 else 0.0
 
 
+def true_gain(one: np.ndarray, other: np.ndarray, truth: np.ndarray) -> float:
+    """The scalar g that brings g times a model's change nearest to the true one, noise apart.
+
+    Noise of what is fitted makes least squares read too little: g falls by its share of the square.
+    Two bakes from different photons have noises that know nothing of each other (an instrumental
+    variable; Fuller, Measurement Error Models, 1987, section 1.4).
+
+    Args:
+        one: Change of one bake, (H, W, 3).
+        other: Change of another, alike.
+        truth: True change, alike.
+    """
+    ours = np.asarray(one, np.float64), np.asarray(other, np.float64)
+    square = float((ours[0] * ours[1]).sum())
+    return float(((ours[0] + ours[1]) * truth).sum()) / (2.0 * square) if square > 0.0 else 0.0
+
+
 def box_around(uv_px: np.ndarray, size_px: tuple[int, int]) -> Box:
     """Rows and columns about pixel coordinates (N, 2), with a margin, inside (rows, columns)."""
     rows, columns = size_px

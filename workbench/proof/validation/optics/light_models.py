@@ -4,6 +4,7 @@ For each scene, dent and model two rows named by the model: SSIM and PSNR in the
 the null (the background) and the ceiling (half of the photons against the other half). `hybrid` and
 `table` are baked with three seeds, and the worst counts. On the finger one scalar gain per scene is
 fitted on the sphere, the other dents are held out; on trunk and paw the physical models get none.
+Whether that gain is near 1 is asked of pairs of seeds, as noise of one bake would count as gain.
 Asked is what the project set itself: on the finger `hybrid` at most 0.012 below the ceiling and 38
 dB, `table` 0.02 below; on trunk and paw `hybrid` 0.98 and 36 dB; both better than the null. On the
 narrow lobe of ink `hybrid` shall reach 0.94 and 30 dB, a floor set after measuring: dents come out
@@ -17,6 +18,7 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -31,7 +33,13 @@ from workbench.core.result.light import LightField, NormalTable
 from workbench.pipeline.stages.bake import BakeInputs, bake
 from workbench.pipeline.stages.table import TableInputs, table
 from workbench.proof.row import Row, bounded, failed, stated
-from workbench.proof.validation.optics.light_images import Score, fitted_gain, reference, score
+from workbench.proof.validation.optics.light_images import (
+    Score,
+    fitted_gain,
+    reference,
+    score,
+    true_gain,
+)
 from workbench.proof.validation.optics.light_scenes import (
     INK,
     SCENES,
@@ -68,6 +76,8 @@ class Rendered:
     """Fitted on the sphere; 1 where none is allowed."""
     fitted: float
     """Fitted on the sphere in any case."""
+    change: np.ndarray
+    """What the sphere changes in its box, (H, W, 3)."""
     rest: Score
     """Absolute image of the undeformed skin, without any gain."""
     dents: dict[str, Score]
@@ -162,15 +172,28 @@ def _rest_rows(scene: LightScene, model: LightModel, shown: list[Rendered]) -> I
             yield stated(name, of, value, unit=unit, ceiling=best)
         else:
             yield bounded(name, of, value, unit=unit, limit=limit, sense="min", ceiling=best)
-    gains = [one.fitted for one in shown]
-    off = max(gains, key=lambda gain: abs(np.log(gain)) if gain > 0.0 else np.inf)
-    case = f"{model.value}, {scene.name}, fitted on the sphere, farthest from 1 of {len(gains)}"
+    case = f"{model.value}, {scene.name}, fitted on the sphere, farthest from 1 of {len(shown)}"
     if model is LightModel("hybrid") and scene.body == "finger" and scene.coating != INK:
         low, high = GAINS
-        inside = f"{case}; limits {low:g} to {high:g}"
+        off = _farthest(_true_gains(scene, shown))
+        inside = f"{case} pairs of seeds; limits {low:g} to {high:g}"
         # Distance to the nearer limit: positive inside.
         yield bounded("gain", inside, min(off - low, high - off), unit="1", limit=0.0, sense="min")
-    yield stated("gain_value", case, off, unit="1")
+        yield stated("gain_value", f"{case} pairs of seeds", off, unit="1")
+    yield stated("gain_value", f"{case} seeds", _farthest([one.fitted for one in shown]), unit="1")
+
+
+def _true_gains(scene: LightScene, shown: list[Rendered]) -> list[float]:
+    """The gain, noise of the bake apart, by each pair of seeds."""
+    frames = reference(scene.name).frames
+    box = frames["sphere"].box
+    truth = (frames["sphere"].light - frames["flat"].light)[box]
+    return [true_gain(a.change, b.change, truth) for a, b in itertools.combinations(shown, 2)]
+
+
+def _farthest(gains: list[float]) -> float:
+    """The gain that is farthest from 1, as a factor."""
+    return max(gains, key=lambda gain: abs(np.log(gain)) if gain > 0.0 else np.inf)
 
 
 def _worst(scores: list[Score]) -> Score:
@@ -203,7 +226,8 @@ def rendered(scene: LightScene, model: LightModel, seed: int) -> Rendered:
         for box in (every.frames[name].box,)
     }
     whole = score(rest, truth.light, truth.box)
-    return Rendered(gain=gain, fitted=fitted, rest=whole, dents=dents)
+    change = (images["sphere"] - rest)[sphere.box]
+    return Rendered(gain=gain, fitted=fitted, change=change, rest=whole, dents=dents)
 
 
 def _lit(
