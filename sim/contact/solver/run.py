@@ -91,10 +91,10 @@ class Run:
         if self.attempt == 0 and self.increment == 0:
             self._begun_s = time.perf_counter()
             self.increments = self._pieces()
+            self.drive()
         predicted = self.attempt == 0 and self._predict()
         if self.attempt:
             self.relaxation.restart(self.number, self._settled[-1])
-        self.drive()
         count = 0 if predicted else self._ramp_length()
         steps = (np.arange(count) + 1.0) / max(count, 1)
         self._ramp = self._rows(steps) if count else np.zeros((0, POSE))

@@ -202,7 +202,7 @@ class Solver:
         return settled | (still & ~final.finite)
 
     def close_frame(self, case: int, balance: Balance, load_N: float) -> None:
-        """Read a settled frame and go on to the next, or end the press."""
+        """Go on from a settled state: within the frame, or from its end, which is read first."""
         run = self.runs[case]
         problem, frame = run.problem, run.frame
         if not np.isfinite(self.relaxation.snapshot(case)).all():

@@ -43,7 +43,7 @@ class RunFolder:
         with self.folder:
             hint = "Where the design's LEDs are not those of the sensor, have them looked for"
             self.lights = gui.add_dropdown("Lights are", tuple(LIGHTS), hint=hint)
-            hint = "Powers and colours alone: in a third of the time, camera and LEDs stay in place"
+            hint = "Powers and colours alone takes less than half the time; camera and LEDs stay"
             self.fitted = gui.add_dropdown("Fitted are", tuple(FITTED), hint=hint)
             hint = "Minutes: balls are pressed, light is traced, both are stored"
             self.start = gui.add_button("Calibrate", icon=viser.Icon.ADJUSTMENTS, hint=hint)

@@ -68,7 +68,7 @@ def recipe(given: RecipeInputs, *, monitor: Monitor) -> Recipe:
 STAGE = Stage(
     name="recipe",
     label="Recipe",
-    version=4,
+    version=3,
     place=16,
     lane="cad",
     run=recipe,

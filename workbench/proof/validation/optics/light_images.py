@@ -67,9 +67,7 @@ def score(light: np.ndarray, truth: np.ndarray, box: Box) -> Score:
 
 def fitted_gain(change: np.ndarray, truth: np.ndarray, box: Box) -> float:
     """The scalar g that brings g change nearest to the true change in a box."""
-    ours, theirs = change[box].astype(np.float64), truth[box].astype(np.float64)
-    square = float((ours**2).sum())
-    return float((ours * theirs).sum()) / square if square > 0.0 else 0.0
+    return true_gain(change[box], change[box], truth[box])
 
 
 def true_gain(one: np.ndarray, other: np.ndarray, truth: np.ndarray) -> float:
@@ -84,9 +82,9 @@ def true_gain(one: np.ndarray, other: np.ndarray, truth: np.ndarray) -> float:
         other: Change of another, alike.
         truth: True change, alike.
     """
-    ours = np.asarray(one, np.float64), np.asarray(other, np.float64)
-    square = float((ours[0] * ours[1]).sum())
-    return float(((ours[0] + ours[1]) * truth).sum()) / (2.0 * square) if square > 0.0 else 0.0
+    one, other = one.astype(np.float64), other.astype(np.float64)
+    square = float((one * other).sum())
+    return float(((one + other) * truth).sum()) / (2.0 * square) if square > 0.0 else 0.0
 
 
 def box_around(uv_px: np.ndarray, size_px: tuple[int, int]) -> Box:

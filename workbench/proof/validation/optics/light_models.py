@@ -218,7 +218,8 @@ def rendered(scene: LightScene, model: LightModel, seed: int) -> Rendered:
     images = {n: every.exposure * studio.linear(moved[None])[0] for n, moved in frames.items()}
     rest, truth = images.pop("flat"), every.frames["flat"]
     sphere = every.frames["sphere"]
-    fitted = fitted_gain(images["sphere"] - rest, sphere.light - truth.light, sphere.box)
+    change = images["sphere"] - rest
+    fitted = fitted_gain(change, sphere.light - truth.light, sphere.box)
     gain = fitted if scene.body == "finger" or model_of(model).paper else 1.0
     dents = {
         name: score(truth.light + gain * (image - rest), every.frames[name].light, box)
@@ -226,8 +227,7 @@ def rendered(scene: LightScene, model: LightModel, seed: int) -> Rendered:
         for box in (every.frames[name].box,)
     }
     whole = score(rest, truth.light, truth.box)
-    change = (images["sphere"] - rest)[sphere.box]
-    return Rendered(gain=gain, fitted=fitted, change=change, rest=whole, dents=dents)
+    return Rendered(gain=gain, fitted=fitted, change=change[sphere.box], rest=whole, dents=dents)
 
 
 def _lit(
