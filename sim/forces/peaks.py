@@ -132,7 +132,8 @@ def _carried(
 def _acting(skin: Triangles, force_N: np.ndarray) -> np.ndarray:
     """Triangles at a vertex that carries force: all those that such vertices have, (N, 3)."""
     faces = np.asarray(skin.faces)
-    return faces[force_N.any(axis=1)[faces].any(axis=1)]
+    loaded = np.asarray(force_N.any(axis=1))
+    return faces[loaded[faces].any(axis=1)]
 
 
 def _through_discs(

@@ -14,14 +14,17 @@ vertex lies.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse import csr_matrix
 
 from geometry.surface.patches import cut
 from geometry.surface.surface import face_areas, vertex_areas_mm2
 from sim.forces.shares import shares_on
 from workbench.core.result.results import Skin
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_matrix
 
 PATCHES = 3.0
 """Patches to the edge of a triangle of the finer skin."""
@@ -37,8 +40,7 @@ class Spreading:
     def forces(self, force_N: np.ndarray) -> np.ndarray:
         """Forces (K, V, 3), or scalars (K, V), of the one skin on the other, float32."""
         found = [self.matrix @ np.asarray(frame, np.float64) for frame in force_N]
-        shape = (len(force_N), self.matrix.shape[0], *force_N.shape[2:])
-        return np.array(found, np.float32).reshape(shape)
+        return np.array(found, np.float32)
 
 
 def spreading(source: Skin, target: Skin, vertices: np.ndarray) -> Spreading:
@@ -49,6 +51,8 @@ def spreading(source: Skin, target: Skin, vertices: np.ndarray) -> Spreading:
         target: Where they are wanted.
         vertices: Which vertices of the source carry any, shape (V,), bool.
     """
+    from scipy.sparse import csr_matrix
+
     size = len(target.points_mm), len(source.points_mm)
     acting = source.faces[vertices[source.faces].any(axis=1)]
     if not len(acting):

@@ -24,7 +24,7 @@ def transferred(found: ForceField, source: MembraneMesh, target: MembraneMesh) -
         return found
     here = shares_on(source.outer, target.outer.points_mm)
     inner = shares_on(source.inner, target.inner.points_mm)
-    loaded = found.contact_force_N.any(axis=(0, 2))
+    loaded = np.asarray(found.contact_force_N.any(axis=(0, 2)))
     if len(found.pressure_MPa):
         loaded |= found.pressure_MPa.any(axis=0)
     there = spreading(source.outer, target.outer, loaded)

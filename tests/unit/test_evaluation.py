@@ -110,7 +110,7 @@ def test_the_error_is_that_of_numpy_over_everything(data: DataSet) -> None:
 
 
 def test_peaks_are_pressures_and_disc_forces(data: DataSet) -> None:
-    """Right by the oracle; of zero -100 %; of the solver, a fifth too low and wider, about -20 %."""
+    """Right by the oracle, -100 % of zero, too low of the solver, which was made so."""
     chosen = expect_held_out(data, "data")
     rows = scored_states(data, chosen, Target.FORCE, oracle(data, Target.FORCE))
     found = compared(rows).ways

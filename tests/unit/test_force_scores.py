@@ -61,7 +61,7 @@ def test_samples_count_alike_and_the_peak_is_that_of_all() -> None:
 
 
 def test_biases_of_peaks_are_means_of_ratios() -> None:
-    """Pressures 1.2 and 0.9 times too large: +5 %; discs half and right: -25 %; no truth, no say."""
+    """Pressures of 1.2 and 0.9: +5 %; discs of half and all: -25 %; no truth has no say."""
 
     def scored(pressure: float, disc: float, true: float = 1.0) -> Score:
         found = Peaks(peak_MPa=pressure, peak_disc_N=disc)

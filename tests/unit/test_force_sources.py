@@ -13,7 +13,6 @@ from ui.panels.results.source_words import doubt_text, sources_text
 from workbench.core.result.force_field import ForceField, Source
 from workbench.view.force_sources import PAIRS, Forces, Shown, choices, disagreement, totals
 
-
 SKIN = flat(1.0)
 """A square of 10 mm; the forces below act in its middle, where a vertex stands for 1 mm2."""
 MIDDLE = len(SKIN.points_mm) // 2

@@ -86,6 +86,26 @@ def test_only_what_is_asked_for_is_computed_and_kept(project: Path) -> None:
     assert all(outcome.cached for outcome in again.outcomes)
 
 
+def test_fields_of_the_sources_are_arrays_on_the_skin(project: Path) -> None:
+    """Those of the press that is kept: forces sum up to minus the reaction; a misspelt source."""
+    press = wb.Press(depth_mm=0.5, frames=1)
+    results = wb.evaluate(small("finger"), BALL, press, settings=COARSE, project=project)
+    arrays = results.force_arrays("mpm")
+    count = len(arrays["points_mm"])
+    assert arrays["mpm_displacement_mm"].shape == (1, count, 3)
+    assert arrays["mpm_pressure_MPa"].shape == (1, count)
+    reaction_N = arrays["mpm_reaction_N"]
+    away_N = arrays["mpm_contact_force_N"].sum(axis=1, dtype=np.float64) + reaction_N
+    assert np.linalg.norm(away_N) < 1e-6 * np.linalg.norm(reaction_N)
+    assert arrays["mpm_peak_MPa"][0] == arrays["mpm_pressure_MPa"].max()
+    # A ball of 6 mm that is pressed 0.5 mm deep touches about what the disc covers.
+    assert 0.3 < arrays["mpm_peak_disc_N"][0] / np.linalg.norm(reaction_N) <= 1.0
+    with pytest.raises(wb.WorkbenchError, match="no source 'fen'"):
+        results.force_arrays("mpm", "fen")
+    with pytest.raises(wb.WorkbenchError, match="no source of forces is named"):
+        results.force_arrays()
+
+
 def test_a_press_without_a_target_goes_where_the_family_is_touched(project: Path) -> None:
     """On a pad that is its middle; a chosen target stays."""
     chosen = wb.Press(target_mm=(2.0, 1.0, 23.0))
