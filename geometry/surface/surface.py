@@ -25,6 +25,7 @@ __all__ = [
     "on_plane",
     "open_edges",
     "section_outline",
+    "vertex_areas_mm2",
     "vertex_normals",
 ]
 
@@ -65,6 +66,12 @@ def face_areas(points_mm: np.ndarray, faces: np.ndarray) -> np.ndarray:
     corners = np.asarray(points_mm, dtype=np.float64)[faces]
     cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     return 0.5 * np.linalg.norm(cross, axis=1)
+
+
+def vertex_areas_mm2(points_mm: np.ndarray, faces: np.ndarray) -> np.ndarray:
+    """A third of the triangles around each vertex [mm2], shape (V,)."""
+    thirds = np.repeat(face_areas(points_mm, faces) / 3.0, 3)
+    return np.bincount(np.asarray(faces).ravel(), thirds, len(points_mm))
 
 
 def face_normals(points_mm: np.ndarray, faces: np.ndarray) -> np.ndarray:

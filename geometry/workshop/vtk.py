@@ -20,10 +20,9 @@ import numpy as np
 from geometry.surface.stress import von_mises_MPa
 from geometry.surface.transfer import node_regions
 from geometry.volume.skins import region_skin
+from workbench.core.result.force_field import ForceField
 from workbench.core.result.results import Label, LabelledSurface, MembraneMesh, Skin, VolumeMesh
 from workbench.core.result.sensing import Contact
-
-SERIES = "contact.pvd"
 
 
 def volume_file(mesh: VolumeMesh) -> bytes:
@@ -56,7 +55,11 @@ def membrane_file(mesh: MembraneMesh, membrane: LabelledSurface) -> bytes:
 
 
 def contact_files(
-    mesh: MembraneMesh, contact: Contact, depth_mm: Sequence[float]
+    mesh: MembraneMesh,
+    contact: Contact | ForceField,
+    depth_mm: Sequence[float],
+    *,
+    name: str = "contact",
 ) -> dict[str, bytes]:
     """A press as `contact_000.vtp` ..., one for each frame, and `contact.pvd`, which lists them.
 
@@ -66,7 +69,11 @@ def contact_files(
     `cauchy_MPa` has xx, yy, zz, xy, yz, zx, the order in which VTK reads a symmetric tensor.
 
     Args:
+        mesh: The membrane on whose skins the result is.
+        contact: The press by the contact solver or another source of forces; what a source does
+            not know is left out.
         depth_mm: Depth of each frame from first touch [mm], shape (K,).
+        name: First part of the files' names.
     """
     moving = [mesh.outer]
     if contact.inner_mm.shape[1]:
@@ -76,47 +83,54 @@ def contact_files(
     for number, depth in enumerate(depth_mm):
         _put(surface.point_data, _frame_arrays(mesh, contact, number))
         _put(surface.field_data, _frame_numbers(contact, number, depth))
-        files[f"contact_{number:03d}.vtp"] = _xml(surface)
-    files[SERIES] = _series(list(files))
+        files[f"{name}_{number:03d}.vtp"] = _xml(surface)
+    files[f"{name}.pvd"] = _series(list(files))
     return files
 
 
-def _frame_arrays(mesh: MembraneMesh, contact: Contact, frame: int) -> dict[str, np.ndarray]:
-    moved, sliding = contact.displacement_mm[frame], contact.sliding[frame].astype(np.uint8)
+def _frame_arrays(
+    mesh: MembraneMesh, contact: Contact | ForceField, frame: int
+) -> dict[str, np.ndarray]:
+    moved = contact.displacement_mm[frame]
     if contact.inner_mm.shape[1]:
         moved = np.concatenate([moved, contact.inner_mm[frame]])
-        sliding = np.pad(sliding, (0, len(mesh.inner.points_mm)))
-    behind = len(moved) - contact.sliding.shape[1]
+    behind = len(moved) - len(mesh.outer.points_mm)
     # What touches and strains is known on the outer skin; nothing touches the inner one.
     padded = {
         name: np.pad(values, ((0, behind), *[(0, 0)] * (values.ndim - 1)))
         for name, values in _skin_arrays(contact, frame).items()
     }
-    return {"displacement_mm": np.array(moved), "sliding": sliding, **padded}
+    return {"displacement_mm": np.array(moved), **padded}
 
 
-def _skin_arrays(contact: Contact, frame: int) -> dict[str, np.ndarray]:
-    """What a frame says at the outer vertices; the particle method knows only some of it."""
+def _skin_arrays(contact: Contact | ForceField, frame: int) -> dict[str, np.ndarray]:
+    """What a frame says at the outer vertices; some methods and sources know only some of it."""
     names = ("contact_force_N", "pressure_MPa", "cauchy_MPa", "energy_MPa", "slip_mm")
     known = [name for name in names if len(getattr(contact, name))]
     found = {name: getattr(contact, name)[frame] for name in known}
     if "cauchy_MPa" in found:
         found["von_mises_MPa"] = von_mises_MPa(found["cauchy_MPa"])
+    if len(contact.sliding):
+        found["sliding"] = contact.sliding[frame].astype(np.uint8)
     return found
 
 
-def _frame_numbers(contact: Contact, frame: int, depth_mm: float) -> dict[str, np.ndarray]:
-    driven = {}
+def _frame_numbers(
+    contact: Contact | ForceField, frame: int, depth_mm: float
+) -> dict[str, np.ndarray]:
+    known = {}
     if contact.actuator_N.size:
-        driven["actuator_N"] = np.array(contact.actuator_N[frame])
+        known["actuator_N"] = np.array(contact.actuator_N[frame])
+    if len(contact.moment_Nmm):
+        known["moment_Nmm"] = np.array(contact.moment_Nmm[frame])[None]
+    if np.isfinite(contact.residual[frame]):
+        known["residual"] = np.array(contact.residual[frame], dtype=np.float64)[None]
     return {
-        **driven,
+        **known,
         "depth_mm": np.array([depth_mm], dtype=np.float64),
         "reaction_N": np.array(contact.reaction_N[frame])[None],
         "normal_N": np.array(contact.normal_N[frame])[None],
-        "moment_Nmm": np.array(contact.moment_Nmm[frame])[None],
         "indenter_pose": np.array(contact.indenter_pose[frame])[None],
-        "residual": np.array(contact.residual[frame], dtype=np.float64)[None],
     }
 
 

@@ -26,12 +26,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from geometry.surface.surface import face_areas, vertex_normals
 from sim.forces.acquaintance import Acquaintance
 from sim.forces.network.inputs import given_field
 from sim.forces.network.spec import Target
 from sim.forces.network.weights import NetworkWeights
-from sim.forces.transfer import shares_on, transferred
+from sim.forces.peaks import pressure_MPa
+from sim.forces.shares import shares_on
+from sim.forces.transfer import transferred
 from workbench.core.base.errors import StoreError
 from workbench.core.base.monitor import Monitor, silent
 from workbench.core.result.force_field import ForceField, Source
@@ -43,7 +44,6 @@ if TYPE_CHECKING:
 
 REMEDY = "Trust the contact solver, which is shown as well"
 SOLVE = ", or solve by finite elements"
-LEAST_MM2 = 1e-12
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -209,15 +209,11 @@ def _force_field(
         balance=np.full(len(force_N), np.nan),
         converged=np.ones(len(force_N), dtype=bool),
         moment_Nmm=-np.cross(arm_mm, force_N).sum(axis=1),
-        pressure_MPa=_pressure_MPa(skin, force_N, place_mm),
+        pressure_MPa=np.stack(
+            [
+                pressure_MPa(skin, force, moved).astype(np.float32)
+                for force, moved in zip(force_N, moved_mm, strict=True)
+            ]
+        ),
         frame_seconds=seconds,
     )
-
-
-def _pressure_MPa(skin: Skin, force_N: np.ndarray, place_mm: np.ndarray) -> np.ndarray:
-    """Force against the deformed skin's normal per area at rest, (K, V), float32."""
-    third = np.repeat(face_areas(skin.points_mm, skin.faces) / 3.0, 3)
-    area_mm2 = np.bincount(skin.faces.ravel(), third, len(skin.points_mm))
-    inward = -np.stack([vertex_normals(frame_mm, skin.faces) for frame_mm in place_mm])
-    pressing_N = np.einsum("kvi,kvi->kv", force_N, inward)
-    return (pressing_N / np.maximum(area_mm2, LEAST_MM2)).astype(np.float32)

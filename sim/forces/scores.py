@@ -9,16 +9,20 @@ points of all samples.
 Total forces are sums over the points along the axes of the press: along U and V, in which objects
 are sheared, and the normal. The paper's X, Y and Z of total forces are these. Its percentages are
 of the mean size of the actual force; full scale, also given, is the largest.
+
+The largest length at a point belongs to the mesh. What is said of peaks of forces is therefore said
+of pressure and of the force through a disc (`peaks`), whose bias is that of the sizes.
 Source: SimTac, *Performance in mechanical response simulation*.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from sim.forces.peaks import Peaks
 from workbench.core.base.check import expect
 from workbench.core.base.errors import SolveError
 
@@ -39,6 +43,10 @@ class Score:
     """Largest length of the truth at a point."""
     worst: float
     """Largest length of the error at a point."""
+    found_peaks: Peaks | None = None
+    """Of forces: largest pressure and disc force of the field."""
+    true_peaks: Peaks | None = None
+    """The same of the truth."""
 
     @property
     def mae(self) -> float:
@@ -69,15 +77,26 @@ class Summary:
     """Mean size of the true totals: the paper's percentages are of it."""
     total_largest: tuple[float, ...]
     """Largest size of the true totals: full scale."""
+    peak_pressure_bias: float
+    """Mean of the found over the true `peak_MPa`, less 1; NaN where no sample has one."""
+    peak_disc_bias: float
+    """The same of `peak_disc_N`."""
 
 
-def score(found: np.ndarray, truth: np.ndarray, frame: np.ndarray) -> Score:
+def score(
+    found: np.ndarray,
+    truth: np.ndarray,
+    frame: np.ndarray,
+    *,
+    peaks: tuple[Peaks, Peaks] | None = None,
+) -> Score:
     """Compare a field with the truth.
 
     Args:
         found: Vectors at the points of the skin, shape (V, 3).
         truth: By finite elements, shape (V, 3).
         frame: Unit U, V and normal of the press as rows, shape (3, 3).
+        peaks: Of forces, those found and those of the truth.
 
     Raises:
         SolveError: If a value is not finite: it would spoil every mean that it enters.
@@ -101,6 +120,8 @@ def score(found: np.ndarray, truth: np.ndarray, frame: np.ndarray) -> Score:
         true_total=frame @ truth.sum(axis=0),
         peak=_longest(truth),
         worst=_longest(away),
+        found_peaks=None if peaks is None else peaks[0],
+        true_peaks=None if peaks is None else peaks[1],
     )
 
 
@@ -128,7 +149,16 @@ def summary(scores: Sequence[Score]) -> Summary:
         total_mae=_numbers(off.mean(axis=0)),
         total_mean=_numbers(true.mean(axis=0)),
         total_largest=_numbers(true.max(axis=0)),
+        peak_pressure_bias=_bias(scores, lambda peaks: peaks.peak_MPa),
+        peak_disc_bias=_bias(scores, lambda peaks: peaks.peak_disc_N),
     )
+
+
+def _bias(scores: Sequence[Score], size: Callable[[Peaks], float]) -> float:
+    """Mean over samples of a found over a true peak, less 1."""
+    pairs = [(one.found_peaks, one.true_peaks) for one in scores]
+    shares = [size(f) / size(t) - 1.0 for f, t in pairs if f and t and size(t) > 0.0]
+    return float(np.mean(shares)) if shares else float("nan")
 
 
 def ratio(value: float, over: float) -> float:

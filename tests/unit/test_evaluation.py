@@ -109,6 +109,25 @@ def test_the_error_is_that_of_numpy_over_everything(data: DataSet) -> None:
     assert found.ways[Way.MPM].total_mae == pytest.approx(off.tolist(), rel=1e-9)
 
 
+def test_peaks_are_pressures_and_disc_forces(data: DataSet) -> None:
+    """Right by the oracle, -100 % of zero, too low of the solver, which was made so."""
+    chosen = expect_held_out(data, "data")
+    rows = scored_states(data, chosen, Target.FORCE, oracle(data, Target.FORCE))
+    found = compared(rows).ways
+    for bias in ("peak_pressure_bias", "peak_disc_bias"):
+        assert getattr(found[Way.LEARNED], bias) == 0.0
+        assert getattr(found[Way.ZERO], bias) == -1.0
+        assert -0.6 < getattr(found[Way.MPM], bias) < -0.15
+    result = evaluate.FieldResult(target=Target.FORCE, weights="w", samples=tuple(rows))
+    told = tables(result)["peaks"]
+    assert len(told) == len(rows)
+    assert told[0]["learned"] == told[0]["fem"] != told[0]["mpm"]
+    assert told[0]["fem"].keys() == {"peak_MPa", "peak_disc_N"}
+    moved = scored_states(data, chosen[:1], Target.DISPLACEMENT, oracle(data, Target.DISPLACEMENT))
+    result = evaluate.FieldResult(target=Target.DISPLACEMENT, weights="w", samples=tuple(moved))
+    assert tables(result)["peaks"] == []
+
+
 def test_shears_stand_apart_from_presses(data: DataSet) -> None:
     """Two press frames by 0.2 mm, two shear frames by 0.1 mm, at full depth."""
     chosen = expect_held_out(data, "data")

@@ -7,7 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from sim.forces.scores import press_frame, ratio, score, summary
+from sim.forces.peaks import Peaks
+from sim.forces.scores import Score, press_frame, ratio, score, summary
 from workbench.core.base.errors import SolveError
 
 UPRIGHT = np.eye(3)
@@ -57,6 +58,20 @@ def test_samples_count_alike_and_the_peak_is_that_of_all() -> None:
     assert both.total_mae == pytest.approx((0.5, 1.0, 0.5))
     assert both.total_mean == pytest.approx((0.0, 1.5, 3.0))
     assert both.total_largest == (0.0, 2.0, 4.0)
+
+
+def test_biases_of_peaks_are_means_of_ratios() -> None:
+    """Pressures of 1.2 and 0.9: +5 %; discs of half and all: -25 %; no truth has no say."""
+
+    def scored(pressure: float, disc: float, true: float = 1.0) -> Score:
+        found = Peaks(peak_MPa=pressure, peak_disc_N=disc)
+        return score(FOUND, TRUTH, UPRIGHT, peaks=(found, Peaks(peak_MPa=true, peak_disc_N=true)))
+
+    both = summary([scored(1.2, 0.5), scored(0.9, 1.0), scored(0.9, 1.0, 0.0)])
+    assert both.peak_pressure_bias == pytest.approx(0.05)
+    assert both.peak_disc_bias == pytest.approx(-0.25)
+    none = summary([score(FOUND, TRUTH, UPRIGHT)])
+    assert math.isnan(none.peak_pressure_bias) and math.isnan(none.peak_disc_bias)
 
 
 def test_an_error_does_not_cancel_over_samples() -> None:

@@ -7,18 +7,23 @@ import dataclasses
 import numpy as np
 import pytest
 
+from tests.unit.test_force_peaks import flat
 from ui.page.imaging import legend
 from ui.panels.results.source_words import doubt_text, sources_text
 from workbench.core.result.force_field import ForceField, Source
 from workbench.view.force_sources import PAIRS, Forces, Shown, choices, disagreement, totals
 
+SKIN = flat(1.0)
+"""A square of 10 mm; the forces below act in its middle, where a vertex stands for 1 mm2."""
+MIDDLE = len(SKIN.points_mm) // 2
+
 
 def field(moved_mm: float, force_N: float, source: Source = Source.FEM) -> ForceField:
-    """One frame: a skin of four vertices, one of which moves and carries a force, in -Z and X."""
-    displacement = np.zeros((1, 4, 3), np.float32)
-    displacement[0, 0, 2] = -moved_mm
-    force = np.zeros((1, 4, 3), np.float32)
-    force[0, 0] = (0.25 * force_N, 0.0, -force_N)
+    """One frame: the skin's middle vertex moves and carries a force, in -Z and X."""
+    displacement = np.zeros((1, len(SKIN.points_mm), 3), np.float32)
+    displacement[0, MIDDLE, 2] = -moved_mm
+    force = np.zeros((1, len(SKIN.points_mm), 3), np.float32)
+    force[0, MIDDLE] = (0.25 * force_N, 0.0, -force_N)
     return ForceField(
         source=source,
         displacement_mm=displacement,
@@ -35,12 +40,28 @@ def field(moved_mm: float, force_N: float, source: Source = Source.FEM) -> Force
 
 
 def test_totals_split_the_reaction() -> None:
-    """2 N inward with 0.5 N along X: normal 2, tangential 0.5, peak their hypotenuse."""
-    found = totals(Source.FEM, field(1.0, 2.0), 0)
+    """2 N inward with 0.5 N along X: normal 2, tangential 0.5; peaks are those of the skin."""
+    given = field(0.0, 2.0)
+    found = totals(Source.FEM, given, 0, SKIN)
     assert found.normal_N == pytest.approx(2.0)
     assert found.tangential_N == pytest.approx(0.5)
-    assert found.peak_N == pytest.approx(np.hypot(2.0, 0.5), rel=1e-6)
+    # On the vertex's 1 mm2, along the normal of a skin that has not moved.
+    assert found.peak_MPa == pytest.approx(2.0, rel=1e-6)
+    # All of it acts within 1 mm of the vertex but for the corners of six triangles.
+    assert 0.8 * np.hypot(2.0, 0.5) < found.peak_disc_N < np.hypot(2.0, 0.5)
     assert found.residual == pytest.approx(1e-7)
+
+
+def test_the_source_s_own_pressure_is_its_peak() -> None:
+    """0.3 MPa where it says so; without forces of vertices there is no peak, and no error."""
+    count = len(SKIN.points_mm)
+    own = np.full((1, count), 0.3, np.float32)
+    told = dataclasses.replace(field(1.0, 2.0), pressure_MPa=own)
+    assert totals(Source.FEM, told, 0, SKIN).peak_MPa == pytest.approx(0.3)
+    none = dataclasses.replace(field(1.0, 2.0), contact_force_N=np.zeros((0, 0, 3), np.float32))
+    found = totals(Source.MPM, none, 0, SKIN)
+    assert np.isnan(found.peak_MPa) and np.isnan(found.peak_disc_N)
+    assert found.normal_N == pytest.approx(2.0)
 
 
 def test_disagreement_is_relative_to_the_second() -> None:
@@ -61,7 +82,7 @@ def test_a_skin_at_rest_says_nothing() -> None:
 def test_the_reaction_of_learned_forces_has_no_residual() -> None:
     """NaN stands for what is not solved for."""
     learned = dataclasses.replace(field(1.0, 2.0, Source.LEARNED), residual=np.array([np.nan]))
-    assert np.isnan(totals(Source.LEARNED, learned, 0).residual)
+    assert np.isnan(totals(Source.LEARNED, learned, 0, SKIN).residual)
 
 
 MPM = field(1.0, 1.8, Source.MPM)
@@ -98,12 +119,13 @@ def test_sources_and_their_differences_are_offered(
 
 def test_all_sources_stand_in_the_table_and_are_held_against_finite_elements() -> None:
     """1.8 and 2.1 against 2 N: -10 % and +5 %, and the network is named."""
-    text = sources_text({Source.MPM: MPM, Source.FEM: FEM, Source.LEARNED: LEARNED}, 0)
+    text = sources_text({Source.MPM: MPM, Source.FEM: FEM, Source.LEARNED: LEARNED}, 0, SKIN)
     rows = [line for line in text.splitlines() if line.startswith("| ")]
     assert [row.split("|")[1].strip() for row in rows] == [
         *("source", "contact solver", "finite elements", "learned"),
     ]
     assert "| learned | 2.100 | 0.525 |" in text
+    assert "| peak kPa | 2 mm disc mN |" in text
     assert "The contact solver's normal force is -10.0 % from that of finite elements" in text
     assert "The network's normal force is +5.0 % from that of finite elements" in text
     assert "its displacement 100 µm (rms) of 1000" in text
@@ -113,7 +135,7 @@ def test_all_sources_stand_in_the_table_and_are_held_against_finite_elements() -
 def test_without_finite_elements_the_network_is_held_against_the_contact_solver() -> None:
     """2.1 against 1.8 N: +16.7 %; its displacement is the solver's own."""
     learned = dataclasses.replace(LEARNED, displacement_mm=MPM.displacement_mm, note="E doubled")
-    text = sources_text({Source.MPM: MPM, Source.LEARNED: learned}, 0)
+    text = sources_text({Source.MPM: MPM, Source.LEARNED: learned}, 0, SKIN)
     assert "+16.7 % from that of the contact solver, its displacement is the contact" in text
     assert "Note: E doubled" in text
 
@@ -123,6 +145,7 @@ def test_what_is_of_an_earlier_press_is_marked() -> None:
     text = sources_text(
         {Source.MPM: MPM, Source.FEM: FEM, Source.LEARNED: LEARNED},
         0,
+        SKIN,
         stale=(Source.FEM, Source.LEARNED),
     )
     assert text.startswith(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import inspect
+import json
 import subprocess
 import sys
 from pathlib import Path
@@ -13,6 +14,9 @@ import pytest
 
 import workbench as wb
 from workbench.core.design.lighting import LightModel
+from workbench.core.result.force_field import Source
+from workbench.report.source_files import write_sources
+from workbench.system.terminal import Progress
 
 COARSE = wb.ContactSettings(grid_mm=0.8)
 BALL = wb.Indenter("sphere", size_mm=6.0)
@@ -84,6 +88,47 @@ def test_only_what_is_asked_for_is_computed_and_kept(project: Path) -> None:
     again = wb.evaluate(small("finger"), BALL, press, settings=COARSE, project=project)
     np.testing.assert_array_equal(again.contact.reaction_N, force_N)
     assert all(outcome.cached for outcome in again.outcomes)
+
+
+def test_fields_of_the_sources_are_arrays_on_the_skin(project: Path) -> None:
+    """Those of the press that is kept: forces sum up to minus the reaction; a misspelt source."""
+    press = wb.Press(depth_mm=0.5, frames=1)
+    results = wb.evaluate(small("finger"), BALL, press, settings=COARSE, project=project)
+    arrays = results.force_arrays("mpm")
+    count = len(arrays["points_mm"])
+    assert arrays["mpm_displacement_mm"].shape == (1, count, 3)
+    assert arrays["mpm_pressure_MPa"].shape == (1, count)
+    reaction_N = arrays["mpm_reaction_N"]
+    away_N = arrays["mpm_contact_force_N"].sum(axis=1, dtype=np.float64) + reaction_N
+    assert np.linalg.norm(away_N) < 1e-6 * np.linalg.norm(reaction_N)
+    assert arrays["mpm_peak_MPa"][0] == arrays["mpm_pressure_MPa"].max()
+    # A ball of 6 mm that is pressed 0.5 mm deep touches about what the disc covers.
+    assert 0.3 < arrays["mpm_peak_disc_N"][0] / np.linalg.norm(reaction_N) <= 1.0
+    with pytest.raises(wb.WorkbenchError, match="no source 'fen'"):
+        results.force_arrays("mpm", "fen")
+    with pytest.raises(wb.WorkbenchError, match="no source of forces is named"):
+        results.force_arrays()
+
+
+def test_the_last_line_of_json_names_the_files_of_the_sources(
+    project: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Every file is there; peaks of the table are those of the array file."""
+    press = wb.Press(depth_mm=0.5, frames=1)
+    results = wb.evaluate(small("finger"), BALL, press, settings=COARSE, project=project)
+    store, printer = results.project.store, Progress(as_json=True)
+    write_sources(tmp_path, (Source.MPM,), results.design, results.case, store, printer)
+    last = json.loads(capsys.readouterr().out.splitlines()[-1])
+    names = ["sources.csv", "sources.npz", "sources_mpm_000.vtp", "sources_mpm.pvd"]
+    assert last["files"] == names
+    assert sorted(names) == sorted(path.name for path in tmp_path.iterdir())
+    (row,) = last["sources"]
+    arrays = results.force_arrays("mpm")
+    assert row["peak_disc_N"] == arrays["mpm_peak_disc_N"][-1]
+    assert row["peak_MPa"] == pytest.approx(float(arrays["mpm_peak_MPa"][-1]))
+    with np.load(tmp_path / "sources.npz") as file:
+        assert all(np.array_equal(file[name], values) for name, values in arrays.items())
+        assert set(file.files) == set(arrays)
 
 
 def test_a_press_without_a_target_goes_where_the_family_is_touched(project: Path) -> None:

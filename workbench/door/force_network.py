@@ -137,7 +137,7 @@ class ForceNetwork:
 
     def _carry(self, own: Skin, on: Skin | None) -> None:
         """Where the points of each skin lie on the other."""
-        from sim.forces.transfer import shares_on
+        from sim.forces.shares import shares_on
 
         self.points_mm = own.points_mm if on is None else on.points_mm
         self._count = len(own.points_mm)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -113,14 +114,36 @@ class Results:
         Raises:
             DesignError: If there is no such source.
         """
-        known = [item.value for item in Source]
-        if source not in known:
+        (known,) = _known((source,))
+        return self[FORCE_STAGES[known]]
+
+    def force_arrays(self, *sources: Source | str) -> dict[str, np.ndarray]:
+        """Fields, totals and peaks of several sources side by side, on the design's outer skin.
+
+        Of all: `points_mm` (V, 3), `faces` (M, 3), `depth_mm` (K,), `disc_mm`. Of each source,
+        with its name before them, as in `fem_pressure_MPa`: `displacement_mm` and
+        `contact_force_N` (K, V, 3), `pressure_MPa` (K, V), `reaction_N` and `moment_Nmm` (K, 3),
+        `peak_MPa` and `peak_disc_N` (K,). What a source does not know is left out.
+
+        Args:
+            sources: As of `forces`.
+
+        Raises:
+            DesignError: If there is no such source, or none is named.
+        """
+        from workbench.report.source_arrays import source_arrays, source_columns
+        from workbench.view.press_figures import frame_depths_mm
+
+        if not sources:
             raise DesignError(
-                f"there is no source {shown(source)} of forces",
-                hint=suggest(str(source), known),
+                "no source of forces is named",
+                hint=f"give some of {', '.join(Source)}",
                 at="source",
             )
-        return self[FORCE_STAGES[Source(source)]]
+        found = {source: self.forces(source) for source in _known(sources)}
+        depths_mm = frame_depths_mm(self.case.press, next(iter(found.values())))
+        skin = self.mesh.outer
+        return source_arrays(found, source_columns(found, np.array(depths_mm), skin), skin)
 
     def write(self, folder: Path | str) -> dict[str, Any]:
         """Write images, arrays, tables, mould files and a report, as `workbench run` does.
@@ -177,6 +200,19 @@ class Results:
             store = self.project.store
             self._loaded[stage] = None if call is None else store.load(stage, call.key)
         return self._loaded[stage]
+
+
+def _known(sources: Sequence[Source | str]) -> tuple[Source, ...]:
+    """Sources by their names."""
+    known = [item.value for item in Source]
+    for source in sources:
+        if source not in known:
+            raise DesignError(
+                f"there is no source {shown(source)} of forces",
+                hint=suggest(str(source), known),
+                at="source",
+            )
+    return tuple(Source(source) for source in sources)
 
 
 def evaluate(

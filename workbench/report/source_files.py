@@ -1,33 +1,38 @@
-"""`workbench run --sources`: forces of one press from several sources, side by side in a table."""
+"""`workbench run --sources`: forces of one press from several sources, as a table and as fields."""
 
 from __future__ import annotations
 
 import dataclasses
+import io
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from sim.forces.network.spec import Target
+from sim.forces.peaks import DISC_MM, Triangles
 from workbench.core.base.errors import DesignError, shown
 from workbench.core.base.mapping import suggest
 from workbench.core.design.design import SensorDesign
 from workbench.core.press.press_case import PressCase
 from workbench.core.result.force_field import ForceField, Source
+from workbench.core.result.results import MembraneMesh
 from workbench.pipeline.chosen_weights import chosen
 from workbench.pipeline.shipped import shipped_weights
 from workbench.pipeline.store import Store
 from workbench.planning.plan import InlineRunner, evaluate, plan
 from workbench.report.fabrication_tables import plain_numbers
+from workbench.report.source_arrays import source_arrays, source_columns
+from workbench.system.folder import SOURCE_FILES, remove_stale
 from workbench.system.terminal import Progress, complain, say
 from workbench.system.whole_files import write_atomically
 from workbench.view.force_sources import Forces, disagreement, totals
-from workbench.view.forces import Columns, csv_bytes
+from workbench.view.forces import csv_bytes
 from workbench.view.press_figures import frame_depths_mm
 
-FILE = "sources.csv"
+TABLE, ARRAYS = "sources.csv", "sources.npz"
 STAGES = {Source.MPM: "press", Source.FEM: "forces", Source.LEARNED: "learned"}
 """Stages whose results hold each source's forces on the skin of the design."""
 
@@ -72,7 +77,7 @@ def write_sources(
     store: Store,
     printer: Progress,
 ) -> None:
-    """Compute what is asked for and not yet stored, write the table, print the last frame.
+    """Compute what is asked for and not yet stored, write the files, print the last frame.
 
     Raises:
         WorkbenchError: From the first source that fails.
@@ -83,16 +88,17 @@ def write_sources(
         if not outcome.cached:
             printer.done(outcome)
     found: dict[Source, Forces] = {s: store.load(STAGES[s], calls[STAGES[s]].key) for s in sources}
-    depths_mm = frame_depths_mm(case.press, next(iter(found.values())))
-    write_atomically(out / FILE, csv_bytes(source_columns(found, np.array(depths_mm))))
-    rows = last_frame(found)
+    mesh = store.load("mesh", calls["mesh"].key)
+    names = write_fields(out, mesh, found, frame_depths_mm(case.press, next(iter(found.values()))))
+    rows = last_frame(found, mesh.outer)
     if printer.as_json:
-        say(json.dumps({"sources": plain_numbers(rows)}))
+        say(json.dumps({"sources": plain_numbers(rows), "files": names}))
         return
     for row in rows:
         say(
             f"{row['source']:8} normal {row['normal_N']:8.4f} N  tangential "
-            f"{row['tangential_N']:8.4f} N  peak {1e3 * row['peak_N']:7.2f} mN"
+            f"{row['tangential_N']:8.4f} N  peak {1e3 * row['peak_MPa']:7.2f} kPa, "
+            f"{1e3 * row['peak_disc_N']:7.2f} mN in a disc of {DISC_MM:g} mm"
         )
     for row in rows:
         for name in ("notice", "note"):
@@ -100,23 +106,35 @@ def write_sources(
                 complain(f"{name} of {row['source']}: {row[name]}")
 
 
-def source_columns(found: Mapping[Source, Forces], depths_mm: np.ndarray) -> Columns:
-    """Totals of every frame and source by name, each of shape (K,)."""
-    columns: Columns = {"frame": np.arange(1, len(depths_mm) + 1), "depth_mm": depths_mm}
+def write_fields(
+    out: Path, mesh: MembraneMesh, found: Mapping[Source, Forces], depths_mm: Sequence[float]
+) -> list[str]:
+    """Write `sources.csv`, `sources.npz` and the VTK files of each source; returns their names.
+
+    Such files of an earlier run that these do not replace go.
+    """
+    from geometry.workshop.vtk import contact_files
+
+    columns = source_columns(found, np.array(depths_mm), mesh.outer)
+    buffer = io.BytesIO()
+    arrays = source_arrays(found, columns, mesh.outer)
+    np.savez_compressed(buffer, **arrays)  # pyright: ignore[reportArgumentType]
+    files = {TABLE: csv_bytes(columns), ARRAYS: buffer.getvalue()}
     for source, forces in found.items():
-        rows = [totals(source, forces, frame) for frame in range(len(depths_mm))]
-        for name in ("normal_N", "tangential_N", "peak_N"):
-            values = np.array([getattr(row, name) for row in rows])
-            columns[f"{source.value}_{name}"] = values
-    return columns
+        files |= contact_files(mesh, forces, depths_mm, name=f"sources_{source.value}")
+    remove_stale(out, SOURCE_FILES, keep=files)
+    for name, content in files.items():
+        write_atomically(out / name, content)
+    return list(files)
 
 
-def last_frame(found: Mapping[Source, Forces]) -> list[dict[str, Any]]:
-    """Totals of the last frame, and how far each is from finite elements, if those are there."""
+def last_frame(found: Mapping[Source, Forces], skin: Triangles) -> list[dict[str, Any]]:
+    """Totals and peaks of the last frame, and how far each is from finite elements, if there."""
     truth, rows = found.get(Source.FEM), []
     for source, forces in found.items():
         frame = len(forces.reaction_N) - 1
-        row = {**dataclasses.asdict(totals(source, forces, frame)), "source": source.value}
+        row = {**dataclasses.asdict(totals(source, forces, frame, skin)), "source": source.value}
+        row["disc_mm"] = DISC_MM
         if truth is not None and source is not Source.FEM:
             apart = disagreement(forces, truth, frame)
             row["normal_share"] = apart.normal_share

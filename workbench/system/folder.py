@@ -7,6 +7,7 @@ from collections.abc import Container, Iterable
 from pathlib import Path
 
 from workbench.core.base.errors import DesignError, StoreError
+from workbench.core.result.force_field import Source
 from workbench.system.whole_files import write_atomically
 
 NUMBER = "[0-9][0-9][0-9]"
@@ -16,11 +17,17 @@ IMAGE_FILES = (
 )
 """All that a run writes of one camera; nothing else may be removed, it is the designer's own."""
 CAMERA_FILES = tuple(f"camera_[2-8]/{pattern}" for pattern in IMAGE_FILES)
+SOURCE_FILES = (
+    *("sources.csv", "sources.npz"),
+    *(f"sources_{source}{end}" for source in Source for end in ("_*.vtp", ".pvd")),
+)
+"""What a run with `--sources` writes."""
 RUN_FILES = (
     *("summary.json", "report.html", "maps.npz"),
     *IMAGE_FILES,
     *CAMERA_FILES,
-    *("contact.npz", "poses.csv", "forces.csv", "slip.csv", "sources.csv"),
+    *("contact.npz", "poses.csv", "forces.csv", "slip.csv"),
+    *SOURCE_FILES,
     *("mesh.vtu", "membrane.vtp", "contact_*.vtp", "contact.pvd"),
     *(
         f"{folder}/*.{ending}"

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sim.forces.peaks import Peaks, Triangles, largest_disc_N, peaks
 from workbench.core.result.force_field import ForceField, Source
 from workbench.core.result.sensing import Contact
 
@@ -51,8 +52,10 @@ class Totals:
     source: Source
     normal_N: float
     tangential_N: float
-    peak_N: float
-    """Largest force of a vertex."""
+    peak_MPa: float
+    """Largest contact pressure at a vertex."""
+    peak_disc_N: float
+    """Largest force through a disc of `DISC_MM` anywhere on the skin at rest."""
     residual: float
     """NaN where nothing is solved for."""
 
@@ -86,18 +89,33 @@ def choices(found: Mapping[Source, Forces]) -> list[Shown]:
     return possible
 
 
-def totals(source: Source, forces: Forces, frame: int) -> Totals:
-    """Numbers of frame `frame`, counted from 0."""
+def totals(source: Source, forces: Forces, frame: int, skin: Triangles) -> Totals:
+    """Numbers of frame `frame`, counted from 0, on the skin at rest."""
     reaction_N = np.asarray(forces.reaction_N[frame])
     along_N = float(reaction_N @ forces.normal)
-    nodal_N = np.linalg.norm(np.asarray(forces.contact_force_N[frame]), axis=1)
+    found = frame_peaks(forces, frame, skin)
     return Totals(
         source=source,
         normal_N=along_N,
         tangential_N=float(np.linalg.norm(reaction_N - along_N * np.asarray(forces.normal))),
-        peak_N=float(nodal_N.max(initial=0.0)),
+        peak_MPa=found.peak_MPa,
+        peak_disc_N=found.peak_disc_N,
         residual=float(forces.residual[frame]),
     )
+
+
+def frame_peaks(forces: Forces, frame: int, skin: Triangles) -> Peaks:
+    """Peaks of frame `frame`, counted from 0; NaN where the source knows no forces of vertices.
+
+    The pressure is the source's own, where it has one.
+    """
+    if not len(forces.contact_force_N):
+        return Peaks(peak_MPa=float("nan"), peak_disc_N=float("nan"))
+    force_N = np.asarray(forces.contact_force_N[frame], np.float64)
+    if not len(forces.pressure_MPa):
+        return peaks(skin, force_N, np.asarray(forces.displacement_mm[frame]))
+    peak_MPa = float(np.max(forces.pressure_MPa[frame], initial=0.0))
+    return Peaks(peak_MPa=peak_MPa, peak_disc_N=largest_disc_N(skin, force_N))
 
 
 def disagreement(one: Forces, other: Forces, frame: int) -> Disagreement:

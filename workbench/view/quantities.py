@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from geometry.surface import surface
 from geometry.surface.stress import von_mises_MPa
 from workbench.core.result.results import Skin
 from workbench.view.force_sources import Forces
@@ -145,10 +146,7 @@ def shear_MPa(skin: Skin, contact: Forces) -> np.ndarray:
 
 def vertex_areas_mm2(skin: Skin) -> np.ndarray:
     """A third of the triangles around each vertex [mm2], shape (V,), never zero."""
-    a, b, c = (np.asarray(skin.points_mm)[skin.faces[:, k]] for k in range(3))
-    third = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 6.0
-    area = np.bincount(skin.faces.ravel(), np.repeat(third, 3), len(skin.points_mm))
-    return np.maximum(area, LEAST_TOP)
+    return np.maximum(surface.vertex_areas_mm2(skin.points_mm, skin.faces), LEAST_TOP)
 
 
 def largest_arrow_N(skin: Skin, contact: Forces) -> float:

@@ -207,7 +207,7 @@ class ResultsPanel:
         self.contact, self.press, self.note = contact, press, note
         self.key = self.desk.session.calls()["press"].key
         self.forces.load(press, contact)
-        self.sources.take_contact(contact)
+        self.sources.take_contact(contact, mesh.outer)
         self.timeline.follow(len(contact.reaction_N))
         self._show_forces(self.timeline.number)
         self.desk.scene.show_frame(self.timeline.number)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
 
+from sim.forces.peaks import DISC_MM, Triangles
 from ui.page.colours import AMBER
 from ui.page.plain import plain
 from workbench.core.press.fem import DRAFT_MM, QUALITY_MM
@@ -29,23 +30,33 @@ WHOSE = {
     Source.FEM: "Finite elements'",
     Source.LEARNED: "The network's",
 }
-HEAD = ("| source | normal N | tangential N | peak mN |", "|---|---|---|---|")
+HEAD = (
+    f"| source | normal N | tangential N | peak kPa | {DISC_MM:g} mm disc mN |",
+    "|---|---|---|---|---|",
+)
+"""The disc: the largest force that passes through one of that diameter anywhere on the skin."""
 
 
 def sources_text(
-    found: Mapping[Source, Forces], frame: int, *, stale: Collection[Source] = ()
+    found: Mapping[Source, Forces],
+    frame: int,
+    skin: Triangles,
+    *,
+    stale: Collection[Source] = (),
 ) -> str:
     """What is said of all sources in a frame, counted from 0, as Markdown.
 
     Args:
         found: The sources that there are, the contact solver among them.
         frame: Which.
+        skin: Of the design, at rest.
         stale: Those of an earlier design or press.
     """
     rows = [
         f"| {WORDS[row.source].value} | {number(row.normal_N, '.3f')} | "
-        f"{number(row.tangential_N, '.3f')} | {number(1e3 * row.peak_N, '.1f')} |"
-        for row in (totals(source, forces, frame) for source, forces in found.items())
+        f"{number(row.tangential_N, '.3f')} | {number(1e3 * row.peak_MPa, '.1f')} | "
+        f"{number(1e3 * row.peak_disc_N, '.0f')} |"
+        for row in (totals(source, forces, frame, skin) for source, forces in found.items())
     ]
     parts = [
         *(STALE.format(*AGAIN[source]) for source in stale),

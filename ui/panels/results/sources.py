@@ -11,6 +11,7 @@ from ui.panels.results.source_words import NONE, doubt_text, sources_text
 from ui.panels.simulate.network import NetworkPart
 from workbench.core.press.fem import DRAFT_MM, QUALITY_MM
 from workbench.core.result.force_field import ForceField, Source
+from workbench.core.result.results import Skin
 from workbench.core.result.sensing import Contact
 from workbench.view.force_sources import PAIRS, Forces, Shown, choices
 
@@ -25,6 +26,7 @@ class SourcesFolder:
     def __init__(self, desk: Desk) -> None:
         self.desk = desk
         self.contact: Contact | None = None
+        self.skin: Skin | None = None
         self.others: dict[Source, ForceField] = {}
         self._frame = 0
         gui, fields = desk.server.gui, desk.fields
@@ -59,9 +61,9 @@ class SourcesFolder:
         if event.client is not None:
             self._put_on_skin()
 
-    def take_contact(self, contact: Contact | None) -> None:
-        """Another press: what other sources found of the one before is not of this one."""
-        self.contact = contact
+    def take_contact(self, contact: Contact | None, skin: Skin | None = None) -> None:
+        """Another press on a skin: what other sources found of the one before is not of this."""
+        self.contact, self.skin = contact, skin
         self.others.clear()
         self._offer()
         if contact is not None and self.desk.session.calls().keys() & STAGES.keys():
@@ -107,10 +109,12 @@ class SourcesFolder:
     def tell(self, frame: int) -> None:
         """Show the numbers of frame `frame`, counted from 0, of all sources."""
         self._frame = frame
-        found = self.found
-        if not self.others or any(frame >= len(forces.reaction_N) for forces in found.values()):
+        found, skin = self.found, self.skin
+        if skin is None or not self.others:
+            return
+        if any(frame >= len(forces.reaction_N) for forces in found.values()):
             return
         stale = [s for stage, s in STAGES.items() if s in found and not self.desk.current(stage)]
-        text = sources_text(found, frame, stale=stale)
+        text = sources_text(found, frame, skin, stale=stale)
         if self.table.content != text:
             self.table.content = text

@@ -27,7 +27,7 @@ def options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--strict", action="store_true", help=text)
     text = "write depth, normals and masks of every pixel: frames.npz, some 4 MB an image"
     sub.add_argument("--image-fields", action="store_true", help=text)
-    text = "totals side by side in sources.csv: mpm, learned (seconds), fem (minutes)"
+    text = "forces side by side in sources.csv, sources.npz: mpm, learned (seconds), fem (minutes)"
     sub.add_argument("--sources", default="", metavar="S,S", help=text)
     text = "force network of --sources learned (default: what ships)"
     sub.add_argument("--weights", type=Path, metavar="FILE", help=text)

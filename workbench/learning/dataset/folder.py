@@ -61,12 +61,13 @@ class SkinData:
 
 def skin_data(skin: Skin) -> SkinData:
     """What a data set keeps of a skin; each triangle gives a third of its area to a corner."""
-    from geometry.surface.surface import face_areas
+    from geometry.surface.surface import vertex_areas_mm2
 
-    thirds = np.repeat(face_areas(skin.points_mm, skin.faces) / 3.0, 3)
-    areas = np.bincount(skin.faces.ravel(), thirds, len(skin.points_mm))
     return SkinData(
-        points_mm=skin.points_mm, faces=skin.faces, normals=skin.normals, areas_mm2=areas
+        points_mm=skin.points_mm,
+        faces=skin.faces,
+        normals=skin.normals,
+        areas_mm2=vertex_areas_mm2(skin.points_mm, skin.faces),
     )
 
 

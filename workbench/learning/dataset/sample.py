@@ -18,6 +18,7 @@ from typing import Any
 
 import numpy as np
 
+from sim.forces.peaks import Peaks, Triangles, peaks
 from workbench.core.base.check import expect
 from workbench.core.base.errors import SolveError, StoreError
 
@@ -56,10 +57,9 @@ class Solved:
     """Cauchy stress at the vertices, xx, yy, zz, xy, yz, zx [MPa], shape (V, 6), float32; of the
     FEM only, else (0, 6)."""
 
-    @property
-    def peak_N(self) -> float:
-        """Largest nodal force [N]: what the safety label is made of."""
-        return float(np.linalg.norm(self.contact_force_N, axis=1).max(initial=0.0))
+    def peaks(self, skin: Triangles) -> Peaks:
+        """Largest pressure and disc force, on the skin of the data set: `data.skin`."""
+        return peaks(skin, self.contact_force_N, self.displacement_mm)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+import dataclasses
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 from sim.forces.network.spec import FIELDS, Target
 from sim.forces.network.weights import NetworkWeights
+from sim.forces.peaks import DISC_MM
 from workbench.core.base.errors import SolveError
 from workbench.core.base.monitor import Monitor, part, silent
 from workbench.learning.dataset.cases import Split
@@ -113,7 +115,25 @@ def tables(found: FieldResult) -> dict[str, Any]:
         "shear_stations": _tables(by_station(sheared), station_of),
         "press_depths_mm": _tables(sorted(pressed, key=lambda sample: sample.depth_mm), depth_of),
         "shear_ways_mm": _tables(sorted(sheared, key=lambda sample: sample.shear_mm), shear_of),
+        "peaks": list(_peaks(found.samples)),
     }
+
+
+def _peaks(samples: Iterable[Scored]) -> Iterator[dict[str, Any]]:
+    """A row for each sample of forces: largest pressure and disc force, of all ways and `fem`."""
+    for sample in samples:
+        row: dict[str, Any] = {
+            "case": sample.case.id,
+            "frame": sample.frame,
+            "indenter": sample.case.indenter.value,
+            "split": sample.case.split.value,
+            "disc_mm": DISC_MM,
+        }
+        named = {str(way): score.found_peaks for way, score in sample.scores.items()}
+        named["fem"] = next(score.true_peaks for score in sample.scores.values())
+        known = {name: peaks for name, peaks in named.items() if peaks is not None}
+        if known:
+            yield row | {name: dataclasses.asdict(peaks) for name, peaks in known.items()}
 
 
 def _tables(samples: Iterable[Scored], name: Callable[[Scored], str]) -> dict[str, Any]:

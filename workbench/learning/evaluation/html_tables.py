@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import html
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from sim.forces.network.spec import Target
+from sim.forces.peaks import DISC_MM
 from sim.forces.scores import Summary
 from workbench.learning.evaluation import published
 from workbench.learning.evaluation.evaluate import FieldResult
@@ -116,10 +117,11 @@ def _percent(value: float, of: float) -> float | None:
 
 
 def indenter_table(found: FieldResult) -> str:
-    """Each object: errors of the three ways and ratios."""
+    """Each object: errors of the three ways, ratios, and of forces how far off their peaks are."""
     unit = found.target.unit
     heads = ("object", "split", "samples", f"learned [{unit}]", "contact solver", "zero",
-             "learned / contact solver", "learned / zero")  # fmt: skip
+             "learned / contact solver", "learned / zero",
+             *(head for head, _ in _biases(found.target)))  # fmt: skip
     groups = grouped(found.samples, lambda sample: sample.case.indenter.value)
     first: Mapping[str, Scored] = {
         each.case.indenter.value: each for each in reversed(found.samples)
@@ -132,10 +134,21 @@ def indenter_table(found: FieldResult) -> str:
             *(one.ways[way].mae for way in Way),
             one.error_ratio(Way.LEARNED, Way.MPM),
             one.error_ratio(Way.LEARNED, Way.ZERO),
+            *(100.0 * size(one.learned) for _, size in _biases(found.target)),
         )
         for name, one in sorted(groups.items(), key=lambda item: item[1].learned.mae)
     ]
     return grid(heads, rows)
+
+
+def _biases(target: Target) -> list[tuple[str, Callable[[Summary], float]]]:
+    """What the table of objects says of peaks: of forces only."""
+    if target is not Target.FORCE:
+        return []
+    return [
+        ("peak pressure bias [%]", lambda one: one.peak_pressure_bias),
+        (f"{DISC_MM:g} mm disc force bias [%]", lambda one: one.peak_disc_bias),
+    ]
 
 
 def stiffness_html(

@@ -16,6 +16,7 @@ import numpy as np
 from sim.forces.network.inputs import given_field
 from sim.forces.network.spec import FIELDS, Target
 from sim.forces.network.weights import NetworkWeights
+from sim.forces.peaks import Triangles, peaks
 from sim.forces.scores import Score, Summary, press_frame, ratio, score, summary
 from workbench.core.base.errors import DesignError, StoreError
 from workbench.core.base.monitor import Monitor, silent
@@ -150,8 +151,8 @@ def scored_states(
         monitor(number / len(chosen), f"{case.id}, frame {frame + 1}")
         sample = source.sample(case, frame)
         if all(solved.converged for solved in both(sample)):
-            fields = fields_of(sample, target, learned)
-            found.append(Scored(case=case, frame=frame, scores=scores_of(sample, target, fields)))
+            scores = scores_of(sample, target, fields_of(sample, target, learned), source.skin)
+            found.append(Scored(case=case, frame=frame, scores=scores))
     return found
 
 
@@ -182,12 +183,20 @@ def fields_of(sample: Sample, target: Target, learned: Learned) -> dict[str, np.
     }
 
 
-def scores_of(sample: Sample, target: Target, fields: Mapping[str, np.ndarray]) -> dict[str, Score]:
-    """Fields beside that of the finite elements."""
+def scores_of(
+    sample: Sample, target: Target, fields: Mapping[str, np.ndarray], skin: Triangles
+) -> dict[str, Score]:
+    """Fields beside that of the finite elements; pressures are along these's normals."""
     _, fem = both(sample)
     frame = press_frame(sample.normal, sample.tangent_u)
     truth = getattr(fem, FIELDS[target])
-    return {way: score(field, truth, frame) for way, field in fields.items()}
+    if target is not Target.FORCE:
+        return {way: score(field, truth, frame) for way, field in fields.items()}
+    true = fem.peaks(skin)
+    return {
+        way: score(field, truth, frame, peaks=(peaks(skin, field, fem.displacement_mm), true))
+        for way, field in fields.items()
+    }
 
 
 def compared(samples: Iterable[Scored]) -> Compared:

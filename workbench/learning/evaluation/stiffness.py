@@ -169,7 +169,8 @@ def _one(
         }
         if target is Target.FORCE:
             fields[Tuning.SCALED] = fields[Tuning.SCALED] * np.float32(factor)
-        rows.append(Scored(case=case, frame=frame, scores=scores_of(sample, target, fields)))
+        scores = scores_of(sample, target, fields, source.skin)
+        rows.append(Scored(case=case, frame=frame, scores=scores))
     off, common = _truth_off(source, base, target)
     return StiffnessResult(
         target=target,

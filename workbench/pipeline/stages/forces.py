@@ -53,7 +53,7 @@ def forces(given: ForcesInputs, *, monitor: Monitor) -> ForceField:
 STAGE = Stage(
     name="forces",
     label="Forces",
-    version=1,
+    version=2,
     place=9,
     lane="sim",
     run=forces,

@@ -163,7 +163,7 @@ def foreknown(given: LearnedInputs) -> tuple[str, ...]:
 STAGE = Stage(
     name="learned",
     label="Learned forces",
-    version=1,
+    version=2,
     place=11,
     lane="sim",
     run=learned,
