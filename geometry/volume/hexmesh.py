@@ -16,6 +16,7 @@ from geometry.surface.remesh import remesh
 from geometry.surface.surface import face_areas
 from geometry.surface.transfer import node_regions
 from geometry.volume.hexquality import hex_volumes, scaled_jacobian
+from geometry.volume.ogrid import Pace
 from geometry.volume.relax import relaxed
 from geometry.volume.sheets import Sheets, cap_sheets, offset_sheets
 from geometry.volume.skins import (
@@ -55,8 +56,16 @@ LEAST_QUALITY = 0.05
 """Scaled Jacobian below which a cell spoils any solver that uses it."""
 
 
-def mesh_membrane(solid: Solid, meshing: Meshing, monitor: Monitor = silent) -> MembraneMesh:
+def mesh_membrane(
+    solid: Solid, meshing: Meshing, monitor: Monitor = silent, *, paired: bool = False
+) -> MembraneMesh:
     """Mesh the wall of a membrane: hexahedra and skins, or skins alone with a notice.
+
+    Args:
+        solid: The body.
+        meshing: How fine.
+        monitor: Told the progress.
+        paired: Whether eight cells each should make a larger one (`VolumeMesh.groups`).
 
     Raises:
         MeshingError: If a side of the wall has no face, or remeshing fails.
@@ -66,7 +75,7 @@ def mesh_membrane(solid: Solid, meshing: Meshing, monitor: Monitor = silent) -> 
     monitor(0.0, "casting rays")
     hexes, notice = None, ""
     try:
-        hexes, outer, inner = _hexahedra(solid, meshing, monitor)
+        hexes, outer, inner = _hexahedra(solid, Pace(meshing.hex_mm, paired=paired), monitor)
     except MeshingError as problem:
         monitor(0.5, "remeshing the surface")
         even = remesh(solid.membrane, meshing.hex_mm)
@@ -85,25 +94,25 @@ def mesh_membrane(solid: Solid, meshing: Meshing, monitor: Monitor = silent) -> 
     )
 
 
-def _hexahedra(solid: Solid, meshing: Meshing, monitor: Monitor) -> tuple[VolumeMesh, Skin, Skin]:
+def _hexahedra(solid: Solid, pace: Pace, monitor: Monitor) -> tuple[VolumeMesh, Skin, Skin]:
     """Hexahedra with their outer and inner skin, by the first kind of sheets that does.
 
     Raises:
         MeshingError: If the shape cannot be divided so.
     """
     if is_slab(solid.membrane):
-        return _between(slab_sheets(solid.membrane, meshing.hex_mm), solid, meshing, monitor)
+        return _between(slab_sheets(solid.membrane, pace), solid, pace, monitor)
     try:
-        return _between(cap_sheets(solid.membrane, meshing.hex_mm), solid, meshing, monitor)
+        return _between(cap_sheets(solid.membrane, pace), solid, pace, monitor)
     except MeshingError as problem:
         try:
-            return _between(offset_sheets(solid.membrane, meshing.hex_mm), solid, meshing, monitor)
+            return _between(offset_sheets(solid.membrane, pace), solid, pace, monitor)
         except MeshingError:
             raise problem from None
 
 
 def _between(
-    sheets: Sheets, solid: Solid, meshing: Meshing, monitor: Monitor
+    sheets: Sheets, solid: Solid, pace: Pace, monitor: Monitor
 ) -> tuple[VolumeMesh, Skin, Skin]:
     """Hexahedra between two sheets, with their outer and inner skin.
 
@@ -111,14 +120,14 @@ def _between(
         MeshingError: If the sheets miss part of the body, or a cell is inverted.
     """
     membrane = solid.membrane
-    chord = _chord_share(membrane, meshing.hex_mm)
+    chord = _chord_share(membrane, pace.edge_mm)
     _expect_cover(sheets.inside, sheets.quads, part_of(membrane, Label.INNER), chord)
     if sheets.rim is Label.BASE:
         _expect_cover(sheets.outside, sheets.quads, part_of(membrane, Label.OUTER), chord)
     monitor(0.2, "squaring cells")
     sheets = relaxed(sheets, membrane)
     monitor(0.4, "stacking layers")
-    hexes = _stack(sheets, meshing)
+    hexes = _stack(sheets, pace)
     _expect_near(hexes.volume_mm3, solid.volume_mm3, VOLUME_SHARE + chord, "volume", "mm3")
     skins, node_labels, node_numbers = [], hexes.labels.copy(), hexes.numbers.copy()
     for side, quads in _boundary(sheets, hexes.layers).items():
@@ -137,11 +146,12 @@ def _between(
         layers=hexes.layers,
         volume_mm3=hexes.volume_mm3,
         numbers=node_numbers,
+        groups=hexes.groups,
     )
     return marked, skins[0], skins[1]
 
 
-def _stack(sheets: Sheets, meshing: Meshing) -> VolumeMesh:
+def _stack(sheets: Sheets, pace: Pace) -> VolumeMesh:
     """Hexahedra between two node sheets; only the rim is labelled yet.
 
     Raises:
@@ -150,10 +160,10 @@ def _stack(sheets: Sheets, meshing: Meshing) -> VolumeMesh:
     inside, outside = sheets.inside, sheets.outside
     usual_mm, thick_mm = np.percentile(np.linalg.norm(outside - inside, axis=1), [50.0, 90.0])
     layers = max(
-        FEWEST_LAYERS,
-        round(usual_mm / meshing.hex_mm),
-        math.ceil(thick_mm / (LONGEST_LAYER * meshing.hex_mm)),
+        pace.count(usual_mm, FEWEST_LAYERS), math.ceil(thick_mm / (LONGEST_LAYER * pace.edge_mm))
     )
+    if pace.paired:
+        layers += layers % 2
     share = np.linspace(0.0, 1.0, layers + 1)[:, None, None]
     points = ((1.0 - share) * inside + share * outside).reshape(-1, 3)
     sheet = len(inside)
@@ -169,6 +179,8 @@ def _stack(sheets: Sheets, meshing: Meshing) -> VolumeMesh:
             hint="make the shape smoother or the wall more even",
             at="shape",
         )
+    lower = 2 * len(sheets.quads) * np.arange(layers // 2)[:, None, None]
+    fours = (sheets.groups + lower).reshape(-1, 4)
     labels = np.zeros((layers + 1, sheet), dtype=np.uint8)
     labels[:, sheets.ring] |= np.uint8(sheets.rim)
     return VolumeMesh(
@@ -178,6 +190,7 @@ def _stack(sheets: Sheets, meshing: Meshing) -> VolumeMesh:
         quality=quality.astype(np.float32),
         layers=layers,
         volume_mm3=float(hex_volumes(points, cells).sum()),
+        groups=np.concatenate([fours, fours + len(sheets.quads)], axis=1).astype(np.int32),
     )
 
 

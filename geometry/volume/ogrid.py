@@ -12,6 +12,7 @@ Leaves out: surfaces that the rays meet twice (suckers, pins).
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,6 +28,23 @@ LOWEST_CAP = 0.3
 """Smallest height of the cap's centre over the height of the surface."""
 FEWEST = 4
 """Cells along a side of the top patch, at least."""
+NO_GROUPS = np.zeros((0, 4), dtype=np.int32)
+
+
+@dataclass(frozen=True, slots=True)
+class Pace:
+    """How cells are counted off along a line."""
+
+    edge_mm: float
+    """Edge of a cell."""
+    paired: bool = False
+    """Whether every line has an even number of cells, so that eight cells make a larger one."""
+
+    def count(self, length_mm: float, fewest: int = 1) -> int:
+        """Cells along a length, at least `fewest`."""
+        if self.paired:
+            return 2 * max(math.ceil(fewest / 2), round(length_mm / self.edge_mm / 2.0))
+        return max(fewest, round(length_mm / self.edge_mm))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -51,6 +69,9 @@ class RayGrid:
     """Rays of each cell, counter-clockwise from outside, shape (Q, 4), int32."""
     ring: np.ndarray
     """Rays on the base, in order of azimuth, shape (4n,), int32."""
+    groups: np.ndarray
+    """Four cells that make a larger one, by the corner of it that each has, shape (G, 4); none
+    where cells are not paired."""
 
 
 def axis_of(points_mm: np.ndarray) -> Axis:
@@ -62,15 +83,15 @@ def axis_of(points_mm: np.ndarray) -> Axis:
     return Axis(x_mm=float(x_mm), y_mm=float(y_mm), cap_mm=cap_mm)
 
 
-def ray_grid(surface: CurvedSurface, axis: Axis, spacing_mm: float) -> RayGrid:
-    """Rays that divide a surface into cells of about `spacing_mm`.
+def ray_grid(surface: CurvedSurface, axis: Axis, pace: Pace) -> RayGrid:
+    """Rays that divide a surface into cells of about `pace.edge_mm`.
 
     Raises:
         MeshingError: If a ray misses the surface.
     """
     azimuth_of, perimeter = _azimuth_pace(surface, axis)
     station_of, cap_arc, whole_arc = _meridian_pace(surface, axis)
-    count = max(FEWEST, round(perimeter / spacing_mm / 4))
+    count = pace.count(perimeter / 4.0, FEWEST)
     angle = np.linspace(-np.pi / 4, np.pi / 4, count + 1)
     u, v = (np.tan(grid).ravel() for grid in np.meshgrid(angle, angle, indexing="ij"))
     top_arc = np.arctan(np.hypot(u, v)) / (np.pi / 2) * cap_arc
@@ -78,7 +99,7 @@ def ray_grid(surface: CurvedSurface, axis: Axis, spacing_mm: float) -> RayGrid:
 
     index = np.arange((count + 1) ** 2, dtype=np.int32).reshape(count + 1, count + 1)
     border = patch_border(index)
-    rows = max(2, round((whole_arc - float(top_arc[border].mean())) / spacing_mm))
+    rows = pace.count(whole_arc - float(top_arc[border].mean()), 2)
     share = np.linspace(0.0, 1.0, rows + 1)[1:, None]
     side_arc = (1.0 - share) * top_arc[border] + share * whole_arc
     side_turn = np.broadcast_to(top_turn[border], side_arc.shape)
@@ -91,6 +112,7 @@ def ray_grid(surface: CurvedSurface, axis: Axis, spacing_mm: float) -> RayGrid:
         directions=directions,
         quads=o_quads(index, np.vstack([border[None], side])),
         ring=side[-1],
+        groups=o_groups(count, count, rows) if pace.paired else NO_GROUPS,
     )
 
 
@@ -119,6 +141,17 @@ def o_quads(top: np.ndarray, side: np.ndarray) -> np.ndarray:
     beside = np.roll(side, -1, axis=1)
     wall = np.stack([side[:-1], side[1:], beside[1:], beside[:-1]], axis=-1)
     return np.concatenate([patch.reshape(-1, 4), wall.reshape(-1, 4)]).astype(np.int32)
+
+
+def o_groups(across: int, up: int, rows: int) -> np.ndarray:
+    """Fours of the cells of `o_quads`, by corner, shape (G, 4); all counts are even."""
+    patch = np.arange(across * up).reshape(across, up)
+    wall = across * up + np.arange(rows * 2 * (across + up)).reshape(rows, -1)
+    fours = [
+        np.stack([n[::2, ::2], n[1::2, ::2], n[1::2, 1::2], n[::2, 1::2]], axis=-1).reshape(-1, 4)
+        for n in (patch, wall)
+    ]
+    return np.concatenate(fours).astype(np.int32)
 
 
 def _rays(axis: Axis, station: np.ndarray, azimuth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -6,13 +6,13 @@ free sides, which belong to the sensing surface.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from geometry.surface.surface import vertex_normals
 from geometry.volume.curved import CurvedSurface
-from geometry.volume.ogrid import LIFT_MM, RayGrid, axis_of, on_base, ray_grid
+from geometry.volume.ogrid import LIFT_MM, NO_GROUPS, Pace, RayGrid, axis_of, on_base, ray_grid
 from geometry.volume.skins import curved_region, labelled_faces
 from workbench.core.result.results import Label, LabelledSurface
 
@@ -31,20 +31,22 @@ class Sheets:
     """Nodes on the border, counter-clockwise from above, shape (R,), int32."""
     rim: Label
     """What lies between the two borders: BASE, or OUTER for a slab's free sides."""
+    groups: np.ndarray = field(default_factory=lambda: NO_GROUPS)
+    """Four cells that make a larger one, as `RayGrid.groups`."""
 
 
-def cap_sheets(membrane: LabelledSurface, spacing_mm: float) -> Sheets:
+def cap_sheets(membrane: LabelledSurface, pace: Pace) -> Sheets:
     """Sheets of a cap that stands on the base plane, by rays from its axis.
 
     Raises:
         MeshingError: If a ray misses a face.
     """
-    grid, inside, outer = _inner_sheet(membrane, spacing_mm)
+    grid, inside, outer = _inner_sheet(membrane, pace)
     outside = outer.points(grid.origins, grid.directions)
     return _cap(grid, inside, outside)
 
 
-def offset_sheets(membrane: LabelledSurface, spacing_mm: float) -> Sheets:
+def offset_sheets(membrane: LabelledSurface, pace: Pace) -> Sheets:
     """Sheets of a cap whose outer nodes lie along the inner face's normals.
 
     Rays from the axis pass by what stands steeply on a flat top (a paw's beads), these do not.
@@ -52,7 +54,7 @@ def offset_sheets(membrane: LabelledSurface, spacing_mm: float) -> Sheets:
     Raises:
         MeshingError: If a ray misses a face.
     """
-    grid, inside, outer = _inner_sheet(membrane, spacing_mm)
+    grid, inside, outer = _inner_sheet(membrane, pace)
     normals = vertex_normals(inside, np.concatenate([grid.quads[:, :3], grid.quads[:, [0, 2, 3]]]))
     start = inside.copy()
     start[grid.ring, 2] = LIFT_MM
@@ -62,13 +64,13 @@ def offset_sheets(membrane: LabelledSurface, spacing_mm: float) -> Sheets:
 
 
 def _inner_sheet(
-    membrane: LabelledSurface, spacing_mm: float
+    membrane: LabelledSurface, pace: Pace
 ) -> tuple[RayGrid, np.ndarray, CurvedSurface]:
     """Rays of a cap, where they meet the inner face, and the outer face."""
     outer = curved_region(membrane, Label.OUTER)
     inner = curved_region(membrane, Label.INNER)
     inner_points = membrane.points_mm[labelled_faces(membrane, Label.INNER)].reshape(-1, 3)
-    grid = ray_grid(outer, axis_of(inner_points), spacing_mm)
+    grid = ray_grid(outer, axis_of(inner_points), pace)
     return grid, on_base(inner.points(grid.origins, grid.directions), grid), outer
 
 
@@ -79,4 +81,5 @@ def _cap(grid: RayGrid, inside: np.ndarray, outside: np.ndarray) -> Sheets:
         quads=grid.quads,
         ring=grid.ring,
         rim=Label.BASE,
+        groups=grid.groups,
     )

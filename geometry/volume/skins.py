@@ -16,7 +16,7 @@ from geometry.surface.remesh import remesh
 from geometry.surface.surface import face_areas, pieces, vertex_normals
 from geometry.surface.transfer import face_regions
 from geometry.volume.curved import CurvedSurface
-from geometry.volume.ogrid import axis_of, on_base, ray_grid
+from geometry.volume.ogrid import Pace, axis_of, on_base, ray_grid
 from workbench.core.base.errors import MeshingError
 from workbench.core.result.results import Label, LabelledSurface, MembraneMesh, Skin, Solid
 
@@ -146,7 +146,7 @@ def _facing_the_camera(support: LabelledSurface) -> LabelledSurface:
 def _cavity_grid(support: LabelledSurface, spacing_mm: float) -> Skin:
     region = curved_region(support, Label.INNER, sagitta_mm=COARSE_TOLERANCE_MM)
     points = support.points_mm[labelled_faces(support, Label.INNER)].reshape(-1, 3)
-    grid = ray_grid(region, axis_of(points), spacing_mm)
+    grid = ray_grid(region, axis_of(points), Pace(spacing_mm))
     return quad_skin(on_base(region.points(grid.origins, grid.directions), grid), grid.quads)[0]
 
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 import numpy as np
 
 from geometry.volume.curved import CurvedSurface
-from geometry.volume.ogrid import o_quads, patch_border
+from geometry.volume.ogrid import NO_GROUPS, Pace, o_groups, o_quads, patch_border
 from geometry.volume.sheets import Sheets
 from geometry.volume.skins import labelled_faces, part_of
 from workbench.core.base.errors import MeshingError
@@ -36,7 +36,7 @@ def is_slab(membrane: LabelledSurface) -> bool:
     return not membrane.has(Label.BASE).any() and float(np.ptp(height)) < FLAT_MM
 
 
-def slab_sheets(membrane: LabelledSurface, spacing_mm: float) -> Sheets:
+def slab_sheets(membrane: LabelledSurface, pace: Pace) -> Sheets:
     """Sheets on the bonded face of a slab and straight above it.
 
     Raises:
@@ -44,8 +44,8 @@ def slab_sheets(membrane: LabelledSurface, spacing_mm: float) -> Sheets:
     """
     faces = labelled_faces(membrane, Label.INNER)
     height_mm = float(membrane.points_mm[faces[0, 0], 2])
-    sides = _outline_sides(membrane.points_mm[_outline(faces), :2], spacing_mm)
-    plan, quads, ring = _best_plan(sides)
+    sides = _outline_sides(membrane.points_mm[_outline(faces), :2], pace)
+    plan, quads, ring, groups = _best_plan(sides, paired=pace.paired)
     inside = np.column_stack([plan, np.full(len(plan), height_mm)])
     start = inside.copy()
     inward = plan.mean(axis=0) - plan[ring]
@@ -53,7 +53,9 @@ def slab_sheets(membrane: LabelledSurface, spacing_mm: float) -> Sheets:
     upward = np.broadcast_to([0.0, 0.0, 1.0], start.shape)
     outside = _top(membrane).points(start, upward)
     outside[:, :2] = plan
-    return Sheets(inside=inside, outside=outside, quads=quads, ring=ring, rim=Label.OUTER)
+    return Sheets(
+        inside=inside, outside=outside, quads=quads, ring=ring, rim=Label.OUTER, groups=groups
+    )
 
 
 def _top(membrane: LabelledSurface) -> CurvedSurface:
@@ -85,12 +87,12 @@ def _outline(faces: np.ndarray) -> np.ndarray:
     return np.array(loop)
 
 
-def _outline_sides(outline: np.ndarray, spacing_mm: float) -> list[np.ndarray]:
+def _outline_sides(outline: np.ndarray, pace: Pace) -> list[np.ndarray]:
     """Four sides of an outline between its diagonals, evenly divided; opposite ones alike.
 
     Args:
         outline: Points in plan, counter-clockwise, shape (B, 2).
-        spacing_mm: Distance of points along the outline.
+        pace: Distance of points along the outline.
 
     Returns:
         For each side its points but the last, starting at the corner (+x, -y).
@@ -102,9 +104,7 @@ def _outline_sides(outline: np.ndarray, spacing_mm: float) -> list[np.ndarray]:
     diagonals = ((1, -1), (1, 1), (-1, 1), (-1, -1))
     corner = [arc[np.argmax(scaled @ np.array(diagonal))] for diagonal in diagonals]
     lengths = [(corner[(k + 1) % 4] - corner[k]) % arc[-1] for k in range(4)]
-    counts = [
-        max(FEWEST, round((lengths[k % 2] + lengths[k % 2 + 2]) / 2 / spacing_mm)) for k in range(4)
-    ]
+    counts = [pace.count((lengths[k % 2] + lengths[k % 2 + 2]) / 2, FEWEST) for k in range(4)]
     sides = []
     for begin, length, count in zip(corner, lengths, counts, strict=True):
         along = (begin + length * np.arange(count) / count) % arc[-1]
@@ -112,14 +112,19 @@ def _outline_sides(outline: np.ndarray, spacing_mm: float) -> list[np.ndarray]:
     return sides
 
 
-def _best_plan(sides: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The O-grid whose worst corner is squarest: points (N, 2), quads, ring."""
-    most = max(1, min(MOST_ROWS, min(len(side) for side in sides) // 4))
-    plans = [_plan(sides, rows) for rows in range(1, most + 1)]
+Plan = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
+"""Points (N, 2), quads, ring and groups."""
+
+
+def _best_plan(sides: list[np.ndarray], *, paired: bool) -> Plan:
+    """The O-grid whose worst corner is squarest."""
+    step = 2 if paired else 1
+    most = max(step, min(MOST_ROWS, min(len(side) for side in sides) // 4))
+    plans = [_plan(sides, rows, paired=paired) for rows in range(step, most + 1, step)]
     return max(plans, key=lambda plan: _least_sine(plan[0][plan[1]]))
 
 
-def _plan(sides: list[np.ndarray], rows: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _plan(sides: list[np.ndarray], rows: int, *, paired: bool) -> Plan:
     from scipy.sparse import coo_matrix, diags
     from scipy.sparse.linalg import splu
 
@@ -140,7 +145,7 @@ def _plan(sides: list[np.ndarray], rows: int) -> tuple[np.ndarray, np.ndarray, n
     free = np.setdiff1d(np.arange(count), ring)
     right = -(laplacian[free][:, ring] @ points[ring])
     points[free] = splu(laplacian[free][:, free].tocsc()).solve(right)
-    return points, quads, ring
+    return points, quads, ring, o_groups(across, up, rows) if paired else NO_GROUPS
 
 
 def _least_sine(corners: np.ndarray) -> float:

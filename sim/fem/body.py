@@ -26,32 +26,38 @@ class Faces:
     """Node numbers, shape (Q, 4), counter-clockwise from outside."""
     areas_mm2: np.ndarray
     """Undeformed area of each point, shape (Q, P)."""
+    weights: np.ndarray
+    """Weights of the nodes at the points, shape (Q, P, 4): where a corner hangs, the face moves
+    with the corners of a larger one."""
 
     def places(self, field: np.ndarray) -> np.ndarray:
         """A nodal field (N, C) at the points, shape (Q P, C)."""
-        found = face_weights() @ field[self.nodes]
+        found = self.weights @ field[self.nodes]
         return found.reshape(-1, field.shape[1])
 
     def take(self, rows: np.ndarray) -> Faces:
         """Some of the faces."""
-        return Faces(nodes=self.nodes[rows], areas_mm2=self.areas_mm2[rows])
+        return Faces(
+            nodes=self.nodes[rows], areas_mm2=self.areas_mm2[rows], weights=self.weights[rows]
+        )
 
     def shares(self, values: np.ndarray) -> np.ndarray:
-        """Integral of values at the points (Q, P) by corner, shape (Q, 4)."""
-        return (values * self.areas_mm2) @ face_weights()
+        """Integral of values at the points (Q, P) by node, shape (Q, 4)."""
+        return np.einsum("qp,qpa->qa", values * self.areas_mm2, self.weights)
 
     def forces(self, traction: np.ndarray) -> np.ndarray:
         """Nodal forces of tractions (Q, P, 3), shape (Q, 12)."""
         weighted = traction * self.areas_mm2[..., None]
-        return (face_weights().T @ weighted).reshape(len(self.nodes), 12)
+        return (np.swapaxes(self.weights, 1, 2) @ weighted).reshape(len(self.nodes), 12)
 
     def stiffness(self, moduli: np.ndarray) -> np.ndarray:
         """Stiffness of springs per area (Q, P, 3, 3) between the points and rest, (Q, 12, 12)."""
-        weights = face_weights()
-        count = len(self.nodes)
-        weighted = moduli.reshape(*self.areas_mm2.shape, 9) * self.areas_mm2[..., None]
-        products = (weights[:, :, None] * weights[:, None, :]).reshape(len(weights), 16)
-        blocks = (products.T @ weighted).reshape(count, 4, 4, 3, 3)
+        count, points = self.areas_mm2.shape
+        weighted = moduli.reshape(count, points, 9) * self.areas_mm2[..., None]
+        products = (self.weights[..., :, None] * self.weights[..., None, :]).reshape(
+            count, points, 16
+        )
+        blocks = (np.swapaxes(products, 1, 2) @ weighted).reshape(count, 4, 4, 3, 3)
         return blocks.transpose(0, 1, 3, 2, 4).reshape(count, 12, 12)
 
 
@@ -71,14 +77,32 @@ def _rule() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return u, v, np.outer(weight, weight).ravel()
 
 
-def make_faces(points_mm: np.ndarray, nodes: np.ndarray) -> Faces:
-    """Faces (Q, 4) of a mesh with nodes at (N, 3)."""
+def make_faces(
+    points_mm: np.ndarray,
+    corners: np.ndarray,
+    *,
+    nodes: np.ndarray | None = None,
+    ties: np.ndarray | None = None,
+) -> Faces:
+    """Faces of a mesh.
+
+    Args:
+        points_mm: Nodes, shape (N, 3).
+        corners: Corners of the faces, shape (Q, 4), counter-clockwise from outside.
+        nodes: Nodes that they move with, where those are others, shape (Q, 4).
+        ties: Weights of these in the corners, shape (Q, 4, 4).
+    """
     u, v, weight = _rule()
     by_u = np.stack([-(1 - v), 1 - v, 1 + v, -(1 + v)]).T / 4
     by_v = np.stack([-(1 - u), -(1 + u), 1 + u, 1 - u]).T / 4
-    corners = points_mm[nodes]
-    area = np.cross(by_u @ corners, by_v @ corners)
-    return Faces(nodes=nodes.astype(np.int64), areas_mm2=np.linalg.norm(area, axis=2) * weight)
+    places = points_mm[corners]
+    area = np.cross(by_u @ places, by_v @ places)
+    whole = np.broadcast_to(face_weights(), (len(corners), POINTS**2, 4))
+    return Faces(
+        nodes=(corners if nodes is None else nodes).astype(np.int64),
+        areas_mm2=np.linalg.norm(area, axis=2) * weight,
+        weights=whole if ties is None else whole @ ties,
+    )
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,8 +8,8 @@ V and v the volumes of the element at rest and deformed, q the 2x2x2 Gauss point
 p = K (v / V - 1) follows from v, and the tangent is the exact derivative of the forces. Sources:
 Nagtegaal, Parks and Rice (1974) for mean dilatation; the law is that of `sim.material`, and of
 SimTac's Supplementary with C10 = mu / 2, D1 = 2 / K.
-Hooke's law (`linear`) drops all products of displacements, which makes it B-bar.
-All is plain NumPy over chunks of elements that fit the cache.
+Hooke's law (`linear`) drops all products of displacements, which makes it B-bar. All is plain NumPy
+over chunks of elements that fit the cache.
 """
 
 from __future__ import annotations
@@ -40,6 +40,9 @@ class Elements:
 
     cells: np.ndarray
     """Node numbers, shape (M, 8), int64, VTK order."""
+    owns: np.ndarray
+    """Whether each node is a corner of the element, (M, 8), bool; where a corner hangs it moves
+    with other nodes (`division`)."""
     slopes: np.ndarray
     """dN_a / dX_J at the Gauss points [1/mm], shape (M, 8 nodes, 8 points, 3)."""
     weights_mm3: np.ndarray
@@ -53,14 +56,8 @@ class Elements:
 
     def take(self, part: slice) -> Elements:
         """Some of the elements."""
-        return dataclasses.replace(
-            self,
-            cells=self.cells[part],
-            slopes=self.slopes[part],
-            weights_mm3=self.weights_mm3[part],
-            shear_MPa=self.shear_MPa[part],
-            bulk_MPa=self.bulk_MPa[part],
-        )
+        names = ("cells", "owns", "slopes", "weights_mm3", "shear_MPa", "bulk_MPa")
+        return dataclasses.replace(self, **{name: getattr(self, name)[part] for name in names})
 
     @property
     def volume_mm3(self) -> np.ndarray:
@@ -116,6 +113,7 @@ def make_elements(
     count = len(cells)
     return Elements(
         cells=cells,
+        owns=np.ones(cells.shape, dtype=bool),
         slopes=np.ascontiguousarray(slopes),
         weights_mm3=weights_mm3,
         shear_MPa=np.broadcast_to(np.asarray(shear_MPa, np.float64), count).copy(),

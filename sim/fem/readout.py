@@ -78,6 +78,8 @@ def read_frame(
     assert forces is not None
     pose = pairing.pose_at(state.progress)
     place_mm = body.points_mm + state.displacement_mm
+    moved_mm = submodel.division.followed(state.displacement_mm)
+    marks, whole = submodel.marks, submodel.on_whole
     moment_Nmm = -np.cross(place_mm - pose.origin_mm, forces.contact_N).sum(axis=0)
     holding_N = forces.internal_N - forces.contact_N - forces.gel_N
     held = _held_forces(submodel, holding_N, forces)
@@ -90,20 +92,20 @@ def read_frame(
     pressure, slip, sliding = _contact_state(submodel, state, before, forces)
     count = len(mesh.outer.points_mm)
     return FemFrame(
-        displacement_mm=_on_skin(submodel.skin, state.displacement_mm, count),
-        inner_mm=_on_skin(submodel.inner, state.displacement_mm, len(mesh.inner.points_mm)),
-        contact_force_N=_on_skin(submodel.skin, forces.contact_N, count),
+        displacement_mm=_on_skin(marks.outer, moved_mm, count),
+        inner_mm=_on_skin(marks.inner, moved_mm, len(mesh.inner.points_mm)),
+        contact_force_N=_on_skin(marks.outer, whole(forces.contact_N), count),
         reaction_N=-contact_N,
         moment_Nmm=moment_Nmm,
         indenter_pose=np.concatenate([pose.origin_mm, quaternion(pose.rotation)]),
         residual=forces.relative,
         balance=float(np.linalg.norm(missing_N)) / load_N,
         converged=forces.relative <= pairing.tolerance,
-        pressure_MPa=_on_skin(submodel.skin, pressure, count),
-        cauchy_MPa=_on_skin(submodel.skin, cauchy, count),
-        energy_MPa=_on_skin(submodel.skin, energy, count),
-        sliding=_on_skin(submodel.skin, sliding, count) > 0.0,
-        slip_mm=_on_skin(submodel.skin, slip, count),
+        pressure_MPa=_on_skin(marks.outer, pressure, count),
+        cauchy_MPa=_on_skin(marks.outer, cauchy, count),
+        energy_MPa=_on_skin(marks.outer, energy, count),
+        sliding=_on_skin(marks.outer, sliding, count) > 0.0,
+        slip_mm=_on_skin(marks.outer, slip, count),
         support_N=held[0],
         cut_N=held[1],
         actuator_N=held[2],
@@ -119,7 +121,7 @@ def read_frame(
 def _on_skin(vertices: np.ndarray, values: np.ndarray, count: int) -> np.ndarray:
     """Values of nodes at the vertices they are; vertices that took no part have 0."""
     found = np.zeros((count, *values.shape[1:]), np.float32)
-    members = vertices >= 0
+    members = np.flatnonzero(vertices >= 0)
     found[vertices[members]] = values[members]
     return found
 
@@ -130,10 +132,10 @@ def _held_forces(
     """Forces of the support (gel included), of elastomer cut off, and of each drive (A, 3) [N]."""
     body = submodel.body
     driven = np.array(
-        [holding_N[submodel.drive == number].sum(axis=0) for number in range(submodel.drives)]
+        [holding_N[submodel.marks.drive == number].sum(axis=0) for number in range(submodel.drives)]
     ).reshape(-1, 3)
-    cut_N = holding_N[submodel.cut & (submodel.drive < 0)].sum(axis=0)
-    bonded = body.held & ~submodel.cut & (submodel.drive < 0)
+    cut_N = holding_N[submodel.marks.cut & (submodel.marks.drive < 0)].sum(axis=0)
+    bonded = body.held & ~submodel.marks.cut & (submodel.marks.drive < 0)
     return holding_N[bonded].sum(axis=0) + forces.gel_N.sum(axis=0), cut_N, driven
 
 
@@ -143,7 +145,12 @@ def _contact_state(
     """Pressure [MPa], slip [mm] and whether it slides, at each node, each of shape (N,)."""
     faces = submodel.body.faces
     size = len(submodel.body.points_mm)
-    area = _spread_to_nodes(faces.nodes, faces.shares(np.ones(faces.areas_mm2.shape)), size)
+
+    def summed(values: np.ndarray) -> np.ndarray:
+        """Integral of values at the points, (Q P,), by node of the undivided mesh, (W,)."""
+        by_corner = faces.shares(values.reshape(faces.areas_mm2.shape))
+        return submodel.on_whole(np.bincount(faces.nodes.ravel(), by_corner.ravel(), size))
+
     normal = np.zeros(faces.areas_mm2.size)
     normal[forces.members] = forces.traction.lag.pressure_MPa
     touching = np.zeros(faces.areas_mm2.size)
@@ -151,22 +158,12 @@ def _contact_state(
     slides = touching * (state.slid_mm > before.slid_mm)
 
     def mean(values: np.ndarray, weights: np.ndarray) -> np.ndarray:
-        shape = faces.areas_mm2.shape
-        above = _spread_to_nodes(faces.nodes, faces.shares((values * weights).reshape(shape)), size)
-        below = _spread_to_nodes(faces.nodes, faces.shares(weights.reshape(shape)), size)
-        return above / np.maximum(below, LEAST)
+        return summed(values * weights) / np.maximum(summed(weights), LEAST)
 
-    pressed_N = _spread_to_nodes(
-        faces.nodes, faces.shares(normal.reshape(faces.areas_mm2.shape)), size
-    )
+    pressed_N, area = summed(normal), summed(np.ones_like(normal))
     # A vertex slides where more than half of the normal force on it does.
     sliding = mean(slides, normal) > 0.5
     return pressed_N / np.maximum(area, LEAST), mean(state.slid_mm, touching), sliding.astype(float)
-
-
-def _spread_to_nodes(nodes: np.ndarray, values: np.ndarray, size: int) -> np.ndarray:
-    """Sum of values of faces' corners (Q, 4) at the nodes, shape (N,)."""
-    return np.bincount(nodes.ravel(), values.ravel(), size)
 
 
 def _friction_ratio(forces: Balance) -> float:
@@ -186,7 +183,7 @@ def _stress(
     stress, energy, ratio = _point_stress(elements, gradient)
     values = np.concatenate([stress, energy[..., None]], axis=-1)
     corner = _to_corners() @ values
-    weight = np.repeat(elements.volume_mm3[:, None], 8, axis=1)
+    weight = elements.volume_mm3[:, None] * elements.owns
     below = np.bincount(elements.cells.ravel(), weight.ravel(), size)
     found = (
         np.stack(

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from geometry.volume import hexmesh
+from geometry.volume.ogrid import Pace
 from geometry.volume.sheets import Sheets
 from workbench.core.base.errors import MeshingError
-from workbench.core.design.design import Meshing
 from workbench.core.result.results import Label
 
 
@@ -19,4 +19,4 @@ def test_cell_whose_quality_is_not_a_number_is_refused(monkeypatch: pytest.Monke
     sheets = Sheets(inside=inside, outside=outside, quads=quads, ring=ring, rim=Label.BASE)
     monkeypatch.setattr(hexmesh, "scaled_jacobian", lambda *_: np.array([1.0, np.nan]))
     with pytest.raises(MeshingError, match="1 of 2 cells are inverted"):
-        hexmesh._stack(sheets, Meshing(hex_mm=0.5))
+        hexmesh._stack(sheets, Pace(0.5))

@@ -9,7 +9,7 @@ import pytest
 
 from sim.fem.body import face_weights, make_faces
 from sim.fem.studies.blocks import flat_membrane, irregular_block
-from sim.fem.submodel import Submodel, boundary, cut_out
+from sim.fem.submodel import Part, Submodel, boundary, cut_out
 from workbench.core.base.errors import MeshingError
 from workbench.core.design.design import Elastomer
 from workbench.core.press.press import Press
@@ -19,9 +19,8 @@ TOP_MM = np.array([0.0, 0.0, 2.0])
 
 
 def cut(mesh: MembraneMesh, radius_mm: float = 3.0, *, backing_MPa: float = 0.02) -> Submodel:
-    return cut_out(
-        mesh, Elastomer(backing_MPa=backing_MPa), Press(target_mm=(0, 0, 2)), TOP_MM, radius_mm
-    )
+    part = Part(centre_mm=TOP_MM, radius_mm=radius_mm)
+    return cut_out(mesh, Elastomer(backing_MPa=backing_MPa), Press(target_mm=(0, 0, 2)), part)
 
 
 def test_weights_of_a_face_sum_to_one() -> None:
@@ -88,13 +87,14 @@ def test_the_cut_holds_what_goes_on_beyond_it() -> None:
     away_mm = np.linalg.norm(hexes.points_mm[hexes.cells].mean(axis=1) - TOP_MM, axis=1)
     assert len(body.elements.cells) == np.count_nonzero(away_mm < 3.0)
     beyond = np.unique(hexes.cells[away_mm >= 3.0])
-    np.testing.assert_array_equal(found.cut, np.isin(found.nodes, beyond))
+    np.testing.assert_array_equal(found.marks.cut, np.isin(found.nodes, beyond))
     on_base = body.points_mm[:, 2] == 0.0
-    np.testing.assert_array_equal(body.held, found.cut | on_base)
-    np.testing.assert_array_equal(found.skin >= 0, body.points_mm[:, 2] == 2.0)
-    np.testing.assert_array_equal(found.inner >= 0, on_base)
+    np.testing.assert_array_equal(body.held, found.marks.cut | on_base)
+    np.testing.assert_array_equal(found.marks.outer >= 0, body.points_mm[:, 2] == 2.0)
+    np.testing.assert_array_equal(found.marks.inner >= 0, on_base)
     np.testing.assert_array_equal(
-        mesh.outer.points_mm[found.skin[found.skin >= 0]], body.points_mm[found.skin >= 0]
+        mesh.outer.points_mm[found.marks.outer[found.marks.outer >= 0]],
+        body.points_mm[found.marks.outer >= 0],
     )
 
 
@@ -112,7 +112,7 @@ def test_without_a_radius_all_of_it_takes_part() -> None:
     found = cut(mesh, np.inf)
     assert mesh.hexes is not None
     assert len(found.body.elements.cells) == len(mesh.hexes.cells)
-    assert not found.cut.any()
+    assert not found.marks.cut.any()
 
 
 def test_gel_is_a_spring_per_area_and_softer_sideways() -> None:

@@ -137,7 +137,7 @@ def their_table(deck: Path, found: Any, project: Project) -> str:
     from workbench.report.fem_case import deck_case
 
     state, element = read_carried(carried_text(deck.read_text()), project, source="case.inp")
-    skin = deck_case(state, element, project)[0].submodel.skin
+    skin = deck_case(state, element, project)[0].submodel.marks.outer
     rows = ["step,node,ux,uy,uz,fx,fy,fz"]
     for frame in range(2):
         for node in np.flatnonzero(skin >= 0):

@@ -77,7 +77,7 @@ def test_a_deck_holds_the_nodes_elements_and_sets_of_the_part(element: Element) 
     np.testing.assert_array_equal(deck.nodes["NPART"][: len(points_mm), 1:], points_mm)
     assert deck.kinds == {"EMAT1": element.value, "EOBJ": "C3D6"}
     np.testing.assert_array_equal(deck.elements["EMAT1"][:, 1:9], submodel.body.elements.cells + 1)
-    np.testing.assert_array_equal(deck.sets["NOUT"], np.flatnonzero(submodel.skin >= 0) + 1)
+    np.testing.assert_array_equal(deck.sets["NOUT"], np.flatnonzero(submodel.marks.outer >= 0) + 1)
     own = deck.sets["NHELD"][deck.sets["NHELD"] <= len(points_mm)]
     np.testing.assert_array_equal(own, np.flatnonzero(submodel.body.held) + 1)
     assert deck.steps == case.approach.frame_count == 2

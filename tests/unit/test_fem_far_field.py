@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from sim.fem import extent as extent_module
 from sim.fem import newton as newton_module
 from sim.fem import press as press_module
 from sim.fem import submodel as submodel_module
@@ -30,7 +31,7 @@ from workbench.core.press.press import Press
 from workbench.core.press.press_case import PressCase
 from workbench.core.result.force_field import ForceField
 
-SETTINGS = FemSettings(hex_mm=0.9, radius_mm=7.0)
+SETTINGS = FemSettings(hex_mm=0.9, radius_mm=7.0, halvings=0)
 PRESS = Press(
     target_mm=(0.0, 0.0, 2.0), depth_mm=0.3, frames=2, strokes=(slide(0.2, 0.0, frames=1),)
 )
@@ -39,7 +40,7 @@ CLOSE_MM, ALL_MM = 1.5, 100.0
 
 def cut(near_mm: float, monkeypatch: pytest.MonkeyPatch) -> tuple[Submodel, Load]:
     """The part of a pad around a press, and the object as deep as the press goes."""
-    monkeypatch.setattr(press_module, "NEAR_MARGIN_MM", near_mm)
+    monkeypatch.setattr(extent_module, "NEAR_MARGIN_MM", near_mm)
     mesh = flat_membrane(width_mm=16.0)
     approach, submodel = set_up(mesh, Elastomer(), PressCase(press=PRESS, fem=SETTINGS))
     origin_mm, rotation = approach.pose(2.0)
@@ -63,7 +64,7 @@ def at_rest(body: Body, load: Load) -> Balance:
 
 
 def solved(near_mm: float, monkeypatch: pytest.MonkeyPatch) -> ForceField:
-    monkeypatch.setattr(press_module, "NEAR_MARGIN_MM", near_mm)
+    monkeypatch.setattr(extent_module, "NEAR_MARGIN_MM", near_mm)
     return solve_press(
         flat_membrane(width_mm=16.0), Elastomer(), PressCase(press=PRESS, fem=SETTINGS)
     )
@@ -184,7 +185,7 @@ def test_a_press_that_meets_nothing_condenses_nothing(monkeypatch: pytest.Monkey
         raise AssertionError("condensed")
 
     monkeypatch.setattr(tangent_module, "condense", refuse)
-    monkeypatch.setattr(press_module, "NEAR_MARGIN_MM", CLOSE_MM)
+    monkeypatch.setattr(extent_module, "NEAR_MARGIN_MM", CLOSE_MM)
     above = dataclasses.replace(PRESS, depth_mm=0.0, strokes=())
     found = solve_press(
         flat_membrane(width_mm=16.0), Elastomer(), PressCase(press=above, fem=SETTINGS)

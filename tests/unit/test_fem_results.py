@@ -49,7 +49,7 @@ def synthetic_dat(case: DeckCase, *, steps: int = 2, stress_MPa: float = -PRESSU
 
 def table_of(case: DeckCase, *, steps: int = 2) -> str:
     """A table in which node n moves by 0.001 n along X and bears 0.01 N along -Z."""
-    nodes = np.flatnonzero(case.submodel.skin >= 0) + 1
+    nodes = np.flatnonzero(case.submodel.marks.outer >= 0) + 1
     rows = [
         f"{step},{node},{1e-3 * node},0,0,0,0,-0.01"
         for step in range(1, steps + 1)
@@ -89,16 +89,16 @@ def test_a_dat_gives_forces_and_displacements_on_the_skin(element: Element) -> N
     """An even stress presses with p times the deformed area; the object gets minus the total."""
     case = pad_case(element=element)
     submodel = case.submodel
-    vertices = int(submodel.skin.max()) + 1
+    vertices = int(submodel.marks.outer.max()) + 1
     found = force_field(read_dat(synthetic_dat(case), case), case, vertices, 1.0)
     np.testing.assert_array_equal(found.reaction_N, np.stack([-TOTAL_N] * 2))
-    members = submodel.skin >= 0
+    members = submodel.marks.outer >= 0
     moved_mm = submodel.body.points_mm[members] * (STRETCH - 1.0)
-    places = submodel.skin[members]
+    places = submodel.marks.outer[members]
     np.testing.assert_allclose(found.displacement_mm[1, places], moved_mm, atol=1e-6)
     # A vertex amid four whole faces of 1 mm bears p on one square millimetre times the stretch.
     middle = np.flatnonzero((np.abs(submodel.body.points_mm) <= [1.0, 1.0, 9.0]).all(axis=1))
-    inside = submodel.skin[middle][submodel.skin[middle] >= 0]
+    inside = submodel.marks.outer[middle][submodel.marks.outer[middle] >= 0]
     exact_N = -PRESSURE_MPa * STRETCH[0] * STRETCH[1]
     assert len(inside) == 9
     np.testing.assert_allclose(found.contact_force_N[1, inside, 2], exact_N, rtol=1e-5)
@@ -151,11 +151,11 @@ def test_a_foreign_file_is_refused() -> None:
 def test_a_table_gives_forces_and_displacements_on_the_skin() -> None:
     """Rows in any order; the reaction is minus the sum of the forces."""
     case = pad_case()
-    skin = np.flatnonzero(case.submodel.skin >= 0)
+    skin = np.flatnonzero(case.submodel.marks.outer >= 0)
     found = force_field(read_table(table_of(case), case), case, 81, 1.0)
     np.testing.assert_allclose(found.reaction_N[1], [0.0, 0.0, 0.01 * len(skin)], rtol=1e-12)
     np.testing.assert_allclose(
-        found.displacement_mm[1, case.submodel.skin[skin], 0], 1e-3 * (skin + 1), rtol=1e-6
+        found.displacement_mm[1, case.submodel.marks.outer[skin], 0], 1e-3 * (skin + 1), rtol=1e-6
     )
 
 

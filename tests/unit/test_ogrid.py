@@ -7,7 +7,7 @@ import pytest
 import trimesh
 
 from geometry.volume.curved import CurvedSurface
-from geometry.volume.ogrid import FEWEST, axis_of, on_base, ray_grid
+from geometry.volume.ogrid import FEWEST, Pace, axis_of, on_base, ray_grid
 
 RADIUS_MM = 10.0
 
@@ -31,7 +31,7 @@ def test_cells_are_as_wide_as_asked(
     from the patch's rim, a mean 6.9 mm from the apex, to the base (15.7 mm) by the rows.
     """
     points = np.array(dome.vertices)
-    grid = ray_grid(CurvedSurface(points, np.array(dome.faces)), axis_of(points), spacing_mm)
+    grid = ray_grid(CurvedSurface(points, np.array(dome.faces)), axis_of(points), Pace(spacing_mm))
     assert len(grid.ring) == 4 * count
     assert len(grid.quads) == count**2 + 4 * count * rows
     assert grid.quads.max() == len(grid.origins) - 1
@@ -41,7 +41,7 @@ def test_the_ring_stands_on_the_base(dome: trimesh.Trimesh) -> None:
     """Its points are put on z = 0, all others stay above."""
     points = np.array(dome.vertices)
     surface = CurvedSurface(points, np.array(dome.faces))
-    grid = ray_grid(surface, axis_of(points), 2.0)
+    grid = ray_grid(surface, axis_of(points), Pace(2.0))
     found = on_base(surface.points(grid.origins, grid.directions), grid)
     assert not found[grid.ring, 2].any()
     others = np.setdiff1d(np.arange(len(found)), grid.ring)

@@ -19,6 +19,7 @@ from geometry.mould.parting import Parting, _aside
 from geometry.mould.seams import END_MM, TALL_MM, _key_heights
 from geometry.surface.spread import Spread
 from geometry.volume.hexmesh import _chord_share
+from geometry.volume.ogrid import Pace
 from geometry.volume.pointlabels import _samples
 from geometry.volume.slab import _outline_sides
 from sim.contact.engine.batch import needed_bytes
@@ -117,7 +118,7 @@ def test_the_sides_of_a_rectangle_go_from_corner_to_corner(start: int) -> None:
         ]
     )
     expected = outline[::2]
-    sides = _outline_sides(np.roll(outline, -start, axis=0), 2.0)
+    sides = _outline_sides(np.roll(outline, -start, axis=0), Pace(2.0))
     assert [len(side) for side in sides] == [10, 12, 10, 12]
     np.testing.assert_allclose(np.concatenate(sides), expected, atol=1e-12)
 

@@ -81,8 +81,8 @@ def make_deck_case(
         # A large object is sampled once more where it meets the skin.
         open_device()
     material, case = state.design.material, state.case
-    approach, submodel = set_up(mesh, material, case, sampled=sampled)
-    skin_mm = submodel.body.points_mm[submodel.skin >= 0]
+    approach, submodel = set_up(mesh, material, case, sampled=sampled, divided=False)
+    skin_mm = submodel.body.points_mm[submodel.marks.outer >= 0]
     surface = near_surface(approach.collider, *near_box_mm(skin_mm, approach))
     return DeckCase(
         submodel=submodel,

@@ -146,9 +146,9 @@ def _contact(case: DeckCase, mesh: DeckMesh) -> list[str]:
 
 def _held(case: DeckCase, mesh: DeckMesh) -> list[str]:
     submodel = case.submodel
-    driven = mesh.members(submodel.drive >= 0)
+    driven = mesh.members(submodel.marks.drive >= 0)
     held = mesh.members(submodel.body.held) & ~driven
-    skin = np.flatnonzero(submodel.skin >= 0)
+    skin = np.flatnonzero(submodel.marks.outer >= 0)
     lines = ["*NSET, NSET=NOUT", *(str(node + 1) for node in skin.tolist())]
     lines += ["*ELSET, ELSET=ESKIN", *(str(row + 1) for row in skin_cells(submodel).tolist())]
     lines += ["*NSET, NSET=NHELD", *(str(node + 1) for node in np.flatnonzero(held).tolist())]
@@ -198,11 +198,11 @@ class _Moves:
         submodel = case.submodel
         moved_mm = np.zeros_like(submodel.body.points_mm)
         for number, actuation in enumerate(case.approach.press.actuations):
-            members = submodel.drive == number
+            members = submodel.marks.drive == number
             moved_mm[members] = actuation.displacement_mm(
                 submodel.body.points_mm[members], float(frame)
             )
-        driven = np.flatnonzero(mesh.members(submodel.drive >= 0))
+        driven = np.flatnonzero(mesh.members(submodel.marks.drive >= 0))
         return cls(
             object_mm=points_mm @ (rotation - begun).T + (origin_mm - begun_mm),
             driven_mm=mesh.at_all(moved_mm)[driven],

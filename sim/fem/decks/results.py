@@ -76,9 +76,9 @@ def read_table(text: str, case: DeckCase) -> OtherResult:
         raise StoreError(f"the table is damaged: {error}", hint="write it again") from error
     if not np.isfinite(values).all():
         raise StoreError("the table holds a value that is not finite", hint="run it again")
-    count, nodes = case.approach.frame_count, np.flatnonzero(case.submodel.skin >= 0)
+    count, nodes = case.approach.frame_count, np.flatnonzero(case.submodel.marks.outer >= 0)
     expect_frames(len(np.unique(values[:, 0])), count)
-    shape = (count, len(case.submodel.skin), 3)
+    shape = (count, len(case.submodel.marks.outer), 3)
     moved, forces = np.zeros(shape), np.zeros(shape)
     for frame in range(count):
         of_step = values[values[:, 0] == frame + 1]
@@ -111,12 +111,12 @@ def force_field(
         spacing_mm: Edge of a hexahedron.
     """
     submodel, approach = case.submodel, case.approach
-    skin = np.flatnonzero(submodel.skin >= 0)
+    skin = np.flatnonzero(submodel.marks.outer >= 0)
     count = approach.frame_count
     moved = np.zeros((count, vertices, 3), dtype=np.float32)
     forces = np.zeros_like(moved)
-    moved[:, submodel.skin[skin]] = result.displacement_mm[:, skin]
-    forces[:, submodel.skin[skin]] = result.contact_N[:, skin]
+    moved[:, submodel.marks.outer[skin]] = result.displacement_mm[:, skin]
+    forces[:, submodel.marks.outer[skin]] = result.contact_N[:, skin]
     missing_N = np.linalg.norm(result.contact_N.sum(axis=1) + result.reaction_N, axis=1)
     poses = [approach.pose(frame + 1.0) for frame in range(count)]
     return ForceField(

@@ -86,6 +86,9 @@ class ForceField:
     """Linear systems that each frame took, shape (K,)."""
     frame_seconds: np.ndarray = field(default_factory=lambda: np.zeros(0))
     """Time each frame took [s], shape (K,); differs from run to run."""
+    force_error: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    """Estimated relative error of the reaction's size, positive where it is too large, shape (K,);
+    NaN where the coarser mesh gave none."""
     radius_mm: float = 0.0
     """Radius of the part that took part, about the target [mm]."""
     spacing_mm: float = 0.0

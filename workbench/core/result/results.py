@@ -172,6 +172,9 @@ class VolumeMesh:
     volume_mm3: float
     numbers: np.ndarray = None  # pyright: ignore[reportAssignmentType]
     """Number of each node's actuator or pin, else -1, shape (N,), int16."""
+    groups: np.ndarray = field(default_factory=lambda: np.zeros((0, 8), dtype=np.int32))
+    """Eight cells that make a larger one, by the corner of it that each has, shape (G, 8), int32;
+    none where cells are not paired."""
 
     def __post_init__(self) -> None:
         count = len(self.points_mm)

@@ -80,7 +80,7 @@ def fem(given: FemInputs, *, monitor: Monitor) -> ForceField:
 STAGE = Stage(
     name="fem",
     label="Finite elements",
-    version=2,
+    version=3,
     place=8,
     lane="sim",
     run=fem,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from workbench.core.base.monitor import Monitor
 from workbench.core.design.design import Meshing
@@ -16,6 +16,8 @@ class MeshInputs:
 
     solid: Solid
     meshing: Meshing
+    paired: bool = field(default=False, metadata={"later": True})
+    """Whether eight cells each make a larger one."""
 
 
 def inputs(chain: Chain) -> MeshInputs:
@@ -24,15 +26,15 @@ def inputs(chain: Chain) -> MeshInputs:
 
 
 def mesh_at(solid: Solid, hex_mm: float) -> Call:
-    """The call for a body at another spacing: finite elements and networks have their own."""
-    return STAGE.call(MeshInputs(solid=solid, meshing=Meshing(hex_mm=hex_mm)))
+    """The call for the mesh of finite elements, and of networks that were trained on it."""
+    return STAGE.call(MeshInputs(solid=solid, meshing=Meshing(hex_mm=hex_mm), paired=True))
 
 
 def mesh(given: MeshInputs, *, monitor: Monitor) -> MembraneMesh:
     """Hexahedra and skins."""
     from geometry.volume.hexmesh import mesh_membrane
 
-    return mesh_membrane(given.solid, given.meshing, monitor=monitor)
+    return mesh_membrane(given.solid, given.meshing, monitor=monitor, paired=given.paired)
 
 
 STAGE = Stage(

@@ -87,7 +87,8 @@ def finger_state(hex_mm: float, friction: float) -> State:
 def _mesh(hex_mm: float) -> MembraneMesh:
     from workbench.pipeline.stages.mesh import MeshInputs, mesh
 
-    return mesh(MeshInputs(solid=finger_solid(), meshing=Meshing(hex_mm=hex_mm)), monitor=silent)
+    given = MeshInputs(solid=finger_solid(), meshing=Meshing(hex_mm=hex_mm), paired=True)
+    return mesh(given, monitor=silent)
 
 
 @functools.cache

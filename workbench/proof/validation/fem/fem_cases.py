@@ -128,7 +128,9 @@ def membrane(family: str, hex_mm: float) -> MembraneMesh:
         WorkbenchError: If it cannot be built.
     """
     solid = finger_solid() if family == "finger" else default_solid(family)
-    return mesh(MeshInputs(solid=solid, meshing=Meshing(hex_mm=hex_mm)), monitor=silent)
+    return mesh(
+        MeshInputs(solid=solid, meshing=Meshing(hex_mm=hex_mm), paired=True), monitor=silent
+    )
 
 
 def body_digest(family: str) -> str:

@@ -45,7 +45,8 @@ class Case:
 @functools.cache
 def finger(hex_mm: float) -> MembraneMesh:
     """The default finger in hexahedra of an edge."""
-    return mesh(MeshInputs(solid=finger_solid(), meshing=Meshing(hex_mm=hex_mm)), monitor=silent)
+    given = MeshInputs(solid=finger_solid(), meshing=Meshing(hex_mm=hex_mm), paired=True)
+    return mesh(given, monitor=silent)
 
 
 @functools.cache
