@@ -210,7 +210,7 @@ class _Nodes:
         count = len(points_mm)
         self.points_mm = points_mm.copy()
         self.hangs = np.zeros(count, dtype=bool)
-        self.shares = csr_matrix((np.ones(count), (np.arange(count), np.arange(count))))
+        self.shares: Any = csr_matrix((np.ones(count), (np.arange(count), np.arange(count))))
         self.born: list[tuple[np.ndarray, np.ndarray]] = []
         self._placed = placed
 
@@ -244,7 +244,7 @@ class _Nodes:
             self.hangs = np.append(self.hangs, hanging)
             width = between.shape[1]
             rows = np.repeat(np.arange(len(nodes)), width)
-            mean = csr_matrix(
+            mean: Any = csr_matrix(
                 (np.full(between.size, 1.0 / width), (rows, between.ravel())),
                 shape=(len(nodes), self.shares.shape[0]),
             )

@@ -88,7 +88,7 @@ def solve_press(
     share = 1.0 - COARSER_SHARE if estimate else 1.0
     try:
         with freed_memory_kept():
-            course.run(lambda done, note: monitor(share * done, note), on_frame)
+            course.run(_share(monitor, 0.0, share, ""), on_frame)
     except SolveError as error:
         error.frame, error.last_good = course.frame, course.frame - 1
         error.message = f"frame {course.frame + 1} of {approach.frame_count}: {error.message}"
@@ -105,16 +105,22 @@ def solve_press(
     second = _Course(mesh, material, approach, case.fem, coarser, device)
     try:
         with freed_memory_kept():
-            second.run(
-                lambda done, note: monitor(share + (1.0 - share) * done, f"error, {note}"),
-                lambda frame, outcome: None,
-            )
+            second.run(_share(monitor, share, 1.0, "error, "), lambda frame, outcome: None)
     except SolveError:
         # Frames that the coarser mesh did not reach have no estimate.
         pass
     finally:
         second.pairing.tangent.close()
     return dataclasses.replace(found, force_error=_force_error(course.outcomes, second.outcomes))
+
+
+def _share(monitor: Monitor, begin: float, end: float, prefix: str) -> Monitor:
+    """A monitor of a part of the work, from one share of it to another."""
+
+    def told(fraction: float, note: str = "") -> None:
+        monitor(begin + (end - begin) * fraction, f"{prefix}{note}")
+
+    return told
 
 
 def _force_error(fine: list[FemFrame], coarse: list[FemFrame]) -> np.ndarray:

@@ -217,7 +217,7 @@ def _faces(division: Division, chosen: np.ndarray) -> Faces:
 def _rests(mesh: MembraneMesh, inner: np.ndarray) -> np.ndarray:
     """Which faces, of vertices (..., 4) of the inner skin, lie over a gap; shape (...), bool."""
     backed = np.unique(mesh.inner.faces[backed_faces(mesh)])
-    return ((inner >= 0) & np.isin(inner, backed)).all(axis=-1)
+    return np.all((inner >= 0) & np.isin(inner, backed), axis=-1)
 
 
 def _gel(

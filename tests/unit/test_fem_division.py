@@ -116,9 +116,7 @@ def test_edges_at_a_crease_stay_straight() -> None:
     """A box: its vertices' normals are those of three faces."""
     box = trimesh.creation.box()
     points, faces = np.asarray(box.vertices), np.asarray(box.faces)
-    skin = Skin(
-        points_mm=points, faces=faces.astype(np.int32), normals=points / np.sqrt(3.0) * 2.0
-    )
+    skin = Skin(points_mm=points, faces=faces.astype(np.int32), normals=points / np.sqrt(3.0) * 2.0)
     from scipy.sparse import identity
 
     edges = np.asarray(box.edges_unique)

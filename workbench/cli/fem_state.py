@@ -24,7 +24,7 @@ def add_case_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("design", metavar="NAME|FILE", help="a file brings its press")
     add_body_options(sub)
     add_press_options(sub)
-    sub.add_argument("--draft", action="store_true", help="0.9 mm mesh: about 10 %% too stiff")
+    sub.add_argument("--draft", action="store_true", help="0.9 mm mesh: forces within 5 %%")
     text = "part that takes part, about the target (default 12); 0: all"
     sub.add_argument("--radius-mm", type=float, help=text)
 

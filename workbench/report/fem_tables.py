@@ -58,6 +58,7 @@ def columns(found: ForceField, depths_mm: Sequence[float]) -> dict[str, np.ndarr
         "balance": found.balance,
         "converged": found.converged.astype(int),
         "increments": found.increments,
+        **({"force_error": found.force_error} if len(found.force_error) else {}),
     }
 
 

@@ -36,9 +36,7 @@ class SourcesFolder:
             self.doubt = gui.add_markdown("", visible=False)
             self.table = gui.add_markdown(NONE)
             self.network = NetworkPart(desk)
-            hint = (
-                f"{QUALITY_MM:g} mm is to be trusted, {DRAFT_MM:g} mm is a draft, ~10 % too stiff"
-            )
+            hint = f"{QUALITY_MM:g} mm is to be trusted, {DRAFT_MM:g} mm is a draft, within 5 %"
             fields.number("FEM mesh mm", "case.fem.hex_mm", step=0.05, hint=hint)
             hint = "Radius around the target that takes part: 12 mm for fields, 9 mm for totals"
             fields.number("FEM radius mm", "case.fem.radius_mm", step=1.0, hint=hint)

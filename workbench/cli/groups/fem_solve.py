@@ -5,6 +5,9 @@ from __future__ import annotations
 import argparse
 import json
 from pathlib import Path
+from typing import Any
+
+import numpy as np
 
 from workbench.cli.command import Command
 from workbench.cli.fem_state import add_case_options, fem_state
@@ -50,10 +53,16 @@ def run(options: argparse.Namespace, project: Project) -> int:
         say(
             f"frame {row['frame']:3}  {row['depth_mm']:6.3f} mm  normal {row['normal_N']:8.4f} N  "
             f"tangential {row['tangential_u_N']:8.4f}, {row['tangential_v_N']:8.4f} N  "
-            f"residual {row['residual']:.1e}"
+            f"residual {row['residual']:.1e}{_error(row)}"
         )
     say(options.out / "forces.csv")
     return 0
+
+
+def _error(row: dict[str, Any]) -> str:
+    """The estimated error of the force of a frame, where there is one."""
+    found = row.get("force_error")
+    return "" if found is None or np.isnan(found) else f"  error {100.0 * found:+.1f} %"
 
 
 COMMAND = Command(place=1, run=run, options=options)

@@ -15,6 +15,7 @@ from workbench.proof.validation.contact.presses import NAME, finger_press
 from workbench.proof.validation.fem import (
     calculix,
     fem_exact,
+    fem_limits,
     fem_matrix,
     fem_meshes,
     fem_mpm,
@@ -34,6 +35,7 @@ def rows() -> list[Row]:
         *fem_paths.rows(),
         *fem_meshes.rows(),
         *fem_mpm.rows(),
+        *fem_limits.rows(),
         *fem_matrix.recorded_rows(),
         *_recorded(),
         *(calculix.rows() if calculix.installed() else ()),
