@@ -41,7 +41,8 @@ coating_reciprocity coating_energy coating_head_on led_flux led_share vignetting
 """
 _OUTSIDE = """
 finger_45 published_mode sheared_sphere shear_force finger_45_normal_force refinement
-refinement_calculix calculix calculix_same_mesh mitsuba mitsuba_product mitsuba_octant
+refinement_calculix fem_limit mpm_limit fem_error_estimate
+calculix calculix_same_mesh mitsuba mitsuba_product mitsuba_octant
 mitsuba_recorded mitsuba_recorded_places mitsuba_recorded_error mitsuba_recorded_whole
 mitsuba_record_again membrane_shape membrane_shape_95 indenter_shape idle_photo idle_photo_structure
 idle_photo_balance idle_photo_oval
