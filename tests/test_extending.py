@@ -66,7 +66,9 @@ def extended(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text, encoding="utf-8")
-    return {**os.environ, "WORKBENCH_EXTENSIONS": str(folder)}
+    # Taichi prints a line as it is imported, before what is asked.
+    quiet = {"ENABLE_TAICHI_HEADER_PRINT": "0"}
+    return {**os.environ, **quiet, "WORKBENCH_EXTENSIONS": str(folder)}
 
 
 def answer(environment: dict[str, str], *words: str) -> str:
