@@ -93,9 +93,9 @@ def _solvers(found: Mapping[Source, Forces]) -> Iterator[str]:
     solved, learned = found.get(Source.FEM), found.get(Source.LEARNED)
     if isinstance(solved, ForceField):
         text = f"{plain(solved.solver)}, residual {number(solved.residual.max(), '.0e')}"
-        known = solved.force_error[np.isfinite(solved.force_error)]
-        if len(known):
-            text += f", force at most {number(100 * np.abs(known[-1]), '.1f')} % off at the end"
+        at_end = solved.force_error[-1:]
+        if np.isfinite(at_end).any():
+            text += f", estimated error of the last force {number(100 * at_end[0], '+.1f')} %"
         coarse = solved.spacing_mm > QUALITY_MM
         yield f"{text}. {COARSE.format(solved.spacing_mm)}" if coarse else text
     if isinstance(learned, ForceField):
