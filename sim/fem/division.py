@@ -19,13 +19,13 @@ from typing import Any
 
 import numpy as np
 
-from sim.fem.elements import CORNERS, Elements
+from sim.fem.elements import Elements
 from sim.fem.pieces import (
     CHILD_SPOTS,
+    MEANS,
     PLACES,
     SIDES,
     belong_to,
-    between_corners,
     middle_nodes,
     new_lattice,
 )
@@ -290,10 +290,5 @@ def _moving(leaves: _Leaves, hangs: np.ndarray) -> tuple[np.ndarray, np.ndarray]
     cells = np.where(hanging, leaves.parents, leaves.corners)
     ties = np.broadcast_to(np.eye(8), (len(cells), 8, 8)).copy()
     rows, corner = np.nonzero(hanging)
-    means = np.zeros((8, 8, 8))
-    for child in range(8):
-        for other in range(8):
-            members = between_corners((CORNERS[child] + CORNERS[other]) / 2)
-            means[child, other, members] = 1.0 / len(members)
-    ties[rows, corner] = means[leaves.child[rows], corner]
+    ties[rows, corner] = MEANS[leaves.child[rows], corner]
     return cells, ties

@@ -23,24 +23,18 @@ millimetre deep 317 at 0.6 mm but 524 at 0.2, in 102 and 125 s. Forces agree to 
 
 
 def part_of(
-    mesh: MembraneMesh,
-    material: Elastomer,
-    approach: Approach,
-    settings: FemSettings,
-    *,
-    halved_less: int = 0,
+    mesh: MembraneMesh, material: Elastomer, approach: Approach, settings: FemSettings
 ) -> Part:
-    """The part of a membrane that a press asks for; every cell may be halved so many times less."""
+    """The part of a membrane that a press asks for."""
     paired = len(hexahedra_of(mesh).groups) > 0
     whole_mm = settings.hex_mm * (2.0 if paired else 1.0)
-    finer = finer_under(approach, mesh.outer.points_mm, whole_mm)
     return Part(
         centre_mm=approach.target_mm,
         radius_mm=_radius_mm(mesh, material, approach, settings),
         near_mm=patch_radius_mm(mesh, approach) + NEAR_MARGIN_MM,
         paired=paired,
-        wanted=lambda level, middles_mm: finer(level + halved_less, middles_mm),
-        halvings=settings.halvings + int(paired) - halved_less,
+        wanted=finer_under(approach, mesh.outer.points_mm, whole_mm),
+        halvings=settings.halvings + int(paired),
     )
 
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
 
+from geometry.surface.surface import face_normals
 from sim.contact.motion.approach import Approach
+from sim.contact.region.refinement import path_samples
 from sim.fem.division import Wanted
 from sim.fem.obstacle import RigidPose, curvature, distance
 from workbench.core.result.results import Skin
@@ -20,10 +21,10 @@ SHALLOWEST_MM = 0.2
 """Overlap from which on contacts are to be met so finely."""
 REACH = (3.0, 2.0)
 """Distance from the object within which whole cells, and pieces, are halved, in edges."""
-LOOK_EVERY_MM = 0.1
-"""Way of the object between two looks."""
-ROUNDING = 1e-3
-"""Share of it by which a way may be longer: an angle of zero is known to 1e-8."""
+LOOK_EVERY_MM = 0.1 * (1.0 + 1e-3)
+"""Way of the object between two looks: increments of 0.1 mm, known to rounding."""
+MOST_LOOKS = 1000
+"""Looks of one frame, which no frame reaches."""
 FLAT_PER_MM = 1e-2
 """Least curvature of an object [1/mm]: a plane's contact is as wide as it is."""
 PIECES = 8
@@ -47,7 +48,8 @@ def finer_under(approach: Approach, skin_mm: np.ndarray, coarse_mm: float) -> Wa
         coarse_mm: Edge of a cell that was not halved.
     """
     poses = []
-    for progress in _progress(approach):
+    # First touch presses nothing, and how a path is cut into frames must not count.
+    for progress in path_samples(approach, every_mm=LOOK_EVERY_MM, most=MOST_LOOKS)[1:]:
         origin, rotation = approach.pose(float(progress))
         overlap_mm = -float(approach.collider.distance((skin_mm - origin) @ rotation)[0].min())
         raised = origin + 0.5 * max(overlap_mm, 0.0) * approach.normal
@@ -72,15 +74,6 @@ def finer_under(approach: Approach, skin_mm: np.ndarray, coarse_mm: float) -> Wa
     return wanted
 
 
-def _progress(approach: Approach) -> np.ndarray:
-    """Progress [frames] at which a path is looked at, the same however it is cut into frames."""
-    found = []
-    for frame in range(approach.frame_count):
-        looks = max(1, math.ceil(approach.travel_mm(frame, 0.0) / LOOK_EVERY_MM - ROUNDING))
-        found.append(frame + (np.arange(looks) + 1.0) / looks)
-    return np.concatenate(found)
-
-
 class SmoothSkin:
     """New nodes on the skin that the old ones were put on, instead of on its facets.
 
@@ -95,9 +88,7 @@ class SmoothSkin:
             skin: The outer skin.
             vertices: Its vertex at each node, -1 for none, shape (N,).
         """
-        corners = skin.points_mm[skin.faces]
-        flat = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        flat /= np.maximum(np.linalg.norm(flat, axis=1, keepdims=True), 1e-300)
+        flat = face_normals(skin.points_mm, skin.faces)
         along = np.einsum("fi,fci->fc", flat, skin.normals[skin.faces])
         sharp = np.zeros(len(skin.points_mm), dtype=bool)
         sharp[skin.faces[along < SMOOTH]] = True

@@ -1,5 +1,7 @@
-"""The 27 nodes of a hexahedron in eight pieces: where they lie, between which corners, shared by
-which neighbours."""
+"""The 27 nodes of a hexahedron in eight pieces.
+
+Where they lie, between which corners, and whether a neighbour has them too.
+"""
 
 from __future__ import annotations
 
@@ -14,9 +16,13 @@ SIDES = np.array(
 )
 """Corners of the six faces of a hexahedron, counter-clockwise from outside."""
 EDGES = np.array(
-    [(a, b) for a in range(8) for b in range(a) if (CORNERS[a] != CORNERS[b]).sum() == 1]
+    [
+        *((0, 1), (1, 2), (2, 3), (3, 0)),
+        *((4, 5), (5, 6), (6, 7), (7, 4)),
+        *((0, 4), (1, 5), (2, 6), (3, 7)),
+    ]
 )
-"""Corners of its twelve edges."""
+"""Ends of its twelve edges, in the order of the nodes 9 to 20 of decks."""
 
 PLACES = np.array([(x, y, z) for z in (-1, 0, 1) for y in (-1, 0, 1) for x in (-1, 0, 1)])
 """The 27 nodes of a cell in eight pieces."""
@@ -42,15 +48,24 @@ CHILD_SPOTS = np.array(
     ]
 )
 """Among the `PLACES` of a cell, the corners of each of its pieces."""
+MEANS = np.zeros((8, 8, 8))
+"""Weights of a cell's corners in each corner (second) of each of its pieces (first)."""
+for _child, _corner in np.ndindex(8, 8):
+    _members = between_corners((CORNERS[_child] + CORNERS[_corner]) / 2)
+    MEANS[_child, _corner, _members] = 1.0 / len(_members)
+_BETWEEN = [between_corners(place) for place in PLACES]
+MIDDLES = tuple(
+    (spots, np.array([_BETWEEN[n] for n in spots]))
+    for spots in ([n for n, of in enumerate(_BETWEEN) if len(of) == size] for size in (2, 4, 8))
+)
+"""Which `PLACES` lie in the middle of edges, of faces, of the cell, and between which corners."""
 
 
 def middle_nodes(lattice: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
     """Nodes of edges, faces and cells, (Q,), and the corners they lie between, (Q, 2, 4 or 8)."""
     corners = lattice[:, CORNER_SPOTS]
-    for size in (2, 4, 8):
-        spots = [n for n, place in enumerate(PLACES) if len(between_corners(place)) == size]
-        groups = np.stack([corners[:, between_corners(PLACES[n])] for n in spots], axis=1)
-        yield lattice[:, spots].ravel(), groups.reshape(-1, size)
+    for spots, between in MIDDLES:
+        yield lattice[:, spots].ravel(), corners[:, between].reshape(-1, between.shape[1])
 
 
 def new_lattice(

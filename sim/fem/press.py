@@ -8,6 +8,7 @@ Left out: soft objects, self-contact.
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import math
 from collections.abc import Callable
@@ -87,30 +88,20 @@ def solve_press(
     estimate = case.fem.error and submodel.finest > 0
     share = 1.0 - COARSER_SHARE if estimate else 1.0
     try:
-        with freed_memory_kept():
-            course.run(_share(monitor, 0.0, share, ""), on_frame)
+        course.run(_share(monitor, 0.0, share, ""), on_frame)
     except SolveError as error:
         error.frame, error.last_good = course.frame, course.frame - 1
         error.message = f"frame {course.frame + 1} of {approach.frame_count}: {error.message}"
         error.partial = course.result() if course.outcomes else None
         raise
-    finally:
-        course.pairing.tangent.close()
     found = course.result()
     if not estimate:
         return found
-    coarser = cut_out(
-        mesh, material, case.press, part_of(mesh, material, approach, case.fem, halved_less=1)
-    )
+    coarser = cut_out(mesh, material, case.press, submodel.part.coarser())
     second = _Course(mesh, material, approach, case.fem, coarser, device)
-    try:
-        with freed_memory_kept():
-            second.run(_share(monitor, share, 1.0, "error, "), lambda frame, outcome: None)
-    except SolveError:
-        # Frames that the coarser mesh did not reach have no estimate.
-        pass
-    finally:
-        second.pairing.tangent.close()
+    # Frames that the coarser mesh does not reach have no estimate.
+    with contextlib.suppress(SolveError):
+        second.run(_share(monitor, share, 1.0, "error, "), lambda frame, outcome: None)
     return dataclasses.replace(found, force_error=_force_error(course.outcomes, second.outcomes))
 
 
@@ -206,7 +197,14 @@ class _Course:
         self.outcomes: list[FemFrame] = []
 
     def run(self, monitor: Monitor, on_frame: OnFrame) -> None:
-        """Solve all frames."""
+        """Solve all frames; the memory of the factors is given back, also after an error."""
+        try:
+            with freed_memory_kept():
+                self._frames(monitor, on_frame)
+        finally:
+            self.pairing.tangent.close()
+
+    def _frames(self, monitor: Monitor, on_frame: OnFrame) -> None:
         count, state = self.approach.frame_count, at_rest(self.pairing)
         for frame in range(count):
             self.frame = frame
@@ -238,7 +236,7 @@ class _Course:
             target_mm=self.approach.target_mm,
             normal=self.approach.normal,
             tangent_u=self.approach.tangent_u,
-            radius_mm=self.submodel.radius_mm,
+            radius_mm=self.submodel.part.radius_mm,
             spacing_mm=self.settings.hex_mm,
             solver=f"{len(body.elements.cells)} hexahedra halved {self.submodel.finest} times, "
             f"{len(body.system.free)} equations, "

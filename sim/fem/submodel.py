@@ -8,7 +8,7 @@ that is driven, takes part as a whole. Under the contact cells are divided (`div
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -48,11 +48,21 @@ class Part:
     """Radius beyond which the tangent takes the wall as it is at rest; a membrane on gel, and one
     that takes part as a whole, bends too far for that."""
     paired: bool = False
-    """Whether eight cells of the mesh count as one that may be halved to them."""
+    """Whether eight cells of the mesh count as one that may be halved to them; the mesh must have
+    such `groups`."""
     wanted: Wanted = nothing_finer
     """Which cells are halved."""
     halvings: int = 0
     """How often at most."""
+
+    def coarser(self) -> Part:
+        """The same with every cell halved once less."""
+        wanted = self.wanted
+        return replace(
+            self,
+            wanted=lambda level, middles_mm: wanted(level + 1, middles_mm),
+            halvings=self.halvings - 1,
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,8 +78,8 @@ class Submodel:
     """How its cells were divided."""
     drives: int
     """Actuations of the press."""
-    radius_mm: float
-    """Radius of the cut; inf for the whole membrane."""
+    part: Part
+    """What was cut out."""
     finest: int
     """How often the finest cells were halved."""
 
@@ -93,8 +103,7 @@ def cut_out(mesh: MembraneMesh, material: Elastomer, press: Press, part: Part) -
         DesignError: If a driven region does not exist.
     """
     hexes = hexahedra_of(mesh)
-    paired = part.paired and len(hexes.groups) > 0
-    cells = hexes.cells[hexes.groups, np.arange(8)] if paired else hexes.cells
+    cells = hexes.cells[hexes.groups, np.arange(8)] if part.paired else hexes.cells
     kept = _away_mm(hexes.points_mm, cells, part) < part.radius_mm
     if not kept.any():
         raise MeshingError(
@@ -102,7 +111,7 @@ def cut_out(mesh: MembraneMesh, material: Elastomer, press: Press, part: Part) -
             hint="raise fem.radius_mm",
             at="fem.radius_mm",
         )
-    members = hexes.groups[kept] if paired else np.flatnonzero(kept)[:, None]
+    members = hexes.groups[kept] if part.paired else np.flatnonzero(kept)[:, None]
     inside = np.zeros(len(hexes.cells), dtype=bool)
     inside[members] = True
     nodes = np.unique(hexes.cells[inside])
@@ -152,7 +161,7 @@ def cut_out(mesh: MembraneMesh, material: Elastomer, press: Press, part: Part) -
         marks=marks,
         division=division,
         drives=len(press.actuations),
-        radius_mm=part.radius_mm,
+        part=part,
         finest=int(division.levels.max()),
     )
 

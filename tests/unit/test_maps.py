@@ -7,6 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 
+from geometry.surface.surface import vertex_areas_mm2
 from sim.optics.camera.camera import project, refracted_rays
 from sim.optics.maps import lighting, pixel_glare, seeing, signal
 from sim.optics.maps.judging import weighted_percentiles
@@ -68,7 +69,7 @@ def test_skin_that_nobody_sees_has_no_pixels() -> None:
 def test_vertex_areas_sum_to_the_area() -> None:
     """20 mm by 20 mm are 400 mm2."""
     skin = plane(0.0)
-    assert seeing.vertex_areas_mm2(skin.points_mm, skin.faces).sum() == pytest.approx(400.0)
+    assert vertex_areas_mm2(skin.points_mm, skin.faces).sum() == pytest.approx(400.0)
 
 
 def test_colours_at_right_angles_are_fully_separable() -> None:

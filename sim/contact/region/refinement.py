@@ -34,12 +34,20 @@ MOST_LOOKS = 8
 """Poses of one frame at which distances are looked at."""
 
 
-def path_samples(approach: Approach) -> np.ndarray:
-    """Progress [frames] at which a path is looked at: first touch, every frame, and between."""
+def path_samples(
+    approach: Approach, *, every_mm: float = LOOK_EVERY_MM, most: int = MOST_LOOKS
+) -> np.ndarray:
+    """Progress [frames] at which a path is looked at: first touch, every frame, and between.
+
+    Args:
+        approach: The path.
+        every_mm: Way of the object between two looks.
+        most: Looks of one frame.
+    """
     found = [np.zeros(1)]
     for frame in range(approach.frame_count):
-        looks = math.ceil(approach.travel_mm(frame, 0.0) / LOOK_EVERY_MM)
-        looks = min(max(looks, 1), MOST_LOOKS)
+        looks = math.ceil(approach.travel_mm(frame, 0.0) / every_mm)
+        looks = min(max(looks, 1), most)
         found.append(frame + (np.arange(looks) + 1.0) / looks)
     return np.concatenate(found)
 

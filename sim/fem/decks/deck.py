@@ -86,7 +86,7 @@ def _header(case: DeckCase, mesh: DeckMesh) -> list[str]:
 One step per frame, {approach.frame_count} in all; the object starts at first touch.
 Elastomer: E {material.young_MPa:g} MPa, nu {material.poisson:g}, law {material.law.value}; friction
 {material.friction:g}; penalty {case.law.penalty_MPa_mm:g} MPa/mm on the undeformed area.
-Part: radius {case.submodel.radius_mm:g} mm about the target (inf: the whole membrane),
+Part: radius {case.submodel.part.radius_mm:g} mm about the target (inf: the whole membrane),
 {len(mesh.cells)} elements {case.element.value}, {len(mesh.points_mm)} nodes.
 Sets: NPART all of it; NOUT vertices of the outer skin; NHELD bonded to the support or cut from the
 rest of the membrane, fixed; NDRIVEN moved by an actuator; EMAT1, EMAT2, ... elements of one

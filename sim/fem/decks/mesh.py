@@ -12,14 +12,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sim.fem.pieces import EDGES
+
 FACE_CORNERS = ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 4, 5), (1, 2, 5, 6), (2, 3, 6, 7), (0, 3, 4, 7))
 """Corners of the faces S1 to S6 of a hexahedron, as sets."""
-EDGES = (
-    *((0, 1), (1, 2), (2, 3), (3, 0)),
-    *((4, 5), (5, 6), (6, 7), (7, 4)),
-    *((0, 4), (1, 5), (2, 6), (3, 7)),
-)
-"""Ends of the edges on which the nodes 9 to 20 stand."""
 MOST_ON_LINE = 16
 """Entries that a line of a deck may have."""
 
@@ -68,7 +64,7 @@ def deck_mesh(points_mm: np.ndarray, cells: np.ndarray, element: Element) -> Dec
     """The part's nodes (N, 3) and hexahedra (M, 8), with mid-edge nodes where the kind has them."""
     if element is not Element.C3D20R:
         return DeckMesh(points_mm=points_mm, cells=cells, ends=np.zeros((0, 2), dtype=np.int64))
-    edges = np.sort(cells[:, np.array(EDGES)], axis=2)
+    edges = np.sort(cells[:, EDGES], axis=2)
     ends, place = np.unique(edges.reshape(-1, 2), axis=0, return_inverse=True)
     further = len(points_mm) + place.reshape(len(cells), len(EDGES))
     return DeckMesh(

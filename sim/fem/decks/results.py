@@ -131,7 +131,7 @@ def force_field(
         residual=np.full(count, np.nan),
         balance=missing_N / np.maximum(np.linalg.norm(result.reaction_N, axis=1), 1e-12),
         converged=np.ones(count, dtype=bool),
-        radius_mm=submodel.radius_mm,
+        radius_mm=submodel.part.radius_mm,
         spacing_mm=spacing_mm,
         solver=f"{result.program}, {len(submodel.body.elements.cells)} {case.element.value}",
     )

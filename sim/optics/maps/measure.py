@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sim.optics.maps import seeing
+from geometry.surface.surface import vertex_areas_mm2
 from sim.optics.maps.judging import weighted_percentiles
 from sim.optics.maps.look import best_look, look_of
 from sim.optics.maps.map_kind import MapKind, Scene, light_maps, map_kinds
@@ -51,7 +51,7 @@ def designer_maps(
         looks.append(look_of(mesh, light, optics, table, camera, span))
     monitor(0.8, "maps")
     scene = Scene(mesh=mesh, light=light, look=best_look(looks), young_MPa=young_MPa)
-    areas = seeing.vertex_areas_mm2(mesh.seen.points_mm, mesh.seen.faces)
+    areas = vertex_areas_mm2(mesh.seen.points_mm, mesh.seen.faces)
     found = []
     for name, kind in map_kinds().items():
         values = kind.measure(scene)

@@ -55,12 +55,3 @@ def incidence_deg(inward: np.ndarray, to_camera: np.ndarray, visible: np.ndarray
     """
     cosine = np.clip(np.einsum("ij,ij->i", inward, to_camera), 0.0, 1.0)
     return np.where(visible, np.degrees(np.arccos(cosine)), np.nan).astype(np.float32)
-
-
-def vertex_areas_mm2(points_mm: np.ndarray, faces: np.ndarray) -> np.ndarray:
-    """A third of the area of each vertex's triangles [mm2], shape (V,), float64."""
-    corners = points_mm[faces]
-    area = 0.5 * np.linalg.norm(
-        np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1
-    )
-    return np.bincount(faces.T.ravel(), np.tile(area / 3.0, 3), minlength=len(points_mm))

@@ -9,6 +9,7 @@ import dataclasses
 
 import numpy as np
 
+from geometry.surface.surface import vertex_areas_mm2
 from sim.optics.field.bake import light_field
 from sim.optics.field.gathered import gathered
 from sim.optics.field.lines import toward
@@ -20,7 +21,6 @@ from sim.optics.light.lobe import emitted
 from sim.optics.proof.specimen import finger
 from sim.optics.proof.transport_scenes import BLACK
 from sim.optics.transport.gather import gather_light
-from sim.optics.transport.nodes import vertex_areas
 from sim.optics.transport.paths import Photons
 from sim.optics.transport.radiance import trace_radiance
 from sim.optics.transport.view import directions_to_camera
@@ -118,5 +118,7 @@ def table_error(*, in_shell: bool, photons: int = 1_000_000) -> float:
     others = Photons(count=photons, seed=transport.baking.seed, first=photons)
     traced = trace_radiance(mesh, leds, camera, transport, others)
     exact = traced.radiance * (len(leds.rgb) / traced.photons)
-    share = vertex_areas(mesh.seen) * (mesh.seen.points_mm[:, 2] > 3.0)
+    share = vertex_areas_mm2(mesh.seen.points_mm, mesh.seen.faces) * (
+        mesh.seen.points_mm[:, 2] > 3.0
+    )
     return float(abs(share @ found.sum(axis=1) / (share @ exact.sum(axis=1)) - 1.0))

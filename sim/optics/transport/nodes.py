@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from geometry.surface.surface import face_areas
+from geometry.surface.surface import face_areas, vertex_areas_mm2
 from workbench.core.result.results import Skin
 
 ROUNDS = 5
@@ -109,7 +109,7 @@ def _patches(skin: Skin, count: int) -> tuple[np.ndarray, np.ndarray]:
     from scipy.sparse.csgraph import dijkstra
 
     graph = _edges(skin)
-    share = vertex_areas(skin)
+    share = vertex_areas_mm2(skin.points_mm, skin.faces)
     random = np.random.default_rng(0)
     # Drawn by area along a line through all vertices: even, whatever the density of the mesh.
     order = random.permutation(len(share))
@@ -160,12 +160,6 @@ def _edges(skin: Skin) -> Any:
     # An edge of two faces was added twice over; its length is the mean of what was added.
     times: Any = coo_matrix((np.ones(2 * len(start)), both), (count, count)).tocsr()
     return links.multiply(times.power(-1.0)).tocsr()
-
-
-def vertex_areas(skin: Skin) -> np.ndarray:
-    """A third of the area of the faces about each vertex [mm2], shape (V,)."""
-    area = np.repeat(face_areas(skin.points_mm, skin.faces) / 3.0, 3)
-    return np.bincount(skin.faces.ravel(), area, len(skin.points_mm))
 
 
 def _dual(patches: np.ndarray) -> np.ndarray:
