@@ -26,7 +26,8 @@ def part_of(
     mesh: MembraneMesh, material: Elastomer, approach: Approach, settings: FemSettings
 ) -> Part:
     """The part of a membrane that a press asks for."""
-    paired = len(hexahedra_of(mesh).groups) > 0
+    # Without halvings cells stay as they were meshed, away from the contact too.
+    paired = settings.halvings > 0 and len(hexahedra_of(mesh).groups) > 0
     whole_mm = settings.hex_mm * (2.0 if paired else 1.0)
     return Part(
         centre_mm=approach.target_mm,

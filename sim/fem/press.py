@@ -23,7 +23,6 @@ from sim.contact.readout.verdict import check_depth
 from sim.contact.region.backing import support_points_mm
 from sim.contact.region.placing import place_object
 from sim.fem.contact_law import PENALTY, Law
-from sim.fem.division import nothing_finer
 from sim.fem.extent import part_of
 from sim.fem.increment import Pairing, advance, at_rest
 from sim.fem.newton import Effort
@@ -134,7 +133,6 @@ def set_up(
     case: PressCase,
     *,
     sampled: SampledDistance | None = None,
-    divided: bool = True,
 ) -> tuple[Approach, Submodel]:
     """The object, its path and the part of the membrane of a press, before anything is solved.
 
@@ -143,7 +141,6 @@ def set_up(
         material: The elastomer.
         case: Object, path and settings.
         sampled: The object's distance where a store has it.
-        divided: Whether cells are finer under the contact, with hanging nodes, or all as meshed.
 
     Raises:
         DesignError: As `solve_press`.
@@ -160,10 +157,7 @@ def set_up(
         mesh.outer, indenter, press, grid_mm=sampling_grid_mm(settings), sampled=sampled
     )
     check_depth(support_points_mm(mesh), approach)
-    part = part_of(mesh, material, approach, settings)
-    if not divided:
-        part = dataclasses.replace(part, paired=False, wanted=nothing_finer, halvings=0)
-    return approach, cut_out(mesh, material, press, part)
+    return approach, cut_out(mesh, material, press, part_of(mesh, material, approach, settings))
 
 
 class _Course:
@@ -238,8 +232,8 @@ class _Course:
             tangent_u=self.approach.tangent_u,
             radius_mm=self.submodel.part.radius_mm,
             spacing_mm=self.settings.hex_mm,
-            solver=f"{len(body.elements.cells)} hexahedra halved {self.submodel.finest} times, "
-            f"{len(body.system.free)} equations, "
+            solver=f"{len(body.elements.cells)} hexahedra, halved up to "
+            f"{self.submodel.finest} times, {len(body.system.free)} equations, "
             f"{self.pairing.tangent.solver_name}",
         )
 

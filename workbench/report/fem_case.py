@@ -6,6 +6,7 @@ and compared without naming the case again.
 
 from __future__ import annotations
 
+import dataclasses
 import json
 from typing import TYPE_CHECKING, Any
 
@@ -80,8 +81,11 @@ def make_deck_case(
     if sampled is not None:
         # A large object is sampled once more where it meets the skin.
         open_device()
-    material, case = state.design.material, state.case
-    approach, submodel = set_up(mesh, material, case, sampled=sampled, divided=False)
+    material = state.design.material
+    # Other programs know no hanging nodes.
+    whole = dataclasses.replace(state.case.fem, halvings=0)
+    case = dataclasses.replace(state.case, fem=whole)
+    approach, submodel = set_up(mesh, material, case, sampled=sampled)
     skin_mm = submodel.body.points_mm[submodel.marks.outer >= 0]
     surface = near_surface(approach.collider, *near_box_mm(skin_mm, approach))
     return DeckCase(

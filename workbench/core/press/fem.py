@@ -24,7 +24,7 @@ class FemSettings:
     hex_mm: float = QUALITY_MM
     """Edge of a hexahedron [mm]: `QUALITY_MM`, or `DRAFT_MM` for a first look."""
     halvings: int = HALVINGS
-    """How often hexahedra under the contact are halved, at most; 0: nowhere."""
+    """How often hexahedra under the contact are halved, at most; 0: all stay as meshed."""
     error: bool = True
     """Whether the error of the force is estimated, by a second mesh halved once less."""
     radius_mm: float = FIELD_RADIUS_MM

@@ -126,5 +126,5 @@ def _refinements(recorded_N: dict[float, float]) -> Iterator[Row]:
 
 
 def _patch_force_N(edge_mm: float, *, friction: float = 0.3) -> float:
-    case = Case(hex_mm=edge_mm, radius_mm=PATCH_MM, friction=friction)
+    case = Case(hex_mm=edge_mm, halvings=0, radius_mm=PATCH_MM, friction=friction)
     return float(solved(case).normal_N[-1])

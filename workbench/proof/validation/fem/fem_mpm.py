@@ -115,8 +115,13 @@ def pressed(
     return from_contact(found)
 
 
+def _uniform(kind: IndenterKind, edge_mm: float) -> Case:
+    """The press on cells of one size, whose error falls with the square of it."""
+    return Case(kind=kind, hex_mm=edge_mm, halvings=0, radius_mm=PATCH_MM)
+
+
 def _force_N(kind: IndenterKind, edge_mm: float) -> float:
-    return float(solved(Case(kind=kind, hex_mm=edge_mm, radius_mm=PATCH_MM)).normal_N[-1])
+    return float(solved(_uniform(kind, edge_mm)).normal_N[-1])
 
 
 def _limit_N(kind: IndenterKind) -> float:

@@ -10,7 +10,7 @@ import numpy as np
 
 from workbench.core.base.monitor import silent
 from workbench.core.design.design import Elastomer, Meshing
-from workbench.core.press.fem import DRAFT_MM, FemSettings
+from workbench.core.press.fem import DRAFT_MM, HALVINGS, FemSettings
 from workbench.core.press.indenter import BALL, Indenter, IndenterKind
 from workbench.core.press.motion import release
 from workbench.core.press.press import Press
@@ -35,6 +35,7 @@ class Case:
     azimuth_deg: float = 0.0
     released: bool = False
     hex_mm: float = DRAFT_MM
+    halvings: int = HALVINGS
     radius_mm: float = 12.0
     increment_mm: float = 0.1
     friction: float = 0.3
@@ -58,8 +59,13 @@ def mirrored_finger(hex_mm: float) -> MembraneMesh:
     found = finger(hex_mm)
     hexes = found.hexes
     if hexes is not None:
-        cells = np.ascontiguousarray(hexes.cells[:, [1, 0, 3, 2, 5, 4, 7, 6]])
-        hexes = dataclasses.replace(hexes, points_mm=hexes.points_mm * MIRROR, cells=cells)
+        turned = [1, 0, 3, 2, 5, 4, 7, 6]
+        hexes = dataclasses.replace(
+            hexes,
+            points_mm=hexes.points_mm * MIRROR,
+            cells=np.ascontiguousarray(hexes.cells[:, turned]),
+            groups=np.ascontiguousarray(hexes.groups[:, turned]),
+        )
     skins = {name: _mirrored(getattr(found, name)) for name in ("outer", "inner", "cavity")}
     return dataclasses.replace(found, hexes=hexes, **skins)
 
@@ -88,7 +94,11 @@ def solved(case: Case) -> ForceField:
         strokes=strokes,
     )
     settings = FemSettings(
-        hex_mm=case.hex_mm, radius_mm=case.radius_mm, increment_mm=case.increment_mm, error=False
+        hex_mm=case.hex_mm,
+        halvings=case.halvings,
+        radius_mm=case.radius_mm,
+        increment_mm=case.increment_mm,
+        error=False,
     )
     material = Elastomer(friction=case.friction)
     membrane = (mirrored_finger if case.mirrored else finger)(case.hex_mm)
