@@ -17,6 +17,8 @@ and `batch`.
 # Taichi reads annotations and operators in its own way.
 # pyright: reportInvalidTypeForm=false, reportGeneralTypeIssues=false, reportIndexIssue=false
 
+import functools
+
 import taichi as ti
 
 from sim.contact.engine.bundles import Cases, Cells, Floats, Integers, Nodes, Surface, pack_of
@@ -77,8 +79,13 @@ def node_pass(nodes: ti.template(), cells: ti.template(), cases: ti.template(), 
             nodes.powers[2 * node + 1] = inertia
 
 
-def _make_substep(linear):
-    """The kernel of one substep for a material law; each law is compiled when first used."""
+@functools.cache
+def substeps(linear, count):
+    """The kernel of so many substeps of a material law, at the poses from row `step` on.
+
+    Forces at the present displacement, then one damped step of the nodes of each moving case. A
+    compute graph binds the arrays by their names. Each is compiled when first used.
+    """
 
     @ti.kernel
     def substep(
@@ -99,15 +106,12 @@ def _make_substep(linear):
         cases = ti.static(Cases(poses, numbers, choices, coefficients))
         # All bounds first: Taichi then finds them in one task instead of one before each loop.
         cell_count, node_count = cell_cases.shape[0], node_cases.shape[0]
-        cell_pass(nodes, cells, surface, cases, cell_count, case_count, step, linear)
-        node_pass(nodes, cells, cases, node_count)
+        for further in ti.static(range(count)):
+            row = step + further
+            cell_pass(nodes, cells, surface, cases, cell_count, case_count, row, linear)
+            node_pass(nodes, cells, cases, node_count)
 
     return substep
-
-
-SUBSTEP = {linear: _make_substep(linear) for linear in (False, True)}
-"""By whether the law is linear: forces at the present displacement, then one damped step of the
-nodes of each moving case. A compute graph binds the arrays by their names."""
 
 
 @ti.func

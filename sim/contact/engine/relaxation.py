@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 import taichi as ti
+from taichi.lang.impl import current_cfg
 
 from sim.contact.engine import kernels, sum_kernels
 from sim.contact.engine.batch import Batch, Case
@@ -105,8 +106,16 @@ class Relaxation:
 
     def _launcher(self) -> Launcher:
         """What runs the substeps."""
-        kernel = kernels.SUBSTEP[_one_law(self.cases)]
-        return Launcher(kernel, self.batch.bundles, cases=len(self.cases))
+        linear = _one_law(self.cases)
+        # A GPU is waiting for launches in a small case: one kernel for all substeps of a round. A
+        # CPU would only compile longer.
+        together = STEPS if current_cfg().arch == ti.cuda else 1
+        return Launcher(
+            kernels.substeps(linear, 1),
+            self.batch.bundles,
+            cases=len(self.cases),
+            round_of=(kernels.substeps(linear, together), together),
+        )
 
     def set_poses(self, case: int, rows: np.ndarray) -> None:
         """Poses of a case in the next substeps, shape (n <= STEPS, POSE); the last one stays.
@@ -248,7 +257,22 @@ class Launcher:
     The arrays of all bundles go to the kernel's parameters of the same name.
     """
 
-    def __init__(self, kernel: Any, bundles: Iterable[Any], *, cases: int) -> None:
+    def __init__(
+        self,
+        kernel: Any,
+        bundles: Iterable[Any],
+        *,
+        cases: int,
+        round_of: tuple[Any, int] | None = None,
+    ) -> None:
+        """Bind the arrays.
+
+        Args:
+            kernel: Of one substep.
+            bundles: Named tuples of arrays.
+            cases: How many there are.
+            round_of: A kernel of several substeps and how many, of which `STEPS` is a multiple.
+        """
         arrays = {name: a for bundle in bundles for name, a in bundle._asdict().items()}
         declared = {
             name: ti.graph.Arg(ti.graph.ArgKind.NDARRAY, name, array.dtype, ndim=1)
@@ -259,17 +283,15 @@ class Launcher:
             ti.graph.Arg(ti.graph.ArgKind.SCALAR, f"step_{step}", ti.i32) for step in range(STEPS)
         ]
         names = inspect.signature(kernel).parameters
-        self._graphs = {}
-        for count in (1, STEPS):
+        self._graphs, self._arguments = {}, {}
+        for count, (launched, each) in ((1, (kernel, 1)), (STEPS, round_of or (kernel, 1))):
             builder = ti.graph.GraphBuilder()
-            for step in steps[:count]:
+            for step in steps[:count:each]:
                 known = {**declared, "step": step}
-                builder.dispatch(kernel, *(known[name] for name in names))
+                builder.dispatch(launched, *(known[name] for name in names))
             self._graphs[count] = builder.compile()
-        self._arguments = {
-            count: {**arrays, "case_count": cases, **{f"step_{n}": n for n in range(count)}}
-            for count in (1, STEPS)
-        }
+            first = {f"step_{step}": step for step in range(0, count, each)}
+            self._arguments[count] = {**arrays, "case_count": cases, **first}
 
     def run(self, count: int) -> None:
         """Run 1 or `STEPS` substeps, at the poses of the table's first rows."""
