@@ -8,7 +8,8 @@ import pytest
 
 from sim.contact.engine import kernels, reference
 from sim.contact.engine.batch import Case
-from sim.contact.engine.relaxation import STEP_CAP, STEPS, Launcher, Relaxation
+from sim.contact.engine.launcher import STEPS, Launcher
+from sim.contact.engine.relaxation import STEP_CAP, Relaxation
 from sim.contact.motion.approach import plan_approach
 from sim.contact.objects.collider import make_collider
 from sim.contact.readout.problem import prepare
@@ -258,6 +259,7 @@ def test_step_equals_the_twin(taichi_device: str) -> None:
     np.testing.assert_allclose(relaxation.displacement(), displacement, atol=2e-6)
 
 
+@pytest.mark.slow
 def test_a_round_in_one_kernel_is_the_same_as_substep_by_substep(taichi_device: str) -> None:
     """The same bits, with an object that is elsewhere in each substep."""
     domain, collider, approach, _ = setup(Indenter(size_mm=4.0))

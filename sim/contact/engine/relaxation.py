@@ -10,8 +10,6 @@ relaxes: only the sums of `Balances` do.
 
 from __future__ import annotations
 
-import inspect
-from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -21,14 +19,13 @@ from taichi.lang.impl import current_cfg
 
 from sim.contact.engine import kernels, sum_kernels
 from sim.contact.engine.batch import Batch, Case
+from sim.contact.engine.launcher import STEPS, Launcher
 from sim.contact.grid import layout
 
 STEP_CAP = 0.1
 """Largest displacement of a node in one substep and axis, in cells."""
 FIRST_DAMPING = 0.5
 DAMPING_RANGE = (0.004, 1.5)
-STEPS = 5
-"""Substeps between two looks at the residual."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -249,53 +246,6 @@ class Relaxation:
         if self._stale_poses:
             self.batch.cases.poses.from_numpy(self._poses.ravel())
             self._stale_poses = False
-
-
-class Launcher:
-    """Substeps of a batch as a compute graph: its arguments are bound once, not at each launch.
-
-    The arrays of all bundles go to the kernel's parameters of the same name.
-    """
-
-    def __init__(
-        self,
-        kernel: Any,
-        bundles: Iterable[Any],
-        *,
-        cases: int,
-        round_of: tuple[Any, int] | None = None,
-    ) -> None:
-        """Bind the arrays.
-
-        Args:
-            kernel: Of one substep.
-            bundles: Named tuples of arrays.
-            cases: How many there are.
-            round_of: A kernel of several substeps and how many, of which `STEPS` is a multiple.
-        """
-        arrays = {name: a for bundle in bundles for name, a in bundle._asdict().items()}
-        declared = {
-            name: ti.graph.Arg(ti.graph.ArgKind.NDARRAY, name, array.dtype, ndim=1)
-            for name, array in arrays.items()
-        }
-        declared["case_count"] = ti.graph.Arg(ti.graph.ArgKind.SCALAR, "case_count", ti.i32)
-        steps = [
-            ti.graph.Arg(ti.graph.ArgKind.SCALAR, f"step_{step}", ti.i32) for step in range(STEPS)
-        ]
-        names = inspect.signature(kernel).parameters
-        self._graphs, self._arguments = {}, {}
-        for count, (launched, each) in ((1, (kernel, 1)), (STEPS, round_of or (kernel, 1))):
-            builder = ti.graph.GraphBuilder()
-            for step in steps[:count:each]:
-                known = {**declared, "step": step}
-                builder.dispatch(launched, *(known[name] for name in names))
-            self._graphs[count] = builder.compile()
-            first = {f"step_{step}": step for step in range(0, count, each)}
-            self._arguments[count] = {**arrays, "case_count": cases, **first}
-
-    def run(self, count: int) -> None:
-        """Run 1 or `STEPS` substeps, at the poses of the table's first rows."""
-        self._graphs[count].run(self._arguments[count])
 
 
 def _one_law(cases: list[Case]) -> bool:

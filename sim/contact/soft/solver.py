@@ -13,7 +13,8 @@ import taichi as ti
 
 from sim.contact.engine.batch import Case, floats, integers
 from sim.contact.engine.bundles import packed
-from sim.contact.engine.relaxation import Balance, Balances, Launcher, Relaxation
+from sim.contact.engine.launcher import Launcher
+from sim.contact.engine.relaxation import Balance, Balances, Relaxation
 from sim.contact.grid.layout import MEETS_SOFT
 from sim.contact.readout.frame import FrameOutcome
 from sim.contact.readout.outcome import frame_outcome, point_displacement

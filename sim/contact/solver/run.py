@@ -7,7 +7,8 @@ import time
 
 import numpy as np
 
-from sim.contact.engine.relaxation import STEPS, Relaxation
+from sim.contact.engine.launcher import STEPS
+from sim.contact.engine.relaxation import Relaxation
 from sim.contact.grid.layout import POSE
 from sim.contact.readout.frame import FrameOutcome
 from sim.contact.readout.problem import Problem

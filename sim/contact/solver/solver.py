@@ -16,7 +16,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from sim.contact.engine.batch import Case
-from sim.contact.engine.relaxation import STEPS, Balance, Balances, Relaxation
+from sim.contact.engine.launcher import STEPS
+from sim.contact.engine.relaxation import Balance, Balances, Relaxation
 from sim.contact.readout.frame import FrameOutcome
 from sim.contact.readout.outcome import SettledFrame, collect, frame_outcome
 from sim.contact.readout.problem import Problem

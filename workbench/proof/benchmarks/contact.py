@@ -109,7 +109,7 @@ def substep_s(relaxation) -> float:
     """Median time of a substep [s]."""
     import taichi as ti
 
-    from sim.contact.engine.relaxation import STEPS
+    from sim.contact.engine.launcher import STEPS
 
     one = np.ones(1, bool)
     times = []
