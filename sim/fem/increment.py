@@ -64,6 +64,8 @@ class State:
     """Elastic slip, shape (P, 3)."""
     slid_mm: np.ndarray
     """Way that each point has slid since it last touched, shape (P,)."""
+    slides: np.ndarray
+    """Whether each slid in the increment that led here, shape (P,), bool."""
     balance: Balance | None = None
     """Forces; None before the first increment."""
 
@@ -78,6 +80,7 @@ def at_rest(pairing: Pairing) -> State:
         places_mm=places_mm,
         elastic_mm=np.zeros_like(places_mm),
         slid_mm=np.zeros(len(places_mm)),
+        slides=np.zeros(len(places_mm), dtype=bool),
     )
 
 
@@ -164,6 +167,7 @@ def _load(pairing: Pairing, state: State, progress: float) -> Load:
         pose=pose,
         anchor_mm=pose.carried(state.places_mm, before),
         elastic_mm=state.elastic_mm @ pose.turn(before).T,
+        slides=state.slides,
     )
 
 
@@ -214,11 +218,14 @@ def _remembered(state: State, progress: float, found: Solution) -> State:
     elastic_mm, slid_mm = np.zeros_like(state.elastic_mm), np.zeros_like(state.slid_mm)
     elastic_mm[forces.members] = forces.traction.elastic_mm
     slid_mm[forces.members] = state.slid_mm[forces.members] + forces.traction.slid_mm
+    slides = np.zeros_like(state.slides)
+    slides[forces.members] = forces.traction.slid_mm > 0.0
     return State(
         progress=progress,
         displacement_mm=found.displacement_mm,
         places_mm=forces.places_mm,
         elastic_mm=elastic_mm,
         slid_mm=slid_mm,
+        slides=slides,
         balance=forces,
     )

@@ -23,16 +23,17 @@ from sim.contact.engine.bundles import Cases, Cells, Floats, Integers, Nodes, Su
 from sim.contact.engine.cell_kernel import cell_pass, entry
 from sim.contact.engine.point_functions import (
     body_rotation,
+    friction_now,
     line_weights,
     object_distance,
     place_in_body,
     tangent_slip,
 )
 from sim.contact.grid.layout import (
+    AT_LIMIT,
     CHOICES,
     DAMPING,
     FREE,
-    FRICTION,
     HELD,
     IDLE,
     LARGEST_STEP,
@@ -43,6 +44,7 @@ from sim.contact.grid.layout import (
     MOVING,
     NUMBERS,
     POINT,
+    SLID,
 )
 from sim.contact.region.domain import BLOCK
 
@@ -154,13 +156,16 @@ def commit_anchors(
                         anchor = place
                         for c in ti.static(range(3)):
                             anchor[c] = surface.anchors[3 * point + c]
-                        friction = cases.numbers[NUMBERS * case + FRICTION]
+                        friction = friction_now(point, surface, cases, case)
                         limit = -friction * distance * gradient.norm()
-                        new = place - tangent_slip(place, gradient, anchor, limit)
+                        slip = tangent_slip(place, gradient, anchor, limit)
+                        new = place - slip
                         way = new - anchor
                         normal = gradient / ti.max(gradient.norm(), 1e-9)
                         slips[point] += (way - way.dot(normal) * normal).norm()
                         surface.states[point] = HELD
+                        if slip.norm() >= AT_LIMIT * limit:
+                            surface.states[point] = SLID
                         for c in ti.static(range(3)):
                             surface.anchors[3 * point + c] = new[c]
                     else:

@@ -92,7 +92,9 @@ class Relaxation:
         self._modes = np.zeros(count, np.int32)
         for row, case in enumerate(cases):
             grid_mm = case.domain.grid_mm
+            sliding = case.kinetic_friction
             self._numbers[row, layout.FRICTION] = case.friction
+            self._numbers[row, layout.KINETIC] = case.friction if sliding is None else sliding
             self._numbers[row, layout.LARGEST_STEP] = STEP_CAP * grid_mm
             self._numbers[row, layout.INVERSE_EDGE] = 1.0 / grid_mm
             self._numbers[row, layout.SIZE :] = case.collider.size

@@ -50,10 +50,15 @@ class SoftRelaxation(Relaxation):
     def __init__(self, problem: Problem, soft: SoftObject) -> None:
         self.soft = soft
         self.problem = problem
-        collider, friction = problem.collider, problem.material.friction
+        collider, material = problem.collider, problem.material
         super().__init__(
             [
-                Case(domain=soft.membrane, collider=collider, friction=friction),
+                Case(
+                    domain=soft.membrane,
+                    collider=collider,
+                    friction=material.friction,
+                    kinetic_friction=material.kinetic_friction,
+                ),
                 Case(domain=soft.domain, collider=collider, friction=0.0),
             ]
         )

@@ -11,6 +11,7 @@ from sim.contact.engine.relaxation import STEPS, Relaxation
 from sim.contact.grid.layout import POSE
 from sim.contact.readout.frame import FrameOutcome
 from sim.contact.readout.problem import Problem
+from sim.contact.readout.slipping import grip_of, with_slip
 from sim.contact.region.drives import driven_displacement_mm
 from workbench.core.base.errors import SolveError
 
@@ -55,6 +56,7 @@ class Run:
         self.outcomes: list[FrameOutcome] = []
         self.error: SolveError | None = None
         self._settled = [relaxation.snapshot(number)]
+        self._grip = grip_of(problem, relaxation, number)
         self._ramp = np.zeros((0, POSE))
         self._fed = 0
         self._driven_mm = 0.0
@@ -115,9 +117,13 @@ class Run:
         self.relaxation.set_poses(self.number, self._rows(np.ones(1)))
 
     def finish(self, outcome: FrameOutcome) -> None:
-        """Close the settled frame."""
-        self.outcomes.append(outcome)
+        """Close the settled frame, and add to it what slid."""
         self._keep()
+        before, self._grip = self._grip, grip_of(self.problem, self.relaxation, self.number)
+        outcome = with_slip(
+            outcome, self.problem, self.frame, (before, self._grip), driven_mm=self._driven_mm
+        )
+        self.outcomes.append(outcome)
         self.frame += 1
         self.increment = 0
 
