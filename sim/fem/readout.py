@@ -13,10 +13,10 @@ import numpy as np
 from sim.contact.readout.fields import VOIGT
 from sim.fem.balance import LEAST_MM2, Balance
 from sim.fem.elements import CORNERS, Elements, displacement_gradient
-from sim.fem.increment import Pairing, State
+from sim.fem.increment import Pairing, State, slid_since
 from sim.fem.newton import Effort
 from sim.fem.submodel import Submodel
-from sim.forces.slip import MOST_OF_IT, Slip, object_way_mm, slip_of
+from sim.forces.slip import MOST_OF_IT, Slip
 from sim.material import energy_density_MPa
 from workbench.core.base.frames import quaternion
 from workbench.core.result.results import MembraneMesh
@@ -91,7 +91,7 @@ def read_frame(
     least_N = LEAST_MM2 * body.young_MPa
     load_N = max(float(np.linalg.norm(contact_N)), float(np.abs(holding_N).max()), least_N)
     cauchy, energy, least = _stress(body.elements, state.displacement_mm, len(place_mm))
-    slip = _slip(pairing, state, before)
+    slip = slid_since(pairing, before, state.progress, forces)
     pressure, slid_mm, sliding = _contact_state(submodel, state, slip, forces)
     count = len(mesh.outer.points_mm)
     return FemFrame(
@@ -167,25 +167,6 @@ def _contact_state(
     pressed_N, area = summed(normal), summed(np.ones_like(normal))
     sliding = mean(slip.sliding, slip.stayed.astype(float))
     return pressed_N / np.maximum(area, LEAST), mean(state.slid_mm, touching), sliding
-
-
-def _slip(pairing: Pairing, state: State, before: State) -> Slip:
-    """What slid of the contact points since the state at the end of the frame before."""
-    pose, old = pairing.pose_at(state.progress), pairing.pose_at(before.progress)
-    carried_mm = pose.carried(before.places_mm, old)
-    moved_mm = state.places_mm - carried_mm
-    lags = [found.balance.lag() for found in (before, state) if found.balance is not None]
-    normal = lags[-1].normal
-    moved_mm -= np.einsum("pc,pc->p", moved_mm, normal)[:, None] * normal
-    stayed = np.full(len(moved_mm), len(lags) == 2)
-    for lag in lags:
-        stayed &= lag.pressure_MPa > 0.0
-    driven_mm = np.linalg.norm(
-        pairing.held_mm(state.progress) - pairing.held_mm(before.progress), axis=1
-    )
-    least_mm = max(float(np.linalg.norm(pose.origin_mm - old.origin_mm)), float(driven_mm.max()))
-    way_mm = object_way_mm(carried_mm, before.places_mm, least_mm)
-    return slip_of(np.linalg.norm(moved_mm, axis=1), way_mm, stayed)
 
 
 def _friction_ratio(forces: Balance) -> float:

@@ -70,9 +70,12 @@ def slip_of(moved_mm: np.ndarray, way_mm: np.ndarray, stayed: np.ndarray) -> Sli
         way_mm: Way of the object there, w above [mm], shape (P,).
         stayed: Whether each place touched the object at both ends of the frame, shape (P,), bool.
     """
-    return Slip(
-        sliding=stayed & (moved_mm > np.maximum(SLIDING_RATE * way_mm, LEAST_MM)), stayed=stayed
-    )
+    return Slip(sliding=stayed & (moved_mm > slides_from_mm(way_mm)), stayed=stayed)
+
+
+def slides_from_mm(way_mm: np.ndarray | float) -> np.ndarray:
+    """Motion relative to an object that goes a way w, from which a place slides [mm]."""
+    return np.maximum(SLIDING_RATE * way_mm, LEAST_MM)
 
 
 def object_way_mm(now_mm: np.ndarray, before_mm: np.ndarray, least_mm: float) -> np.ndarray:

@@ -30,7 +30,6 @@ from sim.contact.engine.point_functions import (
     tangent_slip,
 )
 from sim.contact.grid.layout import (
-    AT_LIMIT,
     CHOICES,
     DAMPING,
     FREE,
@@ -137,11 +136,12 @@ def commit_anchors(
     cases: pack_of(Cases),
     slips: Floats,
     committing: ti.i32,
+    slid_mm: ti.f32,
 ):
     """Close a settled frame of a case, by its pose in the first step of the table.
 
     Anchors follow the points that slid, and the way they go is added to `slips`; contacts become
-    history.
+    history. Those that went farther than `slid_mm` are held by kinetic friction from here on.
     """
     for cell in range(cells.cell_cases.shape[0]):
         case = cells.cell_cases[cell]
@@ -158,13 +158,13 @@ def commit_anchors(
                             anchor[c] = surface.anchors[3 * point + c]
                         friction = friction_now(point, surface, cases, case)
                         limit = -friction * distance * gradient.norm()
-                        slip = tangent_slip(place, gradient, anchor, limit)
-                        new = place - slip
+                        new = place - tangent_slip(place, gradient, anchor, limit)
                         way = new - anchor
                         normal = gradient / ti.max(gradient.norm(), 1e-9)
-                        slips[point] += (way - way.dot(normal) * normal).norm()
+                        length = (way - way.dot(normal) * normal).norm()
+                        slips[point] += length
                         surface.states[point] = HELD
-                        if slip.norm() >= AT_LIMIT * limit:
+                        if length > slid_mm:
                             surface.states[point] = SLID
                         for c in ti.static(range(3)):
                             surface.anchors[3 * point + c] = new[c]

@@ -10,10 +10,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim.contact.grid.layout import AT_LIMIT, FREE, HELD, LIFTED, SLID, TOUCHED
+from sim.contact.grid.layout import FREE, HELD, LIFTED, SLID, TOUCHED
 from sim.contact.grid.stencil import gradient_table, point_weights
 from sim.contact.objects.collider import Collider
 from sim.contact.region.domain import Domain, stencil_nodes
+from sim.forces.slip import LEAST_MM
 from sim.material import stress_of
 
 Pose = tuple[np.ndarray, np.ndarray]
@@ -141,8 +142,13 @@ def commit_history(
     displacement: np.ndarray,
     history: ContactHistory,
     met: PosedObject,
+    *,
+    slid_mm: float = LEAST_MM,
 ) -> None:
-    """Close a frame: anchors follow the points that slid, and their way is added up."""
+    """Close a frame: anchors follow the points that slid, and their way is added up.
+
+    Those that went farther than `slid_mm` are held by kinetic friction from here on.
+    """
     origin, rotation = met.pose
     place = (point_places(domain, displacement) - origin) @ rotation
     distance, gradient = met.collider.distance(place)
@@ -153,10 +159,10 @@ def commit_history(
             slip = returned_slip(place[p], anchor, distance[p], gradient[p], friction)
             way = place[p] - slip - anchor
             normal = gradient[p] / np.linalg.norm(gradient[p])
-            history.slips[p] += np.linalg.norm(way - (way @ normal) * normal)
-            limit = -friction * distance[p] * np.linalg.norm(gradient[p])
-            slid = np.linalg.norm(slip) >= AT_LIMIT * limit
-            history.states[p], history.anchors[p] = SLID if slid else HELD, place[p] - slip
+            length = np.linalg.norm(way - (way @ normal) * normal)
+            history.slips[p] += length
+            history.states[p] = SLID if length > slid_mm else HELD
+            history.anchors[p] = place[p] - slip
         else:
             history.states[p] = FREE
 

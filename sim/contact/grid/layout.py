@@ -3,8 +3,6 @@
 FREE, TOUCHED, HELD, SLID = 0, 1, 2, 3
 """States of a contact point: apart; anchored within this frame; anchored by a settled state in
 which it stuck; by one in which it slid, so that kinetic friction holds it."""
-AT_LIMIT = 0.9999
-"""Share of the friction cone from which a settled point slid: the rest is rounding."""
 LIFTED = 0.5
 """Gap at which a point forgets where it held, in cells: it will touch anew."""
 MEETS_RIGID, HELD_STILL, MEETS_SOFT = 0, 1, 2

@@ -23,7 +23,6 @@ from sim.contact.engine.cell_kernel import cell_pass, entry
 from sim.contact.engine.kernels import node_pass
 from sim.contact.engine.point_functions import friction_now, line_weights
 from sim.contact.grid.layout import (
-    AT_LIMIT,
     FREE,
     HELD,
     IDLE,
@@ -184,6 +183,7 @@ def commit_soft_anchors(
     cases: pack_of(Cases),
     partner: pack_of(Partner),
     slips: Floats,
+    slid_mm: ti.f32,
 ):
     """Close a settled frame: anchors follow the points that slid (`kernels.commit_anchors`)."""
     for cell in range(cells.cell_cases.shape[0]):
@@ -202,9 +202,10 @@ def commit_soft_anchors(
                         slip = friction_slip(place, anchor, deformation, gradient, limit)
                         normal = gradient / ti.max(gradient.norm(), 1e-9)
                         way = place - slip - anchor
-                        slips[point] += (deformation @ (way - way.dot(normal) * normal)).norm()
+                        length = (deformation @ (way - way.dot(normal) * normal)).norm()
+                        slips[point] += length
                         surface.states[point] = HELD
-                        if (deformation @ slip).norm() >= AT_LIMIT * limit:
+                        if length > slid_mm:
                             surface.states[point] = SLID
                         for c in ti.static(range(3)):
                             surface.anchors[3 * point + c] = place[c] - slip[c]

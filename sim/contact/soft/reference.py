@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from sim.contact.engine.reference import ContactHistory, friction_now
-from sim.contact.grid.layout import AT_LIMIT, FREE, HELD, SLID, TOUCHED
+from sim.contact.grid.layout import FREE, HELD, SLID, TOUCHED
 from sim.contact.grid.stencil import point_weights
 from sim.contact.region.domain import stencil_nodes
 from sim.contact.soft.body import SoftObject
 from sim.contact.soft.meeting import Meeting
+from sim.forces.slip import LEAST_MM
 
 
 def returned_slip(
@@ -68,6 +69,7 @@ def commit_history(
     *,
     friction: float,
     kinetic_friction: float | None = None,
+    slid_mm: float = LEAST_MM,
 ) -> None:
     """Close a frame: anchors follow the points that slid, and their way is added up."""
     for p in range(len(history.states)):
@@ -81,6 +83,7 @@ def commit_history(
         normal = gradient / np.linalg.norm(gradient)
         way = place - slip - history.anchors[p]
         way = meeting.deformation[p] @ (way - (way @ normal) * normal)
-        history.slips[p] += np.linalg.norm(way)
-        slid = np.linalg.norm(meeting.deformation[p] @ slip) >= AT_LIMIT * limit_mm
-        history.states[p], history.anchors[p] = SLID if slid else HELD, place - slip
+        length_mm = np.linalg.norm(way)
+        history.slips[p] += length_mm
+        history.states[p] = SLID if length_mm > slid_mm else HELD
+        history.anchors[p] = place - slip

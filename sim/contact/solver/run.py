@@ -13,6 +13,7 @@ from sim.contact.readout.frame import FrameOutcome
 from sim.contact.readout.problem import Problem
 from sim.contact.readout.slipping import grip_of, with_slip
 from sim.contact.region.drives import driven_displacement_mm
+from sim.forces.slip import slides_from_mm
 from workbench.core.base.errors import SolveError
 
 RAMP_SUBSTEPS_PER_MM = 100.0
@@ -130,8 +131,13 @@ class Run:
     def _keep(self) -> None:
         """Make the state that has settled the one to start from."""
         self._settled = [*self._settled, self.relaxation.snapshot(self.number)][-MOST_KEPT:]
-        self.relaxation.commit(self.number)
+        self.relaxation.commit(self.number, slid_mm=self._slid_mm())
         self.attempt = 0
+
+    def _slid_mm(self) -> float:
+        """Way in the present increment from which a point slides [mm], of the object's farthest."""
+        way_mm = self.problem.approach.travel_mm(self.frame, self.problem.collider.reach_mm)
+        return float(slides_from_mm(max(way_mm, self._driven_mm) / self.increments))
 
     @property
     def seconds(self) -> float:
