@@ -20,8 +20,8 @@ from workbench.core.result.sensing import Contact
 from workbench.pipeline.stages.press import PressInputs, press
 from workbench.proof.row import Row, compared
 from workbench.proof.specimens import finger_points
-from workbench.proof.validation.fem import slip_record
 from workbench.proof.validation.contact.presses import on_device
+from workbench.proof.validation.fem import slip_record
 from workbench.proof.validation.fem.slip_record import (
     BALL,
     CASES,
