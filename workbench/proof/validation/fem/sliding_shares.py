@@ -26,8 +26,8 @@ from workbench.proof.validation.fem.slip_record import (
     BALL,
     CASES,
     DEPTH_MM,
+    FRAME_MM,
     PRESSED,
-    SLIDE_MM,
     SlipCase,
     figures,
     recorded,
@@ -50,7 +50,7 @@ def _case_rows(case: SlipCase) -> Iterator[Row]:
     words = f"{case.kind.value} on the finger's {case.place}, mu {Elastomer().friction:g}"
     stages = {
         f"{DEPTH_MM:g} mm straight in": slice(0, PRESSED),
-        f"then {SLIDE_MM:g} mm along": slice(PRESSED, None),
+        f"then {case.slid * FRAME_MM:g} mm along": slice(PRESSED, None),
     }
     for stage, frames in stages.items():
         yield compared(
