@@ -15,7 +15,17 @@ The rate was chosen by measurement. Under a ball that is dragged (Cattaneo, 1938
 the annulus about a stick radius c slips at r by 1 - (2 / pi) asin(c / r) of the object's way: the
 traction of an increment is that of a stuck disc of radius c (Johnson, Contact Mechanics, 1985,
 7.2), so a rate q reads c as c / sin((1 - q) pi / 2): 3 % larger at .15, 5 % at .2.
-MEASURED
+Cube, ball and flower on end and side of the finger (`slip_record`), pressed .6 mm and dragged by
+1 mm at mu .3, read by the contact solver on .5 mm against converged finite elements, the frame
+where they differ most, and the way to gross slip (the cube on the
+side, which at other rates does not get there, left out: .04 mm at .15):
+
+    rate     .05    .1     .15    .2     .3
+    share    .17    .16    .10    .13    .16
+    onset    .07    .07    .02    .02    .03 mm
+
+Below, cells at the edge of a cube that a coarse grid does not resolve count as slipping; above, the
+annulus is seen late. Elastic slip of finite elements, 5 um, is within the rate from .03 mm on.
 """
 
 from __future__ import annotations
