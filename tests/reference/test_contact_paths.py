@@ -98,8 +98,9 @@ def test_a_cube_that_is_pressed_sticks_and_then_slides_as_a_whole() -> None:
     assert found.friction_ratio[:3] == pytest.approx(np.full(3, 0.3), rel=0.01)
     assert found.sliding_share[-1] == 1.0
     assert 0.2 < found.sliding_share[3:].min() < 0.9
-    touched = found.contact_force_N[-1].any(axis=1)
-    assert found.sliding[-1].sum() > 0.9 * touched.sum()
+    # Vertices that the object has come to within the last .3 mm had not touched before.
+    touched = found.contact_force_N[-2:].any(axis=2).all(axis=0)
+    assert found.sliding[-1][touched].mean() > 0.9
 
 
 def test_the_share_that_slides_does_not_depend_on_frames() -> None:

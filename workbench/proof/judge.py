@@ -31,7 +31,7 @@ class Judge(enum.StrEnum):
 
 _EXACT = """
 bonded_block_force contact_radius flat_punch cylinder_line bonded_layer_reference backed_block_force
-backed_block_shear force_balance moment_balance coulomb_limit slip_ratio
+backed_block_shear force_balance moment_balance coulomb_limit slip_ratio partial_slip
 release_force patch_test rigid_rotation stiffness_tripled moment_of_smooth_sphere friction_cone
 projection field_of_view snell fresnel optical_axis plane_tangency irradiance depth_z energy furnace
 flat_furnace reciprocity plane_irradiance slab total_reflection sensor_noise defocus spectrum

@@ -1,6 +1,7 @@
 """How much of a contact slides and when all of it does, beside converged finite elements.
 
-The finite elements are recorded (`slip_record`); both solvers count by `sim.forces.slip`. The null
+The finite elements are recorded (`slip_record`); both solvers count by `sim.forces.slip`. Under a
+ball there is a closed form besides, the partial slip of Cattaneo and Mindlin. The null
 of a share is what the forces alone would say: tangential over mu times the normal one.
 """
 
@@ -11,6 +12,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from sim.forces.slip import mindlin_share
 from workbench.core.base.monitor import silent
 from workbench.core.design.design import Elastomer
 from workbench.core.press.indenter import Indenter
@@ -18,7 +20,7 @@ from workbench.core.press.press import ContactSettings
 from workbench.core.result.force_field import ForceField
 from workbench.core.result.sensing import Contact
 from workbench.pipeline.stages.press import PressInputs, press
-from workbench.proof.row import Row, compared
+from workbench.proof.row import Row, bounded, compared
 from workbench.proof.specimens import finger_points
 from workbench.proof.validation.contact.presses import on_device
 from workbench.proof.validation.fem import slip_record
@@ -37,13 +39,47 @@ GRID_MM = 0.5
 SHARE_LIMIT = 0.1
 ONSET_LIMIT_MM = 0.1
 RATIO_LIMIT = 0.02
+MINDLIN_FEM_LIMIT = 0.05
+"""Of a half-space; the wall is 2 mm thick, and the contact 1.3 mm in radius."""
 DRAFT_MM = 0.9
 
 
 def rows() -> list[Row]:
     """All rows of what slides."""
     found = [row for case in CASES for row in _case_rows(case)]
-    return [*found, _ratio(), _draft()]
+    return [*_partial_slip(), *found, _ratio(), _draft()]
+
+
+def _partial_slip() -> Iterator[Row]:
+    case = next(case for case in CASES if case.name == "sphere_tip")
+    solvers = {
+        "finite elements": (MINDLIN_FEM_LIMIT, lambda: recorded(case.name)),
+        f"contact solver, grid {GRID_MM:g} mm": (
+            SHARE_LIMIT,
+            on_device(lambda: figures(pressed(case))),
+        ),
+    }
+    for solver, (limit, found) in solvers.items():
+        yield bounded(
+            "partial_slip",
+            f"ball on the finger's tip, dragged, {solver}: share of the contact that slides, most "
+            "that a frame is off Mindlin's annulus at the force of its middle; null: all sticks",
+            lambda found=found: _off_mindlin(found()),
+            unit="1",
+            limit=limit,
+            null=lambda found=found: _off_mindlin(found(), scale=0.0),
+        )
+
+
+def _off_mindlin(found: dict, *, scale: float = 1.0) -> float:
+    """Largest difference to the closed form in a frame in which a part sticks."""
+    share = scale * np.array(found["sliding_share"])
+    ratio = np.array(found["tangential_N"]) / np.array(found["normal_N"])
+    middle = 0.5 * (ratio[1:] + ratio[:-1])[PRESSED - 1 :] / Elastomer().friction
+    # A ball ploughs: from mu on all slides, also where the round tip then lowers the ratio.
+    partial = np.logical_and.accumulate(middle < 1.0)
+    exact = np.array([mindlin_share(one) for one in middle[partial]])
+    return float(np.abs(share[PRESSED:][partial] - exact).max())
 
 
 def _case_rows(case: SlipCase) -> Iterator[Row]:
