@@ -56,7 +56,7 @@ def _partial_slip() -> Iterator[Row]:
         "finite elements": (MINDLIN_FEM_LIMIT, lambda: recorded(case.name)),
         f"contact solver, grid {GRID_MM:g} mm": (
             SHARE_LIMIT,
-            on_device(lambda: figures(pressed(case))),
+            lambda: figures(pressed(case)),
         ),
     }
     for solver, (limit, found) in solvers.items():
@@ -64,10 +64,10 @@ def _partial_slip() -> Iterator[Row]:
             "partial_slip",
             f"ball on the finger's tip, dragged, {solver}: share of the contact that slides, most "
             "that a frame is off Mindlin's annulus at the force of its middle; null: all sticks",
-            lambda found=found: _off_mindlin(found()),
+            on_device(lambda found=found: _off_mindlin(found())),
             unit="1",
             limit=limit,
-            null=lambda found=found: _off_mindlin(found(), scale=0.0),
+            null=on_device(lambda found=found: _off_mindlin(found(), scale=0.0)),
         )
 
 
