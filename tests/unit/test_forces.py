@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from geometry.surface.stress import von_mises_MPa
+from ui.panels.results.forces import slip_words
 from workbench.core.base.errors import SolveError
 from workbench.core.press.actuation import Actuation
 from workbench.core.press.press import Press
@@ -122,7 +123,10 @@ def test_gross_slip_is_told_where_all_slides(contact: Contact) -> None:
     found = gross_slip(dataclasses.replace(contact, sliding_share=np.array([0.0, 1.0, 1.0])))
     assert found is not None
     assert (found.frame, found.way_mm) == (2, pytest.approx(1.425))
-    # The network does not know what slides.
+    assert slip_words(contact, 1) == "50 % of the contact slides · no gross slip"
+    # Neither the network nor the method of particles know what slides.
+    unknown = dataclasses.replace(contact, sliding_share=np.zeros(0))
+    assert "does not say" in slip_words(unknown, 1)
     assert gross_slip(dataclasses.replace(contact, sliding_share=np.zeros(0))) is None
 
 
