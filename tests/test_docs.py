@@ -26,7 +26,7 @@ from workbench.core.press.motion import StrokeKind
 from workbench.core.result.force_field import Source
 from workbench.edit.strokes import read_stroke
 from workbench.learning.dataset.cases import Split
-from workbench.learning.dataset.recipe import RECIPES
+from workbench.learning.dataset.recipes import RECIPES
 from workbench.project.design_toml import design_from_toml
 from workbench.project.named_designs import presets
 from workbench.project.photos import shipped_photos

@@ -61,7 +61,6 @@ NOUNS = {
             "workbench/calibration/stored.py",
             "workbench/report/thumbnails.py",
             "workbench/report/fem_case.py",
-            "workbench/learning/dataset/solving.py",
             "workbench/live/image_preview.py",
             "ui/panels/simulate/network.py",
         ),

@@ -15,12 +15,12 @@ from workbench.core.result.results import Skin
 from workbench.learning.dataset.algorithms import finger_algorithm
 from workbench.learning.dataset.cases import Split, cases_of, count_cases, positions_of
 from workbench.learning.dataset.positions import Pattern, finger_positions, spread_positions
-from workbench.learning.dataset.recipe import (
+from workbench.learning.dataset.recipe import table_key
+from workbench.learning.dataset.recipes import (
     RECIPES,
     load_recipe,
     recipe_from_toml,
     recipe_to_toml,
-    table_key,
 )
 from workbench.project.named_designs import load_design
 

@@ -28,7 +28,8 @@ from workbench.learning.dataset.estimate import estimate, estimate_text
 from workbench.learning.dataset.folder import DataSet
 from workbench.learning.dataset.json_lines import append_row, read_rows
 from workbench.learning.dataset.lock import held
-from workbench.learning.dataset.recipe import Recipe, load_recipe, recipe_from_toml
+from workbench.learning.dataset.recipe import Recipe
+from workbench.learning.dataset.recipes import load_recipe, recipe_from_toml
 from workbench.learning.dataset.repair import repair
 from workbench.learning.dataset.sample import Sample, Solved, from_bytes, to_bytes
 from workbench.learning.dataset.solving import Report
@@ -378,7 +379,10 @@ def test_costs_are_measured_or_not_known() -> None:
     """9 core-seconds for 15 samples are .6 each: 9,980 samples take 1.6633 core-hours."""
     assert "nothing is known" in estimate_text(estimate([], 30))
     row = {"frames": 15, "mpm_s": 3.0, "fem_s": 5.0, "image_s": 1.0, "cpu_s": 9.0}
-    found = estimate([row], 30)
+    row["seconds"] = 12.0
+    found = estimate([row], 30, jobs=4)
+    # 12 s a case of 15 samples, shared out to four processes.
+    assert np.isclose(found["hours_left"], 30 * 0.8 / 3600 / 4)
     assert np.isclose(found["core_hours_paper"], 9980 * 0.6 / 3600)
     assert np.isclose(found["core_hours_left"], 30 * 0.6 / 3600)
     assert "1.7 core-hours" in estimate_text(found)

@@ -16,7 +16,7 @@ import pytest
 
 from workbench.cli.command_line import main
 from workbench.learning.dataset.folder import DataSet
-from workbench.learning.dataset.recipe import load_recipe, recipe_to_toml
+from workbench.learning.dataset.recipes import load_recipe, recipe_to_toml
 
 pytestmark = pytest.mark.slow
 ROOT = Path(__file__).parents[2]
@@ -96,6 +96,31 @@ def test_both_solvers_press_the_same_skin_on_the_same_path(
     assert answer(capsys, "preview", str(out))["file"] == str(out / "preview.png")
     cost = answer(capsys, "make", str(file), "--out", str(out), "--estimate")
     assert cost["samples_left"] == 2 and cost["core_hours_left"] > 0.0
+
+
+def test_presses_side_by_side_are_what_they_are_alone(project: Path, tmp_path: Path) -> None:
+    """The same bits; and a gel k times as stiff gives k times the force of the recipe's own."""
+    own = recipe_to_toml(load_recipe("tiny")).replace('solvers = "both"', 'solvers = "mpm"')
+    drawn = own + "\n[vary]\nyoung_MPa = [0.1, 0.2]\n"
+    sets = []
+    for name, text, batch in (("own", own, "2"), ("alone", drawn, "1"), ("together", drawn, "2")):
+        file = tmp_path / f"{name}.toml"
+        file.write_text(text)
+        out = tmp_path / name
+        assert main(words(project, out, "--batch", batch, recipe=str(file))) == 0
+        sets.append(DataSet.open(out))
+    for cases in zip(*(data.cases() for data in sets), strict=True):
+        found = [data.sample(case, 1).mpm for data, case in zip(sets, cases, strict=True)]
+        plain, alone, together = found
+        assert plain is not None and alone is not None and together is not None
+        assert np.array_equal(alone.displacement_mm, together.displacement_mm)
+        assert np.array_equal(alone.contact_force_N, together.contact_force_N)
+        assert cases[1].drawn.young_MPa is not None
+        material = sets[0].manifest["recipe"]["design"]["material"]
+        stiffer = cases[1].drawn.young_MPa / material["young_MPa"]
+        off_N = np.linalg.norm(alone.reaction_N - stiffer * plain.reaction_N)
+        # A frame has settled when the forces on free nodes sum to less than .5 % of the load.
+        assert off_N <= 5e-3 * np.linalg.norm(alone.reaction_N)
 
 
 def test_a_killed_make_goes_on_where_it_was(project: Path, tmp_path: Path) -> None:

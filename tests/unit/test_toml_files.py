@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from workbench.core.base.errors import DesignError
-from workbench.learning.dataset.recipe import recipe_from_toml
+from workbench.learning.dataset.recipes import recipe_from_toml
 from workbench.project.design_toml import design_from_toml
 from workbench.project.project import Project
 from workbench.variants.sweep_files import load_sweep

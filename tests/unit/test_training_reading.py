@@ -19,7 +19,8 @@ from workbench.core.base.errors import DesignError, StoreError
 from workbench.learning.dataset.begin import begin
 from workbench.learning.dataset.cases import Split, cases_of
 from workbench.learning.dataset.folder import DataSet
-from workbench.learning.dataset.recipe import Recipe, load_recipe
+from workbench.learning.dataset.recipe import Recipe
+from workbench.learning.dataset.recipes import load_recipe
 from workbench.learning.dataset.sample import Sample, to_bytes
 from workbench.learning.training.packed import read_packed, write_packed
 from workbench.learning.training.presses import Presses

@@ -23,7 +23,7 @@ from workbench.core.objects.kind import Shape
 from workbench.core.press.indenter import Indenter, IndenterKind, IndenterMesh
 from workbench.core.press.soft_body import SoftBody
 from workbench.core.press.texture import Pattern, Texture
-from workbench.learning.dataset.recipe import load_recipe, recipe_from_toml, recipe_to_toml
+from workbench.learning.dataset.recipes import load_recipe, recipe_from_toml, recipe_to_toml
 from workbench.live.indenter_display import display_mesh
 from workbench.project.kept_indenters import indenter_table, read_indenter
 from workbench.project.project import Project

@@ -69,7 +69,8 @@ def _advance(points: np.ndarray, collider: Collider, start: float) -> float:
         gap, asked = np.inf, np.zeros(len(points), bool)
         while len(near := np.flatnonzero(~asked & (at_least < gap))):
             # A few that may be nearest first: their gap leaves out most of the others.
-            near = near[np.argsort(at_least[near], kind="stable")[:MOST_ASKED]]
+            if len(near) > MOST_ASKED:
+                near = near[np.argpartition(at_least[near], MOST_ASKED)[:MOST_ASKED]]
             at_least[near] = collider.distance(points[near] - [0.0, 0.0, height])[0]
             asked[near] = True
             gap = min(gap, float(at_least[near].min()))

@@ -134,15 +134,28 @@ def _sampled(
     block = samples[
         index[:, 0, :, None, None], index[:, 1, None, :, None], index[:, 2, None, None, :]
     ]
-    distance = _contract(block, weights)
-    gradient = np.empty_like(position)
-    for axis in range(3):
-        mixed = weights.copy()
-        mixed[:, axis] = slopes[:, axis]
-        gradient[:, axis] = _contract(block, mixed) * size[3]
+    # One axis after the other, each by its weights and by its slopes: a third of the products of
+    # contracting all three for the distance and for every slope anew.
+    along_z, steep_z = (_contract(block, lines[:, 2]) for lines in (weights, slopes))
+    along_y, steep_y = (_contract(along_z, lines[:, 1]) for lines in (weights, slopes))
+    distance = _contract(along_y, weights[:, 0])
+    gradient = size[3] * np.stack(
+        [
+            _contract(along_y, slopes[:, 0]),
+            _contract(steep_y, weights[:, 0]),
+            _contract(_contract(steep_z, weights[:, 1]), weights[:, 0]),
+        ],
+        axis=1,
+    )
     far = np.linalg.norm(raw - inside, axis=1) / size[3]
     return np.where(far > 1e-4, np.maximum(far, distance - far), distance), gradient
 
 
-def _contract(block: np.ndarray, lines: np.ndarray) -> np.ndarray:
-    return np.einsum("nijk,ni,nj,nk->n", block, lines[:, 0], lines[:, 1], lines[:, 2])
+def _contract(block: np.ndarray, line: np.ndarray) -> np.ndarray:
+    """Sum over the last axis of a block (n, ..., 3) with weights (n, 3)."""
+    parts = line.reshape(len(line), *[1] * (block.ndim - 2), 3)
+    return (
+        block[..., 0] * parts[..., 0]
+        + block[..., 1] * parts[..., 1]
+        + block[..., 2] * parts[..., 2]
+    )

@@ -17,8 +17,9 @@ from sim.optics.light.device_arrays import empty, on_device
 from sim.optics.raster import bundles, compose_kernels
 from sim.optics.raster.backdrop import Backdrop
 from sim.optics.raster.display import LUT_STEPS
-from sim.optics.raster.markers import LEAST_COSINE
+from sim.optics.raster.markers import LEAST_COSINE, Coverage, centroids
 from sim.optics.raster.raster import Raster
+from sim.optics.raster.raster_kernels import SAME
 from sim.optics.raster.shader import Shader
 from sim.optics.raster.skin_view import SkinView
 from sim.optics.raster.vertex_light import VertexLight
@@ -148,3 +149,13 @@ class Imager:
         """
         count = self.raster.pixels
         return self._marker.to_numpy()[:count], self._ink.to_numpy()[:count]
+
+    def marker_px(self) -> np.ndarray:
+        """u, v [px] of the dots in the first frame, (M, 2), float32; NaN of those not seen."""
+        raster, back = self.raster, self.backdrop
+        changed = raster.seen.triangle.to_numpy()[: raster.pixels] != SAME
+        marker, ink = self.ink()
+        coverage = Coverage(
+            marker=np.where(changed, marker, back.marker), ink=np.where(changed, ink, back.ink)
+        )
+        return centroids(coverage, len(back.dots_mm), raster.view.width_px)

@@ -144,6 +144,12 @@ class Studio:
             found[number] = self._developed(number + 1)
         return found
 
+    def marker_px(self, displacement_mm: np.ndarray) -> np.ndarray:
+        """u, v [px] of the dots of one displaced skin, (V, 3) to (M, 2); NaN of those not seen."""
+        self._check(displacement_mm[None])
+        self.imager.look(displacement_mm[None])
+        return self.imager.marker_px()
+
     def linear(
         self, displacement_mm: np.ndarray, *, radiance: np.ndarray | None = None
     ) -> np.ndarray:
@@ -234,13 +240,7 @@ class Studio:
         frames.depth_z_mm[number].reshape(-1)[changed] = depth[changed]
         frames.normal[number].reshape(-1, 3)[changed] = normal[changed]
         if len(scene.dots_mm):
-            marker, ink = self.imager.ink()
-            back = self.imager.backdrop
-            coverage = Coverage(
-                marker=np.where(changed, marker, back.marker), ink=np.where(changed, ink, back.ink)
-            )
-            uv = centroids(coverage, len(scene.dots_mm), raster.view.width_px)
-            frames.marker_uv_px[number] = uv
+            frames.marker_uv_px[number] = self.imager.marker_px()
 
     def _linear(self, fine: DetailPixels | None = None) -> np.ndarray:
         """Linear light of the frame just looked at, with its detail, shape (N, 3), float32."""

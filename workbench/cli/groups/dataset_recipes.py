@@ -6,7 +6,7 @@ import argparse
 import json
 
 from workbench.cli.command import Command
-from workbench.learning.dataset.recipe import RECIPES
+from workbench.learning.dataset.recipes import RECIPES
 from workbench.project.project import Project
 from workbench.system.terminal import say
 

@@ -27,6 +27,7 @@ of the contact's area that slides |
 | `mpm.sliding`, `fem.sliding` | whether most of the contact around it slides, (n,) |
 | `fem.cauchy_MPa` | Cauchy stress xx, yy, zz, xy, yz, zx, (n, 6), float32 |
 | `png`, `png_markers` | PNG files of the image without and with markers |
+| `markers_px` | u, v of the markers [px], (M, 2), float32; NaN of those out of sight |
 
 The frames of a case in order are a tactile sequence. Frames before `first_new` of a case repeat
 states of an earlier one with the same object and place: leave them out where each state shall
@@ -83,6 +84,7 @@ def _recipe_words(recipe: dict[str, Any]) -> str:
         f"{design['material']['poisson']:g}, friction {_friction_words(design['material'])}",
         f"- pattern {recipe['pattern']}, objects of {recipe['size_mm']:g} mm: "
         f"{', '.join(recipe['indenters'])}",
+        *_ranges(recipe.get("vary", {})),
         f"- depth to {recipe['depth_mm']:g} mm by {recipe['depth_step_mm']:g} mm; shear: "
         + (shear if recipe["shear_directions"] else "none"),
         f"- solvers: {recipe['solvers']}; hexahedra of {recipe['hex_mm']:g} mm, contact grid of "
@@ -94,6 +96,18 @@ def _recipe_words(recipe: dict[str, Any]) -> str:
 def _friction_words(material: dict[str, Any]) -> str:
     static, kinetic = material["friction"], material.get("kinetic_friction")
     return f"{static:g}" if kinetic is None else f"{static:g}, kinetic {kinetic:g}"
+
+
+def _ranges(vary: dict[str, Any]) -> list[str]:
+    """What each case draws, in words; nothing where nothing varies."""
+    looks = vary.get("looks", {}).get("count", 0)
+    drawn = [f"{name} {low:g} to {high:g}" for name, (low, high) in _pairs(vary)]
+    drawn += [f"{looks} built sensors"] if looks else []
+    return [f"- drawn for each case: {', '.join(drawn)}"] if drawn else []
+
+
+def _pairs(vary: dict[str, Any]) -> list[tuple[str, tuple[float, float]]]:
+    return [(name, (value[0], value[1])) for name, value in vary.items() if name != "looks"]
 
 
 def _split_table(data: DataSet) -> str:

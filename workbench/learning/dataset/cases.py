@@ -17,6 +17,7 @@ see are in a split of their own.
 
 from __future__ import annotations
 
+import dataclasses
 import enum
 import math
 from collections.abc import Mapping, Sequence
@@ -27,7 +28,7 @@ import numpy as np
 
 from workbench.core.base.mapping import to_table
 from workbench.core.press.indenter import UNSEEN, IndenterKind
-from workbench.core.press.motion import slide
+from workbench.core.press.motion import Stroke, slide, twist
 from workbench.core.press.press import Press
 from workbench.core.result.results import Skin
 from workbench.learning.dataset.algorithms import shear_way_mm
@@ -36,9 +37,11 @@ from workbench.learning.dataset.positions import (
     Position,
     finger_positions,
     pad_positions,
+    side_positions,
     spread_positions,
 )
 from workbench.learning.dataset.recipe import Recipe
+from workbench.learning.dataset.variation import NOTHING, Drawn, Vary, draw
 
 
 class Split(enum.StrEnum):
@@ -71,13 +74,16 @@ class Case:
     shear_mm: tuple[float, float] = (0.0, 0.0)
     """Way along U and V at its end [mm]."""
     shear_frames: int = 0
+    twist_frames: int = 0
+    drawn: Drawn = NOTHING
+    """Size, turn, friction ... of this case."""
     first_new: int = 0
     """Frames before this one repeat states of an earlier case: the approach of the same pair."""
 
     @property
     def frames(self) -> int:
         """Samples of the case."""
-        return self.press_frames + self.shear_frames
+        return self.press_frames + self.shear_frames + self.twist_frames
 
     @property
     def pair(self) -> str:
@@ -87,14 +93,16 @@ class Case:
     @property
     def press(self) -> Press:
         """The path."""
-        strokes = ()
+        strokes: list[Stroke] = []
         if self.shear_frames:
-            strokes = (slide(*self.shear_mm, frames=self.shear_frames),)
+            strokes.append(slide(*self.shear_mm, frames=self.shear_frames))
+        if self.twist_frames:
+            strokes.append(twist(self.drawn.twist_deg or 0.0, frames=self.twist_frames))
         return Press(
             target_mm=self.position.target_mm,
             depth_mm=self.depth_mm,
             frames=self.press_frames,
-            strokes=strokes,
+            strokes=tuple(strokes),
         )
 
     def depth_at(self, frame: int) -> float:
@@ -103,7 +111,7 @@ class Case:
 
     def shear_at(self, frame: int) -> tuple[float, float]:
         """Way along U and V of a frame [mm]."""
-        done = max(0, frame + 1 - self.press_frames) / max(1, self.shear_frames)
+        done = min(1.0, max(0, frame + 1 - self.press_frames) / max(1, self.shear_frames))
         return done * self.shear_mm[0] + 0.0, done * self.shear_mm[1] + 0.0
 
 
@@ -133,13 +141,15 @@ def case_of_row(row: Mapping[str, Any]) -> Case:
     position = Position(
         name=str(place["name"]), target_mm=(float(x), float(y), float(z)), labels=place["labels"]
     )
-    given = {"split", "indenter", "position", "shear_mm"}
+    given = {"split", "indenter", "position", "shear_mm", "drawn"}
     return Case(
         **{name: value for name, value in row.items() if name not in given},
         split=Split(row["split"]),
         indenter=IndenterKind(row["indenter"]),
         position=position,
         shear_mm=(float(u), float(v)),
+        # Cases of before draw nothing.
+        drawn=Drawn.of_row(row.get("drawn", {})),
     )
 
 
@@ -151,6 +161,8 @@ def positions_of(recipe: Recipe, skin: Skin | None = None) -> list[Position]:
     """
     if recipe.pattern is Pattern.FINGER:
         return finger_positions(recipe.design)
+    if recipe.pattern is Pattern.SIDE:
+        return side_positions(recipe.design)
     if recipe.pattern is Pattern.PAD:
         return pad_positions(recipe.design)
     assert skin is not None, "points are spread over a skin"
@@ -176,8 +188,10 @@ def ways_of(recipe: Recipe) -> list[tuple[int, int]]:
 
 
 def count_cases(recipe: Recipe, positions: int) -> int:
-    """Cases of a recipe with that many positions."""
+    """Cases of a recipe with that many positions; one that varies has as many as are asked for."""
     every = positions * len(recipe.indenters) * len(ways_of(recipe))
+    if recipe.cases and recipe.vary != Vary():
+        return recipe.cases
     return min(recipe.cases, every) if recipe.cases else every
 
 
@@ -198,7 +212,11 @@ def deal(recipe: Recipe, positions: Sequence[Position]) -> list[Case]:
         place = places[(pair + pair // together) % len(places)]
         steps, way = ways[(pair // len(kinds) + pair % len(kinds) + turn) % len(ways)]
         both = _Pair(kind=kind, place=place, split=splits[pair])
-        found.append(_case(recipe, both, steps, way, int(pressed[pair])))
+        case = _case(recipe, both, steps, way, int(pressed[pair]))
+        drawn = draw(recipe.vary, seed=recipe.seed, number=k)
+        if drawn != NOTHING:
+            case = _varied(case, recipe, drawn, turn)
+        found.append(case)
         pressed[pair] = max(pressed[pair], steps)
     return found
 
@@ -208,7 +226,7 @@ def _splits(recipe: Recipe, pairs: int, rng: np.random.Generator) -> list[Split]
     kinds, seen, found = recipe.indenters, 0, []
     block: list[Split] = []
     for pair in range(pairs):
-        if kinds[pair % len(kinds)] in UNSEEN:
+        if recipe.hold_out and kinds[pair % len(kinds)] in UNSEEN:
             found.append(Split.UNSEEN)
             continue
         if seen % len(SHARES) == 0:
@@ -245,4 +263,15 @@ def _case(recipe: Recipe, pair: _Pair, steps: int, way: int, pressed: int) -> Ca
         else shear_way_mm(way, recipe.shear_directions, recipe.shear_mm),
         shear_frames=recipe.shear_steps if way >= 0 else 0,
         first_new=min(steps, pressed),
+    )
+
+
+def _varied(case: Case, recipe: Recipe, drawn: Drawn, turn: int) -> Case:
+    """A case with what it has drawn: no state of another one comes again in it."""
+    return dataclasses.replace(
+        case,
+        id=f"{case.id}_{turn}" if turn else case.id,
+        drawn=drawn,
+        twist_frames=0 if drawn.twist_deg is None else recipe.twist_frames,
+        first_new=0,
     )

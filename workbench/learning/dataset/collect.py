@@ -1,4 +1,4 @@
-"""Make a data set: build once, then solve its cases in spawned processes, one case at a time each.
+"""Make a data set: build once, then solve its cases in spawned processes, some at a time each.
 
 Done is what has a file, so making it again goes on where it was. A case that fails is written to
 `failed.jsonl` with its reason, counted, and left; the others go on. Each process is held to one
@@ -10,11 +10,11 @@ from __future__ import annotations
 import contextlib
 import multiprocessing
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
-from typing import Any
+from typing import TypedDict, Unpack
 
 from workbench.core.base.errors import LaneError, MeshingError
 from workbench.core.press.press import ContactSettings
@@ -23,16 +23,17 @@ from workbench.core.result.results import MembraneMesh
 from workbench.learning.dataset.begin import begin, check_place, write_manifest
 from workbench.learning.dataset.card import card_text
 from workbench.learning.dataset.cases import Case, cases_of
-from workbench.learning.dataset.folder import BACKGROUND, BACKGROUND_MARKERS, DataSet
-from workbench.learning.dataset.images import Cameras
+from workbench.learning.dataset.folder import DataSet
 from workbench.learning.dataset.lock import held
 from workbench.learning.dataset.recipe import Recipe, Solvers
 from workbench.learning.dataset.repair import clear_parts
 from workbench.learning.dataset.sample_sheet import write_sheet
-from workbench.learning.dataset.solving import Report, Setup
+from workbench.learning.dataset.sights import LIGHT, Sight, sights_of, write_backgrounds
 from workbench.learning.dataset.watch import Tell, Watch
-from workbench.learning.dataset.worker import open_bench, solve_case
-from workbench.pipeline.seen_optics import seen_optics
+from workbench.learning.dataset.worker import open_bench, solve_cases
+from workbench.learning.dataset.worker_messages import Report, Setup
+from workbench.pipeline.devices import chosen_device
+from workbench.pipeline.stage import Call
 from workbench.planning.plan import InlineRunner, StageMonitor, needed, plan, stage_monitor
 from workbench.project.project import Project
 from workbench.system.whole_files import write_atomically
@@ -48,17 +49,25 @@ ONE_THREAD = (
 LOOK_S = 1.0
 """Time between two looks at how many samples there are [s]."""
 AHEAD = 2
-"""Cases handed to the pool for each process."""
+"""Batches handed to the pool for each process."""
+ON_GPU = 32
+"""Cases side by side on a GPU: some thousand cells each do not fill it alone."""
+
+
+class How(TypedDict, total=False):
+    """How a data set is made: the options of `make`."""
+
+    jobs: int
+    batch: int
+    tell: Tell
+    monitor: StageMonitor | None
 
 
 def make(
     recipe: Recipe,
     folder: Path,
     project: Project,
-    *,
-    jobs: int = 1,
-    tell: Tell = lambda progress: None,
-    monitor: StageMonitor | None = None,
+    **how: Unpack[How],
 ) -> DataSet:
     """Make a data set, or the rest of it.
 
@@ -66,9 +75,9 @@ def make(
         recipe: What is made.
         folder: Where; a data set of the same recipe in it is gone on with.
         project: Its store has, or gets, mesh, material points and light.
-        jobs: Processes.
-        tell: Told how far it is.
-        monitor: Progress of the stages before the first case.
+        how: `jobs`, processes; `batch`, cases that each presses side by side, 0 for what suits the
+            device; `tell`, told how far it is; `monitor`, progress of the stages before the first
+            case.
 
     Raises:
         StoreError: If the folder is another's, in use, or cannot be written.
@@ -76,38 +85,54 @@ def make(
         MeshingError: If finite elements are wanted and the membrane has no hexahedra.
         LaneError: If a process ended by itself; what is done stays.
     """
+    jobs, batch = how.get("jobs", 1), how.get("batch", 0)
+    tell, monitor = how.get("tell", lambda progress: None), how.get("monitor")
     with held(folder):
         # What is wrong with the folder is said before anything is built.
         check_place(folder, recipe.key)
-        calls = prepare(recipe, project, monitor)
+        sights = sights_of(recipe)
+        calls = prepare(recipe, project, sights, monitor)
         mesh = project.store.load("mesh", calls["mesh"].key)
         _check_hexes(recipe, mesh)
         data = begin(folder, recipe.table, mesh.outer, cases_of(recipe, mesh.outer))
         clear_parts(folder)
         setup = Setup(
-            recipe=recipe, key=data.key, folder=folder, store=project.store.root, calls=calls
+            recipe=recipe,
+            key=data.key,
+            folder=folder,
+            store=project.store.root,
+            calls=calls,
+            sights=tuple(sights),
         )
-        _write_backgrounds(setup, project, mesh)
+        write_backgrounds(folder, recipe, sights, project.store)
         try:
-            _collect(data, setup, jobs, tell)
+            _collect(data, setup, jobs=jobs, batch=batch or side_by_side(), tell=tell)
         finally:
             finish(data)
     return data
 
 
-def prepare(recipe: Recipe, project: Project, monitor: StageMonitor | None) -> dict[str, Any]:
-    """Run the stages that all cases share; returns their calls by name."""
+def prepare(
+    recipe: Recipe, project: Project, sights: Sequence[Sight], monitor: StageMonitor | None
+) -> dict[str, Call]:
+    """Run the stages that all cases share, and the light of all sights.
+
+    Returns:
+        The calls of mesh and material points by name.
+    """
     settings = ContactSettings(grid_mm=recipe.grid_mm)
     calls = plan(recipe.meshed_design, PressCase(settings=settings))
-    wanted = ["mesh"]
-    if recipe.solvers is not Solvers.FEM:
-        wanted.append("lattice")
-    if recipe.images:
-        wanted += ["bake", *(["table"] if "table" in calls else [])]
+    wanted = ["mesh"] if recipe.solvers is Solvers.FEM else ["mesh", "lattice"]
     runner = InlineRunner(project.store)
-    for name in needed(calls, wanted):
-        runner.run(calls[name], stage_monitor(monitor, name))
+    for chain, names in [(calls, wanted), *((sight.calls, LIGHT) for sight in sights)]:
+        for name in needed(chain, [name for name in names if name in chain]):
+            runner.run(chain[name], stage_monitor(monitor, name))
     return {name: calls[name] for name in wanted}
+
+
+def side_by_side() -> int:
+    """Cases that a process presses side by side on the device it will open."""
+    return ON_GPU if chosen_device() == "cuda" else 1
 
 
 def _check_hexes(recipe: Recipe, mesh: MembraneMesh) -> None:
@@ -119,25 +144,7 @@ def _check_hexes(recipe: Recipe, mesh: MembraneMesh) -> None:
         )
 
 
-def _write_backgrounds(setup: Setup, project: Project, mesh: MembraneMesh) -> None:
-    """Images of the skin at rest, once."""
-    if not setup.recipe.images or (setup.folder / BACKGROUND_MARKERS).exists():
-        return
-    from workbench.pipeline.devices import open_device
-
-    open_device()
-    light, *tables = (
-        project.store.load(name, setup.calls[name].key)
-        for name in ("bake", "table")
-        if name in setup.calls
-    )
-    optics = seen_optics(setup.recipe.design.optics)
-    plain, marked = Cameras(mesh, light, optics, tables[0] if tables else None).at_rest()
-    write_atomically(setup.folder / BACKGROUND, plain)
-    write_atomically(setup.folder / BACKGROUND_MARKERS, marked)
-
-
-def _collect(data: DataSet, setup: Setup, jobs: int, tell: Tell) -> None:
+def _collect(data: DataSet, setup: Setup, *, jobs: int, batch: int, tell: Tell) -> None:
     """Solve what is not done and has not failed."""
     failed = data.failed()
     cases = [case for case in data.cases() if case.id not in failed]
@@ -148,19 +155,34 @@ def _collect(data: DataSet, setup: Setup, jobs: int, tell: Tell) -> None:
     if not todo:
         return
     with _pool(setup, min(jobs, len(todo))) as pool:
-        waiting, running = iter(todo), dict[Future[Report], Case]()
+        waiting = batches(todo, batch, jobs)
+        running = dict[Future[list[Report]], Sequence[Case]]()
         while True:
-            while len(running) < AHEAD * jobs and (case := next(waiting, None)):
-                running[pool.submit(solve_case, case)] = case
+            while len(running) < AHEAD * jobs and (cases := next(waiting, None)):
+                running[pool.submit(solve_cases, cases)] = cases
             if not running:
                 return
             ended, _ = wait(running, timeout=LOOK_S, return_when=FIRST_COMPLETED)
             for future in ended:
-                watch.ended(running.pop(future), _report_of(future))
-            watch.look(running.values())
+                for case, report in zip(running.pop(future), _reports_of(future), strict=True):
+                    watch.ended(case, report)
+            watch.look(case for cases in running.values() for case in cases)
 
 
-def _report_of(future: Future[Report]) -> Report:
+def batches(todo: Sequence[Case], most: int, jobs: int) -> Iterator[Sequence[Case]]:
+    """Cases that are solved side by side: as many as asked for, fewer where processes would idle.
+
+    Args:
+        todo: What is left, in order.
+        most: Cases of a batch.
+        jobs: Processes.
+    """
+    size = max(1, min(most, -(-len(todo) // jobs)))
+    for first in range(0, len(todo), size):
+        yield todo[first : first + size]
+
+
+def _reports_of(future: Future[list[Report]]) -> list[Report]:
     try:
         return future.result()
     except BrokenProcessPool as error:

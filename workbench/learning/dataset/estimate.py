@@ -10,20 +10,23 @@ from workbench.core.base.units import human_seconds
 PAPER_SAMPLES = 9980
 """Samples of the finger that the paper's network was trained and tested with. Source: SimTac."""
 HOUR_S = 3600.0
-PARTS = ("mpm_s", "fem_s", "image_s", "cpu_s")
+PARTS = ("mpm_s", "fem_s", "image_s", "cpu_s", "seconds")
 
 
-def estimate(times: Sequence[Mapping[str, Any]], samples_left: int) -> dict[str, Any]:
+def estimate(
+    times: Sequence[Mapping[str, Any]], samples_left: int, *, jobs: int = 1
+) -> dict[str, Any]:
     """Cost by the mean of finished cases.
 
     Args:
         times: Rows of `times.jsonl`; may be empty, then nothing is known.
         samples_left: Samples that are still to be made.
+        jobs: Processes that will make them.
 
     Returns:
         `cases_timed`, and where that is not 0 seconds per sample by part, core-hours of the rest
-        and of the paper's 9,980 samples. Core-hours are processor time of one-threaded workers,
-        loading included.
+        and of the paper's 9,980 samples, and hours until the rest is done. Core-hours are processor
+        time of one-threaded workers, loading included; hours suppose a core for each.
     """
     known: dict[str, Any] = {"cases_timed": len(times), "samples_left": samples_left}
     samples = sum(row["frames"] for row in times)
@@ -35,6 +38,7 @@ def estimate(times: Sequence[Mapping[str, Any]], samples_left: int) -> dict[str,
         **known,
         "samples_timed": samples,
         **per_sample,
+        "hours_left": per_sample["seconds_per_sample"] * samples_left / HOUR_S / jobs,
         "core_hours_left": core_s * samples_left / HOUR_S,
         "core_hours_paper": core_s * PAPER_SAMPLES / HOUR_S,
     }
@@ -55,7 +59,7 @@ def estimate_text(found: Mapping[str, Any]) -> str:
         f"measured on {found['cases_timed']} cases, {found['samples_timed']} samples: {parts} a "
         f"sample, {found['cpu_s_per_sample']:.2f} core-seconds in all\n"
         f"{found['samples_left']} samples are left: {found['core_hours_left']:.2f} core-hours "
-        f"({human_seconds(found['core_hours_left'] * HOUR_S)} on one core)\n"
+        f"({human_seconds(found['hours_left'] * HOUR_S)} from now, a core for each process)\n"
         f"the paper's {PAPER_SAMPLES:,} samples at this pace: "
         f"{found['core_hours_paper']:.1f} core-hours"
     )

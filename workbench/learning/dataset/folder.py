@@ -5,7 +5,8 @@ manifest.json      format, program, recipe with its key, mesh, counts
 cases.jsonl        the cases in order, one per line
 skin.npz           vertices, triangles, normals, areas and the inner skin's distance, once
 cases/ID/000.npz   one sample, written whole or not at all
-background.png     the skin at rest; background_markers.png with markers
+background.png     the skin at rest; background_markers.png with markers, their places in
+                   background_markers_px.npy; of built sensors background-00.png ...
 failed.jsonl       cases that failed, with their reasons
 times.jsonl        seconds of each finished case
 card.md            the data card; preview.png shows samples
@@ -42,7 +43,18 @@ FORMAT = 1
 MANIFEST, CASES, SKIN = "manifest.json", "cases.jsonl", "skin.npz"
 FAILED, TIMES = "failed.jsonl", "times.jsonl"
 SAMPLES = "cases"
-BACKGROUND, BACKGROUND_MARKERS = "background.png", "background_markers.png"
+PLAIN, MARKED, MARKERS_PX = "background", "background_markers", "background_markers_px"
+
+
+def background_name(part: str, look: int | None, suffix: str) -> str:
+    """Name of a file of the skin at rest: `background.png`, of built sensor 3 `background-03.png`.
+
+    Args:
+        part: `PLAIN`, `MARKED` or `MARKERS_PX`.
+        look: The built sensor; None: the design's own.
+        suffix: `.png` or `.npy`.
+    """
+    return f"{part}{suffix}" if look is None else f"{part}-{look:02d}{suffix}"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -112,11 +124,16 @@ class DataSet:
         """Key of its recipe."""
         return self.manifest["key"]
 
-    @property
-    def background(self) -> bytes:
-        """The skin at rest as a PNG file; empty where images were left out."""
-        path = self.folder / BACKGROUND
+    def background(self, case: Case) -> bytes:
+        """The skin at rest as the sensor of a case sees it, a PNG file; empty without images."""
+        path = self.folder / background_name(PLAIN, case.drawn.look, ".png")
         return path.read_bytes() if path.exists() else b""
+
+    def markers_at_rest_px(self, case: Case) -> np.ndarray:
+        """u, v of the markers at rest for the sensor of a case [px], (M, 2); (0, 2) if none."""
+        look = case.drawn.look
+        path = self.folder / background_name(MARKERS_PX, look, ".npy")
+        return np.load(path) if path.exists() else np.zeros((0, 2), np.float32)
 
     def cases(self, split: Split | str | None = None) -> list[Case]:
         """The cases of one split, or all, in the order in which they are made."""

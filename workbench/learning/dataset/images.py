@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
+import io
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -11,6 +13,25 @@ from workbench.core.result.force_field import ForceField
 from workbench.core.result.light import LightField, NormalTable
 from workbench.core.result.results import MembraneMesh
 from workbench.report.image_files import png_bytes
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Views:
+    """What the camera sees of one frame."""
+
+    png: bytes = b""
+    """Image without markers as a PNG file."""
+    png_markers: bytes = b""
+    """The same with markers."""
+    markers_px: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros((0, 2), np.float32))
+    """u, v of the markers [px], shape (M, 2), float32; NaN where one is out of sight."""
+
+    @property
+    def markers_npy(self) -> bytes:
+        """`markers_px` as an NPY file."""
+        buffer = io.BytesIO()
+        np.save(buffer, self.markers_px)
+        return buffer.getvalue()
 
 
 class Cameras:
@@ -29,14 +50,20 @@ class Cameras:
 
         self._inner_seen = bool(len(mesh.tips_mm))
         self._vertices = len(mesh.seen.points_mm)
-        views = [
-            dataclasses.replace(optics, markers=dataclasses.replace(optics.markers, visible=shown))
+        self._plain, self._marked = (
+            Studio(
+                mesh,
+                light,
+                dataclasses.replace(
+                    optics, markers=dataclasses.replace(optics.markers, visible=shown)
+                ),
+                table=table,
+            )
             for shown in (False, True)
-        ]
-        self._studios = [Studio(mesh, light, view, table=table) for view in views]
+        )
 
-    def images(self, field: ForceField, frame: int) -> tuple[bytes, bytes]:
-        """Images of one frame as PNG files, without and with markers.
+    def views(self, field: ForceField, frame: int) -> Views:
+        """Images and markers of one frame.
 
         Raises:
             OpticsError: If a displacement is not finite.
@@ -44,12 +71,15 @@ class Cameras:
         seen = field.inner_mm if self._inner_seen else field.displacement_mm
         return self._shoot(seen[frame])
 
-    def at_rest(self) -> tuple[bytes, bytes]:
-        """Images of the undeformed skin."""
+    def at_rest(self) -> Views:
+        """Images and markers of the undeformed skin."""
         return self._shoot(np.zeros((self._vertices, 3), np.float32))
 
-    def _shoot(self, displacement_mm: np.ndarray) -> tuple[bytes, bytes]:
+    def _shoot(self, displacement_mm: np.ndarray) -> Views:
         plain, marked = (
-            png_bytes(studio.images(displacement_mm[None])[0]) for studio in self._studios
+            png_bytes(studio.images(displacement_mm[None])[0])
+            for studio in (self._plain, self._marked)
         )
-        return plain, marked
+        return Views(
+            png=plain, png_markers=marked, markers_px=self._marked.marker_px(displacement_mm)
+        )

@@ -6,6 +6,7 @@ tip, by 1. The paper writes the normal as p / |p|, which holds on a hemisphere a
 only; here the skin's own normal decides. The apex belongs to all paths, and 90 degrees is 0 mm:
 1 + 4 x 9 + 4 x 12 = 85 positions. `workbench.learning.dataset.algorithms` has the same as presses,
 without labels and for a hemisphere only.
+Its side wall alone: those of the four paths that lie on the straight part, 52 of them.
 The pad (Algorithm 2): a grid from -3 to 3 mm by 1.5, 25 positions.
 Anything else: vertices of the skin that lie as far apart as they can (farthest-point sampling, by
 straight distance), away from the rim.
@@ -41,6 +42,8 @@ class Pattern(enum.StrEnum):
     """The paper's Algorithm 1."""
     PAD = "pad"
     """The paper's Algorithm 2."""
+    SIDE = "side"
+    """The places of Algorithm 1 on the finger's side wall, where it holds what it grasps."""
     SPREAD = "spread"
     """Evenly over any skin."""
 
@@ -90,6 +93,15 @@ def finger_positions(design: SensorDesign) -> list[Position]:
             place = (radius, shape.cylinder_mm - height)
             found.append(_around(f"base{height:02.0f}", azimuth, *place, labels))
     return found
+
+
+def side_positions(design: SensorDesign) -> list[Position]:
+    """The positions of Algorithm 1 whose normal stands at 90 degrees to the axis.
+
+    Raises:
+        DesignError: As `finger_positions`.
+    """
+    return [place for place in finger_positions(design) if place.labels["polar_deg"] == 90.0]
 
 
 def _around(

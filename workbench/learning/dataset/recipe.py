@@ -9,19 +9,19 @@ from __future__ import annotations
 
 import dataclasses
 import enum
+import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 from sim.optics.field.model import model_of
 from workbench.core.base.check import within
 from workbench.core.base.digest import digest
-from workbench.core.base.errors import DesignError, shown
-from workbench.core.base.mapping import from_table, to_table
-from workbench.core.design.design import SensorDesign
+from workbench.core.base.errors import DesignError
+from workbench.core.base.mapping import to_table
+from workbench.core.design.design import Elastomer, SensorDesign
 from workbench.core.design.turning import AS_IT_CAME, Angles
-from workbench.core.press.fem import DRAFT_MM, QUALITY_MM
+from workbench.core.press.fem import QUALITY_MM
 from workbench.core.press.indenter import (
     DEFAULT_EDGE_RADIUS_MM,
     DEFAULT_SIZE_MM,
@@ -30,11 +30,23 @@ from workbench.core.press.indenter import (
     UNSEEN,
     Indenter,
     IndenterKind,
+    widest_edge_mm,
 )
 from workbench.learning.dataset.positions import MARGIN_MM, Pattern
+from workbench.learning.dataset.variation import NOTHING, Drawn, Vary
 
 WHOLE = 1e-6
 """Largest distance of depth over step from a whole number."""
+
+
+LATER: dict[str, Any] = {
+    "turn_deg": AS_IT_CAME,
+    "image_width_px": 0,
+    "vary": Vary(),
+    "twist_frames": 5,
+    "hold_out": True,
+}
+"""Fields that the first recipes had not, with what those stand for."""
 
 
 class Solvers(enum.StrEnum):
@@ -81,6 +93,14 @@ class Recipe:
     """Grid of the contact solver [mm]."""
     images: bool = True
     """Render each sample, with and without markers."""
+    image_width_px: int = 0
+    """Width of images, in the camera's proportion; 0: as many pixels as the camera has."""
+    vary: Vary = field(default_factory=Vary)
+    """What is drawn anew for each case."""
+    twist_frames: int = 5
+    """Frames of a twist, where one is drawn."""
+    hold_out: bool = True
+    """Keep the objects that the paper's networks did not see in a split of their own."""
     seed: int = 0
     """Of the order of cases, the split, and spread positions."""
     cases: int = field(default=0, metadata={"cosmetic": True})
@@ -93,6 +113,11 @@ class Recipe:
         within(self.seed, 0, 2**31, what="seed", unit="", at="recipe.seed")
         within(self.hex_mm, 0.2, 3.0, what="mesh spacing", unit="mm", at="recipe.hex_mm")
         within(self.grid_mm, 0.1, 3.0, what="grid spacing", unit="mm", at="recipe.grid_mm")
+        at = "recipe.twist_frames"
+        within(self.twist_frames, 1, 100, what="frames of a twist", unit="", at=at)
+        if self.image_width_px:
+            at = "recipe.image_width_px"
+            within(self.image_width_px, 16, 4096, what="width of images", unit="px", at=at)
         _check_steps(self.depth_mm, self.depth_step_mm, "depth")
         if self.shear_directions not in (0, 4, 8):
             raise DesignError(
@@ -118,17 +143,31 @@ class Recipe:
                 hint="name each of the shapes once, at least one; meshes are left out",
                 at="recipe.indenters",
             )
-        for kind in kinds:
-            self.indenter(kind)
+        sizes_mm = self.vary.size_mm or (self.size_mm,)
+        for kind, size_mm in itertools.product(kinds, sizes_mm):
+            self.indenter(kind, Drawn(size_mm=size_mm))
 
-    def indenter(self, kind: IndenterKind) -> Indenter:
-        """The object of a kind."""
+    def indenter(self, kind: IndenterKind, drawn: Drawn = NOTHING) -> Indenter:
+        """The object of a kind, as a case draws it; edges are as round as the object takes."""
+        size_mm = self.size_mm if drawn.size_mm is None else drawn.size_mm
+        widest_mm = widest_edge_mm(kind, size_mm)
+        edge_mm = self.edge_radius_mm
+        if self.vary.size_mm is not None and widest_mm is not None:
+            edge_mm = min(edge_mm, widest_mm)
+        about_x, about_y, about_z = self.turn_deg
+        spun_deg = (about_z + (drawn.spin_deg or 0.0) + 180.0) % 360.0 - 180.0
         return Indenter(
             kind=kind,
-            size_mm=self.size_mm,
-            edge_radius_mm=self.edge_radius_mm,
-            turn_deg=self.turn_deg,
+            size_mm=size_mm,
+            edge_radius_mm=edge_mm,
+            turn_deg=self.turn_deg if drawn.spin_deg is None else (about_x, about_y, spun_deg),
         )
+
+    def material(self, drawn: Drawn) -> Elastomer:
+        """The elastomer, as a case draws it."""
+        changes = {"friction": drawn.friction, "young_MPa": drawn.young_MPa}
+        given = {name: value for name, value in changes.items() if value is not None}
+        return dataclasses.replace(self.design.material, **given)
 
     @property
     def meshed_design(self) -> SensorDesign:
@@ -152,9 +191,10 @@ class Recipe:
         from workbench.project.design_toml import design_table
 
         table = {**to_table(self), "design": design_table(self.design)}
-        if not any(self.turn_deg):
-            # Data sets of before had no such field, and keep their key.
-            del table["turn_deg"]
+        for name, before in LATER.items():
+            if getattr(self, name) == before:
+                # Data sets of before had no such field, and keep their key.
+                del table[name]
         return table
 
     @property
@@ -180,97 +220,3 @@ def _check_steps(way_mm: float, step_mm: float, what: str) -> None:
             hint=f"make {what}_mm a whole multiple of {what}_step_mm",
             at=f"recipe.{what}_step_mm",
         )
-
-
-def recipe_to_toml(recipe: Recipe) -> str:
-    """A recipe as TOML; `recipe_from_toml` gives the same recipe back."""
-    import tomli_w
-
-    return tomli_w.dumps(recipe.table)
-
-
-def recipe_from_toml(text: str, *, source: str = "the recipe", project: Any = None) -> Recipe:
-    """Parse and check a recipe.
-
-    Args:
-        text: The file.
-        source: Its name, for messages.
-        project: Where files of a design may be kept.
-
-    Raises:
-        DesignError: For broken TOML, unknown fields, refused values or an unknown design.
-    """
-    from workbench.project.design_toml import design_from_toml
-    from workbench.project.named_designs import load_design
-    from workbench.system.whole_files import toml_table
-
-    try:
-        table = toml_table(text)
-    except ValueError as error:
-        raise DesignError(
-            f"{source} is not valid TOML: {error}", hint="correct the line named", at="recipe"
-        ) from error
-    design = table.pop("design", None)
-    recipe = from_table(Recipe, table, at="recipe")
-    if isinstance(design, str):
-        design = load_design(design, project=project)
-    elif isinstance(design, dict):
-        import tomli_w
-
-        roots = () if project is None else (project.folder,)
-        design = design_from_toml(tomli_w.dumps(design), source=source, roots=roots)
-    else:
-        raise DesignError(
-            f"{source} names no design",
-            hint='write design = "geltip" or a [design] table',
-            at="recipe.design",
-        )
-    return dataclasses.replace(recipe, design=design)
-
-
-def load_recipe(name: str, project: Any = None) -> Recipe:
-    """A recipe by its name, else from a TOML file.
-
-    Raises:
-        DesignError: If there is none, or the file is not valid.
-    """
-    from workbench.core.base.mapping import suggest
-    from workbench.system.whole_files import kept_text
-
-    if name in RECIPES:
-        text, _ = RECIPES[name]
-        return recipe_from_toml(text, source=name, project=project)
-    path = Path(name)
-    if path.suffix != ".toml":
-        raise DesignError(
-            f"there is no recipe {shown(name)}", hint=suggest(name, RECIPES), at="recipe"
-        )
-    try:
-        text = kept_text(path)
-    except (OSError, ValueError) as error:
-        raise DesignError(
-            f"cannot read {path}: {error}", hint="give a readable TOML file", at="recipe"
-        ) from error
-    return recipe_from_toml(text, source=name, project=project)
-
-
-RECIPES = {
-    "paper_finger": (
-        'design = "geltip"\npattern = "finger"\nshear_every_depth = true\n',
-        "Algorithm 1 of the paper: 85 positions, 14 objects, shear at every depth",
-    ),
-    "paper_pad": (
-        'design = "pad"\npattern = "pad"\ndepth_mm = 1.2\nshear_directions = 0\n',
-        "Algorithm 2 of the paper: 25 positions, 14 objects, 12 depths: 4,200 samples",
-    ),
-    "small": (
-        'design = "geltip"\npattern = "finger"\ncases = 84\n',
-        "a first set for training on the finger: 84 cases, 1,260 samples",
-    ),
-    "tiny": (
-        f'design = "geltip"\npattern = "finger"\nhex_mm = {DRAFT_MM}\nindenters = ["sphere"]\n'
-        "depth_mm = 0.2\nshear_directions = 0\nimages = false\ncases = 2\n",
-        "two presses of a sphere, 0.2 mm deep: to see that it works",
-    ),
-}
-"""TOML and purpose of each recipe by name."""

@@ -92,6 +92,8 @@ class Sample:
     """Image without markers as a PNG file; empty where images were left out."""
     png_markers: bytes = b""
     """The same with markers."""
+    markers_px: np.ndarray = field(default_factory=lambda: _none(0, 2))
+    """u, v of the markers in it [px], shape (M, 2), float32; NaN where one is out of sight."""
 
     @property
     def image(self) -> np.ndarray:
@@ -147,6 +149,8 @@ def to_bytes(sample: Sample) -> bytes:
     for name in ("png", "png_markers"):
         if content := getattr(sample, name):
             arrays[name] = np.frombuffer(content, np.uint8)
+    if len(sample.markers_px):
+        arrays["markers_px"] = sample.markers_px.astype(np.float32)
     bad = not_finite(head, arrays)
     if bad:
         raise SolveError(
@@ -196,6 +200,7 @@ def from_bytes(content: bytes, vertices: int) -> Sample:
             fem=solved["fem"],
             png=arrays.get("png", _none(0)).tobytes(),
             png_markers=arrays.get("png_markers", _none(0)).tobytes(),
+            markers_px=arrays.get("markers_px", _none(0, 2)),
         )
     except (OSError, KeyError, TypeError, IndexError, EOFError, zlib.error) as error:
         raise ValueError(f"it is damaged: {error!r}") from error
@@ -206,7 +211,8 @@ def from_bytes(content: bytes, vertices: int) -> Sample:
 def not_finite(head: Mapping[str, Any], arrays: Mapping[str, np.ndarray]) -> str:
     """Name of the first field with a value that is not finite, else ""."""
     for name, values in arrays.items():
-        if values.dtype.kind == "f" and not np.isfinite(values).all():
+        # A marker out of sight has no place.
+        if name != "markers_px" and values.dtype.kind == "f" and not np.isfinite(values).all():
             return name
     for name, value in head.items():
         if isinstance(value, dict):

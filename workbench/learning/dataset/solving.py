@@ -1,18 +1,19 @@
 """One worker of a data set: opens the device and the cameras once, then solves case after case.
 
-A case is pressed by the contact solver first, as a whole; the finite elements then hand over each
-frame as it converges, and its sample is written at once, so a killed process loses one frame of
-theirs and the press before it. Both solvers press on the same skin, that of the hexahedra, so they
-share vertices, first touch and path. Images show the displacement of the contact solver, as in the
-paper, or of the finite elements where they are alone.
+Cases are pressed by the contact solver first, as a whole and some side by side, which is what a
+GPU needs; the finite elements then hand over each frame of each as it converges, and its sample is
+written at once, so a killed process loses one frame of theirs and the presses before it. Both
+solvers press on the same skin, that of the hexahedra, so they share vertices, first touch and path.
+Images show the displacement of the contact solver, as in the paper, or of the finite elements where
+they are alone.
 """
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import time
-from dataclasses import dataclass, field
-from pathlib import Path
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -25,52 +26,16 @@ from workbench.core.result.force_field import ForceField, Source, from_contact
 from workbench.core.result.results import MembraneMesh
 from workbench.learning.dataset.cases import Case
 from workbench.learning.dataset.folder import SAMPLES, sample_name
-from workbench.learning.dataset.images import Cameras
-from workbench.learning.dataset.recipe import Recipe, Solvers
+from workbench.learning.dataset.images import Cameras, Views
+from workbench.learning.dataset.recipe import Solvers
 from workbench.learning.dataset.sample import Sample, Solved, to_bytes
-from workbench.pipeline.seen_optics import seen_optics
-from workbench.pipeline.stage import Call
+from workbench.learning.dataset.worker_messages import Report, Setup
 from workbench.pipeline.store import Store
 from workbench.system.whole_files import write_atomically
 
 if TYPE_CHECKING:
     # Its linear solver is loaded when the first case needs it.
     from sim.fem.readout import FemFrame
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Setup:
-    """What every worker of a data set needs to know; small, as it is sent to each."""
-
-    recipe: Recipe
-    key: str
-    """Key of the recipe: each sample carries it."""
-    folder: Path
-    store: Path
-    """Root of the store that holds mesh, material points and light."""
-    calls: dict[str, Call]
-    """Their calls by stage."""
-
-
-@dataclass(kw_only=True, slots=True)
-class Report:
-    """How a case ended."""
-
-    id: str
-    written: int = 0
-    """Samples that were not there before."""
-    mpm_s: float = 0.0
-    """Time of the contact solver [s]."""
-    fem_s: float = 0.0
-    """Time of the finite elements [s]."""
-    image_s: float = 0.0
-    """Time of images [s]."""
-    cpu_s: float = 0.0
-    """Processor time of the whole case [s]."""
-    seconds: float = 0.0
-    """Time of the whole case [s]."""
-    error: dict[str, Any] = field(default_factory=dict[str, Any])
-    """What went wrong; empty when nothing did."""
 
 
 class Bench:
@@ -86,17 +51,14 @@ class Bench:
         self.recipe = setup.recipe
         self.mesh: MembraneMesh = self._load(store, "mesh")
         self.points = self._load(store, "lattice") if self.recipe.solvers != Solvers.FEM else None
-        self.cameras: Cameras | None = None
-        if self.recipe.images:
-            table = self._load(store, "table") if "table" in setup.calls else None
-            optics = seen_optics(self.recipe.design.optics)
-            self.cameras = Cameras(self.mesh, self._load(store, "bake"), optics, table)
+        self._store = store
+        self._opened: dict[int, Cameras] = {}
 
     def _load(self, store: Store, stage: str) -> Any:
         return store.load(stage, self.setup.calls[stage].key)
 
-    def solve(self, case: Case) -> Report:
-        """Make the samples of a case; what goes wrong is in the report.
+    def solve(self, cases: Sequence[Case]) -> list[Report]:
+        """Make the samples of some cases; what goes wrong with one is in its report.
 
         Raises:
             Cancelled: If this data set is to stop.
@@ -104,50 +66,56 @@ class Bench:
             DeviceError: If the device gave out, likewise.
             LaneError: If memory did.
         """
-        report = Report(id=case.id)
+        reports = [Report(id=case.id) for case in cases]
+        contacts: Sequence[ForceField | WorkbenchError | None] = [None] * len(cases)
+        if self.recipe.solvers is not Solvers.FEM:
+            contacts = self._press(cases, reports)
+        for case, contact, report in zip(cases, contacts, reports, strict=True):
+            begun, cpu = time.perf_counter(), time.process_time()
+            with _kept(report):
+                if isinstance(contact, WorkbenchError):
+                    raise contact
+                if self.recipe.solvers is Solvers.MPM:
+                    assert contact is not None
+                    for frame in range(case.frames):
+                        self._write(case, frame, contact, None, report)
+                else:
+                    self._converge(case, contact, report)
+            report.seconds += time.perf_counter() - begun
+            report.cpu_s += time.process_time() - cpu
+        return reports
+
+    def _press(
+        self, cases: Sequence[Case], reports: Sequence[Report]
+    ) -> list[ForceField | WorkbenchError | None]:
+        """Contact of all cases, side by side; their time is shared out by their frames."""
+        from sim.contact.press import press_side_by_side
+
         begun, cpu = time.perf_counter(), time.process_time()
-        try:
-            contact = None if self.recipe.solvers is Solvers.FEM else self._press(case, report)
-            if self.recipe.solvers is Solvers.MPM:
-                assert contact is not None
-                for frame in range(case.frames):
-                    self._write(case, frame, contact, None, report)
-            else:
-                self._converge(case, contact, report)
-        except (Cancelled, StoreError, DeviceError):
-            raise
-        except MemoryError as error:
-            raise LaneError(
-                f"{case.id} ran out of memory",
-                hint="finished samples are kept; make it again with fewer --jobs",
-                at="dataset",
-            ) from error
-        except WorkbenchError as error:
-            report.error = {**error.as_dict(), "frame": getattr(error, "frame", -1)}
-        except (RuntimeError, ArithmeticError, ValueError, LookupError) as error:
-            # A bug in one case must not cost the others; it is kept with its name.
-            report.error = {"error": type(error).__name__, "message": str(error), "frame": -1}
-        report.seconds, report.cpu_s = time.perf_counter() - begun, time.process_time() - cpu
-        return report
-
-    def _press(self, case: Case, report: Report) -> ForceField:
-        from workbench.pipeline.stages.press import PressInputs, press
-
-        begun = time.perf_counter()
         assert self.points is not None
-        contact = press(
-            PressInputs(
-                mesh=self.mesh,
-                points=self.points,
-                material=self.recipe.design.material,
-                indenter=self.recipe.indenter(case.indenter),
-                path=case.press,
-                settings=ContactSettings(grid_mm=self.recipe.grid_mm),
-            ),
-            monitor=self._watch,
-        )
-        report.mpm_s = time.perf_counter() - begun
-        return from_contact(contact)
+        settings = ContactSettings(grid_mm=self.recipe.grid_mm)
+        presses = [
+            (
+                self.recipe.material(case.drawn),
+                PressCase(
+                    indenter=self.recipe.indenter(case.indenter, case.drawn),
+                    press=case.press,
+                    settings=settings,
+                ),
+            )
+            for case in cases
+        ]
+        try:
+            found = press_side_by_side(self.mesh, self.points, presses, monitor=self._watch)
+        except MemoryError as error:
+            raise _out_of_memory(f"{len(cases)} presses side by side") from error
+        frames = sum(case.frames for case in cases)
+        seconds, cpu_s = time.perf_counter() - begun, time.process_time() - cpu
+        for case, report in zip(cases, reports, strict=True):
+            share = case.frames / frames
+            report.mpm_s, report.seconds = seconds * share, seconds * share
+            report.cpu_s = cpu_s * share
+        return [one if isinstance(one, WorkbenchError) else from_contact(one) for one in found]
 
     def _converge(self, case: Case, contact: ForceField | None, report: Report) -> None:
         """Solve by finite elements and write each frame as it converges."""
@@ -157,7 +125,7 @@ class Bench:
 
         begun, aside_s = time.perf_counter(), 0.0
         settings = FemSettings(hex_mm=self.recipe.hex_mm, error=False)
-        indenter = self.recipe.indenter(case.indenter)
+        indenter = self.recipe.indenter(case.indenter, case.drawn)
         frame_of: Any = contact
         if contact is None:
             frame_of = place_object(
@@ -173,7 +141,7 @@ class Bench:
         try:
             solve_press(
                 self.mesh,
-                self.recipe.design.material,
+                self.recipe.material(case.drawn),
                 PressCase(indenter=indenter, press=case.press, fem=settings),
                 device=solver_device(),
                 monitor=self._watch,
@@ -181,6 +149,14 @@ class Bench:
             )
         finally:
             report.fem_s = time.perf_counter() - begun - aside_s
+
+    def _cameras(self, case: Case) -> Cameras:
+        """Those that see a case, opened when first asked for."""
+        number = case.drawn.look or 0
+        if number not in self._opened:
+            sight = self.setup.sights[number]
+            self._opened[number] = sight.cameras(self.mesh, self._store)
+        return self._opened[number]
 
     def _watch(self, fraction: float, note: str = "") -> None:
         if self.stop.value:
@@ -211,7 +187,7 @@ class Bench:
         ]
         posed, row = found[0]
         begun = time.perf_counter()
-        png, marked = self.cameras.images(posed, row) if self.cameras else (b"", b"")
+        views = self._cameras(case).views(posed, row) if self.setup.sights else Views()
         report.image_s += time.perf_counter() - begun
         sample = Sample(
             case=case.id,
@@ -226,11 +202,36 @@ class Bench:
             tangent_u=posed.tangent_u,
             mpm=None if contact is None else _solved(contact, frame, stress=False),
             fem=None if solved is None else _solved(solved, 0, stress=True),
-            png=png,
-            png_markers=marked,
+            png=views.png,
+            png_markers=views.png_markers,
+            markers_px=views.markers_px,
         )
         write_atomically(path, to_bytes(sample))
         report.written += 1
+
+
+@contextlib.contextmanager
+def _kept(report: Report) -> Iterator[None]:
+    """Put what goes wrong with one case into its report; what is wrong with all goes on up."""
+    try:
+        yield
+    except (Cancelled, StoreError, DeviceError):
+        raise
+    except MemoryError as error:
+        raise _out_of_memory(report.id) from error
+    except WorkbenchError as error:
+        report.error = {**error.as_dict(), "frame": getattr(error, "frame", -1)}
+    except (RuntimeError, ArithmeticError, ValueError, LookupError) as error:
+        # A bug in one case must not cost the others; it is kept with its name.
+        report.error = {"error": type(error).__name__, "message": str(error), "frame": -1}
+
+
+def _out_of_memory(what: str) -> LaneError:
+    return LaneError(
+        f"{what} ran out of memory",
+        hint="finished samples are kept; make it again with fewer --jobs or a smaller --batch",
+        at="dataset",
+    )
 
 
 def _one_frame(outcome: FemFrame, frame_of: Any) -> ForceField:
