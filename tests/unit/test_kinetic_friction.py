@@ -76,3 +76,16 @@ def test_samples_keep_the_share_that_slides() -> None:
     assert _unpacked(head, named, "mpm", 2).sliding_share == 0.25
     head.pop("sliding_share")
     assert _unpacked(head, named, "mpm", 2).sliding_share == 0.0
+
+
+def test_drawn_friction_takes_the_kinetic_along() -> None:
+    """.4 and .2 drawn at .3: .3 and .15, never a kinetic above the static."""
+    from workbench.core.design.design import SensorDesign
+    from workbench.learning.dataset.recipe import Recipe
+    from workbench.learning.dataset.variation import Drawn
+
+    material = Elastomer(friction=0.4, kinetic_friction=0.2)
+    recipe = Recipe(design=SensorDesign(material=material))
+    drawn = recipe.material(Drawn(friction=0.3))
+    assert (drawn.friction, drawn.kinetic_friction) == (0.3, pytest.approx(0.15))
+    assert recipe.material(Drawn()) == material
