@@ -27,6 +27,8 @@ class Load:
     """Where each contact point was, carried along by the object, shape (P, 3)."""
     elastic_mm: np.ndarray
     """Elastic slip kept before, turned with the object, shape (P, 3)."""
+    slides: np.ndarray
+    """Whether each slid in the last increment, shape (P,), bool."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -111,6 +113,7 @@ class Equations:
             gradient=gradient[members],
             curvature=curvature(load.collider, load.pose, places_mm[members]) if tangent else None,
             slip_mm=(load.elastic_mm + places_mm - load.anchor_mm)[members],
+            slides=load.slides[members],
         )
         held = None if lag is None else lag.take(members)
         pull = traction(load.law, touch, lag=held, convex=convex)

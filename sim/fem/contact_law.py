@@ -12,6 +12,8 @@ this increment) and e = (I - n n^T) v, n = g / |g|, y = |e| / gamma, the tractio
 
 its size never exceeds the Coulomb cone, its stiffness at rest is 2 mu lam / gamma. e min(1, 1/y)
 is what the point keeps when an increment has converged. The tangent includes the turning of n.
+mu is the kinetic coefficient of a point that slid in the last increment, else the static one, so it
+does not change within an increment; a point that comes to stick holds by the static one again.
 With `lag` pressure and normal of the friction are held, and then it has a potential too:
 mu lam gamma (y^2 - y^3 / 3 for y < 1, else y - 1/3).
 Source of the numbers: `PENALTY` and the lengths below were chosen so that force and contact
@@ -42,7 +44,9 @@ class Law:
     penalty_MPa_mm: float
     """eps [MPa/mm]."""
     friction: float
-    """mu [1]."""
+    """mu of what sticks [1]."""
+    kinetic_friction: float | None = None
+    """mu of what slides; None: the same."""
     soft_mm: float = SOFT_MM
     slip_mm: float = SLIP_MM
 
@@ -59,6 +63,15 @@ class Touch:
     """Second derivatives of phi [1/mm], shape (Q, 3, 3); needed for tangents only."""
     slip_mm: np.ndarray
     """v, shape (Q, 3)."""
+    slides: np.ndarray | None = None
+    """Whether each slid in the last increment, shape (Q,), bool; None: none did."""
+
+    def friction(self, law: Law) -> np.ndarray:
+        """mu, shape (Q,)."""
+        static = np.full(len(self.distance_mm), law.friction)
+        if law.kinetic_friction is None or self.slides is None:
+            return static
+        return np.where(self.slides, law.kinetic_friction, static)
 
     @cached_property
     def steepness(self) -> np.ndarray:
@@ -129,7 +142,7 @@ def traction(law: Law, touch: Touch, *, lag: Lag | None = None, convex: bool = F
         )
         if not convex:
             stiffness -= lam[:, None, None] * touch.curvature
-    rub = _Rub.of(law, lag or own, touch.slip_mm)
+    rub = _Rub.of(law, lag or own, touch)
     if law.friction > 0.0 and stiffness is not None and touch.curvature is not None:
         if lag is None:
             stiffness += _exact_friction(law, touch, rub, normal, penalty)
@@ -139,7 +152,7 @@ def traction(law: Law, touch: Touch, *, lag: Lag | None = None, convex: bool = F
     return Traction(
         energy_N_mm=penalty.energy_N_mm + rub.energy_N_mm(law),
         normal_MPa=lam[:, None] * gradient,
-        friction_MPa=rub.traction_MPa(law),
+        friction_MPa=rub.traction_MPa(),
         stiffness_MPa_mm=stiffness,
         lag=own,
         elastic_mm=rub.elastic_mm * np.minimum(1.0, 1.0 / np.maximum(rub.ratio, LEAST_MM))[:, None],
@@ -181,6 +194,8 @@ def _penalty(law: Law, depth_mm: np.ndarray) -> _Penalty:
 class _Rub:
     """Friction at points: the slip in the tangent plane, and the law's factors."""
 
+    friction: np.ndarray
+    """mu, shape (Q,)."""
     pressure_MPa: np.ndarray
     elastic_mm: np.ndarray
     """e, shape (Q, 3)."""
@@ -190,11 +205,12 @@ class _Rub:
     """y, shape (Q,)."""
 
     @classmethod
-    def of(cls, law: Law, lag: Lag, slip_mm: np.ndarray) -> _Rub:
-        along = np.einsum("qi,qi->q", lag.normal, slip_mm)
-        elastic_mm = slip_mm - along[:, None] * lag.normal
+    def of(cls, law: Law, lag: Lag, touch: Touch) -> _Rub:
+        along = np.einsum("qi,qi->q", lag.normal, touch.slip_mm)
+        elastic_mm = touch.slip_mm - along[:, None] * lag.normal
         length_mm = np.linalg.norm(elastic_mm, axis=1)
         return cls(
+            friction=touch.friction(law),
             pressure_MPa=lag.pressure_MPa,
             elastic_mm=elastic_mm,
             length_mm=length_mm,
@@ -207,13 +223,13 @@ class _Rub:
         """Share of the cone that is used, shape (Q,)."""
         return np.where(self.ratio < 1.0, self.ratio * (2.0 - self.ratio), 1.0)
 
-    def traction_MPa(self, law: Law) -> np.ndarray:
-        return -(law.friction * self.pressure_MPa * self.share)[:, None] * self.direction
+    def traction_MPa(self) -> np.ndarray:
+        return -(self.friction * self.pressure_MPa * self.share)[:, None] * self.direction
 
     def energy_N_mm(self, law: Law) -> np.ndarray:
         y = self.ratio
         shape = np.where(y < 1.0, y**2 - y**3 / 3.0, y - 1.0 / 3.0)
-        return law.friction * law.slip_mm * self.pressure_MPa * shape
+        return self.friction * law.slip_mm * self.pressure_MPa * shape
 
     def moduli(self, law: Law) -> np.ndarray:
         """Minus the derivative of the traction by e at constant pressure, shape (Q, 3, 3)."""
@@ -222,7 +238,7 @@ class _Rub:
             stick, (2.0 - self.ratio) / law.slip_mm, 1.0 / np.maximum(self.length_mm, LEAST_MM)
         )
         along = np.where(stick, 2.0 * (1.0 - self.ratio) / law.slip_mm, 0.0)
-        scale = law.friction * self.pressure_MPa
+        scale = self.friction * self.pressure_MPa
         pairs = self.direction[:, :, None] * self.direction[:, None, :]
         found = (scale * across)[:, None, None] * np.eye(3)
         return found + (scale * (along - across))[:, None, None] * pairs
@@ -243,7 +259,7 @@ def _exact_friction(
     bent = np.einsum("qij,qj->qi", touch.curvature, normal)
     rise = penalty.slope_MPa_mm * size
     slope_of_pressure = penalty.pressure_MPa[:, None] * bent - rise[:, None] * touch.gradient
-    pull = (law.friction * rub.share)[:, None, None] * rub.direction[:, :, None]
+    pull = (rub.friction * rub.share)[:, None, None] * rub.direction[:, :, None]
     return rub.moduli(law) @ slope_of_slip + pull * slope_of_pressure[:, None, :]
 
 

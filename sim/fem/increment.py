@@ -19,6 +19,7 @@ from sim.fem.lagged import lagged, minimise
 from sim.fem.newton import Effort, Solution, newton
 from sim.fem.obstacle import RigidPose
 from sim.fem.tangent import Tangent
+from sim.forces.slip import Slip, object_way_mm, slip_of
 from workbench.core.base.errors import SolveError
 
 START_TOLERANCE = 0.1
@@ -64,6 +65,8 @@ class State:
     """Elastic slip, shape (P, 3)."""
     slid_mm: np.ndarray
     """Way that each point has slid since it last touched, shape (P,)."""
+    slides: np.ndarray
+    """Whether each slid in the increment that led here, shape (P,), bool."""
     balance: Balance | None = None
     """Forces; None before the first increment."""
 
@@ -78,6 +81,7 @@ def at_rest(pairing: Pairing) -> State:
         places_mm=places_mm,
         elastic_mm=np.zeros_like(places_mm),
         slid_mm=np.zeros(len(places_mm)),
+        slides=np.zeros(len(places_mm), dtype=bool),
     )
 
 
@@ -147,7 +151,7 @@ def increment(pairing: Pairing, state: State, progress: float, effort: Effort) -
     if found is None or not found.converged:
         return None
     effort.increments += 1
-    return _remembered(state, progress, found)
+    return _remembered(pairing, state, progress, found)
 
 
 def _equations(pairing: Pairing, state: State, progress: float) -> Equations:
@@ -164,6 +168,7 @@ def _load(pairing: Pairing, state: State, progress: float) -> Load:
         pose=pose,
         anchor_mm=pose.carried(state.places_mm, before),
         elastic_mm=state.elastic_mm @ pose.turn(before).T,
+        slides=state.slides,
     )
 
 
@@ -208,7 +213,23 @@ def _predicted(
     return moved_mm if guess is None else moved_mm + step_mm
 
 
-def _remembered(state: State, progress: float, found: Solution) -> State:
+def slid_since(pairing: Pairing, before: State, progress: float, forces: Balance) -> Slip:
+    """Which contact points slid from a state to a balance of forces after `progress` frames."""
+    pose, old = pairing.pose_at(progress), pairing.pose_at(before.progress)
+    carried_mm = pose.carried(before.places_mm, old)
+    now = forces.lag()
+    moved_mm = forces.places_mm - carried_mm
+    moved_mm -= np.einsum("pc,pc->p", moved_mm, now.normal)[:, None] * now.normal
+    stayed = now.pressure_MPa > 0.0
+    stayed &= before.balance is not None and before.balance.lag().pressure_MPa > 0.0
+    driven_mm = pairing.held_mm(progress) - pairing.held_mm(before.progress)
+    origin_mm = float(np.linalg.norm(pose.origin_mm - old.origin_mm))
+    least_mm = max(origin_mm, float(np.linalg.norm(driven_mm, axis=1).max()))
+    way_mm = object_way_mm(carried_mm, before.places_mm, least_mm)
+    return slip_of(np.linalg.norm(moved_mm, axis=1), way_mm, stayed)
+
+
+def _remembered(pairing: Pairing, state: State, progress: float, found: Solution) -> State:
     """The state with the friction's memory of a converged increment."""
     forces = found.balance
     elastic_mm, slid_mm = np.zeros_like(state.elastic_mm), np.zeros_like(state.slid_mm)
@@ -220,5 +241,6 @@ def _remembered(state: State, progress: float, found: Solution) -> State:
         places_mm=forces.places_mm,
         elastic_mm=elastic_mm,
         slid_mm=slid_mm,
+        slides=slid_since(pairing, state, progress, forces).sliding,
         balance=forces,
     )

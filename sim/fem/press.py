@@ -181,6 +181,7 @@ class _Course:
             law=Law(
                 penalty_MPa_mm=PENALTY * material.young_MPa,
                 friction=material.friction,
+                kinetic_friction=material.kinetic_friction,
             ),
             collider=approach.collider,
             pose_at=self._pose,

@@ -13,9 +13,10 @@ import numpy as np
 from sim.contact.readout.fields import VOIGT
 from sim.fem.balance import LEAST_MM2, Balance
 from sim.fem.elements import CORNERS, Elements, displacement_gradient
-from sim.fem.increment import Pairing, State
+from sim.fem.increment import Pairing, State, slid_since
 from sim.fem.newton import Effort
 from sim.fem.submodel import Submodel
+from sim.forces.slip import MOST_OF_IT, Slip
 from sim.material import energy_density_MPa
 from workbench.core.base.frames import quaternion
 from workbench.core.result.results import MembraneMesh
@@ -42,6 +43,7 @@ class FemFrame:
     cauchy_MPa: np.ndarray
     energy_MPa: np.ndarray
     sliding: np.ndarray
+    sliding_share: float
     slip_mm: np.ndarray
     support_N: np.ndarray
     cut_N: np.ndarray
@@ -89,7 +91,8 @@ def read_frame(
     least_N = LEAST_MM2 * body.young_MPa
     load_N = max(float(np.linalg.norm(contact_N)), float(np.abs(holding_N).max()), least_N)
     cauchy, energy, least = _stress(body.elements, state.displacement_mm, len(place_mm))
-    pressure, slip, sliding = _contact_state(submodel, state, before, forces)
+    slip = slid_since(pairing, before, state.progress, forces)
+    pressure, slid_mm, sliding = _contact_state(submodel, state, slip, forces)
     count = len(mesh.outer.points_mm)
     return FemFrame(
         displacement_mm=_on_skin(marks.outer, moved_mm, count),
@@ -104,8 +107,9 @@ def read_frame(
         pressure_MPa=_on_skin(marks.outer, pressure, count),
         cauchy_MPa=_on_skin(marks.outer, cauchy, count),
         energy_MPa=_on_skin(marks.outer, energy, count),
-        sliding=_on_skin(marks.outer, sliding, count) > 0.0,
-        slip_mm=_on_skin(marks.outer, slip, count),
+        sliding=_on_skin(marks.outer, sliding, count) > MOST_OF_IT,
+        sliding_share=slip.share(body.faces.areas_mm2.ravel()),
+        slip_mm=_on_skin(marks.outer, slid_mm, count),
         support_N=held[0],
         cut_N=held[1],
         actuator_N=held[2],
@@ -140,9 +144,10 @@ def _held_forces(
 
 
 def _contact_state(
-    submodel: Submodel, state: State, before: State, forces: Balance
+    submodel: Submodel, state: State, slip: Slip, forces: Balance
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Pressure [MPa], slip [mm] and whether it slides, at each node, each of shape (N,)."""
+    """Pressure [MPa], way slid [mm] and share of the touching area around it that slides, at each
+    node, each of shape (N,)."""
     faces = submodel.body.faces
     size = len(submodel.body.points_mm)
 
@@ -155,15 +160,13 @@ def _contact_state(
     normal[forces.members] = forces.traction.lag.pressure_MPa
     touching = np.zeros(faces.areas_mm2.size)
     touching[forces.members] = normal[forces.members] > 0.0
-    slides = touching * (state.slid_mm > before.slid_mm)
 
     def mean(values: np.ndarray, weights: np.ndarray) -> np.ndarray:
         return summed(values * weights) / np.maximum(summed(weights), LEAST)
 
     pressed_N, area = summed(normal), summed(np.ones_like(normal))
-    # A vertex slides where more than half of the normal force on it does.
-    sliding = mean(slides, normal) > 0.5
-    return pressed_N / np.maximum(area, LEAST), mean(state.slid_mm, touching), sliding.astype(float)
+    sliding = mean(slip.sliding, slip.stayed.astype(float))
+    return pressed_N / np.maximum(area, LEAST), mean(state.slid_mm, touching), sliding
 
 
 def _friction_ratio(forces: Balance) -> float:

@@ -148,6 +148,13 @@ def _of_material(card: Mapping[str, Any], material: Elastomer) -> Iterator[str]:
         yield f"Poisson's ratio is {material.poisson:g}, trained at {poisson:g}"
     if friction is not None and not _same(material.friction, friction):
         yield f"friction is {material.friction:g}, trained at {friction:g}"
+    kinetic = _number(card, "kinetic_friction")
+    if kinetic is None:
+        # Networks of before there were two coefficients.
+        kinetic = friction
+    apart = not _same(material.sliding_friction, material.friction)
+    if kinetic is not None and apart and not _same(material.sliding_friction, kinetic):
+        yield f"kinetic friction is {material.sliding_friction:g}, trained at {kinetic:g}"
     if law is not None and material.law.value != law:
         yield f"the material's law is {material.law.value}, trained with {law}"
     if material.inclusions:

@@ -155,10 +155,44 @@ def test_commit_equals_the_twin(taichi_device: str) -> None:
     reference.commit_history(*arguments)
     anchors, states = relaxation.contact_history()
     np.testing.assert_array_equal(states, history.states)
-    held = states == reference.HELD
+    held = states >= reference.HELD
+    assert {reference.HELD, reference.SLID} <= set(states.tolist())
     np.testing.assert_allclose(anchors[held], history.anchors[held], atol=2e-6)
     assert history.slips.max() > 0.05
     np.testing.assert_allclose(relaxation.slips_mm(), history.slips, atol=2e-6)
+
+
+@pytest.mark.parametrize("kinetic", [0.3, 0.1])
+def test_kinetic_friction_equals_the_twin(taichi_device: str, kinetic: float) -> None:
+    """A turn that settles, then another: points that slid are held by the kinetic cone."""
+    domain, collider, approach, _ = setup(Indenter(size_mm=4.0))
+    case = Case(domain=domain, collider=collider, friction=0.3, kinetic_friction=kinetic)
+    relaxation, displacement = Relaxation([case]), wobble(domain)
+    history = reference.ContactHistory.fresh(domain.points.count)
+    relaxation.restart(0, displacement)
+    for progress in (1.0, 1.5, 2.0):
+        pose = approach.pose(progress)
+        evaluate(relaxation, pose)
+        met = reference.PosedObject(collider, pose, 0.3, kinetic)
+        held = reference.surface_forces(domain, displacement.astype(float), history, met)
+        if progress == 1.5:
+            slid = history.states == reference.TOUCHED
+            relaxation.commit(0)
+            reference.commit_history(domain, displacement.astype(float), history, met)
+            slid &= history.states == reference.SLID
+    assert slid.sum() > 3
+    contact = ~domain.points.bonded
+    bound = RELATIVE * np.abs(held[contact]).max()
+    assert np.abs(relaxation.point_forces()[contact] - held[contact]).max() < bound
+    # Those that slid, and slide on, resist by the kinetic coefficient.
+    place = (reference.point_places(domain, displacement.astype(float)) - pose[0]) @ pose[1]
+    _, gradient = collider.distance(place[slid])
+    normal = gradient / np.linalg.norm(gradient, axis=1, keepdims=True)
+    force = held[slid] @ pose[1]
+    along = np.einsum("pc,pc->p", force, normal)
+    aside = np.linalg.norm(force - along[:, None] * normal, axis=1)
+    ratio = (aside / np.abs(along))[np.abs(along) > 0.0]
+    assert ratio.max() == pytest.approx(kinetic, rel=1e-6)
 
 
 def test_driven_points_are_pulled_to_their_goals(taichi_device: str) -> None:

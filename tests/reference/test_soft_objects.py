@@ -98,7 +98,7 @@ def test_forces_friction_and_commit_equal_the_twin() -> None:
     commit_history(meeting, history, friction=0.3)
     anchors, states = relaxation.contact_history(MEMBRANE)
     np.testing.assert_array_equal(states[touching], history.states[touching])
-    slid = touching & (history.states == reference.HELD)
+    slid = touching & (history.states >= reference.HELD)
     np.testing.assert_allclose(anchors[slid], history.anchors[slid], atol=1e-5)
     assert history.slips.max() > 0.01
     np.testing.assert_allclose(relaxation.slips_mm(MEMBRANE)[slid], history.slips[slid], atol=1e-5)

@@ -40,6 +40,15 @@ def test_a_file_may_state_neo_hookean_constants() -> None:
     assert design_from_toml(design_to_toml(design_from_toml(text))).material == material
 
 
+def test_kinetic_friction_is_the_static_one_where_a_file_does_not_say(tmp_path: Path) -> None:
+    """Files of before there were two coefficients mean the same; with two, both come back."""
+    old = design_from_toml(HEAD + "friction = 0.4\n").material
+    assert (old.friction, old.kinetic_friction, old.sliding_friction) == (0.4, None, 0.4)
+    both = design_from_toml(HEAD + "friction = 0.4\nkinetic_friction = 0.25\n")
+    assert both.material.sliding_friction == 0.25
+    assert design_from_toml(design_to_toml(both)).material == both.material
+
+
 @pytest.mark.parametrize(
     ("lines", "at", "says"),
     [
@@ -50,6 +59,7 @@ def test_a_file_may_state_neo_hookean_constants() -> None:
         ("c10_MPa = true\nd1_per_MPa = 4.1", "material.c10_MPa", "True"),
         ("c10_MPa = 0.025\nd1_per_MPa = 1e-4", "material.poisson", "0.495"),
         ('law = "hook"', "material.law", "'hook'"),
+        ("friction = 0.3\nkinetic_friction = 0.4", "material.kinetic_friction", "outside 0 to 0.3"),
         ("[[material.inclusions]]\nwhere = 'cube'", "material.inclusions", "'cube'"),
     ],
 )

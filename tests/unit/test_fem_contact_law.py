@@ -180,3 +180,18 @@ def test_convex_stiffness_has_no_negative_part() -> None:
         least.append(float(np.linalg.eigvalsh(stiffness).min()))
     assert least[0] > -1e-9
     assert least[1] < -1e-3
+
+
+def test_what_slid_is_held_by_kinetic_friction() -> None:
+    """At 40 um of slip both points are at their cones: mu_k p where it slid before, else mu p."""
+    law = Law(penalty_MPa_mm=200.0, friction=0.3, kinetic_friction=0.1)
+    touch = Touch(
+        distance_mm=np.full(2, -0.01),
+        gradient=np.repeat(UP, 2, axis=0),
+        curvature=np.zeros((2, 3, 3)),
+        slip_mm=np.tile([0.04, 0.0, 0.0], (2, 1)),
+        slides=np.array([False, True]),
+    )
+    found = traction(law, touch)
+    ratio = np.linalg.norm(found.friction_MPa, axis=1) / np.linalg.norm(found.normal_MPa, axis=1)
+    assert ratio == pytest.approx([0.3, 0.1], rel=1e-12)

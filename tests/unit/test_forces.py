@@ -10,12 +10,20 @@ import numpy as np
 import pytest
 
 from geometry.surface.stress import von_mises_MPa
+from ui.panels.results.forces import slip_words
 from workbench.core.base.errors import SolveError
 from workbench.core.press.actuation import Actuation
 from workbench.core.press.press import Press
 from workbench.core.result.sensing import Contact
 from workbench.report.fabrication_tables import plain_numbers
-from workbench.view.forces import check_finite, csv_bytes, force_columns, slip_columns, slip_curve
+from workbench.view.forces import (
+    check_finite,
+    csv_bytes,
+    force_columns,
+    gross_slip,
+    slip_columns,
+    slip_curve,
+)
 
 FRAMES, VERTICES = 3, 4
 
@@ -54,6 +62,7 @@ def contact() -> Contact:
         substeps=1,
         device="cpu",
         contact_force_N=force,
+        sliding_share=np.array([0.0, 0.5, 0.0]),
         slip_mm=slip,
         tangential_N=np.array([0.1, 0.6, 0.0]),
         pressing_N=np.array([1.0, 2.0, 0.0]),
@@ -85,7 +94,7 @@ def test_rows_hold_the_forces_of_their_frames(contact: Contact) -> None:
         ("support_moment_y_Nmm", contact.support_moment_Nmm[:, 1]),
         ("actuator_0_z_N", contact.actuator_N[:, 0, 2]),
         ("actuator_0_moment_x_Nmm", contact.actuator_moment_Nmm[:, 0, 0]),
-        # Frame 1 sticks; in frame 2 one of the two touched vertices slides; then nothing touches.
+        # Frame 1 sticks; in frame 2 half of the contact slides; then nothing touches.
         ("sliding_share", [0.0, 0.5, 0.0]),
         ("depth_mm", [0.1, 0.2, 0.3]),
     ):
@@ -106,6 +115,19 @@ def test_slip_curve_is_written_where_the_path_goes_sideways(contact: Contact) ->
     straight = contact.indenter_pose.copy()
     straight[:, :2] = 0.0
     assert slip_columns(dataclasses.replace(contact, indenter_pose=straight)) is None
+
+
+def test_gross_slip_is_told_where_all_slides(contact: Contact) -> None:
+    """Shares of 0 and 1 at the middles 0 and 1.5 mm of the way: .95 at 1.425 mm, in frame 2."""
+    assert gross_slip(contact) is None
+    found = gross_slip(dataclasses.replace(contact, sliding_share=np.array([0.0, 1.0, 1.0])))
+    assert found is not None
+    assert (found.frame, found.way_mm) == (2, pytest.approx(1.425))
+    assert slip_words(contact, 1) == "50 % of the contact slides · no gross slip"
+    # Neither the network nor the method of particles know what slides.
+    unknown = dataclasses.replace(contact, sliding_share=np.zeros(0))
+    assert "does not say" in slip_words(unknown, 1)
+    assert gross_slip(dataclasses.replace(contact, sliding_share=np.zeros(0))) is None
 
 
 @pytest.mark.parametrize("field", ["cauchy_MPa", "reaction_N", "residual"])

@@ -108,6 +108,9 @@ def test_fields_of_the_sources_are_arrays_on_the_skin(project: Path) -> None:
         results.force_arrays("mpm", "fen")
     with pytest.raises(wb.WorkbenchError, match="no source of forces is named"):
         results.force_arrays()
+    # A single frame straight in: nothing was in contact before it.
+    assert arrays["mpm_sliding_share"].tolist() == [0.0]
+    assert results.gross_slip() is None
 
 
 def test_the_last_line_of_json_names_the_files_of_the_sources(

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from sim.forces.slip import GrossSlip
 from workbench.core.base.errors import DesignError, DeviceError, shown
 from workbench.core.base.mapping import suggest
 from workbench.core.base.packages import naming_packages
@@ -116,6 +117,21 @@ class Results:
         """
         (known,) = _known((source,))
         return self[FORCE_STAGES[known]]
+
+    def gross_slip(self, source: Source | str = Source.MPM) -> GrossSlip | None:
+        """When all of the contact began to slide: `way_mm` along the skin, and `frame` from 1.
+
+        None where it did not, or where the source does not know: the network does not.
+
+        Args:
+            source: As of `forces`.
+
+        Raises:
+            DesignError: If there is no such source.
+        """
+        from workbench.view.forces import gross_slip
+
+        return gross_slip(self.forces(source))
 
     def force_arrays(self, *sources: Source | str) -> dict[str, np.ndarray]:
         """Fields, totals and peaks of several sources side by side, on the design's outer skin.

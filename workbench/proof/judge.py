@@ -31,7 +31,7 @@ class Judge(enum.StrEnum):
 
 _EXACT = """
 bonded_block_force contact_radius flat_punch cylinder_line bonded_layer_reference backed_block_force
-backed_block_shear force_balance moment_balance coulomb_limit slip_ratio slip_ratio_global
+backed_block_shear force_balance moment_balance coulomb_limit slip_ratio partial_slip
 release_force patch_test rigid_rotation stiffness_tripled moment_of_smooth_sphere friction_cone
 projection field_of_view snell fresnel optical_axis plane_tangency irradiance depth_z energy furnace
 flat_furnace reciprocity plane_irradiance slab total_reflection sensor_noise defocus spectrum
@@ -49,6 +49,7 @@ idle_photo_balance idle_photo_oval
 """
 _LIMIT = "mpm_against_fem_limit mpm_refinement fem_refinement"
 _ITSELF = """
+slip_share slip_share_mesh gross_slip slip_ratio_global
 region_error residual frame_size mirror mirror_symmetry rotation increments submodel submodel_worst
 determinism cpu_gpu mpm_against_fem direct_table table_brightness contact_tangent
 friction_tangent contact_energy raster newton_projection frame_depth published_depth map_sensitivity

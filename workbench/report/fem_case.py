@@ -10,7 +10,7 @@ import dataclasses
 import json
 from typing import TYPE_CHECKING, Any
 
-from workbench.core.base.errors import StoreError, WorkbenchError
+from workbench.core.base.errors import DesignError, StoreError, WorkbenchError
 from workbench.core.result.force_field import ForceField
 from workbench.core.result.results import MembraneMesh
 from workbench.core.result.sampled import SampledDistance
@@ -82,6 +82,13 @@ def make_deck_case(
         # A large object is sampled once more where it meets the skin.
         open_device()
     material = state.design.material
+    if material.sliding_friction < material.friction:
+        raise DesignError(
+            f"a deck has one coefficient of friction, and this design has kinetic friction "
+            f"{material.sliding_friction:g} below {material.friction:g}",
+            hint="set material.kinetic_friction to that of material.friction for the deck",
+            at="material.kinetic_friction",
+        )
     # Other programs know no hanging nodes.
     whole = dataclasses.replace(state.case.fem, halvings=0)
     case = dataclasses.replace(state.case, fem=whole)

@@ -54,6 +54,7 @@ def columns(found: ForceField, depths_mm: Sequence[float]) -> dict[str, np.ndarr
         "normal_N": found.normal_N,
         "tangential_u_N": found.reaction_N @ found.tangent_u,
         "tangential_v_N": found.reaction_N @ tangent_v,
+        **({"sliding_share": found.sliding_share} if len(found.sliding_share) else {}),
         "residual": found.residual,
         "balance": found.balance,
         "converged": found.converged.astype(int),

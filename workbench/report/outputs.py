@@ -29,7 +29,14 @@ from workbench.report.map_files import write_maps
 from workbench.report.vtkfiles import write_vtk
 from workbench.system.folder import remove_stale
 from workbench.system.whole_files import write_atomically
-from workbench.view.forces import check_finite, csv_bytes, force_columns, slip_columns
+from workbench.view.forces import (
+    check_finite,
+    csv_bytes,
+    force_columns,
+    gross_slip,
+    sliding_share,
+    slip_columns,
+)
 from workbench.view.press_figures import force_balance, frame_depths_mm
 
 SUMMARY_SCHEMA = 1
@@ -97,14 +104,20 @@ def write_package(out: Path, bundle: Bundle) -> None:
 
 
 def contact_summary(contact: Contact, path: Press, seconds: float) -> dict[str, Any]:
-    """The `contact` table of `summary.json`: last frame's force, worst residual and penetration."""
+    """The `contact` table of `summary.json`: last frame's force, worst residual and penetration.
+
+    `gross_slip_mm` is the way along the skin at which all of the contact began to slide, and
+    `gross_slip_frame` the frame; None where it did not.
+    """
     times_s = path.times_s()
+    shares, gross = sliding_share(contact), gross_slip(contact)
     frames = [
         {
             "t_s": float(times_s[k + 1]),
             "depth_mm": depth,
             "reaction_N": contact.reaction_N[k].tolist(),
             "normal_N": float(contact.normal_N[k]),
+            "sliding_share": float(shares[k]),
             "residual": float(contact.residual[k]),
             "penetration_mm": float(contact.penetration_mm[k]),
             "actuator_N": contact.actuator_N[k].tolist() if len(contact.actuator_N) else [],
@@ -115,6 +128,9 @@ def contact_summary(contact: Contact, path: Press, seconds: float) -> dict[str, 
         "reaction_N": contact.reaction_N[-1].tolist(),
         "normal_N": float(contact.normal_N[-1]),
         "moment_Nmm": contact.moment_Nmm[-1].tolist(),
+        "sliding_share": float(shares[-1]),
+        "gross_slip_mm": None if gross is None else gross.way_mm,
+        "gross_slip_frame": None if gross is None else gross.frame,
         "residual": float(contact.residual.max()),
         "penetration_mm": float(contact.penetration_mm.max()),
         "force_balance": force_balance(contact),

@@ -14,7 +14,8 @@ from workbench.core.result.force_field import Source
 from workbench.view.force_sources import Forces, totals
 from workbench.view.forces import Columns
 
-FIELDS = ("displacement_mm", "contact_force_N", "pressure_MPa", "reaction_N", "moment_Nmm")
+FIELDS = ("displacement_mm", "contact_force_N", "pressure_MPa", "reaction_N", "moment_Nmm",
+          "sliding_share")  # fmt: skip
 """Fields of every source, as they are named in its result."""
 TOTALS = ("normal_N", "tangential_N")
 PEAKS = ("peak_MPa", "peak_disc_N")
@@ -35,6 +36,8 @@ def source_columns(
             values = np.array([getattr(row, name) for row in rows])
             if np.isfinite(values).all():
                 columns[f"{source.value}_{name}"] = values
+        if len(forces.sliding_share):
+            columns[f"{source.value}_sliding_share"] = forces.sliding_share
     return columns
 
 

@@ -3,7 +3,7 @@
 Rows are in the order of frames, counted from 1; columns carry their units in their names; forces
 act on the object, in the sensor frame, unless the name says support, cut or actuator, which act on
 the membrane. Source of the slip curve: SimTac, slip detection, where images tell sticking from
-sliding; here tangential over normal force does.
+sliding; here motion relative to the object does, and tangential over normal force beside it.
 """
 
 from __future__ import annotations
@@ -15,8 +15,11 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
+from sim.forces.slip import GrossSlip
+from sim.forces.slip import gross_slip as gross_slip_of
 from workbench.core.base.errors import SolveError
 from workbench.core.press.press import Press
+from workbench.core.result.force_field import ForceField
 from workbench.core.result.sensing import Contact
 
 XYZ = "xyz"
@@ -105,7 +108,7 @@ def slip_columns(contact: Contact) -> Columns | None:
 
 
 def slip_curve(contact: Contact) -> tuple[np.ndarray, np.ndarray]:
-    """Tangential over normal force, and share of the touching vertices that slide, each (K,).
+    """Tangential over normal force, and share of the contact's area that slides, each (K,).
 
     Sums over contact points; 0 where nothing presses, or where the result lacks the forces.
     """
@@ -116,19 +119,23 @@ def slip_curve(contact: Contact) -> tuple[np.ndarray, np.ndarray]:
     return np.nan_to_num(ratio), sliding_share(contact)
 
 
-def sideways_mm(contact: Contact) -> np.ndarray:
+def sideways_mm(contact: Contact | ForceField) -> np.ndarray:
     """Way of the object's origin in the tangent plane since the first frame [mm], shape (K,)."""
     steps_mm = np.diff(contact.indenter_pose[:, :3], axis=0)
     steps_mm = steps_mm - np.outer(steps_mm @ contact.normal, contact.normal)
     return np.append(0.0, np.cumsum(np.linalg.norm(steps_mm, axis=1)))
 
 
-def sliding_share(contact: Contact) -> np.ndarray:
-    """Vertices that slide over those that the object touches, shape (K,); 0 without contact."""
-    touched = contact.sliding
-    if len(contact.contact_force_N):
-        touched = touched | contact.contact_force_N.any(axis=2)
-    return contact.sliding.sum(axis=1) / np.maximum(touched.sum(axis=1), 1)
+def sliding_share(contact: Contact | ForceField) -> np.ndarray:
+    """Share of the contact's area that slides, shape (K,); 0 where the source does not know it."""
+    if len(contact.sliding_share):
+        return contact.sliding_share
+    return np.zeros(len(contact.reaction_N))
+
+
+def gross_slip(contact: Contact | ForceField) -> GrossSlip | None:
+    """When all of the contact began to slide; None if it did not, or nobody knows."""
+    return gross_slip_of(contact.sliding_share, sideways_mm(contact)[: len(contact.sliding_share)])
 
 
 def csv_bytes(columns: Columns) -> bytes:

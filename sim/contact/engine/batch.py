@@ -32,6 +32,9 @@ class Case:
     domain: Domain
     collider: Collider
     friction: float
+    """Static coefficient."""
+    kinetic_friction: float | None = None
+    """That of points that slide; None: the static one."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

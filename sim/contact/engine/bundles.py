@@ -71,7 +71,7 @@ class Surface(NamedTuple):
     anchors: Floats
     """Where friction holds a point, in the body frame [mm], 3 P."""
     states: Integers
-    """FREE, TOUCHED or HELD, P."""
+    """FREE, TOUCHED, HELD or SLID, P."""
     point_forces: Floats
     """On the membrane in the last substep [N], 3 P."""
 

@@ -25,6 +25,7 @@ from sim.contact.engine.bundles import Cases, Cells, Floats, Integers, Nodes, Su
 from sim.contact.engine.cell_kernel import cell_pass, entry
 from sim.contact.engine.point_functions import (
     body_rotation,
+    friction_now,
     line_weights,
     object_distance,
     place_in_body,
@@ -34,7 +35,6 @@ from sim.contact.grid.layout import (
     CHOICES,
     DAMPING,
     FREE,
-    FRICTION,
     HELD,
     IDLE,
     LARGEST_STEP,
@@ -45,6 +45,7 @@ from sim.contact.grid.layout import (
     MOVING,
     NUMBERS,
     POINT,
+    SLID,
 )
 from sim.contact.region.domain import BLOCK
 
@@ -139,11 +140,12 @@ def commit_anchors(
     cases: pack_of(Cases),
     slips: Floats,
     committing: ti.i32,
+    slid_mm: ti.f32,
 ):
     """Close a settled frame of a case, by its pose in the first step of the table.
 
     Anchors follow the points that slid, and the way they go is added to `slips`; contacts become
-    history.
+    history. Those that went farther than `slid_mm` are held by kinetic friction from here on.
     """
     for cell in range(cells.cell_cases.shape[0]):
         case = cells.cell_cases[cell]
@@ -158,13 +160,16 @@ def commit_anchors(
                         anchor = place
                         for c in ti.static(range(3)):
                             anchor[c] = surface.anchors[3 * point + c]
-                        friction = cases.numbers[NUMBERS * case + FRICTION]
+                        friction = friction_now(point, surface, cases, case)
                         limit = -friction * distance * gradient.norm()
                         new = place - tangent_slip(place, gradient, anchor, limit)
                         way = new - anchor
                         normal = gradient / ti.max(gradient.norm(), 1e-9)
-                        slips[point] += (way - way.dot(normal) * normal).norm()
+                        length = (way - way.dot(normal) * normal).norm()
+                        slips[point] += length
                         surface.states[point] = HELD
+                        if length > slid_mm:
+                            surface.states[point] = SLID
                         for c in ti.static(range(3)):
                             surface.anchors[3 * point + c] = new[c]
                     else:

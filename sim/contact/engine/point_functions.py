@@ -17,6 +17,7 @@ from sim.contact.grid.layout import (
     FRICTION,
     HELD_STILL,
     INVERSE_EDGE,
+    KINETIC,
     LIFTED,
     MEETS_RIGID,
     NUMBERS,
@@ -25,6 +26,7 @@ from sim.contact.grid.layout import (
     SHAPE,
     SIDEWAYS,
     SIZE,
+    SLID,
     STIFFNESS,
     TOUCHED,
 )
@@ -52,6 +54,15 @@ def object_distance(place, cases: ti.template(), case):
     shape = cases.choices[CHOICES * case + SHAPE]
     first = cases.choices[CHOICES * case + FIRST_COEFFICIENT]
     return signed_distance(place, shape, size, cases.coefficients, counts, first)
+
+
+@ti.func
+def friction_now(point, surface: ti.template(), cases: ti.template(), case):
+    """Coefficient of a point: kinetic where it slid in the last settled state, else static."""
+    found = cases.numbers[NUMBERS * case + FRICTION]
+    if surface.states[point] == SLID:
+        found = cases.numbers[NUMBERS * case + KINETIC]
+    return found
 
 
 @ti.func
@@ -105,7 +116,7 @@ def _contact_force(point, moved, surface: ti.template(), cases: ti.template(), c
                 surface.anchors[3 * point + c] = place[c]
         for c in ti.static(range(3)):
             anchor[c] = surface.anchors[3 * point + c]
-        limit = -cases.numbers[NUMBERS * case + FRICTION] * distance * gradient.norm()
+        limit = -friction_now(point, surface, cases, case) * distance * gradient.norm()
         slip = tangent_slip(place, gradient, anchor, limit)
         stiffness = surface.points[POINT * point + STIFFNESS]
         force = -stiffness * (rotation @ (distance * gradient + slip))

@@ -10,10 +10,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim.contact.grid.layout import FREE, HELD, LIFTED, TOUCHED
+from sim.contact.grid.layout import FREE, HELD, LIFTED, SLID, TOUCHED
 from sim.contact.grid.stencil import gradient_table, point_weights
 from sim.contact.objects.collider import Collider
 from sim.contact.region.domain import Domain, stencil_nodes
+from sim.forces.slip import LEAST_MM
 from sim.material import stress_of
 
 Pose = tuple[np.ndarray, np.ndarray]
@@ -26,7 +27,13 @@ class PosedObject:
     collider: Collider
     pose: Pose
     friction: float
-    """Coefficient of Coulomb's friction against it."""
+    """Static coefficient of Coulomb's friction against it."""
+    kinetic_friction: float | None = None
+    """That of points that slide; None: the static one."""
+
+    def friction_of(self, state: int) -> float:
+        """Coefficient of a point in a state."""
+        return friction_now(state, self.friction, self.kinetic_friction)
 
 
 @dataclass(kw_only=True, slots=True)
@@ -36,7 +43,7 @@ class ContactHistory:
     anchors: np.ndarray
     """Anchors in the body frame [mm], shape (P, 3)."""
     states: np.ndarray
-    """FREE, TOUCHED or HELD, shape (P,)."""
+    """FREE, TOUCHED, HELD or SLID, shape (P,)."""
     slips: np.ndarray
     """Way slid in settled frames [mm], shape (P,)."""
 
@@ -106,10 +113,16 @@ def surface_forces(
             continue
         if history.states[p] == FREE:
             history.states[p], history.anchors[p] = TOUCHED, place[p]
-        slip = returned_slip(place[p], history.anchors[p], distance[p], gradient[p], met.friction)
+        friction = met.friction_of(history.states[p])
+        slip = returned_slip(place[p], history.anchors[p], distance[p], gradient[p], friction)
         body_force = -domain.points.stiffness_N_mm[p] * (distance[p] * gradient[p] + slip)
         forces[p] = rotation @ body_force
     return forces
+
+
+def friction_now(state: int, friction: float, kinetic_friction: float | None) -> float:
+    """Coefficient of a point: kinetic where it slid in the last settled state, else static."""
+    return friction if kinetic_friction is None or state != SLID else kinetic_friction
 
 
 def returned_slip(
@@ -129,19 +142,27 @@ def commit_history(
     displacement: np.ndarray,
     history: ContactHistory,
     met: PosedObject,
+    *,
+    slid_mm: float = LEAST_MM,
 ) -> None:
-    """Close a frame: anchors follow the points that slid, and their way is added up."""
+    """Close a frame: anchors follow the points that slid, and their way is added up.
+
+    Those that went farther than `slid_mm` are held by kinetic friction from here on.
+    """
     origin, rotation = met.pose
     place = (point_places(domain, displacement) - origin) @ rotation
     distance, gradient = met.collider.distance(place)
     for p in np.flatnonzero(~domain.points.bonded):
         if distance[p] < 0.0 and history.states[p] != FREE:
             anchor = history.anchors[p]
-            slip = returned_slip(place[p], anchor, distance[p], gradient[p], met.friction)
+            friction = met.friction_of(history.states[p])
+            slip = returned_slip(place[p], anchor, distance[p], gradient[p], friction)
             way = place[p] - slip - anchor
             normal = gradient[p] / np.linalg.norm(gradient[p])
-            history.slips[p] += np.linalg.norm(way - (way @ normal) * normal)
-            history.states[p], history.anchors[p] = HELD, place[p] - slip
+            length = np.linalg.norm(way - (way @ normal) * normal)
+            history.slips[p] += length
+            history.states[p] = SLID if length > slid_mm else HELD
+            history.anchors[p] = place[p] - slip
         else:
             history.states[p] = FREE
 

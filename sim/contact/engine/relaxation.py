@@ -21,6 +21,7 @@ from sim.contact.engine import kernels, sum_kernels
 from sim.contact.engine.batch import Batch, Case
 from sim.contact.engine.launcher import STEPS, Launcher
 from sim.contact.grid import layout
+from sim.forces.slip import LEAST_MM
 
 STEP_CAP = 0.1
 """Largest displacement of a node in one substep and axis, in cells."""
@@ -90,7 +91,9 @@ class Relaxation:
         self._modes = np.zeros(count, np.int32)
         for row, case in enumerate(cases):
             grid_mm = case.domain.grid_mm
+            sliding = case.kinetic_friction
             self._numbers[row, layout.FRICTION] = case.friction
+            self._numbers[row, layout.KINETIC] = case.friction if sliding is None else sliding
             self._numbers[row, layout.LARGEST_STEP] = STEP_CAP * grid_mm
             self._numbers[row, layout.INVERSE_EDGE] = 1.0 / grid_mm
             self._numbers[row, layout.SIZE :] = case.collider.size
@@ -163,10 +166,16 @@ class Relaxation:
             inertia_Nmm=inertia,
         )
 
-    def commit(self, case: int) -> None:
-        """Make the anchors of a settled frame, at its first pose, the history of the next."""
+    def commit(self, case: int, *, slid_mm: float = LEAST_MM) -> None:
+        """Make the anchors of a settled frame, at its first pose, the history of the next.
+
+        Args:
+            case: Whose.
+            slid_mm: Way since the last commit from which a point counts as sliding, so that
+                kinetic friction holds it.
+        """
         self._upload()
-        kernels.commit_anchors(*self.batch.packs, self.batch.slips, case)
+        kernels.commit_anchors(*self.batch.packs, self.batch.slips, case, slid_mm)
 
     def burden(self, chosen: np.ndarray) -> None:
         """Double the fictitious masses of the chosen cases, (B,) bool."""

@@ -1,7 +1,8 @@
 """Numbers that kernels and their orchestration agree on: states, modes, and rows of tables."""
 
-FREE, TOUCHED, HELD = 0, 1, 2
-"""States of a contact point: apart; anchored within this frame; anchored by a settled frame."""
+FREE, TOUCHED, HELD, SLID = 0, 1, 2, 3
+"""States of a contact point: apart; anchored within this frame; anchored by a settled state in
+which it stuck; by one in which it slid, so that kinetic friction holds it."""
 LIFTED = 0.5
 """Gap at which a point forgets where it held, in cells: it will touch anew."""
 MEETS_RIGID, HELD_STILL, MEETS_SOFT = 0, 1, 2
@@ -12,8 +13,8 @@ POINT = 11
 sideways, and the place in its cell in cell edges from the centre."""
 IDLE, MOVING, STILL = 0, 1, 2
 """Modes of a case: left alone; relaxing; forces only."""
-FRICTION, MASS_SCALE, DAMPING, LARGEST_STEP, INVERSE_EDGE, SIZE = 0, 1, 2, 3, 4, 5
-NUMBERS = 13
+FRICTION, MASS_SCALE, DAMPING, LARGEST_STEP, INVERSE_EDGE, KINETIC, SIZE = 0, 1, 2, 3, 4, 5, 6
+NUMBERS = 14
 """Floats of a case: the above, with the eight of the object's size at the end."""
 MODE, SHAPE, FIRST_COEFFICIENT, COUNTS = 0, 1, 2, 3
 CHOICES = 6

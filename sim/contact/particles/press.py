@@ -61,7 +61,8 @@ def press_particles(
 
     Raises:
         DesignError: As `press_membrane`, and for a skin with a gap behind it, driven regions,
-            inclusions or the linear law, which the published method does not have.
+            inclusions, kinetic friction or the linear law, which the published method does not
+            have.
         SolveError: If a point becomes infinite or leaves the grid.
     """
     _refuse_what_was_not_published(mesh, material, case.indenter, case.press)
@@ -119,6 +120,7 @@ def _refuse_what_was_not_published(
         "driven regions": bool(press.actuations),
         "inclusions": bool(material.inclusions),
         "the linear law": material.law is Law.LINEAR,
+        "kinetic friction": material.kinetic_friction is not None,
     }
     for what, asked in lacking.items():
         if asked:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -26,8 +26,6 @@ class FrameOutcome:
     actuator_N: np.ndarray
     actuator_moment_Nmm: np.ndarray
     friction_ratio: float
-    sliding: np.ndarray
-    slip_mm: np.ndarray
     contact_force_N: np.ndarray
     pressure_MPa: np.ndarray
     tangential_N: float
@@ -38,6 +36,10 @@ class FrameOutcome:
     kinetic_ratio: float
     least_volume_ratio: float
     frame_seconds: float
+    # What slid is known once the frame is closed (`slipping`).
+    sliding: np.ndarray = field(default_factory=lambda: np.zeros(0, bool))
+    sliding_share: float = 0.0
+    slip_mm: np.ndarray = field(default_factory=lambda: np.zeros(0, np.float32))
 
 
 def deepest_overlap_mm(

@@ -15,12 +15,9 @@ from sim.contact.readout.fields import skin_stress, volume_state
 from sim.contact.readout.frame import FrameOutcome, deepest_overlap_mm
 from sim.contact.readout.problem import Problem
 from sim.contact.region.domain import Domain, stencil_nodes
-from sim.contact.region.quadrature import SurfacePoints
 from workbench.core.base.frames import quaternion
 from workbench.core.result.sensing import Contact
 
-SLIDING_SHARE = 0.999
-"""Share of the friction cone at which a point counts as sliding."""
 LEAST = 1e-12
 """Guards quotients of vanishing forces and slopes."""
 LEAST_PRESSURE_SHARE = 1e-3
@@ -76,7 +73,6 @@ def frame_outcome(
     distance, normal = met[0], _unit(met[1])
     pressing = np.einsum("pc,pc->p", forces, normal)
     aside = np.linalg.norm(forces - pressing[:, None] * normal, axis=1)
-    ratio, sliding = _friction(pressing, aside, friction=problem.material.friction)
     count = domain.outer.count
     area_mm2 = np.maximum(points.to_vertices(points.area_mm2, count), LEAST)
     drives = _drives(problem, point_forces, place)
@@ -96,9 +92,7 @@ def frame_outcome(
         cut_N=-relaxation.node_forces(case)[domain.fixed].sum(axis=0, dtype=np.float64),
         actuator_N=drives[0],
         actuator_moment_Nmm=drives[1],
-        friction_ratio=ratio,
-        sliding=_flags(points, sliding, count),
-        slip_mm=_slip(points, relaxation.slips_mm(case)[touching], count),
+        friction_ratio=_friction_ratio(pressing, aside),
         contact_force_N=points.to_vertices(forces, count).astype(np.float32),
         pressure_MPa=(points.to_vertices(pressing, count) / area_mm2).astype(np.float32),
         tangential_N=float(aside.sum()),
@@ -123,32 +117,15 @@ def _unit(vectors: np.ndarray) -> np.ndarray:
     return vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), LEAST)
 
 
-def _friction(
-    pressing: np.ndarray, aside: np.ndarray, *, friction: float
-) -> tuple[float, np.ndarray]:
-    """Largest tangential over normal force, and which points slide, (P,).
+def _friction_ratio(pressing: np.ndarray, aside: np.ndarray) -> float:
+    """Largest tangential over normal force of a point.
 
     Taken from the forces and the object's surface, not from the solver's own return to the cone.
     """
     size = np.hypot(pressing, aside)
     pressed = size > LEAST_PRESSURE_SHARE * size.max(initial=0.0)
-    ratio = aside / np.maximum(pressing, LEAST)
-    return float(ratio[pressed].max(initial=0.0)), pressed & (ratio >= SLIDING_SHARE * friction)
-
-
-def _flags(points: SurfacePoints, chosen: np.ndarray, count: int) -> np.ndarray:
-    """Vertices nearest to the chosen points, shape (count,), bool."""
-    flags = np.zeros(count, bool)
-    nearest = points.shares.argmax(axis=1)
-    flags[points.vertices[np.arange(points.count), nearest][chosen]] = True
-    return flags
-
-
-def _slip(points: SurfacePoints, slips_mm: np.ndarray, count: int) -> np.ndarray:
-    """Mean way of the points around each vertex that have slid at all [mm], (count,), float32."""
-    slid = (slips_mm > 0.0).astype(float)
-    share = points.to_vertices(slid, count)
-    return (points.to_vertices(slips_mm, count) / np.maximum(share, LEAST)).astype(np.float32)
+    ratio = aside[pressed] / np.maximum(pressing[pressed], LEAST)
+    return float(ratio.max(initial=0.0))
 
 
 def _drives(

@@ -21,16 +21,16 @@ import taichi as ti
 from sim.contact.engine.bundles import Cases, Cells, Floats, Integers, Nodes, Surface, pack_of
 from sim.contact.engine.cell_kernel import cell_pass, entry
 from sim.contact.engine.kernels import node_pass
-from sim.contact.engine.point_functions import line_weights
+from sim.contact.engine.point_functions import friction_now, line_weights
 from sim.contact.grid.layout import (
     FREE,
-    FRICTION,
     HELD,
     IDLE,
     LOCAL,
     MEETS_SOFT,
     MODE,
     POINT,
+    SLID,
     STIFFNESS,
     TOUCHED,
 )
@@ -77,7 +77,8 @@ def soft_pass(
                                 surface.anchors[3 * point + c] = place[c]
                         anchor = ti.Vector([surface.anchors[3 * point + c] for c in range(3)])
                         steep = deformation.inverse().transpose() @ gradient
-                        limit = -cases.numbers[FRICTION] * distance * steep.norm()
+                        limit = -friction_now(point, surface, cases, MEMBRANE) * distance
+                        limit *= steep.norm()
                         slip = friction_slip(place, anchor, deformation, gradient, limit)
                         push = -surface.points[POINT * point + STIFFNESS] * (
                             distance * steep + deformation @ slip
@@ -182,6 +183,7 @@ def commit_soft_anchors(
     cases: pack_of(Cases),
     partner: pack_of(Partner),
     slips: Floats,
+    slid_mm: ti.f32,
 ):
     """Close a settled frame: anchors follow the points that slid (`kernels.commit_anchors`)."""
     for cell in range(cells.cell_cases.shape[0]):
@@ -195,12 +197,16 @@ def commit_soft_anchors(
                     if hit != NOWHERE and distance < 0.0 and surface.states[point] != FREE:
                         anchor = ti.Vector([surface.anchors[3 * point + c] for c in range(3)])
                         steep = deformation.inverse().transpose() @ gradient
-                        limit = -cases.numbers[FRICTION] * distance * steep.norm()
+                        limit = -friction_now(point, surface, cases, MEMBRANE) * distance
+                        limit *= steep.norm()
                         slip = friction_slip(place, anchor, deformation, gradient, limit)
                         normal = gradient / ti.max(gradient.norm(), 1e-9)
                         way = place - slip - anchor
-                        slips[point] += (deformation @ (way - way.dot(normal) * normal)).norm()
+                        length = (deformation @ (way - way.dot(normal) * normal)).norm()
+                        slips[point] += length
                         surface.states[point] = HELD
+                        if length > slid_mm:
+                            surface.states[point] = SLID
                         for c in ti.static(range(3)):
                             surface.anchors[3 * point + c] = place[c] - slip[c]
                     else:

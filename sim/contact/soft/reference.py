@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from sim.contact.engine.reference import ContactHistory
-from sim.contact.grid.layout import FREE, HELD, TOUCHED
+from sim.contact.engine.reference import ContactHistory, friction_now
+from sim.contact.grid.layout import FREE, HELD, SLID, TOUCHED
 from sim.contact.grid.stencil import point_weights
 from sim.contact.region.domain import stencil_nodes
 from sim.contact.soft.body import SoftObject
 from sim.contact.soft.meeting import Meeting
+from sim.forces.slip import LEAST_MM
 
 
 def returned_slip(
@@ -34,6 +35,7 @@ def contact_forces(
     history: ContactHistory,
     *,
     friction: float,
+    kinetic_friction: float | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Forces [N] on the points, (P, 3), sensor frame, and on the object's nodes, (N, 3).
 
@@ -50,7 +52,8 @@ def contact_forces(
         if history.states[p] == FREE:
             history.states[p], history.anchors[p] = TOUCHED, place
         deformation, steep = meeting.deformation[p], meeting.steep[p]
-        limit_mm = -friction * distance_mm * np.linalg.norm(steep)
+        coefficient = friction_now(history.states[p], friction, kinetic_friction)
+        limit_mm = -coefficient * distance_mm * np.linalg.norm(steep)
         slip = returned_slip(place, history.anchors[p], deformation, meeting.gradient[p], limit_mm)
         push[p] = -stiffness_N_mm[p] * (distance_mm * steep + deformation @ slip)
         cells = place[None] / soft.domain.grid_mm
@@ -60,17 +63,27 @@ def contact_forces(
     return push @ soft.rotation.T, nodal
 
 
-def commit_history(meeting: Meeting, history: ContactHistory, *, friction: float) -> None:
+def commit_history(
+    meeting: Meeting,
+    history: ContactHistory,
+    *,
+    friction: float,
+    kinetic_friction: float | None = None,
+    slid_mm: float = LEAST_MM,
+) -> None:
     """Close a frame: anchors follow the points that slid, and their way is added up."""
     for p in range(len(history.states)):
         if not meeting.met[p] or history.states[p] == FREE:
             history.states[p] = FREE
             continue
         place, gradient = meeting.place_mm[p], meeting.gradient[p]
-        limit_mm = -friction * meeting.distance_mm[p] * np.linalg.norm(meeting.steep[p])
+        coefficient = friction_now(history.states[p], friction, kinetic_friction)
+        limit_mm = -coefficient * meeting.distance_mm[p] * np.linalg.norm(meeting.steep[p])
         slip = returned_slip(place, history.anchors[p], meeting.deformation[p], gradient, limit_mm)
         normal = gradient / np.linalg.norm(gradient)
         way = place - slip - history.anchors[p]
         way = meeting.deformation[p] @ (way - (way @ normal) * normal)
-        history.slips[p] += np.linalg.norm(way)
-        history.states[p], history.anchors[p] = HELD, place - slip
+        length_mm = np.linalg.norm(way)
+        history.slips[p] += length_mm
+        history.states[p] = SLID if length_mm > slid_mm else HELD
+        history.anchors[p] = place - slip

@@ -26,6 +26,7 @@ from sim.contact.soft.meeting_functions import MEMBRANE, NOWHERE, OBJECT, Partne
 from sim.contact.solver.load import least_load_N
 from sim.contact.solver.run import Run
 from sim.contact.solver.solver import Solver
+from sim.forces.slip import LEAST_MM
 from workbench.core.base.errors import SolveError
 from workbench.core.base.monitor import Monitor
 from workbench.core.press.indenter import Indenter
@@ -51,10 +52,15 @@ class SoftRelaxation(Relaxation):
     def __init__(self, problem: Problem, soft: SoftObject) -> None:
         self.soft = soft
         self.problem = problem
-        collider, friction = problem.collider, problem.material.friction
+        collider, material = problem.collider, problem.material
         super().__init__(
             [
-                Case(domain=soft.membrane, collider=collider, friction=friction),
+                Case(
+                    domain=soft.membrane,
+                    collider=collider,
+                    friction=material.friction,
+                    kinetic_friction=material.kinetic_friction,
+                ),
                 Case(domain=soft.domain, collider=collider, friction=0.0),
             ]
         )
@@ -123,10 +129,12 @@ class SoftRelaxation(Relaxation):
         super().restart(MEMBRANE, displacement_mm[:count])
         super().restart(OBJECT, displacement_mm[count:])
 
-    def commit(self, case: int) -> None:
+    def commit(self, case: int, *, slid_mm: float = LEAST_MM) -> None:
         """Make the anchors of a settled frame the history of the next."""
         self._upload()
-        soft_kernels.commit_soft_anchors(*self.batch.packs, self._partner, self.batch.slips)
+        soft_kernels.commit_soft_anchors(
+            *self.batch.packs, self._partner, self.batch.slips, slid_mm
+        )
 
 
 class SoftRun(Run):

@@ -12,7 +12,9 @@ from sim.contact.engine.relaxation import Relaxation
 from sim.contact.grid.layout import POSE
 from sim.contact.readout.frame import FrameOutcome
 from sim.contact.readout.problem import Problem
+from sim.contact.readout.slipping import grip_of, with_slip
 from sim.contact.region.drives import driven_displacement_mm
+from sim.forces.slip import slides_from_mm
 from workbench.core.base.errors import SolveError
 
 RAMP_SUBSTEPS_PER_MM = 100.0
@@ -56,6 +58,7 @@ class Run:
         self.outcomes: list[FrameOutcome] = []
         self.error: SolveError | None = None
         self._settled = [relaxation.snapshot(number)]
+        self._grip = grip_of(problem, relaxation, number)
         self._ramp = np.zeros((0, POSE))
         self._fed = 0
         self._driven_mm = 0.0
@@ -116,17 +119,26 @@ class Run:
         self.relaxation.set_poses(self.number, self._rows(np.ones(1)))
 
     def finish(self, outcome: FrameOutcome) -> None:
-        """Close the settled frame."""
-        self.outcomes.append(outcome)
+        """Close the settled frame, and add to it what slid."""
         self._keep()
+        before, self._grip = self._grip, grip_of(self.problem, self.relaxation, self.number)
+        outcome = with_slip(
+            outcome, self.problem, self.frame, (before, self._grip), driven_mm=self._driven_mm
+        )
+        self.outcomes.append(outcome)
         self.frame += 1
         self.increment = 0
 
     def _keep(self) -> None:
         """Make the state that has settled the one to start from."""
         self._settled = [*self._settled, self.relaxation.snapshot(self.number)][-MOST_KEPT:]
-        self.relaxation.commit(self.number)
+        self.relaxation.commit(self.number, slid_mm=self._slid_mm())
         self.attempt = 0
+
+    def _slid_mm(self) -> float:
+        """Way in the present increment from which a point slides [mm], of the object's farthest."""
+        way_mm = self.problem.approach.travel_mm(self.frame, self.problem.collider.reach_mm)
+        return float(slides_from_mm(max(way_mm, self._driven_mm) / self.increments))
 
     @property
     def seconds(self) -> float:

@@ -45,7 +45,15 @@ def solve(problems: Sequence[Problem], *, monitor: Monitor = silent) -> list[Con
 def relaxation_of(problems: Sequence[Problem]) -> Relaxation:
     """Device arrays of presses, at rest."""
     return Relaxation(
-        [Case(domain=p.domain, collider=p.collider, friction=p.material.friction) for p in problems]
+        [
+            Case(
+                domain=problem.domain,
+                collider=problem.collider,
+                friction=problem.material.friction,
+                kinetic_friction=problem.material.kinetic_friction,
+            )
+            for problem in problems
+        ]
     )
 
 

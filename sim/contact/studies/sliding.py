@@ -40,19 +40,22 @@ def press_and(strokes: tuple[Stroke, ...]) -> Contact:
     mesh, points = specimens.flat_block(
         width_mm=LENGTH_MM, length_mm=WIDTH_MM, height_mm=HEIGHT_MM, grid_mm=GRID_MM
     )
-    start_mm = -0.5 * SLIDE_MM
     return press_membrane(
         mesh,
         points,
         Elastomer(friction=FRICTION),
         PressCase(
             indenter=Indenter(size_mm=BALL_MM),
-            press=Press(
-                target_mm=(start_mm, 0.0, HEIGHT_MM), depth_mm=DEPTH_MM, frames=1, strokes=strokes
-            ),
+            press=path(strokes),
             settings=ContactSettings(grid_mm=GRID_MM, active_radius_mm=LENGTH_MM),
         ),
     )
+
+
+def path(strokes: tuple[Stroke, ...]) -> Press:
+    """The ball pressed in one frame, at one end of its slide, and what follows."""
+    start_mm = -0.5 * SLIDE_MM
+    return Press(target_mm=(start_mm, 0.0, HEIGHT_MM), depth_mm=DEPTH_MM, frames=1, strokes=strokes)
 
 
 def slid(frame_mm: float) -> Contact:

@@ -10,7 +10,7 @@ from viser import uplot
 from ui.page.colours import AMBER, BLUE, GREEN, WHITE
 from workbench.core.press.press import Press
 from workbench.core.result.sensing import Contact
-from workbench.view.forces import slip_curve
+from workbench.view.forces import gross_slip, slip_curve
 from workbench.view.frame_words import finite, number, of_frame, phase
 from workbench.view.press_figures import force_balance, frame_depths_mm
 
@@ -108,6 +108,7 @@ class ForcesTab:
             f"on the object: x {x} · y {y} · z {z} N\n\n"
             f"tangential force {number(across, '.3f')} N · friction of all points "
             f"{number(friction, '.3f')} N, pressing {number(pressing, '.3f')} N\n\n"
+            f"{slip_words(contact, k)}\n\n"
             f"peak {number(contact.normal_N.max(), '.3f')} N · residual "
             f"{number(contact.residual.max(), '.1e')} · force balance "
             f"{number(100 * force_balance(contact), '.2f')} % · friction ratio ≤ "
@@ -116,6 +117,17 @@ class ForcesTab:
         text = f"{note}\n\n{text}" if note else text
         if self.text.content != text:
             self.text.content = text
+
+
+def slip_words(contact: Contact, k: int) -> str:
+    """How much of the contact slides in frame `k`, and when all of it began to."""
+    if not len(contact.sliding_share):
+        return "the method of particles does not say what slides"
+    share = f"{number(100 * contact.sliding_share[k], '.0f')} % of the contact slides"
+    gross = gross_slip(contact)
+    if gross is None:
+        return f"{share} · no gross slip"
+    return f"{share} · gross slip from {number(gross.way_mm, '.2f')} mm on, frame {gross.frame}"
 
 
 def tangential_force_N(contact: Contact) -> np.ndarray:

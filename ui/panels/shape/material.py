@@ -11,6 +11,7 @@ import math
 from typing import Any
 
 from ui.desk.desk import Desk
+from workbench.core.base.errors import DesignError, shown
 from workbench.edit.forms import gent_MPa, hardness, moduli_MPa, shore_a
 
 OWN = "own modulus"
@@ -37,7 +38,11 @@ class MaterialFolder:
             hint = "0.145 MPa is the silicone of the GelTip"
             fields.number("Young MPa", "design.material.young_MPa", step=0.005, hint=hint)
             fields.number("Poisson", "design.material.poisson", step=0.01, hint="Below 0.495")
-            fields.number("Friction", "design.material.friction", step=0.05, hint="Coulomb")
+            hint = "Coulomb, of what sticks"
+            fields.number("Friction", "design.material.friction", step=0.05, hint=hint)
+            hint = "Coulomb, of what slides, at most the one above; empty: the same"
+            path = "design.material.kinetic_friction"
+            fields.text("Kinetic friction", path, read=_read, write=_write, hint=hint)
             hint = "Gel behind skins with a gap (DigiTac); 0 is air. Bonded skins ignore it"
             fields.number("Backing gel MPa", "design.material.backing_MPa", step=0.005, hint=hint)
         self.refresh()
@@ -71,6 +76,24 @@ class MaterialFolder:
         shore = min(max(shore_a(young_MPa), 0.0), HARDEST)
         if not math.isclose(self.shore.value, shore, abs_tol=0.5):
             self.shore.value = round(shore)
+
+
+def _read(text: str) -> float | None:
+    """A coefficient as typed; None where the field is empty."""
+    if not text.strip():
+        return None
+    try:
+        return float(text)
+    except ValueError:
+        raise DesignError(
+            f"kinetic friction is {shown(text)}, which is not a number",
+            hint="type a coefficient, for example 0.25, or leave it empty",
+            at="material.kinetic_friction",
+        ) from None
+
+
+def _write(coefficient: float | None) -> str:
+    return "" if coefficient is None else f"{coefficient:g}"
 
 
 def _same(name: str, young_MPa: float) -> bool:

@@ -72,7 +72,9 @@ class Elastomer:
     density_g_cm3: float = 1.0
     """Density [g/cm3]; statics do not use it, the casting recipe does."""
     friction: float = 0.3
-    """Coulomb coefficient against the indenter. Source: SimTac, FEM model."""
+    """Static Coulomb coefficient against the indenter. Source: SimTac, FEM model."""
+    kinetic_friction: float | None = None
+    """Coefficient where the skin slides, at most `friction`; left out: the same."""
     backing_MPa: float = 0.02
     """Young's modulus of the gel behind skins with a gap [MPa]; 0 is air. Bonded skins ignore it.
 
@@ -111,10 +113,21 @@ class Elastomer:
         within(self.poisson, 0.0, 0.495, what="Poisson's ratio", unit="", at=at, hint=hint)
         at = "material.friction"
         within(self.friction, 0.0, 2.0, what="friction coefficient", unit="", at=at)
+        if self.kinetic_friction is not None:
+            hint = "what slides rubs no harder than what sticks: lower it, or raise friction"
+            most, at = self.friction, "material.kinetic_friction"
+            within(
+                self.kinetic_friction, 0.0, most, what="kinetic friction", unit="", at=at, hint=hint
+            )
         at = "material.density_g_cm3"
         within(self.density_g_cm3, 0.1, 10.0, what="density", unit="g/cm3", at=at)
         at = "material.backing_MPa"
         within(self.backing_MPa, 0.0, 1.0, what="modulus of the backing", unit="MPa", at=at)
+
+    @property
+    def sliding_friction(self) -> float:
+        """Coefficient where the skin slides."""
+        return self.friction if self.kinetic_friction is None else self.kinetic_friction
 
     @property
     def notice(self) -> str:

@@ -63,7 +63,9 @@ class ForceField:
     energy_MPa: np.ndarray = field(default_factory=lambda: _none(0, 0))
     """Strain energy per undeformed volume at the outer vertices [MPa], shape (K, V)."""
     sliding: np.ndarray = field(default_factory=lambda: np.zeros((0, 0), dtype=bool))
-    """Outer vertices whose contact slips, shape (K, V), bool."""
+    """Outer vertices around which most of the contact slides (`sim.forces.slip`), (K, V), bool."""
+    sliding_share: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    """Share of the contact's area that slides, of what touched at both ends of the frame, (K,)."""
     slip_mm: np.ndarray = field(default_factory=lambda: _none(0, 0))
     """Way that each vertex has slid on the object since it first touched [mm], shape (K, V)."""
     inner_mm: np.ndarray = field(default_factory=lambda: _none(0, 0, 3))
@@ -134,6 +136,7 @@ def from_contact(contact: Contact) -> ForceField:
         cauchy_MPa=contact.cauchy_MPa,
         energy_MPa=contact.energy_MPa,
         sliding=contact.sliding,
+        sliding_share=contact.sliding_share,
         slip_mm=contact.slip_mm,
         inner_mm=contact.inner_mm,
         support_N=contact.support_N,

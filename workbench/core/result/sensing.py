@@ -41,7 +41,7 @@ class Contact:
     friction_ratio: np.ndarray
     """Largest pointwise tangential over normal contact force, shape (K,), float64."""
     sliding: np.ndarray
-    """Outer vertices whose contact slips, shape (K, V), bool."""
+    """Outer vertices around which most of the contact slides (`sim.forces.slip`), (K, V), bool."""
     target_mm: np.ndarray
     """Target on the undeformed skin [mm], shape (3,), float64."""
     normal: np.ndarray
@@ -68,6 +68,8 @@ class Contact:
     """Cauchy stress at the outer vertices: xx, yy, zz, xy, yz, zx, shape (K, V, 6)."""
     energy_MPa: np.ndarray = field(default_factory=lambda: _none(0, 0))
     """Strain energy per undeformed volume at the outer vertices [MPa = N mm / mm3], (K, V)."""
+    sliding_share: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    """Share of the contact's area that slides, of what touched at both ends of the frame, (K,)."""
     slip_mm: np.ndarray = field(default_factory=lambda: _none(0, 0))
     """Way that each vertex has slid on the object since it first touched [mm], shape (K, V)."""
     tangential_N: np.ndarray = field(default_factory=lambda: np.zeros(0))

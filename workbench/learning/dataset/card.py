@@ -19,11 +19,12 @@ those of `skin.npz`; only those that moved by more than 1e-6 mm, carry force or 
 | entry of `cases/ID/000.npz` | meaning |
 |---|---|
 | `head` | JSON: case, frame, shape label, depth, shear, pose (x, y, z, qw, qx, qy, qz), target, \
-normal, U; of each solver reaction, tangential force, residual, balance, converged, seconds |
+normal, U; of each solver reaction, tangential force, residual, balance, converged, seconds, share \
+of the contact's area that slides |
 | `mpm.index`, `fem.index` | vertices of the rows below |
 | `mpm.displacement_mm`, `fem.displacement_mm` | displacement, (n, 3), float32 |
 | `mpm.contact_force_N`, `fem.contact_force_N` | nodal force of the object, (n, 3), float32 |
-| `mpm.sliding`, `fem.sliding` | whether the contact slips there, (n,) |
+| `mpm.sliding`, `fem.sliding` | whether most of the contact around it slides, (n,) |
 | `fem.cauchy_MPa` | Cauchy stress xx, yy, zz, xy, yz, zx, (n, 6), float32 |
 | `png`, `png_markers` | PNG files of the image without and with markers |
 | `markers_px` | u, v of the markers [px], (M, 2), float32; NaN of those out of sight |
@@ -80,7 +81,7 @@ def _recipe_words(recipe: dict[str, Any]) -> str:
     rows = [
         f"- design: {design.get('name', '')} (family {design.get('family', '')}), "
         f"E {design['material']['young_MPa']:g} MPa, Poisson ratio "
-        f"{design['material']['poisson']:g}, friction {design['material']['friction']:g}",
+        f"{design['material']['poisson']:g}, friction {_friction_words(design['material'])}",
         f"- pattern {recipe['pattern']}, objects of {recipe['size_mm']:g} mm: "
         f"{', '.join(recipe['indenters'])}",
         *_ranges(recipe.get("vary", {})),
@@ -90,6 +91,11 @@ def _recipe_words(recipe: dict[str, Any]) -> str:
         f"{recipe['grid_mm']:g} mm; images: {'yes' if recipe['images'] else 'no'}",
     ]
     return "\n".join(rows)
+
+
+def _friction_words(material: dict[str, Any]) -> str:
+    static, kinetic = material["friction"], material.get("kinetic_friction")
+    return f"{static:g}" if kinetic is None else f"{static:g}, kinetic {kinetic:g}"
 
 
 def _ranges(vary: dict[str, Any]) -> list[str]:

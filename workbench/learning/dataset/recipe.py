@@ -164,10 +164,13 @@ class Recipe:
         )
 
     def material(self, drawn: Drawn) -> Elastomer:
-        """The elastomer, as a case draws it."""
+        """The elastomer, as a case draws it; kinetic friction stays in proportion to the static."""
+        own = self.design.material
         changes = {"friction": drawn.friction, "young_MPa": drawn.young_MPa}
+        if drawn.friction is not None and own.kinetic_friction is not None and own.friction > 0.0:
+            changes["kinetic_friction"] = drawn.friction * own.kinetic_friction / own.friction
         given = {name: value for name, value in changes.items() if value is not None}
-        return dataclasses.replace(self.design.material, **given)
+        return dataclasses.replace(own, **given)
 
     @property
     def meshed_design(self) -> SensorDesign:

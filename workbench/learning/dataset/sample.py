@@ -41,7 +41,7 @@ class Solved:
     contact_force_N: np.ndarray
     """Force of the object on the skin at its vertices [N], shape (V, 3), float32."""
     sliding: np.ndarray
-    """Vertices whose contact slips, shape (V,), bool."""
+    """Vertices around which most of the contact slides, shape (V,), bool."""
     reaction_N: np.ndarray
     """Force on the object [N], shape (3,), float64."""
     tangential_N: float
@@ -53,6 +53,8 @@ class Solved:
     converged: bool
     seconds: float
     """Time that the frame took [s]."""
+    sliding_share: float = 0.0
+    """Share of the contact's area that slides in the frame."""
     cauchy_MPa: np.ndarray = field(default_factory=lambda: _none(0, 6))
     """Cauchy stress at the vertices, xx, yy, zz, xy, yz, zx [MPa], shape (V, 6), float32; of the
     FEM only, else (0, 6)."""
@@ -247,6 +249,7 @@ def _packed(solved: Solved) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
         "balance": float(solved.balance),
         "converged": bool(solved.converged),
         "seconds": float(solved.seconds),
+        "sliding_share": float(solved.sliding_share),
     }
     return head, arrays
 
@@ -275,4 +278,6 @@ def _unpacked(
         balance=head["balance"],
         converged=head["converged"],
         seconds=head["seconds"],
+        # Of samples of before, nobody knows: their flags meant something else.
+        sliding_share=head.get("sliding_share", 0.0),
     )

@@ -261,5 +261,6 @@ def _solved(field: ForceField, frame: int, *, stress: bool) -> Solved:
         balance=float(field.balance[frame]),
         converged=bool(field.converged[frame]),
         seconds=float(field.frame_seconds[frame]),
+        sliding_share=float(field.sliding_share[frame]),
         **cauchy,
     )

@@ -61,6 +61,7 @@ def data_card(
         "young_MPa": material["young_MPa"],
         "poisson": material["poisson"],
         "friction": material["friction"],
+        "kinetic_friction": material.get("kinetic_friction", material["friction"]),
         "law": material["law"],
         "indenters": sorted({*shown, *(presses.states[number].indenter for number in states)}),
         "size_mm": sorted({float(each["size_mm"]) for each in recipes}),

@@ -80,7 +80,7 @@ def fem(given: FemInputs, *, monitor: Monitor) -> ForceField:
 STAGE = Stage(
     name="fem",
     label="Finite elements",
-    version=3,
+    version=4,
     place=8,
     lane="sim",
     run=fem,

@@ -53,7 +53,7 @@ def forces(given: ForcesInputs, *, monitor: Monitor) -> ForceField:
 STAGE = Stage(
     name="forces",
     label="Forces",
-    version=2,
+    version=3,
     place=9,
     lane="sim",
     run=forces,

@@ -11,8 +11,6 @@ FRAMES_MM = (0.5, 0.1)
 FRAME_LIMIT = 0.01
 RELEASE_SUBSTEPS = 400
 RELEASE_LIMIT = 1e-3
-GLOBAL_RANGE = 0.1
-"""A ball also ploughs: the global ratio may exceed mu by its contact angle, about a/R / 2."""
 
 
 def rows() -> list[Row]:
@@ -49,17 +47,6 @@ def _cone() -> list[Row]:
             sliding.FRICTION,
             unit="1",
             limit=CONE_LIMIT,
-            null=0.0,
-        ),
-        compared(
-            "slip_ratio_global",
-            f"{case}: tangential over normal reaction at the end; the ball ploughs, so it is above "
-            "mu; null: no friction",
-            on_device(lambda: sliding.global_ratio(sliding.slid(FRAMES_MM[0]))),
-            sliding.FRICTION,
-            unit="1",
-            limit=GLOBAL_RANGE,
-            relative=False,
             null=0.0,
         ),
     ]

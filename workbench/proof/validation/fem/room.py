@@ -20,6 +20,7 @@ from workbench.proof.validation.fem import (
     fem_meshes,
     fem_mpm,
     fem_paths,
+    sliding_shares,
 )
 
 FEM_NORMAL_N = {"0.30 mm hexahedra": 1.291, "CalculiX C3D8I": 1.276}
@@ -36,6 +37,7 @@ def rows() -> list[Row]:
         *fem_meshes.rows(),
         *fem_mpm.rows(),
         *fem_limits.rows(),
+        *sliding_shares.rows(),
         *fem_matrix.recorded_rows(),
         *_recorded(),
         *(calculix.rows() if calculix.installed() else ()),
