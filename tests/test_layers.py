@@ -37,7 +37,8 @@ RANKS = """
     workbench.view  workbench.pipeline  workbench.pipeline.stages  workbench.planning
     workbench.project  workbench.edit  workbench.live  workbench.report  workbench.report.exports
     workbench.variants  workbench.calibration  workbench.photographs
-    workbench.learning  workbench.learning.dataset  workbench.learning.training
+    workbench.learning  workbench.learning.dataset  workbench.learning.making
+    workbench.learning.training
     workbench.proof  workbench.proof.validation  workbench.proof.validation.geometry
     workbench.proof.validation.optics  workbench.proof.validation.contact
     workbench.proof.validation.fem  workbench.proof.benchmarks

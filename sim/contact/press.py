@@ -1,12 +1,10 @@
-"""Presses of objects: one by the method that its settings name, or many side by side."""
+"""One press of an object, by the method that its settings name."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
-from sim.contact.readout.problem import Problem, make_problem
+from sim.contact.readout.problem import make_problem
 from sim.contact.solver.solver import solve
-from workbench.core.base.errors import DesignError, SolveError, WorkbenchError
+from workbench.core.base.errors import SolveError
 from workbench.core.base.monitor import Monitor, silent
 from workbench.core.design.design import Elastomer
 from workbench.core.press.press import Method
@@ -14,41 +12,6 @@ from workbench.core.press.press_case import PressCase
 from workbench.core.result.results import MaterialPoints, MembraneMesh
 from workbench.core.result.sampled import SampledDistance
 from workbench.core.result.sensing import Contact
-
-
-def press_side_by_side(
-    mesh: MembraneMesh,
-    points: MaterialPoints,
-    presses: Sequence[tuple[Elastomer, PressCase]],
-    *,
-    monitor: Monitor = silent,
-) -> list[Contact | WorkbenchError]:
-    """Many presses of rigid objects in one launch: each is what `press_membrane` makes of it.
-
-    Args:
-        mesh: As for `press_membrane`, for all of them.
-        points: Likewise.
-        presses: Elastomer and case of each; all of one law, linear or not.
-        monitor: As for `press_membrane`.
-
-    Returns:
-        The contact of each press, or why it has none.
-
-    Raises:
-        Cancelled: If the monitor says so.
-    """
-    problems: dict[int, Problem] = {}
-    found: list[Contact | WorkbenchError | None] = [None] * len(presses)
-    for number, (material, case) in enumerate(presses):
-        monitor(0.0, f"placing object {number + 1} of {len(presses)}")
-        try:
-            problems[number] = make_problem(mesh, points, material, case)
-        except (DesignError, SolveError) as error:
-            found[number] = error
-    results = solve(list(problems.values()), monitor=monitor) if problems else []
-    for number, result in zip(problems, results, strict=True):
-        found[number] = result
-    return [one for one in found if one is not None]
 
 
 def press_membrane(

@@ -51,9 +51,16 @@ def frame(load_N: float = 1.0) -> tuple[FrameOutcome, Problem]:
     origin, rotation = approach.pose(1.0)
     relaxation.set_poses(0, np.concatenate([origin, rotation.ravel(), [1.0]])[None])
     balance = relaxation.evaluate(np.ones(1, bool)).of(0)
-    settled = SettledFrame(problem=problem, number=0, balance=balance, load_N=load_N, seconds=0.0)
-    outcome = frame_outcome(relaxation, 0, settled)
-    return outcome, problem
+    settled = SettledFrame(
+        number=0,
+        balance=balance,
+        load_N=load_N,
+        seconds=0.0,
+        nodal_mm=relaxation.displacement(),
+        point_forces_N=relaxation.point_forces(),
+        cut_N=np.zeros(3),
+    )
+    return frame_outcome(problem, settled), problem
 
 
 def test_overlap_is_looked_for_on_the_whole_skin() -> None:

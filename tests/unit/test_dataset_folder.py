@@ -23,7 +23,6 @@ from workbench.learning.dataset.agreement import agreement
 from workbench.learning.dataset.begin import begin
 from workbench.learning.dataset.card import card_text
 from workbench.learning.dataset.cases import Split, cases_of
-from workbench.learning.dataset.collect import finish
 from workbench.learning.dataset.estimate import estimate, estimate_text
 from workbench.learning.dataset.folder import DataSet
 from workbench.learning.dataset.json_lines import append_row, read_rows
@@ -32,8 +31,9 @@ from workbench.learning.dataset.recipe import Recipe
 from workbench.learning.dataset.recipes import load_recipe, recipe_from_toml
 from workbench.learning.dataset.repair import repair
 from workbench.learning.dataset.sample import Sample, Solved, from_bytes, to_bytes
-from workbench.learning.dataset.solving import Report
-from workbench.learning.dataset.watch import SetProgress, Watch
+from workbench.learning.making.collect import finish
+from workbench.learning.making.solving import Report
+from workbench.learning.making.watch import SetProgress, Watch
 from workbench.report.image_files import png_bytes
 from workbench.system.lock_file import LOCK
 from workbench.system.whole_files import write_atomically

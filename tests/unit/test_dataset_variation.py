@@ -14,7 +14,6 @@ from workbench.core.base.errors import DesignError
 from workbench.core.design.camera import Camera, LensModel
 from workbench.core.design.optics import Optics
 from workbench.learning.dataset.cases import Split, case_of_row, case_row, cases_of
-from workbench.learning.dataset.collect import batches
 from workbench.learning.dataset.looks import built
 from workbench.learning.dataset.recipe import Recipe
 from workbench.learning.dataset.recipes import load_recipe, recipe_from_toml, recipe_to_toml
@@ -160,13 +159,3 @@ def test_images_keep_the_cameras_proportion() -> None:
     assert (camera.width_px, camera.height_px) == (320, round(320 * own.height_px / own.width_px))
     assert len({sight.calls["bake"].key for sight in sights}) == 8
     assert len({sight.calls["mesh"].key for sight in sights}) == 1
-
-
-def test_batches_leave_no_process_idle() -> None:
-    """100 cases, 32 side by side: 8 processes get 13 each at most, one process 32."""
-    cases = cases_of(dataclasses.replace(load_recipe("objects"), cases=100))
-    shared = [len(batch) for batch in batches(cases, 32, 8)]
-    assert shared == [13] * 7 + [9]
-    alone = list(batches(cases, 32, 1))
-    assert [len(batch) for batch in alone] == [32, 32, 32, 4]
-    assert [case for batch in alone for case in batch] == cases

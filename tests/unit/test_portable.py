@@ -43,7 +43,7 @@ STARTED = """
 from geometry.intake import cad_child, cad_file
 from workbench.cli import command_line
 from workbench.system.processes import cores, follow_parent
-import ui.app, workbench.learning.dataset.collect, workbench.project.project
+import ui.app, workbench.learning.making.collect, workbench.project.project
 from sim.optics.transport import wavefront
 
 cad_child._confine(1.0)

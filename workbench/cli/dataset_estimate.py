@@ -70,9 +70,9 @@ def pilot(recipe: Recipe, project: Project, *, batch: int, as_json: bool) -> lis
     Raises:
         WorkbenchError: As `make` does; what it prepares stays in the project's store.
     """
-    from workbench.learning.dataset.collect import make, side_by_side
     from workbench.learning.dataset.folder import TIMES
     from workbench.learning.dataset.json_lines import read_rows
+    from workbench.learning.making.collect import make, side_by_side
 
     size = batch or side_by_side()
     few = dataclasses.replace(recipe, cases=2 * size)

@@ -9,7 +9,7 @@ import numpy as np
 import taichi as ti
 from taichi.lang.impl import current_cfg
 
-from sim.contact.engine.relaxation import Balance, Relaxation
+from sim.contact.engine.relaxation import Balance
 from sim.contact.grid.stencil import point_weights
 from sim.contact.readout.fields import skin_stress, volume_state
 from sim.contact.readout.frame import FrameOutcome, deepest_overlap_mm
@@ -26,41 +26,44 @@ LEAST_PRESSURE_SHARE = 1e-3
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class SettledFrame:
-    """A frame of a press in which forces balance."""
+    """A frame of a press in which forces balance, as it leaves the device; not yet committed."""
 
-    problem: Problem
     number: int
+    """Which frame, from 0."""
     balance: Balance
     """Forces of the state."""
     load_N: float
     """Force that the residual is relative to, the same as for the stop test."""
     seconds: float
     """Time that it took [s]."""
+    nodal_mm: np.ndarray
+    """Displacement of the region's nodes [mm], shape (N, 3), float32."""
+    point_forces_N: np.ndarray
+    """Force on the membrane at every surface point [N], shape (P, 3), float32."""
+    cut_N: np.ndarray
+    """Force of elastomer that took no part on the part that did [N], shape (3,)."""
 
 
 def frame_outcome(
-    relaxation: Relaxation,
-    case: int,
+    problem: Problem,
     frame: SettledFrame,
     *,
     met: tuple[np.ndarray, np.ndarray] | None = None,
 ) -> FrameOutcome:
-    """Read a settled frame, evaluated at its pose and not yet committed.
+    """Read a settled frame: plain arrays in, so that another process may do it.
 
     Args:
-        relaxation: The state.
-        case: Which case of it.
+        problem: The press.
         frame: What settled.
         met: Distances [mm], (P,), and outward directions, (P, 3), of the object at the points
             that may meet it, where it is not where its pose has it: it is soft.
     """
-    problem, balance = frame.problem, frame.balance
-    domain = problem.domain
+    balance, domain = frame.balance, problem.domain
     origin, rotation = problem.approach.pose(frame.number + 1.0)
-    nodal = relaxation.displacement(case).astype(np.float64)
+    nodal = frame.nodal_mm.astype(np.float64)
     displacement = domain.outer.displacement_mm(nodal)
     inner = domain.inner
-    point_forces = relaxation.point_forces(case).astype(np.float64)
+    point_forces = frame.point_forces_N.astype(np.float64)
     place = domain.points.position_mm + point_displacement(domain, nodal)
     touching = ~domain.points.bonded
     points, forces, at = domain.points.take(touching), point_forces[touching], place[touching]
@@ -89,7 +92,7 @@ def frame_outcome(
         penetration_mm=max(overlap_mm, -float(distance.min(initial=0.0))),
         support_N=point_forces[held].sum(axis=0),
         support_moment_Nmm=np.cross(place[held], point_forces[held]).sum(axis=0),
-        cut_N=-relaxation.node_forces(case)[domain.fixed].sum(axis=0, dtype=np.float64),
+        cut_N=frame.cut_N,
         actuator_N=drives[0],
         actuator_moment_Nmm=drives[1],
         friction_ratio=_friction_ratio(pressing, aside),

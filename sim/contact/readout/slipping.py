@@ -34,6 +34,16 @@ class Grip:
     """Way that each has slid [mm], shape (P,)."""
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Holding:
+    """What the points held on to at both ends of a frame."""
+
+    before: Grip
+    now: Grip
+    driven_mm: float
+    """Farthest way of a driven point in the frame [mm]."""
+
+
 def grip_of(problem: Problem, relaxation: Relaxation, case: int) -> Grip:
     """What the points of a case hold on to, at the end of a closed frame or at rest."""
     meets = ~problem.domain.points.bonded
@@ -46,12 +56,7 @@ def grip_of(problem: Problem, relaxation: Relaxation, case: int) -> Grip:
 
 
 def with_slip(
-    outcome: FrameOutcome,
-    problem: Problem,
-    frame: int,
-    grips: tuple[Grip, Grip],
-    *,
-    driven_mm: float = 0.0,
+    outcome: FrameOutcome, problem: Problem, frame: int, holding: Holding
 ) -> FrameOutcome:
     """A frame with what slid in it.
 
@@ -59,10 +64,9 @@ def with_slip(
         outcome: All else of the frame.
         problem: The press.
         frame: Which frame it was, from 0.
-        grips: What the points held on to at its start and at its end.
-        driven_mm: Farthest way of a driven point in it [mm].
+        holding: What the points held on to in it.
     """
-    before, now = grips
+    before, now = holding.before, holding.now
     domain, approach = problem.domain, problem.approach
     points = domain.points.take(~domain.points.bonded)
     _, gradient = problem.collider.distance(now.anchor_mm)
@@ -73,7 +77,7 @@ def with_slip(
     way_mm = object_way_mm(
         new_mm + now.anchor_mm @ new_turn.T,
         old_mm + now.anchor_mm @ old_turn.T,
-        max(float(np.linalg.norm(new_mm - old_mm)), driven_mm),
+        max(float(np.linalg.norm(new_mm - old_mm)), holding.driven_mm),
     )
     slip = slip_of(np.linalg.norm(moved_mm, axis=1), way_mm, before.holds & now.holds)
     stayed_mm2, slid_mm2 = (

@@ -14,10 +14,10 @@ import taichi as ti
 from sim.contact.engine.batch import Case, floats, integers
 from sim.contact.engine.bundles import packed
 from sim.contact.engine.launcher import Launcher
-from sim.contact.engine.relaxation import Balance, Balances, Relaxation
+from sim.contact.engine.relaxation import Balances, Relaxation
 from sim.contact.grid.layout import MEETS_SOFT
 from sim.contact.readout.frame import FrameOutcome
-from sim.contact.readout.outcome import frame_outcome, point_displacement
+from sim.contact.readout.outcome import SettledFrame, frame_outcome, point_displacement
 from sim.contact.readout.problem import Problem
 from sim.contact.soft import kernels as soft_kernels
 from sim.contact.soft.body import SoftObject, make_soft_object
@@ -174,24 +174,18 @@ class SoftSolver(Solver):
         """The way of the press through its frames."""
         return SoftRun(problem, self.relaxation, number, frame=frame)
 
-    def read_frame(self, case: int, balance: Balance, load_N: float) -> FrameOutcome:
+    def read_frame(self, case: int, frame: SettledFrame) -> FrameOutcome:
         """A settled frame, with normals and overlaps of the deformed object."""
-        run = self.runs[case]
-        problem, soft = run.problem, self.soft
-        pose = problem.approach.pose(run.frame + 1.0)
-        nodal = self.relaxation.displacement(MEMBRANE).astype(np.float64)
+        problem, soft = self.runs[case].problem, self.soft
+        pose = problem.approach.pose(frame.number + 1.0)
+        nodal = frame.nodal_mm.astype(np.float64)
         points = problem.domain.points
         at = (points.position_mm + point_displacement(problem.domain, nodal))[~points.bonded]
         object_mm = self.relaxation.displacement(OBJECT).astype(np.float64)
         meeting = meet(soft, problem.collider, object_mm, at, pose)
         distance = np.where(meeting.met, meeting.distance_mm, 0.0)
-        self.shapes = [*self.shapes[: run.frame], _shape(soft, object_mm, pose)]
-        return frame_outcome(
-            self.relaxation,
-            case,
-            self.settled_frame(case, balance, load_N),
-            met=(distance, meeting.steep @ soft.rotation.T),
-        )
+        self.shapes = [*self.shapes[: frame.number], _shape(soft, object_mm, pose)]
+        return frame_outcome(problem, frame, met=(distance, meeting.steep @ soft.rotation.T))
 
     def results(self) -> list[Contact | SolveError]:
         """The contact, with the shape of the object in each frame."""

@@ -12,7 +12,7 @@ from sim.contact.engine.relaxation import Relaxation
 from sim.contact.grid.layout import POSE
 from sim.contact.readout.frame import FrameOutcome
 from sim.contact.readout.problem import Problem
-from sim.contact.readout.slipping import grip_of, with_slip
+from sim.contact.readout.slipping import Holding, grip_of
 from sim.contact.region.drives import driven_displacement_mm
 from sim.forces.slip import slides_from_mm
 from workbench.core.base.errors import SolveError
@@ -118,16 +118,13 @@ class Run:
         """Leave the object where the frame wants it."""
         self.relaxation.set_poses(self.number, self._rows(np.ones(1)))
 
-    def finish(self, outcome: FrameOutcome) -> None:
-        """Close the settled frame, and add to it what slid."""
+    def close(self) -> Holding:
+        """Close the settled frame: what held on in it is history to the next."""
         self._keep()
         before, self._grip = self._grip, grip_of(self.problem, self.relaxation, self.number)
-        outcome = with_slip(
-            outcome, self.problem, self.frame, (before, self._grip), driven_mm=self._driven_mm
-        )
-        self.outcomes.append(outcome)
         self.frame += 1
         self.increment = 0
+        return Holding(before=before, now=self._grip, driven_mm=self._driven_mm)
 
     def _keep(self) -> None:
         """Make the state that has settled the one to start from."""

@@ -21,6 +21,7 @@ from sim.contact.engine.relaxation import Balance, Balances, Relaxation
 from sim.contact.readout.frame import FrameOutcome
 from sim.contact.readout.outcome import SettledFrame, collect, frame_outcome
 from sim.contact.readout.problem import Problem
+from sim.contact.readout.slipping import with_slip
 from sim.contact.readout.verdict import check_frame
 from sim.contact.solver.load import Load
 from sim.contact.solver.run import FORCE_CHANGE, Run
@@ -213,7 +214,6 @@ class Solver:
     def close_frame(self, case: int, balance: Balance, load_N: float) -> None:
         """Go on from a settled state: within the frame, or from its end, which is read first."""
         run = self.runs[case]
-        problem, frame = run.problem, run.frame
         if not np.isfinite(self.relaxation.snapshot(case)).all():
             self._unstable(case)
             return
@@ -223,32 +223,44 @@ class Solver:
             run.go_on()
             self._begin(case)
             return
-        outcome = self.read_frame(case, balance, load_N)
         try:
-            check_frame(outcome, problem.approach, frame, grid_mm=problem.domain.grid_mm)
+            self.take_frame(case, self._settled_frame(case, balance, load_N))
         except SolveError as error:
             self.end(case, error)
             return
-        run.finish(outcome)
         self.load.peak_N[case] = max(self.load.peak_N[case], load_N)
-        if run.frame < problem.approach.frame_count:
+        if run.frame < run.problem.approach.frame_count:
             self._begin(case)
         else:
             self.end(case, None)
 
-    def read_frame(self, case: int, balance: Balance, load_N: float) -> FrameOutcome:
-        """What the settled frame of a press says."""
-        return frame_outcome(self.relaxation, case, self.settled_frame(case, balance, load_N))
+    def take_frame(self, case: int, frame: SettledFrame) -> None:
+        """Read the frame that a press has settled in, and close it.
 
-    def settled_frame(self, case: int, balance: Balance, load_N: float) -> SettledFrame:
+        Raises:
+            SolveError: If it is not sound.
+        """
+        run, outcome = self.runs[case], self.read_frame(case, frame)
+        grid_mm = run.problem.domain.grid_mm
+        check_frame(outcome, run.problem.approach, frame.number, grid_mm=grid_mm)
+        run.outcomes.append(with_slip(outcome, run.problem, frame.number, run.close()))
+
+    def read_frame(self, case: int, frame: SettledFrame) -> FrameOutcome:
+        """What the settled frame of a press says."""
+        return frame_outcome(self.runs[case].problem, frame)
+
+    def _settled_frame(self, case: int, balance: Balance, load_N: float) -> SettledFrame:
         """The frame that a press has just settled in."""
-        run = self.runs[case]
+        run, relaxation = self.runs[case], self.relaxation
+        fixed_N = relaxation.node_forces(case)[run.problem.domain.fixed]
         return SettledFrame(
-            problem=run.problem,
             number=run.frame,
             balance=balance,
             load_N=load_N,
             seconds=run.seconds,
+            nodal_mm=relaxation.displacement(case),
+            point_forces_N=relaxation.point_forces(case),
+            cut_N=-fixed_N.sum(axis=0, dtype=np.float64),
         )
 
     def _load_N(self, balances: Balances, looked: np.ndarray) -> np.ndarray:

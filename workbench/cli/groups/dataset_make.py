@@ -34,7 +34,7 @@ def options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--cases", type=int, metavar="N", help="the first N cases; 0: all")
     sub.add_argument("--jobs", type=int, default=1, metavar="N", help="processes (default 1)")
     text = f"hexahedra of {DRAFT_MM} mm: forces within 5 %%, three times faster"
-    text = "cases that each process presses side by side (default: 1, on a GPU 32)"
+    text = "presses side by side (default: 1, on each GPU 128)"
     sub.add_argument("--batch", type=int, default=0, metavar="N", help=text)
     sub.add_argument("--draft", action="store_true", help=text)
     text = "another Young's modulus than the recipe's; cases and split stay the same"
@@ -85,7 +85,7 @@ def run(options: argparse.Namespace, project: Project) -> int:
     recipe = chosen_recipe(options, project)
     if options.estimate:
         return say_estimate(recipe, options, project)
-    from workbench.learning.dataset.collect import make as make_it
+    from workbench.learning.making.collect import make as make_it
 
     printer = Progress(as_json=options.json)
     line = SampleLine(as_json=options.json)

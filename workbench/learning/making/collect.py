@@ -1,4 +1,7 @@
-"""Make a data set: build once, then solve its cases in spawned processes, some at a time each.
+"""Make a data set: build once, then solve its cases in spawned processes.
+
+Without a GPU each process solves case after case. With one, presses are settled many side by side
+by a process for each GPU, and the others make them ready and read them (`line`).
 
 Done is what has a file, so making it again goes on where it was. A case that fails is written to
 `failed.jsonl` with its reason, counted, and left; the others go on. Each process is held to one
@@ -10,11 +13,11 @@ from __future__ import annotations
 import contextlib
 import multiprocessing
 import os
-from collections.abc import Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
-from typing import TypedDict, Unpack
+from typing import Any, TypedDict, Unpack
 
 from workbench.core.base.errors import LaneError, MeshingError
 from workbench.core.press.press import ContactSettings
@@ -29,10 +32,12 @@ from workbench.learning.dataset.recipe import Recipe, Solvers
 from workbench.learning.dataset.repair import clear_parts
 from workbench.learning.dataset.sample_sheet import write_sheet
 from workbench.learning.dataset.sights import LIGHT, Sight, sights_of, write_backgrounds
-from workbench.learning.dataset.watch import Tell, Watch
-from workbench.learning.dataset.worker import open_bench, solve_cases
-from workbench.learning.dataset.worker_messages import Report, Setup
-from workbench.pipeline.devices import chosen_device
+from workbench.learning.making.line import LOOK_S, Line
+from workbench.learning.making.presser import open_presser
+from workbench.learning.making.watch import Tell, Watch
+from workbench.learning.making.worker import open_bench, solve_case
+from workbench.learning.making.worker_messages import Report, Setup
+from workbench.pipeline.devices import VARIABLE, chosen_device, cuda_count
 from workbench.pipeline.stage import Call
 from workbench.planning.plan import InlineRunner, StageMonitor, needed, plan, stage_monitor
 from workbench.project.project import Project
@@ -46,11 +51,9 @@ ONE_THREAD = (
     "TI_CPU_MAX_NUM_THREADS",
 )
 """Variables that hold libraries to one thread; they are read when a process starts."""
-LOOK_S = 1.0
-"""Time between two looks at how many samples there are [s]."""
 AHEAD = 2
-"""Batches handed to the pool for each process."""
-ON_GPU = 32
+"""Cases handed to the pool for each process."""
+ON_GPU = 128
 """Cases side by side on a GPU: some thousand cells each do not fill it alone."""
 
 
@@ -75,9 +78,8 @@ def make(
         recipe: What is made.
         folder: Where; a data set of the same recipe in it is gone on with.
         project: Its store has, or gets, mesh, material points and light.
-        how: `jobs`, processes; `batch`, cases that each presses side by side, 0 for what suits the
-            device; `tell`, told how far it is; `monitor`, progress of the stages before the first
-            case.
+        how: `jobs`, processes; `batch`, presses side by side, 0 for what suits the device;
+            `tell`, told how far it is; `monitor`, progress of the stages before the first case.
 
     Raises:
         StoreError: If the folder is another's, in use, or cannot be written.
@@ -154,68 +156,86 @@ def _collect(data: DataSet, setup: Setup, *, jobs: int, batch: int, tell: Tell) 
     watch.look(())
     if not todo:
         return
-    with _pool(setup, min(jobs, len(todo))) as pool:
-        waiting = batches(todo, batch, jobs)
-        running = dict[Future[list[Report]], Sequence[Case]]()
-        while True:
-            while len(running) < AHEAD * jobs and (cases := next(waiting, None)):
-                running[pool.submit(solve_cases, cases)] = cases
-            if not running:
-                return
-            ended, _ = wait(running, timeout=LOOK_S, return_when=FIRST_COMPLETED)
-            for future in ended:
-                for case, report in zip(running.pop(future), _reports_of(future), strict=True):
-                    watch.ended(case, report)
-            watch.look(case for cases in running.values() for case in cases)
-
-
-def batches(todo: Sequence[Case], most: int, jobs: int) -> Iterator[Sequence[Case]]:
-    """Cases that are solved side by side: as many as asked for, fewer where processes would idle.
-
-    Args:
-        todo: What is left, in order.
-        most: Cases of a batch.
-        jobs: Processes.
-    """
-    size = max(1, min(most, -(-len(todo) // jobs)))
-    for first in range(0, len(todo), size):
-        yield todo[first : first + size]
-
-
-def _reports_of(future: Future[list[Report]]) -> list[Report]:
+    jobs = min(jobs, len(todo))
     try:
-        return future.result()
+        if batch > 1 and setup.recipe.solvers is not Solvers.FEM:
+            with _workers(setup, jobs, device="cpu") as workers, _pressers() as pressers:
+                size = min(batch, -(-len(todo) // len(pressers)))
+                Line(workers, pressers, size, watch).run(todo)
+        else:
+            with _workers(setup, jobs) as workers:
+                _one_by_one(todo, workers, AHEAD * jobs, watch)
     except BrokenProcessPool as error:
         raise LaneError(
             "a process that made samples ended by itself",
             hint="finished samples are kept: make it again. If it repeats, the machine may be "
-            "out of memory: use fewer --jobs",
+            "out of memory: use fewer --jobs or a smaller --batch",
             at="dataset",
         ) from error
 
 
+def _one_by_one(todo: Iterable[Case], workers: Executor, most: int, watch: Watch) -> None:
+    """Let each worker press and solve one case after the other, at most so many under way."""
+    waiting, running = iter(todo), dict[Future[Report], Case]()
+    while True:
+        while len(running) < most and (case := next(waiting, None)):
+            running[workers.submit(solve_case, case)] = case
+        if not running:
+            return
+        ended, _ = wait(running, timeout=LOOK_S, return_when=FIRST_COMPLETED)
+        for future in ended:
+            watch.ended(running.pop(future), future.result())
+        watch.look(running.values())
+
+
 @contextlib.contextmanager
-def _pool(setup: Setup, jobs: int) -> Iterator[ProcessPoolExecutor]:
-    """Processes that have opened their device; when this ends they have ended."""
+def _workers(setup: Setup, jobs: int, *, device: str = "") -> Iterator[Executor]:
+    """Processes that have opened their device, of this name if given."""
     context = multiprocessing.get_context("spawn")
     # Without a lock: a worker killed while it holds one would block the others for ever.
     stop = context.RawValue("b", 0)
-    with _one_thread():
+    wanted = dict.fromkeys(ONE_THREAD, "1") | ({VARIABLE: device} if device else {})
+    with environment(wanted):
         pool = ProcessPoolExecutor(
             jobs, mp_context=context, initializer=open_bench, initargs=(setup, stop)
         )
-        try:
+        with _ended(pool, stop):
             yield pool
-        finally:
-            stop.value = 1
-            pool.shutdown(wait=True, cancel_futures=True)
 
 
 @contextlib.contextmanager
-def _one_thread() -> Iterator[None]:
+def _pressers() -> Iterator[list[Executor]]:
+    """A process for each GPU; one for the processor where there is none."""
+    context = multiprocessing.get_context("spawn")
+    stop = context.RawValue("b", 0)
+    count = cuda_count() if chosen_device() == "cuda" else 0
+    with contextlib.ExitStack() as pools:
+        found: list[Executor] = []
+        for gpu in range(max(1, count)):
+            given = (gpu if count > 1 else None, stop)
+            pool = ProcessPoolExecutor(
+                1, mp_context=context, initializer=open_presser, initargs=given
+            )
+            pools.enter_context(_ended(pool, stop))
+            found.append(pool)
+        yield found
+
+
+@contextlib.contextmanager
+def _ended(pool: ProcessPoolExecutor, stop: Any) -> Iterator[None]:
+    """When this ends the pool's processes have ended."""
+    try:
+        yield
+    finally:
+        stop.value = 1
+        pool.shutdown(wait=True, cancel_futures=True)
+
+
+@contextlib.contextmanager
+def environment(wanted: Mapping[str, str]) -> Iterator[None]:
     """Variables for processes that are started meanwhile."""
-    before = {name: os.environ.get(name) for name in ONE_THREAD}
-    os.environ.update(dict.fromkeys(ONE_THREAD, "1"))
+    before = {name: os.environ.get(name) for name in wanted}
+    os.environ.update(wanted)
     try:
         yield
     finally:

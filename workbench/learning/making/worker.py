@@ -2,21 +2,15 @@
 
 from __future__ import annotations
 
-import os
 import signal
-from collections.abc import Sequence
-from multiprocessing import current_process
 from typing import Any
 
 from workbench.core.base.errors import WorkbenchError
 from workbench.learning.dataset.cases import Case
-from workbench.learning.dataset.solving import Bench
-from workbench.learning.dataset.worker_messages import Report, Setup
-from workbench.pipeline.devices import cuda_count
+from workbench.learning.making.solving import Bench
+from workbench.learning.making.worker_messages import Report, SettledPress, Setup
 from workbench.system.processes import follow_parent
 
-GPUS = "CUDA_VISIBLE_DEVICES"
-"""Which GPUs the driver shows to this process; what a user has set stays."""
 _bench: Bench | WorkbenchError | None = None
 """Of this worker process, or why it has none; a pool has no other place to keep it."""
 
@@ -27,29 +21,33 @@ def open_bench(setup: Setup, stop: Any) -> None:
     # Ctrl-C in a terminal reaches the whole group; the parent decides when workers stop.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     follow_parent()
-    _choose_gpu()
     try:
         _bench = Bench(setup, stop)
     except WorkbenchError as error:
         _bench = error
 
 
-def _choose_gpu() -> None:
-    """Let workers share out the GPUs among them, in the order in which they were started."""
-    count = cuda_count()
-    if count > 1 and GPUS not in os.environ:
-        # A process of a pool is named by its number, and a queue would have a lock to die with.
-        number = int(current_process().name.rsplit("-", 1)[-1])
-        os.environ[GPUS] = str(number % count)
-
-
-def solve_cases(cases: Sequence[Case]) -> list[Report]:
-    """Make the samples of some cases in this worker.
+def solve_case(case: Case) -> Report:
+    """Make the samples of a case in this worker.
 
     Raises:
         WorkbenchError: As `Bench.solve`, or why the worker could not be opened.
     """
+    return _opened().solve(case)
+
+
+def prepare_case(case: Case) -> bytes | Report:
+    """Make a press ready in this worker; as `Bench.prepare`."""
+    return _opened().prepare(case)
+
+
+def finish_case(case: Case, problem: bytes, pressed: SettledPress) -> Report:
+    """Make the samples of a settled press in this worker; as `Bench.finish`."""
+    return _opened().finish(case, problem, pressed)
+
+
+def _opened() -> Bench:
     if isinstance(_bench, WorkbenchError):
         raise _bench
     assert _bench is not None
-    return _bench.solve(cases)
+    return _bench

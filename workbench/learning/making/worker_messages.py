@@ -46,3 +46,15 @@ class Report:
     """Time of the whole case [s]."""
     error: dict[str, Any] = field(default_factory=dict[str, Any])
     """What went wrong; empty when nothing did."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SettledPress:
+    """What a presser says of one press."""
+
+    states: bytes
+    """Parcel of its `PressStates`."""
+    seconds: float
+    """Its share of the time of its batch, by frames [s]."""
+    cpu_s: float
+    """The same of processor time [s]."""

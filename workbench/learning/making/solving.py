@@ -1,11 +1,11 @@
 """One worker of a data set: opens the device and the cameras once, then solves case after case.
 
-Cases are pressed by the contact solver first, as a whole and some side by side, which is what a
-GPU needs; the finite elements then hand over each frame of each as it converges, and its sample is
-written at once, so a killed process loses one frame of theirs and the presses before it. Both
-solvers press on the same skin, that of the hexahedra, so they share vertices, first touch and path.
-Images show the displacement of the contact solver, as in the paper, or of the finite elements where
-they are alone.
+A case is pressed by the contact solver first, as a whole: here, or by a presser that has a GPU, for
+which the press is prepared here and its frames are read here. The finite elements then hand over
+each frame as it converges, and its sample is written at once, so a killed process loses one frame
+of theirs and the press before it. Both solvers press on the same skin, that of the hexahedra, so
+they share vertices, first touch and path. Images show the displacement of the contact solver, as in
+the paper, or of the finite elements where they are alone.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -29,7 +29,8 @@ from workbench.learning.dataset.folder import SAMPLES, sample_name
 from workbench.learning.dataset.images import Cameras, Views
 from workbench.learning.dataset.recipe import Solvers
 from workbench.learning.dataset.sample import Sample, Solved, to_bytes
-from workbench.learning.dataset.worker_messages import Report, Setup
+from workbench.learning.making.parcels import packed, unpacked
+from workbench.learning.making.worker_messages import Report, SettledPress, Setup
 from workbench.pipeline.store import Store
 from workbench.system.whole_files import write_atomically
 
@@ -57,8 +58,8 @@ class Bench:
     def _load(self, store: Store, stage: str) -> Any:
         return store.load(stage, self.setup.calls[stage].key)
 
-    def solve(self, cases: Sequence[Case]) -> list[Report]:
-        """Make the samples of some cases; what goes wrong with one is in its report.
+    def solve(self, case: Case) -> Report:
+        """Make the samples of a case, all of it here; what goes wrong is in the report.
 
         Raises:
             Cancelled: If this data set is to stop.
@@ -66,56 +67,77 @@ class Bench:
             DeviceError: If the device gave out, likewise.
             LaneError: If memory did.
         """
-        reports = [Report(id=case.id) for case in cases]
-        contacts: Sequence[ForceField | WorkbenchError | None] = [None] * len(cases)
-        if self.recipe.solvers is not Solvers.FEM:
-            contacts = self._press(cases, reports)
-        for case, contact, report in zip(cases, contacts, reports, strict=True):
-            begun, cpu = time.perf_counter(), time.process_time()
-            with _kept(report):
-                if isinstance(contact, WorkbenchError):
-                    raise contact
-                if self.recipe.solvers is Solvers.MPM:
-                    assert contact is not None
-                    for frame in range(case.frames):
-                        self._write(case, frame, contact, None, report)
-                else:
-                    self._converge(case, contact, report)
-            report.seconds += time.perf_counter() - begun
-            report.cpu_s += time.process_time() - cpu
-        return reports
+        report = Report(id=case.id)
+        with _kept(report):
+            contact = None if self.recipe.solvers is Solvers.FEM else self._press(case, report)
+            self._make(case, contact, report)
+        return report
 
-    def _press(
-        self, cases: Sequence[Case], reports: Sequence[Report]
-    ) -> list[ForceField | WorkbenchError | None]:
-        """Contact of all cases, side by side; their time is shared out by their frames."""
-        from sim.contact.press import press_side_by_side
+    def prepare(self, case: Case) -> bytes | Report:
+        """A press made ready for a presser, as a parcel; or why there is none.
 
-        begun, cpu = time.perf_counter(), time.process_time()
-        assert self.points is not None
-        settings = ContactSettings(grid_mm=self.recipe.grid_mm)
-        presses = [
-            (
-                self.recipe.material(case.drawn),
-                PressCase(
-                    indenter=self.recipe.indenter(case.indenter, case.drawn),
-                    press=case.press,
-                    settings=settings,
-                ),
+        Raises:
+            As `solve`.
+        """
+        from sim.contact.readout.problem import make_problem
+
+        report = Report(id=case.id)
+        with _kept(report):
+            assert self.points is not None
+            problem = make_problem(
+                self.mesh, self.points, self.recipe.material(case.drawn), self._press_case(case)
             )
-            for case in cases
-        ]
-        try:
-            found = press_side_by_side(self.mesh, self.points, presses, monitor=self._watch)
-        except MemoryError as error:
-            raise _out_of_memory(f"{len(cases)} presses side by side") from error
-        frames = sum(case.frames for case in cases)
-        seconds, cpu_s = time.perf_counter() - begun, time.process_time() - cpu
-        for case, report in zip(cases, reports, strict=True):
-            share = case.frames / frames
-            report.mpm_s, report.seconds = seconds * share, seconds * share
-            report.cpu_s = cpu_s * share
-        return [one if isinstance(one, WorkbenchError) else from_contact(one) for one in found]
+            return packed(problem, self.mesh)
+        return report
+
+    def finish(self, case: Case, problem: bytes, pressed: SettledPress) -> Report:
+        """Make the samples of a press that a presser has settled.
+
+        Raises:
+            As `solve`.
+        """
+        from sim.contact.solver.states import read_states
+
+        report = Report(
+            id=case.id, mpm_s=pressed.seconds, seconds=pressed.seconds, cpu_s=pressed.cpu_s
+        )
+        with _kept(report):
+            begun = time.perf_counter()
+            contact = read_states(unpacked(problem, self.mesh), unpacked(pressed.states))
+            report.mpm_s += time.perf_counter() - begun
+            self._make(case, from_contact(contact), report)
+        return report
+
+    def _make(self, case: Case, contact: ForceField | None, report: Report) -> None:
+        """Write the samples of a case whose contact is known, where it is asked for."""
+        if self.recipe.solvers is not Solvers.MPM:
+            self._converge(case, contact, report)
+            return
+        assert contact is not None
+        for frame in range(case.frames):
+            self._write(case, frame, contact, None, report)
+
+    def _press_case(self, case: Case) -> PressCase:
+        return PressCase(
+            indenter=self.recipe.indenter(case.indenter, case.drawn),
+            press=case.press,
+            settings=ContactSettings(grid_mm=self.recipe.grid_mm),
+        )
+
+    def _press(self, case: Case, report: Report) -> ForceField:
+        from sim.contact.press import press_membrane
+
+        begun = time.perf_counter()
+        assert self.points is not None
+        contact = press_membrane(
+            self.mesh,
+            self.points,
+            self.recipe.material(case.drawn),
+            self._press_case(case),
+            monitor=self._watch,
+        )
+        report.mpm_s = time.perf_counter() - begun
+        return from_contact(contact)
 
     def _converge(self, case: Case, contact: ForceField | None, report: Report) -> None:
         """Solve by finite elements and write each frame as it converges."""
@@ -212,26 +234,26 @@ class Bench:
 
 @contextlib.contextmanager
 def _kept(report: Report) -> Iterator[None]:
-    """Put what goes wrong with one case into its report; what is wrong with all goes on up."""
+    """Put time and what goes wrong with one case into its report; other errors go on up."""
+    begun, cpu = time.perf_counter(), time.process_time()
     try:
         yield
     except (Cancelled, StoreError, DeviceError):
         raise
     except MemoryError as error:
-        raise _out_of_memory(report.id) from error
+        raise LaneError(
+            f"{report.id} ran out of memory",
+            hint="finished samples are kept; make it again with fewer --jobs",
+            at="dataset",
+        ) from error
     except WorkbenchError as error:
         report.error = {**error.as_dict(), "frame": getattr(error, "frame", -1)}
     except (RuntimeError, ArithmeticError, ValueError, LookupError) as error:
         # A bug in one case must not cost the others; it is kept with its name.
         report.error = {"error": type(error).__name__, "message": str(error), "frame": -1}
-
-
-def _out_of_memory(what: str) -> LaneError:
-    return LaneError(
-        f"{what} ran out of memory",
-        hint="finished samples are kept; make it again with fewer --jobs or a smaller --batch",
-        at="dataset",
-    )
+    finally:
+        report.seconds += time.perf_counter() - begun
+        report.cpu_s += time.process_time() - cpu
 
 
 def _one_frame(outcome: FemFrame, frame_of: Any) -> ForceField:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from workbench.learning.dataset.cases import Case
 from workbench.learning.dataset.folder import FAILED, TIMES, DataSet
 from workbench.learning.dataset.json_lines import append_row
-from workbench.learning.dataset.worker_messages import Report
+from workbench.learning.making.worker_messages import Report
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -1,0 +1,1 @@
+"""How a data set is made: workers, presses side by side, progress."""
