@@ -95,7 +95,7 @@ class Relaxation:
             self._numbers[row, layout.FRICTION] = case.friction
             self._numbers[row, layout.LARGEST_STEP] = STEP_CAP * grid_mm
             self._numbers[row, layout.INVERSE_EDGE] = 1.0 / grid_mm
-            self._numbers[row, layout.SIZE :] = case.collider.size
+            self._numbers[row, layout.SIZE :] = case.collider.seated_size
             self._choices[row, layout.SHAPE] = int(case.collider.shape)
             self._choices[row, layout.FIRST_COEFFICIENT] = batch.first_coefficients[row]
             self._choices[row, layout.COUNTS :] = case.collider.samples.shape
@@ -115,7 +115,8 @@ class Relaxation:
         """
         table = self._poses[:, case]
         table[: len(rows)] = rows
-        table[: len(rows), :3] = rows[:, :3] - self.cases[case].domain.target_mm
+        seats_mm = rows[:, 3:12].reshape(-1, 3, 3) @ self.cases[case].collider.seat_mm
+        table[: len(rows), :3] = rows[:, :3] + seats_mm - self.cases[case].domain.target_mm
         table[len(rows) :] = table[len(rows) - 1]
         self._stale_poses = True
 
@@ -211,7 +212,7 @@ class Relaxation:
         span = self.batch.spans[case]
         surface = self.batch.surface
         states = surface.states.to_numpy()[span.first_point : span.first_point + span.points]
-        return self._of_points(surface.anchors, case, 3), states
+        return self._of_points(surface.anchors, case, 3) + self.cases[case].collider.seat_mm, states
 
     def _of_nodes(self, array: Any, case: int) -> np.ndarray:
         span = self.batch.spans[case]

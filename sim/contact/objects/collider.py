@@ -43,6 +43,27 @@ class Collider:
     cut: np.ndarray | None = None
     """Lower and upper sides of the window beyond which the body goes on, shape (2, 3), bool."""
 
+    seated: bool = True
+    """Whether kernels count positions from `seat_mm`; else from the origin of the body."""
+
+    @property
+    def seat_mm(self) -> np.ndarray:
+        """Where the kernels count positions from, body frame, shape (3,): a ball's lowest point.
+
+        From the centre of a ball of 50 mm, a place is known to 4 nm in single precision; as stiff
+        as the contact is, forces then rattle by a thousandth and never settle.
+        """
+        ball = self.seated and self.shape is Shape.SPHERE
+        return np.array([0.0, 0.0, -float(self.size[0]) if ball else 0.0])
+
+    @property
+    def seated_size(self) -> np.ndarray:
+        """`size` for positions counted from `seat_mm`, shape (8,)."""
+        size = self.size.copy()
+        if self.shape is Shape.SPHERE:
+            size[1] = self.seat_mm[2]
+        return size
+
     def distance(self, position_mm: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Signed distances [mm], (N,), and gradients, (N, 3), at body positions, (N, 3).
 
