@@ -105,7 +105,7 @@ class Relaxation:
 
     def _launcher(self) -> Launcher:
         """What runs the substeps."""
-        kernel = kernels.SUBSTEP[_one_law(self.cases)]
+        kernel = kernels.SUBSTEP[_one_law(self.cases), self.batch.ties is not None]
         return Launcher(kernel, self.batch.bundles, cases=len(self.cases))
 
     def set_poses(self, case: int, rows: np.ndarray) -> None:

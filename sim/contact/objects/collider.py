@@ -43,8 +43,8 @@ class Collider:
     cut: np.ndarray | None = None
     """Lower and upper sides of the window beyond which the body goes on, shape (2, 3), bool."""
 
-    seated: bool = True
-    """Whether kernels count positions from `seat_mm`; else from the origin of the body."""
+    soft: bool = False
+    """Whether the body gives way itself; its kernels count positions from the body's origin."""
 
     @property
     def seat_mm(self) -> np.ndarray:
@@ -53,7 +53,7 @@ class Collider:
         From the centre of a ball of 50 mm, a place is known to 4 nm in single precision; as stiff
         as the contact is, forces then rattle by a thousandth and never settle.
         """
-        ball = self.seated and self.shape is Shape.SPHERE
+        ball = not self.soft and self.shape is Shape.SPHERE
         return np.array([0.0, 0.0, -float(self.size[0]) if ball else 0.0])
 
     @property
@@ -113,6 +113,7 @@ def make_collider(
         reach_mm=indenter.size_mm * (0.5 if ball else 0.5 * 3.0**0.5),
         half_height_mm=lowest_mm(indenter),
         least_radius_mm=sharpest_mm(indenter),
+        soft=indenter.soft is not None,
     )
 
 
@@ -149,4 +150,5 @@ def _collider(indenter: Indenter, grid_mm: float, field: SampledDistance) -> Col
         least_radius_mm=min(
             least_radius_mm, textures.sharpest_mm(indenter.texture, field.spacing_mm)
         ),
+        soft=indenter.soft is not None,
     )

@@ -50,9 +50,7 @@ class SoftRelaxation(Relaxation):
     def __init__(self, problem: Problem, soft: SoftObject) -> None:
         self.soft = soft
         self.problem = problem
-        # Places in the object are places on its lattice, which is counted from the body's origin.
-        collider = dataclasses.replace(problem.collider, seated=False)
-        friction = problem.material.friction
+        collider, friction = problem.collider, problem.material.friction
         super().__init__(
             [
                 Case(domain=soft.membrane, collider=collider, friction=friction),
