@@ -4,7 +4,7 @@
 robustness matrix solved anew. CalculiX itself is asked where `ccx` is installed. The contact solver
 is pressed beside our finite elements (`fem_mpm`), and compared with figures of an independent
 quasi-static solver (mean-dilatation hexahedra, hard contact, Coulomb 0.3) and of CalculiX (C3D8I)
-on the finger at 45 degrees; the null there is the frictionless force: a solver without friction
+on the finger at 45 degrees, and small contacts and pads beside limits (`tips`); the null there is the frictionless force: a solver without friction
 would score it.
 """
 
@@ -20,6 +20,7 @@ from workbench.proof.validation.fem import (
     fem_meshes,
     fem_mpm,
     fem_paths,
+    tips,
 )
 
 FEM_NORMAL_N = {"0.30 mm hexahedra": 1.291, "CalculiX C3D8I": 1.276}
@@ -36,6 +37,7 @@ def rows() -> list[Row]:
         *fem_meshes.rows(),
         *fem_mpm.rows(),
         *fem_limits.rows(),
+        *tips.rows(),
         *fem_matrix.recorded_rows(),
         *_recorded(),
         *(calculix.rows() if calculix.installed() else ()),
