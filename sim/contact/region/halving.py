@@ -149,14 +149,26 @@ def children_of(
     return children[some], held[some]
 
 
+def _faces_about(skin: Skin, places_mm: np.ndarray, *, margin_mm: float) -> np.ndarray:
+    """Faces whose boxes meet the box around places, shape (F, 3): the skin may be large."""
+    low = places_mm.min(axis=0) - margin_mm
+    high = places_mm.max(axis=0) + margin_mm
+    corners = skin.points_mm[skin.faces]
+    meets = (corners.max(axis=1) > low) & (corners.min(axis=1) < high)
+    return skin.faces[meets.all(axis=1)]
+
+
 def _filled(children: np.ndarray, held: np.ndarray, *, edge_mm: float, outer: Skin) -> np.ndarray:
     """Shares of the eighths of children, (K, 8), that lie below the outer skin.
 
     Where the skin passes none of them by, something else cut their parent: they keep its share.
     """
     centres = (children[:, None] + 0.5 + 0.5 * (BITS - 0.5)) * edge_mm
-    foot, distance, face = closest_point(outer.points_mm, outer.faces, centres.reshape(-1, 3))
-    corners = outer.points_mm[outer.faces[face]]
+    faces = _faces_about(outer, centres.reshape(-1, 3), margin_mm=edge_mm)
+    if not len(faces):
+        return held
+    foot, distance, face = closest_point(outer.points_mm, faces, centres.reshape(-1, 3))
+    corners = outer.points_mm[faces[face]]
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-30)
     height = np.einsum("qc,qc->q", centres.reshape(-1, 3) - foot, normal)

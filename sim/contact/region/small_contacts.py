@@ -4,7 +4,7 @@ A contact of a few cells is found only as well as it happens to lie on the latti
 0.45 mm a lattice moved by half a cell changes the force at 0.3 mm by 20 %. So at the end of each
 frame the part of the undeformed skin that lies inside the object is measured: its half-width is
 that of the largest disc in it, and the contact's is about 0.7 of that, as under a ball
-(sqrt(R d) of sqrt(2 R d)). Where a cell is more than a quarter of the contact's width, cells
+(sqrt(R d) of sqrt(2 R d)). Where a cell is more than a third of the contact's width, cells
 around it are halved, at most twice. What touches the skin only on the way to the end of a frame is
 not looked for, and no more cells are added than `MOST_ADDED_SHARE` says.
 """
@@ -24,8 +24,10 @@ from sim.contact.region.refinement import balls, distance_mm
 
 CONTACT_SHARE = 0.7
 """Half-width of the contact over that of the overlap."""
-CELLS_PER_HALF_WIDTH = 2.0
+CELLS_PER_HALF_WIDTH = 1.5
 """Least number of cells in the contact's half-width."""
+SHARP_CELLS = 2.0
+"""The same under an object whose sharpest part has a radius below a cell: pressure peaks there."""
 MARGIN_CELLS = 1.5
 """Cells are halved so far around the overlap, in their own edges: a free node of the next level
 needs halved cells on all sides."""
@@ -49,6 +51,8 @@ class Overlap(NamedTuple):
     places_mm: np.ndarray
     """Corners of triangles in it, shape (N, 3)."""
     half_width_mm: float
+    finest_mm: float = 0.0
+    """Edge of the cells that it asks for."""
 
 
 def small_overlaps(facets: Facets, approach: Approach, *, grid_mm: float) -> list[Overlap]:
@@ -56,11 +60,10 @@ def small_overlaps(facets: Facets, approach: Approach, *, grid_mm: float) -> lis
     count = approach.frame_count
     frames = np.unique(np.linspace(1, count, min(count, MOST_FRAMES)).round())
     found = [_overlap(facets, approach, float(frame), grid_mm) for frame in frames]
-    return [each for each in found if len(each.places_mm) and _small(each, grid_mm)]
-
-
-def _small(overlap: Overlap, edge_mm: float) -> bool:
-    return CELLS_PER_HALF_WIDTH * edge_mm > CONTACT_SHARE * overlap.half_width_mm
+    sharp = approach.collider.least_radius_mm < grid_mm
+    cells = SHARP_CELLS if sharp else CELLS_PER_HALF_WIDTH
+    asked = [each._replace(finest_mm=CONTACT_SHARE * each.half_width_mm / cells) for each in found]
+    return [each for each in asked if len(each.places_mm) and each.finest_mm < grid_mm]
 
 
 def _overlap(facets: Facets, approach: Approach, progress: float, grid_mm: float) -> Overlap:
@@ -99,7 +102,7 @@ def halved_cells(
     halved: list[np.ndarray] = []
     added = 0
     for level in range(MOST_HALVINGS):
-        small = [each.places_mm for each in overlaps if _small(each, grid_mm * 0.5**level)]
+        small = [each.places_mm for each in overlaps if each.finest_mm < grid_mm * 0.5**level]
         if not small:
             break
         chosen = _around(np.concatenate(small), level, grid_mm)
