@@ -47,6 +47,8 @@ from workbench.core.result.sampled import SampledDistance
 
 BORDER_CELLS = 4.0
 """Cells so near the edge of the region are not halved."""
+HELD_CELLS = 1.5
+"""The same of cells so near the inner skin."""
 BOND_PENALTY = 100.0
 """Stiffness of the bond to the support per area, in units of E / grid."""
 DRIVE_PENALTY = 20.0
@@ -128,7 +130,7 @@ def prepare(
     grid_mm = points.grid_mm
     check_memory(points, approach.target_mm, radius_mm)
     facets = contact_facets(mesh, approach, grid_mm, radius_mm=radius_mm)
-    halved = _halved(points, approach, facets, radius_mm=radius_mm)
+    halved = _halved(mesh, points, approach, facets, radius_mm=radius_mm)
     facets = refine_within(facets, halved, grid_mm=grid_mm)
     held = contact_points(mesh, facets, approach, grid_mm)
     # Springs are as stiff as the cells around them are fine.
@@ -168,24 +170,37 @@ def contact_points(
 
 
 def _halved(
-    points: MaterialPoints, approach: Approach, facets: Facets, *, radius_mm: float
+    mesh: MembraneMesh,
+    points: MaterialPoints,
+    approach: Approach,
+    facets: Facets,
+    *,
+    radius_mm: float,
 ) -> Halved:
     """Cells that give way to finer ones, none of them at the edge of the region.
 
+    Those at the inner skin stay whole too: it is held at a point for each whole cell.
+
     A soft object has cells as large as those that are whole, and meets no others.
     """
+    from scipy.spatial import KDTree
+
     grid_mm = points.grid_mm
     soft = approach.collider.soft
     overlaps = [] if soft else small_overlaps(facets, approach, grid_mm=grid_mm)
     if not overlaps:
         return ()
 
-    def within(places_mm: np.ndarray, margin_mm: float = BORDER_CELLS * grid_mm) -> np.ndarray:
-        from_target_mm = np.linalg.norm(places_mm - approach.target_mm, axis=1)
-        return from_target_mm < radius_mm - margin_mm
+    inner = KDTree(mesh.inner.points_mm)
 
-    cells = points.cells[within(points.cells * grid_mm, 0.0)]
-    return halved_cells(overlaps, cells, grid_mm=grid_mm, within=within)
+    def within(places_mm: np.ndarray) -> np.ndarray:
+        from_target_mm = np.linalg.norm(places_mm - approach.target_mm, axis=1)
+        to_inner_mm = inner.query(places_mm, distance_upper_bound=HELD_CELLS * grid_mm)[0]
+        return (from_target_mm < radius_mm - BORDER_CELLS * grid_mm) & np.isinf(to_inner_mm)
+
+    cells_mm = points.cells * grid_mm
+    active = np.linalg.norm(cells_mm - approach.target_mm, axis=1) < radius_mm
+    return halved_cells(overlaps, points.cells[active], grid_mm=grid_mm, within=within)
 
 
 def held_points(

@@ -5,8 +5,9 @@ A contact of a few cells is found only as well as it happens to lie on the latti
 frame the part of the undeformed skin that lies inside the object is measured: its half-width is
 that of the largest disc in it, and the contact's is about 0.7 of that, as under a ball
 (sqrt(R d) of sqrt(2 R d)). Where a cell is more than a third of the contact's width, cells
-around it are halved, at most twice. What touches the skin only on the way to the end of a frame is
-not looked for, and no more cells are added than `MOST_ADDED_SHARE` says.
+around it are halved, at most twice. What touches the skin only on the way to the end of a frame, or
+because a drive moves the skin, is not looked for, and no more cells are added than
+`MOST_ADDED_SHARE` says.
 """
 
 from __future__ import annotations
