@@ -14,7 +14,7 @@ from tests.reference.axisymmetric import grids
 from tests.reference.axisymmetric.cases import CASES, DISC, Case, Found, Run, jobs, pressed, solve
 from tests.reference.axisymmetric.contact import Kept, Pair, make_skin, touch
 from tests.reference.axisymmetric.grids import Grid, disc_chart, make_grid
-from tests.reference.axisymmetric.profiles import Profile, ball, cone
+from tests.reference.axisymmetric.profiles import Profile, ball, cone, torus
 from tests.reference.axisymmetric.record import extrapolated, limits, load, same_run
 from tests.reference.axisymmetric.solid import make_solid, respond
 
@@ -78,7 +78,9 @@ def test_forces_and_tangent_are_derivatives_of_the_energy(order: int) -> None:
     assert np.abs(change - predicted).max() < 1e-7 * np.abs(predicted).max()
 
 
-@pytest.mark.parametrize("profile", [ball(3.0), cone(45.0, 0.45), cone(60.0, 0.1)])
+@pytest.mark.parametrize(
+    "profile", [ball(3.0), cone(45.0, 0.45), cone(60.0, 0.1), torus(0.4, 1.0, 9.0)]
+)
 @pytest.mark.parametrize("stick_MPa_mm", [1.0, 1e4])
 def test_tangent_of_touch_is_its_derivative(profile: Profile, stick_MPa_mm: float) -> None:
     """Sticking with 1 MPa/mm, sliding with 10^4, by central differences."""

@@ -50,3 +50,28 @@ def test_large_mesh_presses_as_the_exact_ball() -> None:
         for each in (ball(40.0), Indenter(size_mm=40.0))
     ]
     assert forces[0] == pytest.approx(forces[1], rel=0.03)
+
+
+@pytest.mark.parametrize(("friction", "limit_N"), [(0.0, 0.4833), (0.3, 0.5246)])
+def test_nearly_incompressible_gel_settles_under_a_large_ball(
+    friction: float, limit_N: float
+) -> None:
+    """A ball of 50 mm on gel of nu .49 comes to rest in a tenth of the substeps allowed.
+
+    Its contact is counted from its lowest point: from its centre, single precision leaves forces
+    that rattle by a thousandth of the load, and 6000 substeps were not enough.
+    """
+    mesh, points = flat_block(width_mm=25.25, length_mm=20.75, height_mm=4.0, grid_mm=1.0)
+    contact = press_membrane(
+        mesh,
+        points,
+        Elastomer(young_MPa=0.1, poisson=0.49, friction=friction),
+        PressCase(
+            indenter=Indenter(size_mm=100.0),
+            press=Press(target_mm=(0.0, 0.0, 4.0), depth_mm=0.2266, frames=1),
+            settings=ContactSettings(grid_mm=1.0, max_substeps=600),
+        ),
+    )
+    # The limit is that of a disc about as large (`axisymmetric_limits.json`); the grid is coarse, a
+    # quarter of the gel.
+    assert contact.normal_N[-1] == pytest.approx(limit_N, rel=0.03)

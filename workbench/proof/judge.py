@@ -40,7 +40,7 @@ learned_sparse_equals_dense exact_background cad_volume outer_area skin_on_surfa
 coating_reciprocity coating_energy coating_head_on led_flux led_share vignetting plane_closed_form
 """
 _OUTSIDE = """
-finger_45 published_mode sheared_sphere shear_force finger_45_normal_force refinement
+finger_45 published_pad published_mode sheared_sphere shear_force finger_45_normal_force refinement
 refinement_calculix fem_limit mpm_limit fem_error_estimate
 calculix calculix_same_mesh mitsuba mitsuba_product mitsuba_octant
 mitsuba_recorded mitsuba_recorded_places mitsuba_recorded_error mitsuba_recorded_whole
@@ -51,7 +51,7 @@ _LIMIT = "mpm_against_fem_limit mpm_refinement fem_refinement"
 _ITSELF = """
 slip_share slip_share_mesh gross_slip slip_ratio_global
 region_error residual frame_size mirror mirror_symmetry rotation increments submodel submodel_worst
-determinism cpu_gpu mpm_against_fem direct_table table_brightness contact_tangent
+lattice_shift determinism cpu_gpu mpm_against_fem direct_table table_brightness contact_tangent
 friction_tangent contact_energy raster newton_projection frame_depth published_depth map_sensitivity
 surface_detail ceiling hybrid table direct linear plane_target plane_source
 plane_normal geodesic rest_image gain

@@ -16,7 +16,7 @@ import numpy as np
 import taichi as ti
 
 from sim.contact.engine import sum_kernels
-from sim.contact.engine.bundles import Cases, Cells, Nodes, Surface, packed
+from sim.contact.engine.bundles import Cases, Cells, Nodes, Surface, Ties, packed
 from sim.contact.grid import layout
 from sim.contact.objects.collider import Collider
 from sim.contact.region.domain import BLOCK, NO_SLOT, Domain
@@ -72,7 +72,7 @@ class Batch:
             forces=floats(np.zeros(3 * total)),
             # A padding node is fixed, and its mass only keeps it from dividing by nothing.
             masses=floats(_joined([_extended(d.masses, 1.0) for d in domains])),
-            fixed=integers(_joined([_extended(d.fixed, True) for d in domains])),
+            fixed=integers(_joined([_extended(_holds(d), layout.FIXED) for d in domains])),
             powers=floats(np.zeros(2 * total)),
             node_slots=integers(_joined(slots)),
             node_cases=integers(np.repeat(np.arange(len(cases)), nodes)),
@@ -81,7 +81,7 @@ class Batch:
         self.cells = Cells(
             rows=integers(_joined([interleaved(d.rows + n, n) for d, n, _, _ in everything])),
             volumes=floats(_joined([interleaved(d.volumes_mm3, 0.0) for d in domains])),
-            moduli=floats(_joined([interleaved(d.moduli_MPa, 0.0) for d in domains])),
+            moduli=floats(_joined([interleaved(_cell_table(d), 0.0) for d in domains])),
             cell_cases=integers(np.repeat(np.arange(len(cases)), cells)),
             # The block after the last cell stays zero: nodes without a cell on some side read it.
             slots=floats(np.zeros(81 * (cell_at[-1] + BLOCK))),
@@ -97,6 +97,8 @@ class Batch:
         )
         self.slips = floats(np.zeros(point_at[-1]))
         """Way that each surface point has slid in settled frames [mm], P."""
+        self.ties = _shared_ties(domains, node_at)
+        """Which nodes follow others; None where none does."""
         samples, self.first_coefficients = _shared_samples(cases)
         self.cases = Cases(
             poses=floats(np.zeros(steps * len(cases) * layout.POSE)),
@@ -113,9 +115,10 @@ class Batch:
         self._staging = floats(np.zeros(max(3 * max(nodes), 6 * max(points), 1)))
 
     @property
-    def bundles(self) -> tuple[Nodes, Cells, Surface, Cases]:
+    def bundles(self) -> tuple[Any, ...]:
         """What the kernels of a substep take."""
-        return self.nodes, self.cells, self.surface, self.cases
+        ties = () if self.ties is None else (self.ties,)
+        return self.nodes, self.cells, self.surface, self.cases, *ties
 
     def read(self, array: Any, first: int, count: int) -> np.ndarray:
         """Some entries of a device array of floats, shape (count,)."""
@@ -154,10 +157,10 @@ class _Sums:
 def needed_bytes(cells: int, points: int) -> int:
     """Device memory that a case of so many cells and surface points takes, at most.
 
-    A cell has 81 slots, 9 rows, 8 volumes, 2 moduli and its case; there are up to twice as many
-    nodes as cells in a thin wall, of 3 x 3 floats and 7 numbers, and 27 slot entries per cell.
+    A cell has 81 slots, 9 rows, 8 volumes, 2 moduli, its edge and case; there are up to twice as
+    many nodes as cells in a thin wall, of 3 x 3 floats and 7 numbers, and 27 slot entries per cell.
     """
-    per_cell = 4 * (81 + 9 + 8 + 3 + 27 + 2 * (9 + 7))
+    per_cell = 4 * (81 + 9 + 8 + 4 + 27 + 2 * (9 + 7))
     per_point = 4 * (3 + 3 + 1 + 3 + 1 + 1 + 6 + 3 + 1 + 1 + 3)
     return cells * per_cell + points * per_point
 
@@ -184,6 +187,41 @@ def interleaved(table: np.ndarray, filling: Any) -> np.ndarray:
 def _shifted(node_slots: np.ndarray, first_cell: int, nothing: int) -> np.ndarray:
     """Slots of a case whose first cell is not the first of the batch; `nothing` for none."""
     return np.where(node_slots == NO_SLOT, nothing, node_slots + 81 * first_cell)
+
+
+def _cell_table(domain: Domain) -> np.ndarray:
+    """Constants of the cells: shear and bulk modulus, one over the edge; shape (C, 3)."""
+    return np.concatenate([domain.moduli_MPa, 1.0 / domain.edges_mm[:, None]], axis=1)
+
+
+def _holds(domain: Domain) -> np.ndarray:
+    """What holds each node: nothing, a wall, or its leaders; shape (N,)."""
+    found = domain.fixed.astype(np.int64) * layout.FIXED
+    found[domain.ties.nodes] = layout.TIED
+    return found
+
+
+def _shared_ties(domains: list[Domain], first_nodes: list[int]) -> Ties | None:
+    """The ties of all cases, by follower and by leader."""
+    everything = list(zip([d.ties for d in domains], first_nodes, strict=False))
+    tied = _joined([t.nodes + first for t, first in everything])
+    if not len(tied):
+        return None
+    followers = _joined([t.followers + first for t, first in everything])
+    leaders = _joined([t.leaders + first for t, first in everything])
+    shares = _joined([t.shares for t, _ in everything])
+    by_leader = np.argsort(leaders, kind="stable")
+    counts = _joined([np.diff(t.starts) for t, _ in everything])
+    led = np.bincount(leaders, minlength=first_nodes[-1])
+    return Ties(
+        tied=integers(tied),
+        leader_starts=integers(np.concatenate([[0], np.cumsum(counts)])),
+        leaders=integers(leaders),
+        leader_shares=floats(shares),
+        follower_starts=integers(np.concatenate([[0], np.cumsum(led)])),
+        followers=integers(followers[by_leader]),
+        follower_shares=floats(shares[by_leader]),
+    )
 
 
 def _point_table(domain: Domain) -> np.ndarray:

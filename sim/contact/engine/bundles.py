@@ -50,13 +50,32 @@ class Cells(NamedTuple):
     volumes: Floats
     """Of the eight points [mm^3], 8 C."""
     moduli: Floats
-    """Shear and bulk modulus [MPa], 2 C."""
+    """Shear and bulk modulus [MPa], and one over the cell's edge [1/mm], 3 C."""
     cell_cases: Integers
     """Case of each cell, C."""
     slots: Floats
     """Forces of a cell on its 27 nodes [N], 81 C and a block of zeros."""
     starts: Integers
     """First surface point of each cell, then P: C + 1."""
+
+
+class Ties(NamedTuple):
+    """Which nodes follow others; of S tied nodes with L leaders in all."""
+
+    tied: Integers
+    """Tied nodes, S."""
+    leader_starts: Integers
+    """First leader of each, then L: S + 1."""
+    leaders: Integers
+    """Nodes, L."""
+    leader_shares: Floats
+    """Of each leader in its follower, L."""
+    follower_starts: Integers
+    """First follower of each node, then L: N + 1."""
+    followers: Integers
+    """Tied nodes by leader, L."""
+    follower_shares: Floats
+    """Of the leader in each follower, L."""
 
 
 class Surface(NamedTuple):

@@ -10,7 +10,7 @@ import taichi as ti
 from taichi.lang.impl import expr_init
 
 from sim.contact.engine.point_functions import line_weights, point_force
-from sim.contact.grid.layout import CHOICES, IDLE, INVERSE_EDGE, LOCAL, MODE, NUMBERS, POINT
+from sim.contact.grid.layout import CHOICES, IDLE, LOCAL, MODE, POINT
 from sim.contact.grid.stencil import gather_gradient, scatter_gradient
 from sim.contact.region.domain import BLOCK
 from sim.material import SMALLEST_VOLUME_RATIO, first_piola_rows
@@ -64,8 +64,8 @@ def cell_pass(
                 [nodes.displacement[3 * (first[n // 3] + n % 3) + c] for n in range(27)]
                 for c in range(3)
             ]
-            inverse_edge = cases.numbers[NUMBERS * case + INVERSE_EDGE]
-            shear, bulk = cells.moduli[entry(cell, 0, 2)], cells.moduli[entry(cell, 1, 2)]
+            shear, bulk = cells.moduli[entry(cell, 0, 3)], cells.moduli[entry(cell, 1, 3)]
+            inverse_edge = cells.moduli[entry(cell, 2, 3)]
             forces = ti.static(_cell_forces(nodal, volume, inverse_edge, (shear, bulk), linear))
             for point in range(cells.starts[cell], cells.starts[cell + 1]):
                 x = line_weights(surface.points[POINT * point + LOCAL])

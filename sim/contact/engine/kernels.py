@@ -21,7 +21,7 @@ import functools
 
 import taichi as ti
 
-from sim.contact.engine.bundles import Cases, Cells, Floats, Integers, Nodes, Surface, pack_of
+from sim.contact.engine.bundles import Cases, Cells, Floats, Integers, Nodes, Surface, Ties, pack_of
 from sim.contact.engine.cell_kernel import cell_pass, entry
 from sim.contact.engine.point_functions import (
     body_rotation,
@@ -46,8 +46,43 @@ from sim.contact.grid.layout import (
     NUMBERS,
     POINT,
     SLID,
+    TIED,
+    UNHELD,
 )
 from sim.contact.region.domain import BLOCK
+
+
+@ti.func
+def _slot_sum(node, nodes: ti.template(), cells: ti.template()):
+    """Force [N] of the cells around a node."""
+    total = ti.Vector([0.0, 0.0, 0.0])
+    for place in ti.static(range(27)):
+        slot = nodes.node_slots[entry(node, place, 27)]
+        for c in ti.static(range(3)):
+            total[c] += cells.slots[slot + c * BLOCK]
+    return total
+
+
+@ti.func
+def _move_node(node, total, nodes: ti.template(), cases: ti.template(), case, mode):
+    """One damped step of a node under its force [N]."""
+    mass = nodes.masses[node] * cases.numbers[NUMBERS * case + MASS_SCALE]
+    damping = cases.numbers[NUMBERS * case + DAMPING]
+    largest_step = cases.numbers[NUMBERS * case + LARGEST_STEP]
+    work, inertia = 0.0, 0.0
+    for c in ti.static(range(3)):
+        at = 3 * node + c
+        speed = nodes.velocity[at]
+        work += speed * (nodes.forces[at] - total[c])
+        inertia += mass * speed * speed
+        nodes.forces[at] = total[c]
+        if nodes.fixed[node] == UNHELD and mode == MOVING:
+            speed = ((2.0 - damping) * speed + 2.0 * total[c] / mass) / (2.0 + damping)
+            speed = ti.min(ti.max(speed, -largest_step), largest_step)
+            nodes.velocity[at] = speed
+            nodes.displacement[at] += speed
+    nodes.powers[2 * node] = work
+    nodes.powers[2 * node + 1] = inertia
 
 
 @ti.func
@@ -56,28 +91,52 @@ def node_pass(nodes: ti.template(), cells: ti.template(), cases: ti.template(), 
         case = nodes.node_cases[node]
         mode = cases.choices[CHOICES * case + MODE]
         if mode != IDLE:
-            total = ti.Vector([0.0, 0.0, 0.0])
-            for place in ti.static(range(27)):
-                slot = nodes.node_slots[entry(node, place, 27)]
+            _move_node(node, _slot_sum(node, nodes, cells), nodes, cases, case, mode)
+
+
+@ti.func
+def free_node_pass(
+    nodes: ti.template(), cells: ti.template(), cases: ti.template(), ties: ti.template(), count
+):
+    """Pass 2 where nodes are tied: these are left out, and their leaders take on their forces."""
+    for node in range(count):
+        case = nodes.node_cases[node]
+        mode = cases.choices[CHOICES * case + MODE]
+        if mode != IDLE and nodes.fixed[node] != TIED:
+            total = _slot_sum(node, nodes, cells)
+            for pair in range(ties.follower_starts[node], ties.follower_starts[node + 1]):
                 for c in ti.static(range(3)):
-                    total[c] += cells.slots[slot + c * BLOCK]
-            mass = nodes.masses[node] * cases.numbers[NUMBERS * case + MASS_SCALE]
-            damping = cases.numbers[NUMBERS * case + DAMPING]
-            largest_step = cases.numbers[NUMBERS * case + LARGEST_STEP]
-            work, inertia = 0.0, 0.0
+                    follower = nodes.forces[3 * ties.followers[pair] + c]
+                    total[c] += ties.follower_shares[pair] * follower
+            _move_node(node, total, nodes, cases, case, mode)
+
+
+@ti.func
+def tied_forces_pass(
+    nodes: ti.template(), cells: ti.template(), cases: ti.template(), ties: ti.template(), count
+):
+    """Forces that tied nodes hand on."""
+    for number in range(count):
+        node = ties.tied[number]
+        if cases.choices[CHOICES * nodes.node_cases[node] + MODE] != IDLE:
+            total = _slot_sum(node, nodes, cells)
             for c in ti.static(range(3)):
-                at = 3 * node + c
-                speed = nodes.velocity[at]
-                work += speed * (nodes.forces[at] - total[c])
-                inertia += mass * speed * speed
-                nodes.forces[at] = total[c]
-                if nodes.fixed[node] == 0 and mode == MOVING:
-                    speed = ((2.0 - damping) * speed + 2.0 * total[c] / mass) / (2.0 + damping)
-                    speed = ti.min(ti.max(speed, -largest_step), largest_step)
-                    nodes.velocity[at] = speed
-                    nodes.displacement[at] += speed
-            nodes.powers[2 * node] = work
-            nodes.powers[2 * node + 1] = inertia
+                nodes.forces[3 * node + c] = total[c]
+
+
+@ti.func
+def tied_moves_pass(nodes: ti.template(), cases: ti.template(), ties: ti.template(), count):
+    """Where tied nodes follow to."""
+    for number in range(count):
+        node = ties.tied[number]
+        if cases.choices[CHOICES * nodes.node_cases[node] + MODE] == MOVING:
+            moved = ti.Vector([0.0, 0.0, 0.0])
+            for pair in range(ties.leader_starts[number], ties.leader_starts[number + 1]):
+                for c in ti.static(range(3)):
+                    leader = nodes.displacement[3 * ties.leaders[pair] + c]
+                    moved[c] += ties.leader_shares[pair] * leader
+            for c in ti.static(range(3)):
+                nodes.displacement[3 * node + c] = moved[c]
 
 
 @functools.cache
@@ -113,6 +172,47 @@ def substeps(linear, count):
             node_pass(nodes, cells, cases, node_count)
 
     return substep
+
+
+@functools.cache
+def tied_substeps(linear, count):
+    """The same for cells of several levels, whose nodes may be tied."""
+
+    @ti.kernel
+    def tied_substep(
+        displacement: Floats, velocity: Floats, forces: Floats, masses: Floats, fixed: Integers,
+        powers: Floats, node_slots: Integers, node_cases: Integers,
+        rows: Integers, volumes: Floats, moduli: Floats, cell_cases: Integers, slots: Floats,
+        starts: Integers,
+        points: Floats, held: Integers, goals: Floats, anchors: Floats, states: Integers,
+        point_forces: Floats,
+        poses: Floats, numbers: Floats, choices: Integers, coefficients: Floats,
+        tied: Integers, leader_starts: Integers, leaders: Integers, leader_shares: Floats,
+        follower_starts: Integers, followers: Integers, follower_shares: Floats,
+        case_count: ti.i32, step: ti.i32,
+    ):  # fmt: skip
+        nodes = ti.static(
+            Nodes(displacement, velocity, forces, masses, fixed, powers, node_slots, node_cases)
+        )
+        cells = ti.static(Cells(rows, volumes, moduli, cell_cases, slots, starts))
+        surface = ti.static(Surface(points, held, goals, anchors, states, point_forces))
+        cases = ti.static(Cases(poses, numbers, choices, coefficients))
+        ties = ti.static(
+            Ties(
+                tied, leader_starts, leaders, leader_shares,
+                follower_starts, followers, follower_shares,
+            )
+        )  # fmt: skip
+        cell_count, node_count = cell_cases.shape[0], node_cases.shape[0]
+        tied_count = tied.shape[0]
+        for further in ti.static(range(count)):
+            row = step + further
+            cell_pass(nodes, cells, surface, cases, cell_count, case_count, row, linear)
+            tied_forces_pass(nodes, cells, cases, ties, tied_count)
+            free_node_pass(nodes, cells, cases, ties, node_count)
+            tied_moves_pass(nodes, cases, ties, tied_count)
+
+    return tied_substep
 
 
 @ti.func

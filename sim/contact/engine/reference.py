@@ -57,13 +57,13 @@ class ContactHistory:
 
 def stress_forces(domain: Domain, displacement: np.ndarray) -> np.ndarray:
     """Elastic forces on the nodes [N], shape (N, 3): -sum of volume P grad(weight)."""
-    slopes = gradient_table() / domain.grid_mm
+    slopes = gradient_table() / domain.edges_mm[:, None, None, None]
     nodes = stencil_nodes(domain.rows)
-    gradient = np.einsum("anr,pnc->aprc", displacement[nodes], slopes)
+    gradient = np.einsum("anr,apnc->aprc", displacement[nodes], slopes)
     shear, bulk = domain.moduli_MPa[:, None, 0], domain.moduli_MPa[:, None, 1]
     stress = stress_of(gradient, shear, bulk, linear=domain.linear)
     forces = np.zeros_like(displacement)
-    cell_forces = -np.einsum("ap,aprc,pnc->anr", domain.volumes_mm3, stress, slopes)
+    cell_forces = -np.einsum("ap,aprc,apnc->anr", domain.volumes_mm3, stress, slopes)
     np.add.at(forces, nodes, cell_forces)
     return forces
 
@@ -185,11 +185,16 @@ def damped_step(
     mass_scale: float,
     largest_step: float,
 ) -> np.ndarray:
-    """Velocity after one substep, which is also the displacement added, shape (N, 3)."""
+    """Velocity after one substep, which is also the displacement added, shape (N, 3).
+
+    Tied nodes have none of their own: they go where `Ties.lead` says.
+    """
     mass = domain.masses[:, None] * mass_scale
     speed = ((2.0 - damping) * velocity + 2.0 * forces / mass) / (2.0 + damping)
     speed = np.clip(speed, -largest_step, largest_step)
-    return np.where(domain.fixed[:, None], velocity, speed)
+    held = domain.fixed.copy()
+    held[domain.ties.nodes] = True
+    return np.where(held[:, None], velocity, speed)
 
 
 def squared_distances(corners: np.ndarray, places: np.ndarray) -> np.ndarray:

@@ -96,7 +96,7 @@ class Relaxation:
             self._numbers[row, layout.KINETIC] = case.friction if sliding is None else sliding
             self._numbers[row, layout.LARGEST_STEP] = STEP_CAP * grid_mm
             self._numbers[row, layout.INVERSE_EDGE] = 1.0 / grid_mm
-            self._numbers[row, layout.SIZE :] = case.collider.size
+            self._numbers[row, layout.SIZE :] = case.collider.seated_size
             self._choices[row, layout.SHAPE] = int(case.collider.shape)
             self._choices[row, layout.FIRST_COEFFICIENT] = batch.first_coefficients[row]
             self._choices[row, layout.COUNTS :] = case.collider.samples.shape
@@ -107,14 +107,15 @@ class Relaxation:
     def _launcher(self) -> Launcher:
         """What runs the substeps."""
         linear = _one_law(self.cases)
+        made = kernels.substeps if self.batch.ties is None else kernels.tied_substeps
         # A GPU is waiting for launches in a small case: one kernel for all substeps of a round. A
         # CPU would only compile longer.
         together = STEPS if current_cfg().arch == ti.cuda else 1
         return Launcher(
-            kernels.substeps(linear, 1),
+            made(linear, 1),
             self.batch.bundles,
             cases=len(self.cases),
-            round_of=(kernels.substeps(linear, together), together),
+            round_of=(made(linear, together), together),
         )
 
     def set_poses(self, case: int, rows: np.ndarray) -> None:
@@ -124,7 +125,8 @@ class Relaxation:
         """
         table = self._poses[:, case]
         table[: len(rows)] = rows
-        table[: len(rows), :3] = rows[:, :3] - self.cases[case].domain.target_mm
+        seats_mm = rows[:, 3:12].reshape(-1, 3, 3) @ self.cases[case].collider.seat_mm
+        table[: len(rows), :3] = rows[:, :3] + seats_mm - self.cases[case].domain.target_mm
         table[len(rows) :] = table[len(rows) - 1]
         self._stale_poses = True
 
@@ -226,7 +228,7 @@ class Relaxation:
         span = self.batch.spans[case]
         surface = self.batch.surface
         states = surface.states.to_numpy()[span.first_point : span.first_point + span.points]
-        return self._of_points(surface.anchors, case, 3), states
+        return self._of_points(surface.anchors, case, 3) + self.cases[case].collider.seat_mm, states
 
     def _of_nodes(self, array: Any, case: int) -> np.ndarray:
         span = self.batch.spans[case]

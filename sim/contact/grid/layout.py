@@ -7,6 +7,8 @@ LIFTED = 0.5
 """Gap at which a point forgets where it held, in cells: it will touch anew."""
 MEETS_RIGID, HELD_STILL, MEETS_SOFT = 0, 1, 2
 """Kinds of surface points (`held`): what they meet, or that they are held or driven."""
+UNHELD, FIXED, TIED = 0, 1, 2
+"""What holds a node (`fixed`): nothing; material that was left out; the nodes that it follows."""
 AXIS, STIFFNESS, SIDEWAYS, LOCAL = 3, 6, 7, 8
 POINT = 11
 """Floats of a surface point: place from the target, then the above: unit normal, spring, its part

@@ -43,15 +43,17 @@ def evaluate(
     Args:
         position: Positions [mm], shape (N, 3).
         shape: Which shape.
-        size: Its numbers: `analytic_size`, or origin and 1 / spacing of a grid.
+        size: Its numbers: `analytic_size`, or origin and 1 / spacing of a grid. The second of a
+            sphere says how far below its centre the positions are counted from.
         samples: B-spline coefficients of a grid, shape (A, B, C).
 
     Returns:
         Distances, shape (N,), and gradients, shape (N, 3).
     """
     if shape is Shape.SPHERE:
-        radius = np.linalg.norm(position, axis=1)
-        return radius - size[0], position / np.maximum(radius, TINY_MM)[:, None]
+        from_centre = position + np.array([0.0, 0.0, size[1]])
+        radius = np.linalg.norm(from_centre, axis=1)
+        return radius - size[0], from_centre / np.maximum(radius, TINY_MM)[:, None]
     if shape is Shape.CUBE:
         return _box(position, size)
     if shape is Shape.GRID:

@@ -22,6 +22,15 @@ _TINY_MM = 1e-9
 
 
 @ti.func
+def _ball(position, radius, seat):
+    """Distance to a ball about (0, 0, -seat), without the difference of two long lengths."""
+    from_centre = position + ti.Vector([0.0, 0.0, seat])
+    length = from_centre.norm()
+    excess = position.norm_sqr() + 2.0 * seat * position[2] + (seat - radius) * (seat + radius)
+    return excess / ti.max(length + radius, _TINY_MM), from_centre / ti.max(length, _TINY_MM)
+
+
+@ti.func
 def _box_profile(rho, z, radius, height):
     """Distance to the rectangle rho <= radius, |z| <= height, and its gradient."""
     over_rho, over_z = rho - radius, ti.abs(z) - height
@@ -126,8 +135,7 @@ def signed_distance(position, shape, size, coefficients: ti.template(), counts, 
 
     `size` and `counts` are vectors; the object's own coefficients start at `begin`.
     """
-    distance = position.norm() - size[0]
-    gradient = position / ti.max(position.norm(), _TINY_MM)
+    distance, gradient = _ball(position, size[0], size[1])
     if shape == CYLINDER_Z or shape == CYLINDER_Y or shape == CONE:
         axial, first, second = position[2], position[0], position[1]
         if shape == CYLINDER_Y:

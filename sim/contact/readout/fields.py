@@ -37,12 +37,14 @@ def volume_state(domain: Domain, nodal_mm: np.ndarray) -> VolumeState:
     size_mm = np.abs(nodal_mm).max(axis=1)
     moved = (size_mm > LEAST_MOVE * size_mm.max(initial=0.0))[nodes].any(axis=1)
     volumes, moduli = domain.volumes_mm3[moved], domain.moduli_MPa[moved]
-    slopes = (gradient_table() / domain.grid_mm).transpose(1, 0, 2).reshape(27, 24)
+    slopes = gradient_table().transpose(1, 0, 2).reshape(27, 24)
+    edges_mm = domain.edges_mm[moved, None]
     nodal = nodal_mm[nodes[moved]].transpose(0, 2, 1).reshape(-1, 27)
     gradient = (nodal @ slopes).reshape(-1, 3, 8, 3).transpose(0, 2, 1, 3)
+    gradient = gradient / edges_mm[:, :, None, None]
     shear, bulk = moduli[:, :1], moduli[:, 1:]
     energy = energy_density_MPa(gradient, shear, bulk, linear=domain.linear)
-    filled = volumes >= LEAST_FILLED * domain.grid_mm**3 / 8.0
+    filled = volumes >= LEAST_FILLED * edges_mm**3 / 8.0
     ratio = np.linalg.det(gradient[filled] + np.eye(3))
     return VolumeState(
         least_volume_ratio=float(ratio.min(initial=1.0)),
@@ -60,7 +62,7 @@ def skin_stress(domain: Domain, nodal_mm: np.ndarray) -> tuple[np.ndarray, np.nd
     readout = domain.outer
     stress = np.zeros((readout.count, 6), np.float32)
     energy = np.zeros(readout.count, np.float32)
-    gradient = readout.gradient(nodal_mm, domain.grid_mm)
+    gradient = readout.gradient(nodal_mm)
     shear, bulk = domain.moduli_MPa[readout.cells].T
     piola = stress_of(gradient, shear, bulk, linear=domain.linear)
     if domain.linear:

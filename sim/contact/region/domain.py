@@ -4,15 +4,19 @@ Cells within the region, a ball about the target, take part. Nodes that they sha
 left out are fixed. Positions are stored from the target, so that single precision resolves
 nanometres.
 
-Layouts: nodes are sorted by x, y, z, so the three z-neighbours of a cell's stencil row are
-consecutive and `rows` holds only the first of each of the nine rows. Cell a owns 81 slots,
+Cells may be halved, and halved again, where the contact is small (`halving`); the nodes of finer
+cells at their border are tied to the coarser ones (`nodes`).
+
+Layouts: nodes of a level are sorted by x, y, z, so the three z-neighbours of a cell's stencil row
+are consecutive and `rows` holds only the first of each of the nine rows. Cell a owns 81 slots,
 `slot_index(a, n, c)`; a node finds its slots through `node_slots`.
 
 Fictitious masses make a time step of 1 stable: one point's stiffness has the largest eigenvalue
 lambda against its own mass split by the weights, so mass = stiffness / lambda holds for every sum
 of points, and a penalty spring k adds k / lambda, k in its stiffest direction
 (element-by-element bound; Belytschko and others, Nonlinear Finite Elements, 2nd ed., 6.2). The
-step is stable below 4.
+step is stable below 4. The mass of a tied node goes to its leaders by their shares, which sum to 1:
+the lumped matrix bounds the condensed one.
 """
 
 from __future__ import annotations
@@ -21,10 +25,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim.contact.grid.lattice_keys import cells_of, keys_of, look_up
-from sim.contact.grid.stencil import gradient_table, point_slopes, point_weights, weight_table
+from sim.contact.grid.stencil import gradient_table, point_weights, weight_table
+from sim.contact.region.halving import Halved, all_centres_mm, among, locate, owners_at, split
 from sim.contact.region.materials import moduli_MPa_at
+from sim.contact.region.nodes import STENCIL, Ties, number_nodes
 from sim.contact.region.quadrature import SurfacePoints
+from sim.contact.region.skin_readout import Readout, readout_of
 from workbench.core.base.errors import DesignError
 from workbench.core.design.design import Elastomer, Law
 from workbench.core.result.results import MaterialPoints, MembraneMesh
@@ -38,45 +44,16 @@ BLOCK = 32
 NO_SLOT = -1
 """Entry of `node_slots` where the lattice has no cell."""
 
-_STENCIL = np.stack(np.meshgrid(*[[-1, 0, 1]] * 3, indexing="ij"), axis=-1).reshape(27, 3)
-
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Region:
-    """The ball in which material takes part."""
+    """The ball in which material takes part, and where it is taken finely."""
 
     centre_mm: np.ndarray
     """Shape (3,)."""
     radius_mm: float
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Readout:
-    """How the displacement of a skin's V vertices follows from that of the nodes."""
-
-    count: int
-    """V."""
-    vertices: np.ndarray
-    """Vertices in active cells, shape (A,), int64; the others are at rest."""
-    cells: np.ndarray
-    """Their cells, shape (A,), int64."""
-    nodes: np.ndarray
-    """Their 27 nodes, shape (A, 27)."""
-    weights: np.ndarray
-    """Their 27 weights, shape (A, 27)."""
-    local: np.ndarray
-    """Their places in their cells, in cell edges from the centre, shape (A, 3)."""
-
-    def gradient(self, nodal_mm: np.ndarray, grid_mm: float) -> np.ndarray:
-        """Displacement gradient at the active vertices, shape (A, 3, 3)."""
-        slopes = point_slopes(self.local) / grid_mm
-        return np.einsum("anr,anc->arc", nodal_mm[self.nodes], slopes)
-
-    def displacement_mm(self, nodal_mm: np.ndarray) -> np.ndarray:
-        """Displacement of all vertices, shape (V, 3), float32, from that of nodes (N, 3)."""
-        found = np.zeros((self.count, 3), np.float32)
-        found[self.vertices] = np.einsum("an,anc->ac", self.weights, nodal_mm[self.nodes])
-        return found
+    halved: Halved = ()
+    """Cells of each level that give way to finer ones, well within the region."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -84,6 +61,9 @@ class Domain:
     """Arrays of the active region. C cells, N nodes, P surface points, A active vertices."""
 
     grid_mm: float
+    """Edge of a cell that is not halved."""
+    edges_mm: np.ndarray
+    """Edge of each cell [mm], shape (C,)."""
     target_mm: np.ndarray
     """Origin of all positions [mm], shape (3,)."""
     node_mm: np.ndarray
@@ -103,6 +83,8 @@ class Domain:
     """Fictitious masses [N/mm at unit time step], shape (N,)."""
     fixed: np.ndarray
     """Nodes shared with material that was left out, shape (N,), bool."""
+    ties: Ties
+    """Nodes of finer cells that follow those of coarser ones."""
     points: SurfacePoints
     """Surface points in the order of their cells."""
     point_local: np.ndarray
@@ -171,47 +153,56 @@ def build_domain(
     Raises:
         DesignError: If no material lies in the region.
     """
-    grid_mm = material_points.grid_mm
+    grid_mm, halved = material_points.grid_mm, region.halved
     skins = [mesh.outer, mesh.inner] if inner_moves else [mesh.outer]
-    skin_cells = [np.round(skin.points_mm / grid_mm).astype(np.int64) for skin in skins]
-    point_cells = np.round(surface_points.position_mm / grid_mm).astype(np.int64)
-    cells, fractions, left_out = _choose_cells(
-        material_points, np.concatenate([*skin_cells, point_cells]), region
+    spots = [locate(skin.points_mm / grid_mm, halved) for skin in skins]
+    at_points = locate(surface_points.position_mm / grid_mm, halved)
+    cells, fractions, left_out = _choose_cells(material_points, region)
+    touched = [
+        np.concatenate([spot.cell[spot.level == level] for spot in (*spots, at_points)])
+        for level in range(len(halved) + 1)
+    ]
+    touched[0] = touched[0][_within(touched[0] * grid_mm, region)]
+    levels, fractions = split(
+        cells, fractions, touched, halved=halved, grid_mm=grid_mm, outer=mesh.outer
     )
-    node_keys, rows = _number_nodes(cells)
-    cell_keys = keys_of(cells)
-    cut = np.isin(node_keys, keys_of(left_out[:, None] + _STENCIL))
-    node_mm = cells_of(node_keys) * grid_mm - region.centre_mm
-    volumes_mm3 = np.maximum(fractions, LEAST_FRACTION) * grid_mm**3 / 8.0
+    numbered = number_nodes(levels, halved)
+    rows, node_count = numbered.rows, sum(len(each) for each in numbered.places)
+    edges_mm = np.concatenate([np.full(len(c), grid_mm * 0.5**n) for n, c in enumerate(levels)])
+    near_left_out = among(numbered.places[0], left_out[:, None] + STENCIL)
+    fixed = np.zeros(node_count, bool)
+    fixed[: len(near_left_out)] = near_left_out
+    volumes_mm3 = np.maximum(fractions, LEAST_FRACTION) * edges_mm[:, None] ** 3 / 8.0
 
-    owner, found = look_up(cell_keys, keys_of(point_cells))
+    owner, found = owners_at(levels, at_points)
     order = np.flatnonzero(found)[np.argsort(owner[found], kind="stable")]
     points = surface_points.take(order)
     owners, starts = np.unique(owner[order], return_index=True)
-    local = points.position_mm / grid_mm - point_cells[order]
-    weights = point_weights(local)
+    local = at_points.local[order]
 
-    moduli_MPa = moduli_MPa_at(material, mesh.outer, cells * grid_mm)
-    stiffness = _eigenvalues(moduli_MPa)[:, None] / grid_mm**2
-    masses = _spread(volumes_mm3 @ weight_table() * (stiffness / EIGENVALUE), rows, len(node_keys))
-    spring = weights * (points.stiffness_N_mm / EIGENVALUE)[:, None]
-    masses += _spread(spring, rows[owner[order]], len(node_keys))
+    moduli_MPa = moduli_MPa_at(material, mesh.outer, all_centres_mm(levels, grid_mm))
+    stiffness = (_eigenvalues(moduli_MPa) / edges_mm**2)[:, None]
+    masses = _spread(volumes_mm3 @ weight_table() * (stiffness / EIGENVALUE), rows, node_count)
+    spring = point_weights(local) * (points.stiffness_N_mm / EIGENVALUE)[:, None]
+    masses += _spread(spring, rows[owner[order]], node_count)
 
+    nodes = stencil_nodes(rows)
     readouts = [
-        _readout(skin.points_mm / grid_mm, cells_of_skin, cell_keys, rows)
-        for skin, cells_of_skin in zip(skins, skin_cells, strict=True)
+        readout_of(spot, *owners_at(levels, spot), nodes=nodes, edges_mm=edges_mm) for spot in spots
     ]
     return Domain(
         grid_mm=grid_mm,
+        edges_mm=edges_mm,
         target_mm=region.centre_mm,
-        node_mm=node_mm,
+        node_mm=all_centres_mm(numbered.places, grid_mm) - region.centre_mm,
         rows=rows,
         volumes_mm3=volumes_mm3,
         moduli_MPa=moduli_MPa,
         linear=material.law is Law.LINEAR,
-        node_slots=_node_slots(rows, len(node_keys)),
-        masses=masses,
-        fixed=cut,
+        node_slots=_node_slots(rows, node_count),
+        masses=numbered.ties.hand_on(masses),
+        fixed=fixed,
+        ties=numbered.ties,
         points=points,
         point_local=local,
         owners=owners.astype(np.int32),
@@ -222,55 +213,26 @@ def build_domain(
     )
 
 
-def _readout(
-    place: np.ndarray, place_cells: np.ndarray, cell_keys: np.ndarray, rows: np.ndarray
-) -> Readout:
-    """Readout of vertices at `place` (V, 3), in cell edges, that lie in cells `place_cells`."""
-    owner, inside = look_up(cell_keys, keys_of(place_cells))
-    vertices = np.flatnonzero(inside)
-    local = place[vertices] - place_cells[vertices]
-    return Readout(
-        count=len(place),
-        vertices=vertices,
-        cells=owner[vertices],
-        nodes=stencil_nodes(rows[owner[vertices]]),
-        weights=point_weights(local),
-        local=local,
-    )
-
-
 def _choose_cells(
-    material_points: MaterialPoints, skin_cells: np.ndarray, region: Region
+    material_points: MaterialPoints, region: Region
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Active cells in order, their fractions, and material cells left out beside them."""
+    """Cells with material in the region, their fractions, and material cells left out beside."""
     grid_mm = material_points.grid_mm
     material = material_points.cells.astype(np.int64)
-
-    def within(cells: np.ndarray, margin_mm: float = 0.0) -> np.ndarray:
-        from_centre_mm = np.linalg.norm(cells * grid_mm - region.centre_mm, axis=1)
-        return from_centre_mm < region.radius_mm + margin_mm
-
-    active = within(material)
+    active = _within(material * grid_mm, region)
     if not active.any():
         raise DesignError(
             f"no material lies within {region.radius_mm:g} mm of the target",
             hint="raise contact.active_radius_mm or move press.target_mm",
             at="contact.active_radius_mm",
         )
-    bare = np.unique(keys_of(skin_cells[within(skin_cells)]))
-    bare = cells_of(bare[~np.isin(bare, keys_of(material))])
-    cells = np.concatenate([material[active], bare])
-    fractions = np.concatenate([material_points.fractions[active], np.zeros((len(bare), 8))])
-    order = np.argsort(keys_of(cells), kind="stable")
-    beside = ~active & within(material, 4.0 * grid_mm)
-    return cells[order], fractions[order].astype(np.float64), material[beside]
+    beside = ~active & _within(material * grid_mm, region, margin_mm=4.0 * grid_mm)
+    return material[active], material_points.fractions[active].astype(float), material[beside]
 
 
-def _number_nodes(cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Keys of all stencil nodes in order, and the first node of each row, shape (C, 9)."""
-    keys = keys_of(cells[:, None] + _STENCIL)
-    nodes, inverse = np.unique(keys.ravel(), return_inverse=True)
-    return nodes, inverse.reshape(-1, 27)[:, ::3].astype(np.int32)
+def _within(places_mm: np.ndarray, region: Region, *, margin_mm: float = 0.0) -> np.ndarray:
+    from_centre_mm = np.linalg.norm(places_mm - region.centre_mm, axis=1)
+    return from_centre_mm < region.radius_mm + margin_mm
 
 
 def _node_slots(rows: np.ndarray, node_count: int) -> np.ndarray:

@@ -13,6 +13,7 @@ import math
 import numpy as np
 
 from sim.contact.motion.approach import Approach
+from sim.contact.region.halving import Halved, locate
 from sim.contact.region.quadrature import Facets
 
 LONGEST_EDGE = 1.2
@@ -56,7 +57,7 @@ def path_distance_mm(places_mm: np.ndarray, approach: Approach) -> np.ndarray:
     """Least signed distance [mm] of undeformed places, (N, 3), over the path, shape (N,)."""
     nearest = np.full(len(places_mm), np.inf)
     for progress in path_samples(approach):
-        nearest = np.minimum(nearest, _distance_mm(places_mm, approach, float(progress)))
+        nearest = np.minimum(nearest, distance_mm(places_mm, approach, float(progress)))
     return nearest
 
 
@@ -67,7 +68,7 @@ def refine(facets: Facets, approach: Approach, *, grid_mm: float) -> Facets:
     most = len(facets.triangles) + MOST_ADDED
     while len(facets.triangles) < most:
         long = np.flatnonzero(facets.longest_edges_mm() > longest_mm)
-        centre, radius = _balls(facets.corners_mm()[long])
+        centre, radius = balls(facets.corners_mm()[long])
         gap = path_distance_mm(centre, approach) - radius
         near = long[gap < MARGIN * grid_mm]
         if not len(near):
@@ -79,28 +80,42 @@ def refine(facets: Facets, approach: Approach, *, grid_mm: float) -> Facets:
     return _refine_first_touch(facets, approach) if approach.deepest_mm else facets
 
 
+def refine_within(facets: Facets, halved: Halved, *, grid_mm: float) -> Facets:
+    """Halve the triangles in halved cells until each is as fine as the cells there."""
+    for level in range(1, len(halved) + 1):
+        longest_mm = LONGEST_EDGE * grid_mm * 0.5**level
+        while True:
+            centre = facets.corners_mm().mean(axis=1)
+            inside = locate(centre / grid_mm, halved).level >= level
+            long = np.flatnonzero(inside & (facets.longest_edges_mm() > longest_mm))
+            if not len(long):
+                break
+            facets = facets.halve(long)
+    return facets
+
+
 def _refine_first_touch(facets: Facets, approach: Approach) -> Facets:
     """Halve the triangles under the indenter in the first frame until enough corners are inside."""
     most = len(facets.triangles) + MOST_ADDED
     while len(facets.triangles) < most:
-        centre, radius = _balls(facets.corners_mm())
-        gap = _distance_mm(centre, approach, 1.0) - radius
+        centre, radius = balls(facets.corners_mm())
+        gap = distance_mm(centre, approach, 1.0) - radius
         under = np.flatnonzero((gap < 0.0) & (facets.longest_edges_mm() > FINEST_TOUCH_EDGE_MM))
         corners = np.unique(facets.triangles[gap < 0.0])
-        inside = _distance_mm(facets.points_mm[corners], approach, 1.0) < 0.0
+        inside = distance_mm(facets.points_mm[corners], approach, 1.0) < 0.0
         if np.count_nonzero(inside) >= FEWEST_TOUCHING or not len(under):
             break
         facets = facets.halve(under)
     return facets
 
 
-def _balls(corners_mm: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def balls(corners_mm: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Centroids [mm], (T, 3), and radii [mm], (T,), of balls that hold triangles."""
     centre = corners_mm.mean(axis=1)
     return centre, np.linalg.norm(corners_mm - centre[:, None], axis=2).max(axis=1)
 
 
-def _distance_mm(places_mm: np.ndarray, approach: Approach, progress: float) -> np.ndarray:
+def distance_mm(places_mm: np.ndarray, approach: Approach, progress: float) -> np.ndarray:
     """Signed distance of places, (N, 3), at a pose; for those beyond its reach a lower bound."""
     origin, rotation = approach.pose(progress)
     body = places_mm - origin

@@ -19,6 +19,9 @@ from workbench.core.base.errors import SolveError
 
 RAMP_SUBSTEPS_PER_MM = 100.0
 """Substeps for the object to move 1 mm without a prediction."""
+RUBBING_SUBSTEPS_PER_MM = 400.0
+"""The same where the object rubs and rests between: a skin that is overrun is anchored too far in,
+and slides back. A ball 1 mm deep at mu .3 read 2.5 % low at 100, .9 % at 400, and took as long."""
 LEAVING = 0.5
 """Share of those substeps for an object that leaves: it cannot push the skin too far."""
 FREED_DAMPING = 0.1
@@ -228,7 +231,9 @@ class Run:
         travel_mm = frame_mm / self.increments
         if travel_mm < STILL_MM:
             return 0
-        per_mm = RAMP_SUBSTEPS_PER_MM * (LEAVING if self._leaves() else 1.0)
+        rubs = self.problem.material.friction > 0.0 and not self.problem.whole_frames
+        per_mm = RUBBING_SUBSTEPS_PER_MM if rubs else RAMP_SUBSTEPS_PER_MM
+        per_mm *= LEAVING if self._leaves() else 1.0
         count = max(SHORTEST_RAMP, math.ceil(per_mm * travel_mm)) * 2**self.attempt
         return -(-count // STEPS) * STEPS
 

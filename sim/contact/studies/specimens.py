@@ -5,6 +5,8 @@ Skins are regular grids on the exact surfaces.
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 
 from sim.contact.region.filling import fill
@@ -49,21 +51,31 @@ def finger(
     cylinder_mm: float = 27.0,
     grid_mm: float = 0.5,
     skin_mm: float = 0.4,
+    shift_mm: tuple[float, float, float] = (0.0, 0.0, 0.0),
 ) -> Specimen:
-    """A cylinder with a hemispherical tip, its base at z = 0, bonded on the inside."""
+    """A cylinder with a hemispherical tip, its base at z = 0, bonded on the inside.
+
+    It may be shifted against the lattice.
+    """
 
     def radial(x: np.ndarray) -> np.ndarray:
         over = np.maximum(x[..., 2] - cylinder_mm, 0.0)
         return np.sqrt(x[..., 0] ** 2 + x[..., 1] ** 2 + over**2)
 
-    def distance(x: np.ndarray) -> np.ndarray:
+    def distance(place: np.ndarray) -> np.ndarray:
+        x = place - np.array(shift_mm)
         wall = np.abs(radial(x) - (radius_mm - 0.5 * wall_mm)) - 0.5 * wall_mm
         return np.maximum(wall, -x[..., 2])
 
-    low = np.array([-radius_mm, -radius_mm, 0.0])
-    high = np.array([radius_mm, radius_mm, cylinder_mm + radius_mm])
-    outer = finger_skin(radius_mm, cylinder_mm, skin_mm)
-    inner = finger_skin(radius_mm - wall_mm, cylinder_mm, skin_mm)
+    low = np.array([-radius_mm, -radius_mm, 0.0]) + shift_mm
+    high = np.array([radius_mm, radius_mm, cylinder_mm + radius_mm]) + shift_mm
+    outer, inner = (
+        dataclasses.replace(skin, points_mm=skin.points_mm + np.array(shift_mm))
+        for skin in (
+            finger_skin(radius_mm, cylinder_mm, skin_mm),
+            finger_skin(radius_mm - wall_mm, cylinder_mm, skin_mm),
+        )
+    )
     return skins_only(outer=outer, inner=inner, cavity=inner), fill(distance, low, high, grid_mm)
 
 

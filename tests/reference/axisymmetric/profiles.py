@@ -48,6 +48,20 @@ def ball(radius_mm: float) -> Profile:
     return near
 
 
+def torus(ring_mm: float, tube_mm: float, dome_mm: float) -> Profile:
+    """A ring that lies flat, counted from where it first touches a dome of radius `dome_mm`.
+
+    Its lowest points are then sqrt((dome + tube)^2 - ring^2) - tube over the dome's centre.
+    """
+    tube = ball(tube_mm)
+    sunk_mm = dome_mm - (math.sqrt((dome_mm + tube_mm) ** 2 - ring_mm**2) - tube_mm)
+
+    def near(places_mm: np.ndarray) -> Near:
+        return tube(places_mm + np.array([-ring_mm, sunk_mm]))
+
+    return near
+
+
 def cone(half_angle_deg: float, tip_mm: float) -> Profile:
     """A cone without a base whose apex is a sphere of radius `tip_mm` that touches its flank."""
     angle = math.radians(half_angle_deg)

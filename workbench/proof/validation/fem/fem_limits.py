@@ -92,10 +92,10 @@ def _words(thing: str, mu: float, depth_mm: float) -> str:
     return f"{thing} on the tip of the finger, {depth_mm:g} mm deep, friction {mu:g}"
 
 
-def limit_N(thing: str, mu: float, depth_mm: float) -> float:
-    """The converged force [N] of an object on the tip."""
+def limit_N(thing: str, mu: float, depth_mm: float, *, body: str = "tip") -> float:
+    """The converged force [N] of an object on the tip, or on another body of the record."""
     friction = "0" if mu == 0.0 else f"{mu:g}"
-    limits = _record()["cases"][f"tip_{thing}_mu_{friction}"]["limits"]
+    limits = _record()["cases"][f"{body}_{thing}_mu_{friction}"]["limits"]
     return next(one["force_N"] for one in limits if one["depth_mm"] == depth_mm)
 
 

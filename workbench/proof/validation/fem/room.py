@@ -1,11 +1,11 @@
 """FEM: our finite elements beside exact answers, themselves, and recorded figures of others.
 
 `rows` takes some minutes; `fine_rows` has what takes longer, the finest mesh and cases of the
-robustness matrix solved anew. CalculiX itself is asked where `ccx` is installed. The contact solver
-is pressed beside our finite elements (`fem_mpm`), and compared with figures of an independent
-quasi-static solver (mean-dilatation hexahedra, hard contact, Coulomb 0.3) and of CalculiX (C3D8I)
-on the finger at 45 degrees; the null there is the frictionless force: a solver without friction
-would score it.
+robustness matrix solved anew. CalculiX itself is asked where `ccx` is installed. The contact
+solver is pressed beside our finite elements (`fem_mpm`) and limits of small contacts (`tips`), and
+compared with figures of an independent quasi-static solver (mean-dilatation hexahedra, hard
+contact, Coulomb 0.3) and of CalculiX (C3D8I) on the finger at 45 degrees; the null there is the
+frictionless force: a solver without friction would score it.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from workbench.proof.validation.fem import (
     fem_mpm,
     fem_paths,
     sliding_shares,
+    tips,
 )
 
 FEM_NORMAL_N = {"0.30 mm hexahedra": 1.291, "CalculiX C3D8I": 1.276}
@@ -38,6 +39,7 @@ def rows() -> list[Row]:
         *fem_mpm.rows(),
         *fem_limits.rows(),
         *sliding_shares.rows(),
+        *tips.rows(),
         *fem_matrix.recorded_rows(),
         *_recorded(),
         *(calculix.rows() if calculix.installed() else ()),
