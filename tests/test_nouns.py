@@ -63,6 +63,7 @@ NOUNS = {
             "workbench/report/fem_case.py",
             "workbench/learning/dataset/solving.py",
             "workbench/live/image_preview.py",
+            "workbench/planning/advised.py",
             "ui/panels/simulate/network.py",
         ),
     ),
