@@ -31,8 +31,8 @@ from workbench.proof.validation.fem.fem_presses import FRAMES, Case, finger, sol
 
 KINDS = (IndenterKind("sphere"), IndenterKind("cylinder_end"))
 FORCE_LIMIT = 0.03
-"""Of the error of the force: a grid of a quarter wall reads 2.2 % less of a ball and 2.8 % less of a
-flat end than the limits, which are known to 1.4 and 2.4 %."""
+"""Of the error of the force: a grid of a quarter wall reads 2.2 % less of a ball and 2.8 % less of
+a flat end than the limits, which are known to 1.4 and 2.4 %."""
 SHAPE_LIMIT = 0.03
 MOVED_MM = 0.1
 DEPTH_MM = 1.0
