@@ -12,7 +12,7 @@ from itertools import groupby
 from typing import Any
 
 from docs.trust_record import records
-from workbench.proof.benchmarks.records import Record
+from workbench.proof.benchmarks.records import RoomRecord
 from workbench.proof.judge import Judge, judge
 
 ROOMS = {
@@ -47,9 +47,13 @@ MEANING = {
 }
 HEAD = """# How far to trust it
 
-Made by `make docs` from records of `workbench validate ROOM --json`; measure them on your own
-machine by the same command, which exits with 1 if a row is not met. `python -m docs.trust_record
-ROOM rows.json` keeps a record in `docs/validation`, where every single row stands.
+Made by `make docs` from records of `workbench validate ROOM`; measure them on your own
+machine by the same command, which exits with 1 if a row is not met. `--record
+docs/validation/ROOM.json` keeps a record, where every single row stands.
+
+A record is *stale* once the code that its rows rest on computes otherwise: its figures are then
+those of an earlier program. So is one that does not say which code made it. A row is stale where it
+rests on such a record, and is not met.
 
 *Null* is what a trivial answer scores there (no friction, no displacement, the background alone):
 a row that is no better than its null shows nothing. Rows that are only *stated* have no limit. Of
@@ -87,19 +91,20 @@ def page() -> str:
     return "\n".join(parts)
 
 
-def _missed(known: Sequence[Record]) -> str:
+def _missed(known: Sequence[RoomRecord]) -> str:
     """Every row that is beyond its limit, or could not be measured."""
     lines = ["## Not met", "", "Rows of the records that are beyond their limits:", ""]
     for record in known:
         for row in record.rows:
             if not row["ok"]:
                 measured, asked = _measured(row, row["unit"]), _asked(row)
+                measured = f"stale, {measured}" if row.get("stale") else measured
                 line = f"- `{row['name']}` of `{record.room}`: {measured}, asked {asked}"
                 lines.append(f"{line}; {row['case']}".replace("|", "\\|"))
     return "\n".join([*lines, ""])
 
 
-def _rooms(known: Sequence[Record]) -> str:
+def _rooms(known: Sequence[RoomRecord]) -> str:
     made = {record.room: record for record in known}
     rows = []
     for room, (words, takes) in ROOMS.items():
@@ -107,22 +112,31 @@ def _rooms(known: Sequence[Record]) -> str:
         if room in made:
             record = made[room]
             good = sum(row["ok"] for row in record.rows)
-            state = f"[{good} of {len(record.rows)} rows met](#room-{room})"
+            old = ", **stale**" if record.kept.stale() else ""
+            state = f"[{good} of {len(record.rows)} rows met](#room-{room}){old}"
         rows.append(f"| `{room}` | {words} | {takes} | {state} |")
     head = ["## Rooms", "", "| room | what it measures | takes | record |", "|---|---|---|---|"]
     return "\n".join([*head, *rows, ""])
 
 
-def _room(record: Record) -> str:
+def _room(record: RoomRecord) -> str:
     lines = [
         f"## Room `{record.room}`",
         "",
         f"Version {record.version}, {record.made}, {record.device}.",
+        *_doubt(record),
         "",
         "| row | judged by | met | nearest to its limit | asked | null | case |",
         "|---|---|---|---|---|---|---|",
     ]
     return "\n".join([*lines, *_lines(record.rows), ""])
+
+
+def _doubt(record: RoomRecord) -> Iterator[str]:
+    """That the rows are those of another program, and what measures them anew."""
+    if record.kept.stale():
+        command = f"workbench validate {record.room} --record docs/validation/{record.room}.json"
+        yield f"**Stale**: not measured with the code of today; measure it anew: `{command}`"
 
 
 def _lines(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
@@ -137,6 +151,8 @@ def _lines(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
         group = list(members)
         worst = max(group, key=_strain)
         met = f"{sum(row['ok'] for row in group)} of {len(group)}"
+        old = sum(row.get("stale", False) for row in group)
+        met += f", {old} stale" if old else ""
         case = worst["case"].replace("|", "\\|")
         name, by, unit, _ = key
         yield (

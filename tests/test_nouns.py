@@ -62,6 +62,7 @@ NOUNS = {
             "workbench/report/thumbnails.py",
             "workbench/report/fem_case.py",
             "workbench/live/image_preview.py",
+            "workbench/planning/advised.py",
             "ui/panels/simulate/network.py",
         ),
     ),

@@ -38,6 +38,8 @@ FARTHER = 1.05
 NEEDED = ("membrane", "young_MPa", "poisson", "friction", "law", "indenters", "size_mm", "depth_mm",
           "shear_mm", "grid_mm")  # fmt: skip
 """Keys without which a card leaves something open."""
+BETWEEN = "; "
+"""Between the reasons of a notice."""
 KNOWN_STROKES = (StrokeKind.PRESS, StrokeKind.SLIDE, StrokeKind.HOLD)
 """What data sets are made of: presses, slides, and rest."""
 
@@ -60,6 +62,8 @@ class Acquaintance:
 
     reasons: tuple[str, ...] = ()
     """What they do not know, in words; empty when they know it."""
+    covered: tuple[str, ...] = ()
+    """Those of them whose error is measured on held-out presses: objects of an unseen kind."""
     factor: float = 1.0
     """What the network's forces and stresses are to be multiplied by."""
     young_ratio: float = 1.0
@@ -89,17 +93,21 @@ def acquaintance(
         largest_mm: Largest displacement of the press [mm], once that is known.
     """
     ratio, note, open_reasons = _stiffness(card, target, membrane, material)
+    covered = tuple(_of_kind(card, case.indenter))
     reasons = (
         *_missing(card),
         *_of_membrane(card, membrane),
         *open_reasons,
         *_of_material(card, material),
+        *covered,
         *_of_object(card, case.indenter),
         *_of_path(card, case.press),
         *_of_solver(card, case.settings, largest_mm),
     )
     factor = 1.0 if target is Target.DISPLACEMENT else ratio
-    return Acquaintance(reasons=reasons, factor=factor, young_ratio=ratio, note=note)
+    return Acquaintance(
+        reasons=reasons, covered=covered, factor=factor, young_ratio=ratio, note=note
+    )
 
 
 def _missing(card: Mapping[str, Any]) -> Iterator[str]:
@@ -161,13 +169,16 @@ def _of_material(card: Mapping[str, Any], material: Elastomer) -> Iterator[str]:
         yield "the membrane has parts of another elastomer, trained without"
 
 
-def _of_object(card: Mapping[str, Any], indenter: Indenter) -> Iterator[str]:
+def _of_kind(card: Mapping[str, Any], indenter: Indenter) -> Iterator[str]:
     kinds = card.get("indenters")
-    name = indenter.kind.value.replace("_", " ")
+    if indenter.mesh is None and kinds is not None and indenter.kind.value not in kinds:
+        name = indenter.kind.value.replace("_", " ")
+        yield f"the object is of a kind that training never showed: {name}"
+
+
+def _of_object(card: Mapping[str, Any], indenter: Indenter) -> Iterator[str]:
     if indenter.mesh is not None:
         yield "the object comes from a file, trained on none such"
-    elif kinds is not None and indenter.kind.value not in kinds:
-        yield f"the object is of a kind that training never showed: {name}"
     known = _unlike(card, "size_mm", indenter.size_mm)
     if known:
         yield f"the object is {indenter.size_mm:g} mm wide, trained on {known} mm"

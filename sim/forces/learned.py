@@ -26,7 +26,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sim.forces.acquaintance import Acquaintance
+from sim.forces.acquaintance import BETWEEN, Acquaintance
 from sim.forces.network.inputs import given_field
 from sim.forces.network.spec import Target
 from sim.forces.network.weights import NetworkWeights
@@ -41,9 +41,6 @@ from workbench.core.result.sensing import Contact
 
 if TYPE_CHECKING:
     from sim.forces.network.steady import SteadyPredictor
-
-REMEDY = "Trust the contact solver, which is shown as well"
-SOLVE = ", or solve by finite elements"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -80,7 +77,6 @@ def learned_forces(
     source: MembraneMesh,
     networks: Pair,
     *,
-    solvable: bool = True,
     device: str = "cpu",
     monitor: Monitor = silent,
 ) -> ForceField:
@@ -91,7 +87,6 @@ def learned_forces(
         contact: What the contact solver found.
         source: The same membrane at the spacing of the weights.
         networks: Their weights.
-        solvable: Whether finite elements take the press, so that they are a remedy.
         device: Where PyTorch computes.
         monitor: Told the frames; raises `Cancelled` to stop.
 
@@ -116,12 +111,11 @@ def learned_forces(
     moved_mm = fields[1] if displacement is not None else given_mm
     found = _force_field(source.outer, contact, force_N, moved_mm, seconds)
     reasons = dict.fromkeys(r for known in used for r in known.acquaintance.reasons)
-    remedy = f"{REMEDY}{SOLVE if solvable else ''}"
     found = dataclasses.replace(
         found,
         solver=f"{' and '.join(known.name for known in used)} on {device}, "
         f"{1e3 * np.median(seconds):.0f} ms a frame",
-        notice=f"{'; '.join(reasons)}. {remedy}" if reasons else "",
+        notice=BETWEEN.join(reasons),
         note=force.acquaintance.note,
     )
     monitor(1.0, "carrying the forces to the skin")

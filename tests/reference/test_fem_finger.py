@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 from pathlib import Path
 
@@ -29,6 +30,7 @@ from workbench.proof.validation.fem.fem_presses import (
     mirrored_finger,
     solved,
 )
+from workbench.system.record import Record
 
 
 @pytest.mark.slow
@@ -97,7 +99,7 @@ def test_the_matrix_is_eight_objects_at_four_places_of_three_membranes() -> None
     assert volume == pytest.approx(54.0)
 
 
-def record_of(tmp_path: Path, **changes: object) -> Path:
+def record_of(tmp_path: Path, **changes: object) -> Record:
     told = {
         "ok": True,
         "why": "",
@@ -107,22 +109,29 @@ def record_of(tmp_path: Path, **changes: object) -> Path:
         "reaction_N": [[0, 0, 1]],
     }
     record: dict[str, object] = {
+        "code": fem_matrix.RECORD.code(),
         "version": "0",
         "made": "2000-01-01",
         "conditions": fem_matrix.conditions(),
         "bodies": {family: body_digest(family) for family in FAMILIES},
         "cases": {case.name: told for case in every_case()},
     }
-    path = tmp_path / "record.json"
-    path.write_text(json.dumps(record | changes))
-    return path
+    kept = kept_in(tmp_path)
+    kept.path.write_text(json.dumps(record | changes))
+    return kept
+
+
+def kept_in(tmp_path: Path, name: str = "record.json") -> Record:
+    """The record of the matrix in another place."""
+    return dataclasses.replace(fem_matrix.RECORD, path=tmp_path / name)
 
 
 def test_without_a_record_the_rows_fail_and_say_why(tmp_path: Path) -> None:
-    rows = fem_matrix.recorded_rows(tmp_path / "none.json")
+    none = kept_in(tmp_path, "none.json")
+    rows = fem_matrix.recorded_rows(none)
     assert [row.ok for row in rows] == [False] * 3
-    assert "there is no record" in rows[0].case
-    assert not any(row.ok for row in fem_matrix.repeated_rows(tmp_path / "none.json"))
+    assert "there is none" in rows[0].case
+    assert not any(row.ok for row in fem_matrix.repeated_rows(none))
 
 
 def test_a_record_of_another_body_is_none(tmp_path: Path) -> None:
@@ -136,37 +145,37 @@ def test_a_record_of_another_body_is_none(tmp_path: Path) -> None:
 
 def test_times_on_a_gpu_are_not_taken_for_those_of_a_processor(tmp_path: Path) -> None:
     """A family that a GPU solved has no such row; nothing fails for it."""
-    path = record_of(tmp_path)
-    record = json.loads(path.read_text())
+    kept = record_of(tmp_path)
+    path, record = kept.path, kept.figures()
     for name, told in record["cases"].items():
         if name.startswith("trunk"):
             told["solver"] = "dense factors on the GPU"
     path.write_text(json.dumps(record))
-    rows = fem_matrix.recorded_rows(path)
+    rows = fem_matrix.recorded_rows(kept)
     assert all(row.ok for row in rows)
     timed = [row.case for row in rows if row.name == "fem_matrix_cpu"]
     assert [case.split(":")[0] for case in timed] == ["finger", "paw"]
 
 
 def test_a_damaged_record_is_refused(tmp_path: Path) -> None:
-    path = tmp_path / "record.json"
+    kept = kept_in(tmp_path)
     for text in ("[1, 2", "[]", '{"cases": {}}'):
-        path.write_text(text)
+        kept.path.write_text(text)
         with pytest.raises(StoreError):
-            fem_matrix.read_record(path)
+            fem_matrix.read_record(kept)
 
 
 def test_a_full_record_passes_and_a_poor_one_does_not(tmp_path: Path) -> None:
     """31 of 32 is enough, 30 are not; what failed is named."""
-    path = record_of(tmp_path)
-    assert all(row.ok for row in fem_matrix.recorded_rows(path))
-    record = json.loads(path.read_text())
+    kept = record_of(tmp_path)
+    assert all(row.ok for row in fem_matrix.recorded_rows(kept))
+    path, record = kept.path, kept.figures()
     names = [case.name for case in every_case() if case.family == "finger"]
     for count, good in ((1, True), (2, False)):
         for name in names[:count]:
             record["cases"][name] = {"ok": False, "why": "stuck"}
         path.write_text(json.dumps(record))
-        row = next(row for row in fem_matrix.recorded_rows(path) if row.name == "fem_matrix")
+        row = next(row for row in fem_matrix.recorded_rows(kept) if row.name == "fem_matrix")
         assert row.value == 32 - count
         assert row.ok is good
         assert f"{names[0]}: stuck" in row.case
@@ -178,14 +187,24 @@ def test_a_record_of_other_settings_is_refused(tmp_path: Path) -> None:
     assert "other settings" in rows[0].case
 
 
+def test_a_record_of_other_code_is_stale(tmp_path: Path) -> None:
+    """Its figures stand, and no row is met; a runner does not mix them with those of today."""
+    kept = record_of(tmp_path, code="else", version=VERSION)
+    rows = fem_matrix.recorded_rows(kept)
+    assert all(row.stale and not row.ok and row.value is not None for row in rows)
+    assert "--jobs 16 --out FILE" in rows[0].case
+    with pytest.raises(StoreError, match="other code"):
+        fem_matrix.solve_all([], kept.path, 1, every_case()[0].hex_mm)
+
+
 def test_a_runner_goes_on_where_it_was_stopped(tmp_path: Path) -> None:
     """Cases that the file holds are not solved again; a file of other settings is not touched."""
-    path = record_of(tmp_path, version=VERSION)
+    path = record_of(tmp_path, version=VERSION).path
     before = path.read_bytes()
     record = fem_matrix.solve_all(every_case(), path, 1, every_case()[0].hex_mm)
     assert len(record["cases"]) == 96
     assert path.read_bytes() == before
-    with pytest.raises(StoreError, match="other settings"):
+    with pytest.raises(StoreError, match="other code, settings"):
         fem_matrix.solve_all([], path, 1, DRAFT_MM)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 from pathlib import Path
 
@@ -17,7 +18,8 @@ CPU = {"finger_sheared_N": np.array([[0.0, 0.0, 2.0]]), "block_N": np.array([[0.
 @pytest.fixture
 def without_cuda(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
     path = tmp_path / "cuda_reference.json"
-    monkeypatch.setattr(cuda_reference, "FILE", path)
+    moved = dataclasses.replace(cuda_reference.RECORD, path=path)
+    monkeypatch.setattr(cuda_reference, "RECORD", moved)
     monkeypatch.setattr(cuda_reference, "cuda_count", lambda: 0)
     monkeypatch.setattr(repeat, "elsewhere", lambda **_: CPU)
     return path
@@ -25,7 +27,7 @@ def without_cuda(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
 
 def test_difference_is_the_largest_over_its_own_press(without_cuda: Path) -> None:
     """Forces 2 against 2 and (3, 4) against (3, 5): 1 over 5 = 0.2."""
-    record = {"device": "a card", "date": "2020-01-01", "finger_sheared_N": [[0.0, 0.0, 2.0]]}
+    record = {"device": "a card", "made": "2020-01-01", "finger_sheared_N": [[0.0, 0.0, 2.0]]}
     without_cuda.write_text(json.dumps({**record, "block_N": [[0.0, 3.0, 5.0]]}))
     assert cuda_reference.difference() == pytest.approx(0.2)
     assert "a card, 2020-01-01" in cuda_reference.how()
@@ -33,7 +35,7 @@ def test_difference_is_the_largest_over_its_own_press(without_cuda: Path) -> Non
 
 def test_without_cuda_and_file_there_is_no_difference(without_cuda: Path) -> None:
     """The message names the file, the hint the command that writes it."""
-    with pytest.raises(StoreError, match=r"cuda_reference\.json is missing") as raised:
+    with pytest.raises(StoreError, match=r"cuda_reference\.json cannot be read") as raised:
         cuda_reference.difference()
     assert "python -m workbench.proof.validation.contact.cuda_reference" in raised.value.hint
     assert "no figures" in cuda_reference.how()

@@ -26,7 +26,7 @@ from workbench.learning.evaluation.speed import efficiency, efficiency_html
 from workbench.pipeline import shipped
 from workbench.pipeline.weight_files import save_weights
 from workbench.proof.benchmarks.forces import shell
-from workbench.proof.benchmarks.records import read_record, shipped_records, write_record
+from workbench.proof.benchmarks.records import kept_at, read_record, shipped_records, write_record
 from workbench.proof.row import failed, stated
 from workbench.proof.validation.learned import learned_speed, learned_stiffness
 from workbench.proof.validation.learned import room as learned
@@ -283,7 +283,9 @@ def record(place: Path, kind: str, fps: tuple[float, ...], monkeypatch: pytest.M
     monkeypatch.setattr(records, "device_name", lambda kind: f"a {kind} device")
     names = ("network_1k", "network_5k", "network_25k")
     rows = [stated(n, "c", v, unit="1/s") for n, v in zip(names, fps, strict=False)]
-    write_record(place, "efficiency", [*rows, failed("image_320", "c", unit="1/s", why="no GPU")])
+    rows.append(failed("image_320", "c", unit="1/s", why="no GPU"))
+    source = "workbench.proof.benchmarks.timing"
+    write_record(kept_at(place, "bench", [source]), "efficiency", lambda: rows)
 
 
 def test_frame_rates_of_a_gpu_come_from_its_record(
@@ -301,6 +303,10 @@ def test_frame_rates_of_a_gpu_come_from_its_record(
     assert [row.ok for row in rows] == [True, False, False]
     assert "a cuda device" in rows[0].case and rows[0].null == 100.0
     assert "not in the record" in rows[2].case
+    older = json.loads((place / "gpu.json").read_bytes()) | {"code": "else"}
+    (place / "gpu.json").write_text(json.dumps(older))
+    row = learned_speed.recorded_rows(place)[0]
+    assert row.stale and not row.ok and "made by other code" in row.case
     (place / "gpu.json").write_text("{}")
     assert not any(row.ok for row in learned_speed.recorded_rows(place))
     with pytest.raises(StoreError, match=r"gpu\.json cannot be read"):

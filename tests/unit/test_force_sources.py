@@ -140,6 +140,14 @@ def test_without_finite_elements_the_network_is_held_against_the_contact_solver(
     assert "Note: E doubled" in text
 
 
+def test_advice_stands_below_the_table() -> None:
+    """Where no doubt above it says the same."""
+    found = {Source.MPM: MPM, Source.LEARNED: LEARNED}
+    text = sources_text(found, 0, SKIN, advice="Nearest: learned.")
+    assert text.endswith("<small>Nearest: learned.</small>")
+    assert "Nearest" not in sources_text(found, 0, SKIN)
+
+
 def test_what_is_of_an_earlier_press_is_marked() -> None:
     """Each by what would bring it up to date."""
     text = sources_text(
@@ -156,8 +164,9 @@ def test_what_is_of_an_earlier_press_is_marked() -> None:
 
 def test_a_doubt_is_plain_text_whatever_it_holds() -> None:
     """The name of a file of weights is somebody else's."""
-    text = doubt_text("<script> is soft")
+    text = doubt_text("<script> is soft", "Nothing was measured")
     assert "Not known to the network" in text and "<script>" not in text
+    assert text.endswith("\n\nNothing was measured")
     badge = legend("Pressure", 1.0, "kPa", (1, 2, 3), badge="not <known>")
     assert "not &lt;known&gt;" in badge
     assert "padding" not in legend("Pressure", 1.0, "kPa", (1, 2, 3))

@@ -24,7 +24,7 @@ def _rows() -> list[Row]:
 
 def test_rows_say_what_they_are_judged_by() -> None:
     """A row that nobody entered has none; the others their judge."""
-    assert [row.against for row in judged(_rows)] == ["itself", "outside reference", None]
+    assert [row.against for row in judged(_rows())] == ["itself", "outside reference", None]
     with pytest.raises(KeyError):
         judge("nobody_entered_this")
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import dataclasses
 import enum
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 from workbench.proof.row import Row
 
@@ -40,20 +40,23 @@ learned_sparse_equals_dense exact_background cad_volume outer_area skin_on_surfa
 coating_reciprocity coating_energy coating_head_on led_flux led_share vignetting plane_closed_form
 """
 _OUTSIDE = """
-finger_45 published_pad published_mode sheared_sphere shear_force finger_45_normal_force refinement
-refinement_calculix fem_limit mpm_limit fem_error_estimate
+published_pad finger_45_normal_force refinement refinement_calculix fem_limit mpm_limit
+fem_error_estimate
 calculix calculix_same_mesh mitsuba mitsuba_product mitsuba_octant
 mitsuba_recorded mitsuba_recorded_places mitsuba_recorded_error mitsuba_recorded_whole
 mitsuba_record_again membrane_shape membrane_shape_95 indenter_shape idle_photo idle_photo_structure
 idle_photo_balance idle_photo_oval
 """
-_LIMIT = "mpm_against_fem_limit mpm_refinement fem_refinement"
+_LIMIT = """
+finger_45 published_mode mpm_against_fem_limit mpm_refinement fem_refinement
+"""
 _ITSELF = """
 slip_share slip_share_mesh gross_slip slip_ratio_global
 region_error residual frame_size mirror mirror_symmetry rotation increments submodel submodel_worst
-lattice_shift determinism cpu_gpu mpm_against_fem direct_table table_brightness contact_tangent
-friction_tangent contact_energy raster newton_projection frame_depth published_depth map_sensitivity
-surface_detail ceiling hybrid table direct linear plane_target plane_source
+lattice_shift determinism cpu_gpu mpm_against_fem sheared_sphere shear_force direct_table
+table_brightness contact_tangent friction_tangent contact_energy raster newton_projection
+frame_depth published_depth map_sensitivity surface_detail ceiling hybrid table direct linear
+plane_target plane_source
 plane_normal geodesic rest_image gain
 gain_value fem_matrix_repeated surface_volume hex_volume lattice_volume
 """
@@ -71,6 +74,7 @@ JUDGES = {
 """By name of the row."""
 BEGINNINGS = {
     "learned_inference_": Judge.NONE,
+    "learned_advice": Judge.NONE,
     "learned_": Judge.ITSELF,
     "labels_": Judge.ITSELF,
     "hex_": Judge.NONE,
@@ -81,7 +85,8 @@ BEGINNINGS = {
 }
 """By the beginning of names of which there is one for each family, split or size."""
 BY_CASE = {
-    ("finger_45", "no finite-element figure is recorded"): Judge.LIMIT,
+    ("finger_45_normal_force", "on record"): Judge.LIMIT,
+    ("mpm_against_fem", "normal force"): Judge.LIMIT,
     ("rotation", "moment that resists"): Judge.EXACT,
     ("rotation", "every point sliding"): Judge.EXACT,
 }
@@ -104,9 +109,9 @@ def judge(name: str, case: str = "") -> Judge:
     return JUDGES[name]
 
 
-def judged(rows: Callable[[], Sequence[Row]]) -> list[Row]:
-    """The rows of a room, each with what it is judged by; None of one that nobody entered."""
-    return [dataclasses.replace(row, against=_known(row)) for row in rows()]
+def judged(rows: Sequence[Row]) -> list[Row]:
+    """Rows, each with what it is judged by; None of one that nobody entered."""
+    return [dataclasses.replace(row, against=_known(row)) for row in rows]
 
 
 def _known(row: Row) -> str | None:

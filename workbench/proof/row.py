@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import Any, TypedDict, Unpack, overload
 
 from workbench.core.base.errors import WorkbenchError
+from workbench.system.record import Record
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -38,6 +39,8 @@ class Row:
     ok: bool = False
     against: str | None = None
     """What the row is judged by, `itself` for the product another way: see `proof.judge`."""
+    stale: bool = False
+    """Whether it rests on a record that other code made: never ok then."""
 
 
 Measurement = float | Callable[[], float]
@@ -49,6 +52,8 @@ class Bounds(TypedDict, total=False):
 
     null: Measurement | None
     ceiling: float | None
+    record: Record | None
+    """On which the row rests, for its reference or for its value; a stale one fails the row."""
 
 
 class Scale(Bounds, total=False):
@@ -76,7 +81,8 @@ def compared(
         return failed(name, case, unit=unit, why=problem.message)
     relative = scale.get("relative", True)
     error = abs(value - reference) / (abs(reference) if relative else 1.0)
-    return _told(
+    return _vouched(
+        scale.get("record"),
         Row(
             name=name,
             case=case,
@@ -90,7 +96,7 @@ def compared(
             limit=limit,
             sense="max",
             ok=math.isfinite(error) and error <= limit,
-        )
+        ),
     )
 
 
@@ -110,7 +116,8 @@ def bounded(
     except WorkbenchError as problem:
         return failed(name, case, unit=unit, why=problem.message)
     good = value <= limit if sense == "max" else value >= limit
-    return _told(
+    return _vouched(
+        bounds.get("record"),
         Row(
             name=name,
             case=case,
@@ -121,7 +128,7 @@ def bounded(
             limit=limit,
             sense=sense,
             ok=math.isfinite(value) and good,
-        )
+        ),
     )
 
 
@@ -139,7 +146,8 @@ def stated(
         value, null = _measure(value), _measure(bounds.get("null"))
     except WorkbenchError as problem:
         return failed(name, case, unit=unit, why=problem.message)
-    return _told(
+    return _vouched(
+        bounds.get("record"),
         Row(
             name=name,
             case=case,
@@ -149,7 +157,7 @@ def stated(
             null=null,
             ceiling=bounds.get("ceiling"),
             ok=math.isfinite(value),
-        )
+        ),
     )
 
 
@@ -181,6 +189,14 @@ def listening(listener: Callable[[Row], None]) -> Iterator[None]:
         yield
     finally:
         _LISTENER.reset(token)
+
+
+def _vouched(record: Record | None, row: Row) -> Row:
+    """The row as it is, or not ok where the record that it rests on is stale."""
+    why = "" if record is None else record.stale()
+    if why:
+        row = dataclasses.replace(row, case=f"{row.case}; {why}", ok=False, stale=True)
+    return _told(row)
 
 
 def _told(row: Row) -> Row:
@@ -229,7 +245,7 @@ def as_text(rows: Sequence[Row]) -> str:
     head = ("", "row", "against", "case", "value", "unit", "reference", "null", "error", "limit")
     body = [
         (
-            "ok" if row.ok else "FAIL",
+            "ok" if row.ok else "STALE" if row.stale else "FAIL",
             row.name,
             row.against or "-",
             row.case,

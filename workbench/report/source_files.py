@@ -22,6 +22,7 @@ from workbench.core.result.results import MembraneMesh
 from workbench.pipeline.chosen_weights import chosen
 from workbench.pipeline.shipped import shipped_weights
 from workbench.pipeline.store import Store
+from workbench.planning.advised import advised
 from workbench.planning.plan import InlineRunner, evaluate, plan
 from workbench.report.fabrication_tables import plain_numbers
 from workbench.report.source_arrays import source_arrays, source_columns
@@ -91,8 +92,12 @@ def write_sources(
     mesh = store.load("mesh", calls["mesh"].key)
     names = write_fields(out, mesh, found, frame_depths_mm(case.press, next(iter(found.values()))))
     rows = last_frame(found, mesh.outer)
+    learned = found.get(Source.LEARNED)
+    notice = learned.notice if isinstance(learned, ForceField) else ""
+    advice = advised(case, calls, notice=notice)
     if printer.as_json:
-        say(json.dumps({"sources": plain_numbers(rows), "files": names}))
+        told = {"sources": rows, "advice": advice.as_json()}
+        say(json.dumps({**plain_numbers(told), "files": names}))
         return
     for row in rows:
         say(
@@ -104,6 +109,7 @@ def write_sources(
         for name in ("notice", "note"):
             if row.get(name):
                 complain(f"{name} of {row['source']}: {row[name]}")
+    complain(advice.text)
 
 
 def write_fields(

@@ -13,22 +13,19 @@ from __future__ import annotations
 
 import json
 import re
-from pathlib import Path
 from typing import Any
 
 from tests.reference.axisymmetric.cases import CASES, Found, Run
+from workbench.proof.validation.fem.fem_limits import RECORD
 
-ROOT = Path(__file__).parents[3]
-FILE = ROOT / "workbench/proof/validation/fem/axisymmetric_limits.json"
 LEAST_SHARE = 5e-4
 """Of the force: the least uncertainty that is claimed."""
-COMMAND = "python -m tests.reference.axisymmetric"
 Row = dict[str, Any]
 
 
 def load() -> dict[str, Any]:
-    """The record, or an empty one."""
-    return json.loads(FILE.read_text()) if FILE.is_file() else {"runs": []}
+    """The record; an empty one where there is none, or where other code made it."""
+    return {"runs": []} if RECORD.stale() else RECORD.figures()
 
 
 def run_row(name: str, run: Run, found: Found) -> Row:
@@ -90,11 +87,16 @@ def extrapolated(forces_N: list[float]) -> tuple[float, float]:
     return forces_N[-1] + last / (min(before / last, 8.0) - 1.0), off_N
 
 
-def save(rows: list[Row]) -> None:
-    """Write the record."""
+def save(rows: list[Row], head: dict[str, str]) -> None:
+    """Write the record.
+
+    Args:
+        rows: The runs.
+        head: What the record said of itself when they were begun.
+    """
     rows = sorted(rows, key=lambda row: (row["case"], -row["order"], row["level"], row["finer"]))
     record = {
-        "command": COMMAND,
+        **head,
         "elements": "order 2: Q2/P1disc, 3 x 3 points; order 1: Q1/P0, 2 x 2 points",
         "levels": "each halves all edges of the one before; edges_mm are those in contact",
         "uncertainty": "last difference from level to level, or a quarter of the one before, plus "
@@ -105,7 +107,7 @@ def save(rows: list[Row]) -> None:
         "runs": rows,
     }
     text = json.dumps(record, indent=1)
-    FILE.write_text(_compact(text) + "\n")
+    RECORD.path.write_text(_compact(text) + "\n")
 
 
 def _case(rows: list[Row], name: str) -> Row:

@@ -46,6 +46,7 @@ def sources_text(
     skin: Triangles,
     *,
     stale: Collection[Source] = (),
+    advice: str = "",
 ) -> str:
     """What is said of all sources in a frame, counted from 0, as Markdown.
 
@@ -54,6 +55,7 @@ def sources_text(
         frame: Which.
         skin: Of the design, at rest.
         stale: Those of an earlier design or press.
+        advice: Errors of the sources on presses like this one, where they are not told above.
     """
     rows = [
         f"| {WORDS[row.source].value} | {number(row.normal_N, '.3f')} | "
@@ -66,6 +68,7 @@ def sources_text(
         "\n".join((*HEAD, *rows)),
         *_apart(found, frame),
         *_solvers(found),
+        *([f"<small>{plain(advice)}</small>"] if advice else []),
     ]
     return "\n\n".join(parts)
 
@@ -104,6 +107,7 @@ def _solvers(found: Mapping[Source, Forces]) -> Iterator[str]:
             yield f"<small>Note: {plain(learned.note)}</small>"
 
 
-def doubt_text(notice: str) -> str:
-    """Why not to trust learned forces, to be seen before their numbers."""
-    return f"<span style='color:{AMBER}'>**Not known to the network:** {plain(notice)}</span>"
+def doubt_text(notice: str, advice: str) -> str:
+    """Why learned forces may be wrong, and what was measured of that, before their numbers."""
+    said = f"**Not known to the network:** {plain(notice)}"
+    return f"<span style='color:{AMBER}'>{said}</span>\n\n{plain(advice)}"

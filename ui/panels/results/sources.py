@@ -13,6 +13,7 @@ from workbench.core.press.fem import DRAFT_MM, QUALITY_MM
 from workbench.core.result.force_field import ForceField, Source
 from workbench.core.result.results import Skin
 from workbench.core.result.sensing import Contact
+from workbench.planning.advised import advised
 from workbench.view.force_sources import PAIRS, Forces, Shown, choices
 
 SOLVE = "Solve by finite elements"
@@ -90,11 +91,18 @@ class SourcesFolder:
         """Say above all numbers why those of the network are not to be trusted."""
         learned = self.others.get(Source.LEARNED)
         notice = "" if learned is None else learned.notice
-        text = doubt_text(notice) if notice else ""
+        text = doubt_text(notice, self._advice()) if notice else ""
         if self.doubt.content != text:
             self.doubt.content = text
         if self.doubt.visible != bool(text):
             self.doubt.visible = bool(text)
+
+    def _advice(self) -> str:
+        """What was measured of presses like that of learned forces; "" of an earlier press."""
+        learned, session = self.others.get(Source.LEARNED), self.desk.session
+        if learned is None or not self.desk.current("learned"):
+            return ""
+        return advised(session.case, session.calls(), notice=learned.notice).text
 
     def _put_on_skin(self) -> None:
         pressed = self.desk.scene.pressed
@@ -113,6 +121,7 @@ class SourcesFolder:
         if any(frame >= len(forces.reaction_N) for forces in found.values()):
             return
         stale = [s for stage, s in STAGES.items() if s in found and not self.desk.current(stage)]
-        text = sources_text(found, frame, skin, stale=stale)
+        advice = "" if self.doubt.visible else self._advice()
+        text = sources_text(found, frame, skin, stale=stale, advice=advice)
         if self.table.content != text:
             self.table.content = text

@@ -25,7 +25,7 @@ def run(options: argparse.Namespace, project: Project) -> int:
     """Measure speed."""
     from workbench.cli.bench_rooms import ROOMS as ALL
 
-    return print_rows(options, ALL, record=options.record)
+    return print_rows(options, ALL)
 
 
 COMMAND = Command(place=6, run=run, options=options)

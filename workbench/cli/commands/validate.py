@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-from functools import partial
 from pathlib import Path
 
 from workbench.cli.command import Command
@@ -21,6 +20,8 @@ def options(sub: argparse.ArgumentParser) -> None:
     """What may be typed behind it."""
     sub.add_argument("room", metavar="ROOM", help=f"one of {ROOMS}")
     sub.add_argument("--json", action="store_true", help="the rows as a JSON list")
+    text = "also keep the rows with this machine's name, the date, and the code that they rest on"
+    sub.add_argument("--record", type=Path, metavar="FILE", help=text)
     text = "an independent program to compare with: mitsuba for optics, calculix for fem"
     sub.add_argument("--reference", metavar="NAME", help=text)
     text = "for forces: a data set to score learned forces on, instead of what ships"
@@ -36,7 +37,7 @@ def run(options: argparse.Namespace, project: Project) -> int:
     if options.reference:
         options.room = room_of(options.room, options.reference)
     rooms = ALL if options.data is None else with_data(options.room, options.data)
-    return print_rows(options, {name: partial(judged, rows) for name, rows in rooms.items()})
+    return print_rows(options, rooms, judged=judged)
 
 
 COMMAND = Command(place=5, run=run, options=options)

@@ -68,6 +68,8 @@ class Kind:
     group: Group
     edge_share: float | None = USUAL_EDGE_SHARE
     """Largest edge radius over the size that leaves something to round; None: it has no edges."""
+    tip: bool = False
+    """Whether it meets the skin with a point."""
     distance: Callable[[float, float], Distance] | None = None
     """Exact signed distance; None where the kernels have it, or there are triangles instead."""
     half_extent_mm: Callable[[float], np.ndarray] | None = None

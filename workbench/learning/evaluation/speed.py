@@ -8,7 +8,7 @@ from typing import Any
 
 from workbench.core.base.monitor import Monitor, silent
 from workbench.learning.evaluation.published import GPU, PACES
-from workbench.proof.benchmarks.records import Record, device_name, load, shipped_records
+from workbench.proof.benchmarks.records import RoomRecord, device_name, load, shipped_records
 
 
 def measured_here(monitor: Monitor = silent) -> dict[str, float]:
@@ -23,7 +23,7 @@ def measured_here(monitor: Monitor = silent) -> dict[str, float]:
     return found
 
 
-def efficiency(here: Mapping[str, float], records: Sequence[Record] | None = None) -> Any:
+def efficiency(here: Mapping[str, float], records: Sequence[RoomRecord] | None = None) -> Any:
     """The table as plain data: a row per published rate, a column per machine.
 
     Args:

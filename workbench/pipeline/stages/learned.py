@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from sim.forces.acquaintance import Membrane, acquaintance
+from sim.forces.acquaintance import BETWEEN, Membrane, acquaintance
 from workbench.core.base.errors import WorkbenchError
 from workbench.core.base.monitor import Monitor
 from workbench.core.design.design import Elastomer, SensorDesign
@@ -131,7 +132,6 @@ def learned(given: LearnedInputs, *, monitor: Monitor) -> ForceField:
         contact,
         source,
         Pair(*used),
-        solvable=source.hexes is not None and given.indenter.soft is None,
         device=torch_device(),
         monitor=monitor,
     )
@@ -142,13 +142,31 @@ def foreknown(given: LearnedInputs) -> tuple[str, ...]:
 
     What only results tell is left out: the largest displacement, and the mesh.
     """
-    reasons: dict[str, None] = {}
+    return tuple(dict.fromkeys(reason for reason, _ in _foreknown(given)))
+
+
+def unmeasured(given: LearnedInputs, notice: str = "") -> tuple[str, ...]:
+    """Those of what the networks do not know whose error no held-out press shows.
+
+    Args:
+        given: The press.
+        notice: Of its result, once there is one.
+    """
+    known = dict(_foreknown(given))
+    found = dict.fromkeys(reason for reason, covered in known.items() if not covered)
+    later = (reason for reason in notice.split(BETWEEN) if reason and reason not in known)
+    return tuple(found | dict.fromkeys(later))
+
+
+def _foreknown(given: LearnedInputs) -> Iterator[tuple[str, bool]]:
+    """Each reason, and whether held-out presses show its error."""
     for network in (given.force, given.displacement):
         if network is not None:
             try:
                 said = about(network.file)
             except WorkbenchError as error:
-                return (f"{error.message}; {error.hint}",)
+                yield f"{error.message}; {error.hint}", False
+                return
             found = acquaintance(
                 said.card,
                 said.target,
@@ -156,14 +174,13 @@ def foreknown(given: LearnedInputs) -> tuple[str, ...]:
                 given.material,
                 given.case,
             )
-            reasons |= dict.fromkeys(found.reasons)
-    return tuple(reasons)
+            yield from ((reason, reason in found.covered) for reason in found.reasons)
 
 
 STAGE = Stage(
     name="learned",
     label="Learned forces",
-    version=2,
+    version=3,
     place=11,
     lane="sim",
     run=learned,

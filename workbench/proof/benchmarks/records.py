@@ -1,17 +1,18 @@
 """Records of benchmarks: rows measured once on a machine, with its name and the date.
 
-`workbench bench ROOM --record FILE` writes one; those in `workbench/proof/benchmarks/records` ship
-with the program and stand in reports beside what is measured on the spot.
+`workbench bench ROOM --record FILE` writes one, `workbench validate ROOM --record FILE` as well;
+those in `workbench/proof/benchmarks/records` ship with the program and stand in reports beside what
+is measured on the spot, those in `docs/validation` make the page `trust.md`. Each names the code of
+its room: rows of other code are stale.
 """
 
 from __future__ import annotations
 
 import dataclasses
-import datetime
 import json
 import os
 import platform
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -19,15 +20,17 @@ from typing import Any
 from workbench.core.base.errors import StoreError
 from workbench.core.base.version import VERSION
 from workbench.proof.row import Row
-from workbench.system.whole_files import write_atomically
+from workbench.system.record import Record
 
 SHIPPED = Path(__file__).with_name("records")
 FORMAT = 1
 PARTS = {"format", "version", "made", "room", "device", "kind", "load", "rows"}
+VOUCHED = {"command", "code", "sources"}
+"""What records of before do not say."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Record:
+class RoomRecord:
     """Rows of one room on one machine."""
 
     made: str
@@ -41,6 +44,8 @@ class Record:
     load: float
     """Processes that wanted to run in the minute before the end; the measured one included."""
     rows: tuple[Mapping[str, Any], ...]
+    kept: Record
+    """The file, and the code that it rests on."""
 
     @property
     def title(self) -> str:
@@ -76,29 +81,48 @@ def load() -> float:
     return os.getloadavg()[0] if hasattr(os, "getloadavg") else float("nan")
 
 
-def write_record(path: Path, room: str, rows: Sequence[Row]) -> None:
-    """Write rows that were just measured.
+def kept_at(path: Path, command: str, sources: Sequence[str]) -> Record:
+    """The record of rows at a place, which need not be there yet.
+
+    Args:
+        path: Of the file.
+        command: What measures the rows.
+        sources: Modules whose functions give them.
+    """
+    return Record(path=path, command=command, sources=tuple(sources))
+
+
+def write_record(kept: Record, room: str, rows: Callable[[], Sequence[Row]]) -> Sequence[Row]:
+    """Measure rows and keep them.
 
     Raises:
         StoreError: If the file cannot be written.
     """
+    found: list[Row] = []
+    kept.make(lambda: _measured(kept, room, found, rows))
+    return found
+
+
+def _measured(
+    kept: Record, room: str, found: list[Row], rows: Callable[[], Sequence[Row]]
+) -> dict[str, Any]:
     from workbench.pipeline.devices import chosen_device
 
+    found += rows()
     kind = chosen_device()
-    table = {
+    return {
         "format": FORMAT,
         "version": VERSION,
-        "made": datetime.date.today().isoformat(),
         "room": room,
         "device": device_name(kind),
         "kind": kind,
         "load": round(load(), 2),
-        "rows": [dataclasses.asdict(row) for row in rows],
+        "sources": list(kept.sources),
+        "rows": [dataclasses.asdict(row) for row in found],
     }
-    write_atomically(path, json.dumps(table, indent=1, allow_nan=False).encode())
 
 
-def read_record(path: Path) -> Record:
+def read_record(path: Path) -> RoomRecord:
     """Read a record.
 
     Raises:
@@ -106,12 +130,14 @@ def read_record(path: Path) -> Record:
     """
     try:
         table = json.loads(path.read_bytes())
-        if set(table) != PARTS or table["format"] != FORMAT:
+        if set(table) - VOUCHED != PARTS or table["format"] != FORMAT:
             raise ValueError(f"it holds {', '.join(sorted(table))}")
         fields = {name: table[name] for name in PARTS - {"format", "rows"}}
         if not all({"name", "value"} <= set(row) for row in table["rows"]):
             raise ValueError("a row has no name or no value")
-        return Record(**fields, rows=tuple(table["rows"]))
+        command = table.get("command", f"workbench bench {table['room']} --record FILE")
+        kept = kept_at(path, command, table.get("sources", ()))
+        return RoomRecord(**fields, rows=tuple(table["rows"]), kept=kept)
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise StoreError(
             f"the record {path} cannot be read: {error}",
@@ -120,7 +146,7 @@ def read_record(path: Path) -> Record:
         ) from error
 
 
-def shipped_records(folder: Path = SHIPPED) -> list[Record]:
+def shipped_records(folder: Path = SHIPPED) -> list[RoomRecord]:
     """All records that came with the program, by name of their file.
 
     Raises:

@@ -48,6 +48,7 @@ def corners_mm(size_mm: float) -> list[tuple[float, float]]:
 KIND = Kind(
     place=15,
     group=Group.OTHER,
+    tip=True,
     lowest_mm=lowest_mm,
     shape=Shape.CONE,
     numbers=numbers,

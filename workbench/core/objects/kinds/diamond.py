@@ -39,6 +39,7 @@ KIND = Kind(
     group=Group.UNSEEN,
     aliases=("octahedron",),
     edge_share=0.2,
+    tip=True,
     distance=distance,
     lowest_mm=lowest_mm,
 )

@@ -1,8 +1,8 @@
 """Contact: the finger at 45 degrees beside finite elements, its regions and its balance.
 
-The finite elements (`workbench.proof.validation.fem.room`) are a patch of 7 mm held all around,
-pressed in ten steps; so are the grids here. Both ways are extrapolated by F(h) = F0 + c h^p through
-three meshes, p observed: the finite elements fall, material points rise.
+The finite elements (`finger_record`) are a patch of 9 mm held all around, pressed in ten steps, and
+extrapolated to edge 0; so are the grids here, by F(h) = F0 + c h^p through three of them, p
+observed: the finite elements fall, material points rise.
 """
 
 from __future__ import annotations
@@ -14,20 +14,21 @@ import numpy as np
 from workbench.core.press.press import ContactSettings, Extent
 from workbench.core.result.sensing import Contact
 from workbench.proof.row import Row, bounded, compared
+from workbench.proof.validation.contact.finger_record import (
+    FINGER,
+    ball_N,
+    frictionless_N,
+    sheared_N,
+)
 from workbench.proof.validation.contact.presses import NAME, finger_press, on_device
 from workbench.view.press_figures import force_balance
 
-FEM_MM = (0.9, 0.45, 0.3)
-FEM_N = (1.424, 1.308, 1.291)
-"""Normal force at 1 mm of an independent finite-element solver, by edge of its hexahedra."""
-FRICTIONLESS_FEM_N = 1.130
-"""At 0.30 mm: what a solver without friction would score."""
-PATCH_MM = 7.0
+PATCH_MM = 9.0
 """Radius of the patch of both."""
+SHALLOW_MM = 0.5
 GRIDS_MM = (0.5, 0.36, 0.26)
 LIMIT = 0.04
 DEFAULT_LIMIT = 0.06
-SHEAR_FEM_N = 0.267
 SHEAR_LIMIT = 0.04
 WIDE_MM = 20.0
 REGIONS = {9.0: 5e-3, 12.0: 1e-3}
@@ -49,29 +50,25 @@ def _grids() -> list[Row]:
     from sim.contact.studies import finger
     from sim.contact.studies.refinement import extrapolate
 
-    fem = extrapolate(FEM_MM, FEM_N)
-    forces = ", ".join(f"{force_N:g}" for force_N in FEM_N)
     case = f"{NAME}; patch of {PATCH_MM:g} mm, ten steps"
-    reference = (
-        f"FEM extrapolated from {forces} N at .9/.45/.30 mm with order {fem.order:.1f}; "
-        "null: frictionless FEM"
-    )
+    reference = "FEM at edge 0, on record; null: frictionless FEM on its finest mesh"
 
     def at(grid_mm: float, depth_mm: float = 1.0) -> float:
         return finger.finger_45(grid_mm=grid_mm, active_radius_mm=PATCH_MM, depth_mm=depth_mm)
 
-    def limit_N(depth_mm: float) -> float:
-        return extrapolate(GRIDS_MM, tuple(at(grid_mm, depth_mm) for grid_mm in GRIDS_MM)).value
+    def limit_N() -> float:
+        return extrapolate(GRIDS_MM, tuple(at(grid_mm) for grid_mm in GRIDS_MM)).value
 
     found = [
         compared(
             "finger_45",
             f"{case}, {grid_mm:g} mm grid; {reference}",
             on_device(lambda grid_mm=grid_mm: at(grid_mm)),
-            fem.value,
+            ball_N,
             unit="N",
             limit=DEFAULT_LIMIT,
-            null=FRICTIONLESS_FEM_N,
+            null=frictionless_N,
+            record=FINGER,
         )
         for grid_mm in GRIDS_MM
     ]
@@ -79,12 +76,13 @@ def _grids() -> list[Row]:
     found.append(
         compared(
             "published_mode",
-            f"{case}, {GRIDS_MM[0]:g} mm grid: this engine beside FEM extrapolated as above; null: "
+            f"{case}, {GRIDS_MM[0]:g} mm grid: this engine beside FEM as above; null: "
             "the published method, object made of points, on the same points and steps",
             on_device(lambda: at(GRIDS_MM[0])),
-            fem.value,
+            ball_N,
             unit="N",
             limit=DEFAULT_LIMIT,
+            record=FINGER,
             null=on_device(lambda: finger.published_45(active_radius_mm=PATCH_MM)),
         )
     )
@@ -92,22 +90,26 @@ def _grids() -> list[Row]:
         compared(
             "finger_45",
             f"{case}, extrapolated from grids of {grids} mm; {reference}",
-            on_device(lambda: limit_N(1.0)),
-            fem.value,
+            on_device(limit_N),
+            ball_N,
             unit="N",
             limit=LIMIT,
-            null=FRICTIONLESS_FEM_N,
+            null=frictionless_N,
+            record=FINGER,
         )
     )
-    half = "0.5 mm deep, for which no finite-element figure is recorded"
     found.append(
         compared(
             "finger_45",
-            f"{half}: 0.5 mm grid; reference: extrapolated from grids of {grids} mm",
-            on_device(lambda: at(GRIDS_MM[0], 0.5)),
-            on_device(lambda: limit_N(0.5)),
+            f"{NAME.rpartition(',')[0]}, {SHALLOW_MM:g} mm deep; patch of {PATCH_MM:g} mm, ten "
+            f"steps to 1 mm, {GRIDS_MM[0]:g} mm grid; reference: FEM at edge 0, on record; null: "
+            "the force at 1 mm by the power 3/2 of the depth",
+            on_device(lambda: at(GRIDS_MM[0], SHALLOW_MM)),
+            lambda: ball_N(SHALLOW_MM),
             unit="N",
             limit=DEFAULT_LIMIT,
+            null=lambda: ball_N() * SHALLOW_MM**1.5,
+            record=FINGER,
         )
     )
     return found
@@ -140,12 +142,13 @@ def _sheared() -> Row:
 
     return compared(
         "sheared_sphere",
-        "1 mm deep, then 0.5 mm along V, five steps each, 0.5 mm grid; reference: FEM 0.30 mm; "
-        "null: mu times the normal force, everything slipping",
+        "1 mm deep, then 0.5 mm along V, five steps each, 0.5 mm grid; reference: FEM on the "
+        "finest mesh on record; null: mu times the normal force, everything slipping",
         on_device(lambda: -float(finger.finger_45_sheared()[2])),
-        SHEAR_FEM_N,
+        sheared_N,
         unit="N",
         limit=SHEAR_LIMIT,
+        record=FINGER,
         null=on_device(lambda: 0.3 * float(finger.finger_45_sheared()[0])),
     )
 

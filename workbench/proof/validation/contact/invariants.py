@@ -94,4 +94,5 @@ def _devices() -> Row:
         cuda_reference.difference,
         unit="1",
         limit=DEVICE_LIMIT,
+        record=cuda_reference.used(),
     )

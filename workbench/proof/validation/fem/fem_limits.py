@@ -9,7 +9,6 @@ says, which was the truth before cells were halved under a contact.
 from __future__ import annotations
 
 import functools
-import json
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -26,8 +25,14 @@ from workbench.proof.row import Row, bounded, compared
 from workbench.proof.specimens import finger_points
 from workbench.proof.validation.contact.presses import tip_target
 from workbench.proof.validation.fem.fem_presses import finger
+from workbench.system.record import Record
 
-RECORD = Path(__file__).with_name("axisymmetric_limits.json")
+RECORD = Record(
+    path=Path(__file__).with_name("axisymmetric_limits.json"),
+    command="python -m tests.reference.axisymmetric",
+    sources=("tests.reference.axisymmetric.cases",),
+)
+"""The runs; what they tend to is computed from them, which a test repeats."""
 FRAMES = 10
 KINDS = {"ball": IndenterKind("sphere"), "cone": IndenterKind("cone")}
 FRICTIONS = (0.0, 0.3)
@@ -61,6 +66,7 @@ def _rows(thing: str, mu: float) -> Iterator[Row]:
                 limit_N(thing, mu, depth_mm),
                 unit="N",
                 limit=max(limit, SLIPPING_LIMIT if mu > 0.0 else OTHERS[thing]),
+                record=RECORD,
                 null=lambda depth_mm=depth_mm, hex_mm=hex_mm: _at(
                     _solved(thing, mu, hex_mm, halvings=0), depth_mm
                 ),
@@ -74,6 +80,7 @@ def _rows(thing: str, mu: float) -> Iterator[Row]:
         limit=1.0,
         sense="min",
         null=0.0,
+        record=RECORD,
     )
     for depth_mm, limit in CONTACT_LIMITS[thing].items():
         yield compared(
@@ -84,6 +91,7 @@ def _rows(thing: str, mu: float) -> Iterator[Row]:
             limit_N(thing, mu, depth_mm),
             unit="N",
             limit=limit,
+            record=RECORD,
             null=lambda depth_mm=depth_mm: _at(_solved(thing, mu, DRAFT_MM, halvings=0), depth_mm),
         )
 
@@ -95,13 +103,13 @@ def _words(thing: str, mu: float, depth_mm: float) -> str:
 def limit_N(thing: str, mu: float, depth_mm: float, *, body: str = "tip") -> float:
     """The converged force [N] of an object on the tip, or on another body of the record."""
     friction = "0" if mu == 0.0 else f"{mu:g}"
-    limits = _record()["cases"][f"{body}_{thing}_mu_{friction}"]["limits"]
+    limits = RECORD.figures()["cases"][f"{body}_{thing}_mu_{friction}"]["limits"]
     return next(one["force_N"] for one in limits if one["depth_mm"] == depth_mm)
 
 
-@functools.cache
-def _record() -> dict:
-    return json.loads(RECORD.read_text(encoding="utf-8"))
+def solved_N(thing: str, mu: float, hex_mm: float, depth_mm: float) -> float:
+    """The force [N] by finite elements, which each press is solved for once."""
+    return _at(_solved(thing, mu, hex_mm, error=False), depth_mm)
 
 
 def _at(found: ForceField, depth_mm: float) -> float:
@@ -123,10 +131,12 @@ def _press() -> Press:
 
 
 @functools.cache
-def _solved(thing: str, mu: float, hex_mm: float, *, halvings: int | None = None) -> ForceField:
+def _solved(
+    thing: str, mu: float, hex_mm: float, *, halvings: int | None = None, error: bool = True
+) -> ForceField:
     from sim.fem.press import solve_press
 
-    settings = FemSettings(hex_mm=hex_mm)
+    settings = FemSettings(hex_mm=hex_mm, error=error)
     if halvings is not None:
         settings = FemSettings(hex_mm=hex_mm, halvings=halvings, error=False)
     case = PressCase(indenter=Indenter(kind=KINDS[thing]), press=_press(), fem=settings)

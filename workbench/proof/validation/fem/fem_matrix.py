@@ -2,13 +2,14 @@
 
 The matrix takes a CPU hour or more, so `python -m workbench.proof.validation.fem.fem_matrix --jobs
 N --out FILE` solves it once, case by case in processes of one thread; it goes on where it was
-stopped. The rows read the record that ships with the package, and solve two of its cases anew: a
-record that the program no longer reproduces is as bad as none.
+stopped, as long as the code is the same. The rows read the record that ships with the package, and
+solve two of its cases anew: a record that the program no longer reproduces is as bad as none.
 """
 
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import datetime
 import functools
 import json
@@ -26,20 +27,35 @@ from workbench.core.base.errors import StoreError
 from workbench.core.base.version import VERSION
 from workbench.core.press.fem import DRAFT_MM, FemSettings
 from workbench.proof.row import Row, bounded, failed, stated
+from workbench.proof.validation.contact.finger_record import FEM_APART
 from workbench.proof.validation.fem.fem_cases import (
     DEPTH_MM,
     FAMILIES,
     OBJECTS,
     SHEAR_MM,
     TWIST_DEG,
+    WEDGE,
     MatrixCase,
     body_digest,
     every_case,
 )
 from workbench.proof.validation.fem.fem_solving import conditions, solve_case
+from workbench.system.record import Record
 
-RECORD = Path(__file__).with_name("fem_matrix.json")
+RECORD = Record(
+    path=Path(__file__).with_name("fem_matrix.json"),
+    command="python -m workbench.proof.validation.fem.fem_matrix --jobs 16 --out FILE",
+    sources=(
+        "workbench.proof.validation.fem.fem_solving",
+        *(f"designs.{family}" for family in FAMILIES),
+        *(f"workbench.core.objects.kinds.{thing}" for thing in OBJECTS if thing != WEDGE),
+        "workbench.core.objects.kinds.mesh",
+    ),
+    apart=FEM_APART,
+)
 PARTS = {"version", "made", "conditions", "bodies", "cases"}
+SAME = ("version", "conditions", "bodies", "code")
+"""What a record must share with the program that goes on with it."""
 LEAST = 31
 """Of the 32 cases of a family."""
 REPEATED = 2
@@ -52,19 +68,19 @@ def rows() -> list[Row]:
     return [*recorded_rows(), *repeated_rows()]
 
 
-def recorded_rows(path: Path = RECORD) -> list[Row]:
+def recorded_rows(kept: Record = RECORD) -> list[Row]:
     """What the record says, family by family."""
     try:
-        record = read_record(path)
+        record = read_record(kept)
     except StoreError as error:
         return [failed("fem_matrix", family, why=error.message) for family in FAMILIES]
     if record["conditions"] != conditions():
         why = f"the record of version {record['version']} was made with other settings or paths"
         return [failed("fem_matrix", family, why=why) for family in FAMILIES]
-    return [row for family in FAMILIES for row in _family_rows(family, record)]
+    return [row for family in FAMILIES for row in _family_rows(family, record, kept)]
 
 
-def _family_rows(family: str, record: dict[str, Any]) -> Iterator[Row]:
+def _family_rows(family: str, record: dict[str, Any], kept: Record) -> Iterator[Row]:
     if record["bodies"].get(family) != body_digest(family):
         why = "not recorded since the family's default body was changed"
         yield failed("fem_matrix", family, why=why)
@@ -95,12 +111,13 @@ def _family_rows(family: str, record: dict[str, Any]) -> Iterator[Row]:
         limit=float(LEAST),
         sense="min",
         null=0.0,
+        record=kept,
     )
     if done:
         plain = [outcome["cpu_s"] for outcome in done.values() if not _by_gpu(outcome)]
         if plain:
             words = f"{case}: median CPU time of the {len(plain)} cases solved without a GPU"
-            yield stated("fem_matrix_cpu", words, float(np.median(plain)), unit="s")
+            yield stated("fem_matrix_cpu", words, float(np.median(plain)), unit="s", record=kept)
         yield bounded(
             "fem_matrix_residual",
             f"{case}: worst relative residual",
@@ -108,13 +125,14 @@ def _family_rows(family: str, record: dict[str, Any]) -> Iterator[Row]:
             unit="1",
             limit=FemSettings().tolerance,
             null=1.0,
+            record=kept,
         )
 
 
-def repeated_rows(path: Path = RECORD) -> list[Row]:
+def repeated_rows(kept: Record = RECORD) -> list[Row]:
     """The two cheapest cases that completed, solved anew; null: a record of no force."""
     try:
-        record = read_record(path)
+        record = read_record(kept)
     except StoreError as error:
         return [failed("fem_matrix_repeated", "two cases", why=error.message)]
     known = {
@@ -153,21 +171,16 @@ def _difference(case: MatrixCase, outcome: dict[str, Any]) -> float:
     return float(np.abs(now_N - before_N).max() / np.abs(before_N).max())
 
 
-def read_record(path: Path) -> dict[str, Any]:
+def read_record(kept: Record) -> dict[str, Any]:
     """A record, as `main` writes it.
 
     Raises:
         StoreError: If there is none, or it is damaged.
     """
-    hint = "make one: python -m workbench.proof.validation.fem.fem_matrix --jobs 16 --out FILE"
-    try:
-        record = json.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError as error:
-        raise StoreError(f"there is no record {path.name}", hint=hint, at=str(path)) from error
-    except (OSError, ValueError) as error:
-        raise StoreError(f"{path.name}: {error}", hint=hint, at=str(path)) from error
-    if not isinstance(record, dict) or not set(record) >= PARTS:
-        raise StoreError(f"{path.name} is no record of the matrix", hint=hint, at=str(path))
+    record = kept.figures()
+    if not set(record) >= PARTS:
+        name, hint = kept.path.name, f"make one: {kept.command}"
+        raise StoreError(f"{name} is no record of the matrix", hint=hint, at=str(kept.path))
     return record
 
 
@@ -204,18 +217,19 @@ def solve_all(todo: Sequence[MatrixCase], path: Path, jobs: int, hex_mm: float) 
 def _begun(path: Path, hex_mm: float) -> dict[str, Any]:
     """The record of a file, or an empty one."""
     fresh = {
+        **RECORD.head(),
         "version": VERSION,
-        "made": "",
         "conditions": conditions(hex_mm),
         "bodies": {family: body_digest(family) for family in FAMILIES},
         "cases": {},
     }
     if not path.exists():
         return fresh
-    record = read_record(path)
-    if any(record[name] != fresh[name] for name in ("version", "conditions", "bodies")):
+    record = read_record(dataclasses.replace(RECORD, path=path))
+    if any(record.get(name) != fresh[name] for name in SAME):
         raise StoreError(
-            f"{path} was made by version {record['version']} with other settings, paths or bodies",
+            f"{path} was made by version {record['version']} with other code, settings, paths or "
+            "bodies",
             hint="name another file",
             at=str(path),
         )

@@ -16,12 +16,14 @@ DISPLACEMENT_LIMIT_MM = 3e-3
 MOVED_MM = 0.1
 FORCE_LIMIT = 5e-3
 PATCH_MM = 7.0
-"""Radius of the patch on which the recorded figures below were found [mm]."""
-RECORDED_N = {0.9: 1.424, 0.45: 1.308}
-"""Normal force [N] by edge of the hexahedra, of an independent prototype on its own mesh."""
-FINE_N = {0.3: 1.291}
+"""Radius of the patch on which the figures below were found [mm]."""
+PROTOTYPE_N = {0.9: 1.424, 0.45: 1.308}
+"""Normal force [N] by edge of the hexahedra, of another program: a prototype with mean-dilatation
+hexahedra, hard contact, and a mesher of its own, which is not kept."""
+FINEST_MM = 0.3
+FINEST_PROTOTYPE_N = {FINEST_MM: 1.291}
 CALCULIX_N = 1.276
-"""C3D8I on the same patch at 0.30 mm."""
+"""C3D8I of CalculiX on the prototype's patch of `FINEST_MM`, friction 0.3."""
 REFINEMENT_LIMIT = 0.015
 """Meshes of one spacing by two meshers differ by up to a percent; from 0.9 to 0.3 mm it is ten."""
 CASE = "sphere, finger tip at 45 degrees, 1 mm deep"
@@ -29,14 +31,14 @@ CASE = "sphere, finger tip at 45 degrees, 1 mm deep"
 
 def rows() -> list[Row]:
     """All rows of these but the finest mesh."""
-    return [*_submodels(), *_refinements(RECORDED_N)]
+    return [*_submodels(), *_refinements(PROTOTYPE_N)]
 
 
 def fine_rows() -> list[Row]:
     """The finest mesh, which takes minutes."""
-    edge_mm = min(FINE_N)
+    edge_mm = FINEST_MM
     return [
-        *_refinements(FINE_N),
+        *_refinements(FINEST_PROTOTYPE_N),
         compared(
             "refinement_calculix",
             f"{CASE}, {edge_mm:g} mm, patch of {PATCH_MM:g} mm: against C3D8I of CalculiX on the "
@@ -111,12 +113,12 @@ def _worst_mm(cut: Case, whole: Case) -> float:
     return float(np.linalg.norm(here - there, axis=1).max())
 
 
-def _refinements(recorded_N: dict[float, float]) -> Iterator[Row]:
-    for edge_mm, force_N in recorded_N.items():
+def _refinements(known_N: dict[float, float]) -> Iterator[Row]:
+    for edge_mm, force_N in known_N.items():
         yield compared(
             "refinement",
-            f"{CASE}, {edge_mm:g} mm hexahedra, patch of {PATCH_MM:g} mm: against the recorded "
-            "figure of the prototype; null: without friction, 0.9 mm",
+            f"{CASE}, {edge_mm:g} mm hexahedra, patch of {PATCH_MM:g} mm: against a "
+            "prototype's figure; null: without friction, 0.9 mm",
             lambda edge_mm=edge_mm: _patch_force_N(edge_mm),
             force_N,
             unit="N",

@@ -1,11 +1,10 @@
 """The contact solver beside finite elements: the same presses on the same skin.
 
-Both find the force of an object 1 mm deep in the finger's tip; the skin is that of the hexahedra,
-so displacements are compared vertex by vertex. Neither is the limit of its own refinement: linear
-hexahedra of 0.45 mm read 3 % too much force of a sphere and more of a flat punch, whose edge they
-do not resolve; what the contact solver reads on its default grid lies nearer to their limit. The
-table of refinements says where both go; the limit of the finite elements is extrapolated from its
-two finest meshes (Richardson, order 2: the square of the edge is what their error falls with).
+Both find the force of an object 1 mm deep in the finger's tip. Neither is the limit of its own
+refinement, so forces are held to what finite elements tend to on ever finer uniform meshes, which
+is on record with how well it is known (`finger_record`); the table of refinements says where both
+go. Displacements are those of finite elements at their default, vertex by vertex: the skin is that
+of the hexahedra.
 """
 
 from __future__ import annotations
@@ -15,6 +14,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from workbench.core.base.errors import StoreError
 from workbench.core.base.monitor import silent
 from workbench.core.design.design import Elastomer
 from workbench.core.press.fem import DRAFT_MM, QUALITY_MM
@@ -25,11 +25,14 @@ from workbench.pipeline.devices import open_device
 from workbench.pipeline.stages.press import PressInputs, press
 from workbench.proof.row import Row, bounded, compared, stated
 from workbench.proof.specimens import finger_points
+from workbench.proof.validation.contact.finger_record import FINGER, limit_N
 from workbench.proof.validation.contact.presses import tip_target
 from workbench.proof.validation.fem.fem_presses import FRAMES, Case, finger, solved
 
 KINDS = (IndenterKind("sphere"), IndenterKind("cylinder_end"))
-FORCE_LIMIT = 0.04
+FORCE_LIMIT = 0.03
+"""Of the error of the force: a grid of a quarter wall reads 2.2 % less of a ball and 2.8 % less of
+a flat end than the limits, which are known to 1.4 and 2.4 %."""
 SHAPE_LIMIT = 0.03
 MOVED_MM = 0.1
 DEPTH_MM = 1.0
@@ -51,21 +54,22 @@ def fine_rows() -> list[Row]:
 
 
 def _kind_rows(kind: IndenterKind) -> Iterator[Row]:
-    case = f"{kind} at 45 degrees, {DEPTH_MM:g} mm deep: grid {GRID_MM:g} mm against "
-    case += f"{QUALITY_MM:g} mm hexahedra"
+    case = f"{kind} at 45 degrees, {DEPTH_MM:g} mm deep: grid {GRID_MM:g} mm against"
     yield compared(
         "mpm_against_fem",
-        f"{case}: normal force; null: without friction",
+        f"{case} finite elements: normal force; reference: {_limit_words(kind)}; null: without "
+        "friction",
         lambda: float(pressed(kind).normal_N[-1]),
-        lambda: float(_truth(kind).normal_N[-1]),
+        functools.partial(_limit_N, kind),
         unit="N",
         limit=FORCE_LIMIT,
         null=lambda: float(pressed(kind, friction=0.0).normal_N[-1]),
+        record=FINGER,
     )
     yield bounded(
         "mpm_against_fem",
-        f"{case}: root mean square error of the displacement where it is {MOVED_MM:g} mm or more, "
-        "over the depth; null: no displacement",
+        f"{case} {QUALITY_MM:g} mm hexahedra: root mean square error of the displacement where it "
+        f"is {MOVED_MM:g} mm or more, over the depth; null: no displacement",
         lambda: _shape_error(kind)[0],
         unit="1",
         limit=SHAPE_LIMIT,
@@ -125,11 +129,16 @@ def _force_N(kind: IndenterKind, edge_mm: float) -> float:
 
 
 def _limit_N(kind: IndenterKind) -> float:
-    """Force at edge 0, from the two finest meshes."""
-    coarse_mm, fine_mm = FINE_EDGES_MM[-2:]
-    coarse_N, fine_N = _force_N(kind, coarse_mm), _force_N(kind, fine_mm)
-    share = fine_mm**2 / (coarse_mm**2 - fine_mm**2)
-    return fine_N - share * (coarse_N - fine_N)
+    """What the force of finite elements tends to, on record."""
+    return limit_N(kind.value)[0]
+
+
+def _limit_words(kind: IndenterKind) -> str:
+    try:
+        _, off_N = limit_N(kind.value)
+    except StoreError:
+        return "finite elements at edge 0, of which there is no record"
+    return f"finite elements at edge 0, known to {off_N:.2g} N"
 
 
 def _grid_N(kind: IndenterKind, grid_mm: float) -> float:
@@ -144,6 +153,7 @@ def _grids(kind: IndenterKind) -> Iterator[Row]:
             functools.partial(_grid_N, kind, grid_mm),
             unit="N",
             null=functools.partial(_limit_N, kind),
+            record=FINGER,
         )
 
 
@@ -151,21 +161,23 @@ def _edges(kind: IndenterKind) -> Iterator[Row]:
     for edge_mm in FINE_EDGES_MM:
         yield stated(
             "fem_refinement",
-            f"{kind}, hexahedra of {edge_mm:g} mm; null: extrapolated to edge 0",
+            f"{kind}, hexahedra of {edge_mm:g} mm; null: {_limit_words(kind)}",
             functools.partial(_force_N, kind, edge_mm),
             unit="N",
             null=functools.partial(_limit_N, kind),
+            record=FINGER,
         )
 
 
 def _converged(kind: IndenterKind) -> Row:
     return compared(
         "mpm_against_fem_limit",
-        f"{kind}: grid {FINE_GRIDS_MM[-1]:g} mm against finite elements extrapolated to edge 0; "
-        "null: the default grid",
+        f"{kind}: grid {FINE_GRIDS_MM[-1]:g} mm against {_limit_words(kind)}; null: the default "
+        "grid",
         functools.partial(_grid_N, kind, FINE_GRIDS_MM[-1]),
         functools.partial(_limit_N, kind),
         unit="N",
         limit=FORCE_LIMIT,
         null=functools.partial(_grid_N, kind, GRID_MM),
+        record=FINGER,
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from workbench.core.base.errors import StoreError
-from workbench.proof.benchmarks.records import SHIPPED, Record, load, shipped_records
+from workbench.proof.benchmarks.records import SHIPPED, RoomRecord, load, shipped_records
 from workbench.proof.row import Row, bounded, failed
 
 NAMES = {"1k": "1,000 points", "5k": "5,000 points", "25k": "25,000 points"}
@@ -56,7 +56,7 @@ def recorded_rows(folder: Path = SHIPPED) -> list[Row]:
     return [_recorded(record, name) for record in records for name in NAMES]
 
 
-def _recorded(record: Record, name: str) -> Row:
+def _recorded(record: RoomRecord, name: str) -> Row:
     from workbench.proof.benchmarks.forces import SIZES
 
     least = next(limits["cuda"] for size, _, limits in SIZES if size == name)
@@ -72,6 +72,7 @@ def _recorded(record: Record, name: str) -> Row:
         limit=least,
         sense="min",
         null=_paper_fps(name),
+        record=record.kept,
     )
 
 

@@ -24,6 +24,7 @@ from workbench.learning.evaluation.evaluate import FieldResult, Named, evaluate_
 from workbench.learning.evaluation.scoring import Compared, Way, compared
 from workbench.learning.evaluation.sources import Source, open_source
 from workbench.pipeline import shipped
+from workbench.pipeline.advice import ERRORS
 from workbench.proof.row import Row, bounded, failed, stated
 
 HELD_OUT = "heldout.npz"
@@ -54,6 +55,7 @@ def rows(data: Path | None = None) -> list[Row]:
     for target in WORDS:
         found += score_rows(target, data)
     found += learned_stiffness.rows()
+    found.append(advice_row())
     found += sparse_rows()
     return [*found, *learned_speed.rows()]
 
@@ -168,6 +170,20 @@ def _total_rows(name: str, case: str, one: Compared) -> Iterator[Row]:
             reference=published.TOTALS[axis][1],
             null=zero.total_mae[axis],
         )
+
+
+def advice_row() -> Row:
+    """Whether what the browser advises rests on today's networks and code; null: no advice."""
+    return bounded(
+        "learned_advice",
+        "errors by source and kind of contact that advice is composed from",
+        lambda: float(len(ERRORS.figures()["rows"])),
+        unit="1",
+        limit=1.0,
+        sense="min",
+        null=0.0,
+        record=ERRORS,
+    )
 
 
 def sparse_rows() -> list[Row]:

@@ -32,7 +32,7 @@ from workbench.core.design.optics import Composition, Optics
 from workbench.core.result.light import LightField, NormalTable
 from workbench.pipeline.stages.bake import BakeInputs, bake
 from workbench.pipeline.stages.table import TableInputs, table
-from workbench.proof.row import Row, bounded, failed, stated
+from workbench.proof.row import Bounds, Row, bounded, failed, stated
 from workbench.proof.validation.optics.light_images import (
     Score,
     fitted_gain,
@@ -127,8 +127,8 @@ def _dent_rows(
     case = f"{scene.name} {dent}, {gain}"
     seeds = f", worst of {len(SEEDS)} seeds" if model_of(model).tabulated else ""
     similar, decibel = f"SSIM: {case}{seeds}", f"PSNR: {case}{seeds}"
-    beside = {"null": null.ssim_1, "ceiling": ceiling.ssim_1}
-    beside_dB = {"null": null.psnr_dB, "ceiling": ceiling.psnr_dB}
+    beside: Bounds = {"null": null.ssim_1, "ceiling": ceiling.ssim_1}
+    beside_dB: Bounds = {"null": null.psnr_dB, "ceiling": ceiling.psnr_dB}
     least, asked_dB = _asked(scene, model, ceiling)
     if least is not None:
         limit = max(least, null.ssim_1)
