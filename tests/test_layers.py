@@ -59,8 +59,8 @@ MOST_LINES = 300
 MOST_PARAMETERS = 6
 MOST_OF_A_KERNEL = 10
 MANY_OF_A_KERNEL = {
-    "sim.contact.engine.kernels.substeps.substep": "in a compute graph, which has no bundles",
-    "sim.contact.engine.kernels.tied_substeps.tied_substep": "the same",
+    "sim.contact.engine.kernels.substep_of.substep": "in a compute graph, which has no bundles",
+    "sim.contact.engine.kernels.tied_substep_of.tied_substep": "the same",
     "sim.contact.soft.kernels._make_substep.soft_substep": "the same",
 }
 """Kernels that keep more, and why."""

@@ -6,9 +6,9 @@ import itertools
 import numpy as np
 import pytest
 
-from sim.contact.engine import kernels, reference
+from sim.contact.engine import reference
 from sim.contact.engine.batch import Case
-from sim.contact.engine.launcher import STEPS, Launcher
+from sim.contact.engine.launcher import STEPS
 from sim.contact.engine.relaxation import STEP_CAP, Relaxation
 from sim.contact.motion.approach import plan_approach
 from sim.contact.objects.collider import make_collider
@@ -297,27 +297,6 @@ def test_step_equals_the_twin(taichi_device: str, kind: str) -> None:
     relaxation.advance(ONE)
     assert np.abs(velocity).max() <= STEP_CAP * domain.grid_mm + 1e-12
     np.testing.assert_allclose(relaxation.displacement(), displacement, atol=2e-6)
-
-
-@pytest.mark.slow
-def test_a_round_in_one_kernel_is_the_same_as_substep_by_substep(taichi_device: str) -> None:
-    """The same bits, with an object that is elsewhere in each substep."""
-    domain, collider, approach, _ = setup(Indenter(size_mm=4.0))
-    found = []
-    for together in (1, STEPS):
-        relaxation = alone(domain, collider)
-        relaxation._substep = Launcher(
-            kernels.substeps(False, 1),
-            relaxation.batch.bundles,
-            cases=1,
-            round_of=(kernels.substeps(False, together), together),
-        )
-        poses = [row(approach.pose(share)) for share in np.linspace(0.2, 1.0, STEPS)]
-        relaxation.set_poses(0, np.concatenate(poses))
-        relaxation.restart(0, wobble(domain))
-        relaxation.advance(ONE)
-        found.append(relaxation.displacement())
-    np.testing.assert_array_equal(*found)
 
 
 def test_sums_equal_numpy(taichi_device: str) -> None:

@@ -98,9 +98,12 @@ def test_a_cube_that_is_pressed_sticks_and_then_slides_as_a_whole() -> None:
     assert found.friction_ratio[:3] == pytest.approx(np.full(3, 0.3), rel=0.01)
     assert found.sliding_share[-1] == 1.0
     assert 0.2 < found.sliding_share[3:].min() < 0.9
-    # Vertices that the object has come to within the last .3 mm had not touched before.
     touched = found.contact_force_N[-2:].any(axis=2).all(axis=0)
-    assert found.sliding[-1][touched].mean() > 0.9
+    assert found.sliding[-1][touched].mean() > 0.8
+    # Friction lifts the skin off the flat before it meets the trailing edge anew: what did not
+    # touch at both ends of the frame has not slid in it.
+    place_mm = MESH.outer.points_mm + found.displacement_mm[-1] - found.indenter_pose[-1, :3]
+    assert ((place_mm @ found.tangent_u)[touched & ~found.sliding[-1]] < -1.5).all()
 
 
 def test_the_share_that_slides_does_not_depend_on_frames() -> None:
@@ -113,8 +116,10 @@ def test_the_share_that_slides_does_not_depend_on_frames() -> None:
         # Of finer frames two share the way of a coarse one.
         dragged = found.sliding_share[2:].reshape(4, -1).mean(axis=1)
         shares.append(dragged)
-    # Measured .078: two places.
-    np.testing.assert_allclose(shares[0], shares[1], atol=0.1)
+    # A place that begins to slide within a coarse frame counts for all of it: measured .12 where
+    # most of them begin, and .03 over the whole way.
+    np.testing.assert_allclose(shares[0], shares[1], atol=0.15)
+    assert np.mean(shares[0]) == pytest.approx(np.mean(shares[1]), abs=0.05)
     assert shares[0][1] > 0.1
 
 

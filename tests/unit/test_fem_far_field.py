@@ -52,6 +52,7 @@ def cut(near_mm: float, monkeypatch: pytest.MonkeyPatch) -> tuple[Submodel, Load
         pose=press_module.RigidPose(origin_mm=origin_mm, rotation=rotation),
         anchor_mm=places_mm,
         elastic_mm=np.zeros_like(places_mm),
+        slides=np.zeros(len(places_mm), bool),
     )
     return submodel, load
 

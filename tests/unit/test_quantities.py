@@ -50,6 +50,7 @@ def contact(**changes: np.ndarray) -> Contact:
         cut_N=np.zeros((1, 3)),
         friction_ratio=np.zeros(1),
         sliding=np.array([[False, True, False, False]]),
+        sliding_share=np.ones(1),
         target_mm=np.zeros(3),
         normal=np.array([0.0, 0.0, 1.0]),
         tangent_u=np.array([1.0, 0.0, 0.0]),
@@ -104,7 +105,7 @@ def test_slip_curve_of_a_sliding_point() -> None:
     ratio, share = slip_curve(contact())
     np.testing.assert_allclose(ratio, [4.0 / 3.0])
     np.testing.assert_allclose(share, [1.0])
-    nothing = {"contact_force_N": np.zeros((1, 4, 3)), "sliding": np.zeros((1, 4), bool)}
+    nothing = {"contact_force_N": np.zeros((1, 4, 3)), "sliding_share": np.zeros(1)}
     ratio, share = slip_curve(contact(pressing_N=np.zeros(1), **nothing))
     np.testing.assert_allclose([*ratio, *share], 0.0)
     # A result of an earlier version has no sums.

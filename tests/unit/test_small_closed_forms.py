@@ -174,7 +174,7 @@ def test_a_ledge_thinner_than_a_wall_goes_with_the_seat_of_the_cup(
 
 
 def test_the_memory_of_a_case_is_that_of_its_numbers() -> None:
-    """Of four bytes: 81 + 9 + 8 + 3 + 27 a cell, twice 9 + 7 for its nodes, and 26 a point."""
-    assert needed_bytes(1000, 0) == 4 * 160 * 1000
+    """Of four bytes: 81 + 9 + 8 + 4 + 27 a cell, twice 9 + 7 for its nodes, and 26 a point."""
+    assert needed_bytes(1000, 0) == 4 * 161 * 1000
     assert needed_bytes(0, 10) == 4 * 26 * 10
     assert needed_bytes(1000, 10) == needed_bytes(1000, 0) + needed_bytes(0, 10)

@@ -140,11 +140,11 @@ def tied_moves_pass(nodes: ti.template(), cases: ti.template(), ties: ti.templat
 
 
 @functools.cache
-def substeps(linear, count):
-    """The kernel of so many substeps of a material law, at the poses from row `step` on.
+def substep_of(linear):
+    """The kernel of one substep of a material law, compiled when first used.
 
     Forces at the present displacement, then one damped step of the nodes of each moving case. A
-    compute graph binds the arrays by their names. Each is compiled when first used.
+    compute graph binds the arrays by their names.
     """
 
     @ti.kernel
@@ -166,16 +166,14 @@ def substeps(linear, count):
         cases = ti.static(Cases(poses, numbers, choices, coefficients))
         # All bounds first: Taichi then finds them in one task instead of one before each loop.
         cell_count, node_count = cell_cases.shape[0], node_cases.shape[0]
-        for further in ti.static(range(count)):
-            row = step + further
-            cell_pass(nodes, cells, surface, cases, cell_count, case_count, row, linear)
-            node_pass(nodes, cells, cases, node_count)
+        cell_pass(nodes, cells, surface, cases, cell_count, case_count, step, linear)
+        node_pass(nodes, cells, cases, node_count)
 
     return substep
 
 
 @functools.cache
-def tied_substeps(linear, count):
+def tied_substep_of(linear):
     """The same for cells of several levels, whose nodes may be tied."""
 
     @ti.kernel
@@ -205,12 +203,10 @@ def tied_substeps(linear, count):
         )  # fmt: skip
         cell_count, node_count = cell_cases.shape[0], node_cases.shape[0]
         tied_count = tied.shape[0]
-        for further in ti.static(range(count)):
-            row = step + further
-            cell_pass(nodes, cells, surface, cases, cell_count, case_count, row, linear)
-            tied_forces_pass(nodes, cells, cases, ties, tied_count)
-            free_node_pass(nodes, cells, cases, ties, node_count)
-            tied_moves_pass(nodes, cases, ties, tied_count)
+        cell_pass(nodes, cells, surface, cases, cell_count, case_count, step, linear)
+        tied_forces_pass(nodes, cells, cases, ties, tied_count)
+        free_node_pass(nodes, cells, cases, ties, node_count)
+        tied_moves_pass(nodes, cases, ties, tied_count)
 
     return tied_substep
 

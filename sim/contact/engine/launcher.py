@@ -18,22 +18,7 @@ class Launcher:
     The arrays of all bundles go to the kernel's parameters of the same name.
     """
 
-    def __init__(
-        self,
-        kernel: Any,
-        bundles: Iterable[Any],
-        *,
-        cases: int,
-        round_of: tuple[Any, int] | None = None,
-    ) -> None:
-        """Bind the arrays.
-
-        Args:
-            kernel: Of one substep.
-            bundles: Named tuples of arrays.
-            cases: How many there are.
-            round_of: A kernel of several substeps and how many, of which `STEPS` is a multiple.
-        """
+    def __init__(self, kernel: Any, bundles: Iterable[Any], *, cases: int) -> None:
         arrays = {name: a for bundle in bundles for name, a in bundle._asdict().items()}
         declared = {
             name: ti.graph.Arg(ti.graph.ArgKind.NDARRAY, name, array.dtype, ndim=1)
@@ -45,13 +30,13 @@ class Launcher:
         ]
         names = inspect.signature(kernel).parameters
         self._graphs, self._arguments = {}, {}
-        for count, (launched, each) in ((1, (kernel, 1)), (STEPS, round_of or (kernel, 1))):
+        for count in (1, STEPS):
             builder = ti.graph.GraphBuilder()
-            for step in steps[:count:each]:
+            for step in steps[:count]:
                 known = {**declared, "step": step}
-                builder.dispatch(launched, *(known[name] for name in names))
+                builder.dispatch(kernel, *(known[name] for name in names))
             self._graphs[count] = builder.compile()
-            first = {f"step_{step}": step for step in range(0, count, each)}
+            first = {f"step_{step}": step for step in range(count)}
             self._arguments[count] = {**arrays, "case_count": cases, **first}
 
     def run(self, count: int) -> None:

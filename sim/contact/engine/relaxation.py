@@ -14,8 +14,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import taichi as ti
-from taichi.lang.impl import current_cfg
 
 from sim.contact.engine import kernels, sum_kernels
 from sim.contact.engine.batch import Batch, Case
@@ -106,17 +104,9 @@ class Relaxation:
 
     def _launcher(self) -> Launcher:
         """What runs the substeps."""
-        linear = _one_law(self.cases)
-        made = kernels.substeps if self.batch.ties is None else kernels.tied_substeps
-        # A GPU is waiting for launches in a small case: one kernel for all substeps of a round. A
-        # CPU would only compile longer.
-        together = STEPS if current_cfg().arch == ti.cuda else 1
-        return Launcher(
-            made(linear, 1),
-            self.batch.bundles,
-            cases=len(self.cases),
-            round_of=(made(linear, together), together),
-        )
+        tied = self.batch.ties is not None
+        made = kernels.tied_substep_of if tied else kernels.substep_of
+        return Launcher(made(_one_law(self.cases)), self.batch.bundles, cases=len(self.cases))
 
     def set_poses(self, case: int, rows: np.ndarray) -> None:
         """Poses of a case in the next substeps, shape (n <= STEPS, POSE); the last one stays.

@@ -233,7 +233,8 @@ class Run:
             return 0
         rubs = self.problem.material.friction > 0.0 and not self.problem.whole_frames
         per_mm = RUBBING_SUBSTEPS_PER_MM if rubs else RAMP_SUBSTEPS_PER_MM
-        per_mm *= LEAVING if self._leaves() else 1.0
+        if self._leaves():
+            per_mm = LEAVING * RAMP_SUBSTEPS_PER_MM
         count = max(SHORTEST_RAMP, math.ceil(per_mm * travel_mm)) * 2**self.attempt
         return -(-count // STEPS) * STEPS
 

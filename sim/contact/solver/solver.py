@@ -195,12 +195,10 @@ class Solver:
 
     def _passing(self) -> np.ndarray:
         """Which presses are within a frame and have rested there long enough, (B,) bool."""
-        within = np.array([run.on_the_way for run in self.runs])
-        return within & (self.spent >= ENOUGH)
+        return np.array([run.on_the_way for run in self.runs]) & (self.spent >= ENOUGH)
 
     def _close(self, still: np.ndarray, passing: np.ndarray) -> np.ndarray:
-        """End the frame of presses whose forces balance where the nodes are now; which did."""
-        # The balance was from before the last move.
+        """End the frame of presses whose forces balance after the last move; which did."""
         final = self.relaxation.evaluate(still)
         load_N = self._load_N(final, still & final.finite)
         settled = still & final.finite & (self.load.balanced(final, load_N) | passing)

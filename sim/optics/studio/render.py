@@ -144,11 +144,12 @@ class Studio:
             found[number] = self._developed(number + 1)
         return found
 
-    def marker_px(self, displacement_mm: np.ndarray) -> np.ndarray:
-        """u, v [px] of the dots of one displaced skin, (V, 3) to (M, 2); NaN of those not seen."""
-        self._check(displacement_mm[None])
-        self.imager.look(displacement_mm[None])
-        return self.imager.marker_px()
+    def marked(self, displacement_mm: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Image (H, W, 3), uint8, and dots of one displaced skin, (V, 3); as `images`.
+
+        The dots are u, v [px], shape (M, 2), float32; NaN of those not seen.
+        """
+        return self.images(displacement_mm[None])[0], self.imager.marker_px()
 
     def linear(
         self, displacement_mm: np.ndarray, *, radiance: np.ndarray | None = None

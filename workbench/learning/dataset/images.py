@@ -76,10 +76,6 @@ class Cameras:
         return self._shoot(np.zeros((self._vertices, 3), np.float32))
 
     def _shoot(self, displacement_mm: np.ndarray) -> Views:
-        plain, marked = (
-            png_bytes(studio.images(displacement_mm[None])[0])
-            for studio in (self._plain, self._marked)
-        )
-        return Views(
-            png=plain, png_markers=marked, markers_px=self._marked.marker_px(displacement_mm)
-        )
+        plain = self._plain.images(displacement_mm[None])[0]
+        marked, markers_px = self._marked.marked(displacement_mm)
+        return Views(png=png_bytes(plain), png_markers=png_bytes(marked), markers_px=markers_px)

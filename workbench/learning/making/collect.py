@@ -159,7 +159,9 @@ def _collect(data: DataSet, setup: Setup, *, jobs: int, batch: int, tell: Tell) 
     jobs = min(jobs, len(todo))
     try:
         if batch > 1 and setup.recipe.solvers is not Solvers.FEM:
-            with _workers(setup, jobs, device="cpu") as workers, _pressers() as pressers:
+            # Asked before workers are told to leave the GPU alone: processes inherit variables.
+            device = chosen_device()
+            with _workers(setup, jobs, device="cpu") as workers, _pressers(device) as pressers:
                 size = min(batch, -(-len(todo) // len(pressers)))
                 Line(workers, pressers, size, watch).run(todo)
         else:
@@ -204,15 +206,19 @@ def _workers(setup: Setup, jobs: int, *, device: str = "") -> Iterator[Executor]
 
 
 @contextlib.contextmanager
-def _pressers() -> Iterator[list[Executor]]:
-    """A process for each GPU; one for the processor where there is none."""
+def _pressers(device: str) -> Iterator[list[Executor]]:
+    """A process for each GPU; one for the processor where there is none.
+
+    Args:
+        device: `cuda` or `cpu`.
+    """
     context = multiprocessing.get_context("spawn")
     stop = context.RawValue("b", 0)
-    count = cuda_count() if chosen_device() == "cuda" else 0
+    count = cuda_count() if device == "cuda" else 0
     with contextlib.ExitStack() as pools:
         found: list[Executor] = []
         for gpu in range(max(1, count)):
-            given = (gpu if count > 1 else None, stop)
+            given = (device, gpu if count > 1 else None, stop)
             pool = ProcessPoolExecutor(
                 1, mp_context=context, initializer=open_presser, initargs=given
             )

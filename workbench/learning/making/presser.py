@@ -11,7 +11,7 @@ from typing import Any
 
 from workbench.core.base.errors import Cancelled, LaneError
 from workbench.learning.making.parcels import packed, unpacked
-from workbench.pipeline.devices import open_device
+from workbench.pipeline.devices import VARIABLE, open_device
 from workbench.system.processes import follow_parent
 
 GPUS = "CUDA_VISIBLE_DEVICES"
@@ -32,10 +32,11 @@ class Pressed:
     """Processor time of it [s]."""
 
 
-def open_presser(gpu: int | None, stop: Any) -> None:
+def open_presser(device: str, gpu: int | None, stop: Any) -> None:
     """Make this process a presser: called once, by its pool.
 
     Args:
+        device: `cuda` or `cpu`.
         gpu: Number of the GPU among those that are shown; None: whatever device there is.
         stop: Shared; true when this process is to end.
     """
@@ -46,6 +47,7 @@ def open_presser(gpu: int | None, stop: Any) -> None:
     if gpu is not None:
         shown = [name for name in os.environ.get(GPUS, "").split(",") if name]
         os.environ[GPUS] = shown[gpu] if shown else str(gpu)
+    os.environ[VARIABLE] = device
     open_device()
 
 
