@@ -9,6 +9,7 @@ background.png     the skin at rest; background_markers.png with markers, their 
                    background_markers_px.npy; of built sensors background-00.png ...
 failed.jsonl       cases that failed, with their reasons
 times.jsonl        seconds of each finished case
+sequences.jsonl    frames that belong together, with and without slip, where asked for
 card.md            the data card; preview.png shows samples
 ```
 

@@ -44,6 +44,7 @@ LATER: dict[str, Any] = {
     "image_width_px": 0,
     "vary": Vary(),
     "twist_frames": 5,
+    "sequences": 0,
     "hold_out": True,
 }
 """Fields that the first recipes had not, with what those stand for."""
@@ -99,6 +100,8 @@ class Recipe:
     """What is drawn anew for each case."""
     twist_frames: int = 5
     """Frames of a twist, where one is drawn."""
+    sequences: int = 0
+    """Sequences of eight frames that are listed for telling slip, half of them with it."""
     hold_out: bool = True
     """Keep the objects that the paper's networks did not see in a split of their own."""
     seed: int = 0
@@ -113,6 +116,8 @@ class Recipe:
         within(self.seed, 0, 2**31, what="seed", unit="", at="recipe.seed")
         within(self.hex_mm, 0.2, 3.0, what="mesh spacing", unit="mm", at="recipe.hex_mm")
         within(self.grid_mm, 0.1, 3.0, what="grid spacing", unit="mm", at="recipe.grid_mm")
+        at = "recipe.sequences"
+        within(self.sequences, 0, 1_000_000, what="sequences", unit="", at=at)
         at = "recipe.twist_frames"
         within(self.twist_frames, 1, 100, what="frames of a twist", unit="", at=at)
         if self.image_width_px:

@@ -122,6 +122,12 @@ RECIPES = {
         f"image_width_px = 320\n{_VARIED}",
         "the paper's task to judge pressure: 364 presses of 14 objects on the pad, 2,548 samples",
     ),
+    "slip": (
+        'design = "geltip"\npattern = "side"\nsolvers = "mpm"\nhold_out = false\n'
+        f"indenters = {CLASSES}\ndepth_mm = 0.8\nshear_mm = 1.6\ncases = 500\n"
+        f"sequences = 832\nimage_width_px = 320\n{_VARIED}",
+        "the paper's task to tell slip: 500 long slides on the side wall, of which 832 sequences",
+    ),
     "varied": (
         'design = "geltip"\npattern = "finger"\ncases = 500\nimage_width_px = 320\n'
         f"{_VARIED}twist_deg = [-10.0, 10.0]\nyoung_MPa = [0.1, 0.2]\n",

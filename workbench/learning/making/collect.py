@@ -31,6 +31,7 @@ from workbench.learning.dataset.lock import held
 from workbench.learning.dataset.recipe import Recipe, Solvers
 from workbench.learning.dataset.repair import clear_parts
 from workbench.learning.dataset.sample_sheet import write_sheet
+from workbench.learning.dataset.sequences import write_sequences
 from workbench.learning.dataset.sights import LIGHT, Sight, sights_of, write_backgrounds
 from workbench.learning.making.line import LOOK_S, Line
 from workbench.learning.making.presser import open_presser
@@ -255,5 +256,7 @@ def finish(data: DataSet) -> None:
     """Bring counts, card and sheet up to date."""
     write_manifest(data.folder, {**data.manifest, "counts": data.counts()})
     data = DataSet.open(data.folder)
+    if count := data.manifest["recipe"].get("sequences", 0):
+        write_sequences(data, count)
     write_atomically(data.folder / "card.md", card_text(data).encode())
     write_sheet(data)
