@@ -139,7 +139,8 @@ def test_odd_but_allowed_is_told(workbench: Any, coarse: Path, tmp_path: Path) -
     assert "press depth 0 mm is first touch" in summary["notices"]["press"]
     for notice in (summary["notices"]["material"], summary["notices"]["press"]):
         assert f"notice: {notice}" in run.stderr
-    assert summary["contact"]["normal_N"] == 0.0
+    # Distances are rounded: a point may lie an atom's width inside.
+    assert abs(summary["contact"]["normal_N"]) < 1e-12
 
 
 def test_poses_of_a_run_can_be_run_again(workbench: Any, coarse: Path, tmp_path: Path) -> None:
