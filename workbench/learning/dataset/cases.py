@@ -9,8 +9,8 @@ both have come round together), so that any first N cases hold every object and 
 equally often, to within one. Each pair of position and object comes once with one way of
 pressing before any comes with a second. A data set of N cases is the beginning of a larger one.
 
-Training, validation and test share pairs of position and object 3:1:1: in every five pairs, in
-dealt order, three, one and one at random. All ways of pressing one pair stay together, so no frame
+Training, validation and test share pairs of position and object 3:1:1, or as the recipe says: in
+every five pairs, in dealt order, three, one and one at random. All ways of pressing one pair stay together, so no frame
 of one press, and no repeated approach, is in two splits. Objects that the paper's networks did not
 see are in a split of their own.
 """
@@ -54,8 +54,8 @@ class Split(enum.StrEnum):
     """Objects that training never shows."""
 
 
-SHARES = (Split.TRAIN, Split.TRAIN, Split.TRAIN, Split.VALIDATION, Split.TEST)
-"""3:1:1. Source: SimTac."""
+SHARED = (Split.TRAIN, Split.VALIDATION, Split.TEST)
+"""What a recipe's `shares` are of."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -224,14 +224,15 @@ def deal(recipe: Recipe, positions: Sequence[Position]) -> list[Case]:
 def _splits(recipe: Recipe, pairs: int, rng: np.random.Generator) -> list[Split]:
     """The split of each pair in dealt order."""
     kinds, seen, found = recipe.indenters, 0, []
+    shares = [split for split, count in zip(SHARED, recipe.shares, strict=True) for _ in range(count)]
     block: list[Split] = []
     for pair in range(pairs):
         if recipe.hold_out and kinds[pair % len(kinds)] in UNSEEN:
             found.append(Split.UNSEEN)
             continue
-        if seen % len(SHARES) == 0:
-            block = [SHARES[k] for k in rng.permutation(len(SHARES))]
-        found.append(block[seen % len(SHARES)])
+        if seen % len(shares) == 0:
+            block = [shares[k] for k in rng.permutation(len(shares))]
+        found.append(block[seen % len(shares)])
         seen += 1
     return found
 

@@ -46,6 +46,7 @@ LATER: dict[str, Any] = {
     "twist_frames": 5,
     "sequences": 0,
     "hold_out": True,
+    "shares": (3, 1, 1),
 }
 """Fields that the first recipes had not, with what those stand for."""
 
@@ -104,6 +105,8 @@ class Recipe:
     """Sequences of eight frames that are listed for telling slip, half of them with it."""
     hold_out: bool = True
     """Keep the objects that the paper's networks did not see in a split of their own."""
+    shares: tuple[int, int, int] = (3, 1, 1)
+    """Pairs of object and place for training, validation and test. Source: SimTac."""
     seed: int = 0
     """Of the order of cases, the split, and spread positions."""
     cases: int = field(default=0, metadata={"cosmetic": True})
@@ -120,6 +123,14 @@ class Recipe:
         within(self.sequences, 0, 1_000_000, what="sequences", unit="", at=at)
         at = "recipe.twist_frames"
         within(self.twist_frames, 1, 100, what="frames of a twist", unit="", at=at)
+        for share in self.shares:
+            within(share, 0, 1000, what="share of a split", unit="", at="recipe.shares")
+        if not self.shares[0]:
+            raise DesignError(
+                "no pair of object and place is for training",
+                hint="make the first of shares 1 or more",
+                at="recipe.shares",
+            )
         if self.image_width_px:
             at = "recipe.image_width_px"
             within(self.image_width_px, 16, 4096, what="width of images", unit="px", at=at)
