@@ -35,8 +35,8 @@ AS_MANY = 0.02
 """Share by which the number of points may differ: meshers of two versions are not quite alike."""
 FARTHER = 1.05
 """Displacements up to this many times the largest of the training are no farther."""
-NEEDED = ("membrane", "young_MPa", "poisson", "friction", "law", "indenters", "size_mm", "depth_mm",
-          "shear_mm", "grid_mm")  # fmt: skip
+NEEDED = ("membranes", "young_MPa", "poisson", "friction", "law", "indenters", "size_mm",
+          "depth_mm", "shear_mm", "grid_mm")  # fmt: skip
 """Keys without which a card leaves something open."""
 BETWEEN = "; "
 """Between the reasons of a notice."""
@@ -46,10 +46,10 @@ KNOWN_STROKES = (StrokeKind.PRESS, StrokeKind.SLIDE, StrokeKind.HOLD)
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Membrane:
-    """What tells a membrane from that of the training."""
+    """What tells a membrane from those of the training."""
 
     differences: tuple[str, ...] | None
-    """How its design differs, in words; None where the card has no design."""
+    """How its design differs from the one most alike, in words; None where the card has none."""
     points_mm: np.ndarray | None = None
     """Vertices of its outer skin at the spacing of the training [mm], (V, 3), once it is meshed."""
     gel: bool = False
@@ -111,25 +111,40 @@ def acquaintance(
 
 
 def _missing(card: Mapping[str, Any]) -> Iterator[str]:
-    missing = [name for name in NEEDED if card.get(name) is None]
+    given = {**card, "membranes": membranes_of(card) or None}
+    missing = [name for name in NEEDED if given.get(name) is None]
     if missing:
         yield f"the data card of the weights does not say: {', '.join(missing)}"
 
 
 def _of_membrane(card: Mapping[str, Any], membrane: Membrane) -> Iterator[str]:
     yield from membrane.differences or ()
-    known = card.get("membrane")
-    if membrane.differences or membrane.points_mm is None or not isinstance(known, Mapping):
+    if membrane.differences or membrane.points_mm is None:
         return
     here_mm = np.array([membrane.points_mm.min(axis=0), membrane.points_mm.max(axis=0)])
-    there_mm = np.array(known.get("bounds_mm", here_mm), dtype=float)
-    count, vertices = len(membrane.points_mm), known.get("vertices")
-    if np.abs(there_mm - here_mm).max() > SAME_MM:
+    known = [one for one in membranes_of(card) if "bounds_mm" in one]
+    if not known:
+        return
+    away_mm = [np.abs(np.array(one["bounds_mm"], dtype=float) - here_mm).max() for one in known]
+    nearest = known[int(np.argmin(away_mm))]
+    there_mm = np.array(nearest["bounds_mm"], dtype=float)
+    count, vertices = len(membrane.points_mm), nearest.get("vertices")
+    if min(away_mm) > SAME_MM:
         sizes = (" x ".join(f"{side:.1f}" for side in high - low)
                  for low, high in (here_mm, there_mm))  # fmt: skip
         yield "the membrane is another: {} mm, trained on one of {} mm".format(*sizes)
     elif vertices and abs(count / vertices - 1.0) > AS_MANY:
         yield f"the skin has {count} points, trained on {vertices}"
+
+
+def membranes_of(card: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    """What a card says of each membrane of the training; weights of before knew one."""
+    known = card.get("membranes")
+    if known is not None:
+        return list(known)
+    one, data = card.get("membrane"), card.get("dataset")
+    design = data.get("design", {}) if isinstance(data, Mapping) else {}
+    return [{**one, "design": design}] if isinstance(one, Mapping) else []
 
 
 def _stiffness(
@@ -179,13 +194,18 @@ def _of_kind(card: Mapping[str, Any], indenter: Indenter) -> Iterator[str]:
 def _of_object(card: Mapping[str, Any], indenter: Indenter) -> Iterator[str]:
     if indenter.mesh is not None:
         yield "the object comes from a file, trained on none such"
-    known = _unlike(card, "size_mm", indenter.size_mm)
+    sizes_mm = np.atleast_1d(np.array(card.get("size_mm", ()), dtype=float))
+    between = bool(card.get("sizes_between")) and (
+        sizes_mm.min() - SAME <= indenter.size_mm <= sizes_mm.max() + SAME
+    )
+    known = "" if between else _unlike(card, "size_mm", indenter.size_mm)
     if known:
         yield f"the object is {indenter.size_mm:g} mm wide, trained on {known} mm"
     known = _unlike(card, "edge_radius_mm", indenter.edge_radius_mm)
     if known and indenter.record.edge_share is not None:
         yield f"edges are rounded by {indenter.edge_radius_mm:g} mm, trained on {known} mm"
-    if indenter.turned:
+    about_way_only = not any(indenter.turn_deg[:2])
+    if indenter.turned and not (card.get("spun") and about_way_only):
         yield "the object is turned, trained on objects as they came"
     if indenter.texture.raised:
         yield "the object has a texture, trained on smooth ones"

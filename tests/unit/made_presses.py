@@ -12,7 +12,7 @@ import numpy as np
 from sim.forces.network.spec import NetworkSpec
 from sim.forces.training.settings import TrainingSettings
 from workbench.learning.dataset.cases import Split
-from workbench.learning.training.presses import Presses, SparseField, State
+from workbench.learning.training.presses import Presses, RestSkin, SparseField, State
 
 SPEC = NetworkSpec(name="tiny", planes=(4, 4, 6, 6, 6, 4, 4, 4), stem_planes=4, stem_edge=3)
 SETTINGS = TrainingSettings(
@@ -60,14 +60,21 @@ def dent(points_mm: np.ndarray, rng: np.random.Generator) -> np.ndarray:
 
 
 def made_presses(
-    cases: int = 12, *, frames: int = 2, edge: int = EDGE, young: float = 0.1, seed: int = 0
+    cases: int = 12,
+    *,
+    frames: int = 2,
+    edges: tuple[int, ...] = (EDGE,),
+    young: float = 0.1,
+    seed: int = 0,
 ) -> Presses:
-    """Cases in all splits; the contact solver is said to be right but for a tenth."""
-    points_mm, faces = sheet(edge)
+    """Cases in all splits, on sheets in turn; the contact solver is right but for a tenth."""
+    sheets = [sheet(edge) for edge in edges]
     rng, states = np.random.default_rng(seed), []
     fields: dict[str, list[np.ndarray]] = {}
     for number in range(cases):
-        full_mm = dent(points_mm, rng)
+        # Cases of one sheet come one after the other, as those of a data set do.
+        skin = number * len(sheets) // cases
+        full_mm = dent(sheets[skin][0], rng)
         for frame in range(frames):
             moved_mm = full_mm * (frame + 1) / frames
             force_N = force_of(moved_mm, young=young)
@@ -79,6 +86,7 @@ def made_presses(
                     split=SHARES[number % len(SHARES)],
                     indenter="dent",
                     depth_mm=float(np.abs(moved_mm).max()),
+                    skin=skin,
                 )
             )
             found = {
@@ -91,8 +99,12 @@ def made_presses(
             for name, values in found.items():
                 fields.setdefault(name, []).append(values)
     return Presses(
-        points_mm=points_mm,
-        faces=faces,
+        skins=tuple(
+            RestSkin(
+                points_mm=points_mm, faces=faces, mesh=f"sheet{number}", design={"name": "sheet"}
+            )
+            for number, (points_mm, faces) in enumerate(sheets)
+        ),
         states=tuple(states),
         parts={name: SparseField.of(own, own[0].shape[1]) for name, own in fields.items()},
         about=made_about(young),
@@ -115,7 +127,6 @@ def made_about(young: float) -> dict[str, object]:
         "sets": ["made"],
         "keys": ["made"],
         "recipes": [recipe],
-        "mesh": "made",
         "stages": {"press": 7},
         "program": "0",
         "read_by": "0",

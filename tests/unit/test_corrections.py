@@ -30,6 +30,7 @@ from workbench.learning.training.presses import Presses
 from workbench.learning.training.results import score, single_predictor
 
 PRESSES = made_presses(12)
+SKIN = PRESSES.skins[0]
 CPU = Resources(device="cpu")
 BOTH = dataclasses.replace(SETTINGS, takes_force=True, corrects=True)
 TARGETS = (Target.FORCE, Target.DISPLACEMENT)
@@ -63,20 +64,20 @@ def fields(count: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
 @pytest.mark.parametrize("target", TARGETS)
 def test_a_silent_correction_is_the_solver_s_own_field(target: Target) -> None:
     weights = correcting(target, silent=True)
-    moved_mm, force_N = fields(len(PRESSES.points_mm), 0)
+    moved_mm, force_N = fields(len(SKIN.points_mm), 0)
     given = given_field(weights, moved_mm, force_N)
     assert given.shape == (len(moved_mm), 6)
-    found = Predictor(weights, PRESSES.points_mm, precision=Precision.SINGLE).predict(given)
+    found = Predictor(weights, SKIN.points_mm, precision=Precision.SINGLE).predict(given)
     np.testing.assert_array_equal(found, force_N if target is Target.FORCE else moved_mm)
 
 
 def test_a_correction_is_added_to_what_the_network_says() -> None:
     """With `corrects` or without, the same network differs by the solver's field."""
     weights = correcting(Target.FORCE, silent=False)
-    moved_mm, force_N = fields(len(PRESSES.points_mm), 1)
+    moved_mm, force_N = fields(len(SKIN.points_mm), 1)
     given = given_field(weights, moved_mm, force_N)
     whole, alone = (
-        Predictor(each, PRESSES.points_mm, precision=Precision.SINGLE).predict(given)
+        Predictor(each, SKIN.points_mm, precision=Precision.SINGLE).predict(given)
         for each in (weights, dataclasses.replace(weights, corrects=False))
     )
     assert np.abs(alone).max() > 1e-3
@@ -115,7 +116,7 @@ def test_training_begins_at_the_solver_s_error(target: Target) -> None:
     begun = begin(PRESSES, states, plan, CPU)
     assert begun.corrects and begun.network.spec.input_channels == 6
     weights = begun.weights(arrays_of(begun.network), {})
-    told = score(PRESSES, weights, states, single_predictor(weights, PRESSES, "cpu"), 4)
+    told = score(PRESSES, weights, states, [single_predictor(weights, SKIN, "cpu")], 4)
     assert told["mae"] == pytest.approx(told["mpm_mae"], rel=1e-5)
     assert begun.unit_mae == pytest.approx(told["mpm_mae"], rel=1e-5)
     assert begun.validation_zero_mae > 0.0
@@ -142,7 +143,7 @@ def test_turned_states_turn_both_vectors() -> None:
 
 def test_targets_are_what_is_missing() -> None:
     whole, missing = (PRESSES.fields(Target.FORCE, [0, 1], corrects=c) for c in (False, True))
-    raw = PRESSES.parts["mpm.contact_force_N"].dense([0, 1], len(PRESSES.points_mm))
+    raw = PRESSES.parts["mpm.contact_force_N"].dense([0, 1], len(SKIN.points_mm))
     np.testing.assert_allclose(missing.targets, whole.targets - raw, atol=1e-9)
     assert PRESSES.zero_mae(Target.FORCE, [0, 1]) == pytest.approx(whole.zero_mae, rel=1e-6)
 
@@ -166,7 +167,7 @@ def test_tuning_a_correction_scales_force_and_output_by_the_ratio(tmp_path: Path
     assert begun.scales.force_N == pytest.approx(2.0 * base.force_scale_N)
     assert begun.scales.output == pytest.approx(2.0 * base.output_scale[0])
     soft, hard = (
-        score(presses, weights, states, single_predictor(weights, presses, "cpu"), 4)["mae"]
+        score(presses, weights, states, [single_predictor(weights, SKIN, "cpu")], 4)["mae"]
         for presses, weights in (
             (PRESSES, base),
             (stiff, begun.weights(arrays_of(begun.network), {})),

@@ -26,7 +26,8 @@ from sim.forces.training.scores import network_output
 from tests.unit.made_presses import SPEC, made_presses
 from workbench.core.base.errors import DesignError, SolveError, StoreError
 
-PRESSES = made_presses(6, edge=20)
+PRESSES = made_presses(6, edges=(20,))
+SKIN = PRESSES.skins[0]
 SCALES = Scales(input_mm=0.3, force_N=0.02, output=0.004)
 REACH_MM = 2.5
 
@@ -64,9 +65,9 @@ def corrections(states: list[int]) -> Fields:
 
 def feed_of(fields: Fields) -> PatchFeed:
     """Samples as training takes them."""
+    skin = SeenSkin(points_mm=SKIN.points_mm, voxel_mm=0.75, patch_mm=REACH_MM)
     return PatchFeed(
-        fields,
-        SeenSkin(points_mm=PRESSES.points_mm, voxel_mm=0.75, patch_mm=REACH_MM),
+        [(fields, skin)],
         SCALES,
         spec=weights().spec,
         target=Target.FORCE,
@@ -81,11 +82,11 @@ def feed(states: list[int]) -> PatchFeed:
 
 def test_a_patch_is_what_lies_within_reach_of_the_field() -> None:
     """Against all distances; faint values found no patch, and no field has none."""
-    finder = PatchFinder(PRESSES.points_mm, reach_mm=REACH_MM)
+    finder = PatchFinder(SKIN.points_mm, reach_mm=REACH_MM)
     field = given([0])[0, :, 3:]
     size = np.abs(field).max(axis=1)
-    bearing = PRESSES.points_mm[size > 0.01 * size.max()]
-    apart = np.linalg.norm(PRESSES.points_mm[:, None] - bearing, axis=2).min(axis=1)
+    bearing = SKIN.points_mm[size > 0.01 * size.max()]
+    apart = np.linalg.norm(SKIN.points_mm[:, None] - bearing, axis=2).min(axis=1)
     patch = finder.patch(field)
     assert np.array_equal(patch, np.flatnonzero(apart < REACH_MM))
     assert 0 < len(patch) < 0.5 * len(field)
@@ -98,13 +99,13 @@ def test_a_patch_is_what_lies_within_reach_of_the_field() -> None:
 def test_beyond_the_patch_the_solvers_force_stays() -> None:
     """A correction ends with the patch; a network that does not correct says zero there."""
     fields = given([1, 2])
-    found = steady_predictor(weights(), PRESSES.points_mm, PRESSES.faces, device="cpu")
+    found = steady_predictor(weights(), SKIN.points_mm, SKIN.faces, device="cpu")
     assert isinstance(found, PatchPredictor)
     whole = found.predict(fields)
     assert np.array_equal(whole[0], found.predict(fields[0]))
-    finder = PatchFinder(PRESSES.points_mm, reach_mm=found._finder.reach_mm)
+    finder = PatchFinder(SKIN.points_mm, reach_mm=found._finder.reach_mm)
     alone = steady_predictor(
-        weights(corrects=False), PRESSES.points_mm, PRESSES.faces, device="cpu"
+        weights(corrects=False), SKIN.points_mm, SKIN.faces, device="cpu"
     ).predict(fields)
     for own, bare, enters in zip(whole, alone, fields, strict=True):
         outside = np.ones(len(own), bool)
@@ -117,7 +118,7 @@ def test_beyond_the_patch_the_solvers_force_stays() -> None:
 
 def test_a_press_that_touches_nothing_has_no_force() -> None:
     """Displaced by nobody: zero in, zero out, whatever the network would say."""
-    found = PatchPredictor(weights(), PRESSES.points_mm).predict(np.zeros((400, 6), np.float32))
+    found = PatchPredictor(weights(), SKIN.points_mm).predict(np.zeros((400, 6), np.float32))
     assert found.shape == (400, 3) and not found.any()
 
 
@@ -130,10 +131,10 @@ def test_training_sees_what_is_seen_in_use(monkeypatch: pytest.MonkeyPatch) -> N
     with torch.no_grad():
         rows = network_output(network, batch)[:, 0].numpy() * SCALES.output
     predictor = PatchPredictor(
-        weights(corrects=False, patch_spacings=REACH_MM), PRESSES.points_mm, faces=None
+        weights(corrects=False, patch_spacings=REACH_MM), SKIN.points_mm, faces=None
     )
     predictor._voxel_mm = 0.75
-    predictor._finder = PatchFinder(PRESSES.points_mm, reach_mm=REACH_MM)
+    predictor._finder = PatchFinder(SKIN.points_mm, reach_mm=REACH_MM)
     first = 0
     for enters, length in zip(given(states), batch.lengths, strict=True):
         patch = predictor._finder.patch(enters[:, 3:])
@@ -183,14 +184,14 @@ def test_several_looks_are_the_mean_of_what_each_says(monkeypatch: pytest.Monkey
             output_scale=(SCALES.output,) * target.channels,
         )
         monkeypatch.setattr("sim.forces.network.patches.LOOKS", looks)
-        mean = PatchPredictor(one, PRESSES.points_mm, faces=PRESSES.faces).predict(enters)
+        mean = PatchPredictor(one, SKIN.points_mm, faces=SKIN.faces).predict(enters)
         monkeypatch.setattr("sim.forces.network.patches.LOOKS", 1)
         seen = []
         for look in range(looks):
             matrix = turn_matrix(look, 4 * looks)
-            predictor = PatchPredictor(one, PRESSES.points_mm, faces=PRESSES.faces)
+            predictor = PatchPredictor(one, SKIN.points_mm, faces=SKIN.faces)
             predictor._finder = PatchFinder(
-                PRESSES.points_mm @ matrix.T, reach_mm=predictor._finder.reach_mm
+                SKIN.points_mm @ matrix.T, reach_mm=predictor._finder.reach_mm
             )
             shifted = functools.partial(voxelise, shift=look / looks)
 
@@ -215,9 +216,9 @@ def test_several_looks_are_the_mean_of_what_each_says(monkeypatch: pytest.Monkey
 def test_what_a_patch_leaves_out_counts_as_missed() -> None:
     """A force far from all that the solver knows of: its size is in the error of every network."""
     fields = corrections([0])
-    far = int(np.argmax(np.linalg.norm(PRESSES.points_mm - PRESSES.points_mm[0], axis=1)))
+    far = int(np.argmax(np.linalg.norm(SKIN.points_mm - SKIN.points_mm[0], axis=1)))
     targets = fields.targets.copy()
-    patch = PatchFinder(PRESSES.points_mm, reach_mm=REACH_MM).patch(fields.inputs[0, :, 3:])
+    patch = PatchFinder(SKIN.points_mm, reach_mm=REACH_MM).patch(fields.inputs[0, :, 3:])
     far = next(point for point in (far, 0, 19) if point not in patch)
     targets[0, far] = [0.01, -0.02, 0.03]
     own = feed_of(dataclasses.replace(fields, targets=targets))
@@ -246,15 +247,15 @@ def test_samples_that_touch_nothing_count_by_their_target_alone() -> None:
 def test_each_predictor_refuses_weights_of_the_other_kind() -> None:
     """A patch network on the whole skin would answer, and wrongly."""
     with pytest.raises(DesignError, match="look at patches"):
-        Predictor(weights(), PRESSES.points_mm)
+        Predictor(weights(), SKIN.points_mm)
     with pytest.raises(DesignError, match="look at the whole skin"):
-        PatchPredictor(weights(patch_spacings=0.0), PRESSES.points_mm)
+        PatchPredictor(weights(patch_spacings=0.0), SKIN.points_mm)
 
 
 def test_neighbours_gathered_or_in_pairs_say_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
     """Gathered as on a GPU: in use and in training."""
     fields = given([1, 2])
-    predictor = PatchPredictor(weights(), PRESSES.points_mm, faces=PRESSES.faces)
+    predictor = PatchPredictor(weights(), SKIN.points_mm, faces=SKIN.faces)
     pairs, fed = predictor.predict(fields), feed([1, 2]).batch([0, 1], 5)
     for name in ("sim.forces.network.patches", "sim.forces.training.feeds"):
         monkeypatch.setattr(f"{name}.kernel_on", lambda device: Kernel.GATHER)
@@ -272,7 +273,7 @@ def test_a_gpu_says_what_a_cpu_says() -> None:
     """Patches are found here, the network computes there."""
     fields = given([1, 2])
     here, there = (
-        steady_predictor(weights(), PRESSES.points_mm, PRESSES.faces, device=device).predict(fields)
+        steady_predictor(weights(), SKIN.points_mm, SKIN.faces, device=device).predict(fields)
         for device in ("cpu", "cuda")
     )
     np.testing.assert_allclose(here, there, atol=1e-5 * np.abs(here).max())
@@ -297,7 +298,7 @@ def test_numbers_that_are_not_finite_are_refused() -> None:
     """On the way in, and on the way out."""
     fields = given([1])
     with pytest.raises(SolveError, match="given to the network are not finite"):
-        PatchPredictor(weights(), PRESSES.points_mm).predict(np.full_like(fields, np.nan))
+        PatchPredictor(weights(), SKIN.points_mm).predict(np.full_like(fields, np.nan))
     large = weights(output_scale=(3e38,) * 3)
     with pytest.raises(SolveError, match="field is not finite"):
-        PatchPredictor(large, PRESSES.points_mm).predict(1e4 * fields)
+        PatchPredictor(large, SKIN.points_mm).predict(1e4 * fields)

@@ -24,6 +24,7 @@ from workbench.core.base.errors import DeviceError, SolveError
 from workbench.learning.dataset.cases import Split
 
 PRESSES = made_presses(12)
+SKIN = PRESSES.skins[0]
 
 
 PATCHES = dataclasses.replace(SETTINGS, patch_spacings=2.0, turns=1)
@@ -37,14 +38,14 @@ def start(settings: TrainingSettings = SETTINGS, network: MinkUNet | None = None
         for split in (Split.TRAIN, Split.VALIDATION)
     ]
     scales = Scales(input_mm=0.3, output=0.01)
+    skin = SeenSkin(
+        points_mm=SKIN.points_mm,
+        voxel_mm=0.75,
+        patch_mm=settings.patch_spacings,
+        turns=settings.turns,
+    )
     train, validation = feeds(
-        fields,
-        SeenSkin(
-            points_mm=PRESSES.points_mm,
-            voxel_mm=0.75,
-            patch_mm=settings.patch_spacings,
-            turns=settings.turns,
-        ),
+        [[(own, skin)] for own in fields],
         scales,
         spec=settings.spec,
         target=Target.FORCE,

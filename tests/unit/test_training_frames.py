@@ -49,7 +49,12 @@ def test_turned_vectors_are_what_the_turned_sensor_sees() -> None:
     presses = made_presses(2)
     fields = presses.fields(Target.FORCE, [0, 1])
     frames = frames_of(
-        presses.points_mm, voxel_mm=0.75, spec=SPEC, target=Target.FORCE, turns=6, device="cpu"
+        presses.skins[0].points_mm,
+        voxel_mm=0.75,
+        spec=SPEC,
+        target=Target.FORCE,
+        turns=6,
+        device="cpu",
     )
     for frame in frames:
         turned = fields.inputs[0] @ frame.vectors.numpy().T
@@ -88,7 +93,7 @@ def test_a_field_that_is_not_finite_is_refused_by_name(bad: float) -> None:
     targets = good.targets.copy()
     targets[1, 7, 2] = bad
     with pytest.raises(SolveError, match=r"target of dent0 frame 2 has 1 of 432 values"):
-        Fields(inputs=good.inputs, targets=targets, names=good.names)
+        Fields(inputs=good.inputs, targets=targets, sizes=good.sizes, names=good.names)
 
 
 def test_rate_warms_up_and_falls_along_a_cosine() -> None:

@@ -33,6 +33,7 @@ from workbench.learning.training.plan import Plan, Resources, Trained
 from workbench.learning.training.presses import Presses
 
 PRESSES = made_presses(12)
+SKIN = PRESSES.skins[0]
 PLAN = Plan(settings=SETTINGS, target=Target.FORCE, seed=4)
 CPU = Resources(device="cpu")
 TIMED = ("seconds",)
@@ -97,9 +98,7 @@ def test_scores_of_the_card_are_those_of_the_file(whole: Trained) -> None:
     """The file's network, in float32, on the test samples: the mean that the card states."""
     weights = load_weights(whole.weights)
     fields = PRESSES.fields(Target.FORCE, PRESSES.of_split(Split.TEST))
-    predictor = Predictor(
-        weights, PRESSES.points_mm, faces=PRESSES.faces, precision=Precision.SINGLE
-    )
+    predictor = Predictor(weights, SKIN.points_mm, faces=SKIN.faces, precision=Precision.SINGLE)
     apart = np.abs(predictor.predict(fields.inputs) - fields.targets).mean()
     score = weights.card["scores"]["test"]
     assert set(weights.card["scores"]) == {"validation", "test", "unseen"}
@@ -115,7 +114,8 @@ def test_the_card_says_what_readers_ask_for(whole: Trained) -> None:
     assert card["dataset"]["per_split"]["train"] == {"cases": 6, "samples": 12}
     assert card["young_MPa"] == 0.1 and card["friction"] == 0.3 and card["solver_input"] == "mpm"
     assert card["indenters"] == ["dent"]
-    membrane = card["membrane"]
+    (membrane,) = card["membranes"]
+    assert membrane["design"] == {"name": "sheet"} and membrane["mesh_key"] == "sheet0"
     assert membrane["vertices"] == 144 and membrane["bounds_mm"][1][0] == 11.0
     training = card["training"]
     assert (training["epochs"], training["seed"], training["samples"]) == (3, 4, 12)
@@ -233,7 +233,7 @@ def test_what_is_learned_holds_on_other_presses(tmp_path: Path) -> None:
         name="made", spec=spec, rate=5e-3, batch=4, epochs=10, cosine=True, warm_up=0.03, clip=1.0
     )
     settings = dataclasses.replace(settings, averaging=0.98, foot=0.1, turns=2)
-    presses = made_presses(120, frames=3, edge=16)
+    presses = made_presses(120, frames=3, edges=(16,))
     done = run(tmp_path, Plan(settings=settings, target=Target.FORCE), presses)
     shares = {k: found["mae"] / found["zero_mae"] for k, found in done.scores.items()}
     assert max(shares.values()) < 0.6, shares
@@ -325,12 +325,37 @@ def test_a_network_of_patches_is_trained_kept_and_tuned(tmp_path: Path) -> None:
         dataclasses.replace(settings, turns=3)
 
 
+def test_one_network_learns_two_membranes(tmp_path: Path) -> None:
+    """Patches of both lie in its batches; each is scored on a skin of its own, and on the card."""
+    settings = dataclasses.replace(
+        SETTINGS,
+        takes_force=True,
+        corrects=True,
+        patch_spacings=2.0,
+        turns=1,
+        peak_heed=3.0,
+        epochs=20,
+    )
+    presses = made_presses(24, edges=(12, 15))
+    done = run(tmp_path, dataclasses.replace(PLAN, settings=settings), presses)
+    card = load_weights(done.weights).card
+    assert [membrane["vertices"] for membrane in card["membranes"]] == [144, 225]
+    assert card["training"]["samples"] == 24
+    score, states = done.scores["validation"], presses.of_split(Split.VALIDATION)
+    raw = presses.raw_errors(Target.FORCE, states)
+    assert raw is not None
+    assert score["mpm_mae"] == pytest.approx(raw.mean())
+    assert score["mae"] < 0.9 * score["mpm_mae"]
+    with pytest.raises(DesignError, match="2 membranes, and whole skins"):
+        run(tmp_path / "whole", PLAN, presses)
+
+
 def test_the_best_factor_is_that_of_least_squares() -> None:
     """<found, wanted> / <found, found> over all samples; nothing to go by gives 1."""
     found, wanted = np.array([[1.0, 0.0], [1.0, 4.0]]), np.array([[3.0, 9.0], [5.0, 8.0]])
-    assert best_factor(found, wanted) == pytest.approx(40.0 / 18.0)
-    assert best_factor(np.zeros((2, 2)), wanted) == 1.0
-    assert best_factor(found, -wanted) == 1.0
+    assert best_factor([found], [wanted]) == pytest.approx(40.0 / 18.0)
+    assert best_factor([np.zeros((2, 2))], [wanted]) == 1.0
+    assert best_factor([found], [-wanted]) == 1.0
 
 
 def test_without_validation_the_last_epoch_is_kept(tmp_path: Path) -> None:

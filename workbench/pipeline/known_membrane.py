@@ -1,4 +1,4 @@
-"""How the membrane of a design differs from the one that weights were trained on, by the designs.
+"""How the membrane of a design differs from those that weights were trained on, by the designs.
 
 Wall, shape and a body from a file decide how a skin gives way; the mesh of the outer skin alone
 would not tell of another wall. All else of a design leaves the membrane as it is.
@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from designs.family import resolve_shape
+from sim.forces.acquaintance import membranes_of
 from workbench.core.base.errors import WorkbenchError
 from workbench.core.base.mapping import from_table, to_table
 from workbench.core.base.units import split_unit
@@ -21,13 +22,22 @@ MOST = 3
 
 
 def membrane_differences(card: Mapping[str, Any], design: SensorDesign) -> tuple[str, ...] | None:
-    """What differs, in words; None where the data card has no design to compare with."""
-    data = card.get("dataset")
-    trained = data.get("design") if isinstance(data, Mapping) else None
-    if not isinstance(trained, Mapping):
+    """What differs from the membrane that is most alike, in words; none of a membrane it knows.
+
+    None where the data card has no design to compare with.
+    """
+    trained = [one["design"] for one in membranes_of(card) if one.get("design")]
+    if not trained:
         return None
-    if trained.get("family") != design.family:
-        return (f"the sensor is a {design.family}, trained on a {trained.get('family')}",)
+    families = list(dict.fromkeys(str(one.get("family")) for one in trained))
+    alike = [one for one in trained if one.get("family") == design.family]
+    if not alike:
+        return (f"the sensor is a {design.family}, trained on a {' and a '.join(families)}",)
+    return min((_differences(one, design) for one in alike), key=len)
+
+
+def _differences(trained: Mapping[str, Any], design: SensorDesign) -> tuple[str, ...]:
+    """From one design of the same family."""
     try:
         then = _numbers(design.family, trained.get("shape", {}), trained.get("layers", {}))
     except WorkbenchError:

@@ -1,10 +1,11 @@
 """What a step of a training is fed: samples brought together, turned, over their scales.
 
 `SkinFeed` keeps the whole skin of every sample on the device: a batch is one orientation of the
-membrane (`frames`), so that all its samples share voxels and kernel maps. `PatchFeed` takes of each
-sample the patch that the network will look at (`sim.forces.network.patches`) and lays the patches
-of a batch side by side, each in an orientation and a place among the voxels of its own: a press is
-seen in other voxels in every epoch, and a sample costs what is in it.
+membrane (`frames`), so that all its samples share voxels and kernel maps; it knows one membrane.
+`PatchFeed` takes of each sample the patch that the network will look at
+(`sim.forces.network.patches`) and lays the patches of a batch side by side, each in an orientation
+and a place among the voxels of its own: a press is seen in other voxels in every epoch, a sample
+costs what is in it, and patches of several membranes lie in one batch.
 
 Errors are means over the whole skins in both: what a patch leaves out counts by its target there,
 which a network that says nothing there misses. They are those of one look (`patches`): what is
@@ -13,7 +14,7 @@ measured in the end, by several, is better.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -29,6 +30,7 @@ from sim.forces.network.voxels import Voxels, join, voxelise
 from sim.forces.training.arithmetic import room_for
 from sim.forces.training.fields import Fields
 from sim.forces.training.frames import Frame, frames_of
+from workbench.core.base.errors import DesignError
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -76,8 +78,12 @@ class Batch:
     belongs to no sample."""
     missed: Tensor
     """Sum of the targets' sizes that are not among the points, of each sample, shape (S,)."""
-    values: int
-    """Of one sample that the mean error is over, those that are not among the points counted."""
+    values: Tensor
+    """How many values of each sample the mean error is over, those that are not among the points
+    counted, shape (S,)."""
+    sizes: Tensor
+    """Size of what is to be found in the end at each point, over that of its sample's largest,
+    shape (P, B, 1): what a correction is added to takes part."""
 
     def errors(self, away: Tensor) -> Tensor:
         """Mean of each sample from the errors at the points (P, B, C), over the scale, (S,)."""
@@ -90,7 +96,7 @@ class Batch:
 
 
 class Feed(Protocol):
-    """Samples of one skin."""
+    """Samples, by their numbers."""
 
     def __len__(self) -> int: ...
 
@@ -109,6 +115,7 @@ class SkinFeed:
         self._scales = scales
         self._input_scale = torch.tensor(scales.inputs, device=device).repeat_interleave(3)
         self._inputs, self._targets = _on(fields.inputs, device), _on(fields.targets, device)
+        self._sizes = _on(fields.sizes[..., None], device)
 
     def __len__(self) -> int:
         return len(self._inputs)
@@ -127,7 +134,8 @@ class SkinFeed:
             inputs=(inputs / self._input_scale).transpose(0, 1).contiguous(),
             targets=(targets / self._scales.output).transpose(0, 1),
             missed=torch.zeros(len(samples), device=inputs.device),
-            values=targets[0].numel(),
+            values=torch.full((len(samples),), targets[0].numel(), device=inputs.device),
+            sizes=self._sizes[chosen].transpose(0, 1),
         )
 
 
@@ -135,12 +143,16 @@ class SkinFeed:
 class _Patch:
     """What is kept of a sample."""
 
-    points: np.ndarray
-    """Numbers of the points, shape (P,); none where nothing touches."""
+    places: np.ndarray
+    """The points over the edge of a voxel, shape (P, 3); none where nothing touches."""
     inputs: np.ndarray
     targets: np.ndarray
+    sizes: np.ndarray
+    """Of what is to be found in the end, over the largest of the sample, shape (P, 1)."""
     missed: float
     """Sum of the targets' sizes outside, in the target's unit."""
+    values: int
+    """Of the sample's targets, inside and outside."""
 
 
 class PatchFeed:
@@ -148,8 +160,7 @@ class PatchFeed:
 
     def __init__(
         self,
-        fields: Fields,
-        skin: SeenSkin,
+        groups: Sequence[tuple[Fields, SeenSkin]],
         scales: Scales,
         *,
         spec: NetworkSpec,
@@ -159,22 +170,17 @@ class PatchFeed:
         """Find the patches.
 
         Args:
-            fields: Of the samples.
-            skin: Looked at in patches.
+            groups: Samples skin by skin, numbered through, and their skins, looked at in patches.
             scales: Of input and output.
             spec: Of the network.
             target: What is predicted.
             device: Where batches are computed.
         """
-        self._points_mm, self._voxel_mm = skin.points_mm, skin.voxel_mm
         self._scales, self._device = scales, device
         self._spec, self._target = spec, target
-        self._values = fields.targets[0].size if len(fields) else 0
-        finder = PatchFinder(skin.points_mm, reach_mm=skin.patch_mm)
         leading = leading_channels(target, takes_force=scales.force_N > 0.0)
         self._patches = [
-            _patch(finder.patch(given[:, leading]), given, wanted)
-            for given, wanted in zip(fields.inputs, fields.targets, strict=True)
+            patch for fields, skin in groups for patch in _patches(fields, skin, leading)
         ]
 
     def __len__(self) -> int:
@@ -182,88 +188,107 @@ class PatchFeed:
 
     def batch(self, samples: Sequence[int], draw: int | None) -> Batch:
         """As `Feed`: each sample in an orientation of its own."""
-        touching = [number for number in samples if len(self._patches[number].points)]
+        touching = [number for number in samples if len(self._patches[number].places)]
         parts = [self._turned(number, draw) for number in touching] or [self._untouched()]
         voxels = join([part[0] for part in parts]).to(self._device)
         kernel = kernel_on(self._device)
-        missed = [self._patches[number].missed for number in samples]
+        own = [self._patches[number] for number in samples]
+        missed = torch.tensor([patch.missed for patch in own], device=self._device)
         return Batch(
             voxels=voxels,
             maps=kernel_maps(voxels, stem_edge=self._spec.stem_edge, kernel=kernel),
             inputs=_on(np.concatenate([part[1] for part in parts])[:, None], self._device),
             targets=_on(np.concatenate([part[2] for part in parts])[:, None], self._device),
-            lengths=tuple(len(self._patches[number].points) for number in samples),
-            missed=torch.tensor(missed, device=self._device) / self._scales.output,
-            values=self._values,
+            lengths=tuple(len(patch.places) for patch in own),
+            missed=missed / self._scales.output,
+            values=torch.tensor([patch.values for patch in own], device=self._device),
+            sizes=_on(np.concatenate([part[3] for part in parts])[:, None], self._device),
         )
 
-    def _untouched(self) -> tuple[Voxels, np.ndarray, np.ndarray]:
+    def _untouched(self) -> tuple[Voxels, np.ndarray, np.ndarray, np.ndarray]:
         """A point for a batch in which nothing touches: a network takes no empty one."""
-        voxels = voxelise(self._points_mm[:1], voxel_mm=self._voxel_mm)
+        voxels = voxelise(np.zeros((1, 3)), voxel_mm=1.0)
         inputs = np.zeros((1, 3 * len(self._scales.inputs)))
-        return voxels, inputs, np.zeros((1, self._target.channels))
+        return voxels, inputs, np.zeros((1, self._target.channels)), np.zeros((1, 1))
 
-    def _turned(self, number: int, draw: int | None) -> tuple[Voxels, np.ndarray, np.ndarray]:
-        """Voxels, input and target over their scales of one sample."""
+    def _turned(
+        self, number: int, draw: int | None
+    ) -> tuple[Voxels, np.ndarray, np.ndarray, np.ndarray]:
+        """Voxels, input and target over their scales, and sizes of one sample."""
         own = self._patches[number]
-        points_mm = self._points_mm[own.points]
         vectors = np.repeat(self._scales.inputs, 3)
         if draw is None:
-            voxels = voxelise(points_mm, voxel_mm=self._voxel_mm)
-            return voxels, own.inputs / vectors, own.targets / self._scales.output
+            voxels = voxelise(own.places, voxel_mm=1.0)
+            return voxels, own.inputs / vectors, own.targets / self._scales.output, own.sizes
         rng = np.random.default_rng([draw, number])
         matrix = any_turn(rng)
-        voxels = voxelise(points_mm @ matrix.T, voxel_mm=self._voxel_mm, shift=rng.random(3))
-        inputs = (own.inputs.reshape(len(points_mm), -1, 3) @ matrix.T).reshape(own.inputs.shape)
+        voxels = voxelise(own.places @ matrix.T, voxel_mm=1.0, shift=rng.random(3))
+        inputs = (own.inputs.reshape(len(own.places), -1, 3) @ matrix.T).reshape(own.inputs.shape)
         targets = own.targets @ value_matrix(matrix, self._target).T
-        return voxels, inputs / vectors, targets / self._scales.output
+        return voxels, inputs / vectors, targets / self._scales.output, own.sizes
 
 
 def feeds(
-    groups: Sequence[Fields],
-    skin: SeenSkin,
+    parts: Sequence[Sequence[tuple[Fields, SeenSkin]]],
     scales: Scales,
     *,
     spec: NetworkSpec,
     target: Target,
     device: str,
 ) -> list[Feed]:
-    """Feeds of groups of samples on one skin, whole or in patches.
+    """Feeds of parts of the data, of whole skins or in patches.
 
     Args:
-        groups: Samples to train on, samples to validate with.
-        skin: Of all samples.
+        parts: Samples to train on, samples to validate with, each skin by skin.
         scales: Of input and output.
         spec: Of the network.
         target: What is predicted.
         device: `cpu` or `cuda`.
 
     Raises:
-        DesignError: If the points make no membrane.
+        DesignError: If the points make no membrane, or whole skins are not of one.
         DeviceError: If the device has no room for whole skins.
     """
+    skins = [skin for groups in parts for _, skin in groups]
     with room_for(device):
-        if skin.patch_mm:
+        if all(skin.patch_mm for skin in skins):
             return [
-                PatchFeed(fields, skin, scales, spec=spec, target=target, device=device)
-                for fields in groups
+                PatchFeed(groups, scales, spec=spec, target=target, device=device)
+                for groups in parts
             ]
+        if any(len(groups) > 1 for groups in parts):
+            raise DesignError(
+                f"{len(parts[0])} membranes, and whole skins are looked at",
+                hint="choose a preset that looks at patches (small), or train on one membrane",
+                at="data",
+            )
         frames = frames_of(
-            skin.points_mm,
-            voxel_mm=skin.voxel_mm,
+            skins[0].points_mm,
+            voxel_mm=skins[0].voxel_mm,
             spec=spec,
             target=target,
-            turns=skin.turns,
+            turns=skins[0].turns,
             device=device,
         )
-        return [SkinFeed(fields, frames, scales, device=device) for fields in groups]
+        return [SkinFeed(groups[0][0], frames, scales, device=device) for groups in parts]
 
 
-def _patch(points: np.ndarray, given: np.ndarray, wanted: np.ndarray) -> _Patch:
-    missed = np.abs(wanted).sum(dtype=np.float64) - np.abs(wanted[points]).sum(dtype=np.float64)
-    return _Patch(
-        points=points, inputs=given[points], targets=wanted[points], missed=max(float(missed), 0.0)
-    )
+def _patches(fields: Fields, skin: SeenSkin, leading: slice) -> Iterator[_Patch]:
+    """The patches of the samples of a skin, around where the channels of the leading field are."""
+    finder = PatchFinder(skin.points_mm, reach_mm=skin.patch_mm)
+    samples = zip(fields.inputs, fields.targets, fields.sizes, strict=True)
+    for given, wanted, sizes in samples:
+        points = finder.patch(given[:, leading])
+        inside = np.abs(wanted[points]).sum(dtype=np.float64)
+        missed = float(np.abs(wanted).sum(dtype=np.float64) - inside)
+        yield _Patch(
+            places=skin.points_mm[points] / skin.voxel_mm,
+            inputs=given[points],
+            targets=wanted[points],
+            sizes=sizes[points, None],
+            missed=max(missed, 0.0),
+            values=wanted.size,
+        )
 
 
 def _on(values: np.ndarray, device: str) -> Tensor:

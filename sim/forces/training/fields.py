@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -21,12 +22,16 @@ class Fields:
     targets: np.ndarray
     """What is to be predicted, or added to the contact solver's field, in its unit, shape
     (S, V, C), float32."""
+    sizes: np.ndarray
+    """Length of the true field at each vertex over the sample's largest, shape (S, V), float32:
+    where the peaks are, whatever is corrected."""
     names: tuple[str, ...]
     """Of the samples, for messages."""
 
     def __post_init__(self) -> None:
         expect(self.inputs, f"{len(self.names)} V I", name="inputs")
         expect(self.targets, f"{len(self.names)} {self.inputs.shape[1]} C", name="targets")
+        expect(self.sizes, f"{len(self.names)} {self.inputs.shape[1]}", name="sizes")
         for what, values in (("input", self.inputs), ("target", self.targets)):
             refuse_not_finite(values, self.names, what)
 
@@ -55,6 +60,13 @@ def refuse_not_finite(values: np.ndarray, names: Sequence[str], what: str) -> No
             )
 
 
+def sizes_of(truth: np.ndarray) -> np.ndarray:
+    """Lengths of fields (S, V, C) over the largest of each sample, shape (S, V), float32."""
+    lengths = np.linalg.norm(truth, axis=2)
+    largest = lengths.max(axis=1, initial=0.0, keepdims=True)
+    return np.asarray(lengths / np.where(largest > 0.0, largest, 1.0), np.float32)
+
+
 def mean_size(values: np.ndarray) -> float:
     """Mean absolute value, summed in float64 sample by sample; 0 for no sample."""
     if not len(values):
@@ -62,14 +74,14 @@ def mean_size(values: np.ndarray) -> float:
     return float(np.mean([np.abs(own).mean(dtype=np.float64) for own in values]))
 
 
-def rms_of_nonzero(values: np.ndarray) -> float:
-    """Root mean square over the values that are not zero; 0 where all are.
+def rms_of_nonzero(*groups: np.ndarray) -> float:
+    """Root mean square over the values of groups of fields that are not zero; 0 where all are.
 
     The scale of a field: most of it is zero, so its deviation would say how large the dent is, and
     a percentile as well. All channels share it, or a turned field would have other scales.
     """
     total, count = 0.0, 0
-    for own in values:
+    for own in itertools.chain(*groups):
         there = own[own != 0.0].astype(np.float64)
         total += float(there @ there)
         count += there.size

@@ -69,6 +69,8 @@ class TrainingSettings:
     foot: float = 0.0
     """Error, over the scale of the output, below which it counts by its square, at the largest
     rate; it shrinks as the rate does. 0: the plain mean absolute error, see `trainer`."""
+    peak_heed: float = 0.0
+    """How much more an error at the largest value of a sample counts in the loss, see `trainer`."""
     turns: int = 1
     """Orientations about the sensor's axis in which a whole skin is looked at, see `frames`; a
     patch is turned by any angle."""
@@ -87,6 +89,7 @@ class TrainingSettings:
         within(self.clip, 0.0, 1e6, what="gradient limit", unit="", at="clip")
         within(self.averaging, 0.0, 0.99999, what="averaging", unit="", at="averaging")
         within(self.foot, 0.0, 100.0, what="foot", unit="scales", at="foot")
+        within(self.peak_heed, 0.0, 100.0, what="heed of peaks", unit="", at="peak_heed")
         within(self.turns, 1, 64, what="turns", unit="", at="turns")
         if self.turns > 1 and self.patch_spacings:
             raise DesignError(

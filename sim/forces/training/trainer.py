@@ -11,6 +11,9 @@ dent however small its error is, so the network learns to say zero first and lea
 foot shrinks with the rate: the end of the training is that of the plain error. What is reported is
 always the plain error.
 
+With `peak_heed` h, an error at a point whose true field is the share s of its sample's largest
+counts 1 + h s times: few points make the peak that users ask for, and the plain mean lets them go.
+
 What a batch is, whole skins or patches, is for the feed (`feeds`). Order and orientation of the
 batches depend on seed and epoch alone: a training that goes on from its state does what it would
 have done.
@@ -216,11 +219,13 @@ class Trainer:
         """The mean absolute error and what is minimised, both over the error of zero."""
         found = network_output(self._network, batch, half=self._half)
         error = batch.errors((found - batch.targets).abs()).mean() / self._data.unit
-        foot = self.settings.foot * self._factor
-        if not foot:
+        foot, heed = self.settings.foot * self._factor, self.settings.peak_heed
+        if not foot and not heed:
             return error.detach(), error
-        smooth = smooth_l1_loss(found, batch.targets, beta=foot, reduction="none")
-        return error.detach(), batch.errors(smooth).mean() / self._data.unit
+        away = smooth_l1_loss(found, batch.targets, beta=foot, reduction="none")
+        if heed:
+            away = away * (1.0 + heed * batch.sizes)
+        return error.detach(), batch.errors(away).mean() / self._data.unit
 
     def _with_room(self, work: Callable[[], _Result]) -> _Result:
         """The work's result; it is done again with smaller parts while the device is full."""

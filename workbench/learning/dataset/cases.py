@@ -10,9 +10,9 @@ equally often, to within one. Each pair of position and object comes once with o
 pressing before any comes with a second. A data set of N cases is the beginning of a larger one.
 
 Training, validation and test share pairs of position and object 3:1:1, or as the recipe says: in
-every five pairs, in dealt order, three, one and one at random. All ways of pressing one pair stay together, so no frame
-of one press, and no repeated approach, is in two splits. Objects that the paper's networks did not
-see are in a split of their own.
+every five pairs, in dealt order, three, one and one at random. All ways of pressing one pair stay
+together, so no frame of one press, and no repeated approach, is in two splits. Objects that the
+paper's networks did not see are in a split of their own.
 """
 
 from __future__ import annotations
@@ -224,7 +224,9 @@ def deal(recipe: Recipe, positions: Sequence[Position]) -> list[Case]:
 def _splits(recipe: Recipe, pairs: int, rng: np.random.Generator) -> list[Split]:
     """The split of each pair in dealt order."""
     kinds, seen, found = recipe.indenters, 0, []
-    shares = [split for split, count in zip(SHARED, recipe.shares, strict=True) for _ in range(count)]
+    shares = [
+        split for split, count in zip(SHARED, recipe.shares, strict=True) for _ in range(count)
+    ]
     block: list[Split] = []
     for pair in range(pairs):
         if recipe.hold_out and kinds[pair % len(kinds)] in UNSEEN:

@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from sim.forces.acquaintance import membranes_of
 from sim.forces.network.weights import NetworkWeights
 from workbench.core.base.errors import DesignError
 from workbench.learning.dataset.cases import Case, Split
@@ -76,9 +77,10 @@ def same_deal(card: Mapping[str, Any], recipe: Mapping[str, Any], key: str) -> b
 
 def _material(card: Mapping[str, Any]) -> dict[str, Any]:
     """Numbers of the material of the training set, as far as the card has them."""
-    design = card.get("dataset", {}).get("design", {})
-    if isinstance(design, Mapping) and isinstance(design.get("material"), Mapping):
-        return dict(design["material"])
+    for membrane in membranes_of(card):
+        material = membrane["design"].get("material")
+        if isinstance(material, Mapping):
+            return dict(material)
     return {name: card[name] for name in ("young_MPa", "poisson", "friction") if name in card}
 
 

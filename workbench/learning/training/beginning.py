@@ -24,7 +24,7 @@ from sim.forces.training.fields import Fields, rms_of_nonzero
 from workbench.core.base.errors import DesignError
 from workbench.learning.dataset.cases import Split
 from workbench.learning.training.plan import Plan, Resources
-from workbench.learning.training.presses import RAW, Presses
+from workbench.learning.training.presses import RAW, Presses, RestSkin
 from workbench.learning.training.results import batches, single_predictor
 
 if TYPE_CHECKING:
@@ -41,18 +41,25 @@ class Beginning:
     scales: Scales
     voxel_per_spacing: float
     patch_spacings: float
-    spacing_mm: float
-    train: Fields
+    train: tuple[Fields, ...]
+    """Of each skin."""
     unit_mae: float
     """Of a network that says zero, on the training samples, in the target's unit."""
     validation_zero_mae: float
     """Of fields that are zero, on the validation samples."""
     corrects: bool
-    validation: Fields
+    validation: tuple[Fields, ...]
+    """Of each skin."""
     plan: Plan
-    points_mm: np.ndarray
+    skins: tuple[RestSkin, ...]
+    """As `train`."""
     resources: Resources
     notes: tuple[str, ...]
+
+    @property
+    def samples(self) -> int:
+        """That are trained on."""
+        return sum(len(fields) for fields in self.train)
 
     @property
     def parameters(self) -> int:
@@ -74,19 +81,24 @@ class Beginning:
         settings, target = self.plan.settings, self.plan.target
         if self.unit_mae == 0.0:
             raise DesignError(
-                f"of {len(self.train)} samples to train on none has a {target} that is not zero",
+                f"of {self.samples} samples to train on none has a {target} that is not zero",
                 hint="take a data set with presses that touch, in the split train",
                 at="train",
             )
-        skin = SeenSkin(
-            points_mm=self.points_mm,
-            voxel_mm=self.voxel_per_spacing * self.spacing_mm,
-            patch_mm=self.patch_spacings * self.spacing_mm,
-            turns=settings.turns,
-        )
+        seen = [
+            SeenSkin(
+                points_mm=skin.points_mm,
+                voxel_mm=self.voxel_per_spacing * skin.spacing_mm,
+                patch_mm=self.patch_spacings * skin.spacing_mm,
+                turns=settings.turns,
+            )
+            for skin in self.skins
+        ]
         train, validation = feeds(
-            [self.train, self.validation],
-            skin,
+            [
+                list(zip(self.train, seen, strict=True)),
+                list(zip(self.validation, seen, strict=True)),
+            ],
             self.scales,
             spec=self.network.spec,
             target=target,
@@ -115,7 +127,7 @@ class Beginning:
             input_scale_mm=self.scales.input_mm,
             output_scale=(self.scales.output,) * self.plan.target.channels,
             voxel_per_spacing=self.voxel_per_spacing,
-            spacing_mm=self.spacing_mm,
+            spacing_mm=float(np.mean([skin.spacing_mm for skin in self.skins])),
             force_scale_N=self.scales.force_N,
             corrects=self.corrects,
             patch_spacings=self.patch_spacings,
@@ -139,7 +151,6 @@ def begin(presses: Presses, states: Sequence[int], plan: Plan, resources: Resour
     from torch import nn
 
     from sim.forces.network.minkunet import new_network
-    from sim.forces.network.voxels import spacing_mm
     from sim.forces.training.feeds import Scales
 
     base = plan.base
@@ -147,11 +158,22 @@ def begin(presses: Presses, states: Sequence[int], plan: Plan, resources: Resour
     wanted = plan.settings.corrects and plan.target in RAW
     corrects = wanted if base is None else base.corrects
     held_back = presses.of_split(Split.VALIDATION)
-    train, validation = (
-        presses.fields(plan.target, chosen, takes_force=takes_force, corrects=corrects)
-        for chosen in (states, held_back)
-    )
-    notes = [] if len(validation) else ["there is no validation case: the last epoch is kept"]
+
+    def fields(chosen: Sequence[int]) -> tuple[Fields, ...]:
+        own = presses.by_skin(chosen)
+        return tuple(
+            presses.fields(
+                plan.target,
+                own.get(skin, []),
+                skin=skin,
+                takes_force=takes_force,
+                corrects=corrects,
+            )
+            for skin in range(len(presses.skins))
+        )
+
+    train, validation = fields(states), fields(held_back)
+    notes = [] if held_back else ["there is no validation case: the last epoch is kept"]
     left_out = presses.about["left_out"]
     if left_out:
         notes.append(
@@ -162,10 +184,11 @@ def begin(presses: Presses, states: Sequence[int], plan: Plan, resources: Resour
         # It begins by saying zero, which is right nearly everywhere, not noise of the field's size.
         nn.init.zeros_(network.last.weight)
         nn.init.zeros_(network.last.bias)
+        forces_N = rms_of_nonzero(*(own.inputs[..., FORCE] for own in train))
         scales = Scales(
-            input_mm=rms_of_nonzero(train.inputs[..., :3]) or 1.0,
-            force_N=(rms_of_nonzero(train.inputs[..., FORCE]) or 1.0) if takes_force else 0.0,
-            output=rms_of_nonzero(train.targets) or 1.0,
+            input_mm=rms_of_nonzero(*(own.inputs[..., :3] for own in train)) or 1.0,
+            force_N=(forces_N or 1.0) if takes_force else 0.0,
+            output=rms_of_nonzero(*(own.targets for own in train)) or 1.0,
         )
         voxel, patch = plan.settings.voxel_per_spacing, plan.settings.patch_spacings
     else:
@@ -177,14 +200,15 @@ def begin(presses: Presses, states: Sequence[int], plan: Plan, resources: Resour
         scales=scales,
         voxel_per_spacing=voxel,
         patch_spacings=patch,
-        spacing_mm=spacing_mm(presses.points_mm, presses.faces),
         train=train,
-        unit_mae=train.zero_mae,
+        unit_mae=float(
+            np.average([own.zero_mae for own in train], weights=[len(own) for own in train])
+        ),
         validation=validation,
         validation_zero_mae=presses.zero_mae(plan.target, held_back),
         corrects=corrects,
         plan=plan,
-        points_mm=presses.points_mm,
+        skins=presses.skins,
         resources=resources,
         notes=tuple(notes),
     )
@@ -220,10 +244,13 @@ def _tuned(
         force_N *= stiffer
         factor = stiffer if plan.target is Target.FORCE else 1.0
     else:
-        predict = single_predictor(base, presses, device)
-        train = presses.fields(plan.target, states)
-        parts = batches(train.inputs, plan.settings.batch)
-        factor = best_factor(np.concatenate([predict(own) for own in parts]), train.targets)
+        found, wanted = [], []
+        for skin, own in presses.by_skin(states).items():
+            predict = single_predictor(base, presses.skins[skin], device)
+            train = presses.fields(plan.target, own, skin=skin)
+            found += [predict(part) for part in batches(train.inputs, plan.settings.batch)]
+            wanted += list(batches(train.targets, plan.settings.batch))
+        factor = best_factor(found, wanted)
     scales = Scales(input_mm=base.input_scale_mm, force_N=force_N, output=output * factor)
     return network, scales, factor
 
@@ -244,7 +271,7 @@ def _young_ratio(base: NetworkWeights, presses: Presses) -> float:
     return presses.about["recipes"][0]["design"]["material"]["young_MPa"] / float(theirs)
 
 
-def best_factor(found: np.ndarray, wanted: np.ndarray) -> float:
+def best_factor(found: Sequence[np.ndarray], wanted: Sequence[np.ndarray]) -> float:
     """The number c that makes the sum of (wanted - c found)^2 least; 1 where none above 0 does.
 
     Least squares, not the least absolute error: most values are zero, and a poor network's best

@@ -12,7 +12,7 @@ from workbench.core.base.version import VERSION
 from workbench.learning.dataset.cases import Split
 from workbench.learning.training.beginning import Beginning
 from workbench.learning.training.plan import Course
-from workbench.learning.training.presses import INPUT, Presses
+from workbench.learning.training.presses import INPUT, Presses, RestSkin
 
 NAMED = 20
 """States that are named where they were left out."""
@@ -22,7 +22,6 @@ def data_card(
     presses: Presses,
     states: Sequence[int],
     target: Target,
-    spacing_mm: float,
     shown: Iterable[str] = (),
 ) -> dict[str, Any]:
     """What the weights were made of.
@@ -31,7 +30,6 @@ def data_card(
         presses: All data.
         states: What was trained on.
         target: What is predicted.
-        spacing_mm: Of the skin's vertices.
         shown: Objects that weights which were tuned had seen before.
     """
     about = presses.about
@@ -39,14 +37,12 @@ def data_card(
     recipe, design = recipes[0], recipes[0]["design"]
     material = design["material"]
     moved_mm = _largest_moves(presses, states)
-    points_mm = presses.points_mm
     return {
         "target": target.value,
         "dataset": {
             "key": presses.key,
             "keys": list(about["keys"]),
             "sets": list(about["sets"]),
-            "design": design,
             "cases": len({state.case for state in presses.states}),
             "samples": len(presses.states),
             "per_split": _per_split(presses),
@@ -64,19 +60,27 @@ def data_card(
         "kinetic_friction": material.get("kinetic_friction", material["friction"]),
         "law": material["law"],
         "indenters": sorted({*shown, *(presses.states[number].indenter for number in states)}),
-        "size_mm": sorted({float(each["size_mm"]) for each in recipes}),
+        "size_mm": sorted({size for each in recipes for size in _sizes_mm(each)}),
+        "sizes_between": any("size_mm" in each.get("vary", {}) for each in recipes),
+        "spun": any("spin_deg" in each.get("vary", {}) for each in recipes),
         "edge_radius_mm": max(float(each["edge_radius_mm"]) for each in recipes),
         "depth_mm": max(presses.states[number].depth_mm for number in states),
         "shear_mm": max(_shear_mm(each) for each in recipes),
-        "membrane": {
-            "vertices": len(points_mm),
-            "spacing_mm": spacing_mm,
-            "mesh_key": about["mesh"],
-            "bounds_mm": [points_mm.min(axis=0).tolist(), points_mm.max(axis=0).tolist()],
-            "area_mm2": _area_mm2(points_mm, presses.faces),
-        },
+        "membranes": [_membrane(skin) for skin in presses.skins],
         "displacement_p95_mm": float(np.percentile(moved_mm, 95.0)),
         "max_displacement_mm": float(moved_mm.max()),
+    }
+
+
+def _membrane(skin: RestSkin) -> dict[str, Any]:
+    points_mm = skin.points_mm
+    return {
+        "design": dict(skin.design),
+        "vertices": len(points_mm),
+        "spacing_mm": skin.spacing_mm,
+        "mesh_key": skin.mesh,
+        "bounds_mm": [points_mm.min(axis=0).tolist(), points_mm.max(axis=0).tolist()],
+        "area_mm2": _area_mm2(points_mm, skin.faces),
     }
 
 
@@ -97,11 +101,12 @@ def training_card(begun: Beginning, course: Course, *, cases: int) -> dict[str, 
         "finished": course.finished,
         "best_epoch": course.best_epoch,
         "cases": cases,
-        "samples": len(begun.train),
+        "samples": begun.samples,
         "parameters": begun.parameters,
         "seconds": course.seconds,
         "device": begun.resources.device,
         "rate": settings.rate,
+        "peak_heed": settings.peak_heed,
         "batch": settings.batch,
         "turns": "any" if begun.patch_spacings else settings.turns,
         "patch_spacings": begun.patch_spacings,
@@ -126,6 +131,12 @@ def _largest_moves(presses: Presses, states: Sequence[int]) -> np.ndarray:
     sizes = np.linalg.norm(field.values, axis=1)
     spans = [sizes[field.starts[n] : field.starts[n + 1]] for n in states]
     return np.array([float(own.max(initial=0.0)) for own in spans])
+
+
+def _sizes_mm(recipe: Mapping[str, Any]) -> list[float]:
+    """The size of a recipe's objects [mm], or the ends of the range that they are drawn from."""
+    drawn = recipe.get("vary", {}).get("size_mm")
+    return [float(size) for size in drawn or [recipe["size_mm"]]]
 
 
 def _shear_mm(recipe: Mapping[str, Any]) -> float:

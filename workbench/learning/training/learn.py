@@ -192,7 +192,7 @@ class _Training:
     def _write_results(self) -> Trained:
         plan = self.plan
         shown = plan.base.card.get("indenters", ()) if plan.base else ()
-        card = data_card(self.presses, self.states, plan.target, self.begun.spacing_mm, shown)
+        card = data_card(self.presses, self.states, plan.target, shown)
         card["training"] = training_card(
             self.begun,
             Course(

@@ -19,10 +19,10 @@ import numpy as np
 
 from workbench.core.base.errors import StoreError
 from workbench.learning.dataset.cases import Split
-from workbench.learning.training.presses import Presses, SparseField, State
+from workbench.learning.training.presses import Presses, RestSkin, SparseField, State
 from workbench.system.whole_files import write_atomically
 
-FORMAT = 1
+FORMAT = 2
 SUFFIX = ".presses"
 
 
@@ -38,12 +38,11 @@ def write_packed(path: Path, presses: Presses) -> None:
         "parts": sorted(presses.parts),
         "states": [dataclasses.astuple(state) for state in presses.states],
         "about": dict(presses.about),
+        "skins": [{"mesh": skin.mesh, "design": dict(skin.design)} for skin in presses.skins],
     }
-    arrays: dict[str, Any] = {
-        "head": np.frombuffer(json.dumps(head).encode(), np.uint8),
-        "points_mm": presses.points_mm,
-        "faces": presses.faces,
-    }
+    arrays: dict[str, Any] = {"head": np.frombuffer(json.dumps(head).encode(), np.uint8)}
+    for number, skin in enumerate(presses.skins):
+        arrays |= {f"points_mm.{number}": skin.points_mm, f"faces.{number}": skin.faces}
     for name, field in presses.parts.items():
         arrays |= {f"{name}.{f.name}": getattr(field, f.name) for f in dataclasses.fields(field)}
     buffer = io.BytesIO()
@@ -64,8 +63,15 @@ def read_packed(path: Path) -> Presses:
         if head["format"] != FORMAT:
             raise ValueError(f"it has format {head['format']!r}, this program reads {FORMAT}")
         presses = Presses(
-            points_mm=arrays["points_mm"],
-            faces=arrays["faces"],
+            skins=tuple(
+                RestSkin(
+                    points_mm=arrays[f"points_mm.{number}"],
+                    faces=arrays[f"faces.{number}"],
+                    mesh=skin["mesh"],
+                    design=skin["design"],
+                )
+                for number, skin in enumerate(head["skins"])
+            ),
             states=tuple(_state(row) for row in head["states"]),
             parts={
                 name: SparseField(

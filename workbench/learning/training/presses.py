@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from sim.forces.network.spec import Target
-from sim.forces.training.fields import Fields, refuse_not_finite
+from sim.forces.training.fields import Fields, refuse_not_finite, sizes_of
 from workbench.core.base.digest import digest
 from workbench.core.base.errors import DesignError
 from workbench.learning.dataset.cases import Split
@@ -72,6 +72,8 @@ class State:
     split: Split
     indenter: str
     depth_mm: float
+    skin: int = 0
+    """Number of the skin that is pressed."""
 
     @property
     def name(self) -> str:
@@ -80,13 +82,31 @@ class State:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Presses:
-    """States of one skin with the fields of both solvers, in the order of their data sets."""
+class RestSkin:
+    """A skin that is pressed, at rest."""
 
     points_mm: np.ndarray
-    """Vertices at rest [mm], shape (V, 3), float64."""
+    """Vertices [mm], shape (V, 3), float64."""
     faces: np.ndarray
     """Triangles, shape (F, 3), int32."""
+    mesh: str = ""
+    """Key of its mesh."""
+    design: Mapping[str, Any] = field(default_factory=dict)
+    """Of the sensor that it belongs to, as plain tables."""
+
+    @property
+    def spacing_mm(self) -> float:
+        """Usual distance of two neighbours [mm]."""
+        from sim.forces.network.voxels import spacing_mm
+
+        return spacing_mm(self.points_mm, self.faces)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Presses:
+    """States of one skin or several with the fields of both solvers, in their data sets' order."""
+
+    skins: tuple[RestSkin, ...]
     states: tuple[State, ...]
     parts: Mapping[str, SparseField]
     """Fields by the name that they have in a sample."""
@@ -96,9 +116,10 @@ class Presses:
     @property
     def key(self) -> str:
         """Digest of all that a training depends on."""
-        listed = [(state.name, state.split) for state in self.states]
+        listed = [(state.name, state.split, state.skin) for state in self.states]
         arrays = [[p.starts, p.index, p.values] for _, p in sorted(self.parts.items())]
-        return digest([listed, sorted(self.parts), arrays, self.points_mm, self.faces])
+        skins = [[skin.points_mm, skin.faces] for skin in self.skins]
+        return digest([listed, sorted(self.parts), arrays, skins])
 
     def cases(self, split: Split) -> list[str]:
         """Cases of a split, in their order."""
@@ -113,47 +134,62 @@ class Presses:
             if state.split is split and (chosen is None or state.case in chosen)
         ]
 
+    def by_skin(self, states: Sequence[int]) -> dict[int, list[int]]:
+        """Numbers of states by the number of their skin, in rising order of skins."""
+        found: dict[int, list[int]] = {}
+        for number in states:
+            found.setdefault(self.states[number].skin, []).append(number)
+        return dict(sorted(found.items()))
+
     def fields(
         self,
         target: Target,
         states: Sequence[int],
         *,
+        skin: int = 0,
         takes_force: bool = False,
         corrects: bool = False,
     ) -> Fields:
-        """What a network learns from, of some states.
+        """What a network learns from, of some states of one skin.
 
         Args:
             target: What is predicted.
             states: Their numbers.
+            skin: Number of their skin.
             takes_force: Whether the contact solver's force enters too.
             corrects: Whether targets are what is missing in the contact solver's field.
 
         Raises:
             DesignError: If the target is not among the parts.
             SolveError: If a field is not finite.
+            ValueError: If a state is of another skin.
         """
-        vertices = len(self.points_mm)
+        if any(self.states[number].skin != skin for number in states):
+            raise ValueError(f"not all of {len(states)} states are of skin {skin}")
+        vertices = len(self.skins[skin].points_mm)
         inputs = self._part(INPUT).dense(states, vertices)
         if takes_force:
             force_N = self._part(RAW[Target.FORCE]).dense(states, vertices)
             inputs = np.concatenate([inputs, force_N], axis=2)
         targets = self._part(TRUTH[target]).dense(states, vertices)
+        sizes = sizes_of(targets)
         if corrects:
             targets -= self._part(RAW[target]).dense(states, vertices)
         return Fields(
             inputs=inputs,
             targets=targets,
+            sizes=sizes,
             names=tuple(self.states[number].name for number in states),
         )
 
     def zero_mae(self, target: Target, states: Sequence[int]) -> float:
         """Mean absolute error of always saying zero, in the target's unit; 0 for no state."""
-        truth, vertices = self._part(TRUTH[target]), len(self.points_mm)
-        ends = zip(truth.starts[:-1], truth.starts[1:], strict=True)
-        sums = [float(np.abs(truth.values[a:b]).sum(dtype=np.float64)) for a, b in ends]
-        size = vertices * truth.values.shape[1]
-        return float(np.mean([sums[number] for number in states])) / size if len(states) else 0.0
+        truth, means = self._part(TRUTH[target]), []
+        for number in states:
+            own = truth.values[truth.starts[number] : truth.starts[number + 1]]
+            size = self._vertices(number) * truth.values.shape[1]
+            means.append(float(np.abs(own).sum(dtype=np.float64)) / size)
+        return float(np.mean(means)) if means else 0.0
 
     def raw_errors(self, target: Target, states: Sequence[int]) -> np.ndarray | None:
         """Mean absolute error of the contact solver alone in each state, shape (S,).
@@ -163,12 +199,16 @@ class Presses:
         if target not in RAW:
             return None
         raw, truth = self._part(RAW[target]), self._part(TRUTH[target])
-        vertices, errors = len(self.points_mm), []
+        errors = []
         for number in states:
+            vertices = self._vertices(number)
             one = raw.dense([number], vertices) - truth.dense([number], vertices)
             refuse_not_finite(one, [self.states[number].name], "field")
             errors.append(float(np.abs(one).mean(dtype=np.float64)))
         return np.array(errors)
+
+    def _vertices(self, state: int) -> int:
+        return len(self.skins[self.states[state].skin].points_mm)
 
     def _part(self, name: str) -> SparseField:
         if name not in self.parts:

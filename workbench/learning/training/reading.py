@@ -1,8 +1,8 @@
 """From data sets, or files packed of them, to what training keeps; what does not belong is refused.
 
-Several data sets are joined where nothing but the choice of presses differs: same skin, material,
-meshes, versions of the solvers. A press in two of them counts once, and no pair of object and place
-may be in two splits, or frames of one press would be learned from and tested on.
+Several data sets are joined where nothing but the choice of presses, or the membrane, differs:
+same material, spacing, versions of the solvers. A press in two of them counts once, and no pair of
+object and place may be in two splits, or frames of one press would be learned from and tested on.
 """
 
 from __future__ import annotations
@@ -20,10 +20,20 @@ from workbench.learning.dataset.cases import Case, Split
 from workbench.learning.dataset.folder import DataSet
 from workbench.learning.dataset.sample import Sample
 from workbench.learning.training.packed import read_packed
-from workbench.learning.training.presses import INPUT, RAW, TRUTH, Presses, SparseField, State
+from workbench.learning.training.presses import (
+    INPUT,
+    RAW,
+    TRUTH,
+    Presses,
+    RestSkin,
+    SparseField,
+    State,
+)
 
-SAME = ("material", "layers", "hex_mm", "grid_mm")
+SAME = ("material", "hex_mm", "grid_mm")
 """Of a recipe or its design: what must not differ between data sets that are joined."""
+MEMBRANE = ("family", "layers", "shape", "body", "meshing")
+"""Of a design: what a skin is meshed from."""
 
 
 def read_presses(
@@ -54,24 +64,35 @@ def read_presses(
     sets = [DataSet.open(place) for place in places]
     _expect_alike(sets)
     reader = _Reader(_parts(targets))
+    meshes = list(dict.fromkeys(data.manifest["mesh"] for data in sets))
     for number, data in enumerate(sets):
-        reader.read(data, lambda share, n=number: tick((n + share) / len(sets)))
+        skin = meshes.index(data.manifest["mesh"])
+        reader.read(data, skin, lambda share, n=number: tick((n + share) / len(sets)))
     first = sets[0]
     return Presses(
-        points_mm=first.skin.points_mm,
-        faces=first.skin.faces,
+        skins=tuple(_skin(sets, mesh) for mesh in meshes),
         states=tuple(reader.states),
         parts=reader.fields(),
         about={
             "sets": [str(data.folder.name) for data in sets],
             "keys": [data.key for data in sets],
             "recipes": [dict(data.manifest["recipe"]) for data in sets],
-            "mesh": first.manifest["mesh"],
             "stages": dict(first.manifest["stages"]),
             "program": first.manifest["program"],
             "read_by": VERSION,
             "left_out": reader.left_out,
         },
+    )
+
+
+def _skin(sets: Sequence[DataSet], mesh: str) -> RestSkin:
+    """The skin of the first data set that has this mesh."""
+    data = next(one for one in sets if one.manifest["mesh"] == mesh)
+    return RestSkin(
+        points_mm=data.skin.points_mm,
+        faces=data.skin.faces,
+        mesh=mesh,
+        design=dict(data.manifest["recipe"]["design"]),
     )
 
 
@@ -86,8 +107,10 @@ def _expect_alike(sets: Sequence[DataSet]) -> None:
     first = sets[0]
     for data in sets[1:]:
         ours, theirs = first.manifest, data.manifest
-        differs = [] if ours["mesh"] == theirs["mesh"] else ["skin"]
-        differs += [name for name in SAME if _part_of(ours, name) != _part_of(theirs, name)]
+        differs = [name for name in SAME if _part_of(ours, name) != _part_of(theirs, name)]
+        alike = all(_part_of(ours, name) == _part_of(theirs, name) for name in MEMBRANE)
+        if alike != (ours["mesh"] == theirs["mesh"]):
+            differs.append("skin")
         differs += [
             f"version of {stage}"
             for stage, version in ours["stages"].items()
@@ -121,8 +144,8 @@ class _Reader:
         self._splits: dict[str, Split] = {}
         self._seen: set[tuple[str, int]] = set()
 
-    def read(self, data: DataSet, tick: Callable[[float], None]) -> None:
-        """Read a data set.
+    def read(self, data: DataSet, skin: int, tick: Callable[[float], None]) -> None:
+        """Read a data set of the skin of this number.
 
         Raises:
             StoreError: If a sample is damaged, or in another split than before.
@@ -131,13 +154,14 @@ class _Reader:
         cases = data.cases()
         for number, case in enumerate(cases):
             tick(number / len(cases))
-            self._expect_split(case, data)
+            self._expect_split(case, skin, data)
             for frame in data.frames(case):
-                if frame >= case.first_new and (_name(case), frame) not in self._seen:
-                    self._seen.add((_name(case), frame))
-                    self._take(case, data.sample(case, frame), data)
+                name = f"{_pair(case, skin)} {case.id}"
+                if frame >= case.first_new and (name, frame) not in self._seen:
+                    self._seen.add((name, frame))
+                    self._take(case, skin, data.sample(case, frame), data)
 
-    def _take(self, case: Case, sample: Sample, data: DataSet) -> None:
+    def _take(self, case: Case, skin: int, sample: Sample, data: DataSet) -> None:
         if sample.mpm is None or sample.fem is None:
             missing = "the contact solver" if sample.mpm is None else "finite elements"
             raise DesignError(
@@ -147,12 +171,14 @@ class _Reader:
                 at=str(data.folder),
             )
         state = State(
-            case=case.id,
+            # Data sets of two membranes name their cases alike.
+            case=f"{skin}:{case.id}" if skin else case.id,
             frame=sample.frame,
-            pair=_pair(case),
+            pair=_pair(case, skin),
             split=case.split,
             indenter=case.indenter.value,
             depth_mm=sample.depth_mm,
+            skin=skin,
         )
         if not (sample.mpm.converged and sample.fem.converged):
             self.left_out.append(state.name)
@@ -163,8 +189,8 @@ class _Reader:
             dense = getattr(getattr(sample, solver), field)
             found.append(SparseField.of([dense], dense.shape[1]))
 
-    def _expect_split(self, case: Case, data: DataSet) -> None:
-        known = self._splits.setdefault(_pair(case), case.split)
+    def _expect_split(self, case: Case, skin: int, data: DataSet) -> None:
+        known = self._splits.setdefault(_pair(case, skin), case.split)
         if known is not case.split:
             raise StoreError(
                 f"{case.id} is for {case.split} in {data.folder} and for {known} in another data "
@@ -189,11 +215,7 @@ def _joined(fields: Sequence[SparseField]) -> SparseField:
     )
 
 
-def _pair(case: Case) -> str:
+def _pair(case: Case, skin: int) -> str:
     """Object and place: positions of two seeds may share a name, but not a point."""
     place = ",".join(f"{x:.4f}" for x in case.position.target_mm)
-    return f"{case.indenter.value}@{place}"
-
-
-def _name(case: Case) -> str:
-    return f"{case.id}@{_pair(case)}"
+    return f"{case.indenter.value}@{skin}:{place}"

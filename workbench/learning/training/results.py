@@ -13,7 +13,7 @@ import numpy as np
 
 from sim.forces.network.weights import NetworkWeights, Storage, weights_from_bytes, weights_to_bytes
 from workbench.learning.dataset.cases import Split
-from workbench.learning.training.presses import Presses
+from workbench.learning.training.presses import Presses, RestSkin
 
 Predict = Callable[[np.ndarray], np.ndarray]
 
@@ -28,9 +28,9 @@ def final_weights(
         DeviceError: If the device runs out of memory.
     """
     rounded = weights_from_bytes(*weights_to_bytes(weights, storage=Storage.HALF))
-    predict = single_predictor(rounded, presses, device)
+    predicts = [single_predictor(rounded, skin, device) for skin in presses.skins]
     scores = {
-        split.value: score(presses, rounded, states, predict, batch)
+        split.value: score(presses, rounded, states, predicts, batch)
         for split in Split
         if split is not Split.TRAIN and (states := presses.of_split(split))
     }
@@ -38,7 +38,11 @@ def final_weights(
 
 
 def score(
-    presses: Presses, weights: NetworkWeights, states: Sequence[int], predict: Predict, batch: int
+    presses: Presses,
+    weights: NetworkWeights,
+    states: Sequence[int],
+    predicts: Sequence[Predict],
+    batch: int,
 ) -> dict[str, Any]:
     """Mean absolute errors over all vertices, channels and samples, in the target's unit.
 
@@ -46,17 +50,18 @@ def score(
         presses: The data.
         weights: What predicts, for its target.
         states: Samples to measure on, at least one.
-        predict: Fields from what enters the network.
+        predicts: Of each skin, fields from what enters the network.
         batch: Samples at a time.
     """
     target = weights.target
     sums = np.zeros(2)
-    for first in range(0, len(states), batch):
-        own = states[first : first + batch]
-        fields = presses.fields(target, own, takes_force=weights.takes_force)
-        away = np.abs(predict(fields.inputs) - fields.targets)
-        sums[0] += away.mean(dtype=np.float64) * len(own)
-        sums[1] += fields.zero_mae * len(own)
+    for skin, of_skin in presses.by_skin(states).items():
+        for first in range(0, len(of_skin), batch):
+            own = of_skin[first : first + batch]
+            fields = presses.fields(target, own, skin=skin, takes_force=weights.takes_force)
+            away = np.abs(predicts[skin](fields.inputs) - fields.targets)
+            sums[0] += away.mean(dtype=np.float64) * len(own)
+            sums[1] += fields.zero_mae * len(own)
     raw = presses.raw_errors(target, states)
     return {
         "cases": len({presses.states[number].case for number in states}),
@@ -67,15 +72,15 @@ def score(
     }
 
 
-def single_predictor(weights: NetworkWeights, presses: Presses, device: str) -> Predict:
-    """The network on the skin of the data, in float32.
+def single_predictor(weights: NetworkWeights, skin: RestSkin, device: str) -> Predict:
+    """The network on a skin of the data, in float32.
 
     Raises:
         DeviceError: If the device has no room for it.
     """
     from sim.forces.network.steady import steady_predictor
 
-    return steady_predictor(weights, presses.points_mm, presses.faces, device=device).predict
+    return steady_predictor(weights, skin.points_mm, skin.faces, device=device).predict
 
 
 def batches(values: np.ndarray, size: int) -> Iterator[np.ndarray]:
