@@ -66,6 +66,13 @@ def copy_out(source: Floats, target: Floats, first: ti.i32, count: ti.i32):
 
 
 @ti.kernel
+def copy_whole_out(source: Integers, target: Floats, first: ti.i32, count: ti.i32):
+    """The same of whole numbers, small enough for single precision to hold them."""
+    for i in range(count):
+        target[i] = ti.cast(source[first + i], ti.f32)
+
+
+@ti.kernel
 def copy_in(source: Floats, target: Floats, first: ti.i32, count: ti.i32):
     """Copy the start of a short array to entries `first` and following of a long one."""
     for i in range(count):

@@ -111,11 +111,11 @@ class Run:
         elif self._leaves():
             self.relaxation.damping[self.number] = FREED_DAMPING
 
-    def feed(self) -> None:
-        """Hand the next poses of the ramp to the relaxation."""
+    def feed(self) -> np.ndarray:
+        """The next poses of the ramp, shape (STEPS, POSE)."""
         rows = self._ramp[self._fed : self._fed + STEPS]
-        self.relaxation.set_poses(self.number, rows)
         self._fed += STEPS
+        return rows
 
     def stay(self) -> None:
         """Leave the object where the frame wants it."""

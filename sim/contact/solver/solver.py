@@ -24,6 +24,7 @@ from sim.contact.readout.problem import Problem
 from sim.contact.readout.slipping import with_slip
 from sim.contact.readout.verdict import check_frame
 from sim.contact.solver.load import Load
+from sim.contact.solver.progress import Progress
 from sim.contact.solver.run import FORCE_CHANGE, Run
 from workbench.core.base.errors import SolveError, Stopped
 from workbench.core.base.monitor import Monitor, silent
@@ -108,6 +109,7 @@ class Solver:
         self.before_N = np.full((count, 3), np.inf)
         self.retries = np.zeros(count, int)
         self.residual = np.full(count, np.inf)
+        self.progress = Progress(self.runs)
         for case in range(count):
             self._begin(case)
 
@@ -132,8 +134,10 @@ class Solver:
 
     def _relax(self) -> None:
         while self.active.any():
-            for case in np.flatnonzero(self.active & ~self.settling).tolist():
-                self.runs[case].feed()
+            ramping = np.flatnonzero(self.active & ~self.settling)
+            if len(ramping):
+                rows = np.stack([self.runs[case].feed() for case in ramping.tolist()])
+                self.relaxation.set_all_poses(ramping, rows)
             self.relaxation.advance(self.active)
             self.substeps[self.active] += STEPS
             if self.settling.any():
@@ -142,7 +146,9 @@ class Solver:
                 if self.runs[case].arrived:
                     self.runs[case].stay()
                     self.settling[case] = True
-            self._tell()
+            self.monitor(
+                *self.progress.report(self.active, self.settling, self.spent, self.residual)
+            )
         self.monitor(1.0, "settled")
 
     def results(self) -> list[Contact | SolveError]:
@@ -155,6 +161,7 @@ class Solver:
     def _begin(self, case: int) -> None:
         """Start the next frame of a press, or an attempt at the same one."""
         self.runs[case].begin()
+        self.progress.begin(case)
         self.settling[case] = self.runs[case].arrived
         self.spent[case] = 0
         self.lowest[case] = np.inf
@@ -284,17 +291,5 @@ class Solver:
                 run.outcomes, run.problem, substeps=int(self.substeps[run.number])
             )
         run.error = error
+        self.progress.end(case)
         self.active[case] = self.settling[case] = False
-
-    def _tell(self) -> None:
-        """Report the progress of all presses, and which frame the slowest is at."""
-        share = np.where(self.settling, np.minimum(1.0, self.spent / 200.0), 0.0)
-        done = [run.progress(float(s)) for run, s in zip(self.runs, share, strict=True)]
-        case = int(np.argmin(np.where(self.active, done, 2.0)))
-        run = self.runs[case]
-        note = run.label
-        if self.settling[case]:
-            note += f", residual {self.residual[case]:.0e}"
-        if len(self.runs) > 1:
-            note = f"{int(self.active.sum())} of {len(self.runs)} presses under way; {note}"
-        self.monitor(min(1.0, float(np.mean(done))), note)
