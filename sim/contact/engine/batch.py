@@ -96,6 +96,8 @@ class Batch:
             point_forces=floats(np.zeros(3 * point_at[-1])),
             owners=integers(_owners(counts)),
         )
+        self.kept = floats(np.zeros(3 * total))
+        """Displacement at the last commit of each case [mm], 3 N."""
         self.slips = floats(np.zeros(point_at[-1]))
         """Way that each surface point has slid in settled frames [mm], P."""
         self.ties = _shared_ties(domains, node_at)

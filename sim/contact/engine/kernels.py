@@ -230,14 +230,20 @@ def commit_anchors(
     surface: pack_of(Surface),
     cases: pack_of(Cases),
     slips: Floats,
+    kept: Floats,
     sliding: Floats,
 ):
     """Close a settled frame of cases, by their poses in the first step of the table.
 
+    Their displacement is copied to `kept`, 3 N.
     Anchors follow the points that slid, and the way they go is added to `slips`; contacts become
     history. Those that went farther than the case's entry of `sliding` [mm] are held by kinetic
     friction from here on; a case whose entry is negative is left alone.
     """
+    for node in range(nodes.node_cases.shape[0]):
+        if sliding[nodes.node_cases[node]] >= 0.0:
+            for c in ti.static(range(3)):
+                kept[3 * node + c] = nodes.displacement[3 * node + c]
     for cell in range(cells.cell_cases.shape[0]):
         case = cells.cell_cases[cell]
         if sliding[case] >= 0.0:

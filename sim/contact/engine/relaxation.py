@@ -104,8 +104,7 @@ class Relaxation:
             self._choices[row, layout.COUNTS :] = case.collider.samples.shape
         self._closing = np.full(count, OPEN, np.float32)
         self._sliding = floats(self._closing)
-        self._known: dict[int, np.ndarray] = {}
-        """Displacements that were read since the last substep, by case."""
+        self._known: dict[int, np.ndarray] = {}  # Displacements that no substep has changed since.
         self._stale_poses = True
         self._sent = (np.zeros(0), np.zeros(0))
         self._substep = self._launcher()
@@ -190,7 +189,9 @@ class Relaxation:
         if (self._closing >= 0.0).any():
             self._upload()
             self._sliding.from_numpy(self._closing)
-            kernels.commit_anchors(*self.batch.packs, self.batch.slips, self._sliding)
+            kernels.commit_anchors(
+                *self.batch.packs, self.batch.slips, self.batch.kept, self._sliding
+            )
             self._closing[:] = OPEN
 
     def burden(self, chosen: np.ndarray) -> None:
@@ -208,9 +209,21 @@ class Relaxation:
     def restart(self, case: int, displacement_mm: np.ndarray) -> None:
         """Come to rest at a nodal displacement, (N, 3); anchors of this frame are lost."""
         self._close()
+        first = 3 * self.batch.spans[case].first_node
+        self.batch.write(self.batch.nodes.displacement, first, displacement_mm)
+        self._rest(case)
+
+    def go_back(self, case: int) -> None:
+        """Come to rest at the displacement of the last commit; anchors since then are lost."""
+        self._close()
+        span, moved = self.batch.spans[case], self.batch.nodes.displacement
+        sum_kernels.copy_back(self.batch.kept, moved, 3 * span.first_node, 3 * span.nodes)
+        self._rest(case)
+
+    def _rest(self, case: int) -> None:
+        """Stop a case whose displacement is another one now."""
         self._known.pop(case, None)
         span = self.batch.spans[case]
-        self.batch.write(self.batch.nodes.displacement, 3 * span.first_node, displacement_mm)
         sum_kernels.rest(
             self.batch.nodes.velocity, self.batch.surface.states, span.first_node, span.nodes,
             span.first_point, span.points,

@@ -80,6 +80,13 @@ def copy_in(source: Floats, target: Floats, first: ti.i32, count: ti.i32):
 
 
 @ti.kernel
+def copy_back(source: Floats, target: Floats, first: ti.i32, count: ti.i32):
+    """Copy entries `first` and following to the same place of another array."""
+    for i in range(count):
+        target[first + i] = source[first + i]
+
+
+@ti.kernel
 def rest(
     velocity: Floats,
     states: Integers,

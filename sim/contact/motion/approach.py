@@ -94,10 +94,11 @@ class Approach:
         origins = self.target_mm + (self.touch_mm - inward * self.press.depth_mm) * self.normal
         origins = origins + aside * (shear_u * self.tangent_u + shear_v * self.tangent_v)
         angles = aside * radians(self.press.twist_deg)
-        along = np.cos(angles) * self.tangent_u + np.sin(angles) * self.tangent_v
-        across = np.cos(angles) * self.tangent_v - np.sin(angles) * self.tangent_u
-        normals = np.broadcast_to(self.normal, along.shape)
-        return origins, np.stack([along, across, normals], axis=2)
+        turned = np.empty((len(progress), 3, 3))
+        turned[:, :, 0] = np.cos(angles) * self.tangent_u + np.sin(angles) * self.tangent_v
+        turned[:, :, 1] = np.cos(angles) * self.tangent_v - np.sin(angles) * self.tangent_u
+        turned[:, :, 2] = self.normal
+        return origins, turned
 
     def placed(self, state: State) -> tuple[np.ndarray, np.ndarray]:
         """Origin [mm], (3,), and rotation body to sensor, (3, 3), of a state of a leg."""

@@ -219,15 +219,15 @@ class Solver:
     def close_frame(self, case: int, balance: Balance, load_N: float) -> None:
         """Go on from a settled state: within the frame, or from its end, which is read first."""
         run = self.runs[case]
-        if not np.isfinite(self.relaxation.snapshot(case)).all():
-            self._unstable(case)
-            return
-        self.retries[case] = 0
-        self.relaxation.relieve(case)
         if run.on_the_way:
+            self._relieve(case)
             run.go_on()
             self._begin(case)
             return
+        if not np.isfinite(self.relaxation.snapshot(case)).all():
+            self._unstable(case)
+            return
+        self._relieve(case)
         try:
             self.take_frame(case, self._settled_frame(case, balance, load_N))
         except SolveError as error:
@@ -238,6 +238,11 @@ class Solver:
             self._begin(case)
         else:
             self.end(case, None)
+
+    def _relieve(self, case: int) -> None:
+        """Forgive a press that has settled what it took."""
+        self.retries[case] = 0
+        self.relaxation.relieve(case)
 
     def take_frame(self, case: int, frame: SettledFrame) -> None:
         """Read the frame that a press has settled in, and close it.
