@@ -124,6 +124,10 @@ class Run:
         self._fed += STEPS
         return rows
 
+    def last_pose(self) -> np.ndarray:
+        """Where the object stays once it has arrived, shape (STEPS, POSE)."""
+        return np.tile(self._ramp[-1], (STEPS, 1))
+
     def stay(self) -> None:
         """Leave the object where the frame wants it."""
         self.relaxation.set_poses(self.number, self._rows(np.ones(1)))

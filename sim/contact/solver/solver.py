@@ -142,13 +142,13 @@ class Solver:
             self.substeps[self.active] += STEPS
             if self.settling.any():
                 self._look()
-            for case in np.flatnonzero(self.active & ~self.settling).tolist():
-                if self.runs[case].arrived:
-                    self.runs[case].stay()
-                    self.settling[case] = True
-            self.monitor(
-                *self.progress.report(self.active, self.settling, self.spent, self.residual)
-            )
+            arrived = [case for case in ramping.tolist() if self.runs[case].arrived]
+            if arrived:
+                rows = np.stack([self.runs[case].last_pose() for case in arrived])
+                self.relaxation.set_all_poses(np.array(arrived), rows)
+                self.settling[arrived] = True
+            told = self.progress.report(self.active, self.settling, self.spent, self.residual)
+            self.monitor(*told)
         self.monitor(1.0, "settled")
 
     def results(self) -> list[Contact | SolveError]:
