@@ -162,6 +162,29 @@ def test_commit_equals_the_twin(taichi_device: str) -> None:
     np.testing.assert_allclose(relaxation.slips_mm(), history.slips, atol=2e-6)
 
 
+def test_a_frame_is_closed_without_those_beside_it(taichi_device: str) -> None:
+    """Two presses in one batch; the second is closed: it alone has history, and a place to go to.
+
+    It goes back to the displacement of that moment exactly, and to no later one.
+    """
+    domain, collider, approach, _ = setup(Indenter(size_mm=4.0))
+    relaxation = Relaxation([Case(domain=domain, collider=collider, friction=0.3)] * 2)
+    then, later = wobble(domain), wobble(domain, 0.01)
+    for case in (0, 1):
+        relaxation.restart(case, then)
+        relaxation.set_poses(case, row(approach.pose(1.0)))
+    relaxation.evaluate(np.ones(2, bool))
+    relaxation.commit(1)
+    open_states, closed_states = (relaxation.contact_history(case)[1] for case in (0, 1))
+    assert set(open_states.tolist()) == {reference.FREE, reference.TOUCHED}
+    assert reference.TOUCHED not in closed_states
+    np.testing.assert_array_equal(open_states > 0, closed_states > 0)
+    relaxation.restart(1, later)
+    np.testing.assert_array_equal(relaxation.displacement(1), later)
+    relaxation.go_back(1)
+    np.testing.assert_array_equal(relaxation.displacement(1), then)
+
+
 @pytest.mark.parametrize("kinetic", [0.3, 0.1])
 def test_kinetic_friction_equals_the_twin(taichi_device: str, kinetic: float) -> None:
     """A turn that settles, then another: points that slid are held by the kinetic cone."""

@@ -8,9 +8,12 @@ import pytest
 from sim.contact.motion.approach import plan_approach
 from sim.contact.objects.collider import make_collider
 from sim.contact.press import press_membrane
+from sim.contact.readout.problem import make_problem
 from sim.contact.region.refinement import path_distance_mm, path_samples
+from sim.contact.solver.reactions import Reactions
+from sim.contact.solver.solver import solve
 from sim.contact.studies.specimens import flat_block
-from workbench.core.base.errors import DesignError
+from workbench.core.base.errors import DesignError, SolveError
 from workbench.core.design.design import Elastomer
 from workbench.core.press.actuation import Actuation
 from workbench.core.press.indenter import Indenter, IndenterKind
@@ -60,6 +63,18 @@ def test_frames_of_a_straight_press_with_friction_end_alike() -> None:
     assert coarse.normal_N[-1] == pytest.approx(fine.normal_N[-1], rel=0.01)
     # Measured 13 %; gone in one piece, 42 % too little; extrapolated instead of moved, 50 % more.
     assert coarse.tangential_N[-1] == pytest.approx(fine.tangential_N[-1], rel=0.2)
+
+
+def test_reactions_are_those_of_the_whole_depth() -> None:
+    """A press of 0.4 mm that rubs rests three times on its way; what counts is its end, exactly."""
+    case = PressCase(press=dataclasses.replace(PRESS, frames=1), settings=SETTINGS)
+    problem = make_problem(MESH, POINTS, Elastomer(friction=0.5), case)
+    reactions = Reactions([problem])
+    reactions.run()
+    (contact,) = solve([problem])
+    assert not isinstance(contact, SolveError)
+    np.testing.assert_allclose(reactions.reaction_N[0], contact.reaction_N[-1], rtol=1e-6)
+    assert contact.normal_N[-1] > 0.1
 
 
 def test_a_soft_object_settles_before_it_touches() -> None:

@@ -122,3 +122,26 @@ def test_object_that_meets_an_overhang_first_is_refused() -> None:
     with pytest.raises(DesignError, match=r"elsewhere first, 20\..* limit is 6\.0 mm") as raised:
         plan_approach(both, collider, Press(target_mm=(0.0, 0.0, 4.0)))
     assert raised.value.at == "press.target_mm"
+
+
+def test_poses_at_once_are_those_one_by_one() -> None:
+    """A press that shears and twists, within its frames and beyond them."""
+    collider = make_collider(Indenter(), grid_mm=0.5)
+    press = Press(
+        target_mm=(0.13, -0.07, 4.0), depth_mm=0.5, frames=2, shear_mm=(0.3, -0.2), twist_deg=30.0
+    )
+    approach = plan_approach(BLOCK.outer, collider, press)
+    progress = np.linspace(0.0, 5.0, 21)
+    origins, turned = approach.poses(progress)
+    for at, origin, rotation in zip(progress, origins, turned, strict=True):
+        one, turn = approach.pose(float(at))
+        np.testing.assert_array_equal(one, origin)
+        np.testing.assert_array_equal(turn, rotation)
+    np.testing.assert_allclose(
+        turned @ turned.swapaxes(1, 2), np.tile(np.eye(3), (21, 1, 1)), atol=1e-12
+    )
+    way = origins[16] - origins[0]
+    shift = 0.3 * approach.tangent_u - 0.2 * approach.tangent_v
+    np.testing.assert_allclose(way, shift - 0.5 * approach.normal, atol=1e-12)
+    # 30 degrees about the normal, all of them by the end of the fourth frame.
+    assert np.trace(turned[0].T @ turned[-1]) == pytest.approx(1.0 + 3.0**0.5)

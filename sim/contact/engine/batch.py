@@ -94,7 +94,10 @@ class Batch:
             anchors=floats(np.zeros(3 * point_at[-1])),
             states=integers(np.zeros(point_at[-1])),
             point_forces=floats(np.zeros(3 * point_at[-1])),
+            owners=integers(_owners(counts)),
         )
+        self.kept = floats(np.zeros(3 * total))
+        """Displacement at the last commit of each case [mm], 3 N."""
         self.slips = floats(np.zeros(point_at[-1]))
         """Way that each surface point has slid in settled frames [mm], P."""
         self.ties = _shared_ties(domains, node_at)
@@ -124,6 +127,11 @@ class Batch:
         """Some entries of a device array of floats, shape (count,)."""
         sum_kernels.copy_out(array, self._staging, first, count)
         return self._staging.to_numpy()[:count]
+
+    def read_whole(self, array: Any, first: int, count: int) -> np.ndarray:
+        """Some entries of a device array of small integers, shape (count,)."""
+        sum_kernels.copy_whole_out(array, self._staging, first, count)
+        return self._staging.to_numpy()[:count].astype(np.int32)
 
     def write(self, array: Any, first: int, values: np.ndarray) -> None:
         """Replace some entries of a device array of floats."""
@@ -242,6 +250,12 @@ def _points_per_cell(domain: Domain) -> np.ndarray:
     counts = np.zeros(_padded(len(domain.rows)), np.int64)
     counts[domain.owners] = np.diff(domain.owner_starts)
     return counts
+
+
+def _owners(counts: np.ndarray) -> np.ndarray:
+    """Cell of each surface point, from the points of each cell; -1 alone where there are none."""
+    found = np.repeat(np.arange(len(counts)), counts)
+    return found if len(found) else np.array([-1])
 
 
 def _starts(counts: list[int]) -> list[int]:

@@ -93,6 +93,8 @@ class Surface(NamedTuple):
     """FREE, TOUCHED, HELD or SLID, P."""
     point_forces: Floats
     """On the membrane in the last substep [N], 3 P."""
+    owners: Integers
+    """Cell that each point lies in, P; a single -1 where there is no point."""
 
 
 class Cases(NamedTuple):

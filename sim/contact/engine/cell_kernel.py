@@ -1,6 +1,6 @@
-"""Pass 1 of a substep: elastic and surface forces of each cell into the cell's own slots.
+"""Second pass of a substep: elastic and surface forces of each cell into the cell's own slots.
 
-Taichi function; its plain twins are `reference.stress_forces` and `reference.surface_forces`.
+Taichi function; its plain twin is `reference.stress_forces`.
 """
 
 # Taichi reads annotations and operators in its own way.
@@ -9,7 +9,8 @@ Taichi function; its plain twins are `reference.stress_forces` and `reference.su
 import taichi as ti
 from taichi.lang.impl import expr_init
 
-from sim.contact.engine.point_functions import line_weights, point_force
+from sim.contact.engine.blocks import CELL_THREADS, block_size
+from sim.contact.engine.point_functions import line_weights
 from sim.contact.grid.layout import CHOICES, IDLE, LOCAL, MODE, POINT
 from sim.contact.grid.stencil import gather_gradient, scatter_gradient
 from sim.contact.region.domain import BLOCK
@@ -51,10 +52,10 @@ def cell_pass(
     surface: ti.template(),
     cases: ti.template(),
     count,
-    case_count,
-    step,
     linear: ti.template(),
 ):
+    """Forces of each cell on its nodes; those of its surface points are known."""
+    ti.loop_config(block_dim=ti.static(block_size(CELL_THREADS)))
     for cell in range(count):
         case = cells.cell_cases[cell]
         if cases.choices[CHOICES * case + MODE] != IDLE:
@@ -68,19 +69,11 @@ def cell_pass(
             inverse_edge = cells.moduli[entry(cell, 2, 3)]
             forces = ti.static(_cell_forces(nodal, volume, inverse_edge, (shear, bulk), linear))
             for point in range(cells.starts[cell], cells.starts[cell + 1]):
-                x = line_weights(surface.points[POINT * point + LOCAL])
-                y = line_weights(surface.points[POINT * point + LOCAL + 1])
-                z = line_weights(surface.points[POINT * point + LOCAL + 2])
-                moved = ti.Vector([0.0, 0.0, 0.0])
-                for n in ti.static(range(27)):
-                    weight = x[n // 9] * y[n // 3 % 3] * z[n % 3]
-                    for c in ti.static(range(3)):
-                        moved[c] += weight * nodal[c][n]
-                row = step * case_count + case
-                force = point_force(point, moved, surface, cases, case, row)
-                for c in ti.static(range(3)):
-                    surface.point_forces[3 * point + c] = force[c]
+                force = ti.Vector([surface.point_forces[3 * point + c] for c in range(3)])
                 if force.norm_sqr() > 0.0:
+                    x = line_weights(surface.points[POINT * point + LOCAL])
+                    y = line_weights(surface.points[POINT * point + LOCAL + 1])
+                    z = line_weights(surface.points[POINT * point + LOCAL + 2])
                     for n in ti.static(range(27)):
                         weight = x[n // 9] * y[n // 3 % 3] * z[n % 3]
                         for c in ti.static(range(3)):

@@ -4,10 +4,11 @@ Every array and constant is an argument, so that the compile cache serves all de
 adds into memory that another one writes, and no sum depends on the thread count or on the other
 presses of a batch: results are the same bit by bit on each run of one device.
 
-One substep is two passes. Pass 1 (`cell_kernel`, a thread per cell) reads 27 nodal displacements,
-forms the stress at the cell's 8 points, adds the contact and holding forces of its surface points,
-and writes 27 nodal forces into the cell's own 81 slots. Pass 2 (a thread per node) sums the 27
-slots that belong to the node and moves it.
+One substep is three passes. Pass 1 (`surface_kernel`, a thread per surface point) finds contact and
+holding forces. Pass 2 (`cell_kernel`, a thread per cell) reads 27 nodal displacements, forms the
+stress at the cell's 8 points, adds the forces of its surface points, and writes 27 nodal forces
+into the cell's own 81 slots. Pass 3 (a thread per node) sums the 27 slots that belong to the node
+and moves it.
 
 Cells, nodes and surface points of all presses (cases) follow each other; `bundles` says what is
 known of each. The plain twin of each kernel is in `reference`. Layouts are described in `domain`
@@ -21,16 +22,17 @@ import functools
 
 import taichi as ti
 
+from sim.contact.engine.blocks import NODE_THREADS, block_size
 from sim.contact.engine.bundles import Cases, Cells, Floats, Integers, Nodes, Surface, Ties, pack_of
 from sim.contact.engine.cell_kernel import cell_pass, entry
 from sim.contact.engine.point_functions import (
     body_rotation,
     friction_now,
-    line_weights,
     object_distance,
     place_in_body,
     tangent_slip,
 )
+from sim.contact.engine.surface_kernel import point_displacement, surface_pass
 from sim.contact.grid.layout import (
     CHOICES,
     DAMPING,
@@ -38,13 +40,11 @@ from sim.contact.grid.layout import (
     HELD,
     IDLE,
     LARGEST_STEP,
-    LOCAL,
     MASS_SCALE,
     MEETS_RIGID,
     MODE,
     MOVING,
     NUMBERS,
-    POINT,
     SLID,
     TIED,
     UNHELD,
@@ -65,28 +65,36 @@ def _slot_sum(node, nodes: ti.template(), cells: ti.template()):
 
 @ti.func
 def _move_node(node, total, nodes: ti.template(), cases: ti.template(), case, mode):
-    """One damped step of a node under its force [N]."""
+    """One damped step of a node under its force [N].
+
+    All is read before anything is written: Taichi cannot know that no array lies in another, so a
+    read that follows a write waits for it, and on a GPU this pass is made of waiting for memory.
+    """
+    place = [nodes.displacement[3 * node + c] for c in range(3)]
+    speed = [nodes.velocity[3 * node + c] for c in range(3)]
+    before = [nodes.forces[3 * node + c] for c in range(3)]
     mass = nodes.masses[node] * cases.numbers[NUMBERS * case + MASS_SCALE]
     damping = cases.numbers[NUMBERS * case + DAMPING]
     largest_step = cases.numbers[NUMBERS * case + LARGEST_STEP]
+    moves = nodes.fixed[node] == UNHELD and mode == MOVING
     work, inertia = 0.0, 0.0
     for c in ti.static(range(3)):
-        at = 3 * node + c
-        speed = nodes.velocity[at]
-        work += speed * (nodes.forces[at] - total[c])
-        inertia += mass * speed * speed
-        nodes.forces[at] = total[c]
-        if nodes.fixed[node] == UNHELD and mode == MOVING:
-            speed = ((2.0 - damping) * speed + 2.0 * total[c] / mass) / (2.0 + damping)
-            speed = ti.min(ti.max(speed, -largest_step), largest_step)
-            nodes.velocity[at] = speed
-            nodes.displacement[at] += speed
+        work += speed[c] * (before[c] - total[c])
+        inertia += mass * speed[c] * speed[c]
     nodes.powers[2 * node] = work
     nodes.powers[2 * node + 1] = inertia
+    for c in ti.static(range(3)):
+        nodes.forces[3 * node + c] = total[c]
+        if moves:
+            found = ((2.0 - damping) * speed[c] + 2.0 * total[c] / mass) / (2.0 + damping)
+            found = ti.min(ti.max(found, -largest_step), largest_step)
+            nodes.velocity[3 * node + c] = found
+            nodes.displacement[3 * node + c] = place[c] + found
 
 
 @ti.func
 def node_pass(nodes: ti.template(), cells: ti.template(), cases: ti.template(), count):
+    ti.loop_config(block_dim=ti.static(block_size(NODE_THREADS)))
     for node in range(count):
         case = nodes.node_cases[node]
         mode = cases.choices[CHOICES * case + MODE]
@@ -98,7 +106,8 @@ def node_pass(nodes: ti.template(), cells: ti.template(), cases: ti.template(), 
 def free_node_pass(
     nodes: ti.template(), cells: ti.template(), cases: ti.template(), ties: ti.template(), count
 ):
-    """Pass 2 where nodes are tied: these are left out, and their leaders take on their forces."""
+    """Pass 3 where nodes are tied: these are left out, and their leaders take on their forces."""
+    ti.loop_config(block_dim=ti.static(block_size(NODE_THREADS)))
     for node in range(count):
         case = nodes.node_cases[node]
         mode = cases.choices[CHOICES * case + MODE]
@@ -154,7 +163,7 @@ def substep_of(linear):
         rows: Integers, volumes: Floats, moduli: Floats, cell_cases: Integers, slots: Floats,
         starts: Integers,
         points: Floats, held: Integers, goals: Floats, anchors: Floats, states: Integers,
-        point_forces: Floats,
+        point_forces: Floats, owners: Integers,
         poses: Floats, numbers: Floats, choices: Integers, coefficients: Floats,
         case_count: ti.i32, step: ti.i32,
     ):  # fmt: skip
@@ -162,11 +171,13 @@ def substep_of(linear):
             Nodes(displacement, velocity, forces, masses, fixed, powers, node_slots, node_cases)
         )
         cells = ti.static(Cells(rows, volumes, moduli, cell_cases, slots, starts))
-        surface = ti.static(Surface(points, held, goals, anchors, states, point_forces))
+        surface = ti.static(Surface(points, held, goals, anchors, states, point_forces, owners))
         cases = ti.static(Cases(poses, numbers, choices, coefficients))
         # All bounds first: Taichi then finds them in one task instead of one before each loop.
         cell_count, node_count = cell_cases.shape[0], node_cases.shape[0]
-        cell_pass(nodes, cells, surface, cases, cell_count, case_count, step, linear)
+        point_count = owners.shape[0]
+        surface_pass(nodes, cells, surface, cases, point_count, case_count, step)
+        cell_pass(nodes, cells, surface, cases, cell_count, linear)
         node_pass(nodes, cells, cases, node_count)
 
     return substep
@@ -183,7 +194,7 @@ def tied_substep_of(linear):
         rows: Integers, volumes: Floats, moduli: Floats, cell_cases: Integers, slots: Floats,
         starts: Integers,
         points: Floats, held: Integers, goals: Floats, anchors: Floats, states: Integers,
-        point_forces: Floats,
+        point_forces: Floats, owners: Integers,
         poses: Floats, numbers: Floats, choices: Integers, coefficients: Floats,
         tied: Integers, leader_starts: Integers, leaders: Integers, leader_shares: Floats,
         follower_starts: Integers, followers: Integers, follower_shares: Floats,
@@ -193,7 +204,7 @@ def tied_substep_of(linear):
             Nodes(displacement, velocity, forces, masses, fixed, powers, node_slots, node_cases)
         )
         cells = ti.static(Cells(rows, volumes, moduli, cell_cases, slots, starts))
-        surface = ti.static(Surface(points, held, goals, anchors, states, point_forces))
+        surface = ti.static(Surface(points, held, goals, anchors, states, point_forces, owners))
         cases = ti.static(Cases(poses, numbers, choices, coefficients))
         ties = ti.static(
             Ties(
@@ -202,30 +213,14 @@ def tied_substep_of(linear):
             )
         )  # fmt: skip
         cell_count, node_count = cell_cases.shape[0], node_cases.shape[0]
-        tied_count = tied.shape[0]
-        cell_pass(nodes, cells, surface, cases, cell_count, case_count, step, linear)
+        point_count, tied_count = owners.shape[0], tied.shape[0]
+        surface_pass(nodes, cells, surface, cases, point_count, case_count, step)
+        cell_pass(nodes, cells, surface, cases, cell_count, linear)
         tied_forces_pass(nodes, cells, cases, ties, tied_count)
         free_node_pass(nodes, cells, cases, ties, node_count)
         tied_moves_pass(nodes, cases, ties, tied_count)
 
     return tied_substep
-
-
-@ti.func
-def point_displacement(
-    nodes: ti.template(), cells: ti.template(), surface: ti.template(), cell, point
-):
-    """Displacement [mm] of a surface point from the nodes of its cell."""
-    x = line_weights(surface.points[POINT * point + LOCAL])
-    y = line_weights(surface.points[POINT * point + LOCAL + 1])
-    z = line_weights(surface.points[POINT * point + LOCAL + 2])
-    moved = ti.Vector([0.0, 0.0, 0.0])
-    for n in ti.static(range(27)):
-        weight = x[n // 9] * y[n // 3 % 3] * z[n % 3]
-        base = 3 * (cells.rows[entry(cell, n // 3, 9)] + n % 3)
-        for c in ti.static(range(3)):
-            moved[c] += weight * nodes.displacement[base + c]
-    return moved
 
 
 @ti.kernel
@@ -235,17 +230,23 @@ def commit_anchors(
     surface: pack_of(Surface),
     cases: pack_of(Cases),
     slips: Floats,
-    committing: ti.i32,
-    slid_mm: ti.f32,
+    kept: Floats,
+    sliding: Floats,
 ):
-    """Close a settled frame of a case, by its pose in the first step of the table.
+    """Close a settled frame of cases, by their poses in the first step of the table.
 
+    Their displacement is copied to `kept`, 3 N.
     Anchors follow the points that slid, and the way they go is added to `slips`; contacts become
-    history. Those that went farther than `slid_mm` are held by kinetic friction from here on.
+    history. Those that went farther than the case's entry of `sliding` [mm] are held by kinetic
+    friction from here on; a case whose entry is negative is left alone.
     """
+    for node in range(nodes.node_cases.shape[0]):
+        if sliding[nodes.node_cases[node]] >= 0.0:
+            for c in ti.static(range(3)):
+                kept[3 * node + c] = nodes.displacement[3 * node + c]
     for cell in range(cells.cell_cases.shape[0]):
         case = cells.cell_cases[cell]
-        if case == committing:
+        if sliding[case] >= 0.0:
             rotation = body_rotation(cases, case)
             for point in range(cells.starts[cell], cells.starts[cell + 1]):
                 if surface.held[point] == MEETS_RIGID:
@@ -264,7 +265,7 @@ def commit_anchors(
                         length = (way - way.dot(normal) * normal).norm()
                         slips[point] += length
                         surface.states[point] = HELD
-                        if length > slid_mm:
+                        if length > sliding[case]:
                             surface.states[point] = SLID
                         for c in ti.static(range(3)):
                             surface.anchors[3 * point + c] = new[c]

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from sim.contact.engine import kernels, sum_kernels
-from sim.contact.engine.batch import Batch, Case
+from sim.contact.engine.batch import Batch, Case, floats
 from sim.contact.engine.launcher import STEPS, Launcher
 from sim.contact.grid import layout
 from sim.forces.slip import LEAST_MM
@@ -25,6 +25,8 @@ STEP_CAP = 0.1
 """Largest displacement of a node in one substep and axis, in cells."""
 FIRST_DAMPING = 0.5
 DAMPING_RANGE = (0.004, 1.5)
+OPEN = -1.0
+"""In place of the way from which points slide: of a case whose frame is not to be closed."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -87,6 +89,8 @@ class Relaxation:
         self._numbers = np.zeros((count, layout.NUMBERS), np.float32)
         self._choices = np.zeros((count, layout.CHOICES), np.int32)
         self._modes = np.zeros(count, np.int32)
+        self._seats_mm = np.array([case.collider.seat_mm for case in cases])
+        self._targets_mm = np.array([case.domain.target_mm for case in cases])
         for row, case in enumerate(cases):
             grid_mm = case.domain.grid_mm
             sliding = case.kinetic_friction
@@ -98,6 +102,9 @@ class Relaxation:
             self._choices[row, layout.SHAPE] = int(case.collider.shape)
             self._choices[row, layout.FIRST_COEFFICIENT] = batch.first_coefficients[row]
             self._choices[row, layout.COUNTS :] = case.collider.samples.shape
+        self._closing = np.full(count, OPEN, np.float32)
+        self._sliding = floats(self._closing)
+        self._known: dict[int, np.ndarray] = {}  # Displacements that no substep has changed since.
         self._stale_poses = True
         self._sent = (np.zeros(0), np.zeros(0))
         self._substep = self._launcher()
@@ -113,15 +120,22 @@ class Relaxation:
 
         A row is origin [mm, sensor frame], rotation body to sensor by rows, share of the drives.
         """
-        table = self._poses[:, case]
-        table[: len(rows)] = rows
-        seats_mm = rows[:, 3:12].reshape(-1, 3, 3) @ self.cases[case].collider.seat_mm
-        table[: len(rows), :3] = rows[:, :3] + seats_mm - self.cases[case].domain.target_mm
-        table[len(rows) :] = table[len(rows) - 1]
+        padding = np.repeat(rows[-1:], STEPS - len(rows), axis=0)
+        self.set_all_poses(np.array([case]), np.concatenate([rows, padding])[None])
+
+    def set_all_poses(self, cases: np.ndarray, rows: np.ndarray) -> None:
+        """The same of several cases, (n,), at once: rows of shape (n, STEPS, POSE)."""
+        self._close()
+        rotations = rows[..., 3:12].reshape(*rows.shape[:2], 3, 3)
+        seats_mm = np.einsum("nsrc,nc->nsr", rotations, self._seats_mm[cases])
+        table = rows.astype(np.float32)
+        table[..., :3] = rows[..., :3] + seats_mm - self._targets_mm[cases][:, None]
+        self._poses[:, cases] = table.transpose(1, 0, 2)
         self._stale_poses = True
 
     def advance(self, moving: np.ndarray) -> None:
         """`STEPS` substeps of the cases that are marked, (B,) bool; the others stay as they are."""
+        self._known.clear()
         self._prepare(np.where(moving, layout.MOVING, layout.IDLE))
         self._substep.run(STEPS)
         self._moved = self._moved | moving
@@ -161,13 +175,24 @@ class Relaxation:
     def commit(self, case: int, *, slid_mm: float = LEAST_MM) -> None:
         """Make the anchors of a settled frame, at its first pose, the history of the next.
 
+        Done before anything of the batch changes or is read of its history, not at once.
+
         Args:
             case: Whose.
             slid_mm: Way since the last commit from which a point counts as sliding, so that
                 kinetic friction holds it.
         """
-        self._upload()
-        kernels.commit_anchors(*self.batch.packs, self.batch.slips, case, slid_mm)
+        self._closing[case] = slid_mm
+
+    def _close(self) -> None:
+        """Close the frames that are due, all at once; a case would take as long as all."""
+        if (self._closing >= 0.0).any():
+            self._upload()
+            self._sliding.from_numpy(self._closing)
+            kernels.commit_anchors(
+                *self.batch.packs, self.batch.slips, self.batch.kept, self._sliding
+            )
+            self._closing[:] = OPEN
 
     def burden(self, chosen: np.ndarray) -> None:
         """Double the fictitious masses of the chosen cases, (B,) bool."""
@@ -183,8 +208,22 @@ class Relaxation:
 
     def restart(self, case: int, displacement_mm: np.ndarray) -> None:
         """Come to rest at a nodal displacement, (N, 3); anchors of this frame are lost."""
+        self._close()
+        first = 3 * self.batch.spans[case].first_node
+        self.batch.write(self.batch.nodes.displacement, first, displacement_mm)
+        self._rest(case)
+
+    def go_back(self, case: int) -> None:
+        """Come to rest at the displacement of the last commit; anchors since then are lost."""
+        self._close()
+        span, moved = self.batch.spans[case], self.batch.nodes.displacement
+        sum_kernels.copy_back(self.batch.kept, moved, 3 * span.first_node, 3 * span.nodes)
+        self._rest(case)
+
+    def _rest(self, case: int) -> None:
+        """Stop a case whose displacement is another one now."""
+        self._known.pop(case, None)
         span = self.batch.spans[case]
-        self.batch.write(self.batch.nodes.displacement, 3 * span.first_node, displacement_mm)
         sum_kernels.rest(
             self.batch.nodes.velocity, self.batch.surface.states, span.first_node, span.nodes,
             span.first_point, span.points,
@@ -199,7 +238,9 @@ class Relaxation:
 
     def displacement(self, case: int = 0) -> np.ndarray:
         """Nodal displacement of a case [mm], shape (N, 3), float32."""
-        return self._of_nodes(self.batch.nodes.displacement, case)
+        if case not in self._known:
+            self._known[case] = self._of_nodes(self.batch.nodes.displacement, case)
+        return self._known[case]
 
     def node_forces(self, case: int = 0) -> np.ndarray:
         """Force on every node of a case [N], shape (N, 3), float32."""
@@ -211,13 +252,14 @@ class Relaxation:
 
     def slips_mm(self, case: int = 0) -> np.ndarray:
         """Way that each surface point has slid in settled frames [mm], shape (P,)."""
+        self._close()
         return self._of_points(self.batch.slips, case, 1)[:, 0]
 
     def contact_history(self, case: int = 0) -> tuple[np.ndarray, np.ndarray]:
         """Anchors in the body frame [mm], (P, 3), and states, (P,), of all surface points."""
-        span = self.batch.spans[case]
-        surface = self.batch.surface
-        states = surface.states.to_numpy()[span.first_point : span.first_point + span.points]
+        self._close()
+        span, surface = self.batch.spans[case], self.batch.surface
+        states = self.batch.read_whole(surface.states, span.first_point, span.points)
         return self._of_points(surface.anchors, case, 3) + self.cases[case].collider.seat_mm, states
 
     def _of_nodes(self, array: Any, case: int) -> np.ndarray:
@@ -230,6 +272,7 @@ class Relaxation:
         return self.batch.read(array, first, count).reshape(-1, width)
 
     def _prepare(self, modes: np.ndarray) -> None:
+        self._close()
         self._numbers[:, layout.MASS_SCALE] = self.mass_scale
         self._numbers[:, layout.DAMPING] = self.damping
         self._modes = modes

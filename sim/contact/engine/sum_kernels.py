@@ -66,10 +66,24 @@ def copy_out(source: Floats, target: Floats, first: ti.i32, count: ti.i32):
 
 
 @ti.kernel
+def copy_whole_out(source: Integers, target: Floats, first: ti.i32, count: ti.i32):
+    """The same of whole numbers, small enough for single precision to hold them."""
+    for i in range(count):
+        target[i] = ti.cast(source[first + i], ti.f32)
+
+
+@ti.kernel
 def copy_in(source: Floats, target: Floats, first: ti.i32, count: ti.i32):
     """Copy the start of a short array to entries `first` and following of a long one."""
     for i in range(count):
         target[first + i] = source[i]
+
+
+@ti.kernel
+def copy_back(source: Floats, target: Floats, first: ti.i32, count: ti.i32):
+    """Copy entries `first` and following to the same place of another array."""
+    for i in range(count):
+        target[first + i] = source[first + i]
 
 
 @ti.kernel

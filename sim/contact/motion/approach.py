@@ -72,24 +72,33 @@ class Approach:
             return origins[0], turned[0]
         if self.legs and progress >= self.legs[0].first:
             return self.placed(current(self.legs, progress).at(progress))
-        frames = self.press.frames
-        inward = min(progress / frames, 1.0)
-        aside = min(max(progress / frames - 1.0, 0.0), 1.0)
-        shear_u, shear_v = self.press.shear_mm
-        origin = self.target_mm + (self.touch_mm - inward * self.press.depth_mm) * self.normal
-        origin = origin + aside * (shear_u * self.tangent_u + shear_v * self.tangent_v)
-        angle = radians(aside * self.press.twist_deg)
-        along = math.cos(angle) * self.tangent_u + math.sin(angle) * self.tangent_v
-        across = math.cos(angle) * self.tangent_v - math.sin(angle) * self.tangent_u
-        return origin, np.stack([along, across, self.normal], axis=1)
+        origins, turned = self._straight(np.array([progress]))
+        return origins[0], turned[0]
 
     def poses(self, progress: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Origins [mm], (P, 3), and rotations body to sensor, (P, 3, 3), at progress (P,)."""
+        progress = np.asarray(progress, dtype=np.float64)
         if self.track is not None:
-            return self.track.poses(np.asarray(progress, dtype=np.float64))
-        pairs = [self.pose(float(step)) for step in progress]
-        origins, turned = zip(*pairs, strict=True)
+            return self.track.poses(progress)
+        if not self.legs or progress.max() < self.legs[0].first:
+            return self._straight(progress)
+        origins, turned = zip(*[self.pose(float(step)) for step in progress], strict=True)
         return np.stack(origins), np.stack(turned)
+
+    def _straight(self, progress: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """`poses` before the first stroke: straight in, then aside and around."""
+        frames = self.press.frames
+        inward = np.minimum(progress / frames, 1.0)[:, None]
+        aside = np.clip(progress / frames - 1.0, 0.0, 1.0)[:, None]
+        shear_u, shear_v = self.press.shear_mm
+        origins = self.target_mm + (self.touch_mm - inward * self.press.depth_mm) * self.normal
+        origins = origins + aside * (shear_u * self.tangent_u + shear_v * self.tangent_v)
+        angles = aside * radians(self.press.twist_deg)
+        turned = np.empty((len(progress), 3, 3))
+        turned[:, :, 0] = np.cos(angles) * self.tangent_u + np.sin(angles) * self.tangent_v
+        turned[:, :, 1] = np.cos(angles) * self.tangent_v - np.sin(angles) * self.tangent_u
+        turned[:, :, 2] = self.normal
+        return origins, turned
 
     def placed(self, state: State) -> tuple[np.ndarray, np.ndarray]:
         """Origin [mm], (3,), and rotation body to sensor, (3, 3), of a state of a leg."""

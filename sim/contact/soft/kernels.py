@@ -22,6 +22,7 @@ from sim.contact.engine.bundles import Cases, Cells, Floats, Integers, Nodes, Su
 from sim.contact.engine.cell_kernel import cell_pass, entry
 from sim.contact.engine.kernels import node_pass
 from sim.contact.engine.point_functions import friction_now, line_weights
+from sim.contact.engine.surface_kernel import surface_pass
 from sim.contact.grid.layout import (
     FREE,
     HELD,
@@ -149,7 +150,7 @@ def _make_substep(linear):
         rows: Integers, volumes: Floats, moduli: Floats, cell_cases: Integers, slots: Floats,
         starts: Integers,
         points: Floats, held: Integers, goals: Floats, anchors: Floats, states: Integers,
-        point_forces: Floats,
+        point_forces: Floats, owners: Integers,
         poses: Floats, numbers: Floats, choices: Integers, coefficients: Floats,
         lattice: Floats, cell_map: Integers, extents: Integers, object_forces: Sums,
         case_count: ti.i32, step: ti.i32,
@@ -158,12 +159,14 @@ def _make_substep(linear):
             Nodes(displacement, velocity, forces, masses, fixed, powers, node_slots, node_cases)
         )
         cells = ti.static(Cells(rows, volumes, moduli, cell_cases, slots, starts))
-        surface = ti.static(Surface(points, held, goals, anchors, states, point_forces))
+        surface = ti.static(Surface(points, held, goals, anchors, states, point_forces, owners))
         cases = ti.static(Cases(poses, numbers, choices, coefficients))
         partner = ti.static(Partner(lattice, cell_map, extents, object_forces))
         cell_count, node_count = cell_cases.shape[0], node_cases.shape[0]
+        point_count = owners.shape[0]
         nothing, row = slots.shape[0] - 81 * BLOCK, step * case_count + MEMBRANE
-        cell_pass(nodes, cells, surface, cases, cell_count, case_count, step, linear)
+        surface_pass(nodes, cells, surface, cases, point_count, case_count, step)
+        cell_pass(nodes, cells, surface, cases, cell_count, linear)
         soft_pass(nodes, cells, surface, cases, partner, cell_count, row)
         deposit_pass(nodes, cells, partner, nothing, node_count)
         node_pass(nodes, cells, cases, node_count)

@@ -12,8 +12,8 @@ import taichi as ti
 
 from sim.contact.engine.bundles import Floats, Integers
 from sim.contact.engine.cell_kernel import entry
-from sim.contact.engine.kernels import point_displacement
 from sim.contact.engine.point_functions import body_rotation, line_weights, object_distance
+from sim.contact.engine.surface_kernel import point_displacement
 from sim.contact.grid.layout import POINT, POSE
 
 MEMBRANE, OBJECT = 0, 1

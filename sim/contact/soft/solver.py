@@ -86,10 +86,9 @@ class SoftRelaxation(Relaxation):
         kernel = soft_kernels.SOFT_SUBSTEP[membrane.linear]
         return Launcher(kernel, (*batch.bundles, partner), cases=2)
 
-    def set_poses(self, case: int, rows: np.ndarray) -> None:
+    def set_all_poses(self, cases: np.ndarray, rows: np.ndarray) -> None:
         """Poses of the holder in the next substeps."""
-        for each in (MEMBRANE, OBJECT):
-            super().set_poses(each, rows)
+        super().set_all_poses(np.array([MEMBRANE, OBJECT]), np.repeat(rows, 2, axis=0))
 
     def advance(self, moving: np.ndarray) -> None:
         """Substeps of both bodies."""

@@ -24,6 +24,9 @@ class Reactions(Solver):
         """Force on each object [N], shape (B, 3); NaN where a press did not settle."""
 
     def close_frame(self, case: int, balance: Balance, load_N: float) -> None:
-        """Keep the reaction."""
+        """Keep the reaction at the end of the frame; go on from a state within it."""
+        if self.runs[case].on_the_way:
+            super().close_frame(case, balance, load_N)
+            return
         self.reaction_N[case] = balance.reaction_N
         self.end(case, None)

@@ -66,6 +66,10 @@ class Run:
         self._fed = 0
         self._driven_mm = 0.0
         """Farthest way of a driven point in the present frame [mm]."""
+        self._way_mm = self._swing_mm = 0.0
+        """Farthest way of a point of the object in it [mm]: of its own, and of one an arm away."""
+        self._leaving = False
+        """Whether the object moves straight outward in it."""
         self._begun_s = time.perf_counter()
 
     @property
@@ -90,17 +94,20 @@ class Run:
 
     def go_on(self) -> None:
         """Pass an increment within the frame: what holds on there is history to the next."""
-        self._keep()
+        self._commit()
         self.increment += 1
 
     def begin(self) -> None:
         """Start the present increment, or its next attempt, from the last settled displacement."""
         if self.attempt == 0 and self.increment == 0:
             self._begun_s = time.perf_counter()
+            self._measure()
             self.increments = self._pieces()
             self.drive()
         predicted = self.attempt == 0 and self._predict()
-        if self.attempt:
+        if self.attempt and self.increment:
+            self.relaxation.go_back(self.number)
+        elif self.attempt:
             self.relaxation.restart(self.number, self._settled[-1])
         count = 0 if predicted else self._ramp_length()
         steps = (np.arange(count) + 1.0) / max(count, 1)
@@ -108,14 +115,18 @@ class Run:
         self._fed = 0
         if not count:
             self.stay()
-        elif self._leaves():
+        elif self._leaving:
             self.relaxation.damping[self.number] = FREED_DAMPING
 
-    def feed(self) -> None:
-        """Hand the next poses of the ramp to the relaxation."""
+    def feed(self) -> np.ndarray:
+        """The next poses of the ramp, shape (STEPS, POSE)."""
         rows = self._ramp[self._fed : self._fed + STEPS]
-        self.relaxation.set_poses(self.number, rows)
         self._fed += STEPS
+        return rows
+
+    def last_pose(self) -> np.ndarray:
+        """Where the object stays once it has arrived, shape (STEPS, POSE)."""
+        return np.tile(self._ramp[-1], (STEPS, 1))
 
     def stay(self) -> None:
         """Leave the object where the frame wants it."""
@@ -132,13 +143,16 @@ class Run:
     def _keep(self) -> None:
         """Make the state that has settled the one to start from."""
         self._settled = [*self._settled, self.relaxation.snapshot(self.number)][-MOST_KEPT:]
+        self._commit()
+
+    def _commit(self) -> None:
+        """Make what holds on in the state that has settled history."""
         self.relaxation.commit(self.number, slid_mm=self._slid_mm())
         self.attempt = 0
 
     def _slid_mm(self) -> float:
         """Way in the present increment from which a point slides [mm], of the object's farthest."""
-        way_mm = self.problem.approach.travel_mm(self.frame, self.problem.collider.reach_mm)
-        return float(slides_from_mm(max(way_mm, self._driven_mm) / self.increments))
+        return float(slides_from_mm(max(self._way_mm, self._driven_mm) / self.increments))
 
     @property
     def seconds(self) -> float:
@@ -184,17 +198,25 @@ class Run:
             last_good=self.frame - 1,
         )
 
+    def _measure(self) -> None:
+        """Measure the way of the object in the present frame."""
+        problem, approach, frame = self.problem, self.problem.approach, self.frame
+        self._way_mm = approach.travel_mm(frame, problem.collider.reach_mm)
+        self._swing_mm = approach.travel_mm(frame, ARM_CELLS * problem.domain.grid_mm)
+        (start, end), _ = approach.poses(np.array([frame, frame + 1.0]))
+        way = end - start
+        self._leaving = bool(way @ approach.normal > np.linalg.norm(way) - STILL_MM)
+
     def _pieces(self) -> int:
         """In how many increments the present frame is gone.
 
         Without friction no path matters, and nothing holds on to what has lifted clear.
         """
         problem, approach = self.problem, self.problem.approach
-        clear = self._leaves() and approach.depth_mm(self.frame) <= 0.0
+        clear = self._leaving and approach.depth_mm(self.frame) <= 0.0
         if problem.whole_frames or problem.material.friction == 0.0 or clear:
             return 1
-        way_mm = approach.travel_mm(self.frame, problem.collider.reach_mm)
-        return max(1, math.ceil(way_mm / INCREMENT_MM - STILL_MM))
+        return max(1, math.ceil(self._way_mm / INCREMENT_MM - STILL_MM))
 
     def _predict(self) -> bool:
         """Extrapolate the displacement of the last frames; False where that would mislead.
@@ -226,24 +248,15 @@ class Run:
 
     def _ramp_length(self) -> int:
         """Substeps of the ramp, a multiple of `STEPS`; 0 where nothing moves."""
-        arm_mm = ARM_CELLS * self.problem.domain.grid_mm
-        frame_mm = max(self.problem.approach.travel_mm(self.frame, arm_mm), self._driven_mm)
-        travel_mm = frame_mm / self.increments
+        travel_mm = max(self._swing_mm, self._driven_mm) / self.increments
         if travel_mm < STILL_MM:
             return 0
         rubs = self.problem.material.friction > 0.0 and not self.problem.whole_frames
         per_mm = RUBBING_SUBSTEPS_PER_MM if rubs else RAMP_SUBSTEPS_PER_MM
-        if self._leaves():
+        if self._leaving:
             per_mm = LEAVING * RAMP_SUBSTEPS_PER_MM
         count = max(SHORTEST_RAMP, math.ceil(per_mm * travel_mm)) * 2**self.attempt
         return -(-count // STEPS) * STEPS
-
-    def _leaves(self) -> bool:
-        """Whether the object moves straight outward in this frame."""
-        approach = self.problem.approach
-        (start, _), (end, _) = (approach.pose(self.frame + share) for share in (0.0, 1.0))
-        way = end - start
-        return bool(way @ approach.normal > np.linalg.norm(way) - STILL_MM)
 
     def _rows(self, steps: np.ndarray) -> np.ndarray:
         """Rows of the pose table at shares of the increment, (n,), shape (n, POSE)."""

@@ -24,6 +24,7 @@ from sim.contact.readout.problem import Problem
 from sim.contact.readout.slipping import with_slip
 from sim.contact.readout.verdict import check_frame
 from sim.contact.solver.load import Load
+from sim.contact.solver.progress import Progress
 from sim.contact.solver.run import FORCE_CHANGE, Run
 from workbench.core.base.errors import SolveError, Stopped
 from workbench.core.base.monitor import Monitor, silent
@@ -108,6 +109,7 @@ class Solver:
         self.before_N = np.full((count, 3), np.inf)
         self.retries = np.zeros(count, int)
         self.residual = np.full(count, np.inf)
+        self.progress = Progress(self.runs)
         for case in range(count):
             self._begin(case)
 
@@ -132,17 +134,21 @@ class Solver:
 
     def _relax(self) -> None:
         while self.active.any():
-            for case in np.flatnonzero(self.active & ~self.settling).tolist():
-                self.runs[case].feed()
+            ramping = np.flatnonzero(self.active & ~self.settling)
+            if len(ramping):
+                rows = np.stack([self.runs[case].feed() for case in ramping.tolist()])
+                self.relaxation.set_all_poses(ramping, rows)
             self.relaxation.advance(self.active)
             self.substeps[self.active] += STEPS
             if self.settling.any():
                 self._look()
-            for case in np.flatnonzero(self.active & ~self.settling).tolist():
-                if self.runs[case].arrived:
-                    self.runs[case].stay()
-                    self.settling[case] = True
-            self._tell()
+            arrived = [case for case in ramping.tolist() if self.runs[case].arrived]
+            if arrived:
+                rows = np.stack([self.runs[case].last_pose() for case in arrived])
+                self.relaxation.set_all_poses(np.array(arrived), rows)
+                self.settling[arrived] = True
+            told = self.progress.report(self.active, self.settling, self.spent, self.residual)
+            self.monitor(*told)
         self.monitor(1.0, "settled")
 
     def results(self) -> list[Contact | SolveError]:
@@ -155,6 +161,7 @@ class Solver:
     def _begin(self, case: int) -> None:
         """Start the next frame of a press, or an attempt at the same one."""
         self.runs[case].begin()
+        self.progress.begin(case)
         self.settling[case] = self.runs[case].arrived
         self.spent[case] = 0
         self.lowest[case] = np.inf
@@ -212,15 +219,15 @@ class Solver:
     def close_frame(self, case: int, balance: Balance, load_N: float) -> None:
         """Go on from a settled state: within the frame, or from its end, which is read first."""
         run = self.runs[case]
-        if not np.isfinite(self.relaxation.snapshot(case)).all():
-            self._unstable(case)
-            return
-        self.retries[case] = 0
-        self.relaxation.relieve(case)
         if run.on_the_way:
+            self._relieve(case)
             run.go_on()
             self._begin(case)
             return
+        if not np.isfinite(self.relaxation.snapshot(case)).all():
+            self._unstable(case)
+            return
+        self._relieve(case)
         try:
             self.take_frame(case, self._settled_frame(case, balance, load_N))
         except SolveError as error:
@@ -231,6 +238,11 @@ class Solver:
             self._begin(case)
         else:
             self.end(case, None)
+
+    def _relieve(self, case: int) -> None:
+        """Forgive a press that has settled what it took."""
+        self.retries[case] = 0
+        self.relaxation.relieve(case)
 
     def take_frame(self, case: int, frame: SettledFrame) -> None:
         """Read the frame that a press has settled in, and close it.
@@ -284,17 +296,5 @@ class Solver:
                 run.outcomes, run.problem, substeps=int(self.substeps[run.number])
             )
         run.error = error
+        self.progress.end(case)
         self.active[case] = self.settling[case] = False
-
-    def _tell(self) -> None:
-        """Report the progress of all presses, and which frame the slowest is at."""
-        share = np.where(self.settling, np.minimum(1.0, self.spent / 200.0), 0.0)
-        done = [run.progress(float(s)) for run, s in zip(self.runs, share, strict=True)]
-        case = int(np.argmin(np.where(self.active, done, 2.0)))
-        run = self.runs[case]
-        note = run.label
-        if self.settling[case]:
-            note += f", residual {self.residual[case]:.0e}"
-        if len(self.runs) > 1:
-            note = f"{int(self.active.sum())} of {len(self.runs)} presses under way; {note}"
-        self.monitor(min(1.0, float(np.mean(done))), note)
