@@ -8,6 +8,9 @@ when a patch does not find room; until then a frame takes one launch and two cop
 Which points are near which is found once for a skin: K numbers for each of V points, all pairs
 measured. Places are float64, as on the host, so the voxels are the same; fields differ by the
 rounding of float32.
+
+Measured on an H200, a dent of 223 of 25,000 points, the small network: 500 fields a second, 63 when
+the host found patch, voxels and maps step by step; recording takes 0.05 s.
 """
 
 from __future__ import annotations

@@ -76,7 +76,7 @@ def _recorded(record: RoomRecord, name: str) -> Row:
     )
 
 
-def _paper_fps(name: str) -> float:
-    from workbench.learning.evaluation.published import PACES
+def _paper_fps(name: str) -> float | None:
+    from workbench.proof.benchmarks.paces import published_fps
 
-    return next(pace.fps for pace in PACES if pace.row == f"network_{name}")
+    return published_fps(f"network_{name}")
