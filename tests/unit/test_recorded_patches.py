@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import torch
 
+from sim.forces.network.acceleration import Acceleration, Computation
 from sim.forces.network.fixed_maps import Lattice, distinct, fixed_maps
 from sim.forces.network.kernel_maps import Kernel, kernel_maps
 from sim.forces.network.minkunet import arrays_of, new_network
@@ -58,6 +59,32 @@ def test_what_it_is_given_after_a_larger_patch_is_not_changed_by_it() -> None:
     alone = np.stack([found.predict(own) for own in fields])
     assert found._recorded._rooms == room
     np.testing.assert_allclose(alone, together, atol=1e-6 * np.abs(together).max())
+
+
+def test_it_is_recorded_once_frames_find_room(monkeypatch: pytest.MonkeyPatch) -> None:
+    """After four in a row; a larger patch is computed kernel by kernel again."""
+    made: list[Acceleration] = []
+
+    def counted(
+        function: Computation, example: torch.Tensor, *, acceleration: Acceleration
+    ) -> tuple[Computation, Acceleration, str]:
+        made.append(acceleration)
+        return function, acceleration, "a note"
+
+    monkeypatch.setattr("sim.forces.network.recorded_patches.accelerated", counted)
+    found, small = recorded(weights()), given([0])[0]
+    large = np.ones_like(small)
+    for _ in range(4):
+        found.predict(small)
+    assert not made and not found.notes
+    found.predict(small)
+    found.predict(small)
+    assert made == [Acceleration.GRAPH] and found.notes == ("a note",)
+    found.predict(large)
+    assert len(made) == 1
+    for _ in range(4):
+        found.predict(small)
+    assert len(made) == 2
 
 
 def test_a_field_of_nothing_has_no_patch() -> None:

@@ -2,8 +2,10 @@
 
 What `patches` does step by step on the host, as one computation of fixed shapes: the points within
 reach of the field, their voxels from each side, the kernel maps (`fixed_maps`), the network, the
-mean of the looks. It is recorded once as a CUDA graph with some room to spare, and recorded anew
-when a patch does not find room; until then a frame takes one launch and two copies.
+mean of the looks. Tables have some room to spare. Once several frames in a row found room, the
+computation is recorded as a CUDA graph, and a frame takes one launch and two copies; a patch that
+finds no room has larger tables made, and is computed kernel by kernel like those after it, until
+they settle again: recording takes as long as some frames, which a short press would not earn back.
 
 Which points are near which is found once for a skin: K numbers for each of V points, all pairs
 measured. Places are float64, as on the host, so the voxels are the same; fields differ by the
@@ -30,8 +32,10 @@ from sim.forces.network.segments import segment_sum
 from sim.forces.network.spec import DEPTH, Target
 from sim.forces.network.turns import value_matrix
 
-PAIRS_AT_ONCE = 1 << 22
+PAIRS_AT_ONCE = 1 << 23
 """Distances that are measured at a time when a skin is prepared."""
+FRAMES_BEFORE = 4
+"""Frames that must find room in the same tables before the computation is recorded."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -132,6 +136,7 @@ class RecordedPatches:
         self._near = within_reach(self._there(points_mm), viewing.reach_mm)
         self._rooms = Rooms(points=0, levels=(0,) * (DEPTH + 1))
         self._run: Computation | None = None
+        self._settled = 0
 
     def look(self, given: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The patch of one sample and the mean of the looks at it.
@@ -144,9 +149,7 @@ class RecordedPatches:
         """
         there = self._there(given.astype(np.float32, copy=False))
         with torch.no_grad():
-            found = None if self._run is None else self._run(there).cpu().numpy()
-            while found is None or not self._rooms.hold(self._counts(found)):
-                found = self._recorded(there)(there).cpu().numpy()
+            found = self._computed(there)
         count, room = self._counts(found)[0], self._rooms.points
         channels = self._viewing.target.channels
         field = found[: room * channels].reshape(room, channels)[:count]
@@ -161,17 +164,31 @@ class RecordedPatches:
         """How many points and voxels of each level a result says there are."""
         return found[-(2 + DEPTH) :].astype(np.int64).tolist()
 
-    def _recorded(self, given: Tensor) -> Computation:
-        """The computation with room for what enters, and for somewhat more."""
-        # Its memory is given back before more is taken.
-        self._run = None
+    def _computed(self, given: Tensor) -> np.ndarray:
+        """What `_on_device` gives, once all finds room."""
+        while True:
+            if self._rooms.points:
+                found = self._computation(given)(given).cpu().numpy()
+                if self._rooms.hold(self._counts(found)):
+                    return found
+            self._make_room(given)
+
+    def _computation(self, given: Tensor) -> Computation:
+        """Recorded where that is worth it."""
+        if self._run is None and self._settled >= FRAMES_BEFORE:
+            self._run, _, self.note = accelerated(
+                self._on_device, given, acceleration=Acceleration.GRAPH
+            )
+        self._settled += 1
+        return self._run or self._on_device
+
+    def _make_room(self, given: Tensor) -> None:
+        """For what enters, and for somewhat more."""
+        # The memory of what was recorded is given back before more is taken.
+        self._run, self._settled = None, 0
         points = max(int(self._bearing(given).sum()), 1)
         most = Rooms(points=points, levels=(len(self._look) * points,) * (DEPTH + 1))
         self._rooms = self._rooms.grown(self._laid(given, most).counts.tolist())
-        self._run, _, self.note = accelerated(
-            self._on_device, given, acceleration=Acceleration.GRAPH
-        )
-        return self._run
 
     def _bearing(self, given: Tensor) -> Tensor:
         """Whether each point is within reach of one that bears a value, shape (V,)."""
@@ -231,8 +248,10 @@ def within_reach(points_mm: Tensor, reach_mm: float) -> Tensor:
     rows, columns = [], []
     step = max(1, PAIRS_AT_ONCE // count)
     for first in range(0, count, step):
-        apart = points_mm[first : first + step, None] - points_mm
-        row, column = (apart.square().sum(2) < reach_mm**2).nonzero(as_tuple=True)
+        here = points_mm[first : first + step]
+        x, y, z = (here[:, axis, None] - points_mm[:, axis] for axis in range(3))
+        near = x.square_() + y.square_() + z.square_() < reach_mm**2
+        row, column = near.nonzero(as_tuple=True)
         rows.append(row + first)
         columns.append(column)
     row, column = torch.cat(rows), torch.cat(columns)
