@@ -12,7 +12,8 @@ measured. Places are float64, as on the host, so the voxels are the same; fields
 rounding of float32.
 
 Measured on an H200, a dent of 223 of 25,000 points, the small network: 500 fields a second, 63 when
-the host found patch, voxels and maps step by step; recording takes 0.05 s.
+the host found patch, voxels and maps step by step. A press of ten frames whose patch grows, with
+all that is prepared for it, takes 0.20 s in place of 0.27.
 """
 
 from __future__ import annotations
