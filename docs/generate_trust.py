@@ -78,8 +78,8 @@ GAPS = """## What no row shows
 - A rate depends on what else ran on the machine; its case says the load.
 - Contact is quasi-static: no inertia, no viscosity, no adhesion.
 
-Speed is measured apart, by `workbench bench ROOM` (`efficiency` is the paper's nine frame rates);
-`--record FILE` keeps the rows with the machine's name and the date.
+Speed is measured apart, by `workbench bench ROOM`; the paper's frame rates beside ours are on the
+page [speed](speed.md).
 """
 
 

@@ -253,30 +253,31 @@ def test_each_predictor_refuses_weights_of_the_other_kind() -> None:
 
 
 def test_neighbours_gathered_or_in_pairs_say_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Gathered as on a GPU: in use and in training."""
-    fields = given([1, 2])
-    predictor = PatchPredictor(weights(), SKIN.points_mm, faces=SKIN.faces)
-    pairs, fed = predictor.predict(fields), feed([1, 2]).batch([0, 1], 5)
-    for name in ("sim.forces.network.patches", "sim.forces.training.feeds"):
-        monkeypatch.setattr(f"{name}.kernel_on", lambda device: Kernel.GATHER)
-    np.testing.assert_allclose(predictor.predict(fields), pairs, atol=1e-6)
+    """Gathered as on a GPU, in training; in use, see `test_recorded_patches`."""
+    fed = feed([1, 2]).batch([0, 1], 5)
+    monkeypatch.setattr("sim.forces.training.feeds.kernel_on", lambda device: Kernel.GATHER)
     network = new_network(weights().spec, seed=4).eval()
     gathered = feed([1, 2]).batch([0, 1], 5)
     assert fed.maps.levels[0].blocks and not gathered.maps.levels[0].blocks
     with torch.no_grad():
         outputs = [network_output(network, batch) for batch in (fed, gathered)]
-    np.testing.assert_allclose(*outputs, atol=1e-4)
+    np.testing.assert_allclose(outputs[0], outputs[1], atol=1e-4)
 
 
 @pytest.mark.gpu
 def test_a_gpu_says_what_a_cpu_says() -> None:
-    """Patches are found here, the network computes there."""
-    fields = given([1, 2])
-    here, there = (
-        steady_predictor(weights(), SKIN.points_mm, SKIN.faces, device=device).predict(fields)
+    """Step by step here; there kernel by kernel at first, then recorded."""
+    fields = given([0, 1, 2])
+    here, found = (
+        steady_predictor(weights(), SKIN.points_mm, SKIN.faces, device=device)
         for device in ("cpu", "cuda")
     )
-    np.testing.assert_allclose(here, there, atol=1e-5 * np.abs(here).max())
+    expected = here.predict(fields)
+    for _ in range(3):
+        np.testing.assert_allclose(
+            found.predict(fields), expected, atol=1e-5 * np.abs(expected).max()
+        )
+    assert not found.notes
 
 
 def test_the_file_keeps_the_size_of_the_patch() -> None:

@@ -5,7 +5,8 @@ once (`levels`, `kernel_maps`) and cached by the caller. A frame is then gathers
 (`convolution`, `strided`) in the layers of a U-Net (`layers`, `minkunet`), on any device of
 PyTorch. `reference` is the dense twin, `predictor` runs a trained network on a whole skin,
 `patches` one that looks at the surroundings of the contact alone, turned (`turns`) and found anew
-for each frame; `steady` chooses. `weights` keeps a network.
+for each frame, on a GPU in one launch (`recorded_patches`, `fixed_maps`); `steady` chooses.
+`weights` keeps a network.
 
 A skin fills a fiftieth of its box and a voxel has 6 to 13 of 27 neighbours: `products` multiplies
 the pairs that exist (CPU) or copies neighbours side by side (GPU). Tables are symmetric, so

@@ -5,8 +5,9 @@ learns ten times as fast, may turn each press in its own way, and takes as long 
 as on a small one. What it says ends with the patch; beyond it the contact solver's field stays as
 it is where the network corrects it, else zero.
 
-The kernel maps are those of the patch: they are found anew for every press and frame, in less time
-than the network takes on the patch.
+The kernel maps are those of the patch: they are found anew for every press and frame. On a CPU this
+takes less time than the network; on a GPU all of it, from the patch to the field, is one recorded
+computation (`recorded_patches`), which says the same but for rounding.
 
 How voxels fall on a patch is chance, and so is a part of the network's error. In use it therefore
 looks several times, each time from another side as in its training, and says the mean. On a third
@@ -21,9 +22,10 @@ import torch
 
 from sim.forces.network.folding import folded
 from sim.forces.network.inputs import corrected_channels, finite_batch
-from sim.forces.network.kernel_maps import kernel_maps, kernel_on
+from sim.forces.network.kernel_maps import kernel_maps
 from sim.forces.network.minkunet import network_of
 from sim.forces.network.predictor import room_on
+from sim.forces.network.recorded_patches import RecordedPatches, Viewing
 from sim.forces.network.spec import Target
 from sim.forces.network.turns import turn_matrix, value_matrix
 from sim.forces.network.voxels import join, spacing_mm, voxelise
@@ -74,13 +76,7 @@ def leading_channels(target: Target, *, takes_force: bool) -> slice:
 
 
 class PatchPredictor:
-    """A network that looks at patches of one membrane, in float32; keep it as the membrane.
-
-    Attributes:
-        notes: What the user should know about how it runs; nothing is ever amiss.
-    """
-
-    notes: tuple[str, ...] = ()
+    """A network that looks at patches of one membrane, in float32; keep it as the membrane."""
 
     def __init__(
         self,
@@ -115,10 +111,20 @@ class PatchPredictor:
         self._voxel_mm = weights.voxel_per_spacing * spacing
         self._leading = leading_channels(weights.target, takes_force=weights.takes_force)
         self._device = device
-        with room_on(device):
-            self._network = folded(network_of(weights)).to(device)
         self._scale = torch.tensor(weights.output_scale)
         self._input_scale = np.array(weights.input_scale, np.float32)
+        self._recorded: RecordedPatches | None = None
+        with room_on(device):
+            self._network = folded(network_of(weights)).to(device)
+            if device != "cpu":
+                self._recorded = RecordedPatches(
+                    self._network, self._finder.points_mm, self._viewing(), device=device
+                )
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What the user should know about how it runs; empty when all is well."""
+        return (self._recorded.note,) if self._recorded and self._recorded.note else ()
 
     def predict(self, given: np.ndarray) -> np.ndarray:
         """The field at the points; arguments, shapes and errors as `Predictor.predict`."""
@@ -134,40 +140,66 @@ class PatchPredictor:
         found = np.zeros((len(given), weights.target.channels), np.float32)
         if weights.corrects:
             found += given[:, corrected_channels(weights.target)]
-        patch = self._finder.patch(given[:, self._leading])
-        if len(patch):
-            found[patch] += self._on_patch(patch, given[patch])
+        if self._recorded is not None:
+            patch, seen = self._recorded.look(given)
+            _expect_finite(seen)
+        else:
+            patch = self._finder.patch(given[:, self._leading])
+            seen = self._on_patch(patch, given[patch]) if len(patch) else found[patch]
+        found[patch] += seen
         return found
+
+    def _viewing(self) -> Viewing:
+        """What a recorded computation is told."""
+        weights = self.weights
+        return Viewing(
+            leading=self._leading,
+            faint=FAINT,
+            reach_mm=self._finder.reach_mm,
+            voxel_mm=self._voxel_mm,
+            matrices=_turns(),
+            target=weights.target,
+            input_scale=weights.input_scale,
+            output_scale=weights.output_scale,
+        )
 
     def _on_patch(self, patch: np.ndarray, given: np.ndarray) -> np.ndarray:
         """Mean of the looks at a patch, shape (P, C), from what enters there, (P, I)."""
-        # Within a quarter: voxels turned by one are the same voxels.
-        turned = [turn_matrix(look, 4 * LOOKS) for look in range(LOOKS)]
+        turned = _turns()
         points_mm = self._finder.points_mm[patch]
         voxels = join(
             [
                 voxelise(points_mm @ matrix.T, voxel_mm=self._voxel_mm, shift=look / LOOKS)
                 for look, matrix in enumerate(turned)
             ]
-        ).to(self._device)
+        )
         vectors = (given / self._input_scale).reshape(len(patch), -1, 3)
         features = np.concatenate([vectors @ matrix.T for matrix in turned]).reshape(
             LOOKS * len(patch), 1, -1
         )
         stem_edge = self.weights.spec.stem_edge
-        maps = kernel_maps(voxels, stem_edge=stem_edge, kernel=kernel_on(self._device))
-        entering = torch.from_numpy(features.astype(np.float32)).to(self._device)
+        maps = kernel_maps(voxels, stem_edge=stem_edge)
+        entering = torch.from_numpy(features.astype(np.float32))
         with torch.no_grad():
             values = self._network(voxels.mean(entering), maps)
-            field = (voxels.to_points(values)[:, 0].cpu() * self._scale).numpy()
-        if not np.isfinite(field).all():
-            raise SolveError(
-                "the network's field is not finite",
-                hint="use other weights, or train again",
-                at="weights",
-            )
+            field = (voxels.to_points(values)[:, 0] * self._scale).numpy()
+        _expect_finite(field)
         # Back to the sensor's own axes.
         looks = zip(field.reshape(LOOKS, len(patch), -1), turned, strict=True)
         target = self.weights.target
         seen = [own @ value_matrix(matrix.T, target).T for own, matrix in looks]
         return np.asarray(np.mean(seen, axis=0, dtype=np.float64), np.float32)
+
+
+def _turns() -> list[np.ndarray]:
+    """Matrix of each look, within a quarter: voxels turned by one are the same voxels."""
+    return [turn_matrix(look, 4 * LOOKS) for look in range(LOOKS)]
+
+
+def _expect_finite(field: np.ndarray) -> None:
+    if not np.isfinite(field).all():
+        raise SolveError(
+            "the network's field is not finite",
+            hint="use other weights, or train again",
+            at="weights",
+        )

@@ -1,4 +1,4 @@
-"""The efficiency table: the paper's nine frame rates beside ours, measured here and on record."""
+"""The efficiency table: the paper's frame rates beside ours, measured here and on record."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from workbench.core.base.monitor import Monitor, silent
-from workbench.learning.evaluation.published import GPU, PACES
+from workbench.proof.benchmarks.paces import ALL, GPU
 from workbench.proof.benchmarks.records import RoomRecord, device_name, load, shipped_records
 
 
@@ -24,7 +24,7 @@ def measured_here(monitor: Monitor = silent) -> dict[str, float]:
 
 
 def efficiency(here: Mapping[str, float], records: Sequence[RoomRecord] | None = None) -> Any:
-    """The table as plain data: a row per published rate, a column per machine.
+    """The table as plain data: a row per rate, a column per machine.
 
     Args:
         here: What was measured on the spot, by row.
@@ -46,7 +46,7 @@ def efficiency(here: Mapping[str, float], records: Sequence[RoomRecord] | None =
             "row": pace.row,
             "fps": [pace.fps, here.get(pace.row), *(one.value(pace.row) for one in records)],
         }
-        for pace in PACES
+        for pace in ALL
     ]
     return {"machines": columns, "rows": rows}
 

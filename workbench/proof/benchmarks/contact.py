@@ -92,16 +92,22 @@ def _finger(grid_mm: float):
     return finger(grid_mm=grid_mm)
 
 
+def whole_problem(grid_mm: float):
+    """The default press of the whole finger."""
+    from sim.contact.readout.problem import make_problem
+
+    settings = ContactSettings(grid_mm=grid_mm, extent=Extent.FULL)
+    return make_problem(
+        *_finger(grid_mm), Elastomer(), PressCase(press=Press(frames=1), settings=settings)
+    )
+
+
 def whole_finger(grid_mm: float):
     """A relaxation of the whole finger in contact, and its particles."""
     from sim.contact.engine.batch import Case
     from sim.contact.engine.relaxation import Relaxation
-    from sim.contact.readout.problem import make_problem
 
-    settings = ContactSettings(grid_mm=grid_mm, extent=Extent.FULL)
-    problem = make_problem(
-        *_finger(grid_mm), Elastomer(), PressCase(press=Press(frames=1), settings=settings)
-    )
+    problem = whole_problem(grid_mm)
     case = Case(domain=problem.domain, collider=problem.collider, friction=0.3)
     relaxation = Relaxation([case])
     origin, rotation = problem.approach.pose(0.2)

@@ -49,7 +49,11 @@ def rows(data: Path | None = None) -> list[Row]:
     Args:
         data: A data set, or a held-out set; None: the one that ships.
     """
-    from workbench.proof.validation.learned import learned_speed, learned_stiffness
+    from workbench.proof.validation.learned import (
+        learned_precision,
+        learned_speed,
+        learned_stiffness,
+    )
 
     found: list[Row] = []
     for target in WORDS:
@@ -57,6 +61,7 @@ def rows(data: Path | None = None) -> list[Row]:
     found += learned_stiffness.rows()
     found.append(advice_row())
     found += sparse_rows()
+    found += learned_precision.rows(shipped.FOLDER / HELD_OUT if data is None else data)
     return [*found, *learned_speed.rows()]
 
 
