@@ -46,7 +46,7 @@ def test_a_path_that_comes_and_goes_is_seen_at_its_far_end() -> None:
 
 
 def test_frames_of_a_straight_press_with_friction_end_alike() -> None:
-    """At mu 0.5 in 1, 2 and 8 frames: force within 1 %, friction, which is a path, within 20 %."""
+    """At mu 0.5 in 1, 2 and 8 frames: force within .5 %, friction, which is a path, within 20 %."""
     rough = Elastomer(friction=0.5)
     once, coarse, fine = (
         press_membrane(
@@ -57,10 +57,10 @@ def test_frames_of_a_straight_press_with_friction_end_alike() -> None:
         )
         for n in (1, 2, 8)
     )
-    # Both rest each 0.1 mm.
-    assert once.normal_N[-1] == coarse.normal_N[-1]
-    # Measured 0.44 %; gone in one piece, one frame read 1.5 % too little.
-    assert coarse.normal_N[-1] == pytest.approx(fine.normal_N[-1], rel=0.01)
+    # Both rest each 0.1 mm, at the end of a frame to tighter limits.
+    assert once.normal_N[-1] == pytest.approx(coarse.normal_N[-1], rel=5e-3)
+    # Gone in one piece, one frame read 1.5 % too little.
+    assert coarse.normal_N[-1] == pytest.approx(fine.normal_N[-1], rel=5e-3)
     # Measured 13 %; gone in one piece, 42 % too little; extrapolated instead of moved, 50 % more.
     assert coarse.tangential_N[-1] == pytest.approx(fine.tangential_N[-1], rel=0.2)
 

@@ -9,8 +9,6 @@ import pytest
 
 from sim.contact.live_contact import LiveContact, Way, one_frame
 from sim.contact.press import press_membrane
-from sim.contact.readout.problem import make_problem
-from sim.contact.solver.solver import solve
 from sim.contact.studies.specimens import flat_block
 from workbench.core.base.errors import Cancelled
 from workbench.core.design.design import Elastomer
@@ -26,8 +24,8 @@ BLOCK = flat_block(width_mm=22.0, height_mm=2.0, grid_mm=0.5)
 SOFT = Elastomer(friction=0.5)
 BALL = Indenter()
 SETTINGS = ContactSettings()
-FORCE_TOLERANCE = 0.01
-"""What a preview may differ by: the designer reads two or three digits of it."""
+FORCE_TOLERANCE = 0.005
+"""What a live press may differ by from one of its own, at another depth planned."""
 
 
 def at(depth_mm: float, x_mm: float = 0.0, **rest: object) -> Press:
@@ -42,16 +40,13 @@ def case(press: Press) -> PressCase:
 
 
 def fresh_N(press: Press) -> float:
-    """Normal force of a press of one frame by itself, gone in one piece [N]."""
+    """Normal force of a press of one frame by itself [N]."""
     return float(alone(press).normal_N[-1])
 
 
 def alone(press: Press) -> Contact:
-    """A press of one frame, or two with shear, each gone in one piece."""
-    problem = make_problem(*BLOCK, SOFT, case(one_frame(press)))
-    (contact,) = solve([dataclasses.replace(problem, whole_frames=True)])
-    assert isinstance(contact, Contact)
-    return contact
+    """A press of one frame, or two with shear."""
+    return press_membrane(*BLOCK, SOFT, case(one_frame(press)))
 
 
 def live_N(live: LiveContact, press: Press) -> float:
@@ -63,7 +58,7 @@ def live_N(live: LiveContact, press: Press) -> float:
 
 @pytest.mark.slow
 def test_every_way_gives_the_force_of_a_fresh_press() -> None:
-    """Deeper goes on, shallower keeps the region, aside begins anew: all within 1 % in force."""
+    """Deeper goes on, shallower keeps the region, aside begins anew: all within .5 % in force."""
     live = LiveContact()
     steps = [
         (at(0.6), Way.ANEW),
@@ -94,10 +89,14 @@ def test_shear_is_one_frame_after_the_approach() -> None:
 
 @pytest.mark.slow
 def test_a_live_frame_is_near_the_full_press() -> None:
-    """Gone in one piece instead of resting each 0.1 mm: within 2 % of its force; measured 0.5 %."""
+    """Ten frames at mu .5, live at once and live by steps: one number, within .5 %."""
     full = press_membrane(*BLOCK, SOFT, case(at(0.6)))
     live = LiveContact()
-    assert live_N(live, at(0.6)) == pytest.approx(full.normal_N[-1], rel=0.02)
+    assert live_N(live, at(0.6)) == pytest.approx(full.normal_N[-1], rel=5e-3)
+    dragged = LiveContact()
+    stepped_N = [live_N(dragged, at(depth_mm)) for depth_mm in (0.4, 0.5, 0.6)]
+    assert dragged.way is Way.GONE_ON
+    assert stepped_N[-1] == pytest.approx(full.normal_N[-1], rel=5e-3)
 
 
 @pytest.mark.slow

@@ -51,7 +51,7 @@ _LIMIT = """
 finger_45 published_mode mpm_against_fem_limit mpm_refinement fem_refinement
 """
 _ITSELF = """
-slip_share slip_share_mesh gross_slip slip_ratio_global
+slip_share slip_share_mesh gross_slip slip_ratio_global one_number
 region_error residual frame_size mirror mirror_symmetry rotation increments submodel submodel_worst
 lattice_shift determinism cpu_gpu mpm_against_fem sheared_sphere shear_force direct_table
 table_brightness contact_tangent friction_tangent contact_energy raster newton_projection

@@ -65,9 +65,6 @@ class Problem:
     approach: Approach
     domain: Domain
     radius_mm: float
-    whole_frames: bool = False
-    """Whether the object rests at the ends of frames alone, also where it rubs: several times as
-    fast, and less true by what `INCREMENT_MM` in `run` says."""
 
     @property
     def press(self) -> Press:

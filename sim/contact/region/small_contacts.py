@@ -2,12 +2,12 @@
 
 A contact of a few cells is found only as well as it happens to lie on the lattice: under a cone of
 0.45 mm a lattice moved by half a cell changes the force at 0.3 mm by 20 %. So at the end of each
-frame the part of the undeformed skin that lies inside the object is measured: its half-width is
-that of the largest disc in it, and the contact's is about 0.7 of that, as under a ball
-(sqrt(R d) of sqrt(2 R d)). Where a cell is more than a third of the contact's width, cells
-around it are halved, at most twice. What touches the skin only on the way to the end of a frame, or
-because a drive moves the skin, is not looked for, and no more cells are added than
-`MOST_ADDED_SHARE` says.
+increment, of which a path has as many in any number of frames, the part of the undeformed skin that
+lies inside the object is measured: its half-width is that of the largest disc in it, and the
+contact's is about 0.7 of that, as under a ball (sqrt(R d) of sqrt(2 R d)). Where a cell is more
+than a third of the contact's width, cells around it are halved, at most twice. What touches the
+skin only within an increment, or because a drive moves the skin, is not looked for, and no more
+cells are added than `MOST_ADDED_SHARE` says.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sim.contact.motion.approach import Approach
+from sim.contact.motion.rests import rests
 from sim.contact.region.halving import Halved, among, centres_mm, parents
 from sim.contact.region.quadrature import Facets
 from sim.contact.region.refinement import balls, distance_mm
@@ -39,8 +40,8 @@ FEWEST_INSIDE = 120
 """Corners inside the object from which an overlap is measured."""
 FINEST_EDGE = 0.05
 """Triangles are not halved further for that, in cells."""
-MOST_FRAMES = 20
-"""Frames looked at."""
+MOST_LOOKS = 20
+"""Increments at whose ends an overlap is looked for."""
 
 
 Within = Callable[[np.ndarray], np.ndarray]
@@ -57,10 +58,10 @@ class Overlap(NamedTuple):
 
 
 def small_overlaps(facets: Facets, approach: Approach, *, grid_mm: float) -> list[Overlap]:
-    """Overlaps at the ends of frames that are small against a cell."""
-    count = approach.frame_count
-    frames = np.unique(np.linspace(1, count, min(count, MOST_FRAMES)).round())
-    found = [_overlap(facets, approach, float(frame), grid_mm) for frame in frames]
+    """Overlaps at the ends of increments that are small against a cell."""
+    ends = rests(approach)
+    looks = np.unique(np.linspace(0, len(ends) - 1, min(len(ends), MOST_LOOKS)).round())
+    found = [_overlap(facets, approach, float(ends[int(look)]), grid_mm) for look in looks]
     sharp = approach.collider.least_radius_mm < grid_mm
     cells = SHARP_CELLS if sharp else CELLS_PER_HALF_WIDTH
     asked = [each._replace(finest_mm=CONTACT_SHARE * each.half_width_mm / cells) for each in found]

@@ -34,12 +34,7 @@ from workbench.core.result.sensing import Contact
 
 
 def press_soft(problem: Problem, indenter: Indenter, monitor: Monitor) -> Contact | SolveError:
-    """Press a soft object; the result also says how the object deforms.
-
-    Its frames are gone in one piece: at first touch, two soft bodies barely in contact do not come
-    to rest within a share of so little force.
-    """
-    problem = dataclasses.replace(problem, whole_frames=True)
+    """Press a soft object; the result also says how the object deforms."""
     solver = SoftSolver(problem, make_soft_object(problem, indenter), monitor)
     solver.run()
     (result,) = solver.results()

@@ -1,11 +1,11 @@
 """Quasi-static presses, frame by frame, one or many at once.
 
 Each frame moves the object along its path in a short ramp and then relaxes until the forces
-balance; where it rubs, a long frame does so every `run.INCREMENT_MM`. Where nothing rubs and the
-path goes straight on, the displacement is first extrapolated along it. A frame has settled when the
-out-of-balance force is below `tolerance` of the load, its sum below half a percent, and the
-reaction has stopped changing (`load`).
-Many presses are relaxed in one launch; each settles, moves on and fails by itself.
+balance; where it rubs, it does so at the end of each increment (`motion.rests`), about which less
+is asked. Where nothing rubs and the path goes straight on, the displacement is first extrapolated
+along it. A frame has settled when the out-of-balance force is below `tolerance` of the load, its
+sum below half a percent, and the reaction has stopped changing (`load`).
+Many presses are relaxed in one launch; each fails by itself.
 Left out: self-contact, inertia, viscosity; speed enters nowhere.
 """
 
@@ -23,9 +23,10 @@ from sim.contact.readout.outcome import SettledFrame, collect, frame_outcome
 from sim.contact.readout.problem import Problem
 from sim.contact.readout.slipping import with_slip
 from sim.contact.readout.verdict import check_frame
+from sim.contact.solver.calm import ENOUGH, FORCE_CHANGE, PASSING, Changes
 from sim.contact.solver.load import Load
 from sim.contact.solver.progress import Progress
-from sim.contact.solver.run import FORCE_CHANGE, Run
+from sim.contact.solver.run import Run
 from workbench.core.base.errors import SolveError, Stopped
 from workbench.core.base.monitor import Monitor, silent
 from workbench.core.result.sensing import Contact
@@ -33,8 +34,6 @@ from workbench.core.result.sensing import Contact
 PATIENCE = 300
 """Substeps without a lower residual before the fictitious masses are doubled."""
 MOST_RETRIES = 4
-ENOUGH = 300
-"""Substeps after which a state within a frame is left, settled or not."""
 
 
 def solve(problems: Sequence[Problem], *, monitor: Monitor = silent) -> list[Contact | SolveError]:
@@ -106,7 +105,7 @@ class Solver:
         self.spent = np.zeros(count, int)
         self.lowest = np.full(count, np.inf)
         self.lowest_at = np.zeros(count, int)
-        self.before_N = np.full((count, 3), np.inf)
+        self.changes = Changes(count)
         self.retries = np.zeros(count, int)
         self.residual = np.full(count, np.inf)
         self.progress = Progress(self.runs)
@@ -166,7 +165,7 @@ class Solver:
         self.spent[case] = 0
         self.lowest[case] = np.inf
         self.lowest_at[case] = 0
-        self.before_N[case] = np.inf
+        self.changes.begin(case)
 
     def _look(self) -> None:
         """Judge the settling presses by the forces of the last substep."""
@@ -179,10 +178,9 @@ class Solver:
         load_N = self._load_N(balances, looked)
         with np.errstate(invalid="ignore", over="ignore"):
             self.residual = np.where(looked, balances.unbalanced_N / load_N, self.residual)
-            change_N = np.linalg.norm(balances.reaction_N - self.before_N, axis=1)
+            change_N = self.changes.of(balances.reaction_N, looked)
             change = change_N / self.load.of_reaction(balances, load_N)
-        self.before_N[looked] = balances.reaction_N[looked]
-        passing = self._passing()
+        passing = self._passing(change)
         calm = (change < FORCE_CHANGE) & self.load.balanced(balances, load_N)
         still = looked & (calm | passing)
         if still.any():
@@ -200,9 +198,11 @@ class Solver:
             error = self.runs[case].unsettled(float(self.residual[case]), net, float(change[case]))
             self.end(case, error)
 
-    def _passing(self) -> np.ndarray:
-        """Which presses are within a frame and have rested there long enough, (B,) bool."""
-        return np.array([run.on_the_way for run in self.runs]) & (self.spent >= ENOUGH)
+    def _passing(self, change: np.ndarray) -> np.ndarray:
+        """Which presses are within a frame and have rested there enough, (B,) bool."""
+        within = np.array([run.on_the_way for run in self.runs])
+        near = (self.residual < PASSING * self.load.tolerance) & (change < PASSING * FORCE_CHANGE)
+        return within & (near | (self.spent >= ENOUGH))
 
     def _close(self, still: np.ndarray, passing: np.ndarray) -> np.ndarray:
         """End the frame of presses whose forces balance after the last move; which did."""

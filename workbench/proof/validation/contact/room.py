@@ -6,7 +6,7 @@ import functools
 
 from workbench.pipeline.devices import open_device
 from workbench.proof.row import Row, compared
-from workbench.proof.validation.contact import fingers, invariants, layers, slips
+from workbench.proof.validation.contact import fingers, invariants, layers, one_number, slips
 
 BACKED_LIMIT = 0.03
 """The closed form is for small strain: neo-Hookean columns without Poisson effect push 2 % more at
@@ -23,6 +23,7 @@ def rows() -> list[Row]:
         _sheared_block(),
         *fingers.rows(),
         *slips.rows(),
+        *one_number.rows(),
         *invariants.rows(),
     ]
 
