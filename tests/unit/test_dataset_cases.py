@@ -146,6 +146,16 @@ def test_no_pair_of_position_and_object_is_in_two_splits() -> None:
     }
 
 
+def test_a_recipe_says_which_share_is_for_training() -> None:
+    """Eight, one and one of ten: of 850 seen pairs 680, 85 and 85, in any whole ten as well."""
+    recipe = dataclasses.replace(load_recipe("small"), cases=850, indenters=SEEN, shares=(8, 1, 1))
+    splits = [case.split for case in cases_of(recipe)]
+    expected = {Split.TRAIN: 8, Split.VALIDATION: 1, Split.TEST: 1}
+    assert Counter(splits[:10]) == expected
+    assert Counter(splits) == {split: 85 * share for split, share in expected.items()}
+    assert recipe.key != dataclasses.replace(recipe, shares=(3, 1, 1)).key
+
+
 def test_repeated_approaches_are_known() -> None:
     """Of eight shears of one pair the first has all states new, the others the shear alone."""
     recipe = dataclasses.replace(load_recipe("small"), cases=0)
@@ -218,6 +228,7 @@ def test_the_key_follows_what_a_sample_depends_on() -> None:
         ('design = "geltip"\nshear_directions = 5\n', "5 shear directions"),
         ('design = "geltip"\nindenters = ["ball"]\n', "ball"),
         ('design = "geltip"\nindenters = []\n', "none"),
+        ('design = "geltip"\nshares = [0, 1, 1]\n', "for training"),
         ('design = "geltip"\ndeep_mm = 1.0\n', "deep_mm"),
         ("hex_mm = 0.9\n", "names no design"),
         ("design = \n", "not valid TOML"),

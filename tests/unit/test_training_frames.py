@@ -137,3 +137,23 @@ def test_sparse_fields_come_back_dense() -> None:
     raw = presses.raw_errors(Target.FORCE, [1])
     assert raw is not None and raw[0] == pytest.approx(0.1 * fields.zero_mae, rel=1e-5)
     assert presses.raw_errors(Target.STRESS, [1]) is None
+
+
+def test_the_first_cases_are_of_all_skins() -> None:
+    """A learning curve over several membranes grows on all of them: one case of each in turn."""
+    presses = made_presses(24, edges=(12, 15, 14))
+    skin_of = {state.case: state.skin for state in presses.states}
+    assert [skin_of[case] for case in presses.cases(Split.TRAIN)[:6]] == [0, 1, 2, 0, 1, 2]
+    assert sorted(presses.cases(Split.TRAIN)) == sorted(
+        {state.case for state in presses.states if state.split is Split.TRAIN}
+    )
+
+
+def test_fields_are_of_one_skin() -> None:
+    """States of two skins have no common vertices: asking for both at once is refused."""
+    presses = made_presses(12, edges=(12, 15))
+    groups = presses.by_skin(range(len(presses.states)))
+    assert [len(states) for states in groups.values()] == [12, 12]
+    assert presses.fields(Target.FORCE, groups[1], skin=1).inputs.shape[1] == 225
+    with pytest.raises(ValueError, match="of skin 0"):
+        presses.fields(Target.FORCE, [*groups[0], groups[1][0]])

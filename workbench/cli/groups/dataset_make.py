@@ -33,9 +33,9 @@ def options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--out", required=True, type=Path, metavar="DIR", help=text)
     sub.add_argument("--cases", type=int, metavar="N", help="the first N cases; 0: all")
     sub.add_argument("--jobs", type=int, default=1, metavar="N", help="processes (default 1)")
-    text = f"hexahedra of {DRAFT_MM} mm: forces within 5 %%, three times faster"
     text = "presses side by side (default: 1, on each GPU 128)"
     sub.add_argument("--batch", type=int, default=0, metavar="N", help=text)
+    text = f"hexahedra of {DRAFT_MM} mm: forces within 5 %%, three times faster"
     sub.add_argument("--draft", action="store_true", help=text)
     text = "another Young's modulus than the recipe's; cases and split stay the same"
     sub.add_argument("--young", type=float, metavar="MPA", help=text)

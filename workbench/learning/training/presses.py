@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -122,8 +123,13 @@ class Presses:
         return digest([listed, sorted(self.parts), arrays, skins])
 
     def cases(self, split: Split) -> list[str]:
-        """Cases of a split, in their order."""
-        return list(dict.fromkeys(s.case for s in self.states if s.split is split))
+        """Cases of a split in their order, of several skins one in turn: the first are of all."""
+        queues = [
+            dict.fromkeys(s.case for s in self.states if s.split is split and s.skin == skin)
+            for skin in range(len(self.skins))
+        ]
+        turns = itertools.zip_longest(*queues)
+        return [case for turn in turns for case in turn if case is not None]
 
     def of_split(self, split: Split, *, cases: Sequence[str] | None = None) -> list[int]:
         """Numbers of the states of a split, or of some cases of it."""
