@@ -184,4 +184,5 @@ def test_a_soft_object_reads_one_force_in_any_number_of_frames() -> None:
         press(SoftBody(), rough, dataclasses.replace(PRESS, frames=frames)) for frames in (1, 5)
     )
     assert once.normal_N[-1] == pytest.approx(often.normal_N[-1], rel=5e-3)
+    # Measured 5 %; left on its way after 300 substeps, settled or not, 13 %.
     assert once.tangential_N[-1] == pytest.approx(often.tangential_N[-1], rel=0.1)

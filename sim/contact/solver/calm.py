@@ -13,8 +13,10 @@ PASSING = 3.0
 """How far a state within a frame may be from balance, in limits of a settled frame: nothing is
 read from it but what holds on. A ball 1 mm deep at mu .3 then reads .1 % less than with 1, at 10
 .4 % less."""
-ENOUGH = 300
-"""Substeps after which a state within a frame is left, settled or not."""
+ENOUGH = 1000
+"""Substeps after which a state within a frame is left, settled or not. Two soft bodies take that
+long: friction of a soft ball .5 mm deep at mu .3 read 13 % more in 1 frame than in 5 where they
+were left after 300, and 5 % after 1000."""
 
 
 class Changes:

@@ -68,7 +68,7 @@ def press(given: PressInputs, *, monitor: Monitor) -> Contact:
 STAGE = Stage(
     name="press",
     label="Contact",
-    version=10,
+    version=11,
     place=7,
     lane="sim",
     run=press,
