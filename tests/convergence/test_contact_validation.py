@@ -109,10 +109,14 @@ def test_long_slide_does_not_depend_on_its_frames() -> None:
 
 
 def test_release_ends_at_no_force() -> None:
-    """Lifted clear in one frame: nothing is left, within 400 substeps."""
+    """Lifted clear in one frame: nothing is left, within 600 substeps.
+
+    Cells are halved in a press of one frame too, whose increments count: lifting takes 465 substeps
+    (390 on whole cells), and the press before it 90 more than the one that is taken off.
+    """
     release = sliding.released()
     assert release.residue < 1e-3
-    assert release.substeps <= 400
+    assert release.substeps <= 600
 
 
 @pytest.mark.slow

@@ -245,7 +245,7 @@ def test_the_measure_that_did_not_settle_is_named() -> None:
     assert "net force" in net.message
     assert "6.0e-03" in net.message
     assert "tolerance" not in net.hint
-    assert "change of the reaction" in run.unsettled(0.9 * limit, 1e-3, 3e-4).message
+    assert "change of the reaction" in run.unsettled(0.9 * limit, 1e-3, 9e-4).message
 
 
 def test_masses_doubled_in_a_stall_come_back_frame_by_frame() -> None:

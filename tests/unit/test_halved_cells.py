@@ -22,9 +22,11 @@ HEIGHT_MM = 2.1
 GRADIENT = np.array([[0.1, -0.2, 0.05], [0.0, 0.15, 0.1], [0.2, 0.0, -0.1]])
 
 
-def domain_of(kind: str, *, frames: int = 5, aside_mm: float = 0.13) -> Domain:
+def domain_of(
+    kind: str, *, frames: int = 5, aside_mm: float = 0.13, size_mm: float = 6.0
+) -> Domain:
     mesh, points = flat_block(width_mm=20.0, height_mm=HEIGHT_MM, grid_mm=GRID_MM)
-    collider = make_collider(Indenter(kind=IndenterKind(kind)), grid_mm=GRID_MM)
+    collider = make_collider(Indenter(kind=IndenterKind(kind), size_mm=size_mm), grid_mm=GRID_MM)
     target_mm = (aside_mm, 0.2, HEIGHT_MM)
     path = Press(target_mm=target_mm, depth_mm=1.0, frames=frames)
     approach = plan_approach(mesh.outer, collider, path)
@@ -41,10 +43,19 @@ def cone(taichi_device: str) -> Domain:
 
 @pytest.mark.usefixtures("taichi_device")
 def test_a_large_contact_leaves_cells_whole() -> None:
-    """A ball of 3 mm that is 1 mm deep at the end of its only frame touches 10 cells across."""
-    found = domain_of("sphere", frames=1)
+    """A ball of 20 mm touches 4 cells across where it first rests, 0.1 mm deep."""
+    found = domain_of("sphere", size_mm=40.0)
     assert not len(found.ties.nodes)
     assert (found.edges_mm == GRID_MM).all()
+
+
+@pytest.mark.usefixtures("taichi_device")
+def test_cells_do_not_depend_on_the_number_of_frames() -> None:
+    """A ball of 3 mm rests each 0.1 mm of its way in one frame as in ten: halved cells alike."""
+    once, often = (domain_of("sphere", frames=frames) for frames in (1, 10))
+    assert len(once.ties.nodes)
+    np.testing.assert_array_equal(once.edges_mm, often.edges_mm)
+    np.testing.assert_array_equal(once.node_mm, often.node_mm)
 
 
 def test_tied_nodes_carry_any_even_strain(cone: Domain) -> None:

@@ -109,7 +109,7 @@ class Run:
             self.relaxation.restart(self.number, self._settled[-1])
         count = 0 if predicted else self._ramp_length()
         steps = (np.arange(count) + 1.0) / max(count, 1)
-        if self._rubs:
+        if self._rubs and not self._leaving:
             # At rest at both ends: what is still on its way at the end of a ramp rubs too.
             steps = steps**2 * (3.0 - 2.0 * steps)
         self._ramp = self._rows(steps) if count else np.zeros((0, POSE))
