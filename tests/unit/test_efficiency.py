@@ -7,6 +7,8 @@ import pytest
 
 from docs.generate_speed import page
 from sim.contact.solver import reactions
+from sim.contact.solver.run import Run
+from sim.contact.solver.solver import relaxation_of
 from workbench.core.base.errors import SolveError
 from workbench.pipeline import devices
 from workbench.proof.benchmarks import contact, efficiency, forces, optics
@@ -57,6 +59,17 @@ def test_a_press_that_does_not_settle_has_no_rate(monkeypatch: pytest.MonkeyPatc
         efficiency.settled_per_s(0.6)
     monkeypatch.setattr(Unsettled, "reaction_N", np.ones((1, 3)))
     assert efficiency.settled_per_s(0.6) > 0.0
+
+
+@pytest.mark.usefixtures("taichi_device")
+def test_batches_are_of_presses_that_can_be_made() -> None:
+    """In one piece is without friction: what rubs rests each 0.1 mm."""
+    for friction, rests in ((0.0, 1), (0.3, 10)):
+        problem = contact._problem(0, friction)
+        assert problem.material.friction == friction
+        run = Run(problem, relaxation_of([problem]), 0)
+        run.begin()
+        assert run.increments == rests
 
 
 def test_patches_are_held_to_their_rate_on_a_gpu_alone(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,12 +12,7 @@ as the source `learned` asks for it. Nothing is asked of them: the rooms `contac
 from __future__ import annotations
 
 import functools
-import statistics
-import time
 
-import numpy as np
-
-from workbench.core.base.errors import SolveError
 from workbench.core.design.lighting import LightModel
 from workbench.proof.benchmarks import contact, forces, optics
 from workbench.proof.benchmarks.paces import published_fps
@@ -26,8 +21,6 @@ from workbench.proof.row import Measurement, Row, stated
 PARTICLES = {"40K": "40k", "300K": "300k", "1.3M": "1300k"}
 WIDTHS_PX = (320, 640, 1280)
 NETWORK = "paper"
-PRESSES = 3
-"""Of which the median counts: what is compiled for the first one does not."""
 
 
 def rows() -> list[Row]:
@@ -74,21 +67,8 @@ def settled_per_s(grid_mm: float) -> float:
     Raises:
         SolveError: If one does not settle.
     """
-    from sim.contact.solver.reactions import Reactions
-
-    problem, times = contact.whole_problem(grid_mm), []
-    for _ in range(PRESSES):
-        presses = Reactions([problem])
-        start = time.perf_counter()
-        presses.run()
-        times.append(time.perf_counter() - start)
-        if not np.isfinite(presses.reaction_N).all():
-            raise SolveError(
-                f"the press on a grid of {grid_mm} mm did not settle",
-                hint="measure the room contact, which says where",
-                at="press",
-            )
-    return 1.0 / statistics.median(times)
+    problem = contact.whole_problem(grid_mm)
+    return contact.settled_per_s([problem], f"the press on a grid of {grid_mm} mm")
 
 
 def image_rows() -> list[Row]:
