@@ -18,6 +18,8 @@ from workbench.core.press.indenter import Indenter
 
 ROOT_HALF = 0.5**0.5
 TINY_MM = 1e-9
+SEAT = 7
+"""Of `size` in the kernels: height of the place [mm] that they count from, of analytic shapes."""
 
 
 def analytic_size(indenter: Indenter) -> np.ndarray:
@@ -43,17 +45,15 @@ def evaluate(
     Args:
         position: Positions [mm], shape (N, 3).
         shape: Which shape.
-        size: Its numbers: `analytic_size`, or origin and 1 / spacing of a grid. The second of a
-            sphere says how far below its centre the positions are counted from.
+        size: Its numbers: `analytic_size`, or origin and 1 / spacing of a grid.
         samples: B-spline coefficients of a grid, shape (A, B, C).
 
     Returns:
         Distances, shape (N,), and gradients, shape (N, 3).
     """
     if shape is Shape.SPHERE:
-        from_centre = position + np.array([0.0, 0.0, size[1]])
-        radius = np.linalg.norm(from_centre, axis=1)
-        return radius - size[0], from_centre / np.maximum(radius, TINY_MM)[:, None]
+        radius = np.linalg.norm(position, axis=1)
+        return radius - size[0], position / np.maximum(radius, TINY_MM)[:, None]
     if shape is Shape.CUBE:
         return _box(position, size)
     if shape is Shape.GRID:

@@ -9,6 +9,7 @@ Rounded shapes are a smaller sharp shape, offset outwards by the edge radius.
 
 import taichi as ti
 
+from sim.contact.objects.shape_distance import SEAT
 from workbench.core.objects.kind import Shape
 
 SPHERE = int(Shape.SPHERE)
@@ -23,7 +24,7 @@ _TINY_MM = 1e-9
 
 @ti.func
 def _ball(position, radius, seat):
-    """Distance to a ball about (0, 0, -seat), without the difference of two long lengths."""
+    """Distance to a ball about (0, 0, -`seat`), without the difference of two long lengths."""
     from_centre = position + ti.Vector([0.0, 0.0, seat])
     length = from_centre.norm()
     excess = position.norm_sqr() + 2.0 * seat * position[2] + (seat - radius) * (seat + radius)
@@ -31,10 +32,17 @@ def _ball(position, radius, seat):
 
 
 @ti.func
-def _box_profile(rho, z, radius, height):
-    """Distance to the rectangle rho <= radius, |z| <= height, and its gradient."""
-    over_rho, over_z = rho - radius, ti.abs(z) - height
-    up = ti.select(z < 0.0, -1.0, 1.0)
+def _beyond_ends(z, seat, height):
+    """How far a place lies beyond |z + seat| <= height, and on which side; exact at `seat`."""
+    below, above = -z - (seat + height), z + (seat - height)
+    return ti.max(below, above), ti.select(below > above, -1.0, 1.0)
+
+
+@ti.func
+def _box_profile(rho, z, radius, height, seat):
+    """Distance to the rectangle rho <= radius, |z + seat| <= height, and its gradient."""
+    over_rho = rho - radius
+    over_z, up = _beyond_ends(z, seat, height)
     distance, by_rho, by_z = over_z, 0.0, up
     if over_rho > 0.0 and over_z > 0.0:
         distance = ti.sqrt(over_rho * over_rho + over_z * over_z)
@@ -65,14 +73,14 @@ def _cone_profile(rho, z, rim, top, apex):
 
 
 @ti.func
-def _box(position, half):
-    """Distance to the cube |x|, |y|, |z| <= half, and its gradient."""
-    over = ti.abs(position) - half
+def _box(position, half, seat):
+    """Distance to the cube |x|, |y|, |z + seat| <= half, and its gradient."""
+    over, side = ti.abs(position) - half, ti.Vector([1.0, 1.0, 1.0])
+    for c in ti.static(range(2)):
+        side[c] = ti.select(position[c] < 0.0, -1.0, 1.0)
+    over[2], side[2] = _beyond_ends(position[2], seat, half)
     outside = ti.max(over, 0.0)
     distance = outside.norm()
-    side = ti.Vector([0.0, 0.0, 0.0])
-    for c in ti.static(range(3)):
-        side[c] = ti.select(position[c] < 0.0, -1.0, 1.0)
     gradient = side * outside / ti.max(distance, _TINY_MM)
     if distance <= _TINY_MM:
         distance = over.max()
@@ -135,7 +143,7 @@ def signed_distance(position, shape, size, coefficients: ti.template(), counts, 
 
     `size` and `counts` are vectors; the object's own coefficients start at `begin`.
     """
-    distance, gradient = _ball(position, size[0], size[1])
+    distance, gradient = _ball(position, size[0], size[SEAT])
     if shape == CYLINDER_Z or shape == CYLINDER_Y or shape == CONE:
         axial, first, second = position[2], position[0], position[1]
         if shape == CYLINDER_Y:
@@ -145,14 +153,14 @@ def signed_distance(position, shape, size, coefficients: ti.template(), counts, 
         if shape == CONE:
             distance, by_rho, by_z = _cone_profile(rho, axial, size[0], size[1], size[3])
         else:
-            distance, by_rho, by_z = _box_profile(rho, axial, size[0], size[1])
+            distance, by_rho, by_z = _box_profile(rho, axial, size[0], size[1], size[SEAT])
         distance -= size[2]
         scale = by_rho / ti.max(rho, _TINY_MM)
         gradient = ti.Vector([first * scale, second * scale, by_z])
         if shape == CYLINDER_Y:
             gradient = ti.Vector([second * scale, by_z, first * scale])
     elif shape == CUBE:
-        distance, gradient = _box(position, size[0])
+        distance, gradient = _box(position, size[0], size[SEAT])
         distance -= size[2]
     elif shape != SPHERE:
         distance, gradient = _sampled(position, size, coefficients, counts, begin)
