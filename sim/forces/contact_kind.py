@@ -5,7 +5,8 @@ resolve it worst; a shear adds friction. Depth is no axis: of the presses that w
 shipped network errors are alike at 0.5 and 1 mm (contact solver 35 and 28 % of the force field,
 network 11 and 13 %), and differ more from object to object.
 
-An object from a file, with a texture, soft, or turned is of no kind: it may touch with anything.
+An object from a file, with a texture, soft, or tilted is of no kind: it may touch with anything.
+Turned about its way into the skin it touches as it did.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from workbench.core.press.indenter import Indenter
 from workbench.core.press.press import Press
 
 WIDTHS_MM = (4.0, 8.0)
-"""Between the classes of width: the data sets have objects of 6 mm."""
+"""Between the classes of width: the data sets have objects of 3 to 12 mm."""
 
 
 class Touch(enum.StrEnum):
@@ -53,7 +54,8 @@ class ContactKind:
 def touch_of(indenter: Indenter) -> Touch | None:
     """What of an object meets the skin; None where nobody can say."""
     kind = indenter.record
-    unlike = indenter.turned or indenter.texture.raised or indenter.soft is not None
+    tilted = any(indenter.turn_deg[:2])
+    unlike = tilted or indenter.texture.raised or indenter.soft is not None
     if kind.of_triangles or unlike:
         return None
     if kind.tip:

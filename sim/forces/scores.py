@@ -3,8 +3,7 @@
 The mean absolute error of a sample is that of the paper: the mean of |found - truth| over all
 points of the skin and the three axes, points at rest included. As most points are at rest, it says
 little by itself; here it always stands beside what predicting nothing scores, and over the largest
-value. Samples of one skin have equally many points, so the mean over samples is that over all
-points of all samples.
+value. Of many samples it is the mean over all points of all of them, whatever their skins.
 
 Total forces are sums over the points along the axes of the press: along U and V, in which objects
 are sheared, and the normal. The paper's X, Y and Z of total forces are these. Its percentages are
@@ -33,6 +32,8 @@ AXES = 3
 class Score:
     """A field of one sample beside the truth."""
 
+    points: int
+    """Of the skin."""
     error: np.ndarray
     """Mean absolute error along X, Y and Z over the points, shape (3,)."""
     found_total: np.ndarray
@@ -115,6 +116,7 @@ def score(
     found, truth = found.astype(np.float64), truth.astype(np.float64)
     away = found - truth
     return Score(
+        points=len(truth),
         error=np.abs(away).mean(axis=0),
         found_total=frame @ found.sum(axis=0),
         true_total=frame @ truth.sum(axis=0),
@@ -126,14 +128,15 @@ def score(
 
 
 def summary(scores: Sequence[Score]) -> Summary:
-    """Take scores together, each sample with the same weight.
+    """Take scores together, each point with the same weight; of biases each sample.
 
     Raises:
         ValueError: If there are none: no mean stands for nothing.
     """
     if not scores:
         raise ValueError("there are no scores to take together")
-    error = np.mean([one.error for one in scores], axis=0)
+    weights = [one.points for one in scores]
+    error = np.average([one.error for one in scores], axis=0, weights=weights)
     true = np.abs([one.true_total for one in scores])
     off = np.abs([one.found_total - one.true_total for one in scores])
     peak = max(one.peak for one in scores)

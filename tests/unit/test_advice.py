@@ -161,6 +161,11 @@ def test_the_advice_as_plain_values() -> None:
             "pointed objects of 4 ",
         ),
         (Indenter(kind=IndenterKind("cone"), size_mm=9.0), Press(), "pointed objects above 8 mm"),
+        (
+            Indenter(kind=IndenterKind("cube"), turn_deg=(0.0, 0.0, 45.0)),
+            Press(),
+            "edged objects of 4 to 8 mm, pressed",
+        ),
         (Indenter(), Press(strokes=(slide(0.1, 0.0),)), "smooth objects of 4 to 8 mm, sheared"),
     ],
 )
@@ -177,7 +182,7 @@ def test_the_kind_of_a_press(indenter: Indenter, press: Press, words: str) -> No
         (Indenter(texture=Texture(pattern=Pattern.DOTS)), Press()),
         (Indenter(), Press(strokes=(twist(5.0),))),
     ],
-    ids=["turned", "textured", "twisted"],
+    ids=["tilted", "textured", "twisted"],
 )
 def test_what_is_of_no_kind(indenter: Indenter, press: Press) -> None:
     """A corner that points down, a pattern, a twist: nothing of the kind was held out."""

@@ -28,8 +28,8 @@ from workbench.pipeline.weight_files import save_weights
 from workbench.proof.benchmarks.forces import shell
 from workbench.proof.benchmarks.records import kept_at, read_record, shipped_records, write_record
 from workbench.proof.row import failed, stated
+from workbench.proof.validation.learned import learned_scores as learned
 from workbench.proof.validation.learned import learned_speed, learned_stiffness
-from workbench.proof.validation.learned import room as learned
 
 
 @pytest.fixture(scope="module")
@@ -220,20 +220,27 @@ def ship(folder: Path, place: Path, *, packs: bool = True) -> None:
     shutil.copytree(folder / "weights", place)
     shutil.copytree(folder / "tuned", place / "stiffness")
     if packs:
-        for name, file in (("base", "heldout.npz"), ("soft", "stiffness/soft.npz")):
+        (place / "held_out").mkdir()
+        for name, file in (("base", "held_out/geltip-1.npz"), ("soft", "stiffness/soft.npz")):
             assert main(["evaluate", str(folder / name), "--pack", str(place / file)]) == 0
 
 
 def test_rows_of_shipped_weights(folder: Path, nothing_shipped: Path) -> None:
     """Untrained, so they miss the limits with a value beside its null; stiffness is stated."""
     ship(folder, nothing_shipped)
-    rows = {row.name: row for row in learned.score_rows(Target.FORCE)}
+    found = learned.score_rows(Target.FORCE)
+    rows = {row.name: row for row in found}
+    assert all(row.case.startswith("geltip: ") for row in found if "_ratio_mpm_" in row.name)
     to_zero = rows["learned_force_ratio_zero_unseen"]
     assert to_zero.value is not None and to_zero.null is not None
-    assert not to_zero.ok and to_zero.limit == 0.25
+    assert not to_zero.ok and to_zero.limit == 0.12
     assert to_zero.value > 0.9 and 0.0 < to_zero.null < 1.0
     to_mpm = rows["learned_force_ratio_mpm_unseen"]
-    assert to_mpm.limit == 0.5 and to_mpm.null == pytest.approx(1.0 / to_zero.null)
+    assert to_mpm.limit == 1.0 and to_mpm.null == pytest.approx(1.0 / to_zero.null)
+    worst = rows["learned_force_worst_object_unseen"]
+    assert not worst.ok and worst.value is not None and worst.value >= to_mpm.value
+    total, bias = rows["learned_total_ratio_unseen"], rows["learned_peak_bias_unseen"]
+    assert (total.limit, bias.limit) == (0.02, 0.1) and not total.ok and not bias.ok
     peak = rows["learned_force_over_peak_unseen"]
     assert peak.reference is not None and peak.reference < peak.null < 1.0
     stiff = {(row.name, row.case.split(",")[0]): row for row in learned_stiffness.rows()}
@@ -257,7 +264,7 @@ def test_rows_of_weights_that_saw_the_cases_fail(
     folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Weights of another set, on test cases that they may have been trained on."""
-    base = learned.open_source(folder / "base")
+    base = DataSet.open(folder / "base")
     weights = dataclasses.replace(untrained(base), card={"indenters": ["cross"]})
     save_weights(tmp_path, weights, storage=Storage.SINGLE)
     monkeypatch.setattr(shipped, "FOLDER", tmp_path)

@@ -60,6 +60,14 @@ def test_samples_count_alike_and_the_peak_is_that_of_all() -> None:
     assert both.total_largest == (0.0, 2.0, 4.0)
 
 
+def test_every_point_counts_alike_whatever_its_skin() -> None:
+    """1/3 on four points and 0 on eight: 1/9 over twelve, and not the mean of two means."""
+    wide = np.concatenate([TRUTH, np.zeros((4, 3))])
+    assert summary([score(FOUND, TRUTH, UPRIGHT), score(wide, wide, UPRIGHT)]).mae == pytest.approx(
+        1.0 / 9.0
+    )
+
+
 def test_biases_of_peaks_are_means_of_ratios() -> None:
     """Pressures of 1.2 and 0.9: +5 %; discs of half and all: -25 %; no truth has no say."""
 

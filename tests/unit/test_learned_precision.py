@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 
 from sim.forces.network.spec import SMALL
-from workbench.pipeline import devices, shipped
+from workbench.pipeline import devices
 from workbench.proof.validation.learned import learned_precision
-from workbench.proof.validation.learned.room import HELD_OUT
 
 
 def test_both_measures_of_a_difference() -> None:
@@ -23,7 +22,7 @@ def test_bfloat16_stays_near_float32_on_a_press_that_ships(monkeypatch: pytest.M
     """The small network, which is fast: neither equal nor beyond the limit."""
     monkeypatch.setattr(learned_precision, "NETWORK", SMALL.name)
     monkeypatch.setattr(devices, "torch_device", lambda: "cpu")
-    largest, mean = learned_precision.rows(shipped.FOLDER / HELD_OUT)
+    largest, mean = learned_precision.rows()
     assert largest.ok and mean.ok and mean.limit is None
     assert largest.value is not None and 1e-4 < largest.value
     assert "bfloat16, cpu, press " in largest.case
@@ -31,6 +30,6 @@ def test_bfloat16_stays_near_float32_on_a_press_that_ships(monkeypatch: pytest.M
 
 def test_without_presses_the_rows_fail(tmp_path: Path) -> None:
     """And say what is missing."""
-    rows = learned_precision.rows(tmp_path / HELD_OUT)
+    rows = learned_precision.rows(tmp_path / "none.npz")
     assert [row.ok for row in rows] == [False, False]
     assert all("not measured" in row.case for row in rows)

@@ -32,7 +32,7 @@ CHANGES = {
 
 def add_data_options(sub: argparse.ArgumentParser) -> None:
     """Data, and where the result goes."""
-    text = "data sets that share a skin, or a file of `train pack`"
+    text = "data sets, of one membrane or of several, or a file of `train pack`"
     sub.add_argument("data", nargs="+", type=Path, metavar="DATA", help=text)
     text = "folder of the training; of `pack` the file, NAME.presses"
     sub.add_argument("--out", required=True, type=Path, metavar="PATH", help=text)

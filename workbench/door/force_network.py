@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from sim.forces.network.weights import NetworkWeights
     from workbench.core.result.results import Skin
 
-HELD_OUT = "heldout.npz"
-"""What the networks that ship are scored on, with their skin."""
 SPACING = 0.05
 """Largest difference of the spacing of points from that of the training: forces at points are in
 proportion to the area of a point."""
@@ -41,9 +39,9 @@ class Triangles(Protocol):
 class ForceNetwork:
     """A trained network on a skin; keep it as long as the sensor.
 
-    The networks that ship know the default finger and correct the contact solver: they want its
-    force beside its displacement. One that is trained with the preset `paper` wants a displacement
-    alone, which markers in a camera's image can give.
+    The networks that ship know finger, pad, trunk and paw and correct the contact solver: they want
+    its force beside its displacement. One that is trained with the preset `paper` wants a
+    displacement alone, which markers in a camera's image can give.
 
     Attributes:
         weights: Of the network; `weights.card` says what it was trained on.
@@ -54,7 +52,7 @@ class ForceNetwork:
     def __init__(
         self,
         weights: Path | str | None = None,
-        skin: Triangles | None = None,
+        skin: Triangles | str | None = None,
         *,
         on: Triangles | None = None,
         young_MPa: float | None = None,
@@ -63,14 +61,16 @@ class ForceNetwork:
 
         Args:
             weights: File of a network for forces; the one that ships when left out.
-            skin: With the points of the training, `DataSet.open(folder).skin`; may be left out for
-                the network that ships.
+            skin: With the points of the training, `DataSet.open(folder).skin`, or the name of a
+                preset that the shipped networks know: `geltip`, which is meant where it is left
+                out, `pad`, `trunk` or `paw`.
             on: Another mesh of the same skin, on which displacement is given and forces are wanted;
                 fields are carried between the two. The points of the training when left out.
             young_MPa: Of the elastomer; as in the training when left out.
 
         Raises:
-            StoreError: If the weights are missing, damaged, or predict something else.
+            StoreError: If the weights are missing, damaged, or predict something else; if no skin
+                of that name ships.
             DesignError: If the skin is missing or has another spacing than that of the training.
             PackageError: If a package is missing.
         """
@@ -88,7 +88,7 @@ class ForceNetwork:
             from workbench.pipeline.devices import torch_device
 
             self.weights = load_weights(path)
-            own = _skin(_shipped_skin() if weights is None and skin is None else skin)
+            own = _skin(_named_skin(skin, known=weights is None))
             _expect_spacing(self.weights, own)
             points_mm, faces = own.points_mm, own.faces
             device = torch_device()
@@ -159,12 +159,14 @@ def _skin(found: Triangles | None) -> Skin:
     return Skin(points_mm=points_mm, faces=faces, normals=vertex_normals(points_mm, faces))
 
 
-def _shipped_skin() -> Triangles:
-    """The skin that the networks that ship were trained on."""
+def _named_skin(skin: Triangles | str | None, *, known: bool) -> Triangles | None:
+    """The skin that is meant; `known`: whether one that ships goes with the weights unnamed."""
     from workbench.learning.evaluation.held_out import HeldOut
-    from workbench.pipeline.shipped import FOLDER
+    from workbench.pipeline.shipped import FIRST, held_out_set
 
-    return HeldOut.open(FOLDER / HELD_OUT).skin
+    if skin is None and known:
+        skin = FIRST
+    return HeldOut.open(held_out_set(skin)).skin if isinstance(skin, str) else skin
 
 
 def _expect_spacing(weights: NetworkWeights, skin: Skin) -> None:

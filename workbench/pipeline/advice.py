@@ -21,6 +21,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from sim.forces.contact_kind import ContactKind, Touch, Width
+from sim.forces.network.weights import SUFFIX
 from workbench.core.base.errors import StoreError
 from workbench.core.press.fem import DRAFT_MM, QUALITY_MM
 from workbench.pipeline import shipped
@@ -50,12 +51,13 @@ ERRORS = Record(
         "sim.optics",
     ),
     files=(
-        *sorted(path for path in shipped.FOLDER.glob("*.*") if path.suffix != ".json"),
+        *sorted(shipped.FOLDER.glob(f"*{SUFFIX}")),
+        *sorted((shipped.FOLDER / shipped.HELD_OUT).glob("*.npz")),
         ROOT / "workbench/proof/validation/contact/finger_figures.json",
         ROOT / "workbench/proof/validation/fem/axisymmetric_limits.json",
     ),
 )
-"""The contact solver's own code is no source: its answers lie in the held-out set. The last two
+"""The contact solver's own code is no source: its answers lie in the held-out sets. The last two
 files hold the limits of finite elements."""
 
 

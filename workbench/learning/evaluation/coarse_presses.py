@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import functools
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from sim.forces.network.spec import Target
-from workbench.core.design.design import Elastomer
 from workbench.core.press.fem import DRAFT_MM, FemSettings
-from workbench.core.press.indenter import Indenter
 from workbench.core.press.press_case import PressCase
 from workbench.core.result.results import MembraneMesh
-from workbench.learning.dataset.cases import Case
+from workbench.learning.dataset.recipe import Recipe
+from workbench.learning.dataset.recipes import recipe_from_toml
 from workbench.learning.evaluation.scoring import Scored, Way, scores_of
 from workbench.learning.evaluation.sources import Source, open_source
 from workbench.proof.validation.fem.fem_presses import finger
@@ -23,10 +21,11 @@ COARSE = "coarse"
 """Name of their scores beside that of predicting nothing."""
 
 
-def indenter_of(case: Case, recipe: dict[str, Any]) -> Indenter:
-    """The object of a case of a data set."""
-    edge_mm = recipe["edge_radius_mm"]
-    return Indenter(kind=case.indenter, size_mm=recipe["size_mm"], edge_radius_mm=edge_mm)
+def recipe_of(source: Source) -> Recipe:
+    """The recipe of a data set or a held-out set."""
+    import tomli_w
+
+    return recipe_from_toml(tomli_w.dumps(source.manifest["recipe"]), source=source.key)
 
 
 @functools.cache
@@ -49,16 +48,17 @@ def coarse_scores(data: Path, name: str) -> list[Scored]:
     from sim.forces.transfer import transferred
 
     source = _opened(data)
-    coarse, fine = finger(DRAFT_MM), finger(source.manifest["recipe"]["hex_mm"])
+    recipe = recipe_of(source)
+    coarse, fine = finger(DRAFT_MM), finger(recipe.hex_mm)
     if not _same_skin(fine, source):
         return []
     case = next(case for case in source.cases() if case.id == name)
     press = PressCase(
-        indenter=indenter_of(case, source.manifest["recipe"]),
+        indenter=recipe.indenter(case.indenter, case.drawn),
         press=case.press,
         fem=FemSettings(hex_mm=DRAFT_MM, error=False),
     )
-    found = transferred(solve_press(coarse, Elastomer(), press), coarse, fine)
+    found = transferred(solve_press(coarse, recipe.material(case.drawn), press), coarse, fine)
     scored = []
     for frame in source.frames(case):
         force_N = np.asarray(found.contact_force_N[frame])

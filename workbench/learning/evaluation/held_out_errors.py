@@ -1,17 +1,21 @@
 """Measures the errors that advice is composed from: the record `ERRORS` of `pipeline.advice`.
 
 `python -m workbench.learning.evaluation.held_out_errors [JOBS]` takes 10 minutes of one core.
-Network and contact solver are scored on the held-out set that ships, coarse finite elements on some
-of its presses, solved anew; all against the finite elements of the set. Finite elements themselves
-are scored against converged limits, of which there are total forces only (`fem_errors`).
+Network and contact solver are scored on the held-out sets that ship, coarse finite elements on some
+of the presses of the finger, solved anew; all against the finite elements of the sets. Finite
+elements themselves are scored against converged limits, of which there are total forces only
+(`fem_errors`).
 """
 
 from __future__ import annotations
 
+import itertools
 import sys
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor
+from dataclasses import dataclass
 from multiprocessing import get_context
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -23,7 +27,8 @@ from sim.forces.scores import ratio, summary
 from workbench.core.press.fem import DRAFT_MM, QUALITY_MM
 from workbench.core.press.indenter import Indenter
 from workbench.learning.dataset.cases import Split
-from workbench.learning.evaluation.coarse_presses import COARSE, coarse_scores, indenter_of
+from workbench.learning.dataset.recipe import Recipe
+from workbench.learning.evaluation.coarse_presses import COARSE, coarse_scores, recipe_of
 from workbench.learning.evaluation.evaluate import Named, evaluate_field
 from workbench.learning.evaluation.scoring import Scored, Way
 from workbench.learning.evaluation.sources import open_source
@@ -36,9 +41,8 @@ from workbench.proof.validation.fem.fem_errors import (
     expect_fresh_limits,
 )
 
-DATA = shipped.FOLDER / "heldout.npz"
-EVERY = 7
-"""Of the held-out presses, that are solved by coarse finite elements."""
+EVERY = 3
+"""Of the held-out presses of the finger, that are solved by coarse finite elements."""
 MESHES = {ForceSource.DRAFT: DRAFT_MM, ForceSource.QUALITY: QUALITY_MM}
 LIMITS = "converged limits"
 
@@ -50,43 +54,60 @@ def figures(jobs: int = 1) -> dict[str, Any]:
         jobs: Processes that solve presses.
 
     Raises:
-        StoreError: If the limits are not those of today's code, or the held-out set is damaged.
+        StoreError: If the limits are not those of today's code, or a held-out set is damaged.
     """
     expect_fresh_limits()
-    source, path = open_source(DATA), shipped.shipped_weights(Target.FORCE)
-    recipe = source.manifest["recipe"]
+    path, places = shipped.shipped_weights(Target.FORCE), shipped.held_out_sets()
+    finger = places[shipped.FIRST]
     with ProcessPoolExecutor(max_workers=jobs, mp_context=get_context("spawn")) as pool:
         limited = {
             which: [pool.submit(beside_limit, number, hex_mm) for number in range(COUNT)]
             for which, hex_mm in MESHES.items()
         }
-        names = [case.id for case in source.cases()][::EVERY]
-        solved = [pool.submit(coarse_scores, DATA, name) for name in names]
+        wanted = [(data, case.id) for data in finger for case in open_source(data).cases()]
+        solved = [(data, pool.submit(coarse_scores, data, name)) for data, name in wanted[::EVERY]]
         named = Named(name=path.name, weights=load_weights(path))
-        samples = evaluate_field(source, named, name=DATA.name).samples
-        coarse = [scored for one in solved for scored in one.result()]
+        found = [_Pressed.of(data, named) for data in itertools.chain(*places.values())]
+        coarse = [_Pressed(recipe=_recipe(data), samples=one.result()) for data, one in solved]
         rows = [
-            *_rows(ForceSource.LEARNED, Way.LEARNED, samples, recipe),
-            *_rows(ForceSource.MPM, Way.MPM, samples, recipe),
-            *_rows(ForceSource.DRAFT, COARSE, coarse, recipe),
+            *_rows(ForceSource.LEARNED, Way.LEARNED, found),
+            *_rows(ForceSource.MPM, Way.MPM, found),
+            *_rows(ForceSource.DRAFT, COARSE, coarse),
             *(row for which, found in limited.items() for row in _limited(which, found)),
         ]
+    families = dict.fromkeys(one.recipe.design.family for one in found)
     return {
         "network": path.name,
-        "grid_mm": recipe["grid_mm"],
-        "place": f"a {recipe['design']['family']}",
-        "data": source.key,
+        "grid_mm": found[0].recipe.grid_mm,
+        "place": f"a {' or '.join(families)}",
+        "data": [one.recipe.key for one in found],
         "rows": [row_table(row) for row in rows],
     }
 
 
-def _rows(
-    source: ForceSource, way: str, samples: Sequence[Scored], recipe: dict[str, Any]
-) -> Iterator[Measured]:
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Pressed:
+    """Scored samples of one set."""
+
+    recipe: Recipe
+    samples: Sequence[Scored]
+
+    @classmethod
+    def of(cls, data: Path, named: Named) -> _Pressed:
+        samples = evaluate_field(open_source(data), named, name=data.name).samples
+        return cls(recipe=_recipe(data), samples=samples)
+
+
+def _recipe(data: Path) -> Recipe:
+    return recipe_of(open_source(data))
+
+
+def _rows(source: ForceSource, way: str, sets: Sequence[_Pressed]) -> Iterator[Measured]:
     """A row for each kind of contact, of networks apart for objects that they know."""
     groups: dict[tuple[ContactKind, bool | None], list[Scored]] = {}
-    for sample in samples:
-        kind = kind_of_contact(indenter_of(sample.case, recipe), sheared=sample.sheared)
+    for recipe, sample in ((one.recipe, sample) for one in sets for sample in one.samples):
+        indenter = recipe.indenter(sample.case.indenter, sample.case.drawn)
+        kind = kind_of_contact(indenter, sheared=sample.sheared)
         seen = sample.case.split is not Split.UNSEEN if source is ForceSource.LEARNED else None
         if kind is not None:
             groups.setdefault((kind, seen), []).append(sample)
@@ -103,7 +124,7 @@ def _rows(
             field=round(ratio(found.mae, zero.mae), 4),
             total=round(float(off_N / size_N), 4),
             peak_bias=round(found.peak_pressure_bias, 4),
-            against=f"finite elements of {recipe['hex_mm']:g} mm",
+            against=f"finite elements of {sets[0].recipe.hex_mm:g} mm",
         )
 
 

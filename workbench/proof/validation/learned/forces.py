@@ -28,7 +28,7 @@ def rows(data: Path | None = None) -> list[Row]:
     """All rows of the room: invariances of the contact solver, then learned forces.
 
     Args:
-        data: Data set to score learned forces on; None: the held-out set that ships.
+        data: Data set to score learned forces on; None: the held-out sets that ship.
     """
     return [*invariances(), *learned.rows(data)]
 

@@ -57,8 +57,8 @@ def _evaluated(folder: Path) -> list[StiffnessResult]:
     paths = [shipped.shipped_weights(target) for target in WORDS if shipped.is_shipped(target)]
     paths += sorted(folder.glob(f"*{SUFFIX}"))
     weights = [Named(name=path.name, weights=load_weights(path)) for path in paths]
-    nominal = shipped.FOLDER / "heldout.npz"
-    base = open_source(nominal) if nominal.exists() else None
+    nominal = shipped.held_out_sets().get(shipped.FIRST)
+    base = open_source(nominal[0]) if nominal else None
     return [
         one
         for path in sets
