@@ -25,10 +25,26 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
+LONGEST = tuple(
+    f"test_{name}.py"
+    for name in (
+        *("calibrate_twin", "calibrate", "whole_task", "tabs", "sources", "compare", "view"),
+        *("browser", "labels", "soak", "kill"),
+    )
+)
+"""Files that take minutes; a few of them are most of what a browser is tested with."""
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Files with slow tests come first: a long one that begins last leaves the other cores idle."""
+    """Files with slow tests come first, of them the longest in their order: one that begins last
+    leaves the other cores idle."""
     slow = {item.path for item in items if item.get_closest_marker("slow")}
-    items.sort(key=lambda item: item.path not in slow)
+
+    def place(item: pytest.Item) -> tuple[bool, int]:
+        long = item.path in slow and item.path.name in LONGEST
+        return item.path not in slow, LONGEST.index(item.path.name) if long else len(LONGEST)
+
+    items.sort(key=place)
 
 
 def pytest_runtest_setup(item: pytest.Item) -> None:

@@ -10,6 +10,9 @@ from pathlib import Path
 
 import pytest
 
+from workbench.pipeline.store import Store
+from workbench.project.project import STORE_VARIABLE
+
 FOLDER = Path(__file__).parent.parent / "examples"
 EXAMPLES = sorted(FOLDER.glob("*.py"))
 SHORTEST, LONGEST = 25, 75
@@ -41,12 +44,13 @@ def test_an_example_is_short_and_says_what_it_shows(path: Path) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
-def test_an_example_runs(path: Path, workplace: Path) -> None:
+def test_an_example_runs(path: Path, workplace: Path, results: Store) -> None:
     """In a process of its own, away from the repository; its own asserts are the test."""
+    places = {"WORKBENCH_PROJECT": str(workplace / "project"), STORE_VARIABLE: str(results.root)}
     done = subprocess.run(
         [sys.executable, str(path)],
         cwd=workplace,
-        env={**os.environ, "WORKBENCH_PROJECT": str(workplace / "project")},
+        env={**os.environ, **places},
         capture_output=True,
         text=True,
         check=False,

@@ -13,13 +13,15 @@ import pytest
 
 from designs.family import families
 from tests.pages import ROOT, blocks, commands
+from workbench.pipeline.store import Store
+from workbench.project.project import STORE_VARIABLE
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 SHORTEST, LONGEST = 100, 150
 LINES = 10
 """Lines that its examples have, about."""
 LIMIT_S = 600
-ELSEWHERE = ("serve", "fem", "sweep")
+ELSEWHERE = ("serve", "fem", "sweep", "dataset")
 """A server does not end, the others take minutes: the tutorial's test and those of their own."""
 
 
@@ -40,13 +42,16 @@ def test_what_the_readme_counts_is_there() -> None:
     assert len(list((ROOT / "examples").glob("*.py"))) == 9
 
 
-def environment(folder: Path) -> dict[str, str]:
-    places = {"PYTHONPATH": str(ROOT), "WORKBENCH_PROJECT": str(folder / "project")}
+@pytest.fixture
+def environment(tmp_path: Path, results: Store) -> dict[str, str]:
+    """A project of a reader's own, whose results may be those of other tests."""
+    places = {"PYTHONPATH": str(ROOT), "WORKBENCH_PROJECT": str(tmp_path / "project")}
+    places[STORE_VARIABLE] = str(results.root)
     return {**os.environ, **places, "WORKBENCH_DEVICE": "cpu"}
 
 
 @pytest.mark.slow
-def test_the_python_of_the_readme_runs(tmp_path: Path) -> None:
+def test_the_python_of_the_readme_runs(tmp_path: Path, environment: dict[str, str]) -> None:
     """Arrays have the shapes that its comments state, and the folder what a run writes."""
     (code,) = blocks(README, "python")
     tell = (
@@ -56,7 +61,7 @@ def test_the_python_of_the_readme_runs(tmp_path: Path) -> None:
     done = subprocess.run(
         [sys.executable, "-c", f"{code}\n{tell}"],
         cwd=tmp_path,
-        env=environment(tmp_path),
+        env=environment,
         capture_output=True,
         text=True,
         timeout=LIMIT_S,
@@ -74,7 +79,7 @@ def test_the_python_of_the_readme_runs(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_the_shell_of_the_readme_runs(tmp_path: Path) -> None:
+def test_the_shell_of_the_readme_runs(tmp_path: Path, environment: dict[str, str]) -> None:
     """In the order of the text: exit code 0, and each folder that is named is there."""
     for words in commands(README):
         if words[0] in ELSEWHERE:
@@ -82,12 +87,12 @@ def test_the_shell_of_the_readme_runs(tmp_path: Path) -> None:
         done = subprocess.run(
             [sys.executable, "-m", "workbench.cli", *words],
             cwd=tmp_path,
-            env=environment(tmp_path),
+            env=environment,
             capture_output=True,
             text=True,
             timeout=LIMIT_S,
             check=False,
         )
         assert done.returncode == 0, (words, done.stderr[-2000:])
-        if "--out" in words and "--estimate" not in words:
+        if "--out" in words:
             assert any((tmp_path / words[words.index("--out") + 1]).iterdir()), words

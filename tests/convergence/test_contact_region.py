@@ -23,10 +23,12 @@ from workbench.core.result.results import Label
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("taichi_device")
-@pytest.mark.parametrize("kind", [IndenterKind.SPHERE, IndenterKind.CUBE])
-def test_chosen_region_gives_the_force_of_a_large_one(kind: IndenterKind) -> None:
+@pytest.mark.parametrize(
+    ("kind", "grid_mm"), [(IndenterKind.SPHERE, 0.7), (IndenterKind.CUBE, 0.5)]
+)
+def test_chosen_region_gives_the_force_of_a_large_one(kind: IndenterKind, grid_mm: float) -> None:
     """Force within 0.5 % and displacement within 3 % of the depth of a 16 mm region."""
-    mesh, points = specimens.finger(grid_mm=0.5)
+    mesh, points = specimens.finger(grid_mm=grid_mm)
     indenter = Indenter(kind=kind, size_mm=6.0)
     chosen, large = (
         press_membrane(
@@ -36,13 +38,14 @@ def test_chosen_region_gives_the_force_of_a_large_one(kind: IndenterKind) -> Non
             PressCase(
                 indenter=indenter,
                 press=at_45_degrees(),
-                settings=ContactSettings(active_radius_mm=radius_mm),
+                settings=ContactSettings(grid_mm=grid_mm, active_radius_mm=radius_mm),
             ),
         )
         for radius_mm in (0.0, 16.0)
     )
     assert chosen.active_radius_mm < 12.0
-    # Measured 0.2 % and 12 um; two settled frames differ by a few residuals of 1e-3.
+    # Measured of the ball 0.3 % and 17 um, with half of the margin 2.2 % and 44 um; two settled
+    # frames differ by a few residuals of 1e-3.
     assert chosen.normal_N[-1] == pytest.approx(large.normal_N[-1], rel=5e-3)
     apart_mm = np.abs(chosen.displacement_mm - large.displacement_mm).max()
     assert apart_mm < 0.03

@@ -18,11 +18,11 @@ import workbench as wb
 from tests.photographed_pad import photographed_pad
 from workbench.calibration.photo_set import COLUMNS
 from workbench.cli import main
-from workbench.project.design_toml import design_from_toml
+from workbench.project.design_toml import design_from_toml, design_to_toml
 
 pytestmark = pytest.mark.slow
 
-BALL_MM, DEPTH_MM = 6.0, 0.8
+BALL_MM, DEPTH_MM = 9.0, 0.8
 PLACES = ((0.0, 0.0), (3.0, 2.0), (-3.0, 1.5), (2.0, -3.0), (-2.5, -2.0), (0.5, 3.0), (-1.0, -3.5))
 HIDDEN = (1.15, 0.85, 1.0, 0.9, 1.2, 1.05)
 """Powers of the six LEDs that the calibration is not told."""
@@ -30,7 +30,7 @@ HIDDEN = (1.15, 0.85, 1.0, 0.9, 1.2, 1.05)
 
 def design() -> wb.Design:
     """A small flat pad, seen by a small camera."""
-    return photographed_pad(240, 180, 1_000_000)
+    return photographed_pad(240, 180, 500_000)
 
 
 @pytest.fixture(scope="module")
@@ -53,14 +53,21 @@ def photos(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return where
 
 
-def test_hidden_powers_are_found(photos: Path, tmp_path: Path) -> None:
-    """Relative powers within 3 %, each LED its own colour; held-out photographs above the null."""
-    (tmp_path / "pad.toml").write_text(_toml(design()))
-    out = tmp_path / "out"
-    words = [str(tmp_path / "pad.toml"), "--photos", str(photos), "--out", str(out)]
-    words += ["--lights", "known", "--refine", "powers"]
+@pytest.fixture(scope="module")
+def calibrated(photos: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What the command leaves of the design and the photographs, two of them held out."""
+    folder = tmp_path_factory.mktemp("calibrated")
+    (folder / "pad.toml").write_text(design_to_toml(design()))
+    out = folder / "out"
+    words = [str(folder / "pad.toml"), "--photos", str(photos), "--out", str(out)]
+    words += ["--lights", "known", "--refine", "powers", "--project", str(folder / "project")]
     assert main(["calibrate", *words, "--hold-out", "p5,p6"]) == 0
-    figures = json.loads((out / "calibration.json").read_text())
+    return out
+
+
+def test_hidden_powers_are_found(calibrated: Path) -> None:
+    """Relative powers within 3 %, each LED its own colour; held-out photographs above the null."""
+    figures = json.loads((calibrated / "calibration.json").read_text())
     powers = np.array([each["power_rgb"] for each in figures["fitted"]["lights"]])
     strongest = powers.argmax(axis=1)
     assert strongest.tolist() == [0, 0, 1, 1, 2, 2]
@@ -70,25 +77,15 @@ def test_hidden_powers_are_found(photos: Path, tmp_path: Path) -> None:
     for each in figures["photos"]:
         assert each["psnr_dB"] > each["null_psnr_dB"] + 10.0
         assert each["depth_mm"] == DEPTH_MM
-        assert (out / "predicted" / each["photo"]).is_file()
+        assert (calibrated / "predicted" / each["photo"]).is_file()
     assert [each["photo"] for each in figures["photos"] if each["held_out"]] == ["p5.png", "p6.png"]
     assert figures["idle"]["psnr_dB"] > 35.0
 
 
-def test_the_calibrated_design_is_a_design(photos: Path, tmp_path: Path) -> None:
+def test_the_calibrated_design_is_a_design(photos: Path, calibrated: Path) -> None:
     """It names its unit beside it, and images of it show the photograph at rest."""
-    (tmp_path / "pad.toml").write_text(_toml(design()))
-    out = tmp_path / "out"
-    words = [str(tmp_path / "pad.toml"), "--photos", str(photos), "--out", str(out)]
-    assert main(["calibrate", *words, "--lights", "known", "--refine", "powers"]) == 0
-    found = design_from_toml((out / "calibrated.toml").read_text(), roots=(out,))
+    found = design_from_toml((calibrated / "calibrated.toml").read_text(), roots=(calibrated,))
     assert found.optics.ring.count == 6 and not found.optics.lamps, "the ring stays where it is"
     assert found.optics.unit is not None and found.optics.unit.name == "unit.npz"
     idle = cv2.imread(str(photos / "idle.png"))[:, :, ::-1]
     assert np.array_equal(wb.evaluate(found, press=wb.Press(frames=1)).images[0], idle)
-
-
-def _toml(found: wb.Design) -> str:
-    from workbench.project.design_toml import design_to_toml
-
-    return design_to_toml(found)

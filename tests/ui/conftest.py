@@ -19,8 +19,9 @@ from typing import Any, Self
 import pytest
 
 from tests.ui.warm_start import WarmStart
-from tests.ui.widgets import DRAW_WHEN_LOOKED_AT, coarse_project, open_page, wait_until
+from tests.ui.widgets import DRAW_WHEN_LOOKED_AT, coarse_project
 from workbench.proof.benchmarks.browser import FLAGS
+from workbench.proof.benchmarks.tab import Tab
 
 START_LIMIT_S = 60
 SOFTWARE = (*FLAGS, "--disable-gpu-compositing")
@@ -129,15 +130,12 @@ def browser() -> Iterator[Any]:
 
 
 @pytest.fixture(scope="package")
-def pressed_store(browser: Any, warm: WarmStart, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The store of a coarse project once the browser has shown its first image."""
-    with Server(coarse_project(tmp_path_factory.mktemp("pressed")), warm=warm) as server:
-        tab = browser.new_page()
-        tab.add_init_script(DRAW_WHEN_LOOKED_AT)
-        open_page(tab, server.url)
-        wait_until(lambda: tab.get_by_text("Image ✓").count(), 180, "the example is pressed")
-        tab.close()
-    return server.project / "store"
+def pressed_store(warm: WarmStart, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The store of a coarse project whose example was pressed as for a first tab."""
+    project = coarse_project(tmp_path_factory.mktemp("pressed"))
+    with Server(project, warm=warm) as server, Tab(server.url) as tab:
+        tab.wait(lambda: tab.has_seen("Image&nbsp;\N{CHECK MARK}"), 180, "the example is pressed")
+    return project / "store"
 
 
 @pytest.fixture

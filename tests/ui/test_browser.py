@@ -49,13 +49,13 @@ def test_shape_press_and_look(tmp_path: Path, page: Any, start_server: Start) ->
 
 
 def test_refused_value_is_explained_and_the_design_kept(
-    tmp_path: Path, page: Any, start_server: Start
+    unpressed_project: Path, page: Any, start_server: Start
 ) -> None:
     """A wall that does not fit is refused under its slider; the next good value clears it.
 
     A good value of another slider puts the wall of the design back.
     """
-    server = start_server(coarse_project(tmp_path), cold=True)
+    server = start_server(unpressed_project)
     open_page(page, server.url)
     set_number(page, "Outer radius mm", 6)
     set_number(page, "Elastomer mm", 5.5)
@@ -69,10 +69,10 @@ def test_refused_value_is_explained_and_the_design_kept(
 
 
 def test_cancel_stops_a_press_within_three_seconds(
-    tmp_path: Path, page: Any, start_server: Start
+    pressed_project: Path, page: Any, start_server: Start
 ) -> None:
     """Cancel during a long press: the button disappears within 3 s, and the next run works."""
-    server = start_server(coarse_project(tmp_path), cold=True)
+    server = start_server(pressed_project)
     open_page(page, server.url)
     wait_until(lambda: page.get_by_text("Contact ✓").count(), 180, "the example is pressed")
     tab(page, "Simulate").click()
@@ -98,7 +98,7 @@ def test_restart_after_kill_finds_design_and_results(
 ) -> None:
     """kill -9 during a press: the restart has the design, finished results, no half-written one."""
     project = coarse_project(tmp_path)
-    server = start_server(project, cold=True)
+    server = start_server(project)
     open_page(page, server.url)
     wait_until(lambda: page.get_by_text("Image ✓").count(), 180, "the example is pressed")
     tab(page, "Simulate").click()
@@ -119,12 +119,14 @@ def test_restart_after_kill_finds_design_and_results(
     wait_until(lambda: page.get_by_text("Image ✓").count(), 30, "the finished press is found")
 
 
-def test_foreign_pages_cannot_drive_the_workbench(tmp_path: Path, start_server: Start) -> None:
+def test_foreign_pages_cannot_drive_the_workbench(
+    unpressed_project: Path, start_server: Start
+) -> None:
     """A WebSocket or request with a foreign Origin or Host gets 403."""
     import urllib.error
     import urllib.request
 
-    server = start_server(coarse_project(tmp_path), cold=True)
+    server = start_server(unpressed_project)
     for headers in ({"Host": "evil.example"}, {"Origin": "http://evil.example"}):
         request = urllib.request.Request(f"{server.url}/", headers=headers)
         with pytest.raises(urllib.error.HTTPError) as caught:

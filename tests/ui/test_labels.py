@@ -16,6 +16,7 @@ import pytest
 
 from tests.ui.conftest import Server
 from tests.ui.inventory import HEADER, Control, controls, laid_out
+from tests.ui.warm_start import WarmStart
 from tests.ui.widgets import COARSE, button, open_page, tab, wait_until
 from workbench.proof.benchmarks.tab import Tab
 
@@ -48,14 +49,14 @@ PARTS_S = 240
 
 
 @pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+def server(warm: WarmStart, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
     """A server with a lamp, two cameras, noise and markers."""
     project = tmp_path_factory.mktemp("labels") / "project"
     (project / "designs").mkdir(parents=True)
     head, rest = COARSE.split("[press_case.press]")
     text = f"{head}{MORE}[press_case.press]{rest}"
     (project / "designs" / "autosave.toml").write_text(text)
-    with Server(project) as running:
+    with Server(project, warm=warm) as running:
         yield running
 
 

@@ -16,6 +16,7 @@ from typing import Any
 import pytest
 
 from tests.ui.conftest import Server
+from tests.ui.warm_start import WarmStart
 from tests.ui.widgets import coarse_project, open_page, upload, wait_until
 from workbench.proof.benchmarks.tab import Tab
 
@@ -75,9 +76,9 @@ def refused(server: Server, headers: dict[str, str]) -> int:
 
 
 @pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+def server(warm: WarmStart, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
     """A server on loopback; what it refuses leaves it as it was."""
-    with Server(coarse_project(tmp_path_factory.mktemp("safety"))) as running:
+    with Server(coarse_project(tmp_path_factory.mktemp("safety")), warm=warm) as running:
         yield running
 
 

@@ -19,6 +19,7 @@ from typing import Any
 import pytest
 
 from tests.ui.conftest import Server
+from tests.ui.warm_start import WarmStart
 from tests.ui.widgets import button, coarse_project, open_page, tab, wait_until
 from ui.page.editor import RELOAD_S
 from workbench.proof.benchmarks.tab import Tab
@@ -30,9 +31,9 @@ LENGTH, RADIUS = "Straight length mm", "Outer radius mm"
 
 
 @pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+def server(warm: WarmStart, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
     """A server that no tab is open on when a test begins."""
-    with Server(coarse_project(tmp_path_factory.mktemp("tabs"))) as running:
+    with Server(coarse_project(tmp_path_factory.mktemp("tabs")), warm=warm) as running:
         yield running
 
 
@@ -91,15 +92,17 @@ def test_a_tab_edits_in_place_of_one_that_is_gone_without_a_word(server: Server)
             process.kill()
 
 
-def test_of_two_servers_on_a_project_one_writes(tmp_path: Path, start_server: Start) -> None:
+def test_of_two_servers_on_a_project_one_writes(
+    unpressed_project: Path, start_server: Start
+) -> None:
     """The second shows, names the first and writes nothing, until it takes over; a dead one's
     project is free.
     """
-    server = start_server(coarse_project(tmp_path), cold=True)
+    server = start_server(unpressed_project)
     with Tab(server.url) as first:
         first.set(LENGTH, 21.0)
         wait_until(lambda: saved(server, "shape", "cylinder_mm") == 21.0, 10, "the first saves")
-        second = start_server(server.project, cold=True)
+        second = start_server(server.project)
         wait_until(lambda: server.url in second.log.read_text(), 20, "it names the first")
         with Tab(second.url) as other:
             other.uuid("Take over")
@@ -248,7 +251,7 @@ def test_an_edit_of_the_last_moment_survives_a_stop_in_mid_job(
         time.sleep(0.2)
         server.stop()
     assert saved(server, "shape", "cylinder_mm") == 20.0
-    again = start_server(server.project, cold=True)
+    again = start_server(server.project)
     with Tab(again.url) as tab_again:
         tab_again.wait(
             lambda: tab_again.find(LENGTH) and tab_again.value(LENGTH) == 20.0, 20, "it is there"

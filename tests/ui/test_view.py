@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from tests.ui.conftest import Server
+from tests.ui.warm_start import WarmStart
 from tests.ui.widgets import (
     button,
     changed_share,
@@ -33,13 +34,15 @@ MIDDLE = (640, 420)
 
 
 @pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory, pressed_store: Path) -> Iterator[Server]:
+def server(
+    warm: WarmStart, tmp_path_factory: pytest.TempPathFactory, pressed_store: Path
+) -> Iterator[Server]:
     """A workbench at a coarse finger, whose press all tests look at."""
     project = coarse_project(tmp_path_factory.mktemp("view"))
     shutil.copytree(pressed_store, project / "store")
     design = project / "designs" / "autosave.toml"
     design.write_text(design.read_text().replace('"coarse"', '"<b>cut</b>"'))
-    with Server(project) as running:
+    with Server(project, warm=warm) as running:
         yield running
 
 

@@ -98,6 +98,20 @@ def test_both_solvers_press_the_same_skin_on_the_same_path(
     assert cost["samples_left"] == 2 and cost["core_hours_left"] > 0.0
 
 
+def test_an_estimate_of_nothing_times_cases_and_throws_them_away(
+    project: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """One of two cases is timed, by both solvers; all four samples are left, no folder is made."""
+    out = tmp_path / "set"
+    cost = answer(capsys, *words(project, out)[1:], "--estimate")
+    assert (cost["cases"], cost["samples"], cost["samples_left"]) == (2, 4, 4)
+    assert (cost["cases_timed"], cost["samples_timed"]) == (1, 2)
+    for solver in ("mpm", "fem"):
+        assert 0.0 < cost[f"{solver}_s_per_sample"] < cost["seconds_per_sample"]
+    assert cost["core_hours_left"] == pytest.approx(4 * cost["cpu_s_per_sample"] / 3600.0)
+    assert not out.exists()
+
+
 def test_presses_side_by_side_are_what_they_are_alone(project: Path, tmp_path: Path) -> None:
     """The same bits; and a gel k times as stiff gives k times the force of the recipe's own."""
     own = recipe_to_toml(load_recipe("tiny")).replace('solvers = "both"', 'solvers = "mpm"')

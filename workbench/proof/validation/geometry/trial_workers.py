@@ -5,6 +5,7 @@ A crash or a hang of the CAD kernel is then one failure, and not the end.
 
 from __future__ import annotations
 
+import contextlib
 import multiprocessing
 import os
 import queue
@@ -51,7 +52,7 @@ class Workers:
         try:
             while len(found) < len(todo):
                 for hand in hands:
-                    if hand.number is None and not waiting.empty():
+                    if hand.number is None and not waiting.empty() and hand.is_ready():
                         hand.give(waiting.get(), todo)
                     elif hand.number is not None:
                         number, finding = hand.number, hand.answer(todo)
@@ -76,12 +77,24 @@ class _Hand:
         self._process.start()
         child.close()
         self.number: int | None = None
-        self._since = 0.0
+        self._since, self._is_ready = 0.0, False
+
+    def is_ready(self) -> bool:
+        """Whether it has loaded what it needs, or died over it: then it has no part in a hang."""
+        if not self._is_ready:
+            with contextlib.suppress(EOFError, OSError):
+                if not self._pipe.poll(0.02):
+                    return False
+                self._pipe.recv()
+            self._is_ready = True
+        return True
 
     def give(self, number: int, todo: list[Trial]) -> None:
         """Hand over a trial."""
         self.number, self._since = number, time.monotonic()
-        self._pipe.send(todo[number])
+        # One that has died is told by its answer.
+        with contextlib.suppress(OSError):
+            self._pipe.send(todo[number])
 
     def answer(self, todo: list[Trial]) -> Finding | None:
         """The finding, if there is one yet; a process that died or hangs makes a fault of it."""
@@ -115,6 +128,7 @@ def _serve(pipe: Any, judge: Callable[[Trial], Finding]) -> None:
     # Imported before the first trial is timed.
     import build123d  # noqa: F401
 
+    pipe.send("ready")
     while True:
         try:
             trial = pipe.recv()
