@@ -18,6 +18,7 @@ from typing import Any
 
 from workbench.core.base.errors import DeviceError, shown
 from workbench.core.base.monitor import Monitor
+from workbench.pipeline.kernel_sources import remember_sources
 
 VARIABLE = "WORKBENCH_DEVICE"
 LOOK_S = 0.1
@@ -68,6 +69,7 @@ def open_device() -> str:
     os.environ.setdefault("ENABLE_TAICHI_HEADER_PRINT", "0")
     import taichi as ti
 
+    remember_sources()
     options: dict[str, Any] = {"default_fp": ti.f32, "offline_cache": True, "log_level": ti.ERROR}
     try:
         # Taichi announces its device on stdout, which belongs to the caller (`--json`).
