@@ -147,8 +147,14 @@ class Relaxation:
         self._moved = self._moved & ~chosen
         return self.balances(np.zeros(len(self.cases), bool))
 
-    def balances(self, adapting: np.ndarray) -> Balances:
-        """Forces of the last substep; adapts the damping of the marked cases, (B,), that moved."""
+    def balances(self, adapting: np.ndarray, falling: np.ndarray | None = None) -> Balances:
+        """Forces of the last substep; adapts the damping of the marked cases, (B,), that moved.
+
+        Args:
+            adapting: Whose damping is adapted, (B,) bool.
+            falling: Whose damping may only fall. Near rest most of what still moves is rounding, of
+                the highest frequencies; damped as these ask, what is left to settle would creep.
+        """
         batch = self.batch
         sums = batch.node_sums
         forces, powers, fixed = batch.nodes.forces, batch.nodes.powers, batch.nodes.fixed
@@ -163,6 +169,8 @@ class Relaxation:
             lowest = np.maximum(work / inertia, 0.0)
         adapted = np.clip(2.0 * np.sqrt(lowest), *DAMPING_RANGE)
         known = adapting & self._moved & (inertia > 0.0) & np.isfinite(adapted)
+        if falling is not None:
+            adapted = np.where(falling, np.minimum(adapted, self.damping), adapted)
         self.damping = np.where(known, adapted, self.damping)
         return Balances(
             reaction_N=-surface[:, :3],

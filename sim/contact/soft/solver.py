@@ -93,9 +93,10 @@ class SoftRelaxation(Relaxation):
         """Forces of both bodies where they are."""
         return super().evaluate(np.resize(chosen, 2))
 
-    def balances(self, adapting: np.ndarray) -> Balances:
+    def balances(self, adapting: np.ndarray, falling: np.ndarray | None = None) -> Balances:
         """Forces of both bodies as those of one."""
-        both = super().balances(np.resize(adapting, 2))
+        alike = None if falling is None else np.resize(falling, 2)
+        both = super().balances(np.resize(adapting, 2), alike)
         return Balances(
             reaction_N=both.reaction_N[:1],
             held_N=both.held_N[:1],

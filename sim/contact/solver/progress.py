@@ -48,7 +48,7 @@ class Progress:
         done = self._before + rested * self._own
         case = int(np.argmin(np.where(active, done, 2.0)))
         note = self._runs[case].label
-        if settling[case]:
+        if settling[case] and np.isfinite(residual[case]):
             note += f", residual {residual[case]:.0e}"
         if len(self._runs) > 1:
             note = f"{int(active.sum())} of {len(self._runs)} presses under way; {note}"

@@ -4,7 +4,7 @@ Each frame moves the object along its path in a short ramp and then relaxes unti
 balance; where it rubs, it does so at the end of each increment (`motion.rests`), about which less
 is asked. Where nothing rubs and the path goes straight on, the displacement is first extrapolated
 along it. A frame has settled when the out-of-balance force is below `tolerance` of the load, its
-sum below half a percent, and the reaction has stopped changing (`load`).
+sum below half a percent, and the reaction has stopped changing (`calm`).
 Many presses are relaxed in one launch; each fails by itself.
 Left out: self-contact, inertia, viscosity; speed enters nowhere.
 """
@@ -163,6 +163,7 @@ class Solver:
         self.progress.begin(case)
         self.settling[case] = self.runs[case].arrived
         self.spent[case] = 0
+        self.residual[case] = np.inf
         self.lowest[case] = np.inf
         self.lowest_at[case] = 0
         self.changes.begin(case)
@@ -171,7 +172,7 @@ class Solver:
         """Judge the settling presses by the forces of the last substep."""
         looked = self.settling.copy()
         self.spent[looked] += STEPS
-        balances = self.relaxation.balances(looked)
+        balances = self.relaxation.balances(looked, self.residual < self.load.tolerance)
         for case in np.flatnonzero(looked & ~balances.finite).tolist():
             self._unstable(case)
         looked &= balances.finite
@@ -179,9 +180,13 @@ class Solver:
         with np.errstate(invalid="ignore", over="ignore"):
             self.residual = np.where(looked, balances.unbalanced_N / load_N, self.residual)
             change_N = self.changes.of(balances.reaction_N, looked)
-            change = change_N / self.load.of_reaction(balances, load_N)
+            of_reaction_N = self.load.of_reaction(balances, load_N)
+            change = change_N / of_reaction_N
         passing = self._passing(change)
-        calm = (change < FORCE_CHANGE) & self.load.balanced(balances, load_N)
+        calm = change < FORCE_CHANGE
+        if (self.spent >= ENOUGH).any():
+            calm |= (self.spent >= ENOUGH) & self.changes.hums(of_reaction_N)
+        calm &= self.load.balanced(balances, load_N)
         still = looked & (calm | passing)
         if still.any():
             looked &= ~self._close(still, passing)

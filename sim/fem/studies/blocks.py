@@ -55,18 +55,25 @@ def graded(fine_mm: float, edge_mm: float, length_mm: float, growth: float) -> n
 def flat_membrane(
     *,
     width_mm: float = 8.0,
+    length_mm: float | None = None,
     height_mm: float = 2.0,
     edge_mm: float = 1.0,
     layers: int = 2,
     gap_mm: float = 0.0,
 ) -> MembraneMesh:
-    """A square pad with its inner face at z = 0, bonded there or a gap away from its support.
+    """A pad with its inner face at z = 0, bonded there or a gap away from its support.
+
+    Its length along Y is its width where none is given; every side is divided evenly, in edges of
+    about `edge_mm`.
 
     Above a gap the outermost row of inner faces stays bonded, as a clamped rim.
     """
-    count = max(1, round(width_mm / edge_mm))
-    side = np.linspace(-0.5 * width_mm, 0.5 * width_mm, count + 1)
-    points_mm, cells = block(side, side, np.linspace(0.0, height_mm, layers + 1))
+    length_mm = width_mm if length_mm is None else length_mm
+    sides = [
+        np.linspace(-0.5 * side_mm, 0.5 * side_mm, max(1, round(side_mm / edge_mm)) + 1)
+        for side_mm in (width_mm, length_mm)
+    ]
+    points_mm, cells = block(*sides, np.linspace(0.0, height_mm, layers + 1))
     quads = boundary(cells)
     outer = _skin(points_mm, quads, height_mm)
     inner = _skin(points_mm, quads, 0.0, backed=gap_mm > 0.0)
@@ -76,7 +83,7 @@ def flat_membrane(
         labels=np.zeros(len(points_mm), np.uint8),
         quality=np.ones(len(cells), np.float32),
         layers=layers,
-        volume_mm3=width_mm**2 * height_mm,
+        volume_mm3=width_mm * length_mm * height_mm,
     )
     return MembraneMesh(hexes=hexes, outer=outer, inner=inner, cavity=inner, backing_mm=gap_mm)
 

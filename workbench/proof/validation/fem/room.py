@@ -20,6 +20,7 @@ from workbench.proof.validation.fem import (
     fem_meshes,
     fem_mpm,
     fem_paths,
+    pads,
     sliding_shares,
     tips,
 )
@@ -38,6 +39,7 @@ def rows() -> list[Row]:
         *fem_limits.rows(),
         *sliding_shares.rows(),
         *tips.rows(),
+        *pads.rows(),
         *fem_matrix.recorded_rows(),
         *_recorded(),
         *(calculix.rows() if calculix.installed() else ()),

@@ -1,10 +1,5 @@
-"""The contact solver in small and sharp contacts, and on a flat pad, beside limits made elsewhere.
+"""The contact solver in small and sharp contacts beside limits of the axisymmetric solver.
 
-The finger's limits, and those of a disc about as large as the pad, are those of the axisymmetric
-solver (`fem_limits`). The pad's forces are figures of ANSYS, published for a gel of
-25.25 x 20.75 x 4 mm, E .1 MPa, nu .49: .3609 N under a ball of 3 mm that is .8 mm deep, and .457 to
-.502 N under one of 50 mm that is .2266 mm deep. Its friction is not stated: at .3 the limit of the
-disc under the large ball, .525 N, lies above that range, so only mu 0 is compared with it.
 A lattice that is moved by half a cell must not change the force.
 """
 
@@ -41,20 +36,10 @@ SHIFTED_FRAMES, SHIFTED_FROM = 3, 1
 SHIFT_LIMIT = 0.03
 """Before cells were halved under it, the cone read 48 % more at .2 mm and 23 % more at .3."""
 
-PAD_MM = (25.25, 20.75, 4.0)
-PAD_YOUNG_MPa, PAD_POISSON = 0.1, 0.49
-BALLS = {3.0: 0.8, 50.0: 0.2266}
-"""Depth by radius [mm]."""
-ANSYS_N = 0.3609
-ANSYS_RANGE_N = (0.457, 0.502)
-PAD_LIMIT = 0.05
-RANGE_FROM_MM = 10.0
-"""Radius from which the published figure is a range."""
-
 
 def rows() -> list[Row]:
-    """All rows of tips and pads."""
-    return [*_tips(), _shifted(), *_pads()]
+    """All rows of tips."""
+    return [*_tips(), _shifted()]
 
 
 def _tips() -> Iterator[Row]:
@@ -86,40 +71,6 @@ def _shifted() -> Row:
         limit=SHIFT_LIMIT,
         sense="max",
     )
-
-
-def _pads() -> Iterator[Row]:
-    pad = " x ".join(f"{side_mm:g}" for side_mm in PAD_MM)
-    for radius_mm, depth_mm in BALLS.items():
-        for friction in FRICTIONS:
-            words = (
-                f"pad of {pad} mm, nu {PAD_POISSON:g}, ball of {radius_mm:g} mm, "
-                f"{depth_mm:g} mm deep, friction {friction:g}"
-            )
-            force_N = on_device(functools.partial(_pad_N, radius_mm, friction))
-            yield compared(
-                "mpm_limit",
-                f"{words}; limit of a disc of 11.5 mm",
-                force_N,
-                limit_N(f"ball_{radius_mm:g}", friction, depth_mm, body="disc"),
-                unit="N",
-                limit=PAD_LIMIT,
-            )
-            if radius_mm < RANGE_FROM_MM:
-                yield compared(
-                    "published_pad", f"{words}; ANSYS", force_N, ANSYS_N, unit="N", limit=PAD_LIMIT
-                )
-            elif friction == 0.0:
-                low_N, high_N = ANSYS_RANGE_N
-                middle_N = 0.5 * (low_N + high_N)
-                yield compared(
-                    "published_pad",
-                    f"{words}; range of ANSYS, {low_N:g} to {high_N:g} N",
-                    force_N,
-                    middle_N,
-                    unit="N",
-                    limit=(high_N - low_N) / 2.0 / middle_N,
-                )
 
 
 def _tip_N(thing: str, friction: float, depth_mm: float) -> float:
@@ -185,19 +136,3 @@ def _indenter(made: Any, size_mm: float) -> Indenter:
     points_mm, faces = np.asarray(made.vertices, float), np.asarray(made.faces, np.int32)
     mesh = IndenterMesh(points_mm=points_mm, faces=faces)
     return Indenter(kind=IndenterKind("mesh"), size_mm=size_mm, mesh=mesh)
-
-
-@functools.cache
-def _pad_N(radius_mm: float, friction: float) -> float:
-    from sim.contact.press import press_membrane
-    from sim.contact.studies.specimens import flat_block
-
-    width_mm, length_mm, height_mm = PAD_MM
-    mesh, points = flat_block(
-        width_mm=width_mm, length_mm=length_mm, height_mm=height_mm, grid_mm=GRID_MM
-    )
-    path = Press(target_mm=(0.0, 0.0, height_mm), depth_mm=BALLS[radius_mm], frames=1)
-    settings = ContactSettings(grid_mm=GRID_MM)
-    case = PressCase(indenter=Indenter(size_mm=2.0 * radius_mm), press=path, settings=settings)
-    gel = Elastomer(young_MPa=PAD_YOUNG_MPa, poisson=PAD_POISSON, friction=friction)
-    return float(press_membrane(mesh, points, gel, case).normal_N[-1])

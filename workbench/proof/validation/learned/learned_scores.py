@@ -85,8 +85,7 @@ def score_rows(target: Target, data: Path | None = None) -> list[Row]:
         for one in pressed:
             rows += _membrane_rows(weights, target, one, split)
         if target is Target.FORCE and pressed:
-            samples = [sample for one in pressed for sample in one.of(split)]
-            rows += _together_rows(weights, split, samples)
+            rows += _together_rows(weights, split, pressed)
     return rows
 
 
@@ -150,13 +149,13 @@ def _names(target: Target) -> Iterator[tuple[str, str, str]]:
                 yield f"learned_total_force_{split}", axis, target.unit
 
 
-def _said(weights: str, one: Compared, split: Split) -> str:
-    return f"{weights} on {one.learned.samples} samples of {one.cases} {split} cases"
+def _said(weights: str, one: Compared, cases: int, split: Split) -> str:
+    return f"{weights} on {one.learned.samples} samples of {cases} {split} cases"
 
 
 def _membrane_rows(weights: str, target: Target, scores: Scores, split: Split) -> Iterator[Row]:
     words, one = WORDS[target], compared(scores.of(split))
-    case = f"{scores.membrane}: {_said(weights, one, split)}"
+    case = f"{scores.membrane}: {_said(weights, one, one.cases, split)}"
     for way, null in NULLS.items():
         name = f"learned_{words}_ratio_{way}_{split}"
         text = f"{case}; learned error over that of {way}; null: {null} over {way}"
@@ -178,9 +177,12 @@ def _membrane_rows(weights: str, target: Target, scores: Scores, split: Split) -
     )
 
 
-def _together_rows(weights: str, split: Split, samples: Sequence[Scored]) -> Iterator[Row]:
+def _together_rows(weights: str, split: Split, pressed: Sequence[Scores]) -> Iterator[Row]:
+    samples = [sample for one in pressed for sample in one.of(split)]
     one = compared(samples)
-    case = f"all membranes: {_said(weights, one, split)}"
+    # Membranes have cases of the same name.
+    cases = sum(compared(each.of(split)).cases for each in pressed)
+    case = f"all membranes: {_said(weights, one, cases, split)}"
     objects = grouped(samples, lambda sample: sample.case.indenter.value)
     worst = max(objects, key=lambda name: objects[name].error_ratio(Way.LEARNED, Way.MPM))
     most = max(objects, key=lambda name: abs(objects[name].learned.peak_pressure_bias))
