@@ -20,6 +20,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sim.fem.stiffness import Moduli, stiffness
 from workbench.core.base.errors import MeshingError
 
 CORNERS = np.array(
@@ -174,7 +175,7 @@ def displacement_gradient(
     nodal = displacement_mm[elements.cells[part]]
     slopes = elements.slopes[part]
     flat = np.swapaxes(nodal, 1, 2) @ slopes.reshape(len(slopes), 8, 24)
-    return np.ascontiguousarray(flat.reshape(-1, 3, 8, 3).transpose(0, 2, 1, 3))
+    return flat.reshape(-1, 3, 8, 3).transpose(0, 2, 1, 3)
 
 
 def _neo_hookean_chunk(
@@ -186,67 +187,44 @@ def _neo_hookean_chunk(
 ) -> float:
     weight = elements.weights_mm3[part]
     mu, bulk = elements.shear_MPa[part, None], elements.bulk_MPa[part]
-    deformation = displacement_gradient(elements, displacement_mm, part)
+    # By component, (3, 3, M, 8): NumPy is quick along long rows only.
+    deformation = _by_component(displacement_gradient(elements, displacement_mm, part))
     for axis in range(3):
-        deformation[..., axis, axis] += 1.0
+        deformation[axis, axis] += 1.0
     cofactor = _cofactors(deformation)
-    ratio = np.einsum("mqj,mqj->mq", deformation[:, :, 0], cofactor[:, :, 0])
+    ratio = (deformation[0] * cofactor[0]).sum(axis=0)
     if ratio.min(initial=1.0) <= LEAST_RATIO:
         return np.inf
-    square = np.einsum("mqij,mqij->mq", deformation, deformation)
+    square = np.einsum("ijmq,ijmq->mq", deformation, deformation)
     volume = weight.sum(axis=1)
     dilation = (weight * ratio).sum(axis=1) / volume - 1.0
     pressure = bulk * dilation
     power = ratio ** (-2.0 / 3.0)
     scale = mu * power * weight
-    inverse = cofactor / ratio[..., None, None]
-    stress = scale[..., None, None] * (deformation - (square / 3.0)[..., None, None] * inverse)
-    growth = _to_nodes(elements, part, weight[..., None, None] * cofactor)
-    force[:] = _to_nodes(elements, part, stress) + pressure[:, None] * growth
+    along = pressure[:, None] * weight - scale * square / (3.0 * ratio)
+    force[:] = _to_nodes(elements, part, _by_point(scale * deformation + along * cofactor))
     if tangent is not None:
-        closing = pressure[:, None] * weight * ratio
-        slopes = elements.slopes[part]
-        tangent[:] = _stiffness(slopes, deformation, inverse, scale, square, closing)
-        tangent += (bulk / volume)[:, None, None] * growth[:, :, None] * growth[:, None, :]
+        moduli = Moduli(
+            scale_Nmm=scale,
+            square=square,
+            pressure_MPa=pressure,
+            volumes_mm3=weight * ratio,
+            bulk_N_mm5=bulk / volume,
+        )
+        inverse = _by_point(cofactor / ratio)
+        stiffness(elements.slopes[part], _by_point(deformation), inverse, moduli, tangent)
     isochoric = 0.5 * mu * (square * power - 3.0) * weight
     return float(isochoric.sum() + (0.5 * bulk * volume * dilation**2).sum())
 
 
-def _stiffness(
-    slopes: np.ndarray,
-    deformation: np.ndarray,
-    inverse: np.ndarray,
-    scale: np.ndarray,
-    square: np.ndarray,
-    closing: np.ndarray,
-) -> np.ndarray:
-    """Stiffness at constant pressure, shape (M, 24, 24), rows (a, i) and columns (b, k).
+def _by_component(values: np.ndarray) -> np.ndarray:
+    """Matrices at points, (M, 8, 3, 3), as (3, 3, M, 8)."""
+    return np.ascontiguousarray(values.transpose(2, 3, 0, 1))
 
-    With h = F^-T, c = mu J^(-2/3) w and s = p J w, dP_iJ / dF_kL is c [d_ik d_JL - (2/3)(F_iJ h_kL
-    + h_iJ F_kL) + (2/9) I1 h_iJ h_kL + (I1 / 3) h_iL h_kJ] + s (h_iJ h_kL - h_iL h_kJ). Between the
-    slopes of the nodes every product becomes one of vectors over (a, i): m = F dN_a, g = h dN_a.
-    """
-    count = len(slopes)
-    by_point = slopes.transpose(0, 2, 1, 3)
 
-    def vectors(matrix: np.ndarray) -> np.ndarray:
-        found = by_point @ np.swapaxes(matrix, -1, -2)
-        return found.reshape(count, 8, 24)
-
-    m, g = vectors(deformation), vectors(inverse)
-    middle = (1.0 / 9.0) * square * scale + 0.5 * closing
-    left = middle[..., None] * g - (2.0 / 3.0) * scale[..., None] * m
-    half = np.swapaxes(left, 1, 2) @ g
-    found = half + np.swapaxes(half, 1, 2)
-    crossed = np.swapaxes((scale * square / 3.0 - closing)[..., None] * g, 1, 2) @ g
-    # Its rows are (a, k) and its columns (b, i).
-    crossed = crossed.reshape(count, 8, 3, 8, 3).transpose(0, 1, 4, 3, 2)
-    found += crossed.reshape(count, 24, 24)
-    spread = (slopes * scale[:, None, :, None]).reshape(count, 8, 24)
-    nodes = spread @ np.swapaxes(slopes.reshape(count, 8, 24), 1, 2)
-    for axis in range(3):
-        found[:, axis::3, axis::3] += nodes
-    return found
+def _by_point(values: np.ndarray) -> np.ndarray:
+    """Matrices by component, (3, 3, M, 8), as (M, 8, 3, 3)."""
+    return values.transpose(2, 3, 0, 1)
 
 
 def _linear_chunk(
@@ -271,22 +249,26 @@ def _linear_chunk(
     if tangent is not None:
         # At rest the neo-Hookean stiffness is Hooke's.
         rest = np.broadcast_to(np.eye(3), gradient.shape)
-        three, none = np.full(weight.shape, 3.0), np.zeros(weight.shape)
-        tangent[:] = _stiffness(elements.slopes[part], rest, rest, mu * weight, three, none)
-        tangent += (bulk / volume)[:, None, None] * growth[:, :, None] * growth[:, None, :]
+        moduli = Moduli(
+            scale_Nmm=mu * weight,
+            square=np.full(weight.shape, 3.0),
+            pressure_MPa=np.zeros(len(weight)),
+            volumes_mm3=weight,
+            bulk_N_mm5=bulk / volume,
+        )
+        stiffness(elements.slopes[part], rest, rest, moduli, tangent)
     sheared = (mu * weight) * np.einsum("mqij,mqij->mq", deviator, deviator)
     return float(sheared.sum() + (0.5 * bulk * volume * dilation**2).sum())
 
 
 def _cofactors(matrix: np.ndarray) -> np.ndarray:
-    """J F^-T of matrices (..., 3, 3): the derivative of the determinant."""
+    """J F^-T of matrices (3, 3, ...): the derivative of the determinant."""
     found = np.empty_like(matrix)
     for i in range(3):
         for j in range(3):
             r, t, c, d = i - 2, i - 1, j - 2, j - 1
-            found[..., i, j] = (
-                matrix[..., r, c] * matrix[..., t, d] - matrix[..., r, d] * matrix[..., t, c]
-            )
+            np.multiply(matrix[r, c], matrix[t, d], out=found[i, j])
+            found[i, j] -= matrix[r, d] * matrix[t, c]
     return found
 
 

@@ -149,6 +149,8 @@ def increment(pairing: Pairing, state: State, progress: float, effort: Effort) -
     if found is None or not found.converged:
         found = lagged(new, start_mm, tangent, effort, tolerance=pairing.tolerance)
     if found is None or not found.converged:
+        # The last factors are of no state that another increment begins with.
+        tangent.forget()
         return None
     effort.increments += 1
     return _remembered(pairing, state, progress, found)
@@ -183,27 +185,37 @@ def _lag(state: State) -> Lag:
 def _predicted(
     pairing: Pairing, state: State, progress: float, old: Equations, new: Equations
 ) -> np.ndarray:
-    """First guess (N, 3): held nodes moved, the others by the tangent about the old state."""
+    """First guess (N, 3): held nodes moved, the others by the tangent about the old state.
+
+    The last factors are those of a state a step from it. With the stiffness of contact that they
+    hold they say as well where the object pushes the skin, unless held nodes move.
+    """
     body = pairing.body
     held_mm = pairing.held_mm(progress) - pairing.held_mm(state.progress)
     moved_mm = state.displacement_mm + held_mm
-    known = old.balance(state.displacement_mm)
-    assert known is not None and known.face_N_mm is not None
-    nodes = body.faces.nodes[known.touching_faces]
+    driven = bool(held_mm.any())
+    met = None if driven else pairing.tangent.met
+    known: Balance | None = None
+    if met is None:
+        known = old.balance(
+            state.displacement_mm,
+            known=None if state.balance is None else state.balance.elements,
+        )
+        assert known is not None and known.face_N_mm is not None
+        met = known.touching_faces, known.face_N_mm
+    touching_faces, face_N_mm = met
+    nodes = body.faces.nodes[touching_faces]
     corners_mm = (body.points_mm + state.displacement_mm)[nodes]
     way_mm = new.load.pose.carried(corners_mm, old.load.pose) - corners_mm
-    pushed = known.face_N_mm @ (way_mm - held_mm[nodes]).reshape(-1, 12, 1)
+    pushed = face_N_mm @ (way_mm - held_mm[nodes]).reshape(-1, 12, 1)
     right_N = body.system.gather(nodes, pushed[..., 0])
-    if held_mm.any():
-        assert known.elements.tangent_N_mm is not None
-        pulled = known.elements.tangent_N_mm @ held_mm[body.elements.cells].reshape(-1, 24, 1)
-        right_N = right_N - body.system.gather(body.elements.cells, pulled[..., 0])
-        gel_N, _ = body.spring_forces(held_mm)
-        right_N = right_N + gel_N
+    if driven and known is not None:
+        right_N = right_N + _pulled(body, held_mm, known)
     right = body.system.reduced(right_N)
     if not right.any():
         return moved_mm
-    pairing.tangent.factorise(known)
+    if known is not None:
+        pairing.tangent.factorise(known)
     step_mm = pairing.tangent.solve(right)
     farthest_mm = LONGEST_GUESS * max(
         float(np.abs(way_mm).max(initial=0.0)), float(np.abs(held_mm).max(initial=0.0))
@@ -211,6 +223,14 @@ def _predicted(
     step_mm *= min(1.0, farthest_mm / max(float(np.abs(step_mm).max(initial=0.0)), 1e-12))
     guess = new.balance(moved_mm + step_mm, tangent=False)
     return moved_mm if guess is None else moved_mm + step_mm
+
+
+def _pulled(body: Body, held_mm: np.ndarray, known: Balance) -> np.ndarray:
+    """Forces on the nodes, (N, 3), as held ones move by `held_mm`, (N, 3)."""
+    assert known.elements.tangent_N_mm is not None
+    pulled = known.elements.tangent_N_mm @ held_mm[body.elements.cells].reshape(-1, 24, 1)
+    gel_N, _ = body.spring_forces(held_mm)
+    return gel_N - body.system.gather(body.elements.cells, pulled[..., 0])
 
 
 def slid_since(pairing: Pairing, before: State, progress: float, forces: Balance) -> Slip:

@@ -189,16 +189,17 @@ class SuperLU:
         self._type = np.float32 if single else np.float64
         self._factors: Any = None
         self._given: Any = None
+        self._columns: Any = None
 
     def factorise(self, matrix: Any) -> int | None:
-        """Take a CSR matrix."""
+        """Take a CSR matrix of the pattern of the first one."""
         from scipy.sparse.linalg import splu
 
         self._given = matrix
         try:
             # A symmetric pattern allows the ordering of A + A^T, which fills in half as much.
             self._factors = splu(
-                matrix.astype(self._type).tocsc(),
+                self._by_columns(matrix),
                 permc_spec="MMD_AT_PLUS_A",
                 diag_pivot_thresh=PIVOTING,
                 options={"SymmetricMode": True},
@@ -210,6 +211,18 @@ class SuperLU:
                 at="fem.radius_mm",
             ) from error
         return None
+
+    def _by_columns(self, matrix: Any) -> Any:
+        """The matrix in CSC form; where its entries go is found once."""
+        from scipy.sparse import csc_matrix, csr_matrix
+
+        if self._columns is None:
+            places = np.arange(matrix.nnz)
+            self._columns = csr_matrix((places, matrix.indices, matrix.indptr), matrix.shape)
+            self._columns = self._columns.tocsc()
+        columns = self._columns
+        data = matrix.data.astype(self._type)[columns.data]
+        return csc_matrix((data, columns.indices, columns.indptr), matrix.shape)
 
     def solve(self, right: np.ndarray) -> np.ndarray:
         """Solution for a right-hand side, shape (E,)."""

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
-import math
 from collections.abc import Callable
 from dataclasses import fields
 from typing import Any
@@ -18,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from sim.contact.motion.approach import Approach
+from sim.contact.motion.rests import pieces_of
 from sim.contact.objects.sampling import SAMPLES_PER_CELL
 from sim.contact.readout.verdict import check_depth
 from sim.contact.region.backing import support_points_mm
@@ -42,8 +42,6 @@ from workbench.core.result.sampled import SampledDistance
 
 COARSER_SHARE = 0.3
 """Share of the work that the coarser mesh of an estimate takes."""
-ROUNDING = 1e-3
-"""Share of an increment by which a way may miss the limit: an angle of zero is known to 1e-8."""
 
 OnFrame = Callable[[int, FemFrame], None]
 
@@ -254,7 +252,7 @@ class _Course:
         """Progress at the end of each increment of a frame."""
         way_mm = self.approach.travel_mm(frame, self.approach.collider.reach_mm)
         way_mm = max(way_mm, self._driven_mm(frame))
-        pieces = max(1, math.ceil(way_mm / self.settings.increment_mm - ROUNDING))
+        pieces = pieces_of(way_mm, self.settings.increment_mm)
         return [frame + (piece + 1.0) / pieces for piece in range(pieces)]
 
     def _driven_mm(self, frame: int) -> float:

@@ -35,6 +35,9 @@ class Tangent:
         self.body, self._device = body, device
         self._solvers: dict[bool, LinearSolver] = {}
         self._symmetric = False
+        self.met: tuple[np.ndarray, np.ndarray] | None = None
+        """Faces that touch in the last factors, shape (F,), and the stiffness of contact that
+        those hold, shape (F, 12, 12); None where there are no factors."""
 
     @property
     def solver_name(self) -> str:
@@ -70,7 +73,13 @@ class Tangent:
         """
         self._symmetric = symmetric
         matrix = self.matrix(state, elements_N_mm)
+        assert state.face_N_mm is not None
+        self.met = state.touching_faces, state.face_N_mm
         return self._solver(symmetric=symmetric).factorise(matrix)
+
+    def forget(self) -> None:
+        """Let nobody use the last factors again."""
+        self.met = None
 
     def solve(self, right_N: np.ndarray) -> np.ndarray:
         """Way of all nodes, shape (N, 3), that answers forces at the free equations, (E,)."""
@@ -94,6 +103,7 @@ class Tangent:
 
     def close(self) -> None:
         """Give the memory of the factors back."""
+        self.forget()
         for solver in self._solvers.values():
             solver.close()
         if "_far" in self.__dict__ and self._far is not None:

@@ -22,7 +22,12 @@ ROUNDING = 1e-3
 def increments(approach: Approach, frame: int) -> int:
     """Pieces of a frame in which no point of the object goes farther than `INCREMENT_MM`."""
     way_mm = approach.travel_mm(frame, approach.collider.reach_mm)
-    return max(1, math.ceil(way_mm / INCREMENT_MM - ROUNDING))
+    return pieces_of(way_mm, INCREMENT_MM)
+
+
+def pieces_of(way_mm: float, longest_mm: float) -> int:
+    """Equal pieces of a way of which none is longer than `longest_mm`; at least one."""
+    return max(1, math.ceil(way_mm / longest_mm - ROUNDING))
 
 
 def rests(approach: Approach) -> np.ndarray:
