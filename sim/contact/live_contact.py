@@ -3,9 +3,9 @@
 Three ways, chosen by what was kept of the last request:
 
 * deeper at the same place: the next frame of the same press, from its displacement and its contact
-  history (115 to 195 substeps for 0.08 to 0.2 mm);
+  history;
 * shallower at the same place: the same region and contact points, from rest;
-* anything else: all anew, from rest (1350 substeps for 1 mm at mu 0.3).
+* anything else: all anew, from rest (1620 substeps for a ball 1 mm deep on the tip at mu 0.3).
 
 Starting from the last displacement at another place is off by 2.6 to 5.3 % in force with the old
 contact history, 5.4 to 7.3 % with a fresh one; a region wide enough for several places costs twice

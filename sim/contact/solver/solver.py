@@ -23,7 +23,14 @@ from sim.contact.readout.outcome import SettledFrame, collect, frame_outcome
 from sim.contact.readout.problem import Problem
 from sim.contact.readout.slipping import with_slip
 from sim.contact.readout.verdict import check_frame
-from sim.contact.solver.calm import ENOUGH, FORCE_CHANGE, PASSING, Changes
+from sim.contact.solver.calm import (
+    ENOUGH,
+    FORCE_CHANGE,
+    LOOKS,
+    PASSING,
+    PASSING_LOOKS,
+    Changes,
+)
 from sim.contact.solver.load import Load
 from sim.contact.solver.progress import Progress
 from sim.contact.solver.run import Run
@@ -179,10 +186,13 @@ class Solver:
         load_N = self._load_N(balances, looked)
         with np.errstate(invalid="ignore", over="ignore"):
             self.residual = np.where(looked, balances.unbalanced_N / load_N, self.residual)
-            change_N = self.changes.of(balances.reaction_N, looked)
             of_reaction_N = self.load.of_reaction(balances, load_N)
-            change = change_N / of_reaction_N
-        passing = self._passing(change)
+            passed, change = (
+                self.changes.within(looks, balances.reaction_N) / of_reaction_N
+                for looks in (PASSING_LOOKS, LOOKS)
+            )
+        self.changes.keep(balances.reaction_N, looked)
+        passing = self._passing(passed)
         calm = change < FORCE_CHANGE
         if (self.spent >= ENOUGH).any():
             calm |= (self.spent >= ENOUGH) & self.changes.hums(of_reaction_N)

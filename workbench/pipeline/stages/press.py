@@ -68,7 +68,7 @@ def press(given: PressInputs, *, monitor: Monitor) -> Contact:
 STAGE = Stage(
     name="press",
     label="Contact",
-    version=11,
+    version=12,
     place=7,
     lane="sim",
     run=press,
