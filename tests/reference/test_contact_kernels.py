@@ -373,7 +373,8 @@ def test_a_cone_is_as_near_as_its_slant_or_its_top(taichi_device: str, offset_mm
     ):
         for i in range(places.shape[0]):
             none = ti.Vector([0, 0, 0])
-            distance, gradient = signed_distance(places[i], CONE, size, samples, none, 0)
+            whole = ti.Vector([size[0], size[1], size[2], size[3], 0.0, 0.0, 0.0, 0.0])
+            distance, gradient = signed_distance(places[i], CONE, whole, samples, none, 0)
             out[i] = tm.vec4(distance, gradient)
 
     root = 0.5**0.5
