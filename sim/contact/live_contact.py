@@ -29,7 +29,8 @@ from sim.contact.press import press_membrane
 from sim.contact.readout.problem import Problem, make_problem
 from sim.contact.readout.verdict import check_depth
 from sim.contact.region.backing import support_points_mm
-from sim.contact.solver.solver import relaxation_of, resume
+from sim.contact.solver.run import relaxation_of
+from sim.contact.solver.solver import resume
 from workbench.core.base.monitor import Monitor, silent
 from workbench.core.design.design import Elastomer
 from workbench.core.press.motion import press_stroke

@@ -6,12 +6,12 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from sim.contact.engine.relaxation import Balances, Relaxation
+from sim.contact.engine.balances import Balances
+from sim.contact.engine.relaxation import Relaxation
 from sim.contact.motion.rests import INCREMENT_MM
 from sim.contact.press import press_membrane
 from sim.contact.readout.problem import make_problem
-from sim.contact.solver.run import Run
-from sim.contact.solver.solver import relaxation_of
+from sim.contact.solver.run import Run, relaxation_of
 from sim.contact.studies.finger import at_45_degrees, penetration_and_balance, press_finger
 from sim.contact.studies.specimens import flat_block
 from workbench.core.base.errors import Cancelled, SolveError

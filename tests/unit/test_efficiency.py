@@ -7,8 +7,7 @@ import pytest
 
 from docs.generate_speed import page
 from sim.contact.solver import reactions
-from sim.contact.solver.run import Run
-from sim.contact.solver.solver import relaxation_of
+from sim.contact.solver.run import Run, relaxation_of
 from workbench.core.base.errors import SolveError
 from workbench.pipeline import devices
 from workbench.proof.benchmarks import contact, efficiency, forces, optics

@@ -9,7 +9,7 @@ import numpy as np
 import taichi as ti
 from taichi.lang.impl import current_cfg
 
-from sim.contact.engine.relaxation import Balance
+from sim.contact.engine.balances import Balance
 from sim.contact.grid.stencil import point_weights
 from sim.contact.readout.fields import skin_stress, volume_state
 from sim.contact.readout.frame import FrameOutcome, deepest_overlap_mm

@@ -11,10 +11,11 @@ import dataclasses
 import numpy as np
 import taichi as ti
 
+from sim.contact.engine.balances import Balances
 from sim.contact.engine.batch import Case, floats, integers
 from sim.contact.engine.bundles import packed
 from sim.contact.engine.launcher import Launcher
-from sim.contact.engine.relaxation import Balances, Relaxation
+from sim.contact.engine.relaxation import Relaxation
 from sim.contact.grid.layout import MEETS_SOFT
 from sim.contact.readout.frame import FrameOutcome
 from sim.contact.readout.outcome import SettledFrame, frame_outcome, point_displacement

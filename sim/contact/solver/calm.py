@@ -51,6 +51,18 @@ class Changes:
         self._before_N[:, looked] = np.roll(self._before_N, 1, axis=0)[:, looked]
         self._before_N[0, looked] = reaction_N[looked]
 
+    def rest(self, change: np.ndarray, spent: np.ndarray, load_N: np.ndarray) -> np.ndarray:
+        """Whether reactions have come to rest, or hum long since, shape (B,), bool.
+
+        Args:
+            change: Within `LOOKS`, over the load, shape (B,).
+            spent: Substeps since the object stands, shape (B,).
+            load_N: What changes are measured against [N], shape (B,).
+        """
+        late = spent >= ENOUGH
+        still = change < FORCE_CHANGE
+        return still | late & self.hums(load_N) if late.any() else still
+
     def hums(self, load_N: np.ndarray) -> np.ndarray:
         """Whether reactions only swing a little about an average that stays, shape (B,), bool.
 

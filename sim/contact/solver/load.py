@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from sim.contact.engine.relaxation import Balances
+from sim.contact.engine.balances import Balances
 from sim.contact.readout.problem import Problem
 from sim.contact.solver.run import NET_FORCE
 

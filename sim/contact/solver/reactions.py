@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from sim.contact.engine.relaxation import Balance
+from sim.contact.engine.balances import Balance
 from sim.contact.readout.problem import Problem
 from sim.contact.solver.solver import Solver
 from workbench.core.base.monitor import Monitor, silent

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Sequence
 
 import numpy as np
 
+from sim.contact.engine.batch import Case
 from sim.contact.engine.launcher import STEPS
 from sim.contact.engine.relaxation import Relaxation
 from sim.contact.grid.layout import POSE
@@ -40,6 +42,21 @@ MOST_KEPT = 3
 """Settled displacements kept to extrapolate from."""
 STILL_MM = 1e-9
 """Travel below which nothing moves."""
+
+
+def relaxation_of(problems: Sequence[Problem]) -> Relaxation:
+    """Device arrays of presses, at rest."""
+    return Relaxation(
+        [
+            Case(
+                domain=problem.domain,
+                collider=problem.collider,
+                friction=problem.material.friction,
+                kinetic_friction=problem.material.kinetic_friction,
+            )
+            for problem in problems
+        ]
+    )
 
 
 class Run:

@@ -15,25 +15,18 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from sim.contact.engine.batch import Case
+from sim.contact.engine.balances import Balance, Balances
 from sim.contact.engine.launcher import STEPS
-from sim.contact.engine.relaxation import Balance, Balances, Relaxation
+from sim.contact.engine.relaxation import Relaxation
 from sim.contact.readout.frame import FrameOutcome
 from sim.contact.readout.outcome import SettledFrame, collect, frame_outcome
 from sim.contact.readout.problem import Problem
 from sim.contact.readout.slipping import with_slip
 from sim.contact.readout.verdict import check_frame
-from sim.contact.solver.calm import (
-    ENOUGH,
-    FORCE_CHANGE,
-    LOOKS,
-    PASSING,
-    PASSING_LOOKS,
-    Changes,
-)
+from sim.contact.solver import calm
 from sim.contact.solver.load import Load
 from sim.contact.solver.progress import Progress
-from sim.contact.solver.run import Run
+from sim.contact.solver.run import Run, relaxation_of
 from workbench.core.base.errors import SolveError, Stopped
 from workbench.core.base.monitor import Monitor, silent
 from workbench.core.result.sensing import Contact
@@ -48,21 +41,6 @@ def solve(problems: Sequence[Problem], *, monitor: Monitor = silent) -> list[Con
     solver = Solver(problems, monitor)
     solver.run()
     return solver.results()
-
-
-def relaxation_of(problems: Sequence[Problem]) -> Relaxation:
-    """Device arrays of presses, at rest."""
-    return Relaxation(
-        [
-            Case(
-                domain=problem.domain,
-                collider=problem.collider,
-                friction=problem.material.friction,
-                kinetic_friction=problem.material.kinetic_friction,
-            )
-            for problem in problems
-        ]
-    )
 
 
 def resume(
@@ -112,7 +90,7 @@ class Solver:
         self.spent = np.zeros(count, int)
         self.lowest = np.full(count, np.inf)
         self.lowest_at = np.zeros(count, int)
-        self.changes = Changes(count)
+        self.changes = calm.Changes(count)
         self.retries = np.zeros(count, int)
         self.residual = np.full(count, np.inf)
         self.progress = Progress(self.runs)
@@ -189,15 +167,12 @@ class Solver:
             of_reaction_N = self.load.of_reaction(balances, load_N)
             passed, change = (
                 self.changes.within(looks, balances.reaction_N) / of_reaction_N
-                for looks in (PASSING_LOOKS, LOOKS)
+                for looks in (calm.PASSING_LOOKS, calm.LOOKS)
             )
         self.changes.keep(balances.reaction_N, looked)
         passing = self._passing(passed)
-        calm = change < FORCE_CHANGE
-        if (self.spent >= ENOUGH).any():
-            calm |= (self.spent >= ENOUGH) & self.changes.hums(of_reaction_N)
-        calm &= self.load.balanced(balances, load_N)
-        still = looked & (calm | passing)
+        rests = self.changes.rest(change, self.spent, of_reaction_N)
+        still = looked & (rests & self.load.balanced(balances, load_N) | passing)
         if still.any():
             looked &= ~self._close(still, passing)
         lower = looked & (self.residual < self.lowest)
@@ -216,8 +191,9 @@ class Solver:
     def _passing(self, change: np.ndarray) -> np.ndarray:
         """Which presses are within a frame and have rested there enough, (B,) bool."""
         within = np.array([run.on_the_way for run in self.runs])
-        near = (self.residual < PASSING * self.load.tolerance) & (change < PASSING * FORCE_CHANGE)
-        return within & (near | (self.spent >= ENOUGH))
+        near = self.residual < calm.PASSING * self.load.tolerance
+        near &= change < calm.PASSING * calm.FORCE_CHANGE
+        return within & (near | (self.spent >= calm.ENOUGH))
 
     def _close(self, still: np.ndarray, passing: np.ndarray) -> np.ndarray:
         """End the frame of presses whose forces balance after the last move; which did."""

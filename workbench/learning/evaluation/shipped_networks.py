@@ -1,4 +1,4 @@
-"""Makes the networks that ship, from nothing: presses, training, held-out sets.
+"""Makes networks such as ship, from nothing: presses, training, held-out sets.
 
 `python -m workbench.learning.evaluation.shipped_networks FOLDER [JOBS]` makes the data sets below
 in the folder, trains both networks on them and writes weights and held-out sets over those that
@@ -19,6 +19,7 @@ from typing import Any
 
 from sim.forces.network.spec import Target
 from sim.forces.training.settings import PRESETS
+from workbench.core.objects.kind import Group, kinds
 from workbench.core.press.indenter import SEEN, UNSEEN, IndenterKind
 from workbench.learning.dataset.folder import DataSet
 from workbench.learning.dataset.positions import Pattern
@@ -40,12 +41,10 @@ MOST_BYTES = 820_000
 """Of a held-out set."""
 ALSO = tuple(
     IndenterKind(name)
-    for name in (
-        "cone", "triangle", "torus", "cross", "sphere", "pacman", "cylinder_end", "hexagon",
-        "cube", "cylinder_side",
-    )
-)  # fmt: skip
-"""Some of the paper's objects and two that it does not have: a right cone and a torus."""
+    for name, kind in kinds().items()
+    if kind.group is Group.OTHER and not kind.of_triangles
+)
+"""Objects that the paper does not have."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -68,7 +67,7 @@ PARTS = {
     ),
     "3": Part(
         cases={"geltip": 18, "pad": 7, "trunk": 8, "paw": 15},
-        changes={"seed": 5, "indenters": ALSO, "shares": (1, 0, 0)},
+        changes={"seed": 5, "indenters": (*ALSO, *SEEN), "shares": (1, 0, 0)},
     ),
     "4": Part(
         cases={"geltip": 4, "pad": 4, "trunk": 4, "paw": 4},
