@@ -261,8 +261,11 @@ def test_an_edit_of_the_last_moment_survives_a_stop_in_mid_job(
 def test_a_reload_in_mid_job_shows_progress_and_then_the_result(
     tmp_path: Path, page: Any, start_server: Start
 ) -> None:
-    """The job goes on without the page; the new page shows its bar, then its image."""
-    server = start_server(coarse_project(tmp_path), cold=True)
+    """The job goes on without the page; the new page shows its bar, then its image.
+
+    A press of 60 frames: one of 2 was over sooner than the page was open again.
+    """
+    server = start_server(coarse_project(tmp_path, frames=60), cold=True)
     open_page(page, server.url)
     button(page, "Cancel").wait_for(timeout=60_000)
     page.reload()

@@ -56,11 +56,12 @@ def wait_until(condition: Callable[[], Any], seconds: float, what: str) -> None:
     raise AssertionError(f"after {seconds} s still not: {what}")
 
 
-def coarse_project(tmp_path: Path) -> Path:
+def coarse_project(tmp_path: Path, *, frames: int = 2) -> Path:
     """A project whose last session was a coarse finger, quick to press."""
     project = tmp_path / "project"
     (project / "designs").mkdir(parents=True)
-    (project / "designs" / "autosave.toml").write_text(COARSE)
+    text = COARSE.replace("frames = 2", f"frames = {frames}")
+    (project / "designs" / "autosave.toml").write_text(text)
     return project
 
 
