@@ -105,12 +105,15 @@ def _recipe(data: Path) -> Recipe:
 def _rows(source: ForceSource, way: str, sets: Sequence[_Pressed]) -> Iterator[Measured]:
     """A row for each kind of contact, of networks apart for objects that they know."""
     groups: dict[tuple[ContactKind, bool | None], list[Scored]] = {}
+    pressed: dict[tuple[ContactKind, bool | None], set[tuple[str, str]]] = {}
     for recipe, sample in ((one.recipe, sample) for one in sets for sample in one.samples):
         indenter = recipe.indenter(sample.case.indenter, sample.case.drawn)
         kind = kind_of_contact(indenter, sheared=sample.sheared)
         seen = sample.case.split is not Split.UNSEEN if source is ForceSource.LEARNED else None
         if kind is not None:
             groups.setdefault((kind, seen), []).append(sample)
+            # Sets of several membranes have cases of the same name.
+            pressed.setdefault((kind, seen), set()).add((recipe.key, sample.case.id))
     for (kind, seen), members in groups.items():
         scores = [sample.scores[way] for sample in members]
         found, zero = summary(scores), summary([sample.scores[Way.ZERO] for sample in members])
@@ -120,7 +123,7 @@ def _rows(source: ForceSource, way: str, sets: Sequence[_Pressed]) -> Iterator[M
             source=source,
             kind=kind,
             seen=seen,
-            presses=len({sample.case.id for sample in members}),
+            presses=len(pressed[kind, seen]),
             field=round(ratio(found.mae, zero.mae), 4),
             total=round(float(off_N / size_N), 4),
             peak_bias=round(found.peak_pressure_bias, 4),
