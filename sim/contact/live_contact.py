@@ -5,13 +5,14 @@ Three ways, chosen by what was kept of the last request:
 * deeper at the same place: the next frame of the same press, from its displacement and its contact
   history;
 * shallower at the same place: the same region and contact points, from rest;
-* anything else: all anew, from rest (1620 substeps for a ball 1 mm deep on the tip at mu 0.3).
+* anything else: all anew, from rest (1225 substeps for a ball 1 mm deep on the tip at mu 0.3).
 
 Starting from the last displacement at another place is off by 2.6 to 5.3 % in force with the old
 contact history, 5.4 to 7.3 % with a fresh one; a region wide enough for several places costs twice
 the time of one. So a move along the skin starts from rest.
 The object rests as often as in a full press (`motion.rests`), so the force is the same: on the
-default finger, 1 mm deep, to .2 %. Gone in one piece it was up to 2.8 % less, and a fifth as long.
+default finger, 1 mm deep, to .2 %. Gone in one piece it was up to 2.8 % less, in a quarter of the
+time.
 Left out: strokes, trajectories and driven regions; the full press has them.
 """
 

@@ -24,6 +24,7 @@ from sim.contact.soft import kernels as soft_kernels
 from sim.contact.soft.body import SoftObject, make_soft_object
 from sim.contact.soft.meeting import cells_at, deformed, meet
 from sim.contact.soft.meeting_functions import MEMBRANE, NOWHERE, OBJECT, Partner
+from sim.contact.solver.calm import PASSING_SUBSTEPS_SOFT
 from sim.contact.solver.load import least_load_N
 from sim.contact.solver.run import Run
 from sim.contact.solver.solver import Solver
@@ -135,6 +136,11 @@ class SoftRelaxation(Relaxation):
 
 class SoftRun(Run):
     """A press whose object has a held part to move."""
+
+    @property
+    def passing_substeps(self) -> int:
+        """Two bodies come to rest more slowly."""
+        return PASSING_SUBSTEPS_SOFT
 
     def drive(self) -> None:
         """Tell driven regions and the object's held part where they go in this frame."""

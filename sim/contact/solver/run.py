@@ -17,7 +17,7 @@ from sim.contact.readout.frame import FrameOutcome
 from sim.contact.readout.problem import Problem
 from sim.contact.readout.slipping import Holding, grip_of
 from sim.contact.region.drives import driven_displacement_mm
-from sim.contact.solver.calm import FORCE_CHANGE
+from sim.contact.solver.calm import FORCE_CHANGE, PASSING_SUBSTEPS, PASSING_SUBSTEPS_SOFT
 from sim.forces.slip import slides_from_mm
 from workbench.core.base.errors import SolveError
 
@@ -106,6 +106,11 @@ class Run:
     def on_the_way(self) -> bool:
         """Whether the state that settles next lies within the frame, not at its end."""
         return self.increment + 1 < self.increments
+
+    @property
+    def passing_substeps(self) -> int:
+        """Substeps after which a state within a frame is left."""
+        return PASSING_SUBSTEPS_SOFT if self.problem.press.actuations else PASSING_SUBSTEPS
 
     def go_on(self) -> None:
         """Pass an increment within the frame: what holds on there is history to the next."""

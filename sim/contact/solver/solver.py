@@ -191,9 +191,10 @@ class Solver:
     def _passing(self, change: np.ndarray) -> np.ndarray:
         """Which presses are within a frame and have rested there enough, (B,) bool."""
         within = np.array([run.on_the_way for run in self.runs])
+        enough = np.array([run.passing_substeps for run in self.runs])
         near = self.residual < calm.PASSING * self.load.tolerance
         near &= change < calm.PASSING * calm.FORCE_CHANGE
-        return within & (near | (self.spent >= calm.ENOUGH))
+        return within & (near | (self.spent >= enough))
 
     def _close(self, still: np.ndarray, passing: np.ndarray) -> np.ndarray:
         """End the frame of presses whose forces balance after the last move; which did."""

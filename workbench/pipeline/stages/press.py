@@ -68,7 +68,7 @@ def press(given: PressInputs, *, monitor: Monitor) -> Contact:
 STAGE = Stage(
     name="press",
     label="Contact",
-    version=12,
+    version=13,
     place=7,
     lane="sim",
     run=press,
