@@ -30,6 +30,7 @@ from workbench.proof.validation.fem.slip_record import (
     DEPTH_MM,
     FRAME_MM,
     PRESSED,
+    RECORD,
     SlipCase,
     figures,
     recorded,
@@ -53,13 +54,14 @@ def rows() -> list[Row]:
 def _partial_slip() -> Iterator[Row]:
     case = next(case for case in CASES if case.name == "sphere_tip")
     solvers = {
-        "finite elements": (MINDLIN_FEM_LIMIT, lambda: recorded(case.name)),
+        "finite elements": (MINDLIN_FEM_LIMIT, lambda: recorded(case.name), RECORD),
         f"contact solver, grid {GRID_MM:g} mm": (
             SHARE_LIMIT,
             lambda: figures(pressed(case)),
+            None,
         ),
     }
-    for solver, (limit, found) in solvers.items():
+    for solver, (limit, found, record) in solvers.items():
         yield bounded(
             "partial_slip",
             f"ball on the finger's tip, dragged, {solver}: share of the contact that slides, most "
@@ -68,6 +70,7 @@ def _partial_slip() -> Iterator[Row]:
             unit="1",
             limit=limit,
             null=on_device(lambda found=found: _off_mindlin(found(), scale=0.0)),
+            record=record,
         )
 
 
@@ -99,6 +102,7 @@ def _case_rows(case: SlipCase) -> Iterator[Row]:
             limit=SHARE_LIMIT,
             relative=False,
             null=on_device(functools.partial(_farthest, case, frames, "null")),
+            record=RECORD,
         )
     yield compared(
         "gross_slip",
@@ -110,6 +114,7 @@ def _case_rows(case: SlipCase) -> Iterator[Row]:
         limit=ONSET_LIMIT_MM,
         relative=False,
         null=0.0,
+        record=RECORD,
     )
 
 
@@ -163,6 +168,7 @@ def _ratio() -> Row:
         unit="1",
         limit=RATIO_LIMIT,
         null=sliding.FRICTION,
+        record=RECORD,
     )
 
 
@@ -183,6 +189,7 @@ def _draft() -> Row:
         unit="1",
         limit=SHARE_LIMIT,
         relative=False,
+        record=RECORD,
     )
 
 

@@ -1,17 +1,19 @@
 """What slides by converged finite elements, recorded: a press of them takes minutes.
 
-`python -m workbench.proof.validation.fem.slip_record` writes the file: hexahedra of 0.45 mm,
-halved three times under the contact. Cases are .2, .4 and .6 mm straight into the finger, then 1
-mm along it in frames of .1 mm, or 1.2 mm where a part still sticks; and the ball of
+`python -m workbench.proof.validation.fem.slip_record [JOBS]` makes the record: hexahedra of 0.45
+mm, halved three times under the contact. Cases are .2, .4 and .6 mm straight into the finger, then
+1 mm along it in frames of .1 mm, or 1.2 mm where a part still sticks; and the ball of
 `sim.contact.studies.sliding` on its flat layer.
 """
 
 from __future__ import annotations
 
-import datetime
 import functools
-import json
+import sys
+from collections.abc import Sequence
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
+from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
@@ -25,11 +27,22 @@ from workbench.core.press.press import Press
 from workbench.core.press.press_case import PressCase
 from workbench.core.result.force_field import ForceField
 from workbench.core.result.sensing import Contact
+from workbench.proof.validation.contact.finger_record import FEM_APART
 from workbench.proof.validation.contact.presses import tip_target
 from workbench.proof.validation.fem.fem_presses import finger
+from workbench.system.record import Record
 
-FILE = Path(__file__).with_name("slip_record.json")
 KINDS = (IndenterKind("cube"), IndenterKind("sphere"), IndenterKind("flower"))
+RECORD = Record(
+    path=Path(__file__).with_name("slip_record.json"),
+    command="python -m workbench.proof.validation.fem.slip_record",
+    sources=(
+        "workbench.proof.validation.fem.slip_record",
+        "designs.finger",
+        *(f"workbench.core.objects.kinds.{kind.value}" for kind in KINDS),
+    ),
+    apart=(*FEM_APART, "sim.contact.press", "sim.contact.studies.specimens"),
+)
 PLACES = {"tip": tip_target(0.0, 0.0), "side": (15.0, 0.0, 12.0)}
 """Targets on the finger [mm]: the end of its round tip, and its cylinder by the base."""
 DEPTH_MM, PRESSED = 0.6, 3
@@ -110,8 +123,12 @@ def ball_on_layer() -> ForceField:
 
 @functools.cache
 def recorded(name: str) -> dict[str, Any]:
-    """Figures of a case: `sliding_share`, `normal_N`, `tangential_N` and `gross_slip_mm`."""
-    return json.loads(FILE.read_text(encoding="utf-8"))["cases"][name]
+    """Figures of a case: `sliding_share`, `normal_N`, `tangential_N` and `gross_slip_mm`.
+
+    Raises:
+        StoreError: If the record cannot be read.
+    """
+    return RECORD.figures()["cases"][name]
 
 
 def figures(found: ForceField | Contact) -> dict[str, Any]:
@@ -132,22 +149,35 @@ def _rounded(values: np.ndarray) -> list[float]:
     return [round(float(value), 5) for value in values]
 
 
-def write() -> None:
-    """Solve all cases and write the file, case by case."""
-    record: dict[str, Any] = {
-        "made": "python -m workbench.proof.validation.fem.slip_record",
-        "date": datetime.date.today().isoformat(),
+def every_case(jobs: int = 1) -> dict[str, Any]:
+    """All cases solved, for JSON.
+
+    Args:
+        jobs: Processes that solve them.
+    """
+    with ProcessPoolExecutor(max_workers=jobs, mp_context=get_context("spawn")) as pool:
+        ball = pool.submit(_solved_ball)
+        found = dict(zip(CASES, pool.map(_solved_case, CASES), strict=True))
+    return {
         "hex_mm": QUALITY_MM,
         "halvings": FemSettings().halvings,
-        "cases": {},
+        "cases": {BALL: ball.result(), **{case.name: found[case] for case in CASES}},
     }
-    if FILE.exists():
-        record["cases"] = json.loads(FILE.read_text(encoding="utf-8"))["cases"]
-    record["cases"][BALL] = figures(ball_on_layer())
-    for case in CASES:
-        record["cases"][case.name] = figures(solved(case))
-        FILE.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
+
+
+def _solved_case(case: SlipCase) -> dict[str, Any]:
+    return figures(solved(case))
+
+
+def _solved_ball() -> dict[str, Any]:
+    return figures(ball_on_layer())
+
+
+def main(words: Sequence[str]) -> int:
+    """Make the record."""
+    RECORD.make(functools.partial(every_case, int(words[0]) if words else 1))
+    return 0
 
 
 if __name__ == "__main__":
-    write()
+    sys.exit(main(sys.argv[1:]))
