@@ -22,6 +22,7 @@ from workbench.core.base.errors import DesignError, DeviceError, StoreError
 from workbench.learning.dataset.folder import DataSet
 from workbench.learning.evaluation import charts, heat_maps, sheets
 from workbench.learning.evaluation.published import MAE, over_peak
+from workbench.learning.evaluation.sources import open_source
 from workbench.learning.evaluation.speed import efficiency, efficiency_html
 from workbench.pipeline import shipped
 from workbench.pipeline.weight_files import save_weights
@@ -30,6 +31,7 @@ from workbench.proof.benchmarks.records import kept_at, read_record, shipped_rec
 from workbench.proof.row import failed, stated
 from workbench.proof.validation.learned import learned_scores as learned
 from workbench.proof.validation.learned import learned_speed, learned_stiffness
+from workbench.proof.validation.learned.stiffness_figures import scored
 
 
 @pytest.fixture(scope="module")
@@ -204,29 +206,31 @@ def nothing_shipped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_without_weights_every_row_fails_and_says_why(nothing_shipped: Path) -> None:
     """No row passes silently: names as promised, a reason, no value."""
     found = [row for target in learned.WORDS for row in learned.score_rows(target)]
-    found += learned_stiffness.rows()
+    nowhere = dataclasses.replace(learned_stiffness.RECORD, path=nothing_shipped / "none.json")
+    stiff = learned_stiffness.rows(nowhere)
+    assert all("there is none" in row.case and not row.ok for row in stiff)
+    assert {row.name for row in stiff} >= {"learned_stiffness_force"}
     assert not any(row.ok for row in found) and all(row.value is None for row in found)
     names = {row.name for row in found}
     for way in ("mpm", "zero"):
         for split in ("unseen", "test"):
             assert f"learned_force_ratio_{way}_{split}" in names
             assert f"learned_deformation_ratio_{way}_{split}" in names
-    assert {"learned_force_over_peak_unseen", "learned_stiffness_force"} <= names
+    assert "learned_force_over_peak_unseen" in names
     assert all("no trained network" in row.case or "no held-out set" in row.case for row in found)
 
 
 def ship(folder: Path, place: Path, *, packs: bool = True) -> None:
     """Ship the untrained weights, and held-out sets."""
     shutil.copytree(folder / "weights", place)
-    shutil.copytree(folder / "tuned", place / "stiffness")
     if packs:
         (place / "held_out").mkdir()
-        for name, file in (("base", "held_out/geltip-1.npz"), ("soft", "stiffness/soft.npz")):
-            assert main(["evaluate", str(folder / name), "--pack", str(place / file)]) == 0
+        packed = str(place / "held_out/geltip-1.npz")
+        assert main(["evaluate", str(folder / "base"), "--pack", packed]) == 0
 
 
 def test_rows_of_shipped_weights(folder: Path, nothing_shipped: Path) -> None:
-    """Untrained, so they miss the limits with a value beside its null; stiffness is stated."""
+    """Untrained, so they miss the limits with a value beside its null."""
     ship(folder, nothing_shipped)
     found = learned.score_rows(Target.FORCE)
     rows = {row.name: row for row in found}
@@ -243,13 +247,22 @@ def test_rows_of_shipped_weights(folder: Path, nothing_shipped: Path) -> None:
     assert (total.limit, bias.limit) == (0.02, 0.1) and not total.ok and not bias.ok
     peak = rows["learned_force_over_peak_unseen"]
     assert peak.reference is not None and peak.reference < peak.null < 1.0
-    stiff = {(row.name, row.case.split(",")[0]): row for row in learned_stiffness.rows()}
+
+
+def test_rows_of_another_stiffness(folder: Path, tmp_path: Path) -> None:
+    """From a record, which another set of weights makes stale; what is not on it fails."""
+    kept = dataclasses.replace(learned_stiffness.RECORD, path=tmp_path / "stiffness.json")
+    weights = [*(folder / "weights").iterdir(), *(folder / "tuned").iterdir()]
+    soft, base = (open_source(folder / name) for name in ("soft", "base"))
+    kept.make(lambda: {"found": scored(soft, sorted(weights), base, name="soft")})
+    stiff = {(row.name, row.case.split(",")[0]): row for row in learned_stiffness.rows(kept)}
     halved = stiff["learned_stiffness_force", "E halved"]
     assert halved.ok and halved.null is not None
-    assert not stiff["learned_stiffness_force", "E doubled; not measured: no held-out set of this "
-                     "stiffness"].ok  # fmt: skip
+    assert not stiff["learned_stiffness_force", "E doubled; not measured: not on record"].ok
     truth = stiff["learned_stiffness_truth_force", "E halved"]
     assert truth.value is not None and truth.value < 1e-4 and truth.null == pytest.approx(1.0)
+    other = dataclasses.replace(kept, files=())
+    assert not any(row.ok for row in learned_stiffness.rows(other))
 
 
 def test_weights_without_samples_fail(folder: Path, nothing_shipped: Path) -> None:

@@ -1,7 +1,7 @@
 """Other stiffnesses (Fig. 8): tuned networks beside the untuned force times the ratio of E.
 
-In the folder `stiffness` of the shipped weights lie held-out sets of other stiffnesses and the
-networks that were tuned for them; without them the rows fail and say so.
+The figures are a record that `stiffness_figures` makes: tuned networks would double what ships, and
+the last row says why nobody misses them.
 """
 
 from __future__ import annotations
@@ -9,95 +9,101 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 from sim.forces.network.spec import Target
-from sim.forces.network.weights import SUFFIX, load_weights
-from workbench.core.base.errors import StoreError, WorkbenchError
+from workbench.core.base.errors import StoreError
 from workbench.learning.evaluation import published
-from workbench.learning.evaluation.evaluate import Named
-from workbench.learning.evaluation.scoring import Way
-from workbench.learning.evaluation.sources import open_source
-from workbench.learning.evaluation.stiffness import StiffnessResult, Tuning, evaluate_stiffness
+from workbench.learning.evaluation.stiffness import Tuning
 from workbench.pipeline import shipped
 from workbench.proof.row import Row, failed, stated
+from workbench.system.record import Record
 
-FOLDER = "stiffness"
+RECORD = Record(
+    path=Path(__file__).with_name("learned_stiffness.json"),
+    command="python -m workbench.proof.validation.learned.stiffness_figures FOLDER",
+    sources=("workbench.proof.validation.learned.stiffness_figures",),
+    apart=(
+        "sim.contact",
+        "sim.fem",
+        "sim.optics",
+        "geometry",
+        "workbench.learning.making",
+        "workbench.pipeline",
+        "workbench.planning",
+        "workbench.project",
+        "workbench.system",
+        "workbench.view",
+        "workbench.core.design",
+        "workbench.proof.row",
+        "workbench.proof.validation.learned.learned_stiffness",
+    ),
+    files=tuple(shipped.shipped_weights(target) for target in Target if shipped.is_shipped(target)),
+)
+"""Presses are data, as those of held-out sets are: solvers of another day do not make it stale,
+other networks, another training or another score do."""
 FACTORS = {0.5: "halved", 2.0: "doubled"}
 WORDS = {Target.FORCE: "force", Target.DISPLACEMENT: "deformation"}
 NEAR = 0.01
 
 
-def rows() -> list[Row]:
-    """A row for each field at half and at twice the stiffness, or failed ones."""
+def rows(kept: Record = RECORD) -> list[Row]:
+    """Rows for each field at half and at twice the stiffness, or failed ones."""
     try:
-        found = _evaluated(shipped.FOLDER / FOLDER)
-    except WorkbenchError as error:
+        found, why = kept.figures()["found"], "not on record"
+    except StoreError as error:
         found, why = [], error.message
-    else:
-        why = "no held-out set of this stiffness"
     rows = []
     for factor, target in itertools.product(FACTORS, WORDS):
         here = [
-            one for one in found if one.target is target and abs(one.factor / factor - 1) < NEAR
+            one
+            for one in found
+            if one["target"] == target.value and abs(one["factor"] / factor - 1.0) < NEAR
         ]
-        rows += [row for one in here for row in _rows(one, FACTORS[factor])] or [
+        rows += [row for one in here for row in _rows(one, factor, kept)] or [
             failed(f"learned_stiffness_{WORDS[target]}", f"E {FACTORS[factor]}", unit="1", why=why)
         ]
     return rows
 
 
-def _evaluated(folder: Path) -> list[StiffnessResult]:
-    sets = sorted(folder.glob("*.npz"))
-    if not sets:
-        raise StoreError(
-            "no held-out set of another stiffness comes with this version",
-            hint="make them with workbench dataset make --young MPa, then evaluate --pack",
-            at=str(folder),
-        )
-    paths = [shipped.shipped_weights(target) for target in WORDS if shipped.is_shipped(target)]
-    paths += sorted(folder.glob(f"*{SUFFIX}"))
-    weights = [Named(name=path.name, weights=load_weights(path)) for path in paths]
-    nominal = shipped.held_out_sets().get(shipped.FIRST)
-    base = open_source(nominal[0]) if nominal else None
-    return [
-        one
-        for path in sets
-        for one in evaluate_stiffness(open_source(path), weights, base, name=path.name)
-    ]
-
-
-def _rows(found: StiffnessResult, words: str) -> Iterator[Row]:
-    ways, field = found.found.ways, WORDS[found.target]
-    samples = next(iter(ways.values())).samples
-    case = f"E {words}, {found.young_MPa:g} MPa, {samples} samples of {found.found.cases} cases"
-    zero, scaled = ways[Way.ZERO].mae, ways[Tuning.SCALED].mae
-    if Tuning.TUNED in ways:
+def _rows(found: dict[str, Any], factor: float, kept: Record) -> Iterator[Row]:
+    target = Target(found["target"])
+    of_force, field = target is Target.FORCE, WORDS[target]
+    case = (
+        f"E {FACTORS[factor]}, {found['young_MPa']:g} MPa, {found['samples']} samples of "
+        f"{found['cases']} cases"
+    )
+    over_zero, scaled = found["over_zero"], found["over_zero"][Tuning.SCALED.value]
+    if Tuning.TUNED.value in over_zero:
         yield stated(
             f"learned_stiffness_{field}",
             f"{case}: tuned decoder, error over that of zero; null: the untuned network "
-            + ("times the ratio of E" if found.target is Target.FORCE else "as it is"),
-            ways[Tuning.TUNED].mae / zero if zero else float("nan"),
+            + ("times the ratio of E" if of_force else "as it is"),
+            over_zero[Tuning.TUNED.value],
             unit="1",
-            reference=published.TUNED_MAE[found.target] / zero if zero else None,
-            null=scaled / zero if zero else None,
+            reference=published.TUNED_MAE[target] / found["zero_mae"],
+            null=scaled,
+            record=kept,
         )
     else:
         yield failed(f"learned_stiffness_{field}", case, unit="1", why="no tuned weights")
-    if found.target is Target.FORCE:
+    if of_force:
         yield stated(
             "learned_stiffness_untuned",
             f"{case}: untuned network as it is, error over that of zero; null: times the ratio",
-            ways[Tuning.UNTUNED].mae / zero if zero else float("nan"),
+            over_zero[Tuning.UNTUNED.value],
             unit="1",
-            null=scaled / zero if zero else None,
+            null=scaled,
+            record=kept,
         )
-    if found.common:
-        proportion = "times the ratio of E" if found.target is Target.FORCE else "as it is"
+    if found["common"]:
+        proportion = "times the ratio of E" if of_force else "as it is"
         yield stated(
             f"learned_stiffness_truth_{field}",
             f"{case}: {field} by finite elements there against the nominal one {proportion}, on "
-            f"{found.common} samples of both sets; null: as it is",
-            found.truth_off,
+            f"{found['common']} samples of both sets; null: as it is",
+            found["truth_off"],
             unit="1",
-            null=abs(1.0 - 1.0 / found.factor) if found.target is Target.FORCE else None,
+            null=abs(1.0 - 1.0 / found["factor"]) if of_force else None,
+            record=kept,
         )
