@@ -11,7 +11,7 @@ Starting from the last displacement at another place is off by 2.6 to 5.3 % in f
 contact history, 5.4 to 7.3 % with a fresh one; a region wide enough for several places costs twice
 the time of one. So a move along the skin starts from rest.
 The object rests as often as in a full press (`motion.rests`), so the force is the same: on the
-default finger, 1 mm deep, to .2 %. Gone in one piece it was up to 2.8 % less, in a quarter of the
+default finger, 1 mm deep, to .3 %. Gone in one piece it was up to 2.8 % less, in a quarter of the
 time.
 Left out: strokes, trajectories and driven regions; the full press has them.
 """

@@ -84,6 +84,7 @@ class Solver:
         count = len(problems)
         self.load = Load(problems)
         self.most = np.array([p.settings.max_substeps for p in problems])
+        self.passing_most = np.array([run.passing_substeps for run in self.runs])
         self.settling = np.zeros(count, bool)
         self.active = np.ones(count, bool)
         self.substeps = np.zeros(count, int)
@@ -191,10 +192,9 @@ class Solver:
     def _passing(self, change: np.ndarray) -> np.ndarray:
         """Which presses are within a frame and have rested there enough, (B,) bool."""
         within = np.array([run.on_the_way for run in self.runs])
-        enough = np.array([run.passing_substeps for run in self.runs])
         near = self.residual < calm.PASSING * self.load.tolerance
         near &= change < calm.PASSING * calm.FORCE_CHANGE
-        return within & (near | (self.spent >= enough))
+        return within & (near | (self.spent >= self.passing_most))
 
     def _close(self, still: np.ndarray, passing: np.ndarray) -> np.ndarray:
         """End the frame of presses whose forces balance after the last move; which did."""
