@@ -20,6 +20,7 @@ from workbench.cli import validate_rooms as validate
 from workbench.core.design.design import SensorDesign
 from workbench.core.design.lighting import LightModel
 from workbench.edit.typed_fields import with_typed
+from workbench.learning.dataset.cases import Split
 from workbench.proof.judge import judge
 
 ROWS = [(record.room, row) for record in records() for row in record.rows]
@@ -96,6 +97,12 @@ def names_in_the_product() -> tuple[set[str], list[re.Pattern[str]]]:
     return plain, patterns
 
 
+def of_a_split(name: str, plain: set[str]) -> bool:
+    """Whether a name is one that the sources give, and the part of a data set that it is about."""
+    first, _, last = name.rpartition("_")
+    return last in set(Split) and first in plain
+
+
 @pytest.mark.parametrize("room", [record.room for record in records()])
 def test_rows_of_a_record_exist_in_the_product(room: str) -> None:
     """Each name is given by a source of the validation, and somebody said what it is judged by."""
@@ -103,7 +110,8 @@ def test_rows_of_a_record_exist_in_the_product(room: str) -> None:
     for of, row in ROWS:
         name = row["name"]
         if of == room:
-            assert name in plain or any(pattern.fullmatch(name) for pattern in patterns), name
+            made = any(pattern.fullmatch(name) for pattern in patterns)
+            assert name in plain or made or of_a_split(name, plain), name
             assert judge(name, row["case"])
 
 
@@ -122,9 +130,15 @@ def test_every_row_that_a_source_names_has_its_judge() -> None:
 
 @pytest.mark.parametrize("room", [record.room for record in records()])
 def test_verdicts_of_a_record_follow_from_its_numbers(room: str) -> None:
-    """`ok` is what value, reference and limit say, so that no record flatters."""
+    """`ok` is what value, reference and limit say, so that no record flatters.
+
+    What code of another day found is not met, whatever it found.
+    """
     for of, row in ROWS:
         if of != room:
+            continue
+        if row.get("stale"):
+            assert not row["ok"], row
             continue
         value, limit, error = row["value"], row["limit"], row["error"]
         if error is not None:
