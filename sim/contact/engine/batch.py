@@ -2,8 +2,7 @@
 
 Every case keeps its own copy of its region; nodes, cells and surface points of the cases follow
 each other. Cells and nodes of a case are padded to a multiple of `BLOCK`, so that its rows of the
-interleaved tables stay together. Sums are taken in chunks that never span two cases: what one case
-does cannot change a bit of another.
+interleaved tables stay together. What one case does cannot change a bit of another.
 """
 
 from __future__ import annotations
@@ -17,12 +16,10 @@ import taichi as ti
 
 from sim.contact.engine import sum_kernels
 from sim.contact.engine.bundles import Cases, Cells, Nodes, Surface, Ties, packed
+from sim.contact.engine.sums import Sums
 from sim.contact.grid import layout
 from sim.contact.objects.collider import Collider
 from sim.contact.region.domain import BLOCK, NO_SLOT, Domain
-
-CHUNK = 128
-"""Rows summed by one thread of a reduction; fixed, so that the order of sums is too."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -113,8 +110,7 @@ class Batch:
             packed(self.nodes), packed(self.cells), packed(self.surface), packed(self.cases),
         )  # fmt: skip
         """The bundles as arguments of launched kernels."""
-        self.node_sums = _Sums(node_at)
-        self.point_sums = _Sums(point_at)
+        self.sums = Sums(self.nodes, self.surface, node_at, point_at)
         self._staging = floats(np.zeros(max(3 * max(nodes), 6 * max(points), 1)))
 
     @property
@@ -139,27 +135,6 @@ class Batch:
         staged[: values.size] = values.ravel()
         self._staging.from_numpy(staged)
         sum_kernels.copy_in(self._staging, array, first, values.size)
-
-
-class _Sums:
-    """Chunks of rows, case by case, and their sums."""
-
-    def __init__(self, starts: list[int]) -> None:
-        bounds: list[tuple[int, int]] = []
-        first_chunks = [0]
-        for first, last in itertools.pairwise(starts):
-            edges = [*range(first, last, CHUNK), last]
-            bounds += list(itertools.pairwise(edges))
-            first_chunks.append(len(bounds))
-        self.bounds = integers(np.array(bounds or [(0, 0)]))
-        self.partial = ti.ndarray(ti.f64, 6 * max(1, len(bounds)))
-        self.first_chunks = integers(np.array(first_chunks))
-        self.totals = ti.ndarray(ti.f64, 6 * (len(starts) - 1))
-
-    def collect(self) -> np.ndarray:
-        """Six sums of each case, shape (cases, 6), from the chunks' partial sums."""
-        sum_kernels.case_sums(self.partial, self.first_chunks, self.totals)
-        return self.totals.to_numpy().reshape(-1, 6)
 
 
 def needed_bytes(cells: int, points: int) -> int:

@@ -110,15 +110,7 @@ class Relaxation:
             falling: Whose damping may only fall. Near rest most of what still moves is rounding, of
                 the highest frequencies; damped as these ask, what is left to settle would creep.
         """
-        batch = self.batch
-        sums = batch.node_sums
-        forces, powers, fixed = batch.nodes.forces, batch.nodes.powers, batch.nodes.fixed
-        sum_kernels.node_sums(forces, powers, fixed, sums.bounds, sums.partial)
-        nodes = sums.collect()
-        sums = batch.point_sums
-        forces, held = batch.surface.point_forces, batch.surface.held
-        sum_kernels.surface_sums(forces, held, sums.bounds, sums.partial)
-        surface = sums.collect()
+        nodes, surface = self.batch.sums.read()
         work, inertia = nodes[:, 0], nodes[:, 1]
         with np.errstate(divide="ignore", invalid="ignore"):
             lowest = np.maximum(work / inertia, 0.0)

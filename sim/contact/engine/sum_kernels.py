@@ -32,8 +32,13 @@ def node_sums(forces: Floats, powers: Floats, fixed: Integers, bounds: Integers,
 
 
 @ti.kernel
-def surface_sums(point_forces: Floats, held: Integers, bounds: Integers, partial: Doubles):
-    """Per chunk of surface points: contact force, then holding force, by component."""
+def surface_sums(
+    point_forces: Floats, held: Integers, bounds: Integers, first: ti.i32, partial: Doubles
+):
+    """Per chunk of surface points: contact force, then holding force, by component.
+
+    The sums of the first chunk go to row `first`.
+    """
     for chunk in range(bounds.shape[0] // 2):
         total = ti.Vector([0.0] * 6, dt=ti.f64)
         for point in range(bounds[2 * chunk], bounds[2 * chunk + 1]):
@@ -43,19 +48,19 @@ def surface_sums(point_forces: Floats, held: Integers, bounds: Integers, partial
                 else:
                     total[3 + c] += point_forces[3 * point + c]
         for c in ti.static(range(6)):
-            partial[6 * chunk + c] = total[c]
+            partial[6 * (first + chunk) + c] = total[c]
 
 
 @ti.kernel
-def case_sums(partial: Doubles, first_chunks: Integers, totals: Doubles):
-    """Sums of a case's chunks, in their order."""
-    for case in range(first_chunks.shape[0] - 1):
+def fold(rows: Doubles, bounds: Integers, sums: Doubles):
+    """Per chunk of rows of six numbers: their sums, in the order of the rows."""
+    for chunk in range(bounds.shape[0] // 2):
         total = ti.Vector([0.0] * 6, dt=ti.f64)
-        for chunk in range(first_chunks[case], first_chunks[case + 1]):
+        for row in range(bounds[2 * chunk], bounds[2 * chunk + 1]):
             for c in ti.static(range(6)):
-                total[c] += partial[6 * chunk + c]
+                total[c] += rows[6 * row + c]
         for c in ti.static(range(6)):
-            totals[6 * case + c] = total[c]
+            sums[6 * chunk + c] = total[c]
 
 
 @ti.kernel

@@ -85,6 +85,8 @@ class Solver:
         self.load = Load(problems)
         self.most = np.array([p.settings.max_substeps for p in problems])
         self.passing_most = np.array([run.passing_substeps for run in self.runs])
+        self.driven = [run.number for run in self.runs if run.problem.press.actuations]
+        self.on_the_way = np.zeros(count, bool)
         self.settling = np.zeros(count, bool)
         self.active = np.ones(count, bool)
         self.substeps = np.zeros(count, int)
@@ -148,6 +150,7 @@ class Solver:
         self.runs[case].begin()
         self.progress.begin(case)
         self.settling[case] = self.runs[case].arrived
+        self.on_the_way[case] = self.runs[case].on_the_way
         self.spent[case] = 0
         self.residual[case] = np.inf
         self.lowest[case] = np.inf
@@ -191,10 +194,9 @@ class Solver:
 
     def _passing(self, change: np.ndarray) -> np.ndarray:
         """Which presses are within a frame and have rested there enough, (B,) bool."""
-        within = np.array([run.on_the_way for run in self.runs])
         near = self.residual < calm.PASSING * self.load.tolerance
         near &= change < calm.PASSING * calm.FORCE_CHANGE
-        return within & (near | (self.spent >= self.passing_most))
+        return self.on_the_way & (near | (self.spent >= self.passing_most))
 
     def _close(self, still: np.ndarray, passing: np.ndarray) -> np.ndarray:
         """End the frame of presses whose forces balance after the last move; which did."""
@@ -267,8 +269,10 @@ class Solver:
 
     def _load_N(self, balances: Balances, looked: np.ndarray) -> np.ndarray:
         """Load of the presses that are looked at, shape (B,)."""
-        driving_N = [run.driving_N() if looked[run.number] else 0.0 for run in self.runs]
-        return self.load.of(balances, np.array(driving_N))
+        driving_N = np.zeros(len(self.runs))
+        for case in self.driven:
+            driving_N[case] = self.runs[case].driving_N() if looked[case] else 0.0
+        return self.load.of(balances, driving_N)
 
     def _unstable(self, case: int) -> None:
         """Try the frame again with heavier nodes and a gentler ramp, or give up."""
