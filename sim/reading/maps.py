@@ -1,0 +1,60 @@
+"""What a read touch looks like from the camera: depth, normals, contact and deviation by pixel."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sim.reading.reader import Reader, Touch
+from sim.reading.rest_skin import normals_of
+
+TOUCHED_MM = 0.05
+"""Least inward displacement that counts as contact."""
+SURE = 2.0
+"""And the least number of its standard deviations."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class PixelMaps:
+    """Of an image of H x W pixels; NaN where no skin is seen."""
+
+    depth_mm: np.ndarray
+    """Inward displacement of the skin that a pixel sees, shape (H, W), float32."""
+    normal: np.ndarray
+    """Its unit normals into the sensor, shape (H, W, 3), float32."""
+    contact: np.ndarray
+    """Whether it is pressed in, shape (H, W), bool."""
+    sigma_mm: np.ndarray
+    """Standard deviation of the depth, shape (H, W), float32."""
+
+
+def touched(touch: Touch) -> np.ndarray:
+    """Vertices that are surely pressed in, shape (V,), bool."""
+    sigma_mm = np.nan_to_num(touch.sigma_mm, nan=np.inf)
+    return (touch.inward_mm > TOUCHED_MM) & (touch.inward_mm > SURE * sigma_mm)
+
+
+def pixel_maps(reader: Reader, touch: Touch) -> PixelMaps:
+    """A touch as the camera sees it."""
+    rows, columns = reader.rest.shape
+    sight = reader.sight(touch)
+    sees = reader.rest.sees & (sight.face >= 0)
+    corners = reader.rest.skin.faces[sight.face[sees]]
+    weights = sight.weights[sees]
+
+    def seen(values: np.ndarray, width: int) -> np.ndarray:
+        found = np.full((rows * columns, width), np.nan)
+        found[sees] = np.einsum("pk,pkc->pc", weights, values.reshape(-1, width)[corners])
+        return found.reshape(rows, columns, width).astype(np.float32)
+
+    normal = seen(normals_of(reader.rest.skin, reader.displaced_mm(touch)), 3)
+    with np.errstate(invalid="ignore"):
+        normal /= np.linalg.norm(normal, axis=2, keepdims=True)
+        contact = seen(touched(touch).astype(np.float64), 1)[:, :, 0] > 0.5
+    return PixelMaps(
+        depth_mm=seen(touch.inward_mm, 1)[:, :, 0],
+        normal=normal,
+        contact=contact,
+        sigma_mm=seen(touch.sigma_mm, 1)[:, :, 0],
+    )

@@ -1,0 +1,128 @@
+"""One photograph's pixels about one patch of the skin: what it shows, and what it would show."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sim.optics.raster.display import shown
+from sim.reading.changed import Change
+from sim.reading.fit import Prediction
+from sim.reading.patch import Patch
+from sim.reading.sight import Sight, moved
+from sim.reading.untouched import Untouched
+
+BLOCKS = 8.0
+"""Blocks of pixels for each free vertex, at most; larger images are fitted by means of blocks."""
+BLACK_GREY, WHITE_GREY = 0.5, 253.5
+"""Grey levels that say nothing more."""
+LIGHT_STEP = 1e-3
+"""Of the slope of the display's curve."""
+LEAST_LIGHT = 1e-4
+"""Of a prediction: at none the curve of a sensor with a gamma has no slope."""
+
+
+class PhotoView:
+    """p pixels in P blocks."""
+
+    def __init__(self, rest: Untouched, patch: Patch, seen: Change) -> None:
+        """Choose the pixels.
+
+        Args:
+            rest: The untouched sensor.
+            patch: What may move.
+            seen: How the photograph differs.
+        """
+        self._rest, self._patch = rest, patch
+        self._local = np.full(len(rest.skin.faces) + 1, -1)
+        self._local[patch.triangles] = np.arange(len(patch.triangles))
+        # Every pixel that sees a free vertex must speak: a rim that no pixel holds sinks, and takes
+        # the dent with it.
+        self._pixels = np.flatnonzero(rest.sees & (self._local[rest.sight.face] >= 0))
+        edge = max(1, int(np.sqrt(len(self._pixels) / (BLOCKS * max(patch.free, 1)))))
+        columns = rest.shape[1]
+        row, column = np.divmod(self._pixels, columns)
+        block = (row // edge) * columns + column // edge
+        _, self._lead, self._block = np.unique(block, return_index=True, return_inverse=True)
+        self._photo = seen.photo.reshape(-1, 3)[self._pixels]
+        self._trusted = (self._photo > BLACK_GREY) & (self._photo < WHITE_GREY)
+        self._told = self._summed(self._trusted.astype(np.float64))
+        self._idle_light = rest.idle_light[self._pixels]
+        self._exposure = rest.exposure[self._pixels]
+        self._through = rest.through[self._pixels]
+        self._sight = rest.sight
+
+    def rendered(self, inward_mm: np.ndarray) -> Prediction:
+        """What the renderer shows of the patch moved by (m,) [mm]."""
+        rest, patch, pixels = self._rest, self._patch, self._pixels
+        displacement_mm = np.zeros((rest.skin.count, 3))
+        chosen = patch.vertices[: patch.free]
+        displacement_mm[chosen] = inward_mm[:, None] * patch.inward[: patch.free]
+        self._sight = sight = moved(rest.studio, rest.sight, displacement_mm)
+        change = self._exposure * (sight.light[pixels] - rest.sight.light[pixels])
+        return self._prediction(inward_mm, sight, change)
+
+    def tabled(self, inward_mm: np.ndarray) -> Prediction:
+        """What the light by tilt makes of it, where the pixels look at rest."""
+        patch, sight, light = self._patch, self._rest.sight, self._rest.light
+        tilts = patch.posed(inward_mm).tilts
+        brought = light.at(patch.vertices, tilts) - light.at(patch.vertices, np.zeros_like(tilts))
+        corners = patch.faces[self._local[sight.face[self._pixels]]]
+        change = np.einsum("pk,pkc->pc", sight.weights[self._pixels], brought[corners])
+        return self._prediction(inward_mm, sight, change * self._exposure * self._through[:, None])
+
+    def seen_vertices(self) -> np.ndarray:
+        """Vertices that some pixel saw when last rendered, shape (V,), bool."""
+        rest, sight = self._rest, self._sight
+        seen = np.zeros(rest.skin.count, dtype=bool)
+        seen[rest.skin.faces[sight.face[rest.sees & (sight.face >= 0)]]] = True
+        return seen
+
+    def _prediction(self, inward_mm: np.ndarray, sight: Sight, change: np.ndarray) -> Prediction:
+        """From the change of display light (p, 3)."""
+        rest, patch, lead = self._rest, self._patch, self._lead
+        posed = patch.posed(inward_mm)
+        light = np.clip(self._idle_light + change, LEAST_LIGHT, 1.0)
+        grey = 255.0 * shown(light, rest.sensor) + self._unit_grey(sight, posed.normals)
+        left = np.where(self._trusted, self._photo - grey, 0.0)
+        ahead = 255.0 * shown(light[lead] + LIGHT_STEP, rest.sensor)
+        behind = 255.0 * shown(light[lead] - LIGHT_STEP, rest.sensor)
+        curve = (ahead - behind) / (2.0 * LIGHT_STEP)
+        pixels = self._pixels[lead]
+        triangles = self._local[sight.face[pixels]]
+        slopes = rest.light.slopes(patch.vertices, posed.tilts)
+        corners = patch.faces[np.maximum(triangles, 0)]
+        scale = curve * self._exposure[lead] * self._through[lead, None]
+        jacobian = slopes[corners] * sight.weights[pixels][:, :, None, None]
+        jacobian = jacobian.transpose(0, 2, 1, 3).reshape(len(pixels), 3, 6) * scale[:, :, None]
+        return Prediction(
+            residual=self._summed(left) / np.maximum(self._told, 1.0),
+            told=self._told,
+            triangles=triangles,
+            jacobian=jacobian,
+            tilt_slopes=patch.tilt_slopes(posed),
+        )
+
+    def _unit_grey(self, sight: Sight, normals: np.ndarray) -> np.ndarray:
+        """What the unit adds at the pixels, shape (p, 3), for inward normals (n, 3)."""
+        rest = self._rest
+        if rest.unit is None:
+            return np.zeros((len(self._pixels), 3))
+        inward = rest.skin.inward.copy()
+        at_rest = _blended(inward, rest.skin.faces, rest.sight, self._pixels)
+        inward[self._patch.vertices] = normals
+        now = _blended(inward, rest.skin.faces, sight, self._pixels)
+        return rest.unit_change(self._pixels, now, at_rest)
+
+    def _summed(self, values: np.ndarray) -> np.ndarray:
+        """Values of pixels, (p, 3), summed over blocks, (P, 3)."""
+        count = len(self._lead)
+        return np.stack(
+            [np.bincount(self._block, values[:, c], minlength=count) for c in range(3)], axis=1
+        )
+
+
+def _blended(inward: np.ndarray, faces: np.ndarray, sight: Sight, pixels: np.ndarray) -> np.ndarray:
+    """Unit normals (V, 3) at what pixels see, shape (p, 3)."""
+    corners = inward[faces[np.maximum(sight.face[pixels], 0)]]
+    found = np.einsum("pk,pkc->pc", sight.weights[pixels], corners)
+    return found / np.maximum(np.linalg.norm(found, axis=1, keepdims=True), 1e-12)

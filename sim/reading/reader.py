@@ -1,0 +1,194 @@
+"""Reading touch from photographs of one camera of one design, without training.
+
+The unknown is the inward displacement of the skin's vertices; what explains the difference between
+two photographs best is found by Gauss-Newton (`fit`), with the design's own light in the loop.
+First the light of the tilts alone is asked from several guesses, then the renderer from the best.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from sim.reading.changed import Change, change
+from sim.reading.deviation import deviation_mm
+from sim.reading.fit import LEVELS, Fitted, Prediction, Priors, fitted
+from sim.reading.patch import Patch
+from sim.reading.photo_view import PhotoView
+from sim.reading.rest_skin import bending, neighbours
+from sim.reading.sight import Sight, moved
+from sim.reading.untouched import Untouched
+
+STARTS_MM = (0.3, 0.8, 1.5)
+"""Heights of the domes that are tried as a first guess where the photograph changed: skin is
+pressed in, and near rest all tilts of a finger may look alike."""
+START_BLUR_PX = 2.0
+EXPLAINED, PLAIN = 0.3, 1.5
+"""Share of the misfit of an untouched skin, and misfit, up to which no other start is tried."""
+FEWEST_PIXELS = 5
+"""Changed pixels below which nothing was touched."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Touch:
+    """What a photograph says of the skin's V vertices."""
+
+    inward_mm: np.ndarray
+    """Displacement along the inward normal at rest, shape (V,); 0 where nothing changed."""
+    sigma_mm: np.ndarray
+    """Its standard deviation, shape (V,); 0 where nothing changed, NaN where skin may have moved
+    that the camera does not see."""
+    misfit: float
+    """Root mean square of residual over noise [1]: 1 where the light explains the photograph."""
+    noise_grey: float
+    steps: int
+    """Of the last fit."""
+    seconds: float
+    free: np.ndarray
+    """Vertices that were fitted, shape (V,), bool."""
+
+
+class Reader:
+    """Reads photographs of one sensor."""
+
+    def __init__(self, rest: Untouched) -> None:
+        self.rest = rest
+        self._bending = bending(rest.skin)
+        self._neighbours = neighbours(rest.skin)
+
+    def read(self, photo: np.ndarray, start: Touch | None = None) -> Touch:
+        """What a photograph (H, W, 3) [grey] of the touched sensor says.
+
+        Args:
+            photo: Of the size of the one at rest.
+            start: What an image just before it said: then only details are sought.
+        """
+        begun = time.perf_counter()
+        skin = self.rest.skin
+        seen = change(self.rest.idle, photo, self.rest.sees.reshape(self.rest.shape))
+        free, calm = self._moving(seen, start)
+        inward_mm, sigma_mm = np.zeros(skin.count), np.zeros(skin.count)
+        misfit, steps = 0.0, 0
+        if np.count_nonzero(seen.certain) < FEWEST_PIXELS or not free.any():
+            free = np.zeros(skin.count, dtype=bool)
+        else:
+            patch = Patch(skin, free)
+            chosen = patch.vertices[: patch.free]
+            view = PhotoView(self.rest, patch, seen)
+            fit = _Fit(
+                patch=patch,
+                priors=self._priors(chosen, calm),
+                view=view,
+                noise_grey=seen.noise_grey,
+            )
+            found = self._fitted(fit, seen, start)
+            view.rendered(found.inward_mm)
+            inward_mm[chosen] = found.inward_mm
+            # Errors of the light show as residuals that noise does not explain.
+            sigma_mm[chosen] = deviation_mm(found.matrix) * max(1.0, found.misfit)
+            sigma_mm[free & ~view.seen_vertices()] = np.nan
+            misfit, steps = found.misfit, found.steps
+        return Touch(
+            inward_mm=inward_mm,
+            sigma_mm=sigma_mm,
+            misfit=misfit,
+            noise_grey=seen.noise_grey,
+            steps=steps,
+            seconds=time.perf_counter() - begun,
+            free=free,
+        )
+
+    def displaced_mm(self, touch: Touch) -> np.ndarray:
+        """Displacement of the vertices [mm], shape (V, 3)."""
+        return touch.inward_mm[:, None] * self.rest.skin.inward
+
+    def sight(self, touch: Touch) -> Sight:
+        """What the pixels see of a touch."""
+        return moved(self.rest.studio, self.rest.sight, self.displaced_mm(touch))
+
+    def _moving(self, seen: Change, start: Touch | None) -> tuple[np.ndarray, np.ndarray]:
+        """Vertices that may move, and those that look at rest, (V,) bool each."""
+        import cv2
+
+        rest = self.rest
+        corners = rest.skin.faces[np.maximum(rest.sight.face, 0)]
+        free = np.zeros(rest.skin.count, dtype=bool)
+        free[corners[rest.sees & seen.near.ravel()]] = True
+        if start is not None:
+            free |= start.inward_mm > 0.0
+        free |= (self._neighbours @ free.astype(np.float64)) > 0.0
+        wider = cv2.dilate(seen.certain.astype(np.uint8), np.ones((3, 3))) > 0
+        calm = free.copy()
+        calm[corners[rest.sees & wider.ravel()]] = False
+        return free, calm
+
+    def _priors(self, chosen: np.ndarray, calm: np.ndarray) -> Priors:
+        """What is believed of the free vertices (m,)."""
+        from scipy.sparse import diags
+
+        bent, share = self._bending[:, chosen], self.rest.skin.shares_mm2
+        return Priors(
+            bending=(bent.T @ diags(share) @ bent).tocsr(),
+            area_mm2=share[chosen],
+            calm=calm[chosen],
+        )
+
+    def _fitted(self, fit: _Fit, seen: Change, start: Touch | None) -> Fitted:
+        """The fit from the guess that explains most."""
+        chosen = fit.patch.vertices[: fit.patch.free]
+        nothing = fit.view.rendered(np.zeros(fit.patch.free)).misfit(seen.noise_grey)
+        enough = max(EXPLAINED * nothing, PLAIN)
+        if start is not None:
+            found = fit.fine(start.inward_mm[chosen])
+            if found.misfit < enough:
+                return found
+        dome = self._dome(seen, chosen)
+        guesses = [fit.rough(top_mm * dome) for top_mm in STARTS_MM]
+        tried = [fit.fine(min(guesses, key=lambda each: each.misfit).inward_mm)]
+        if tried[0].misfit > enough:
+            # What the light by tilt alone cannot tell apart, shadows may.
+            tried += [fit.fine(each.inward_mm) for each in guesses]
+        return min(tried, key=lambda each: each.misfit)
+
+    def _dome(self, seen: Change, chosen: np.ndarray) -> np.ndarray:
+        """A dome of height 1 over the changed pixels, shape (m,)."""
+        import cv2
+
+        rest = self.rest
+        away_px = cv2.distanceTransform(seen.certain.astype(np.uint8), cv2.DIST_L2, 5)
+        dome = (1.0 - (1.0 - away_px / max(float(away_px.max()), 1.0)) ** 2).astype(np.float32)
+        dome = cv2.GaussianBlur(dome, (0, 0), START_BLUR_PX).ravel()
+        at = rest.skin.faces[rest.sight.face[rest.sees]].ravel()
+        total = np.bincount(at, np.repeat(dome[rest.sees], 3), minlength=rest.skin.count)
+        return (total / np.maximum(np.bincount(at, minlength=rest.skin.count), 1))[chosen]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Fit:
+    """What is fitted to what."""
+
+    patch: Patch
+    priors: Priors
+    view: PhotoView
+    noise_grey: float
+
+    def rough(self, start_mm: np.ndarray) -> Fitted:
+        """By the light of the tilts alone: smooth, forgiving, and quick."""
+        return self._by(self.view.tabled, start_mm, LEVELS[:-1])
+
+    def fine(self, start_mm: np.ndarray) -> Fitted:
+        """With the renderer in the loop: shadows, and what the camera sees of moved skin."""
+        return self._by(self.view.rendered, start_mm, LEVELS[-1:])
+
+    def _by(
+        self,
+        predict: Callable[[np.ndarray], Prediction],
+        start_mm: np.ndarray,
+        levels: tuple[tuple[float, float], ...],
+    ) -> Fitted:
+        return fitted(
+            self.patch, self.priors, predict, start_mm, noise_grey=self.noise_grey, levels=levels
+        )

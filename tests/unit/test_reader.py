@@ -1,0 +1,107 @@
+"""Photographs made by a design's own renderer, read back: what is left is the reader's own error.
+
+A comparison of the product with itself; `validate reading` has photographs by other light.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from sim.optics.proof.specimen import dent, finger
+from sim.optics.raster.display import shown
+from sim.optics.studio.render import Studio
+from sim.reading.maps import pixel_maps, touched
+from sim.reading.reader import Reader
+from sim.reading.untouched import open_untouched
+from tests.synthetic_light import lit
+from workbench.core.design.camera import Camera
+from workbench.core.design.lighting import LedMount, LedRing, LightModel
+from workbench.core.design.optics import Optics
+from workbench.core.result.results import MembraneMesh
+
+pytestmark = pytest.mark.usefixtures("taichi_device")
+
+CAMERA = Camera(width_px=160, height_px=120)
+RING = LedRing(count=3, radius_mm=12.5, mount=LedMount.SHELL, cone_deg=150.0)
+NOISE_GREY = 1.0
+
+
+@pytest.fixture(scope="module")
+def mesh() -> MembraneMesh:
+    return finger(edge_mm=0.8)
+
+
+@pytest.fixture(scope="module")
+def studio(mesh: MembraneMesh) -> Studio:
+    light, table = lit(mesh, LightModel("hybrid"), RING)
+    return Studio(mesh, light, Optics(camera=CAMERA, ring=RING), table=table)
+
+
+@pytest.fixture(scope="module")
+def reader(studio: Studio) -> Reader:
+    return Reader(open_untouched(studio, CAMERA, photographed(studio, None)))
+
+
+def pressed(mesh: MembraneMesh) -> np.ndarray:
+    """A round dent in the finger's side, half a millimetre deep."""
+    return dent(mesh.seen, at_mm=(13.0, 7.5, 22.0), depth_mm=0.5, radius_mm=3.0)
+
+
+def photographed(studio: Studio, moved: np.ndarray | None, noise_grey: float = 0.0) -> np.ndarray:
+    """A photograph of displaced skin, (V, 3), in whole grey levels."""
+    count = studio.imager.raster.vertices
+    shape = np.zeros((count, 3), dtype=np.float32) if moved is None else moved
+    light = np.clip(studio.linear(shape[None])[0] * studio.exposure, 0.0, 1.0)
+    noise = np.random.default_rng(7).normal(size=light.shape) * noise_grey
+    return np.clip(np.round(255.0 * shown(light, CAMERA.sensor) + noise), 0, 255)
+
+
+@pytest.mark.parametrize(("noise_grey", "most_mm"), [(0.0, 0.02), (NOISE_GREY, 0.03)])
+def test_a_dent_is_read_to_some_hundredths(
+    mesh: MembraneMesh, studio: Studio, reader: Reader, noise_grey: float, most_mm: float
+) -> None:
+    """Mean absolute error over what moved by .05 mm; saying nothing would be six times as far."""
+    moved = pressed(mesh)
+    skin = reader.rest.skin
+    touch = reader.read(photographed(studio, moved, noise_grey))
+    depth_mm = np.einsum("vc,vc->v", moved, skin.inward)
+    deep = (depth_mm > 0.05) & np.isfinite(touch.sigma_mm)
+    off_mm = np.abs(touch.inward_mm - depth_mm)[deep].mean()
+    assert off_mm < most_mm
+    assert depth_mm[deep].mean() > 6.0 * most_mm
+    assert touch.misfit < 2.0
+    assert touched(touch)[np.argmax(depth_mm)]
+
+
+def test_pixels_show_what_the_vertices_say(
+    mesh: MembraneMesh, studio: Studio, reader: Reader
+) -> None:
+    """Depth where skin is seen, NaN elsewhere; unit normals; contact in the middle of the dent."""
+    touch = reader.read(photographed(studio, pressed(mesh)))
+    maps = pixel_maps(reader, touch)
+    sees = np.isfinite(maps.depth_mm)
+    assert sees.any()
+    assert maps.depth_mm[sees].max() == pytest.approx(touch.inward_mm.max(), rel=0.1)
+    np.testing.assert_allclose(np.linalg.norm(maps.normal[sees], axis=1), 1.0, atol=1e-5)
+    assert maps.contact[maps.depth_mm == maps.depth_mm[sees].max()].all()
+    assert not maps.contact[~sees].any()
+
+
+def test_a_video_goes_on_from_the_image_before(
+    mesh: MembraneMesh, studio: Studio, reader: Reader
+) -> None:
+    """A tenth deeper, in no more steps and to the same depth."""
+    moved = pressed(mesh)
+    before = reader.read(photographed(studio, moved))
+    photo = photographed(studio, 1.1 * moved)
+    anew, on = reader.read(photo), reader.read(photo, before)
+    assert on.steps <= anew.steps
+    assert on.inward_mm.max() == pytest.approx(anew.inward_mm.max(), abs=0.02)
+
+
+def test_an_untouched_sensor_reads_as_untouched(studio: Studio, reader: Reader) -> None:
+    """With noise and in another exposure of 2 grey levels."""
+    touch = reader.read(photographed(studio, None, NOISE_GREY) + 2.0)
+    assert touch.inward_mm.max() < 0.02
+    assert not touched(touch).any()

@@ -1,0 +1,159 @@
+"""The parts of a reader: tilts, evidence, deviations, change."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.sparse import csc_matrix
+
+from sim.optics.maps.signal import tangents
+from sim.optics.raster.gbuffer import sum_area_vectors
+from sim.reading.changed import LEAST_NOISE_GREY, change
+from sim.reading.deviation import deviation_mm
+from sim.reading.patch import Patch
+from sim.reading.pixels import gathered, on_tilts
+from sim.reading.rest_skin import RestSkin, bending, neighbours, normals_of
+
+
+def dome(count: int = 9) -> RestSkin:
+    """A curved skin of count x count vertices, 1 mm apart, seen from below."""
+    line = np.arange(count, dtype=np.float64)
+    x, y = (grid.ravel() for grid in np.meshgrid(line, line))
+    middle = (count - 1) / 2
+    z = -0.03 * ((x - middle) ** 2 + 0.5 * (y - middle) ** 2)
+    points_mm = np.stack([x, y, z], axis=1)
+    corner = (np.arange(count - 1)[:, None] * count + np.arange(count - 1)).ravel()
+    faces = np.concatenate(
+        [
+            np.stack([corner, corner + 1, corner + count], axis=1),
+            np.stack([corner + 1, corner + count + 1, corner + count], axis=1),
+        ]
+    )
+    area_mm2 = sum_area_vectors(points_mm, faces, len(points_mm))
+    inward = -area_mm2 / np.linalg.norm(area_mm2, axis=1, keepdims=True)
+    one, two = tangents(inward)
+    return RestSkin(
+        points_mm=points_mm,
+        faces=faces,
+        inward=inward,
+        one=one,
+        two=two,
+        area_mm2=-area_mm2,
+        side=np.full(len(points_mm), -1.0),
+    )
+
+
+@pytest.fixture
+def patch() -> tuple[RestSkin, Patch]:
+    """The inner vertices of the dome."""
+    skin = dome()
+    free = np.zeros(skin.count, dtype=bool)
+    places = skin.points_mm[:, :2]
+    free |= ((places > 1.5) & (places < 6.5)).all(axis=1)
+    return skin, Patch(skin, free)
+
+
+def test_a_patch_at_rest_is_not_tilted(patch: tuple[RestSkin, Patch]) -> None:
+    """Whatever its curvature."""
+    _, part = patch
+    posed = part.posed(np.zeros(part.free))
+    np.testing.assert_allclose(posed.tilts, 0.0, atol=1e-12)
+
+
+def test_tilts_are_those_of_the_whole_skin(patch: tuple[RestSkin, Patch]) -> None:
+    """The normals of a patch are the renderer's of all vertices, also around it."""
+    skin, part = patch
+    moves = np.random.default_rng(1).uniform(0.0, 0.3, part.free)
+    inward_mm = np.zeros(skin.count)
+    inward_mm[part.vertices[: part.free]] = moves
+    whole = normals_of(skin, inward_mm[:, None] * skin.inward)
+    posed = part.posed(moves)
+    np.testing.assert_allclose(posed.normals, whole[part.vertices], atol=1e-12)
+    across = np.einsum("vc,vc->v", posed.normals, skin.one[part.vertices])
+    np.testing.assert_allclose(posed.tilts[:, 0], across, atol=1e-12)
+
+
+def test_slopes_of_tilts_are_their_differences(patch: tuple[RestSkin, Patch]) -> None:
+    """By central differences of every move."""
+    _, part = patch
+    moves = np.random.default_rng(2).uniform(0.0, 0.3, part.free)
+    found = part.tilt_slopes(part.posed(moves)).toarray()
+    step = 1e-6
+    expected = np.empty_like(found)
+    for number in range(part.free):
+        way = step * (np.arange(part.free) == number)
+        ahead, behind = (part.posed(moves + sign * way).tilts for sign in (1.0, -1.0))
+        expected[:, number] = ((ahead - behind) / (2.0 * step)).ravel()
+    np.testing.assert_allclose(found, expected, atol=1e-7)
+
+
+def test_evidence_of_triangles_is_that_of_pixels() -> None:
+    """Summed over triangles and then on tilts, or at once as dense matrices."""
+    random = np.random.default_rng(3)
+    faces = np.array([[0, 1, 2], [1, 3, 2], [2, 3, 4]])
+    triangles = random.integers(0, 2, 40)
+    jacobian, residual = random.normal(size=(40, 3, 6)), random.normal(size=(40, 3))
+    weight = random.uniform(0.1, 1.0, (40, 3))
+    matrix, pull = on_tilts(faces, 5, gathered(triangles, 3, jacobian, residual, weight))
+    dense = np.zeros((120, 10))
+    for pixel, triangle in enumerate(triangles):
+        for number, column in enumerate(np.repeat(2 * faces[triangle], 2) + np.tile([0, 1], 3)):
+            dense[3 * pixel : 3 * pixel + 3, column] = jacobian[pixel, :, number]
+    weighted = weight.ravel()[:, None] * dense
+    np.testing.assert_allclose(matrix.toarray(), dense.T @ weighted, atol=1e-12)
+    np.testing.assert_allclose(pull, weighted.T @ residual.ravel(), atol=1e-12)
+
+
+def test_bending_knows_a_paraboloid() -> None:
+    """The Laplacian of .05 (x^2 + y^2) is .2 per mm inside a plane skin; of a plane it is none."""
+    skin = dome()
+    flat = RestSkin(
+        points_mm=skin.points_mm * [1.0, 1.0, 0.0],
+        faces=skin.faces,
+        inward=np.tile([0.0, 0.0, -1.0], (skin.count, 1)),
+        one=skin.one,
+        two=skin.two,
+        area_mm2=-sum_area_vectors(skin.points_mm * [1.0, 1.0, 0.0], skin.faces, skin.count),
+        side=skin.side,
+    )
+    x, y, _ = flat.points_mm.T
+    inside = (np.minimum(x, y) > 0.5) & (np.maximum(x, y) < 7.5)
+    found = bending(flat)
+    # Right angles count as if they were a little less.
+    np.testing.assert_allclose((found @ (0.05 * (x**2 + y**2)))[inside], -0.2, rtol=0.03)
+    np.testing.assert_allclose((found @ (0.3 * x - 0.1 * y))[inside], 0.0, atol=1e-12)
+    assert neighbours(flat)[40].sum() == 6.0
+
+
+def test_deviations_are_the_diagonal_of_the_inverse() -> None:
+    """To a third of each: two dozen random vectors."""
+    random = np.random.default_rng(5)
+    factor = random.normal(size=(30, 30)) * 0.05 + np.diag(random.uniform(1.0, 3.0, 30))
+    matrix = factor @ factor.T
+    expected = np.sqrt(np.diag(np.linalg.inv(matrix)))
+    np.testing.assert_allclose(deviation_mm(csc_matrix(matrix)), expected, rtol=0.33)
+
+
+def test_change_finds_offset_noise_and_place() -> None:
+    """A disc that is 12 grey brighter, in a photograph 3 grey brighter, at 2 grey of noise."""
+    random = np.random.default_rng(6)
+    row, column = np.mgrid[:120, :160]
+    disc = np.hypot(row - 50, column - 90) < 14
+    idle = np.full((120, 160, 3), 90.0)
+    clean = idle + np.where(disc, 12.0, 0.0)[:, :, None] + [3.0, -2.0, 1.0]
+    photo = np.round(clean + random.normal(size=clean.shape) * 2.0)
+    found = change(idle, photo, np.ones((120, 160), dtype=bool))
+    assert found.noise_grey == pytest.approx(2.0, rel=0.1)
+    np.testing.assert_allclose((found.photo - idle)[~disc].mean(axis=0), 0.0, atol=0.6)
+    core = np.hypot(row - 50, column - 90) < 12
+    assert found.certain[core].all()
+    assert not found.certain[np.hypot(row - 50, column - 90) > 20].any()
+    assert found.near[np.hypot(row - 50, column - 90) < 19].all()
+
+
+def test_an_untouched_photograph_has_not_changed() -> None:
+    """Nor has its noise, of whole grey levels."""
+    idle = np.full((60, 80, 3), 90.0)
+    found = change(idle, idle, np.ones((60, 80), dtype=bool))
+    assert not found.certain.any()
+    assert found.noise_grey == LEAST_NOISE_GREY

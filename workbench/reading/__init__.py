@@ -1,0 +1,1 @@
+"""Photographs of a built sensor read as touch: depth, contact and force."""

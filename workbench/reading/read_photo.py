@@ -1,0 +1,110 @@
+"""One photograph read: what the skin did, what the camera shows of it, and what it took."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from workbench.reading.design_reader import DesignReader, expect_light, expect_size
+
+if TYPE_CHECKING:
+    # They need the device that reading opens.
+    from sim.reading.maps import PixelMaps
+    from sim.reading.reader import Touch
+
+UNKNOWN = np.full(3, np.nan)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Reading:
+    """Of one photograph."""
+
+    photo: str
+    touch: Touch
+    maps: PixelMaps
+    force_N: np.ndarray
+    """On the membrane in the sensor frame, shape (3,); NaN where the wall rests on gel or air."""
+    force_sigma_N: float
+    """Standard deviation of its size."""
+    contact_area_mm2: float
+    ball_radius_mm: float
+    """Of the ball that fits the dent; NaN where none does."""
+
+    @property
+    def figures(self) -> dict[str, Any]:
+        """What `reading.json` says of it; null where nothing is known."""
+        return {
+            "photo": self.photo,
+            "peak_depth_mm": float(self.touch.inward_mm.max(initial=0.0)),
+            "contact_area_mm2": self.contact_area_mm2,
+            "ball_radius_mm": _known(self.ball_radius_mm),
+            "force_N": [_known(value) for value in self.force_N.tolist()],
+            "force_sigma_N": _known(self.force_sigma_N),
+            "noise_grey": self.touch.noise_grey,
+            "misfit": self.touch.misfit,
+            "seconds": self.touch.seconds,
+        }
+
+
+def read_photo(
+    opened: DesignReader, name: str, photo: np.ndarray, before: Touch | None = None
+) -> Reading:
+    """Read a photograph (H, W, 3), uint8.
+
+    Args:
+        opened: The design's reader.
+        name: Of the photograph.
+        photo: Of the touched sensor, by the camera that took the one at rest.
+        before: What the image before it in a video said.
+
+    Raises:
+        DesignError: If it has another size or is saturated.
+    """
+    from sim.reading.ball import ball_radius_mm
+    from sim.reading.maps import pixel_maps, touched
+
+    rest, reader = opened.reader.rest, opened.reader
+    expect_size(name, photo, rest.camera)
+    expect_light(name, photo, rest.sees)
+    touch = reader.read(photo, before)
+    chosen = np.flatnonzero(touched(touch))
+    force_N, sigma_N = _force(opened, touch, chosen)
+    return Reading(
+        photo=name,
+        touch=touch,
+        maps=pixel_maps(reader, touch),
+        force_N=force_N,
+        force_sigma_N=sigma_N,
+        contact_area_mm2=float(rest.skin.shares_mm2[chosen].sum()),
+        ball_radius_mm=ball_radius_mm(
+            rest.skin.points_mm[chosen], rest.skin.inward[chosen], touch.inward_mm[chosen]
+        ),
+    )
+
+
+def _force(opened: DesignReader, touch: Touch, chosen: np.ndarray) -> tuple[np.ndarray, float]:
+    """Force and deviation by the law of the wall, of the touched vertices (n,)."""
+    from sim.reading.force import read_force
+    from sim.reading.layer_law import Layer
+
+    if opened.mesh.backing_mm > 0.0 or opened.mesh.seen is not opened.mesh.outer:
+        # The wall gives way as a whole, or what is seen is not what is touched.
+        return UNKNOWN, float("nan")
+    skin, material, depth_mm = opened.reader.rest.skin, opened.material, touch.inward_mm[chosen]
+    thickness_mm = 1.0
+    if len(chosen):
+        thickness_mm = float(np.average(opened.wall_mm[chosen], weights=depth_mm))
+    found = read_force(
+        Layer(thickness_mm=thickness_mm, young_MPa=material.young_MPa, poisson=material.poisson),
+        skin.points_mm[chosen],
+        skin.inward[chosen],
+        skin.shares_mm2[chosen],
+        (depth_mm, touch.sigma_mm[chosen]),
+    )
+    return found.force_N, found.sigma_N
+
+
+def _known(value: float) -> float | None:
+    return value if np.isfinite(value) else None
