@@ -14,6 +14,8 @@ LEAST_NOISE_GREY = 0.3
 """Of whole grey levels."""
 REACH_PX = 6
 """How far around changed pixels skin may have moved."""
+MOST_JUDGED = 20_000
+"""Pixels from which offset and noise are found, about: a hundredth of a grey level."""
 OUTLYING = 4.0
 """Median sizes beyond which a difference is no noise."""
 
@@ -48,8 +50,9 @@ def change(idle: np.ndarray, photo: np.ndarray, sees: np.ndarray) -> Change:
     certain = np.zeros_like(sees)
     for _ in range(2):
         if calm.any():
-            offset = np.median(difference[calm], axis=0)
-            noise_grey = max(LEAST_NOISE_GREY, _spread(difference[calm] - offset))
+            quiet = difference[calm][:: max(1, int(np.count_nonzero(calm)) // MOST_JUDGED)]
+            offset = np.median(quiet, axis=0)
+            noise_grey = max(LEAST_NOISE_GREY, _spread(quiet - offset))
         size = cv2.GaussianBlur(difference - offset, (0, 0), BLUR_PX)
         over = np.abs(size).max(axis=2) > max(LEAST_GREY, noise_grey)
         certain = cv2.morphologyEx(over.astype(np.uint8), cv2.MORPH_OPEN, np.ones((3, 3))) > 0

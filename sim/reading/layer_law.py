@@ -3,12 +3,11 @@
 A pressure p on a layer of thickness t that is bonded to something rigid and free of shear on top
 moves its surface, wave by wave, by
 
-    u(k) = p(k) (1 - nu) / (mu k) ((3 - 4 nu) sinh 2x - 2x)
-           / ((3 - 4 nu) cosh 2x + 2 x^2 + 8 nu^2 - 12 nu + 5),   x = k t,
+    u(k) = p(k) (1 - nu) / (mu k) L(k t),
 
-which is that of a half-space for short waves and of a laterally confined layer for long ones. Under
+L being 1 for short waves, which see a half-space, and less for long ones (`layer_response`). Under
 an object that only pushes, p is nowhere negative, and it vanishes where nothing touches.
-Source: Johnson, Contact Mechanics, 1985, section 5.8; Dimitriadis and others, Biophys. J. 82, 2002.
+Source: Johnson, Contact Mechanics, 1985, sections 3.4 and 5.8.
 Left out: large strains, curvature of the skin, friction, a wall over gel or air.
 """
 
@@ -18,6 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sim.contact.studies.closed_forms import layer_response
 from sim.material import moduli_MPa
 
 WAVES = 2000
@@ -39,19 +39,13 @@ class Layer:
 
     def compliance(self, wave_per_mm: np.ndarray) -> np.ndarray:
         """u(k) / p(k) [mm/MPa] of waves k > 0, same shape."""
-        return self._half_space(wave_per_mm) * self._share(wave_per_mm * self.thickness_mm)
+        return self._half_space(wave_per_mm) * layer_response(
+            wave_per_mm * self.thickness_mm, self.poisson
+        )
 
     def _half_space(self, wave_per_mm: np.ndarray) -> np.ndarray:
         shear_MPa, _ = moduli_MPa(self.young_MPa, self.poisson)
         return (1.0 - self.poisson) / (shear_MPa * wave_per_mm)
-
-    def _share(self, depths: np.ndarray) -> np.ndarray:
-        """Of the half-space's compliance, by k t: 1 for short waves."""
-        x, nu = np.minimum(depths, 300.0), self.poisson
-        # Divided by cosh 2x, so that nothing overflows.
-        over = 1.0 / np.cosh(2.0 * x)
-        above = (3.0 - 4.0 * nu) * np.tanh(2.0 * x) - 2.0 * x * over
-        return above / (3.0 - 4.0 * nu + (2.0 * x**2 + 8.0 * nu**2 - 12.0 * nu + 5.0) * over)
 
     def response(self, distance_mm: np.ndarray, disc_mm: float) -> np.ndarray:
         """Displacement [mm/N] at distances from the middle of a disc that carries 1 N, same shape.
@@ -63,7 +57,8 @@ class Layer:
         from scipy.special import j0
 
         wave = np.linspace(0.0, SHORTEST / self.thickness_mm, WAVES + 1)[1:]
-        lost = (1.0 - self._share(wave * self.thickness_mm)) * self._half_space(wave) * wave
+        short = layer_response(wave * self.thickness_mm, self.poisson)
+        lost = (1.0 - short) * self._half_space(wave) * wave
         reach = np.linspace(0.0, max(float(distance_mm.max(initial=0.0)), disc_mm), DISTANCES)
         kernel = lost * j0(np.outer(reach, wave)) / (2.0 * np.pi)
         held = np.trapezoid(kernel, wave, axis=1) + 0.5 * kernel[:, 0] * wave[0]
