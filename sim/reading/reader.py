@@ -28,6 +28,11 @@ pressed in, and near rest all tilts of a finger may look alike."""
 START_BLUR_PX = 2.0
 EXPLAINED, PLAIN = 0.3, 1.5
 """Share of the misfit of an untouched skin, and misfit, up to which no other start is tried."""
+OWN_SHARE, OWN_MM = 0.02, 2e-3
+"""Standard deviation of what a reading leaves out, over the depth and beside it [mm]: skin moves
+sideways too. Of 16 readings of pressed balls, .2 to 1 mm deep in pad and finger, without noise and
+with 1 grey of it, 66 % of the errors are then within one standard deviation (24 to 100 %), without
+it 21 %."""
 FEWEST_PIXELS = 5
 """Changed pixels below which nothing was touched."""
 
@@ -88,7 +93,9 @@ class Reader:
             view.rendered(found.inward_mm)
             inward_mm[chosen] = found.inward_mm
             # Errors of the light show as residuals that noise does not explain.
-            sigma_mm[chosen] = deviation_mm(found.matrix) * max(1.0, found.misfit)
+            told_mm = deviation_mm(found.matrix) * max(1.0, found.misfit)
+            own_mm = np.hypot(OWN_SHARE * found.inward_mm, OWN_MM)
+            sigma_mm[chosen] = np.hypot(told_mm, own_mm)
             sigma_mm[free & ~view.seen_vertices()] = np.nan
             misfit, steps = found.misfit, found.steps
         return Touch(
