@@ -11,6 +11,7 @@ little.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -22,7 +23,7 @@ from sim.reading.pixels import gathered, on_tilts
 LEVELS = ((0.3, 10.0), (0.6, 1.0), (1.0, 0.0))
 """k [1/mm], and the least error that pixels are given, in root mean squares of the first residual:
 smooth and forgiving first. A ball of 3 mm has a curvature of .33 per mm."""
-MOST_STEPS = 6
+MOST_STEPS = 10
 """Of each level."""
 FARTHEST_MM = 0.5
 """Largest change of a step."""
@@ -37,6 +38,18 @@ FIRST_DAMPING, LEAST_DAMPING = 1e-3, 1e-6
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
+class Slopes:
+    """How a prediction changes with the moves."""
+
+    triangles: np.ndarray
+    """Of the patch, that each of P blocks sees, shape (P,); -1 of others."""
+    jacobian: np.ndarray
+    """Grey levels by the tilts of its corners, shape (P, 3, 6)."""
+    tilt_slopes: Any
+    """Derivatives of the tilts by the moves, sparse (2 n, m)."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
 class Prediction:
     """What a moved patch would show, of the P blocks of pixels that are fitted."""
 
@@ -44,12 +57,8 @@ class Prediction:
     """Photo less prediction [grey], mean of a block, shape (P, 3)."""
     told: np.ndarray
     """Pixels of the block whose colour says something, shape (P, 3)."""
-    triangles: np.ndarray
-    """Of the patch, that each sees, shape (P,); -1 of others."""
-    jacobian: np.ndarray
-    """By the tilts of its corners, shape (P, 3, 6)."""
-    tilt_slopes: Any
-    """Derivatives of the tilts by the moves, sparse (2 n, m)."""
+    slopes: Callable[[], Slopes]
+    """Asked for where a step begins."""
 
     def misfit(self, noise_grey: float) -> float:
         """Root mean square of residual over noise, of the blocks [1]."""
@@ -98,7 +107,7 @@ class Fitted:
 def fitted(
     patch: Patch,
     priors: Priors,
-    predict: Any,
+    predict: Callable[[np.ndarray], Prediction],
     start_mm: np.ndarray,
     *,
     noise_grey: float,
@@ -109,99 +118,92 @@ def fitted(
     Args:
         patch: What may move.
         priors: What is believed of it.
-        predict: Gives the `Prediction` of a displacement (m,) [mm].
+        predict: What the patch moved by (m,) [mm] would show.
         start_mm: First guess, shape (m,).
         noise_grey: Standard deviation of a pixel.
         levels: As `LEVELS`.
     """
-    inward_mm, steps = start_mm, 0
-    best: _State | None = None
-    first = predict(start_mm)
-    spread_grey = first.spread_grey
+    steps, inward_mm, seen = 0, start_mm, predict(start_mm)
+    spread_grey = seen.spread_grey
+    matrix: Any = None
     for curvature, forgiving in levels:
         error_grey = max(noise_grey, forgiving * spread_grey)
-        robust = (curvature, forgiving) == levels[-1]
-        level = _Level(patch, priors, predict, error_grey, curvature, robust=robust)
-        damping = FIRST_DAMPING
-        best = level.state(inward_mm)
+        level = _Level(
+            patch=patch,
+            priors=priors,
+            curvature=curvature,
+            error_grey=error_grey,
+            robust=forgiving == 0.0,
+        )
+        damping, cost = FIRST_DAMPING, level.cost(inward_mm, seen)
+        matrix, pull = level.quadratic(inward_mm, seen)
         for _ in range(MOST_STEPS):
-            tried_mm = best.stepped(damping)
+            tried_mm = _stepped(inward_mm, matrix, pull, damping)
+            tried = predict(tried_mm)
             steps += 1
-            state = level.state(tried_mm)
-            if state.cost >= best.cost:
+            gain = cost - level.cost(tried_mm, tried)
+            if gain <= 0.0:
                 damping *= 10.0
                 continue
-            gain = best.cost - state.cost
             damping = max(0.2 * damping, LEAST_DAMPING)
-            best = state
-            if gain < WORTH * best.cost:
+            inward_mm, seen, cost = tried_mm, tried, cost - gain
+            matrix, pull = level.quadratic(inward_mm, seen)
+            if gain < WORTH * cost:
                 break
-        inward_mm = best.inward_mm
-    assert best is not None
-    return Fitted(inward_mm=inward_mm, matrix=best.matrix, misfit=best.misfit, steps=steps)
+    return Fitted(inward_mm=inward_mm, matrix=matrix, misfit=seen.misfit(noise_grey), steps=steps)
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class _State:
-    """A displacement, its cost, and the quadratic about it."""
+def _stepped(inward_mm: np.ndarray, matrix: Any, pull: np.ndarray, damping: float) -> np.ndarray:
+    """The displacement after a step of a quadratic."""
+    from scipy.sparse import diags
+    from scipy.sparse.linalg import splu
 
-    inward_mm: np.ndarray
-    cost: float
-    misfit: float
-    matrix: Any
-    pull: np.ndarray
-
-    def stepped(self, damping: float) -> np.ndarray:
-        """The displacement after a step."""
-        from scipy.sparse import diags
-        from scipy.sparse.linalg import splu
-
-        damped = (self.matrix + diags(damping * self.matrix.diagonal())).tocsc()
-        options = {"SymmetricMode": True}
-        step = splu(damped, permc_spec="MMD_AT_PLUS_A", options=options).solve(self.pull)
-        step *= min(1.0, FARTHEST_MM / max(float(np.abs(step).max(initial=0.0)), 1e-12))
-        return np.clip(self.inward_mm + step, *RANGE_MM)
+    damped = (matrix + diags(damping * matrix.diagonal())).tocsc()
+    options = {"SymmetricMode": True}
+    step = splu(damped, permc_spec="MMD_AT_PLUS_A", options=options).solve(pull)
+    step *= min(1.0, FARTHEST_MM / max(float(np.abs(step).max(initial=0.0)), 1e-12))
+    return np.clip(inward_mm + step, *RANGE_MM)
 
 
+@dataclass(frozen=True, kw_only=True)
 class _Level:
     """The cost at one k."""
 
-    def __init__(
-        self,
-        patch: Patch,
-        priors: Priors,
-        predict: Any,
-        noise_grey: float,
-        curvature: float,
-        *,
-        robust: bool,
-    ) -> None:
-        self.patch, self.priors, self.predict = patch, priors, predict
-        self.noise_grey, self.curvature, self.robust = noise_grey, curvature, robust
+    patch: Patch
+    priors: Priors
+    curvature: float
+    error_grey: float
+    """That a pixel is given."""
+    robust: bool
+    """Whether blocks far off count less."""
 
-    def state(self, inward_mm: np.ndarray) -> _State:
-        """Cost and quadratic at a displacement (m,)."""
-        seen = self.predict(inward_mm)
-        over = np.abs(seen.residual) * np.sqrt(seen.told) / self.noise_grey
-        weight = seen.told / self.noise_grey**2
-        if self.robust:
-            weight = weight * np.minimum(1.0, HUBER / np.maximum(over, 1e-9))
-        known = seen.triangles >= 0
+    def cost(self, inward_mm: np.ndarray, seen: Prediction) -> float:
+        """Of a displacement (m,) and what it would show."""
+        prior = self.priors.matrix(self.curvature, inward_mm)
+        told = (self._weight(seen) * seen.residual**2).sum()
+        return float(told + inward_mm @ (prior @ inward_mm))
+
+    def quadratic(self, inward_mm: np.ndarray, seen: Prediction) -> tuple[Any, np.ndarray]:
+        """Half the second derivative of the cost, sparse (m, m), and half its fall, (m,)."""
+        slopes, weight = seen.slopes(), self._weight(seen)
+        known = slopes.triangles >= 0
         evidence = gathered(
-            seen.triangles[known],
+            slopes.triangles[known],
             len(self.patch.faces),
-            seen.jacobian[known],
+            slopes.jacobian[known],
             seen.residual[known],
             weight[known],
         )
         products, pulls = on_tilts(self.patch.faces, self.patch.count, evidence)
         prior = self.priors.matrix(self.curvature, inward_mm)
-        slopes = seen.tilt_slopes
-        told = np.count_nonzero(seen.told[known])
-        return _State(
-            inward_mm=inward_mm,
-            cost=float((weight * seen.residual**2).sum() + inward_mm @ (prior @ inward_mm)),
-            misfit=float(np.sqrt((over[known] ** 2).sum() / max(told, 1))),
-            matrix=(slopes.T @ (products @ slopes) + prior).tocsc(),
-            pull=slopes.T @ pulls - prior @ inward_mm,
-        )
+        by_move = slopes.tilt_slopes
+        matrix = (by_move.T @ (products @ by_move) + prior).tocsc()
+        return matrix, by_move.T @ pulls - prior @ inward_mm
+
+    def _weight(self, seen: Prediction) -> np.ndarray:
+        """One over the variance of each block and colour, shape (P, 3)."""
+        weight = seen.told / self.error_grey**2
+        if not self.robust:
+            return weight
+        over = np.abs(seen.residual) * np.sqrt(weight)
+        return weight * np.minimum(1.0, HUBER / np.maximum(over, 1e-9))

@@ -6,8 +6,8 @@ import numpy as np
 
 from sim.optics.raster.display import shown
 from sim.reading.changed import Change
-from sim.reading.fit import Prediction
-from sim.reading.patch import Patch
+from sim.reading.fit import Prediction, Slopes
+from sim.reading.patch import Patch, Posed
 from sim.reading.sight import Sight, moved
 from sim.reading.untouched import Untouched
 
@@ -22,7 +22,7 @@ LEAST_LIGHT = 1e-4
 
 
 class PhotoView:
-    """p pixels in P blocks."""
+    """p pixels in P blocks; what a block shows is the mean of its pixels."""
 
     def __init__(self, rest: Untouched, patch: Patch, seen: Change) -> None:
         """Choose the pixels.
@@ -39,16 +39,17 @@ class PhotoView:
         # the dent with it.
         self._pixels = np.flatnonzero(rest.sees & (self._local[rest.sight.face] >= 0))
         edge = max(1, int(np.sqrt(len(self._pixels) / (BLOCKS * max(patch.free, 1)))))
-        columns = rest.shape[1]
-        row, column = np.divmod(self._pixels, columns)
-        block = (row // edge) * columns + column // edge
-        _, self._lead, self._block = np.unique(block, return_index=True, return_inverse=True)
-        self._photo = seen.photo.reshape(-1, 3)[self._pixels]
-        self._trusted = (self._photo > BLACK_GREY) & (self._photo < WHITE_GREY)
-        self._told = self._summed(self._trusted.astype(np.float64))
-        self._idle_light = rest.idle_light[self._pixels]
+        row, column = np.divmod(self._pixels, rest.shape[1])
+        block = (row // edge) * rest.shape[1] + column // edge
+        _, lead, self._block = np.unique(block, return_index=True, return_inverse=True)
+        photo = seen.photo.reshape(-1, 3)[self._pixels]
+        self._trusted = ((photo > BLACK_GREY) & (photo < WHITE_GREY)).astype(np.float64)
+        self._lead = self._pixels[lead]
+        """First pixel of each block, shape (P,)."""
+        self._told = self._summed(self._trusted)
+        self._photo = self._mean(photo)
+        self._idle_light = self._mean(rest.idle_light[self._pixels])
         self._exposure = rest.exposure[self._pixels]
-        self._through = rest.through[self._pixels]
         self._sight = rest.sight
 
     def rendered(self, inward_mm: np.ndarray) -> Prediction:
@@ -59,16 +60,18 @@ class PhotoView:
         displacement_mm[chosen] = inward_mm[:, None] * patch.inward[: patch.free]
         self._sight = sight = moved(rest.studio, rest.sight, displacement_mm)
         change = self._exposure * (sight.light[pixels] - rest.sight.light[pixels])
-        return self._prediction(inward_mm, sight, change)
+        return self._prediction(patch.posed(inward_mm), sight, self._mean(change))
 
     def tabled(self, inward_mm: np.ndarray) -> Prediction:
         """What the light by tilt makes of it, where the pixels look at rest."""
-        patch, sight, light = self._patch, self._rest.sight, self._rest.light
-        tilts = patch.posed(inward_mm).tilts
-        brought = light.at(patch.vertices, tilts) - light.at(patch.vertices, np.zeros_like(tilts))
-        corners = patch.faces[self._local[sight.face[self._pixels]]]
-        change = np.einsum("pk,pkc->pc", sight.weights[self._pixels], brought[corners])
-        return self._prediction(inward_mm, sight, change * self._exposure * self._through[:, None])
+        rest, patch, lead = self._rest, self._patch, self._lead
+        sight, light, posed = rest.sight, rest.light, patch.posed(inward_mm)
+        level = np.zeros_like(posed.tilts)
+        brought = light.at(patch.vertices, posed.tilts) - light.at(patch.vertices, level)
+        corners = patch.faces[self._local[sight.face[lead]]]
+        change = np.einsum("pk,pkc->pc", sight.weights[lead], brought[corners])
+        shown_there = rest.exposure[lead] * rest.through[lead, None]
+        return self._prediction(posed, sight, change * shown_there)
 
     def seen_vertices(self) -> np.ndarray:
         """Vertices that some pixel saw when last rendered, shape (V,), bool."""
@@ -77,41 +80,45 @@ class PhotoView:
         seen[rest.skin.faces[sight.face[rest.sees & (sight.face >= 0)]]] = True
         return seen
 
-    def _prediction(self, inward_mm: np.ndarray, sight: Sight, change: np.ndarray) -> Prediction:
-        """From the change of display light (p, 3)."""
-        rest, patch, lead = self._rest, self._patch, self._lead
-        posed = patch.posed(inward_mm)
+    def _prediction(self, posed: Posed, sight: Sight, change: np.ndarray) -> Prediction:
+        """From the change of display light (P, 3)."""
         light = np.clip(self._idle_light + change, LEAST_LIGHT, 1.0)
-        grey = 255.0 * shown(light, rest.sensor) + self._unit_grey(sight, posed.normals)
-        left = np.where(self._trusted, self._photo - grey, 0.0)
-        ahead = 255.0 * shown(light[lead] + LIGHT_STEP, rest.sensor)
-        behind = 255.0 * shown(light[lead] - LIGHT_STEP, rest.sensor)
+        grey = 255.0 * shown(light, self._rest.sensor) + self._unit_grey(sight, posed.normals)
+        left = np.where(self._told > 0.0, self._photo - grey, 0.0)
+        return Prediction(
+            residual=left, told=self._told, slopes=lambda: self._slopes(posed, sight, light)
+        )
+
+    def _slopes(self, posed: Posed, sight: Sight, light: np.ndarray) -> Slopes:
+        rest, patch, lead = self._rest, self._patch, self._lead
+        ahead = 255.0 * shown(light + LIGHT_STEP, rest.sensor)
+        behind = 255.0 * shown(light - LIGHT_STEP, rest.sensor)
         curve = (ahead - behind) / (2.0 * LIGHT_STEP)
-        pixels = self._pixels[lead]
-        triangles = self._local[sight.face[pixels]]
+        triangles = self._local[sight.face[lead]]
         slopes = rest.light.slopes(patch.vertices, posed.tilts)
         corners = patch.faces[np.maximum(triangles, 0)]
-        scale = curve * self._exposure[lead] * self._through[lead, None]
-        jacobian = slopes[corners] * sight.weights[pixels][:, :, None, None]
-        jacobian = jacobian.transpose(0, 2, 1, 3).reshape(len(pixels), 3, 6) * scale[:, :, None]
-        return Prediction(
-            residual=self._summed(left) / np.maximum(self._told, 1.0),
-            told=self._told,
+        scale = curve * rest.exposure[lead] * rest.through[lead, None]
+        jacobian = slopes[corners] * sight.weights[lead][:, :, None, None]
+        return Slopes(
             triangles=triangles,
-            jacobian=jacobian,
+            jacobian=jacobian.transpose(0, 2, 1, 3).reshape(len(lead), 3, 6) * scale[:, :, None],
             tilt_slopes=patch.tilt_slopes(posed),
         )
 
     def _unit_grey(self, sight: Sight, normals: np.ndarray) -> np.ndarray:
-        """What the unit adds at the pixels, shape (p, 3), for inward normals (n, 3)."""
+        """What the unit adds at the blocks, shape (P, 3), for inward normals (n, 3)."""
         rest = self._rest
         if rest.unit is None:
-            return np.zeros((len(self._pixels), 3))
+            return np.zeros((len(self._lead), 3))
         inward = rest.skin.inward.copy()
-        at_rest = _blended(inward, rest.skin.faces, rest.sight, self._pixels)
+        at_rest = _blended(inward, rest.skin.faces, rest.sight, self._lead)
         inward[self._patch.vertices] = normals
-        now = _blended(inward, rest.skin.faces, sight, self._pixels)
-        return rest.unit_change(self._pixels, now, at_rest)
+        now = _blended(inward, rest.skin.faces, sight, self._lead)
+        return rest.unit_change(self._lead, now, at_rest)
+
+    def _mean(self, values: np.ndarray) -> np.ndarray:
+        """Means of pixels that say something, (p, 3), over blocks, (P, 3)."""
+        return self._summed(self._trusted * values) / np.maximum(self._told, 1.0)
 
     def _summed(self, values: np.ndarray) -> np.ndarray:
         """Values of pixels, (p, 3), summed over blocks, (P, 3)."""
