@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 
+from sim.reading.deviation import factorised
 from sim.reading.patch import Patch
 from sim.reading.pixels import gathered, on_tilts
 
@@ -111,7 +112,7 @@ def fitted(
     start_mm: np.ndarray,
     *,
     noise_grey: float,
-    levels: tuple[tuple[float, float], ...] = LEVELS,
+    levels: tuple[tuple[float, float], ...],
 ) -> Fitted:
     """Fit the free vertices of a patch.
 
@@ -156,11 +157,8 @@ def fitted(
 def _stepped(inward_mm: np.ndarray, matrix: Any, pull: np.ndarray, damping: float) -> np.ndarray:
     """The displacement after a step of a quadratic."""
     from scipy.sparse import diags
-    from scipy.sparse.linalg import splu
 
-    damped = (matrix + diags(damping * matrix.diagonal())).tocsc()
-    options = {"SymmetricMode": True}
-    step = splu(damped, permc_spec="MMD_AT_PLUS_A", options=options).solve(pull)
+    step = factorised(matrix + diags(damping * matrix.diagonal())).solve(pull)
     step *= min(1.0, FARTHEST_MM / max(float(np.abs(step).max(initial=0.0)), 1e-12))
     return np.clip(inward_mm + step, *RANGE_MM)
 

@@ -38,14 +38,12 @@ def touched(touch: Touch) -> np.ndarray:
 def pixel_maps(reader: Reader, touch: Touch) -> PixelMaps:
     """A touch as the camera sees it."""
     rows, columns = reader.rest.shape
-    sight = reader.sight(touch)
-    sees = reader.rest.sees & (sight.face >= 0)
-    corners = reader.rest.skin.faces[sight.face[sees]]
-    weights = sight.weights[sees]
+    sight, faces = touch.sight, reader.rest.skin.faces
+    sees = np.flatnonzero(reader.rest.sees & (sight.face >= 0))
 
     def seen(values: np.ndarray, width: int) -> np.ndarray:
         found = np.full((rows * columns, width), np.nan)
-        found[sees] = np.einsum("pk,pkc->pc", weights, values.reshape(-1, width)[corners])
+        found[sees] = sight.blended(values.reshape(-1, width), faces, sees)
         return found.reshape(rows, columns, width).astype(np.float32)
 
     normal = seen(normals_of(reader.rest.skin, reader.displaced_mm(touch)), 3)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sim.optics.raster.gbuffer import sum_area_vectors
 from sim.reading.rest_skin import RestSkin
 
 TINY_MM2 = 1e-9
@@ -52,7 +53,7 @@ class Patch:
         self.across = np.stack([skin.one[self.vertices], skin.two[self.vertices]], axis=1)
         self.side = skin.side[self.vertices]
         self._rest_mm = skin.points_mm[self.vertices]
-        self._rest_area_mm2 = _areas(self._rest_mm[self.faces])
+        self._rest_area_mm2 = sum_area_vectors(self._rest_mm, self.faces, self.count)
         size_mm2 = np.linalg.norm(skin.area_mm2[self.vertices], axis=1, keepdims=True)
         self._rest_mm2 = size_mm2 * self.inward
         self._triangle_pattern = _Pattern(self.faces, self.free)
@@ -68,16 +69,8 @@ class Patch:
         moved_mm = self._rest_mm.copy()
         moved_mm[: self.free] += inward_mm[:, None] * self.inward[: self.free]
         corners_mm = moved_mm[self.faces]
-        change = _areas(corners_mm) - self._rest_area_mm2
-        at = self.faces.T.ravel()
-        total = np.stack(
-            [
-                np.bincount(at, np.tile(change[:, axis], 3), minlength=self.count)
-                for axis in range(3)
-            ],
-            axis=1,
-        )
-        turned = self._rest_mm2 + self.side[:, None] * total
+        change = sum_area_vectors(moved_mm, self.faces, self.count) - self._rest_area_mm2
+        turned = self._rest_mm2 + self.side[:, None] * change
         sizes = np.maximum(np.linalg.norm(turned, axis=1), TINY_MM2)
         normals = turned / sizes[:, None]
         return Posed(
@@ -125,9 +118,3 @@ class _Pattern:
 
         data = np.bincount(self._at, values[self._kept].ravel(), minlength=len(self._columns))
         return csr_matrix((data, self._columns, self._starts), self._shape)
-
-
-def _areas(corners_mm: np.ndarray) -> np.ndarray:
-    """Area vectors of triangles (f, 3, 3) [mm2], shape (f, 3)."""
-    first, second, third = corners_mm[:, 0], corners_mm[:, 1], corners_mm[:, 2]
-    return 0.5 * np.cross(second - first, third - first)

@@ -50,7 +50,14 @@ class PhotoView:
         self._photo = self._mean(photo)
         self._idle_light = self._mean(rest.idle_light[self._pixels])
         self._exposure = rest.exposure[self._pixels]
-        self._sight = rest.sight
+        level = np.zeros((patch.count, 2))
+        self._level_light = rest.light.at(patch.vertices, level)
+        """Of the vertices at rest, by the light of the tilts, shape (n, 3)."""
+
+    def untouched(self) -> Prediction:
+        """What the patch shows at rest."""
+        still = self._patch.posed(np.zeros(self._patch.free))
+        return self._prediction(still, self._rest.sight, np.zeros_like(self._photo))
 
     def rendered(self, inward_mm: np.ndarray) -> Prediction:
         """What the renderer shows of the patch moved by (m,) [mm]."""
@@ -58,7 +65,7 @@ class PhotoView:
         displacement_mm = np.zeros((rest.skin.count, 3))
         chosen = patch.vertices[: patch.free]
         displacement_mm[chosen] = inward_mm[:, None] * patch.inward[: patch.free]
-        self._sight = sight = moved(rest.studio, rest.sight, displacement_mm)
+        sight = moved(rest.studio, rest.sight, displacement_mm)
         change = self._exposure * (sight.light[pixels] - rest.sight.light[pixels])
         return self._prediction(patch.posed(inward_mm), sight, self._mean(change))
 
@@ -66,19 +73,11 @@ class PhotoView:
         """What the light by tilt makes of it, where the pixels look at rest."""
         rest, patch, lead = self._rest, self._patch, self._lead
         sight, light, posed = rest.sight, rest.light, patch.posed(inward_mm)
-        level = np.zeros_like(posed.tilts)
-        brought = light.at(patch.vertices, posed.tilts) - light.at(patch.vertices, level)
+        brought = light.at(patch.vertices, posed.tilts) - self._level_light
         corners = patch.faces[self._local[sight.face[lead]]]
         change = np.einsum("pk,pkc->pc", sight.weights[lead], brought[corners])
         shown_there = rest.exposure[lead] * rest.through[lead, None]
         return self._prediction(posed, sight, change * shown_there)
-
-    def seen_vertices(self) -> np.ndarray:
-        """Vertices that some pixel saw when last rendered, shape (V,), bool."""
-        rest, sight = self._rest, self._sight
-        seen = np.zeros(rest.skin.count, dtype=bool)
-        seen[rest.skin.faces[sight.face[rest.sees & (sight.face >= 0)]]] = True
-        return seen
 
     def _prediction(self, posed: Posed, sight: Sight, change: np.ndarray) -> Prediction:
         """From the change of display light (P, 3)."""
@@ -111,10 +110,10 @@ class PhotoView:
         if rest.unit is None:
             return np.zeros((len(self._lead), 3))
         inward = rest.skin.inward.copy()
-        at_rest = _blended(inward, rest.skin.faces, rest.sight, self._lead)
+        at_rest = rest.sight.blended(inward, rest.skin.faces, self._lead)
         inward[self._patch.vertices] = normals
-        now = _blended(inward, rest.skin.faces, sight, self._lead)
-        return rest.unit_change(self._lead, now, at_rest)
+        now = sight.blended(inward, rest.skin.faces, self._lead)
+        return rest.unit_change(self._lead, _unit_vectors(now), _unit_vectors(at_rest))
 
     def _mean(self, values: np.ndarray) -> np.ndarray:
         """Means of pixels that say something, (p, 3), over blocks, (P, 3)."""
@@ -128,8 +127,5 @@ class PhotoView:
         )
 
 
-def _blended(inward: np.ndarray, faces: np.ndarray, sight: Sight, pixels: np.ndarray) -> np.ndarray:
-    """Unit normals (V, 3) at what pixels see, shape (p, 3)."""
-    corners = inward[faces[np.maximum(sight.face[pixels], 0)]]
-    found = np.einsum("pk,pkc->pc", sight.weights[pixels], corners)
-    return found / np.maximum(np.linalg.norm(found, axis=1, keepdims=True), 1e-12)
+def _unit_vectors(vectors: np.ndarray) -> np.ndarray:
+    return vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-12)

@@ -52,8 +52,8 @@ class Touch:
     steps: int
     """Of the last fit."""
     seconds: float
-    free: np.ndarray
-    """Vertices that were fitted, shape (V,), bool."""
+    sight: Sight
+    """What the pixels see of the moved skin."""
 
 
 class Reader:
@@ -76,10 +76,8 @@ class Reader:
         seen = change(self.rest.idle, photo, self.rest.sees.reshape(self.rest.shape))
         free, calm = self._moving(seen, start)
         inward_mm, sigma_mm = np.zeros(skin.count), np.zeros(skin.count)
-        misfit, steps = 0.0, 0
-        if np.count_nonzero(seen.certain) < FEWEST_PIXELS or not free.any():
-            free = np.zeros(skin.count, dtype=bool)
-        else:
+        misfit, steps, sight = 0.0, 0, self.rest.sight
+        if np.count_nonzero(seen.certain) >= FEWEST_PIXELS and free.any():
             patch = Patch(skin, free)
             chosen = patch.vertices[: patch.free]
             view = PhotoView(self.rest, patch, seen)
@@ -90,13 +88,13 @@ class Reader:
                 noise_grey=seen.noise_grey,
             )
             found = self._fitted(fit, seen, start)
-            view.rendered(found.inward_mm)
             inward_mm[chosen] = found.inward_mm
             # Errors of the light show as residuals that noise does not explain.
             told_mm = deviation_mm(found.matrix) * max(1.0, found.misfit)
             own_mm = np.hypot(OWN_SHARE * found.inward_mm, OWN_MM)
             sigma_mm[chosen] = np.hypot(told_mm, own_mm)
-            sigma_mm[free & ~view.seen_vertices()] = np.nan
+            sight = moved(self.rest.studio, self.rest.sight, self._displaced_mm(inward_mm))
+            sigma_mm[free & ~self._seen(sight)] = np.nan
             misfit, steps = found.misfit, found.steps
         return Touch(
             inward_mm=inward_mm,
@@ -105,16 +103,21 @@ class Reader:
             noise_grey=seen.noise_grey,
             steps=steps,
             seconds=time.perf_counter() - begun,
-            free=free,
+            sight=sight,
         )
 
     def displaced_mm(self, touch: Touch) -> np.ndarray:
         """Displacement of the vertices [mm], shape (V, 3)."""
-        return touch.inward_mm[:, None] * self.rest.skin.inward
+        return self._displaced_mm(touch.inward_mm)
 
-    def sight(self, touch: Touch) -> Sight:
-        """What the pixels see of a touch."""
-        return moved(self.rest.studio, self.rest.sight, self.displaced_mm(touch))
+    def _displaced_mm(self, inward_mm: np.ndarray) -> np.ndarray:
+        return inward_mm[:, None] * self.rest.skin.inward
+
+    def _seen(self, sight: Sight) -> np.ndarray:
+        """Vertices that some pixel sees, shape (V,), bool."""
+        seen = np.zeros(self.rest.skin.count, dtype=bool)
+        seen[self.rest.skin.faces[sight.face[self.rest.sees & (sight.face >= 0)]]] = True
+        return seen
 
     def _moving(self, seen: Change, start: Touch | None) -> tuple[np.ndarray, np.ndarray]:
         """Vertices that may move, and those that look at rest, (V,) bool each."""
@@ -146,7 +149,7 @@ class Reader:
     def _fitted(self, fit: _Fit, seen: Change, start: Touch | None) -> Fitted:
         """The fit from the guess that explains most."""
         chosen = fit.patch.vertices[: fit.patch.free]
-        nothing = fit.view.rendered(np.zeros(fit.patch.free)).misfit(seen.noise_grey)
+        nothing = fit.view.untouched().misfit(seen.noise_grey)
         enough = max(EXPLAINED * nothing, PLAIN)
         if start is not None:
             found = fit.fine(start.inward_mm[chosen])

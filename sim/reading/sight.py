@@ -21,6 +21,14 @@ class Sight:
     light: np.ndarray
     """Radiance behind the cavity's wall, shape (N, 3), float32."""
 
+    def blended(self, values: np.ndarray, faces: np.ndarray, pixels: np.ndarray) -> np.ndarray:
+        """Values at vertices, (V, C), where pixels (P,) look, shape (P, C).
+
+        Without meaning where they see no skin.
+        """
+        corners = values[faces[np.maximum(self.face[pixels], 0)]]
+        return np.einsum("pk,pkc->pc", self.weights[pixels], corners)
+
 
 def at_rest(studio: Studio) -> Sight:
     """The skin that nothing touches."""

@@ -12,6 +12,7 @@ import pytest
 
 from sim.reading.maps import PixelMaps
 from sim.reading.reader import Touch
+from sim.reading.sight import Sight
 from workbench.cli.command_line import main
 from workbench.core.base.errors import DesignError
 from workbench.reading.design_reader import expect_light
@@ -72,7 +73,7 @@ def test_the_files_of_a_reading_say_what_is_known(tmp_path: Path) -> None:
     """Arrays as promised; what is not known is null in the table."""
     found = reading(force_N=np.full(3, np.nan))
     write_reading(tmp_path, "a", found)
-    write_table(tmp_path, [found])
+    write_table(tmp_path, [found.figures])
     with np.load(tmp_path / "a.npz") as file:
         shapes = {name: file[name].shape for name in file.files}
     assert shapes["depth_mm"] == shapes["sigma_mm"] == shapes["contact"] == (6, 8)
@@ -100,7 +101,7 @@ def reading(**values: Any) -> Reading:
             noise_grey=1.0,
             steps=5,
             seconds=0.2,
-            free=np.ones(5, dtype=bool),
+            sight=Sight(face=np.zeros(48), weights=np.zeros((48, 3)), light=np.zeros((48, 3))),
         ),
         maps=PixelMaps(
             depth_mm=depth_mm,

@@ -35,7 +35,13 @@ class DesignReader:
     mesh: MembraneMesh
     material: Elastomer
     wall_mm: np.ndarray
-    """Thickness of the elastomer below each seen vertex, shape (V,)."""
+    """Thickness of the elastomer below each vertex of the outer skin, shape (V,)."""
+
+    @property
+    def tells_force(self) -> bool:
+        """Whether the law of a bonded wall holds: neither on gel or air, nor with pins, whose seen
+        skin is not the one that is touched."""
+        return self.mesh.backing_mm == 0.0 and self.mesh.seen is self.mesh.outer
 
 
 def open_reader(
@@ -72,7 +78,7 @@ def open_reader(
     )
     expect_light("the idle photo", idle, rest.sees)
     return DesignReader(
-        reader=Reader(rest), mesh=mesh, material=design.material, wall_mm=_wall_mm(mesh)
+        reader=Reader(rest), mesh=mesh, material=design.material, wall_mm=wall_mm(mesh)
     )
 
 
@@ -121,12 +127,3 @@ def _looked_up(design: SensorDesign) -> SensorDesign:
         return design
     optics = dataclasses.replace(design.optics, light_model=baked_model())
     return dataclasses.replace(design, optics=optics)
-
-
-def _wall_mm(mesh: MembraneMesh) -> np.ndarray:
-    thickness = wall_mm(mesh)
-    if mesh.seen is mesh.outer:
-        return thickness
-    from scipy.spatial import KDTree
-
-    return thickness[KDTree(mesh.outer.points_mm).query(mesh.seen.points_mm)[1]]

@@ -6,6 +6,7 @@ import io
 import json
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -51,7 +52,6 @@ def write_reading(out: Path, name: str, reading: Reading) -> None:
     )
 
 
-def write_table(out: Path, readings: Sequence[Reading]) -> None:
-    """Write `reading.json`, in the order of the photographs."""
-    rows = [reading.figures for reading in readings]
+def write_table(out: Path, rows: Sequence[dict[str, Any]]) -> None:
+    """Write `reading.json`: the figures of readings, in the order of the photographs."""
     write_atomically(out / TABLE, (json.dumps(rows, indent=1, allow_nan=False) + "\n").encode())

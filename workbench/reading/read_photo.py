@@ -25,7 +25,7 @@ class Reading:
     touch: Touch
     maps: PixelMaps
     force_N: np.ndarray
-    """On the membrane in the sensor frame, shape (3,); NaN where the wall rests on gel or air."""
+    """On the membrane in the sensor frame, shape (3,); NaN where the design tells none."""
     force_sigma_N: float
     """Standard deviation of its size."""
     contact_area_mm2: float
@@ -89,8 +89,7 @@ def _force(opened: DesignReader, touch: Touch, chosen: np.ndarray) -> tuple[np.n
     from sim.reading.force import read_force
     from sim.reading.layer_law import Layer
 
-    if opened.mesh.backing_mm > 0.0 or opened.mesh.seen is not opened.mesh.outer:
-        # The wall gives way as a whole, or what is seen is not what is touched.
+    if not opened.tells_force:
         return UNKNOWN, float("nan")
     skin, material, depth_mm = opened.reader.rest.skin, opened.material, touch.inward_mm[chosen]
     thickness_mm = 1.0

@@ -62,22 +62,27 @@ def run(options: argparse.Namespace, project: Project) -> int:
         project.store,
         monitor=lambda fraction, note="": printer("read", 0.5 * fraction, note),
     )
-    if opened.mesh.backing_mm > 0.0:
-        complain("notice: the wall of this design rests on gel or air: no force is told")
-    found = []
+    if not opened.tells_force:
+        complain(
+            "notice: the wall of this design rests on gel or air, or has pins: no force is told"
+        )
+    # Of a long video only figures are kept, and what the next image begins with.
+    rows, lines, before = [], [], None
     for number, (name, path, photo) in enumerate(
         zip(names_of(options.photos), options.photos, photos, strict=True)
     ):
         printer("read", 0.5 + 0.5 * number / len(photos), path.name)
-        before = found[-1].touch if options.video and found else None
-        found.append(read_photo(opened, path.name, photo, before))
-        write_reading(options.out, name, found[-1])
-    write_table(options.out, found)
+        found = read_photo(opened, path.name, photo, before)
+        write_reading(options.out, name, found)
+        rows.append(found.figures)
+        lines.append(_line(found))
+        before = found.touch if options.video else None
+    write_table(options.out, rows)
     if options.json:
-        say(json.dumps([each.figures for each in found], allow_nan=False))
+        say(json.dumps(rows, allow_nan=False))
         return 0
-    for each in found:
-        say(_line(each))
+    for line in lines:
+        say(line)
     say(f"open {options.out / TABLE}")
     return 0
 
