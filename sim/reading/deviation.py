@@ -1,4 +1,4 @@
-"""The normal matrix of a fitted displacement: its factors, and the standard deviations it tells."""
+"""The standard deviations that the normal matrix of a fitted displacement tells."""
 
 from __future__ import annotations
 
@@ -6,16 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from sim.reading.banded import Banded
+
 PROBES = 24
 """Random vectors: a standard deviation is then known to a sixth."""
 SEED = 1
-
-
-def factorised(matrix: Any) -> Any:
-    """Factors of a symmetric sparse matrix (m, m), with `solve`."""
-    from scipy.sparse.linalg import splu
-
-    return splu(matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
 
 
 def deviation_mm(matrix: Any) -> np.ndarray:
@@ -23,6 +18,5 @@ def deviation_mm(matrix: Any) -> np.ndarray:
 
     Source: Bekas, Kokiopoulou and Saad, An estimator for the diagonal of a matrix, 2007.
     """
-    factors = factorised(matrix)
     probes = np.random.default_rng(SEED).choice([-1.0, 1.0], (matrix.shape[0], PROBES))
-    return np.sqrt(np.maximum((probes * factors.solve(probes)).mean(axis=1), 0.0))
+    return np.sqrt(np.maximum((probes * Banded(matrix).solved(probes)).mean(axis=1), 0.0))

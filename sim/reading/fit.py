@@ -17,9 +17,10 @@ from typing import Any
 
 import numpy as np
 
-from sim.reading.deviation import factorised
-from sim.reading.patch import Patch
-from sim.reading.pixels import gathered, on_tilts
+from sim.reading.banded import Banded
+from sim.reading.patch import Patch, Posed
+from sim.reading.pixels import Slopes, gathered, on_tilts
+from sim.reading.sight import Sight
 
 LEVELS = ((0.3, 10.0), (0.6, 1.0), (1.0, 0.0))
 """k [1/mm], and the least error that pixels are given, in root mean squares of the first residual:
@@ -31,23 +32,16 @@ FARTHEST_MM = 0.5
 RANGE_MM = (-0.1, 4.0)
 MOVED_MM, CALM_MM, OUTWARD_MM = 1.5, 0.1, 0.03
 """s where the photograph changed, where it did not, and of what goes outward."""
-WORTH = 2e-3
-"""A step that gains a smaller share of the cost is the last."""
+WORTH, WORTH_LAST = 5e-2, 5e-3
+"""A step that gains a smaller share of the cost is the last, of the last level the latter."""
+LOST = 5e-2
+"""A step that loses a smaller share is the last too: slopes are those of the light by tilt, which
+know no shadows, and shorter steps along them gain little. One that loses more is tried shorter."""
+SHORTER = 100.0
+"""Factor of its damping."""
 HUBER = 3.0
 """Residual over noise from which a pixel counts less, at the last level."""
 FIRST_DAMPING, LEAST_DAMPING = 1e-3, 1e-6
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Slopes:
-    """How a prediction changes with the moves."""
-
-    triangles: np.ndarray
-    """Of the patch, that each of P blocks sees, shape (P,); -1 of others."""
-    jacobian: np.ndarray
-    """Grey levels by the tilts of its corners, shape (P, 3, 6)."""
-    tilt_slopes: Any
-    """Derivatives of the tilts by the moves, sparse (2 n, m)."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -58,8 +52,12 @@ class Prediction:
     """Photo less prediction [grey], mean of a block, shape (P, 3)."""
     told: np.ndarray
     """Pixels of the block whose colour says something, shape (P, 3)."""
+    posed: Posed
+    """The moved patch."""
+    sight: Sight
+    """What the pixels see of it."""
     slopes: Callable[[], Slopes]
-    """Asked for where a step begins."""
+    """How it changes with the tilts; asked for where a step begins."""
 
     def misfit(self, noise_grey: float) -> float:
         """Root mean square of residual over noise, of the blocks [1]."""
@@ -83,13 +81,16 @@ class Priors:
     calm: np.ndarray
     """Whether nothing changed there, shape (m,), bool."""
 
-    def matrix(self, curvature: float, inward_mm: np.ndarray):
-        """Second derivative of the cost of a displacement (m,), halved, sparse (m, m)."""
+    def stiffness(self, curvature: float):
+        """Half the second derivative of what an inward displacement costs, sparse (m, m)."""
         from scipy.sparse import diags
 
-        stiffness = self.area_mm2 / np.where(self.calm, CALM_MM, MOVED_MM) ** 2
-        stiffness += np.where(inward_mm < 0.0, self.area_mm2 / OUTWARD_MM**2, 0.0)
-        return self.bending / curvature**2 + diags(stiffness)
+        held = self.area_mm2 / np.where(self.calm, CALM_MM, MOVED_MM) ** 2
+        return (self.bending / curvature**2 + diags(held)).tocsr()
+
+    def outward(self, inward_mm: np.ndarray) -> np.ndarray:
+        """What is added to its diagonal where a displacement (m,) goes outward, shape (m,)."""
+        return np.where(inward_mm < 0.0, self.area_mm2 / OUTWARD_MM**2, 0.0)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -100,6 +101,8 @@ class Fitted:
     """Shape (m,)."""
     matrix: Any
     """Half the second derivative of the cost there, sparse (m, m)."""
+    seen: Prediction
+    """What it would show."""
     misfit: float
     """Root mean square of residual over noise, of the blocks [1]."""
     steps: int
@@ -132,7 +135,7 @@ def fitted(
         level = _Level(
             patch=patch,
             priors=priors,
-            curvature=curvature,
+            stiffness=priors.stiffness(curvature),
             error_grey=error_grey,
             robust=forgiving == 0.0,
         )
@@ -143,22 +146,28 @@ def fitted(
             tried = predict(tried_mm)
             steps += 1
             gain = cost - level.cost(tried_mm, tried)
-            if gain <= 0.0:
-                damping *= 10.0
+            if gain < -LOST * cost:
+                damping *= SHORTER
                 continue
+            if gain <= 0.0:
+                break
             damping = max(0.2 * damping, LEAST_DAMPING)
             inward_mm, seen, cost = tried_mm, tried, cost - gain
             matrix, pull = level.quadratic(inward_mm, seen)
-            if gain < WORTH * cost:
+            if gain < (WORTH_LAST if level.robust else WORTH) * cost:
                 break
-    return Fitted(inward_mm=inward_mm, matrix=matrix, misfit=seen.misfit(noise_grey), steps=steps)
+    return Fitted(
+        inward_mm=inward_mm,
+        matrix=matrix,
+        seen=seen,
+        misfit=seen.misfit(noise_grey),
+        steps=steps,
+    )
 
 
 def _stepped(inward_mm: np.ndarray, matrix: Any, pull: np.ndarray, damping: float) -> np.ndarray:
     """The displacement after a step of a quadratic."""
-    from scipy.sparse import diags
-
-    step = factorised(matrix + diags(damping * matrix.diagonal())).solve(pull)
+    step = Banded(matrix, damping).solved(pull)
     step *= min(1.0, FARTHEST_MM / max(float(np.abs(step).max(initial=0.0)), 1e-12))
     return np.clip(inward_mm + step, *RANGE_MM)
 
@@ -169,7 +178,8 @@ class _Level:
 
     patch: Patch
     priors: Priors
-    curvature: float
+    stiffness: Any
+    """Of the priors, sparse (m, m)."""
     error_grey: float
     """That a pixel is given."""
     robust: bool
@@ -177,26 +187,21 @@ class _Level:
 
     def cost(self, inward_mm: np.ndarray, seen: Prediction) -> float:
         """Of a displacement (m,) and what it would show."""
-        prior = self.priors.matrix(self.curvature, inward_mm)
         told = (self._weight(seen) * seen.residual**2).sum()
-        return float(told + inward_mm @ (prior @ inward_mm))
+        believed = self.stiffness @ inward_mm + self.priors.outward(inward_mm) * inward_mm
+        return float(told + inward_mm @ believed)
 
     def quadratic(self, inward_mm: np.ndarray, seen: Prediction) -> tuple[Any, np.ndarray]:
         """Half the second derivative of the cost, sparse (m, m), and half its fall, (m,)."""
-        slopes, weight = seen.slopes(), self._weight(seen)
-        known = slopes.triangles >= 0
-        evidence = gathered(
-            slopes.triangles[known],
-            len(self.patch.faces),
-            slopes.jacobian[known],
-            seen.residual[known],
-            weight[known],
-        )
+        from scipy.sparse import diags
+
+        evidence = gathered(seen.slopes(), seen.residual, self._weight(seen))
         products, pulls = on_tilts(self.patch.faces, self.patch.count, evidence)
-        prior = self.priors.matrix(self.curvature, inward_mm)
-        by_move = slopes.tilt_slopes
-        matrix = (by_move.T @ (products @ by_move) + prior).tocsc()
-        return matrix, by_move.T @ pulls - prior @ inward_mm
+        by_move = self.patch.tilt_slopes(seen.posed)
+        outward = self.priors.outward(inward_mm)
+        matrix = by_move.T @ (products @ by_move) + self.stiffness + diags(outward)
+        believed = self.stiffness @ inward_mm + outward * inward_mm
+        return matrix.tocsr(), by_move.T @ pulls - believed
 
     def _weight(self, seen: Prediction) -> np.ndarray:
         """One over the variance of each block and colour, shape (P, 3)."""

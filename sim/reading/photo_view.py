@@ -6,12 +6,13 @@ import numpy as np
 
 from sim.optics.raster.display import shown
 from sim.reading.changed import Change
-from sim.reading.fit import Prediction, Slopes
+from sim.reading.fit import Prediction
 from sim.reading.patch import Patch, Posed
+from sim.reading.pixels import Slopes
 from sim.reading.sight import Sight, moved
 from sim.reading.untouched import Untouched
 
-BLOCKS = 8.0
+BLOCKS = 4.0
 """Blocks of pixels for each free vertex, at most; larger images are fitted by means of blocks."""
 BLACK_GREY, WHITE_GREY = 0.5, 253.5
 """Grey levels that say nothing more."""
@@ -85,7 +86,11 @@ class PhotoView:
         grey = 255.0 * shown(light, self._rest.sensor) + self._unit_grey(sight, posed.normals)
         left = np.where(self._told > 0.0, self._photo - grey, 0.0)
         return Prediction(
-            residual=left, told=self._told, slopes=lambda: self._slopes(posed, sight, light)
+            residual=left,
+            told=self._told,
+            posed=posed,
+            sight=sight,
+            slopes=lambda: self._slopes(posed, sight, light),
         )
 
     def _slopes(self, posed: Posed, sight: Sight, light: np.ndarray) -> Slopes:
@@ -93,15 +98,12 @@ class PhotoView:
         ahead = 255.0 * shown(light + LIGHT_STEP, rest.sensor)
         behind = 255.0 * shown(light - LIGHT_STEP, rest.sensor)
         curve = (ahead - behind) / (2.0 * LIGHT_STEP)
-        triangles = self._local[sight.face[lead]]
-        slopes = rest.light.slopes(patch.vertices, posed.tilts)
-        corners = patch.faces[np.maximum(triangles, 0)]
-        scale = curve * rest.exposure[lead] * rest.through[lead, None]
-        jacobian = slopes[corners] * sight.weights[lead][:, :, None, None]
         return Slopes(
-            triangles=triangles,
-            jacobian=jacobian.transpose(0, 2, 1, 3).reshape(len(lead), 3, 6) * scale[:, :, None],
-            tilt_slopes=patch.tilt_slopes(posed),
+            faces=patch.faces,
+            triangles=self._local[sight.face[lead]],
+            corner_weights=sight.weights[lead],
+            grey=curve * rest.exposure[lead] * rest.through[lead, None],
+            light=rest.light.slopes(patch.vertices, posed.tilts),
         )
 
     def _unit_grey(self, sight: Sight, normals: np.ndarray) -> np.ndarray:

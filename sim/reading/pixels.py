@@ -8,8 +8,27 @@ all that a least-squares step needs of the image.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+
+from sim.reading import pixel_kernels
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Slopes:
+    """How what P blocks of pixels show changes with the tilts of n vertices of f triangles."""
+
+    faces: np.ndarray
+    """Triangles by vertices, shape (f, 3)."""
+    triangles: np.ndarray
+    """That each block sees, shape (P,); -1 of others."""
+    corner_weights: np.ndarray
+    """Of the triangle's corners there, shape (P, 3)."""
+    grey: np.ndarray
+    """Grey levels by radiance, shape (P, 3 colours)."""
+    light: np.ndarray
+    """Radiance of the vertices by their tilts, shape (n, 3 colours, 2)."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -22,33 +41,47 @@ class Evidence:
     """Sums of J^T W r, shape (f, 6)."""
 
 
-def gathered(
-    triangles: np.ndarray,
-    count: int,
-    jacobian: np.ndarray,
-    residual: np.ndarray,
-    weight: np.ndarray,
-) -> Evidence:
-    """Sum over triangles.
+def gathered(slopes: Slopes, residual: np.ndarray, weight: np.ndarray) -> Evidence:
+    """Sum over triangles, on the compute device, which must be open.
 
     Args:
-        triangles: That each of P pixels sees, shape (P,).
-        count: f.
-        jacobian: Of what a pixel shows by the tilts, shape (P, 3 colours, 6).
+        slopes: Of the blocks.
         residual: Photo less prediction, shape (P, 3).
         weight: One over variance, shape (P, 3).
     """
-    order = np.argsort(triangles, kind="stable")
-    seen, starts = np.unique(triangles[order], return_index=True)
-    slopes = jacobian[order]
-    weighted = slopes * weight[order][:, :, None]
-    products = np.zeros((count, 6, 6))
-    pulls = np.zeros((count, 6))
-    if len(seen):
-        each = np.matmul(weighted.transpose(0, 2, 1), slopes)
-        products[seen] = np.add.reduceat(each, starts, axis=0)
-        pull = np.einsum("pci,pc->pi", weighted, residual[order])
-        pulls[seen] = np.add.reduceat(pull, starts, axis=0)
+    count = len(slopes.faces)
+    known = np.flatnonzero(slopes.triangles >= 0)
+    triangles = slopes.triangles[known]
+    blocks = known[np.argsort(triangles, kind="stable")]
+    starts = np.zeros(count + 1, dtype=np.int32)
+    np.cumsum(np.bincount(triangles, minlength=count), out=starts[1:])
+    found = Evidence(products=np.zeros((count, 6, 6)), pulls=np.zeros((count, 6)))
+    gather: Any = pixel_kernels.gather
+    if len(blocks):
+        gather(
+            starts,
+            blocks.astype(np.int32),
+            np.ascontiguousarray(slopes.faces, dtype=np.int32),
+            slopes.light,
+            np.ascontiguousarray(slopes.corner_weights),
+            np.stack([slopes.grey, residual, weight]),
+            found.products,
+            found.pulls,
+        )
+    return found
+
+
+def gathered_plainly(slopes: Slopes, residual: np.ndarray, weight: np.ndarray) -> Evidence:
+    """The twin of `gathered`: block by block."""
+    count = len(slopes.faces)
+    products, pulls = np.zeros((count, 6, 6)), np.zeros((count, 6))
+    for block in np.flatnonzero(slopes.triangles >= 0):
+        face = slopes.triangles[block]
+        light = slopes.light[slopes.faces[face]] * slopes.corner_weights[block][:, None, None]
+        jacobian = (light * slopes.grey[block][:, None]).transpose(1, 0, 2).reshape(3, 6)
+        weighted = weight[block][:, None] * jacobian
+        products[face] += jacobian.T @ weighted
+        pulls[face] += weighted.T @ residual[block]
     return Evidence(products=products, pulls=pulls)
 
 

@@ -19,7 +19,7 @@ from sim.reading.fit import LEVELS, Fitted, Prediction, Priors, fitted
 from sim.reading.patch import Patch
 from sim.reading.photo_view import PhotoView
 from sim.reading.rest_skin import bending, neighbours
-from sim.reading.sight import Sight, moved
+from sim.reading.sight import Sight
 from sim.reading.untouched import Untouched
 
 STARTS_MM = (0.3, 0.8, 1.5)
@@ -93,7 +93,7 @@ class Reader:
             told_mm = deviation_mm(found.matrix) * max(1.0, found.misfit)
             own_mm = np.hypot(OWN_SHARE * found.inward_mm, OWN_MM)
             sigma_mm[chosen] = np.hypot(told_mm, own_mm)
-            sight = moved(self.rest.studio, self.rest.sight, self._displaced_mm(inward_mm))
+            sight = found.seen.sight
             sigma_mm[free & ~self._seen(sight)] = np.nan
             misfit, steps = found.misfit, found.steps
         return Touch(
@@ -161,10 +161,12 @@ class Reader:
             guesses.append(fit.rough(top_mm * dome))
             if guesses[-1].misfit < enough:
                 break
-        tried = [fit.fine(min(guesses, key=lambda each: each.misfit).inward_mm)]
-        if tried[0].misfit > enough:
+        tried: list[Fitted] = []
+        for guess in sorted(guesses, key=lambda each: each.misfit):
             # What the light by tilt alone cannot tell apart, shadows may.
-            tried += [fit.fine(each.inward_mm) for each in guesses]
+            tried.append(fit.fine(guess.inward_mm))
+            if tried[-1].misfit < enough:
+                break
         return min(tried, key=lambda each: each.misfit)
 
     def _dome(self, seen: Change, chosen: np.ndarray) -> np.ndarray:

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import pytest
 from scipy.sparse import csc_matrix
 
 from sim.optics.maps.signal import tangents
 from sim.optics.raster.gbuffer import sum_area_vectors
+from sim.reading.banded import Banded
 from sim.reading.changed import LEAST_NOISE_GREY, change
 from sim.reading.deviation import deviation_mm
 from sim.reading.patch import Patch
-from sim.reading.pixels import gathered, on_tilts
+from sim.reading.pixels import Slopes, gathered, gathered_plainly, on_tilts
 from sim.reading.rest_skin import RestSkin, bending, neighbours, normals_of
+from sim.reading.tilt_light import SPAN, STEPS, TiltLight
 
 
 def dome(count: int = 9) -> RestSkin:
@@ -87,21 +91,76 @@ def test_slopes_of_tilts_are_their_differences(patch: tuple[RestSkin, Patch]) ->
     np.testing.assert_allclose(found, expected, atol=1e-7)
 
 
+def some_slopes(random: np.random.Generator) -> Slopes:
+    """Of forty blocks on two of three triangles; a few see none."""
+    weights = random.uniform(0.0, 1.0, (40, 3))
+    return Slopes(
+        faces=np.array([[0, 1, 2], [1, 3, 2], [2, 3, 4]]),
+        triangles=random.integers(-1, 2, 40),
+        corner_weights=weights / weights.sum(axis=1, keepdims=True),
+        grey=random.uniform(50.0, 200.0, (40, 3)),
+        light=random.normal(size=(5, 3, 2)),
+    )
+
+
+@pytest.mark.usefixtures("taichi_device")
+def test_evidence_on_the_device_is_that_of_its_plain_twin() -> None:
+    """Products and pulls of all triangles, also of the one that no block sees."""
+    random = np.random.default_rng(3)
+    slopes = some_slopes(random)
+    residual, weight = random.normal(size=(40, 3)), random.uniform(0.1, 1.0, (40, 3))
+    found, expected = (each(slopes, residual, weight) for each in (gathered, gathered_plainly))
+    np.testing.assert_allclose(found.products, expected.products, rtol=1e-10, atol=1e-9)
+    np.testing.assert_allclose(found.pulls, expected.pulls, rtol=1e-10, atol=1e-9)
+    assert not found.products[2].any()
+
+
 def test_evidence_of_triangles_is_that_of_pixels() -> None:
     """Summed over triangles and then on tilts, or at once as dense matrices."""
     random = np.random.default_rng(3)
-    faces = np.array([[0, 1, 2], [1, 3, 2], [2, 3, 4]])
-    triangles = random.integers(0, 2, 40)
-    jacobian, residual = random.normal(size=(40, 3, 6)), random.normal(size=(40, 3))
-    weight = random.uniform(0.1, 1.0, (40, 3))
-    matrix, pull = on_tilts(faces, 5, gathered(triangles, 3, jacobian, residual, weight))
+    slopes = some_slopes(random)
+    residual, weight = random.normal(size=(40, 3)), random.uniform(0.1, 1.0, (40, 3))
+    matrix, pull = on_tilts(slopes.faces, 5, gathered_plainly(slopes, residual, weight))
     dense = np.zeros((120, 10))
-    for pixel, triangle in enumerate(triangles):
-        for number, column in enumerate(np.repeat(2 * faces[triangle], 2) + np.tile([0, 1], 3)):
-            dense[3 * pixel : 3 * pixel + 3, column] = jacobian[pixel, :, number]
+    for block, triangle in enumerate(slopes.triangles):
+        for corner, vertex in enumerate(slopes.faces[triangle] if triangle >= 0 else []):
+            share = slopes.corner_weights[block, corner] * slopes.grey[block][:, None]
+            dense[3 * block : 3 * block + 3, 2 * vertex : 2 * vertex + 2] += (
+                share * slopes.light[vertex]
+            )
     weighted = weight.ravel()[:, None] * dense
-    np.testing.assert_allclose(matrix.toarray(), dense.T @ weighted, atol=1e-12)
-    np.testing.assert_allclose(pull, weighted.T @ residual.ravel(), atol=1e-12)
+    np.testing.assert_allclose(matrix.toarray(), dense.T @ weighted, rtol=1e-10, atol=1e-9)
+    np.testing.assert_allclose(pull, weighted.T @ residual.ravel(), rtol=1e-10, atol=1e-9)
+
+
+@pytest.mark.usefixtures("taichi_device")
+def test_light_by_tilt_on_the_device_is_that_of_its_plain_twin() -> None:
+    """Values and slopes, also of tilts beyond the table."""
+    random = np.random.default_rng(4)
+    light = TiltLight(random.uniform(0.0, 1.0, (7, STEPS, STEPS, 3)).astype(np.float32))
+    rows = random.integers(0, 7, 200)
+    tilts = random.uniform(-1.2 * SPAN, 1.2 * SPAN, (200, 2))
+    np.testing.assert_allclose(light.at(rows, tilts), light.plainly_at(rows, tilts), atol=1e-5)
+    np.testing.assert_allclose(
+        light.slopes(rows, tilts), light.plain_slopes(rows, tilts), atol=1e-4
+    )
+
+
+def test_banded_factors_solve() -> None:
+    """A chain of springs with its links in any order, with and without damping."""
+    random = np.random.default_rng(8)
+    order = random.permutation(50)
+    dense = np.zeros((50, 50))
+    for one, two in itertools.pairwise(order):
+        dense[[one, two], [one, two]] += 1.0
+        dense[[one, two], [two, one]] -= 1.0
+    dense += 0.1 * np.eye(50)
+    right = random.normal(size=(50, 2))
+    found = Banded(csc_matrix(dense)).solved(right)
+    np.testing.assert_allclose(dense @ found, right, atol=1e-10)
+    damped = dense + 0.5 * np.diag(np.diag(dense))
+    found = Banded(csc_matrix(dense), damping=0.5).solved(right[:, 0])
+    np.testing.assert_allclose(damped @ found, right[:, 0], atol=1e-10)
 
 
 def test_bending_knows_a_paraboloid() -> None:
