@@ -135,7 +135,7 @@ def build_desk(
         desk = Desk(server, session, conductor, editor, fast=fast)
         Followers(desk)
         tabs = gui.add_tab_group()
-        # Without icons seven labels take two rows at most.
+        # Without icons eight labels take two rows at most.
         for label, build in ((label, found[label].page.build) for label in found):
             if build is not None:
                 with tabs.add_tab(label):

@@ -35,24 +35,33 @@ def touched(touch: Touch) -> np.ndarray:
     return (touch.inward_mm > TOUCHED_MM) & (touch.inward_mm > SURE * sigma_mm)
 
 
-def pixel_maps(reader: Reader, touch: Touch) -> PixelMaps:
-    """A touch as the camera sees it."""
+def seen_by_pixels(reader: Reader, touch: Touch, values: np.ndarray) -> np.ndarray:
+    """Values of the vertices, (V,) or (V, C), where pixels see the moved skin: (H, W, C).
+
+    NaN where they see none; float32.
+    """
     rows, columns = reader.rest.shape
     sight, faces = touch.sight, reader.rest.skin.faces
     sees = np.flatnonzero(reader.rest.sees & (sight.face >= 0))
+    wide = values.reshape(len(values), -1)
+    found = np.full((rows * columns, wide.shape[1]), np.nan)
+    found[sees] = sight.blended(wide, faces, sees)
+    return found.reshape(rows, columns, -1).astype(np.float32)
 
-    def seen(values: np.ndarray, width: int) -> np.ndarray:
-        found = np.full((rows * columns, width), np.nan)
-        found[sees] = sight.blended(values.reshape(-1, width), faces, sees)
-        return found.reshape(rows, columns, width).astype(np.float32)
 
-    normal = seen(normals_of(reader.rest.skin, reader.displaced_mm(touch)), 3)
+def pixel_maps(reader: Reader, touch: Touch) -> PixelMaps:
+    """A touch as the camera sees it."""
+
+    def seen(values: np.ndarray) -> np.ndarray:
+        return seen_by_pixels(reader, touch, values)
+
+    normal = seen(normals_of(reader.rest.skin, reader.displaced_mm(touch)))
     with np.errstate(invalid="ignore"):
         normal /= np.linalg.norm(normal, axis=2, keepdims=True)
-        contact = seen(touched(touch).astype(np.float64), 1)[:, :, 0] > 0.5
+        contact = seen(touched(touch).astype(np.float64))[:, :, 0] > 0.5
     return PixelMaps(
-        depth_mm=seen(touch.inward_mm, 1)[:, :, 0],
+        depth_mm=seen(touch.inward_mm)[:, :, 0],
         normal=normal,
         contact=contact,
-        sigma_mm=seen(touch.sigma_mm, 1)[:, :, 0],
+        sigma_mm=seen(touch.sigma_mm)[:, :, 0],
     )

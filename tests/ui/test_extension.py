@@ -28,6 +28,6 @@ def test_a_page_of_ones_own_is_a_tab(
     monkeypatch.setenv("WORKBENCH_EXTENSIONS", str(tmp_path / "mine"))
     open_page(page, start_server(pressed_project, cold=True).url)
     tabs = page.get_by_role("tab").all_inner_texts()
-    assert tabs.index("Weight") == tabs.index("Calibrate") + 1
+    assert tabs.index("Weight") == tabs.index("Read") + 1
     page.get_by_role("tab", name="Weight").click()
     wait_until(lambda: page.get_by_text("The membrane weighs").count(), 30, "the mass is there")

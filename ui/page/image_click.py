@@ -16,7 +16,26 @@ PIXEL_GIF = "data:image/gif;base64,R0lGODlhAQABAIAAAAAAAP///yH5BAEAAAAALAAAAAABA
 """An image that loads at once, by which the page runs the handler's script."""
 TARGET = "probe-image"
 """Class of the piece of HTML; its parents are searched for images and boxes."""
-INSTALL = """
+TYPE_INTO_BOXES = """
+window.typeIntoBoxes = (tab, shares) => {
+  for (const label of tab.querySelectorAll('label[for]')) {
+    const slider = document.getElementById(label.htmlFor);
+    const share = shares[label.innerText.trim() || label.textContent.trim()];
+    if (share === undefined || !slider) continue;
+    const most = Number(slider.querySelector('[role=slider]').getAttribute('aria-valuemax'));
+    const input = slider.parentElement.querySelector('input:not([type=hidden])');
+    const value = Math.min(most, Math.max(0, Math.floor(share * (most + 1))));
+    const own = Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, 'value');
+    own.set.call(input, String(value));
+    input.dispatchEvent(new Event('input', {bubbles: true}));
+    input.dispatchEvent(new Event('focusout', {bubbles: true}));
+  }
+};
+"""
+"""Types shares of an image's width and height into the boxes of sliders by their labels."""
+INSTALL = (
+    TYPE_INTO_BOXES
+    + """
 document.removeEventListener('click', window.probeImage, true);
 window.probeImage = event => {
   if (event.target.tagName !== 'IMG' || !event.target.src.startsWith('blob:')) return;
@@ -25,28 +44,17 @@ window.probeImage = event => {
     while (tab && !tab.querySelector('img[src^="blob:"]')) tab = tab.parentElement;
     if (!tab || !tab.contains(event.target)) continue;
     const box = event.target.getBoundingClientRect();
-    const shares = {
+    event.stopPropagation();
+    window.typeIntoBoxes(tab, {
       [mark.dataset.column]: (event.clientX - box.left) / box.width,
       [mark.dataset.row]: (event.clientY - box.top) / box.height,
-    };
-    event.stopPropagation();
-    for (const label of tab.querySelectorAll('label[for]')) {
-      const slider = document.getElementById(label.htmlFor);
-      const share = shares[label.innerText.trim() || label.textContent.trim()];
-      if (share === undefined || !slider) continue;
-      const most = Number(slider.querySelector('[role=slider]').getAttribute('aria-valuemax'));
-      const input = slider.parentElement.querySelector('input:not([type=hidden])');
-      const value = Math.min(most, Math.max(0, Math.floor(share * (most + 1))));
-      const own = Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, 'value');
-      own.set.call(input, String(value));
-      input.dispatchEvent(new Event('input', {bubbles: true}));
-      input.dispatchEvent(new Event('focusout', {bubbles: true}));
-    }
+    });
     return;
   }
 };
 document.addEventListener('click', window.probeImage, true);
 """
+)
 """Installs the handler, in place of one of an earlier page of the same server."""
 CROSSHAIR = '<style>div:has(> .{0}) ~ div img[src^="blob:"]{{cursor:crosshair}}</style>'
 

@@ -15,7 +15,7 @@ from workbench.photographs.kept_photos import KeptPhotos
 
 
 class CalibratePanel:
-    """Widgets of the seventh tab."""
+    """Widgets of the tab."""
 
     def __init__(self, desk: Desk) -> None:
         self.desk = desk

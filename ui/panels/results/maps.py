@@ -95,6 +95,7 @@ class MapsPanel:
             self.legend.content = map_legend(found, look)
             self.meaning.content = f"*{plain(found.meaning)}*"
             if self.wanted.value:
+                self.desk.tell("mapped", "map")
                 scene.show_map(self.skin, look.colours)
         self._cover(bool(self.wanted.value))
 
@@ -138,7 +139,7 @@ class MapsPanel:
             self._take(result)
         elif stage in ("build", "sensor"):
             self._forget()
-        elif stage in ("press", "live", "partial"):
+        elif stage in ("press", "live", "partial") or (stage == "mapped" and result != "map"):
             self._hide()
         elif stage == "run" and str(result) != JOB:
             self.asked = False

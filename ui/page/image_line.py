@@ -1,0 +1,66 @@
+"""A line drawn on an image by the mouse: its ends fill four sliders' boxes.
+
+As `image_click`, whose way of typing into boxes it shares: pressed on the image, pulled, let go.
+"""
+
+from __future__ import annotations
+
+import html
+
+from ui.page.image_click import PIXEL_GIF, TYPE_INTO_BOXES
+
+TARGET = "line-image"
+"""Class of the piece of HTML; its parents are searched for images and boxes."""
+INSTALL = (
+    TYPE_INTO_BOXES
+    + """
+for (const [name, handler] of Object.entries(window.lineImage || {}))
+  document.removeEventListener(name, handler, true);
+const marked = event => {
+  if (event.target.tagName !== 'IMG' || !event.target.src.startsWith('blob:')) return null;
+  for (const mark of document.querySelectorAll('.line-image')) {
+    let tab = mark;
+    while (tab && !tab.querySelector('img[src^="blob:"]')) tab = tab.parentElement;
+    if (tab && tab.contains(event.target)) return [mark, tab];
+  }
+  return null;
+};
+let begun = null;
+window.lineImage = {
+  dragstart: event => { if (marked(event)) event.preventDefault(); },
+  pointerdown: event => {
+    const found = marked(event);
+    begun = found && {found, image: event.target, x: event.clientX, y: event.clientY};
+  },
+  pointerup: event => {
+    if (!begun) return;
+    const [mark, tab] = begun.found;
+    const box = begun.image.getBoundingClientRect();
+    const across = x => (x - box.left) / box.width, down = y => (y - box.top) / box.height;
+    window.typeIntoBoxes(tab, {
+      [mark.dataset.column]: across(begun.x), [mark.dataset.row]: down(begun.y),
+      [mark.dataset.tocolumn]: across(event.clientX), [mark.dataset.torow]: down(event.clientY),
+    });
+    begun = null;
+  },
+};
+for (const [name, handler] of Object.entries(window.lineImage))
+  document.addEventListener(name, handler, true);
+"""
+)
+"""Installs the handlers, in place of those of an earlier page of the same server."""
+CROSSHAIR = '<style>div:has(> .{0}) ~ div img[src^="blob:"]{{cursor:crosshair}}</style>'
+
+
+def image_lines(*, start: tuple[str, str], stop: tuple[str, str]) -> str:
+    """What stands before the image, as HTML.
+
+    Args:
+        start: Labels of the sliders of the column and the row where a line begins.
+        stop: The same of where it ends.
+    """
+    script = html.escape(" ".join(INSTALL.split()), quote=True)
+    loads = f'<img alt="" style="display:none" src="{PIXEL_GIF}" onload="{script}">'
+    names = zip(("column", "row", "tocolumn", "torow"), (*start, *stop), strict=True)
+    data = " ".join(f'data-{name}="{html.escape(label)}"' for name, label in names)
+    return f'<div class="{TARGET}" {data}>{CROSSHAIR.format(TARGET)}{loads}</div>'
