@@ -72,7 +72,7 @@ def maps(given: MapsInputs, *, monitor: Monitor) -> DesignerMaps:
 STAGE = Stage(
     name="maps",
     label="Maps",
-    version=3,
+    version=4,
     place=13,
     lane="sim",
     run=maps,

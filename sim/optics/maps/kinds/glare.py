@@ -15,7 +15,7 @@ def measure(scene: Scene) -> np.ndarray | None:
 
 
 MAP = MapKind(
-    place=10,
+    place=13,
     label="Direct glare",
     unit="1",
     meaning="LEDs and their mirror images in front of the skin, over the skin's radiance; the "
