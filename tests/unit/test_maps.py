@@ -12,8 +12,12 @@ from sim.optics.camera.camera import project, refracted_rays
 from sim.optics.maps import lighting, pixel_glare, seeing, signal
 from sim.optics.maps.judging import weighted_percentiles
 from workbench.core.design.camera import Camera, ImageSensor
+from workbench.core.design.lighting import Baking
+from workbench.core.press.press_case import PressCase
 from workbench.core.result.light import LightField
 from workbench.core.result.results import Skin
+from workbench.planning.plan import plan
+from workbench.project.named_designs import load_design
 
 
 def plane(height_mm: float, half_mm: float = 10.0, count: int = 41) -> Skin:
@@ -176,3 +180,11 @@ def test_percentiles_are_weighted_by_area() -> None:
     marks = weighted_percentiles(np.array([1.0, 2.0]), np.array([9.0, 1.0]))
     assert marks[0] == 1.0 and marks[-1] == 2.0
     assert 1.0 <= marks[3] < 1.2 and marks[5] == pytest.approx(2.0)
+
+
+def test_maps_ask_for_the_table_that_a_plan_makes() -> None:
+    """However the light is baked: images and maps take the one table of a plan."""
+    for photons in (Baking().photons, 100_000):
+        design = load_design("pad").replace("optics.baking.photons", photons)
+        calls = plan(design, PressCase())
+        assert calls["maps"].inputs.table.key == calls["table"].key

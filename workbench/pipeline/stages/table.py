@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
 
 from sim.optics.field.model import model_of
 from workbench.core.base.monitor import Monitor
 from workbench.core.design.camera import Camera
-from workbench.core.design.lighting import LightModel
+from workbench.core.design.lighting import Baking, LightModel
 from workbench.core.design.optics import Optics, Transport
 from workbench.core.result.light import LightField, NormalTable
 from workbench.core.result.results import MembraneMesh
@@ -37,11 +38,13 @@ def table_inputs(optics: Optics, mesh: MembraneMesh, light: LightField) -> Table
     if not model_of(optics.light_model).tabulated:
         return None
     cameras = tuple(Camera(position_mm=camera.position_mm) for camera in optics.all_cameras)
+    # How the light was baked, it says itself: images and maps know no more of it.
+    transport = dataclasses.replace(optics.transport, baking=Baking())
     return TableInputs(
         mesh=mesh,
         light=light,
         cameras=cameras,
-        transport=optics.transport,
+        transport=transport,
         model=optics.light_model,
     )
 
