@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +12,8 @@ from workbench.reading.design_reader import DesignReader, expect_light, expect_s
 
 if TYPE_CHECKING:
     # They need the device that reading opens.
+    from sim.reading.ball_model import FittedBall
+    from sim.reading.layer_law import Layer
     from sim.reading.maps import PixelMaps
     from sim.reading.reader import Touch
 
@@ -31,6 +34,8 @@ class Reading:
     contact_area_mm2: float
     ball_radius_mm: float
     """Of the ball that fits the dent; NaN where none does."""
+    ball: FittedBall | None = None
+    """The ball whose image fits the photograph, where one was asked for."""
 
     @property
     def figures(self) -> dict[str, Any]:
@@ -45,6 +50,7 @@ class Reading:
             "noise_grey": self.touch.noise_grey,
             "misfit": self.touch.misfit,
             "seconds": self.touch.seconds,
+            **({} if self.ball is None else {"ball": _told(self.ball)}),
         }
 
 
@@ -87,22 +93,56 @@ def read_photo(
 def _force(opened: DesignReader, touch: Touch, chosen: np.ndarray) -> tuple[np.ndarray, float]:
     """Force and deviation by the law of the wall, of the touched vertices (n,)."""
     from sim.reading.force import read_force
-    from sim.reading.layer_law import Layer
 
     if not opened.tells_force:
         return UNKNOWN, float("nan")
-    skin, material, depth_mm = opened.reader.rest.skin, opened.material, touch.inward_mm[chosen]
-    thickness_mm = 1.0
-    if len(chosen):
-        thickness_mm = float(np.average(opened.wall_mm[chosen], weights=depth_mm))
+    skin, depth_mm = opened.reader.rest.skin, touch.inward_mm[chosen]
     found = read_force(
-        Layer(thickness_mm=thickness_mm, young_MPa=material.young_MPa, poisson=material.poisson),
+        _layer(opened, depth_mm, chosen),
         skin.points_mm[chosen],
         skin.inward[chosen],
         skin.shares_mm2[chosen],
         (depth_mm, touch.sigma_mm[chosen]),
     )
     return found.force_N, found.sigma_N
+
+
+def with_ball(opened: DesignReader, reading: Reading, photo: np.ndarray) -> Reading:
+    """A reading with the ball whose image fits its photograph (H, W, 3), uint8, best."""
+    from sim.reading.ball_model import fit_ball
+    from sim.reading.maps import touched
+
+    chosen = np.flatnonzero(touched(reading.touch))
+    if not len(chosen):
+        return reading
+    radius_mm = reading.ball_radius_mm
+    if not np.isfinite(radius_mm):
+        # A dent as wide as it is read.
+        radius_mm = max(1.0, float(np.sqrt(reading.contact_area_mm2 / np.pi)))
+    layer = _layer(opened, reading.touch.inward_mm[chosen], chosen)
+    photo = photo.astype(np.float64)
+    found = fit_ball(opened.reader, photo, reading.touch, layer, radius_mm)
+    return dataclasses.replace(reading, ball=found)
+
+
+def _layer(opened: DesignReader, depth_mm: np.ndarray, chosen: np.ndarray) -> Layer:
+    """The wall under the touched vertices (n,), pressed in by (n,) [mm]."""
+    from sim.reading.layer_law import Layer
+
+    material, thickness_mm = opened.material, 1.0
+    if len(chosen):
+        thickness_mm = float(np.average(opened.wall_mm[chosen], weights=depth_mm))
+    return Layer(thickness_mm=thickness_mm, young_MPa=material.young_MPa, poisson=material.poisson)
+
+
+def _told(ball: FittedBall) -> dict[str, Any]:
+    return {
+        "place_mm": ball.place_mm.tolist(),
+        "radius_mm": ball.radius_mm,
+        "radius_sigma_mm": ball.radius_sigma_mm,
+        "depth_mm": ball.depth_mm,
+        "misfit": ball.misfit,
+    }
 
 
 def _known(value: float) -> float | None:

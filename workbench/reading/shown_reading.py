@@ -14,8 +14,6 @@ from workbench.view.colour_scale import NOTHING_GREY, YES, scale_colours
 
 LEAST_MM, LEAST_DEG = 0.1, 5.0
 """Upper ends of colours, at least."""
-SAMPLES = 200
-"""Places of a profile."""
 
 
 class Look(StrEnum):
@@ -94,10 +92,9 @@ class ShownReading:
             stop_px: The same; pixels that see no skin are left out, so n may be 0.
         """
         rows, columns = self.place_mm.shape[:2]
-        line = np.linspace(start_px, stop_px, SAMPLES)
-        cells = np.unique(np.rint(line).astype(int), axis=0)
-        order = np.argsort((cells - start_px) @ (np.subtract(stop_px, start_px)), kind="stable")
-        column, row = np.clip(cells[order].T, 0, [[columns - 1], [rows - 1]])
+        count = int(np.abs(np.subtract(stop_px, start_px)).max()) + 1
+        cells = np.rint(np.linspace(start_px, stop_px, count)).astype(int)
+        column, row = np.clip(cells.T, 0, [[columns - 1], [rows - 1]])
         places, depth = self.place_mm[row, column], self.told[Look.DEPTH].pixels[row, column]
         known = np.isfinite(depth) & np.isfinite(places).all(axis=1)
         places, depth = places[known], depth[known]

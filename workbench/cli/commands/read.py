@@ -35,6 +35,8 @@ def options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--reader", choices=READERS, default=READERS[0], help=text)
     text = "each photo follows the one before at once: begin where that one ended"
     sub.add_argument("--video", action="store_true", help=text)
+    text = "fit a ball to each photo as a model of its image: place, radius, depth; seconds more"
+    sub.add_argument("--ball", action="store_true", help=text)
     add_set_option(sub)
     sub.add_argument("--json", action="store_true", help="progress and figures as JSON lines")
 
@@ -46,7 +48,7 @@ def run(options: argparse.Namespace, project: Project) -> int:
     from workbench.project.named_designs import load_design
     from workbench.reading.design_reader import open_reader
     from workbench.reading.outputs import TABLE, names_of, write_reading, write_table
-    from workbench.reading.read_photo import read_photo
+    from workbench.reading.read_photo import read_photo, with_ball
     from workbench.system.folder import prepare
 
     design = with_typed(load_design(options.design, project=project), options.set)
@@ -73,6 +75,8 @@ def run(options: argparse.Namespace, project: Project) -> int:
     ):
         printer("read", 0.5 + 0.5 * number / len(photos), path.name)
         found = read_photo(opened, path.name, photo, before)
+        if options.ball:
+            found = with_ball(opened, found, photo)
         write_reading(options.out, name, found)
         rows.append(found.figures)
         lines.append(_line(found))
