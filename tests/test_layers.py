@@ -39,7 +39,7 @@ RANKS = """
     workbench.project  workbench.edit  workbench.live  workbench.report  workbench.report.exports
     workbench.variants  workbench.calibration  workbench.photographs  workbench.reading
     workbench.learning  workbench.learning.dataset  workbench.learning.making
-    workbench.learning.training
+    workbench.learning.training  workbench.twin
     workbench.proof  workbench.proof.validation  workbench.proof.validation.geometry
     workbench.proof.validation.optics  workbench.proof.validation.contact
     workbench.proof.validation.fem  workbench.proof.benchmarks
