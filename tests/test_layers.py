@@ -40,6 +40,7 @@ RANKS = """
     workbench.variants  workbench.calibration  workbench.photographs  workbench.reading
     workbench.learning  workbench.learning.dataset  workbench.learning.making
     workbench.learning.training  workbench.twin
+    workbench.tasks.networks  workbench.tasks  workbench.tasks.kinds
     workbench.proof  workbench.proof.validation  workbench.proof.validation.geometry
     workbench.proof.validation.optics  workbench.proof.validation.contact
     workbench.proof.validation.fem  workbench.proof.benchmarks

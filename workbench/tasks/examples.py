@@ -30,7 +30,7 @@ class Seen:
     differences: np.ndarray
     """From rest [grey level], shape (T, h, w, 3), int16."""
     motion: float
-    """Mean motion of what is seen from the first to the last image [px]; 0 of one image."""
+    """Mean way of what is seen from the first to the last image over its width; 0 of one image."""
     labels: Labels
 
 
@@ -44,7 +44,7 @@ class Examples:
     inputs: np.ndarray
     """Differences from rest [grey level], shape (N, T, h, w, 3), int16."""
     motion: np.ndarray
-    """Of windows [px], shape (N,)."""
+    """Of windows, over the width of the image, shape (N,)."""
     truth: np.ndarray
     """Number of the class, shape (N,), int64; or values, shape (N, K), float64."""
     outputs: tuple[str, ...]

@@ -32,7 +32,7 @@ from workbench.learning.dataset.photo_labels import (
 from workbench.learning.dataset.sequences import FRAMES
 from workbench.photographs.photo_files import decoded
 from workbench.tasks.examples import Seen, columns_of
-from workbench.tasks.seen_images import differences, motion_px, seen_size
+from workbench.tasks.seen_images import differences, motion, seen_size
 from workbench.tasks.task import Look, Size, Task, Told
 
 AT = "--photos"
@@ -98,7 +98,7 @@ class PhotoFolder:
                 name=last[PHOTO],
                 place=last.get(PLACE, ""),
                 differences=differences(shots, idle, seen_size(width, height, size)),
-                motion=motion_px(shots),
+                motion=motion(shots),
                 labels=labels,
             )
 

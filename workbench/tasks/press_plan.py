@@ -7,6 +7,7 @@ steps.
 
 from __future__ import annotations
 
+import dataclasses
 from typing import Any, TypedDict, Unpack
 
 from workbench.core.design.design import SensorDesign
@@ -84,9 +85,7 @@ def pressed(
     wanted_mm, steps = depth
     depth_mm = min(wanted_mm, DEEPEST_SHARE * design.layers.elastomer_mm)
     step_mm = round(depth_mm / steps, 4)
-    small = size is Size.SMALL
-    fine: dict[str, float] = {"grid_mm": COARSE_MM, "hex_mm": COARSE_HEX_MM} if small else {}
-    return Recipe(
+    made = Recipe(
         design=design,
         pattern=pattern,
         points=POINTS,
@@ -95,13 +94,9 @@ def pressed(
         solvers=Solvers.MPM,
         image_width_px=WIDTHS_PX[size],
         hold_out=False,
-        vary=_seen(vary, LOOKS[size]),
-        **fine,
+        vary=dataclasses.replace(vary, looks=Looks(count=LOOKS[size])),
         **more,
     )
-
-
-def _seen(vary: Vary, count: int) -> Vary:
-    import dataclasses
-
-    return dataclasses.replace(vary, looks=Looks(count=count))
+    if size is Size.SMALL:
+        return dataclasses.replace(made, grid_mm=COARSE_MM, hex_mm=COARSE_HEX_MM)
+    return made

@@ -14,7 +14,7 @@ from workbench.learning.dataset.photo_export import windows
 from workbench.learning.dataset.photo_labels import SLIP, labels_of
 from workbench.learning.dataset.sample import Sample, decoded
 from workbench.tasks.examples import Seen
-from workbench.tasks.seen_images import differences, motion_px, seen_size
+from workbench.tasks.seen_images import differences, motion, seen_size
 from workbench.tasks.task import Look, Size, Task
 
 Shown = Callable[[Case, Sample], np.ndarray]
@@ -71,14 +71,12 @@ def rendered(
             name=f"{case.id}:{frames[-1]}",
             place=case.position.name,
             differences=differences(own, at_rest(case), seen_size(width, height, size)),
-            motion=motion_px(own),
+            motion=motion(own),
             labels={**labels_of(case, samples[-1], data.skin), **more},
         )
 
 
-def _windows(
-    task: Task, data: DataSet
-) -> Iterator[tuple[Case, Sequence[int], dict[str, Any]]]:
+def _windows(task: Task, data: DataSet) -> Iterator[tuple[Case, Sequence[int], dict[str, Any]]]:
     """Case, frames, and what is known of each example besides."""
     if task.look is Look.WINDOW:
         for case, row in windows(data):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -53,12 +54,12 @@ def trivial(task: Task, train: Examples, test: Examples) -> np.ndarray:
         classes, often = np.unique(train.truth, return_counts=True)
         return np.full(count, classes[np.argmax(often)])
     if task.null is Null.MOTION:
-        return (test.motion > motion_threshold_px(train)).astype(np.int64)
+        return (test.motion > motion_threshold(train)).astype(np.int64)
     middle = np.median if task.null is Null.MEDIAN else np.mean
     return np.tile(middle(train.truth, axis=0), (count, 1))
 
 
-def motion_threshold_px(train: Examples) -> float:
+def motion_threshold(train: Examples) -> float:
     """The motion from which on slip is told, with the best balanced accuracy in training."""
     edges = np.unique(train.motion)
     middles = np.concatenate([[edges[0] - 1.0], 0.5 * (edges[1:] + edges[:-1])])
@@ -89,4 +90,5 @@ def rank_correlation(told: np.ndarray, truth: np.ndarray) -> float:
         return 0.0
     from scipy.stats import spearmanr
 
-    return float(spearmanr(told, truth).statistic)
+    found: Any = spearmanr(told, truth)
+    return float(found.statistic)

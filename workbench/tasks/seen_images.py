@@ -32,8 +32,8 @@ def differences(
     return np.stack([image.astype(np.int16) - rest.astype(np.int16) for image in shown])
 
 
-def motion_px(images: Sequence[np.ndarray]) -> float:
-    """Mean motion of corners from the first to the last image [px]; 0 where there is but one.
+def motion(images: Sequence[np.ndarray]) -> float:
+    """Mean motion of corners from the first to the last image over its width; 0 of one image.
 
     On skin with markers the corners are those of the markers. They are followed by the method of
     Lucas and Kanade over pyramids. Source: Bouguet, Pyramidal implementation of the Lucas Kanade
@@ -47,6 +47,6 @@ def motion_px(images: Sequence[np.ndarray]) -> float:
     corners = cv2.goodFeaturesToTrack(first, **CORNERS)
     if corners is None or len(corners) < FEWEST_CORNERS:
         return 0.0
-    moved, found, _ = cv2.calcOpticalFlowPyrLK(first, last, corners, None)
+    moved, found, _ = cv2.calcOpticalFlowPyrLK(first, last, corners, corners.copy())
     away_px = np.linalg.norm((moved - corners).reshape(-1, 2), axis=1)[found.ravel() == 1]
-    return float(away_px.mean()) if len(away_px) else 0.0
+    return float(away_px.mean()) / first.shape[1] if len(away_px) else 0.0

@@ -81,13 +81,10 @@ class Task:
     """Of its first rows."""
     null: Null
     published: tuple[Published, ...] = ()
+    safety: bool = False
+    """Whether the coefficient of safety is told in the place of a pressure."""
     formula: str = ""
-    """How a label is made, where it is none that a rule could read."""
-
-    @property
-    def higher_is_better(self) -> bool:
-        """Whether a larger score is a better one."""
-        return self.told is Told.CLASS
+    """How a label is made, where no column has it."""
 
 
 def tasks() -> Mapping[str, Task]:

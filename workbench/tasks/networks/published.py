@@ -23,7 +23,7 @@ class ResNet(nn.Module):
 
     def __init__(self, outputs: int, *, pretrained: bool) -> None:
         super().__init__()
-        from torchvision.models import ResNet50_Weights, resnet50
+        from torchvision.models import ResNet50_Weights, resnet50  # pyright: ignore[reportMissingImports]
 
         weights = ResNet50_Weights.IMAGENET1K_V2 if pretrained else None
         self.backbone: Any = resnet50(weights=weights)
@@ -39,7 +39,7 @@ class VggLstm(nn.Module):
 
     def __init__(self, outputs: int, *, pretrained: bool) -> None:
         super().__init__()
-        from torchvision.models import VGG19_BN_Weights, vgg19_bn
+        from torchvision.models import VGG19_BN_Weights, vgg19_bn  # pyright: ignore[reportMissingImports]
 
         weights = VGG19_BN_Weights.IMAGENET1K_V1 if pretrained else None
         self.backbone: Any = vgg19_bn(weights=weights)
