@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from workbench.core.base.monitor import Monitor, part
 from workbench.tasks.examples import Examples
-from workbench.tasks.outcome import Run, Test, Tested, tested
+from workbench.tasks.outcome import Run, Tested, Trial, tested
 from workbench.tasks.scores import trivial
 from workbench.tasks.splits import Parts, at_random, by_place
 from workbench.tasks.task import Task
@@ -27,17 +27,17 @@ class Lessons:
     trainer: Trainer
     found: Examples
 
-    def parts(self, test: Test) -> list[Parts]:
+    def parts(self, test: Trial) -> list[Parts]:
         """The split of each seed: by place, or at random.
 
         Raises:
             DesignError: If there are too few places.
         """
-        if test is Test.PLACE:
+        if test is Trial.PLACE:
             return [by_place(self.found.places, seed) for seed in SEEDS]
         return [at_random(len(self.found), seed) for seed in SEEDS]
 
-    def learned(self, test: Test, monitor: Monitor) -> list[Run]:
+    def learned(self, test: Trial, monitor: Monitor) -> list[Run]:
         """The networks of all seeds, each on what its split holds out.
 
         Raises:
@@ -52,15 +52,15 @@ class Lessons:
             runs.append(self._run(seed, trained, parts, test_part, begun))
         return runs
 
-    def on_renders(self, test: Test, runs: Sequence[Run]) -> Tested:
+    def on_renders(self, test: Trial, runs: Sequence[Run]) -> Tested:
         """What the networks of `learned` say of what was held out."""
         return tested(self.name, self.task, test, runs)
 
-    def on_photos(self, test: Test, seen: Examples, networks: Sequence[Trained]) -> Tested:
+    def on_photos(self, test: Trial, seen: Examples, networks: Sequence[Trained]) -> Tested:
         """What networks that learned from a random split of renders say of photographs."""
         runs = [
             self._run(seed, trained, parts, seen, time.monotonic())
-            for seed, trained, parts in zip(SEEDS, networks, self.parts(Test.SIM), strict=True)
+            for seed, trained, parts in zip(SEEDS, networks, self.parts(Trial.SIM), strict=True)
         ]
         return tested(self.name, self.task, test, runs)
 

@@ -18,7 +18,7 @@ MOST_SHOWN = 8
 """Examples that went wrong in a gallery."""
 
 
-class Test(enum.StrEnum):
+class Trial(enum.StrEnum):
     """What is tested, all of them by networks that learned from renders."""
 
     SIM = "sim"
@@ -33,13 +33,13 @@ class Test(enum.StrEnum):
     """Photographs of the user's; trained on the nominal design."""
 
 
-RENDERS = (Test.SIM, Test.PLACE)
+RENDERS = (Trial.SIM, Trial.PLACE)
 WORDS = {
-    Test.SIM: "renders, split at random",
-    Test.PLACE: "renders at places that training did not show",
-    Test.TWIN: "photographs of a twin, trained on renders of the design",
-    Test.CALIBRATED: "the same photographs, trained on renders of the calibrated design",
-    Test.PHOTOS: "own photographs, trained on renders of the design",
+    Trial.SIM: "renders, split at random",
+    Trial.PLACE: "renders at places that training did not show",
+    Trial.TWIN: "photographs of a twin, trained on renders of the design",
+    Trial.CALIBRATED: "the same photographs, trained on renders of the calibrated design",
+    Trial.PHOTOS: "own photographs, trained on renders of the design",
 }
 
 
@@ -87,13 +87,13 @@ class Failure:
 class Tested:
     """One test of a task."""
 
-    test: Test
+    test: Trial
     rows: list[Row]
     details: dict[str, Any]
     failures: list[Failure] = field(default_factory=list[Failure])
 
 
-def tested(name: str, task: Task, test: Test, runs: Sequence[Run]) -> Tested:
+def tested(name: str, task: Task, test: Trial, runs: Sequence[Run]) -> Tested:
     """What the runs of all seeds say together."""
     scores = [scored(task, run.told, run.test, run.null) for run in runs]
     rows = []
@@ -131,11 +131,11 @@ def tested(name: str, task: Task, test: Test, runs: Sequence[Run]) -> Tested:
     return Tested(test=test, rows=rows, details=details, failures=_failures(task, runs[0]))
 
 
-def _published(task: Task, test: Test, metric: str) -> float | None:
+def _published(task: Task, test: Trial, metric: str) -> float | None:
     """The paper's split is at random; its photographs stand beside a twin's and the user's."""
     for each in task.published:
-        if each.metric == metric and test is not Test.PLACE:
-            return each.sim if test is Test.SIM else each.real
+        if each.metric == metric and test is not Trial.PLACE:
+            return each.sim if test is Trial.SIM else each.real
     return None
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from workbench.core.base.monitor import Monitor
 from workbench.tasks.examples import Examples
 from workbench.tasks.lessons import Lessons
-from workbench.tasks.outcome import Test
+from workbench.tasks.outcome import Trial
 from workbench.tasks.splits import FEWEST_PLACES
 
 FEWEST_PHOTOS = 100
@@ -38,7 +38,7 @@ def on_photos(lessons: Lessons, seen: Examples, monitor: Monitor) -> dict[str, A
     folder = lessons.trainer.folder / "photos"
     trainer = dataclasses.replace(lessons.trainer, folder=folder)
     own = dataclasses.replace(lessons, trainer=trainer, found=seen)
-    told = own.on_renders(Test.PLACE, own.learned(Test.PLACE, monitor))
+    told = own.on_renders(Trial.PLACE, own.learned(Trial.PLACE, monitor))
     return {
         "split": "by place",
         "scores": [

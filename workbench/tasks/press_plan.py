@@ -8,6 +8,7 @@ steps.
 from __future__ import annotations
 
 import dataclasses
+import math
 from typing import Any, TypedDict, Unpack
 
 from workbench.core.design.design import SensorDesign
@@ -84,7 +85,7 @@ def pressed(
     """
     wanted_mm, steps = depth
     depth_mm = min(wanted_mm, DEEPEST_SHARE * design.layers.elastomer_mm)
-    step_mm = round(depth_mm / steps, 4)
+    step_mm = math.floor(1e4 * depth_mm / steps + 1e-6) / 1e4
     made = Recipe(
         design=design,
         pattern=pattern,

@@ -36,7 +36,7 @@ from workbench.project.design_toml import design_table
 from workbench.project.project import Project
 from workbench.tasks.examples import Examples, Seen, examples
 from workbench.tasks.lessons import SEEDS, Lessons
-from workbench.tasks.outcome import Test, Tested
+from workbench.tasks.outcome import Tested, Trial
 from workbench.tasks.photo_folder import PhotoFolder
 from workbench.tasks.photo_training import on_photos
 from workbench.tasks.rendered import AtRest, Renders, Shown, rendered
@@ -50,12 +50,12 @@ from workbench.tasks.twin_test import calibrated, photographed, twin_plan
 SPANS = {
     "data": (0.0, 0.45),
     "images": (0.45, 0.47),
-    Test.SIM: (0.47, 0.57),
-    Test.PLACE: (0.57, 0.67),
-    Test.PHOTOS: (0.67, 0.68),
-    Test.TWIN: (0.68, 0.85),
+    Trial.SIM: (0.47, 0.57),
+    Trial.PLACE: (0.57, 0.67),
+    Trial.PHOTOS: (0.67, 0.68),
+    Trial.TWIN: (0.68, 0.85),
     "calibrate": (0.85, 0.9),
-    Test.CALIBRATED: (0.9, 1.0),
+    Trial.CALIBRATED: (0.9, 1.0),
 }
 """Part of each step in the whole."""
 
@@ -141,26 +141,26 @@ class _Work:
         images = own.shown, own.at_rest
         with self._timed("images"):
             lessons = self._lessons(data, images)
-        tests, networks = [], dict[Test, list[Trained]]()
-        for test in (Test.SIM, Test.PLACE):
+        tests, networks = [], dict[Trial, list[Trained]]()
+        for test in (Trial.SIM, Trial.PLACE):
             with self._timed(test):
                 runs = lessons.learned(test, self._span(test))
             networks[test] = [run.trained for run in runs]
             tests.append(lessons.on_renders(test, runs))
         if self.task.look is Look.WINDOW:
-            left = set(lessons.found.places[lessons.parts(Test.PLACE)[0].test].tolist())
-            network = networks[Test.PLACE][0]
+            left = set(lessons.found.places[lessons.parts(Trial.PLACE)[0].test].tolist())
+            network = networks[Trial.PLACE][0]
             delay = slip_delays(data, images, network, left, self.plan.size)
             tests[-1].details["delay"] = delay
-        details = self._details(lessons, networks[Test.SIM][0])
+        details = self._details(lessons, networks[Trial.SIM][0])
         if seen is not None:
-            with self._timed(Test.PHOTOS):
+            with self._timed(Trial.PHOTOS):
                 photos = _photos(seen, lessons)
-                tests.append(lessons.on_photos(Test.PHOTOS, photos, networks[Test.SIM]))
-                own_training = on_photos(lessons, photos, self._span(Test.PHOTOS))
+                tests.append(lessons.on_photos(Trial.PHOTOS, photos, networks[Trial.SIM]))
+                own_training = on_photos(lessons, photos, self._span(Trial.PHOTOS))
                 details["trained_on_photos"] = own_training
         if self.plan.twin:
-            tests += self._twin(data, lessons, networks[Test.SIM], details)
+            tests += self._twin(data, lessons, networks[Trial.SIM], details)
         details["seconds"] = {name: round(value, 1) for name, value in self.seconds.items()}
         return Result(plan=self.plan, design=self.design, tests=tests, details=details)
 
@@ -219,21 +219,21 @@ class _Work:
         """The tests on a twin, before and after it is calibrated."""
         size, store, folder = self.plan.size, self.project.store, self.out / "twin"
         plan = twin_plan(self.task, size, self.recipe, self.plan.jobs)
-        with self._timed(Test.TWIN):
+        with self._timed(Trial.TWIN):
             place, details["twin"] = photographed(
-                self.design, folder, plan, store, self._span(Test.TWIN)
+                self.design, folder, plan, store, self._span(Trial.TWIN)
             )
             camera = self.design.optics.camera
             seen = list(PhotoFolder.open(place).seen(self.task, size, camera))
-            tests = [lessons.on_photos(Test.TWIN, _photos(seen, lessons), networks)]
-        with self._timed(Test.CALIBRATED):
+            tests = [lessons.on_photos(Trial.TWIN, _photos(seen, lessons), networks)]
+        with self._timed(Trial.CALIBRATED):
             optics, details["calibration"] = calibrated(
                 self.design, folder, size, store, self._span("calibrate")
             )
             again = self._seen_anew(data, optics)
-            runs = again.learned(Test.CALIBRATED, self._span(Test.CALIBRATED))
+            runs = again.learned(Trial.CALIBRATED, self._span(Trial.CALIBRATED))
             learned = [run.trained for run in runs]
-            tests.append(again.on_photos(Test.CALIBRATED, _photos(seen, again), learned))
+            tests.append(again.on_photos(Trial.CALIBRATED, _photos(seen, again), learned))
         return tests
 
     def _seen_anew(self, data: DataSet, optics: Optics) -> Lessons:

@@ -136,7 +136,8 @@ class Trainer:
                 Part(inputs=found.inputs[rows], truth=_wanted(found.truth[rows], scale))
                 for rows in (parts.train, parts.validation)
             )
-            settings = Settings(epochs=epochs, rate=rate, batch=batch)
+            moved = self.task.told is Told.CLASS
+            settings = Settings(epochs=epochs, moved=moved, rate=rate, batch=batch)
             learned = learn(network, (train, validation), settings, seed, monitor)
             epoch, curve = learned.epoch, learned.curve
             _write(path, key, {"state": network.state_dict(), "epoch": epoch, "curve": curve})

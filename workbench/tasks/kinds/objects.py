@@ -14,7 +14,7 @@ from workbench.learning.dataset.variation import Vary
 from workbench.tasks.press_plan import FRICTION, OBJECTS, pattern_of, pressed
 from workbench.tasks.task import Look, Null, Published, Size, Task, Told
 
-CASES = {Size.SMALL: 192, Size.PAPER: 1002}
+CASES = {Size.SMALL: 144, Size.PAPER: 1002}
 SIZES_MM = {Size.SMALL: (7.0, 9.0), Size.PAPER: (3.0, 12.0)}
 STEPS = {Size.SMALL: 2, Size.PAPER: 8}
 
