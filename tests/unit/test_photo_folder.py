@@ -24,14 +24,15 @@ from workbench.report.image_files import png_bytes
 from workbench.tasks.examples import examples
 from workbench.tasks.photo_folder import PhotoFolder
 from workbench.tasks.rendered import Renders, rendered
-from workbench.tasks.task import Size, task_of
+from workbench.tasks.seen_images import VIEWS
+from workbench.tasks.task import Net, task_of
 
 CAMERA = Camera(width_px=4 * WIDTH, height_px=4 * HEIGHT)
 
 
 def read(folder: Path, task: str = "objects") -> list:
     """Everything a task takes from a folder."""
-    return list(PhotoFolder.open(folder).seen(task_of(task), Size.SMALL, CAMERA))
+    return list(PhotoFolder.open(folder).seen(task_of(task), VIEWS[Net.SMALL], CAMERA))
 
 
 def test_photographs_count_as_their_difference_from_rest(tmp_path: Path) -> None:
@@ -39,8 +40,8 @@ def test_photographs_count_as_their_difference_from_rest(tmp_path: Path) -> None
     seen = read(photographed(tmp_path, 8))
     assert len(seen) == 8
     assert {each.labels["object"] for each in seen} == {"cross", "hexagon", "sphere", "flower"}
-    assert {int(each.differences.max()) for each in seen} <= {75, 150}
-    assert all(each.differences.min() == 0 for each in seen)
+    assert {int(each.change.grey.max()) for each in seen} <= {75, 150}
+    assert all(each.change.grey.min() == 0 for each in seen)
 
 
 def test_folders_name_the_classes_where_there_is_no_table(tmp_path: Path) -> None:
@@ -58,7 +59,7 @@ def test_folders_name_the_classes_where_there_is_no_table(tmp_path: Path) -> Non
 def test_sequences_are_eight_photographs_in_order(tmp_path: Path) -> None:
     """Dots that stand still have no motion, those that slip move by 4 of 48 px."""
     seen = read(sequence_folder(tmp_path), "slip")
-    assert [each.differences.shape[0] for each in seen] == [8] * 12
+    assert [len(each.change.grey) for each in seen] == [8] * 12
     assert all(
         each.motion == pytest.approx(4.0 / WIDTH * float(each.labels["slip"]), abs=0.02)
         for each in seen
@@ -122,7 +123,7 @@ def test_photographs_of_other_sizes_are_refused(tmp_path: Path) -> None:
     photographed(tmp_path, 4)
     wide = Camera(width_px=640, height_px=360)
     with pytest.raises(DesignError, match="48 x 36 pixels, the camera of the design 640 x 360"):
-        list(PhotoFolder.open(tmp_path).seen(task_of("objects"), Size.SMALL, wide))
+        list(PhotoFolder.open(tmp_path).seen(task_of("objects"), VIEWS[Net.SMALL], wide))
     (tmp_path / "p002.png").write_bytes(png_bytes(dots(0.0)[:30]))
     with pytest.raises(DesignError, match=r"p002.png has 48 x 30 pixels, idle.png 48 x 36"):
         read(tmp_path)
@@ -151,7 +152,7 @@ def test_an_exported_data_set_reads_as_what_it_was(tmp_path: Path) -> None:
     data, task = touched(tmp_path / "data", cases=10), task_of("objects")
     assert export_images(data, tmp_path / "photos", silent) == 20
     own = Renders(data, marked=False)
-    ours = examples(task, rendered(task, Size.SMALL, data, (own.shown, own.at_rest), silent))
+    ours = examples(task, rendered(task, VIEWS[Net.SMALL], data, (own.shown, own.at_rest), silent))
     theirs = examples(task, read(tmp_path / "photos"))
     assert (ours.inputs == theirs.inputs).all() and ours.outputs == theirs.outputs
     assert ours.places.tolist() == theirs.places.tolist()

@@ -14,6 +14,7 @@ import numpy as np
 
 from workbench.core.base.errors import DesignError
 from workbench.learning.dataset.photo_labels import POSE, SLIP, Labels
+from workbench.tasks.seen_images import Change
 from workbench.tasks.task import Look, Task, Told
 
 SLIP_NAMES = ("hold", "slip")
@@ -27,8 +28,8 @@ class Seen:
     """Of the file, or of case and frame."""
     place: str
     """On the skin; "" where nobody said."""
-    differences: np.ndarray
-    """From rest [grey level], shape (T, h, w, 3), int16."""
+    change: Change
+    """From rest."""
     motion: float
     """Mean way of what is seen from the first to the last image over its width; 0 of one image."""
     labels: Labels
@@ -43,6 +44,8 @@ class Examples:
     """Name of each one's place, shape (N,), str."""
     inputs: np.ndarray
     """Differences from rest [grey level], shape (N, T, h, w, 3), int16."""
+    at: np.ndarray
+    """Middle and side of what is shown, as of `Change`, shape (N, 3), float32."""
     motion: np.ndarray
     """Of windows, over the width of the image, shape (N,)."""
     truth: np.ndarray
@@ -59,6 +62,7 @@ class Examples:
             names=tuple(self.names[k] for k in rows),
             places=self.places[rows],
             inputs=self.inputs[rows],
+            at=self.at[rows],
             motion=self.motion[rows],
             truth=self.truth[rows],
             outputs=self.outputs,
@@ -91,7 +95,8 @@ def examples(task: Task, seen: Iterable[Seen], outputs: Sequence[str] = ()) -> E
     return Examples(
         names=tuple(each.name for each in found),
         places=np.array([each.place for each in found]),
-        inputs=np.stack([each.differences for each in found]),
+        inputs=np.stack([each.change.grey for each in found]),
+        at=np.array([each.change.at for each in found], np.float32),
         motion=np.array([each.motion for each in found]),
         truth=truth,
         outputs=names,

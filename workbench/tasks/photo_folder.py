@@ -32,8 +32,8 @@ from workbench.learning.dataset.photo_labels import (
 from workbench.learning.dataset.sequences import FRAMES
 from workbench.photographs.photo_files import decoded
 from workbench.tasks.examples import Seen, columns_of
-from workbench.tasks.seen_images import differences, motion, seen_size
-from workbench.tasks.task import Look, Size, Task, Told
+from workbench.tasks.seen_images import View, change, motion
+from workbench.tasks.task import Look, Task, Told
 
 AT = "--photos"
 LIKE = 0.02
@@ -69,12 +69,12 @@ class PhotoFolder:
             raise DesignError(f"{folder} names no photographs", hint=WHAT_IS_IN_IT, at=AT)
         return cls(folder=folder, rows=tuple(rows), columns=tuple(rows[0]))
 
-    def seen(self, task: Task, size: Size, camera: Camera) -> Iterator[Seen]:
+    def seen(self, task: Task, view: View, camera: Camera) -> Iterator[Seen]:
         """The examples of a task.
 
         Args:
             task: Says which columns must be there.
-            size: Of what the network sees.
+            view: Says which part of an image is seen.
             camera: Of the design.
 
         Raises:
@@ -87,8 +87,6 @@ class PhotoFolder:
         for rows in groups:
             last = rows[-1]
             shots = [images.photo(row) for row in rows]
-            idle = images.idle(last)
-            height, width = idle.shape[:2]
             labels: dict[str, str | float] = dict(last)
             for name in numbers:
                 labels[name] = _number(last, name)
@@ -97,7 +95,7 @@ class PhotoFolder:
             yield Seen(
                 name=last[PHOTO],
                 place=last.get(PLACE, ""),
-                differences=differences(shots, idle, seen_size(width, height, size)),
+                change=change(shots, images.idle(last), view),
                 motion=motion(shots),
                 labels=labels,
             )

@@ -14,8 +14,8 @@ from workbench.learning.dataset.photo_export import windows
 from workbench.learning.dataset.photo_labels import SLIP, labels_of
 from workbench.learning.dataset.sample import Sample, decoded
 from workbench.tasks.examples import Seen
-from workbench.tasks.seen_images import differences, motion, seen_size
-from workbench.tasks.task import Look, Size, Task
+from workbench.tasks.seen_images import View, change, motion
+from workbench.tasks.task import Look, Task
 
 Shown = Callable[[Case, Sample], np.ndarray]
 """The image of a sample, shape (H, W, 3), uint8."""
@@ -46,13 +46,13 @@ class Renders:
 
 
 def rendered(
-    task: Task, size: Size, data: DataSet, images: tuple[Shown, AtRest], monitor: Monitor
+    task: Task, view: View, data: DataSet, images: tuple[Shown, AtRest], monitor: Monitor
 ) -> Iterator[Seen]:
     """The examples of a task in a data set.
 
     Args:
         task: Says whether single images or windows are shown.
-        size: Says how large.
+        view: Says which part of an image is seen.
         data: The presses.
         images: Of a sample, and at rest; those of `Renders`, or others of the same presses.
         monitor: Progress.
@@ -66,11 +66,10 @@ def rendered(
         monitor(number / len(listed), case.id)
         samples = [data.sample(case, frame) for frame in frames]
         own = [shown(case, sample) for sample in samples]
-        height, width = own[0].shape[:2]
         yield Seen(
             name=f"{case.id}:{frames[-1]}",
             place=case.position.name,
-            differences=differences(own, at_rest(case), seen_size(width, height, size)),
+            change=change(own, at_rest(case), view),
             motion=motion(own),
             labels={**labels_of(case, samples[-1], data.skin), **more},
         )

@@ -42,9 +42,10 @@ from workbench.tasks.photo_training import on_photos
 from workbench.tasks.rendered import AtRest, Renders, Shown, rendered
 from workbench.tasks.reshoot import Reshot, sees_outer_skin
 from workbench.tasks.safety_scale import SafetyScale
+from workbench.tasks.seen_images import VIEWS
 from workbench.tasks.slip_delay import slip_delays
-from workbench.tasks.task import Look, Size, Task, task_of
-from workbench.tasks.trained import Net, Trained, Trainer
+from workbench.tasks.task import Look, Net, Size, Task, task_of
+from workbench.tasks.trained import Trained, Trainer
 from workbench.tasks.twin_test import calibrated, photographed, twin_plan
 
 SPANS = {
@@ -105,7 +106,7 @@ def run_task(
     if plan.photos is not None:
         # Photographs that do not suit are told before anything is pressed.
         folder = PhotoFolder.open(plan.photos)
-        seen = list(folder.seen(task, plan.size, design.optics.camera))
+        seen = list(folder.seen(task, VIEWS[plan.net], design.optics.camera))
     with held(out, doing="running the task in"):
         work = _Work(
             task=task,
@@ -150,7 +151,7 @@ class _Work:
         if self.task.look is Look.WINDOW:
             left = set(lessons.found.places[lessons.parts(Trial.PLACE)[0].test].tolist())
             network = networks[Trial.PLACE][0]
-            delay = slip_delays(data, images, network, left, self.plan.size)
+            delay = slip_delays(data, images, network, left, VIEWS[self.plan.net])
             tests[-1].details["delay"] = delay
         details = self._details(lessons, networks[Trial.SIM][0])
         if seen is not None:
@@ -195,7 +196,7 @@ class _Work:
 
     def _lessons(self, data: DataSet, images: tuple[Shown, AtRest]) -> Lessons:
         """All examples of the renders, and who learns from them."""
-        seen = rendered(self.task, self.plan.size, data, images, self._span("images"))
+        seen = rendered(self.task, VIEWS[self.plan.net], data, images, self._span("images"))
         found, scale = examples(self.task, seen), None
         if self.task.safety:
             scale = SafetyScale.of(found)
@@ -224,7 +225,7 @@ class _Work:
                 self.design, folder, plan, store, self._span(Trial.TWIN)
             )
             camera = self.design.optics.camera
-            seen = list(PhotoFolder.open(place).seen(self.task, size, camera))
+            seen = list(PhotoFolder.open(place).seen(self.task, VIEWS[self.plan.net], camera))
             tests = [lessons.on_photos(Trial.TWIN, _photos(seen, lessons), networks)]
         with self._timed(Trial.CALIBRATED):
             optics, details["calibration"] = calibrated(

@@ -1,35 +1,98 @@
-"""Images as a network sees them: their size, their difference from rest, the motion in a window."""
+"""Images as a network sees them: their size, their difference from rest, the motion in a window.
+
+A network that learns from few presses is shown what is around the contact, with its place told
+beside it: else it would have to learn the same at every place. The contact is where the image
+differs most from rest.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from workbench.tasks.task import Size
+from workbench.tasks.task import Net
 
-WIDTHS_PX = {Size.SMALL: 96, Size.PAPER: 298}
-"""Of what a network sees [px]; 298 of 4:3 is 224 high, as in the paper's script."""
+SIDES, LEAST_PX = 6.0, 16.0
+"""Side of the square around a contact over the spread of what differs, and its least [px]."""
 FEWEST_CORNERS = 4
 CORNERS = {"maxCorners": 200, "qualityLevel": 0.05, "minDistance": 4.0}
 
 
-def seen_size(width_px: int, height_px: int, size: Size) -> tuple[int, int]:
-    """Width and height that a network sees of images of a size [px]; never enlarged."""
-    width = min(width_px, WIDTHS_PX[size])
-    return width, max(1, round(height_px * width / width_px))
+@dataclass(frozen=True, kw_only=True, slots=True)
+class View:
+    """What of an image is seen."""
+
+    width_px: int
+    """Images that are wider are made smaller [px]."""
+    around_px: int
+    """Side of the square around the contact, as the network sees it [px]; 0: all of the image."""
+
+    def size_px(self, width_px: int, height_px: int) -> tuple[int, int]:
+        """Width and height of the whole at which it is seen; never enlarged."""
+        width = min(width_px, self.width_px)
+        return width, max(1, round(height_px * width / width_px))
 
 
-def differences(
-    images: Sequence[np.ndarray], idle: np.ndarray, size_px: tuple[int, int]
-) -> np.ndarray:
-    """Images (H, W, 3) uint8 less the one at rest [grey level], shape (T, h, w, 3), int16."""
+VIEWS = {
+    Net.SMALL: View(width_px=160, around_px=64),
+    Net.LITE: View(width_px=160, around_px=64),
+    Net.PAPER: View(width_px=298, around_px=0),
+}
+"""298 of 4:3 is 224 high, as in the paper's script."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Change:
+    """What differs from rest."""
+
+    grey: np.ndarray
+    """Differences [grey level], shape (T, h, w, 3), int16."""
+    at: tuple[float, float, float]
+    """Middle of what is shown, across and down, from -1 to 1 over the image, and its side over the
+    width of the image."""
+
+
+def change(images: Sequence[np.ndarray], idle: np.ndarray, view: View) -> Change:
+    """Images (H, W, 3) uint8 less the one at rest, the same part of each."""
     import cv2
 
+    size_px = view.size_px(idle.shape[1], idle.shape[0])
     rest, *shown = (
         cv2.resize(image, size_px, interpolation=cv2.INTER_AREA) for image in (idle, *images)
     )
-    return np.stack([image.astype(np.int16) - rest.astype(np.int16) for image in shown])
+    grey = np.stack([image.astype(np.int16) - rest.astype(np.int16) for image in shown])
+    if not view.around_px:
+        return Change(grey=grey, at=(0.0, 0.0, 1.0))
+    column, row, side = _contact(grey)
+    scale = view.around_px / side
+    shift = 0.5 * (view.around_px - 1)
+    affine = np.array([[scale, 0.0, shift - scale * column], [0.0, scale, shift - scale * row]])
+    # Beyond the edge nothing differs.
+    part = np.stack([cv2.warpAffine(one, affine, (view.around_px, view.around_px)) for one in grey])
+    height, width = grey.shape[1:3]
+    at = (2.0 * column / width - 1.0, 2.0 * row / height - 1.0, side / width)
+    return Change(grey=part, at=at)
+
+
+def _contact(grey: np.ndarray) -> tuple[float, float, float]:
+    """Column and row of the middle of what differs, and the side of a square around it [px].
+
+    Moments of the square of the difference: the side is `SIDES` times its standard deviation.
+    """
+    power = (grey.astype(np.float64) ** 2).sum(axis=(0, 3))
+    total = power.sum()
+    height, width = power.shape
+    if not total:
+        return 0.5 * (width - 1), 0.5 * (height - 1), float(width)
+    by_row, by_column = power.sum(axis=1) / total, power.sum(axis=0) / total
+    rows, columns = np.arange(height), np.arange(width)
+    row, column = float((by_row * rows).sum()), float((by_column * columns).sum())
+    variance = 0.5 * (
+        (by_row * (rows - row) ** 2).sum() + (by_column * (columns - column) ** 2).sum()
+    )
+    return column, row, min(max(SIDES * float(np.sqrt(variance)), LEAST_PX), float(width))
 
 
 def motion(images: Sequence[np.ndarray]) -> float:

@@ -18,8 +18,7 @@ from workbench.learning.dataset.photo_export import windows
 from workbench.learning.dataset.sequences import FRAMES
 from workbench.tasks.examples import SLIP_NAMES, Examples
 from workbench.tasks.rendered import AtRest, Shown
-from workbench.tasks.seen_images import differences, seen_size
-from workbench.tasks.task import Size
+from workbench.tasks.seen_images import View, change
 from workbench.tasks.trained import Trained
 
 
@@ -28,7 +27,7 @@ def slip_delays(
     images: tuple[Shown, AtRest],
     network: Trained,
     places: Set[str],
-    size: Size,
+    view: View,
 ) -> dict[str, Any]:
     """Delays of the slides at some places.
 
@@ -37,13 +36,13 @@ def slip_delays(
         images: Of a sample, and at rest.
         network: That did not learn from these places.
         places: Names of places on the skin.
-        size: Of what the network sees.
+        view: Says which part of an image is seen.
     """
     cases = {case.id: case for case, _ in windows(data) if case.position.name in places}
     delays: list[int] = []
     missed = 0
     for case in cases.values():
-        found = _delay(data, images, network, case, size)
+        found = _delay(data, images, network, case, view)
         if found is None:
             missed += 1
         else:
@@ -59,23 +58,23 @@ def slip_delays(
 
 
 def _delay(
-    data: DataSet, images: tuple[Shown, AtRest], network: Trained, case: Case, size: Size
+    data: DataSet, images: tuple[Shown, AtRest], network: Trained, case: Case, view: View
 ) -> int | None:
     """Frames from gross slip to the first window that tells it; None where none does."""
     shown, at_rest = images
     samples = [data.sample(case, frame) for frame in range(case.frames)]
     own = [shown(case, sample) for sample in samples]
-    height, width = own[0].shape[:2]
-    changed = differences(own, at_rest(case), seen_size(width, height, size))
     ends = range(FRAMES, case.frames + 1)
-    inputs = np.stack([changed[end - FRAMES : end] for end in ends])
+    rest = at_rest(case)
+    changes = [change(own[end - FRAMES : end], rest, view) for end in ends]
     told = network.told(
         Examples(
             names=tuple(str(end) for end in ends),
-            places=np.full(len(inputs), case.position.name),
-            inputs=inputs,
-            motion=np.zeros(len(inputs)),
-            truth=np.zeros(len(inputs), np.int64),
+            places=np.full(len(changes), case.position.name),
+            inputs=np.stack([each.grey for each in changes]),
+            at=np.array([each.at for each in changes], np.float32),
+            motion=np.zeros(len(changes)),
+            truth=np.zeros(len(changes), np.int64),
             outputs=SLIP_NAMES,
         )
     )

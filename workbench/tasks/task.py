@@ -36,6 +36,17 @@ class Look(enum.StrEnum):
     WINDOW = "eight images with markers"
 
 
+class Net(enum.StrEnum):
+    """Which network learns."""
+
+    SMALL = "small"
+    """Seven convolutions from random weights; minutes on a processor."""
+    LITE = "lite"
+    """EfficientNet-Lite0 with ImageNet weights, of optional packages."""
+    PAPER = "paper"
+    """The paper's ResNet50, and VGG19 with an LSTM; for a GPU."""
+
+
 class Told(enum.StrEnum):
     """What a network tells."""
 

@@ -7,7 +7,6 @@ those before it are read.
 from __future__ import annotations
 
 import dataclasses
-import enum
 import io
 import pickle
 from dataclasses import dataclass
@@ -22,23 +21,12 @@ from workbench.system.whole_files import write_atomically
 from workbench.tasks.examples import Examples
 from workbench.tasks.safety_scale import SafetyScale
 from workbench.tasks.splits import Parts
-from workbench.tasks.task import Look, Task, Told
+from workbench.tasks.task import Look, Net, Task, Told
 
 if TYPE_CHECKING:
     from torch import nn
 
 FORMAT = 1
-
-
-class Net(enum.StrEnum):
-    """Which network learns."""
-
-    SMALL = "small"
-    """Seven convolutions from random weights; minutes on a processor."""
-    LITE = "lite"
-    """EfficientNet-Lite0 with ImageNet weights, of optional packages."""
-    PAPER = "paper"
-    """The paper's ResNet50, and VGG19 with an LSTM; for a GPU."""
 
 
 SETTINGS = {
@@ -81,7 +69,7 @@ class Trained:
         """What it says of examples: classes (N,), or values (N, K) in their own units."""
         from workbench.tasks.networks.learn import told_by
 
-        raw = told_by(self.network, found.inputs)
+        raw = told_by(self.network, found.inputs, found.at)
         if self.scale is None:
             return raw.argmax(axis=1)
         values = self.scale.middle + self.scale.spread * raw
@@ -133,7 +121,11 @@ class Trainer:
             epoch, curve = kept["epoch"], kept["curve"]
         else:
             train, validation = (
-                Part(inputs=found.inputs[rows], truth=_wanted(found.truth[rows], scale))
+                Part(
+                    inputs=found.inputs[rows],
+                    at=found.at[rows],
+                    truth=_wanted(found.truth[rows], scale),
+                )
                 for rows in (parts.train, parts.validation)
             )
             moved = self.task.told is Told.CLASS
@@ -168,7 +160,7 @@ class Trainer:
             [
                 {**settings, **held, "grey": learn.GREY, "gain": learn.GAIN},
                 list(self.settings),
-                [found.inputs, found.truth.astype(np.float64), *parts],
+                [found.inputs, found.at, found.truth.astype(np.float64), *parts],
                 list(found.outputs),
             ]
         )

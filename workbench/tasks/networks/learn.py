@@ -51,6 +51,8 @@ class Part:
 
     inputs: np.ndarray
     """Differences [grey level], shape (N, T, h, w, 3), int16."""
+    at: np.ndarray
+    """Middle and side of what is shown, shape (N, 3), float32."""
     truth: np.ndarray
     """Number of the class, (N,), int64; or scaled values, (N, K), float."""
 
@@ -99,7 +101,8 @@ def learn(
             shown = _varied(_tensor(train.inputs[rows], device), generator)
             if settings.moved:
                 shown = _moved(shown, generator)
-            loss = _loss(network(shown), torch.as_tensor(train.truth[rows], device=device))
+            at = torch.as_tensor(train.at[rows], device=device)
+            loss = _loss(network(shown, at), torch.as_tensor(train.truth[rows], device=device))
             optimiser.zero_grad()
             loss.backward()
             optimiser.step()
@@ -107,7 +110,7 @@ def learn(
             total += float(loss.detach()) * len(rows)
             taken += 1
             monitor(min(1.0, taken / steps), f"epoch {epoch + 1} of {settings.epochs}")
-        told = told_by(network, validation.inputs)
+        told = told_by(network, validation.inputs, validation.at)
         left = _left(told, validation.truth)
         curve.append({"train": total / max(1, sum(map(len, batches))), "validation": left})
         if left < best:
@@ -116,13 +119,16 @@ def learn(
     return Learned(epoch=epoch_kept, curve=curve)
 
 
-def told_by(network: nn.Module, inputs: np.ndarray) -> np.ndarray:
-    """What a network says of inputs (N, T, h, w, 3), shape (N, K), float32."""
+def told_by(network: nn.Module, inputs: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """What a network says of inputs (N, T, h, w, 3) about (N, 3), shape (N, K), float32."""
     network.eval()
     device = next(network.parameters()).device
     with torch.no_grad():
         found = [
-            network(_tensor(inputs[rows], device)).float().cpu().numpy()
+            network(_tensor(inputs[rows], device), torch.as_tensor(at[rows], device=device))
+            .float()
+            .cpu()
+            .numpy()
             for rows in _batches(np.arange(len(inputs)), AT_ONCE)
         ]
     return np.concatenate(found) if found else np.zeros((0, 1), np.float32)

@@ -10,10 +10,13 @@ import contextlib
 import io
 from typing import Any
 
+import torch
 from torch import Tensor, nn
 
 FEATURES = 1280
 DROPOUT = 0.2
+PLACE = 3
+"""Numbers of middle and side of what is shown."""
 NAME = "efficientnet-lite0"
 HIDDEN = 128
 
@@ -24,11 +27,11 @@ class LiteNet(nn.Module):
     def __init__(self, outputs: int) -> None:
         super().__init__()
         self.backbone = backbone()
-        self.head = nn.Sequential(nn.Dropout(DROPOUT), nn.Linear(FEATURES, outputs))
+        self.head = nn.Sequential(nn.Dropout(DROPOUT), nn.Linear(FEATURES + PLACE, outputs))
 
-    def forward(self, images: Tensor) -> Tensor:
-        """Numbers, shape (B, K)."""
-        return self.head(_features(self.backbone, images[:, 0]))
+    def forward(self, images: Tensor, at: Tensor) -> Tensor:
+        """Numbers, shape (B, K), with middle and side of what is shown, (B, 3)."""
+        return self.head(torch.cat([_features(self.backbone, images[:, 0]), at], dim=1))
 
 
 class LiteWindowNet(nn.Module):
@@ -38,14 +41,14 @@ class LiteWindowNet(nn.Module):
         super().__init__()
         self.backbone = backbone()
         self.memory = nn.LSTM(FEATURES, HIDDEN, batch_first=True)
-        self.head = nn.Sequential(nn.Dropout(DROPOUT), nn.Linear(HIDDEN, outputs))
+        self.head = nn.Sequential(nn.Dropout(DROPOUT), nn.Linear(HIDDEN + PLACE, outputs))
 
-    def forward(self, images: Tensor) -> Tensor:
-        """Numbers, shape (B, K)."""
+    def forward(self, images: Tensor, at: Tensor) -> Tensor:
+        """Numbers, shape (B, K), with middle and side of what is shown, (B, 3)."""
         batch, frames = images.shape[:2]
         features = _features(self.backbone, images.flatten(0, 1)).reshape(batch, frames, -1)
         found, _ = self.memory(features)
-        return self.head(found[:, -1])
+        return self.head(torch.cat([found[:, -1], at], dim=1))
 
 
 def backbone() -> Any:

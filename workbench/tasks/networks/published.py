@@ -29,8 +29,8 @@ class ResNet(nn.Module):
         self.backbone: Any = resnet50(weights=weights)
         self.backbone.fc = nn.Linear(self.backbone.fc.in_features, outputs)
 
-    def forward(self, images: Tensor) -> Tensor:
-        """Numbers, shape (B, K)."""
+    def forward(self, images: Tensor, at: Tensor) -> Tensor:
+        """Numbers, shape (B, K); it sees the whole image, so `at` says nothing."""
         return self.backbone(images[:, 0])
 
 
@@ -47,8 +47,8 @@ class VggLstm(nn.Module):
         self.memory = nn.LSTM(REDUCED, HIDDEN, num_layers=2, batch_first=True)
         self.head = nn.Sequential(nn.Linear(HIDDEN, MIDDLE), nn.ReLU(), nn.Linear(MIDDLE, outputs))
 
-    def forward(self, images: Tensor) -> Tensor:
-        """Numbers, shape (B, K)."""
+    def forward(self, images: Tensor, at: Tensor) -> Tensor:
+        """Numbers, shape (B, K); it sees the whole image, so `at` says nothing."""
         batch, frames = images.shape[:2]
         features = self.backbone(images.flatten(0, 1)).reshape(batch, frames, -1)
         found, _ = self.memory(features)
