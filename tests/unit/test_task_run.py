@@ -22,11 +22,11 @@ from workbench.tasks.lessons import SEEDS, Lessons
 from workbench.tasks.outcome import Trial
 from workbench.tasks.result_file import write_result
 from workbench.tasks.splits import Parts
-from workbench.tasks.task import Look, task_of
-from workbench.tasks.trained import Net, Trainer
+from workbench.tasks.task import Look, Net, task_of
+from workbench.tasks.trained import Trainer
 
-QUICK = {(Net.SMALL, look): (16, 4e-3, 16) for look in Look}
-"""Epochs, step, batch."""
+QUICK = {(Net.OWN, look): (16, 4e-3, 16, 1e-3) for look in Look}
+"""Epochs, step, batch, decay."""
 
 
 @pytest.fixture
@@ -37,7 +37,7 @@ def quick(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def trainer(folder: Path, name: str) -> Trainer:
     """Of the small network, on the processor."""
-    return Trainer(task=task_of(name), net=Net.SMALL, folder=folder, safety=None, device="cpu")
+    return Trainer(task=task_of(name), net=Net.OWN, folder=folder, safety=None, device="cpu")
 
 
 def windows(count: int) -> Examples:
@@ -99,7 +99,7 @@ def outcome(
     monkeypatch.setattr(run, "make", lambda *given, **how: DataSet.open(data.folder))
     camera = dataclasses.replace(load_design("pad").optics.camera, width_px=192, height_px=144)
     design = load_design("pad").replace("optics.camera", camera)
-    plan = run.Plan(task=name, photos=photos, twin=False)
+    plan = run.Plan(task=name, net=Net.OWN, photos=photos, twin=False)
     out = tmp_path / "out"
     result = run.run_task(design, plan, out, Project(tmp_path / "project"), silent)
     write_result(out, result)

@@ -48,6 +48,8 @@ class Examples:
     """Middle and side of what is shown, as of `Change`, shape (N, 3), float32."""
     motion: np.ndarray
     """Of windows, over the width of the image, shape (N,)."""
+    features: np.ndarray | None = None
+    """What a network that does not learn has seen, shape (N, 1 + copies, T, F), float16."""
     truth: np.ndarray
     """Number of the class, shape (N,), int64; or values, shape (N, K), float64."""
     outputs: tuple[str, ...]
@@ -64,6 +66,7 @@ class Examples:
             inputs=self.inputs[rows],
             at=self.at[rows],
             motion=self.motion[rows],
+            features=None if self.features is None else self.features[rows],
             truth=self.truth[rows],
             outputs=self.outputs,
         )

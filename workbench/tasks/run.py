@@ -45,14 +45,15 @@ from workbench.tasks.safety_scale import SafetyScale
 from workbench.tasks.seen_images import VIEWS
 from workbench.tasks.slip_delay import slip_delays
 from workbench.tasks.task import Look, Net, Size, Task, task_of
-from workbench.tasks.trained import Trained, Trainer
+from workbench.tasks.trained import Trained, Trainer, with_features
 from workbench.tasks.twin_test import calibrated, photographed, twin_plan
 
 SPANS = {
     "data": (0.0, 0.45),
     "images": (0.45, 0.47),
-    Trial.SIM: (0.47, 0.57),
-    Trial.PLACE: (0.57, 0.67),
+    "features": (0.47, 0.55),
+    Trial.SIM: (0.55, 0.61),
+    Trial.PLACE: (0.61, 0.67),
     Trial.PHOTOS: (0.67, 0.68),
     Trial.TWIN: (0.68, 0.85),
     "calibrate": (0.85, 0.9),
@@ -67,7 +68,7 @@ class Plan:
 
     task: str
     size: Size = Size.SMALL
-    net: Net = Net.SMALL
+    net: Net = Net.LITE
     photos: Path | None = None
     jobs: int = 1
     twin: bool = True
@@ -208,6 +209,9 @@ class _Work:
             safety=scale,
             device=torch_device(),
         )
+        found = with_features(
+            found, self.task, self.plan.net, trainer.device, self._span("features")
+        )
         return Lessons(name=self.plan.task, task=self.task, trainer=trainer, found=found)
 
     def _twin(
@@ -250,13 +254,12 @@ class _Work:
 
     def _details(self, lessons: Lessons, network: Trained) -> dict[str, Any]:
         trainer, found = lessons.trainer, lessons.found
-        epochs, rate, batch = trainer.settings
         scale = {} if trainer.safety is None else dataclasses.asdict(trainer.safety)
         return {
             "network": self.plan.net.value,
             "weights_from": network.weights_from,
             "parameters": sum(each.numel() for each in network.network.parameters()),
-            "learning": {"epochs": epochs, "rate": rate, "batch": batch},
+            "learning": dataclasses.asdict(trainer.settings),
             "device": trainer.device,
             "seeds": list(SEEDS),
             "examples": len(found),

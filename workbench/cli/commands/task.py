@@ -16,7 +16,7 @@ from workbench.project.project import Project
 from workbench.system.terminal import Progress, say
 
 SIZES = ("small", "paper")
-NETWORKS = ("small", "lite", "paper")
+NETWORKS = ("small", "paper")
 
 
 def options(sub: argparse.ArgumentParser) -> None:
@@ -27,8 +27,8 @@ def options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--out", required=True, type=Path, metavar="DIR", help=OUT)
     text = "small: minutes on two cores; paper: as many presses as the paper, for a GPU (small)"
     sub.add_argument("--size", choices=SIZES, default=SIZES[0], help=text)
-    text = "small: seven convolutions; lite: EfficientNet-Lite0; paper: ResNet50, VGG19 and LSTM \
-(default: small)"
+    text = "small: EfficientNet-Lite0 where its packages are, else seven convolutions; paper: \
+ResNet50, VGG19 and LSTM (default: small)"
     sub.add_argument("--network", choices=NETWORKS, default=NETWORKS[0], help=text)
     text = "folder of own photographs with idle.png and labels.csv, which are tested on too"
     sub.add_argument("--photos", type=Path, metavar="DIR", help=text)
@@ -49,14 +49,14 @@ def run(options: argparse.Namespace, project: Project) -> int:
     from workbench.system.folder import prepare
     from workbench.tasks.result_file import FILES, REPORT, write_result
     from workbench.tasks.run import Plan, run_task
-    from workbench.tasks.task import Size
-    from workbench.tasks.trained import Net
+    from workbench.tasks.task import Net, Size
+    from workbench.tasks.trained import usual_network
 
     design = with_typed(load_design(options.design, project=project), options.set)
     plan = Plan(
         task=options.task,
         size=Size(options.size),
-        net=Net(options.network),
+        net=usual_network() if options.network == NETWORKS[0] else Net.PAPER,
         photos=options.photos,
         jobs=options.jobs,
         twin=not options.no_twin,

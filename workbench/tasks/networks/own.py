@@ -1,4 +1,4 @@
-"""The small network: seven convolutions from random weights, and an LSTM over windows.
+"""A network of our own: seven convolutions from random weights, and an LSTM over windows.
 
 Each block halves the image; what it has found is averaged over the image, so that a contact counts
 wherever it is, and the mean place of each channel is kept beside it, which says where. Source of
@@ -11,11 +11,11 @@ from __future__ import annotations
 import torch
 from torch import Tensor, nn
 
+from workbench.tasks.networks.shown import PLACE, as_grey_changes
+
 CHANNELS = (24, 48, 64, 96)
 HIDDEN = 64
 DROPOUT = 0.2
-PLACE = 3
-"""Numbers of middle and side of what is shown."""
 
 
 class Eye(nn.Module):
@@ -57,7 +57,7 @@ def _block(before: int, after: int, *, stride: int) -> list[nn.Module]:
     return [convolution, nn.BatchNorm2d(after), nn.ReLU()]
 
 
-class SmallNet(nn.Module):
+class OwnNet(nn.Module):
     """One image (B, 1, 3, h, w) to K numbers."""
 
     def __init__(self, outputs: int) -> None:
@@ -75,12 +75,8 @@ class SmallNet(nn.Module):
         return self.head(torch.cat([self.eye(images[:, 0]), at], dim=1))
 
 
-class SmallWindowNet(nn.Module):
-    """A window (B, T, 3, h, w) to K numbers.
-
-    The eye sees each image beside its change from the one before, in place of colours: the grey
-    of both and of the first image's change, so that what moves and what stays are told apart.
-    """
+class OwnWindowNet(nn.Module):
+    """A window (B, T, 3, h, w) to K numbers: the eye sees grey changes in place of colours."""
 
     def __init__(self, outputs: int) -> None:
         super().__init__()
@@ -90,9 +86,7 @@ class SmallWindowNet(nn.Module):
 
     def forward(self, images: Tensor, at: Tensor) -> Tensor:
         """Numbers, shape (B, K), with middle and side of what is shown, (B, 3)."""
-        grey = images.mean(dim=2)
-        before = torch.cat([grey[:, :1], grey[:, :-1]], dim=1)
-        shown = torch.stack([grey, 2.0 * (grey - before), grey - grey[:, :1]], dim=2)
+        shown = as_grey_changes(images)
         batch, frames = shown.shape[:2]
         features = self.eye(shown.flatten(0, 1)).reshape(batch, frames, -1)
         found, _ = self.memory(features)
