@@ -44,7 +44,7 @@ RANKS = """
     workbench.proof.validation.optics  workbench.proof.validation.contact
     workbench.proof.validation.fem  workbench.proof.benchmarks
     workbench.learning.evaluation  workbench.proof.validation.learned
-    workbench.proof.validation.published
+    workbench.proof.validation.published  workbench.proof.validation.reading
 
     workbench.door  workbench
 
