@@ -12,7 +12,6 @@ import pytest
 from tests.unit.test_dataset_cases import flat_skin
 from workbench.calibration.photo_set import read_photo_set
 from workbench.core.base.errors import DesignError
-from workbench.core.press.indenter import OF_TRIANGLES
 from workbench.core.result.force_field import ForceField, Source
 from workbench.learning.dataset.sequences import FRAMES
 from workbench.project.named_designs import load_design
@@ -54,8 +53,9 @@ def test_paths_are_the_same_however_many_are_made() -> None:
         one, again = (case(TWIN, PLAN, GROUND, kind, 5) for _ in range(2))
         assert (one.press, one.place, one.name) == (again.press, again.place, again.name)
     ball = case(TWIN, PLAN, GROUND, Kind.CALIBRATION, 0)
-    assert ball.indenter.kind == OF_TRIANGLES
-    assert case(TWIN, PLAN, GROUND, Kind.PRESS, 0).indenter.kind != OF_TRIANGLES
+    assert ball.indenter.texture.raised
+    assert ball.indenter.size_mm == 6.0 + TWIN.ball_error_mm
+    assert not case(TWIN, PLAN, GROUND, Kind.PRESS, 0).indenter.texture.raised
 
 
 def test_objects_and_places_meet_in_all_pairs() -> None:

@@ -7,14 +7,13 @@ import dataclasses
 import numpy as np
 import pytest
 
-from geometry.surface.surface import mesh_volume, open_edges
 from workbench.core.design.design import Elastomer, SensorDesign
 from workbench.core.design.optics import Optics
 from workbench.learning.dataset.looks import built
 from workbench.learning.dataset.variation import Looks
 from workbench.project.named_designs import load_design
 from workbench.twin.draw import LAYER_MM, Draws, card, draw_twin, stream
-from workbench.twin.printed_ball import layer_relief_mm, printed_ball
+from workbench.twin.printed_ball import layer_shares, printed_ball
 
 SEEDS = range(200)
 
@@ -86,27 +85,31 @@ def test_streams_of_one_twin_differ() -> None:
     assert len(drawn) == 20 * len(Draws)
 
 
-def test_a_printed_ball_is_a_closed_body_of_the_hidden_size() -> None:
-    """Within .1 % of 4/3 pi r^3: layers take away as much as they add."""
-    ball = printed_ball(6.03, LAYER_MM)
-    assert ball.mesh is not None
-    assert open_edges(ball.mesh.faces) == 0
-    volume = mesh_volume(ball.mesh.points_mm, ball.mesh.faces)
-    assert volume == pytest.approx(np.pi * 6.03**3 / 6.0, rel=3e-3)
-    assert ball.size_mm == pytest.approx(6.03, abs=0.02)
+def test_layers_are_terraces_as_high_as_a_layer() -> None:
+    """The first has the radius sqrt(R a), and each stands where its middle meets the ball."""
+    across = np.linspace(0.0, 2.6, 5_001)
+    share = layer_shares(across, 3.0, LAYER_MM)
+    smooth_mm = 3.0 - np.sqrt(9.0 - across**2)
+    printed_mm = smooth_mm - LAYER_MM * (share - 0.5)
+    layers = printed_mm / LAYER_MM
+    np.testing.assert_allclose(layers, np.round(layers), atol=1e-6)
+    assert np.abs(printed_mm - smooth_mm).max() == pytest.approx(0.5 * LAYER_MM, abs=1e-4)
+    first = across[np.flatnonzero(layers > 0.5)[0]]
+    assert first == pytest.approx(np.sqrt(3.0 * LAYER_MM), rel=0.02)
+    assert layer_shares(np.array([2.8, 3.5]), 3.0, LAYER_MM).tolist() == [0.5, 0.5]
 
 
-def test_layers_are_terraces_at_the_pole_and_fade_where_no_solver_sees_them() -> None:
-    """a / 2 pi high where the ball is flat; none beyond 30 degrees, where waves are .2 mm."""
-    polar = np.linspace(0.0, np.pi, 20_001)
-    relief = layer_relief_mm(polar, 3.0, LAYER_MM)
-    flat = polar < np.arcsin(0.25)
-    assert np.abs(relief[flat]).max() == pytest.approx(LAYER_MM / (2.0 * np.pi), rel=1e-3)
-    assert not relief[np.sin(polar) > 0.5].any()
-    assert not relief[polar > 0.5 * np.pi].any()
-    # A terrace: height over the pole stands still at each layer and rises twice as fast between.
-    ball_mm = 3.0 * (1.0 - np.cos(polar))
-    rises = np.diff(ball_mm - relief * np.cos(polar))[10:] / np.diff(ball_mm)[10:]
-    rises = rises[flat[11:]]
-    assert rises.min() == pytest.approx(0.0, abs=0.05)
-    assert rises.max() == pytest.approx(2.0, abs=0.05)
+def test_solvers_feel_the_first_terrace_of_a_printed_ball() -> None:
+    """The sampled distance of the ball is flatter at the pole than the ball, and as deep."""
+    from sim.contact.objects.textures import heights
+
+    ball = printed_ball(6.0, LAYER_MM)
+    felt = heights(ball.texture, 0.1)
+    across = np.array([[0.0, 0.0], [0.3, 0.0], [0.54, 0.0], [1.8, 0.9]])
+    relief_mm = felt(across)
+    smooth_mm = 3.0 - np.sqrt(9.0 - (across**2).sum(axis=1))
+    height_mm = smooth_mm - relief_mm
+    # From pole to .3 mm the ball falls by .015 mm, the terrace by less than half of that.
+    assert height_mm[1] - height_mm[0] < 0.5 * smooth_mm[1]
+    assert relief_mm[3] == pytest.approx(0.5 * LAYER_MM, abs=0.01)
+    assert printed_ball(6.0, 0.0).texture.raised is False
