@@ -14,13 +14,16 @@ from workbench.core.press.fem import FemSettings
 from workbench.core.press.press_case import PressCase
 from workbench.core.result.force_field import ForceField, from_contact
 from workbench.core.result.results import MembraneMesh
-from workbench.pipeline.stages.mesh import mesh_at
+from workbench.pipeline.stage import Call
 from workbench.pipeline.store import Store
 from workbench.planning.plan import InlineRunner, plan
+from workbench.planning.stage_table import STAGES
 from workbench.twin.cases import TwinCase
 from workbench.twin.draw import Twin
 from workbench.twin.twin_plan import Solver, TwinPlan
 
+FEM = Solver.FEM.value
+"""The stage of finite elements, which divides the body for itself."""
 NEARER_MM = 10.0
 """Radius of the part that takes part where one of 12 mm has too many cells: fields are good to
 some .005 mm, between the 9 and 12 mm of `FemSettings.radius_mm`."""
@@ -37,7 +40,11 @@ def twin_mesh(twin: Twin, plan_: TwinPlan, store: Store, monitor: Monitor) -> Me
     if plan_.contact is Solver.MPM:
         return stored(twin.design, PressCase(), "mesh", store, monitor)
     stored(twin.design, PressCase(), "build", store, part(monitor, 0.0, 0.5))
-    call = mesh_at(plan(twin.design, PressCase())["build"].ref, plan_.hex_mm)
+    given = PressCase(fem=FemSettings(hex_mm=plan_.hex_mm))
+    press = plan(twin.design, given)[FEM]
+    find_parts = STAGES[FEM].parts
+    assert find_parts is not None
+    call: Call = find_parts(press.inputs, store)["mesh"]
     InlineRunner(store).run(call, part(monitor, 0.5, 1.0))
     found: MembraneMesh = store.load("mesh", call.key)
     if found.hexes is None:
@@ -97,7 +104,7 @@ def pressed(
         return from_contact(stored(twin.design, given, "press", store, monitor))
     mesh = twin_mesh(twin, plan_, store, silent)
     settings = fem_settings(mesh, case, plan_.hex_mm)
-    return stored(twin.design, dataclasses.replace(given, fem=settings), "fem", store, monitor)
+    return stored(twin.design, dataclasses.replace(given, fem=settings), FEM, store, monitor)
 
 
 def seen_displacement_mm(mesh: MembraneMesh, field: ForceField) -> np.ndarray:
