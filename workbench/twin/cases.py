@@ -11,6 +11,7 @@ each.
 
 from __future__ import annotations
 
+import dataclasses
 import enum
 import math
 from dataclasses import dataclass
@@ -18,6 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from workbench.core.base.errors import DesignError
+from workbench.core.objects.kind import Shape
 from workbench.core.press.indenter import BALL, Indenter, IndenterKind, widest_edge_mm
 from workbench.core.press.motion import slide
 from workbench.core.press.press import Press
@@ -45,6 +47,8 @@ MOST_TURN_DEG = 40.0
 """By which skin below an object may be turned from that at its middle: edges are beyond."""
 EDGE_MM = 0.45
 """Rounding of edges of other objects than balls, where they take it."""
+ROUND = (Shape.CYLINDER_Z, Shape.CONE)
+"""About the axis of the press: turned about it they are the same."""
 
 
 class Kind(enum.StrEnum):
@@ -191,12 +195,10 @@ def _indenter(twin: Twin, plan: TwinPlan, kind: IndenterKind, spin_deg: float) -
         return _ball(twin, plan)
     widest_mm = widest_edge_mm(kind, plan.object_mm)
     edge_mm = EDGE_MM if widest_mm is None else min(EDGE_MM, widest_mm)
-    return Indenter(
-        kind=kind,
-        size_mm=plan.object_mm,
-        edge_radius_mm=edge_mm,
-        turn_deg=(0.0, 0.0, round(spin_deg, 3)),
-    )
+    upright = Indenter(kind=kind, size_mm=plan.object_mm, edge_radius_mm=edge_mm)
+    if upright.record.shape in ROUND:
+        return upright
+    return dataclasses.replace(upright, turn_deg=(0.0, 0.0, round(spin_deg, 3)))
 
 
 def _ball(twin: Twin, plan: TwinPlan) -> Indenter:

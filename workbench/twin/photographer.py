@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from sim.optics.field.model import models
 from workbench.core.base.monitor import Monitor, part
 from workbench.core.design.lighting import LightModel
 from workbench.core.design.optics import Optics
 from workbench.core.result.light import LightField
 from workbench.core.result.results import MembraneMesh
-from workbench.pipeline.stages import bake
 from workbench.twin.draw import Draws, Twin, stream
 
 if TYPE_CHECKING:
@@ -47,13 +47,16 @@ class Photographer:
         from workbench.pipeline.devices import open_device
 
         open_device()
+        from sim.optics.field.bake import bake_light
+
         self.mesh, self.photons, self._seed = mesh, photons, twin.seed
-        optics = dataclasses.replace(twin.design.optics, light_model=LightModel("photons"))
+        optics = dataclasses.replace(twin.design.optics, light_model=_traced_model())
         self.optics = optics
-        light = bake.bake(
-            bake.BakeInputs(
-                mesh=mesh, ring=optics.ring, lamps=optics.lamps, model=optics.light_model
-            ),
+        light = bake_light(
+            mesh,
+            optics.ring,
+            optics.lamps,
+            model=optics.light_model,
             monitor=part(monitor, 0.0, 0.1),
         )
         self._rest = self._traced(None, REST, part(monitor, 0.1, 1.0))
@@ -132,6 +135,11 @@ class Photographer:
         from sim.optics.raster.image_sensor import develop
 
         return develop(linear, self.optics.camera, exposure=self._exposure, frame=number)
+
+
+def _traced_model() -> LightModel:
+    """The light model that traces every pose anew."""
+    return next(name for name, model in models().items() if model.per_frame)
 
 
 def _changed(studio: Any) -> np.ndarray:
