@@ -16,8 +16,8 @@ from workbench.learning.dataset.variation import Vary
 from workbench.tasks.press_plan import FRICTION, OBJECTS, pattern_of, pressed
 from workbench.tasks.task import Look, Null, Published, Size, Task, Told
 
-CASES = {Size.SMALL: 48, Size.PAPER: 500}
-WINDOWS = {Size.SMALL: 96, Size.PAPER: 832}
+CASES = {Size.SMALL: 40, Size.PAPER: 500}
+WINDOWS = {Size.SMALL: 80, Size.PAPER: 832}
 SIZES_MM = {Size.SMALL: (5.0, 8.0), Size.PAPER: (3.0, 12.0)}
 
 
