@@ -54,7 +54,7 @@ def windows(count: int) -> Examples:
         names=tuple(map(str, range(count))),
         places=np.array([f"place{k % 9}" for k in range(count)]),
         inputs=inputs,
-        at=np.zeros((count, 3), np.float32),
+        at=np.zeros((count, 5), np.float32),
         motion=np.zeros(count),
         truth=truth.astype(np.int64),
         outputs=("hold", "slip"),

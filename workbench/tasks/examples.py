@@ -45,7 +45,7 @@ class Examples:
     inputs: np.ndarray
     """Differences from rest [grey level], shape (N, T, h, w, 3), int16."""
     at: np.ndarray
-    """Middle and side of what is shown, as of `Change`, shape (N, 3), float32."""
+    """Where and how strong it is, as `Change` has it, shape (N, 5), float32."""
     motion: np.ndarray
     """Of windows, over the width of the image, shape (N,)."""
     features: np.ndarray | None = None

@@ -120,7 +120,7 @@ def tested(name: str, task: Task, test: Trial, runs: Sequence[Run]) -> Tested:
                 "seed": run.seed,
                 "values": {each.metric: each.value for each in score},
                 "null": {each.metric: each.null for each in score},
-                "best_epoch": run.trained.epoch,
+                "best_step": run.trained.epoch,
                 "curve": run.trained.curve,
                 "seconds": round(run.seconds, 1),
             }

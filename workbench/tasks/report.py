@@ -108,7 +108,7 @@ def _shade(share: float) -> str:
 
 
 def _curves(seeds: Sequence[Mapping[str, Any]]) -> str:
-    """Loss of both parts over the epochs, of the first seed."""
+    """Loss of both parts over the epochs, or over penalties, of the first seed."""
     curve = seeds[0]["curve"]
     if len(curve) < 2:
         return ""
@@ -117,7 +117,7 @@ def _curves(seeds: Sequence[Mapping[str, Any]]) -> str:
         "Loss of the first seed",
         [str(k + 1) for k in shown],
         {name: [curve[k][name] for k in shown] for name in ("train", "validation")},
-        below="epoch",
+        below="epoch, or penalty of a regression",
     )
 
 

@@ -23,6 +23,7 @@ from typing import Any
 import numpy as np
 
 from workbench.core.base.digest import digest
+from workbench.core.base.errors import DesignError
 from workbench.core.base.monitor import Monitor, part
 from workbench.core.design.design import SensorDesign
 from workbench.core.design.optics import Optics
@@ -232,9 +233,14 @@ class _Work:
             seen = list(PhotoFolder.open(place).seen(self.task, VIEWS[self.plan.net], camera))
             tests = [lessons.on_photos(Trial.TWIN, _photos(seen, lessons), networks)]
         with self._timed(Trial.CALIBRATED):
-            optics, details["calibration"] = calibrated(
-                self.design, folder, size, store, self._span("calibrate")
-            )
+            try:
+                optics, details["calibration"] = calibrated(
+                    self.design, folder, size, store, self._span("calibrate")
+                )
+            except DesignError as error:
+                # Photographs that cannot be calibrated to are a result too.
+                details["calibration"] = {"why_not": error.message}
+                return tests
             again = self._seen_anew(data, optics)
             runs = again.learned(Trial.CALIBRATED, self._span(Trial.CALIBRATED))
             learned = [run.trained for run in runs]

@@ -7,6 +7,7 @@ differs most from rest.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -49,9 +50,9 @@ class Change:
 
     grey: np.ndarray
     """Differences [grey level], shape (T, h, w, 3), int16."""
-    at: tuple[float, float, float]
-    """Middle of what is shown, across and down, from -1 to 1 over the image, and its side over the
-    width of the image."""
+    at: tuple[float, ...]
+    """Middle of what is shown, across and down, from -1 to 1 over the image; its side over the
+    width of the image; root mean square and largest of the difference, logarithms from 0 to 1."""
 
 
 def change(images: Sequence[np.ndarray], idle: np.ndarray, view: View) -> Change:
@@ -64,7 +65,7 @@ def change(images: Sequence[np.ndarray], idle: np.ndarray, view: View) -> Change
     )
     grey = np.stack([image.astype(np.int16) - rest.astype(np.int16) for image in shown])
     if not view.around_px:
-        return Change(grey=grey, at=(0.0, 0.0, 1.0))
+        return Change(grey=grey, at=(0.0, 0.0, 1.0, *_strength(grey)))
     column, row, side = _contact(grey)
     scale = view.around_px / side
     shift = 0.5 * (view.around_px - 1)
@@ -73,7 +74,14 @@ def change(images: Sequence[np.ndarray], idle: np.ndarray, view: View) -> Change
     part = np.stack([cv2.warpAffine(one, affine, (view.around_px, view.around_px)) for one in grey])
     height, width = grey.shape[1:3]
     at = (2.0 * column / width - 1.0, 2.0 * row / height - 1.0, side / width)
-    return Change(grey=part, at=at)
+    return Change(grey=part, at=(*at, *_strength(part)))
+
+
+def _strength(grey: np.ndarray) -> tuple[float, float]:
+    """How much differs: root mean square and largest, 0 of nothing and 1 of 255 grey levels."""
+    sizes = float(np.sqrt((grey.astype(np.float64) ** 2).mean())), float(np.abs(grey).max())
+    mean, largest = (math.log1p(size) / math.log(256.0) for size in sizes)
+    return mean, largest
 
 
 def _contact(grey: np.ndarray) -> tuple[float, float, float]:

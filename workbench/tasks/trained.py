@@ -26,7 +26,7 @@ from workbench.tasks.task import Look, Net, Task, Told
 if TYPE_CHECKING:
     from torch import nn
 
-    from workbench.tasks.networks.learn import Settings
+    from workbench.tasks.networks.learn import Learned, Part, Settings
 
 FORMAT = 1
 
@@ -109,14 +109,17 @@ class Trainer:
         """
         import torch
 
-        from workbench.tasks.networks.learn import Part, learn
+        from workbench.tasks.networks.learn import Part
 
         torch.manual_seed(seed)
-        settings = self.settings
         scale = _scale(found.only(parts.train), self.safety)
         outputs = 1 if self.safety else len(found.outputs)
         inputs = _shown(found, self.net)
-        network, weights_from = made(self.net, self.task, outputs, inputs[parts.train])
+        train, validation = (
+            Part(inputs=inputs[rows], at=found.at[rows], truth=_wanted(found.truth[rows], scale))
+            for rows in (parts.train, parts.validation)
+        )
+        network, weights_from = made(self.net, self.task, outputs, train)
         network.to(self.device)
         path = self.folder / f"{name}-seed{seed}.pt"
         key = self._key(found, parts, seed, weights_from)
@@ -125,15 +128,7 @@ class Trainer:
             network.load_state_dict(kept["state"])
             epoch, curve = kept["epoch"], kept["curve"]
         else:
-            train, validation = (
-                Part(
-                    inputs=inputs[rows],
-                    at=found.at[rows],
-                    truth=_wanted(found.truth[rows], scale),
-                )
-                for rows in (parts.train, parts.validation)
-            )
-            learned = learn(network, (train, validation), settings, seed, monitor)
+            learned = self._learned(network, (train, validation), seed, monitor)
             epoch, curve = learned.epoch, learned.curve
             _write(path, key, {"state": network.state_dict(), "epoch": epoch, "curve": curve})
         return Trained(
@@ -146,6 +141,19 @@ class Trainer:
             epoch=epoch,
             curve=curve,
         )
+
+    def _learned(
+        self, network: nn.Module, parts: tuple[Part, Part], seed: int, monitor: Monitor
+    ) -> Learned:
+        """Let a network learn; a head for values of images that are seen once is solved for."""
+        if self.net is Net.LITE and self.task.told is Told.VALUES:
+            from workbench.tasks.networks.lite import Head, fit_values
+
+            assert isinstance(network, Head)
+            return fit_values(network, parts)
+        from workbench.tasks.networks.learn import learn
+
+        return learn(network, parts, self.settings, seed, monitor)
 
     @property
     def settings(self) -> Settings:
@@ -207,14 +215,14 @@ def _shown(found: Examples, net: Net) -> np.ndarray:
     return features(found.inputs, silent, copies=0, moved=False, device=torch_device())
 
 
-def made(net: Net, task: Task, outputs: int, inputs: np.ndarray) -> tuple[nn.Module, str]:
+def made(net: Net, task: Task, outputs: int, part: Part) -> tuple[nn.Module, str]:
     """A network by name, and where its first weights come from.
 
     Args:
         net: Which one.
         task: Says whether it sees images or windows.
         outputs: Numbers that it tells.
-        inputs: What it learns from.
+        part: What it learns from.
 
     Raises:
         PackageError: If it needs a package that is not installed.
@@ -227,9 +235,9 @@ def made(net: Net, task: Task, outputs: int, inputs: np.ndarray) -> tuple[nn.Mod
 
         return (OwnWindowNet if window else OwnNet)(outputs), "random weights"
     if net is Net.LITE:
-        from workbench.tasks.networks.lite import WEIGHTS, head
+        from workbench.tasks.networks.lite import WEIGHTS, Head
 
-        return head(outputs, inputs), WEIGHTS
+        return Head(outputs, part), WEIGHTS
     with naming_packages():
         from workbench.tasks.networks.published import resnet, vgg_lstm
 

@@ -19,7 +19,7 @@ from workbench.learning.dataset.variation import Vary
 from workbench.tasks.press_plan import FRICTION, pattern_of, pressed
 from workbench.tasks.task import Look, Null, Published, Size, Task, Told
 
-CASES = {Size.SMALL: 70, Size.PAPER: 364}
+CASES = {Size.SMALL: 84, Size.PAPER: 364}
 SIZES_MM = {Size.SMALL: (5.0, 8.0), Size.PAPER: (3.0, 12.0)}
 STEPS = {Size.SMALL: 2, Size.PAPER: 7}
 DEPTHS_MM = {Pattern.PAD: 1.05}

@@ -42,7 +42,7 @@ class Part:
     """Differences [grey level], shape (N, T, h, w, 3), int16; or features and those of varied
     copies, shape (N, 1 + copies, T, F), float16."""
     at: np.ndarray
-    """Middle and side of what is shown, shape (N, 3), float32."""
+    """Where and how strong it is, shape (N, 5), float32."""
     truth: np.ndarray
     """Number of the class, (N,), int64; or scaled values, (N, K), float."""
 
@@ -52,7 +52,7 @@ class Learned:
     """What a training gives; the network itself holds the best epoch's weights."""
 
     epoch: int
-    """The best one, from 1."""
+    """The best one, from 1; of a regression the number of its penalty."""
     curve: list[dict[str, float]]
     """After each epoch the loss of training, and what is left in the validation part."""
 

@@ -3,7 +3,8 @@
 Each block halves the image; what it has found is averaged over the image, so that a contact counts
 wherever it is, and the mean place of each channel is kept beside it, which says where. Source of
 the second: Levine and others, End-to-end training of deep visuomotor policies, 2016 (spatial
-softmax). The middle of what is shown comes in last.
+softmax). Where in the image it is
+shown, and how strong it is, come in last.
 """
 
 from __future__ import annotations
@@ -71,7 +72,7 @@ class OwnNet(nn.Module):
         )
 
     def forward(self, images: Tensor, at: Tensor) -> Tensor:
-        """Numbers, shape (B, K), with middle and side of what is shown, (B, 3)."""
+        """Numbers, shape (B, K), with where and how strong it is, (B, 5)."""
         return self.head(torch.cat([self.eye(images[:, 0]), at], dim=1))
 
 
@@ -85,7 +86,7 @@ class OwnWindowNet(nn.Module):
         self.head = nn.Sequential(nn.Dropout(DROPOUT), nn.Linear(HIDDEN + PLACE, outputs))
 
     def forward(self, images: Tensor, at: Tensor) -> Tensor:
-        """Numbers, shape (B, K), with middle and side of what is shown, (B, 3)."""
+        """Numbers, shape (B, K), with where and how strong it is, (B, 5)."""
         shown = as_grey_changes(images)
         batch, frames = shown.shape[:2]
         features = self.eye(shown.flatten(0, 1)).reshape(batch, frames, -1)

@@ -19,8 +19,8 @@ NOISE = 2.0
 """Standard deviation of the noise that is added [grey level]."""
 TURN_RAD, ZOOM, SHIFT = 0.5, 0.2, 0.15
 """By which images are turned, enlarged and moved at most; the last as a share of half a side."""
-PLACE = 3
-"""Numbers of middle and side of what is shown."""
+PLACE = 5
+"""Numbers that say where and how strong a change is."""
 
 
 def plain(inputs: np.ndarray, device: torch.device) -> Tensor:
