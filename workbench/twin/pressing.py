@@ -1,7 +1,8 @@
 """Paths pressed ahead by processes of their own, side by side, into the store.
 
-Each process is held to one thread, and to the processor: the GPU is the photographer's. What a process raises is kept with the path's name; who asks for
-the path then finds it in the store, or the reason.
+Each process is held to one thread, and to the processor: the GPU is the photographer's. What a
+process raises is kept with the path's name; who asks for the path then finds it in the store, or
+the reason.
 """
 
 from __future__ import annotations
