@@ -34,6 +34,7 @@ PLAN = {
     "calibration": 20,
     "presses": 140,
     "failed": 0,
+    "refine": "all",
 }
 
 
