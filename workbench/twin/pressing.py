@@ -1,7 +1,8 @@
 """Paths pressed ahead by processes of their own, side by side, into the store.
 
-Each process is held to one thread. What a process raises is kept with the path's name; who asks for
-the path then finds it in the store, or the reason.
+Each process is held to one thread, and to the processor: the GPU is the photographer's. What a
+process raises is kept with the path's name; who asks for the path then finds it in the store, or
+the reason.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from pathlib import Path
 from workbench.core.base.errors import LaneError, WorkbenchError
 from workbench.core.base.monitor import Monitor, silent
 from workbench.learning.making.collect import ONE_THREAD, environment
+from workbench.pipeline.devices import VARIABLE
 from workbench.pipeline.store import Store
 from workbench.system.processes import follow_parent
 from workbench.twin.cases import TwinCase
@@ -46,7 +48,7 @@ def press_ahead(
         LaneError: If a process ended by itself.
     """
     failed: dict[str, str] = {}
-    with environment(dict.fromkeys(ONE_THREAD, "1")):
+    with environment(dict.fromkeys(ONE_THREAD, "1") | {VARIABLE: "cpu"}):
         pool = ProcessPoolExecutor(
             plan.jobs, mp_context=multiprocessing.get_context("spawn"), initializer=_begin
         )

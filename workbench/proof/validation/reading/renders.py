@@ -6,13 +6,15 @@ the same tracer that baked that light, traced in the pose; their noise is that o
 
     python -m workbench.proof.validation.reading.renders --photons 64
 
-makes the record: some minutes for each design on a CPU, with 4 million photons.
+makes the record: some minutes for each design on a CPU, with 4 million photons. Stopped, it goes on
+with the next design.
 """
 
 from __future__ import annotations
 
 import argparse
 import dataclasses
+import json
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -32,6 +34,7 @@ from workbench.reading.design_reader import DesignReader, open_reader
 from workbench.reading.read_photo import read_photo
 from workbench.system.record import Record
 from workbench.system.terminal import complain
+from workbench.system.whole_files import write_atomically
 from workbench.twin.draw import Twin
 from workbench.twin.photographer import Photographer
 from workbench.twin.scoring import Scorer, mean_score
@@ -81,7 +84,13 @@ def figures(names: Sequence[str], photons_millions: int, store: Store) -> dict[s
     Raises:
         WorkbenchError: From the stages that mesh, trace and read.
     """
-    designs = {name: _figures(name, photons_millions, store) for name in names}
+    code, designs = RECORD.code(), {}
+    for name in names:
+        path = store.root.parent / "renders" / f"{name}_{photons_millions}_{code}.json"
+        if not path.exists():
+            found = _figures(name, photons_millions, store)
+            write_atomically(path, json.dumps(found, allow_nan=False).encode())
+        designs[name] = json.loads(path.read_bytes())
     return {"photons_millions": photons_millions, "designs": designs}
 
 

@@ -80,7 +80,8 @@ def _twin_rows(design: str, figures: dict[str, Any], kept: Record) -> Iterator[R
     for what in (twin_figures.UNCALIBRATED, twin_figures.CALIBRATION):
         scores, name = figures[what], f"reading_twin_{what}"
         asked = what == twin_figures.CALIBRATION
-        case = f"{made}, {plan['calibration']} photographs of a ball" if asked else made
+        by = f"{made}, {plan['calibration']} photographs of a ball, refined {plan['refine']}"
+        case = by if asked else made
         yield _depth_row(name, case, scores, (TWIN_LIMIT_MM if asked else None, kept))
         limit = NORMAL_LIMIT_DEG if asked else None
         yield _normal_row(f"{name}_normals", case, scores, (limit, kept))

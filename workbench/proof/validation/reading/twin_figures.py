@@ -5,7 +5,8 @@ as it was drawn, and by the calibrated one.
 
     python -m workbench.proof.validation.reading.twin_figures FOLDER --jobs 8
 
-makes the record. Everything is kept in FOLDER, so that a run that was stopped goes on where it was.
+makes the record. Everything is kept in FOLDER, so that a run that was stopped goes on where it was;
+a calibration by other code is made anew. `--refine powers` stops a calibration after the powers.
 """
 
 from __future__ import annotations
@@ -46,6 +47,8 @@ from workbench.twin.twin_plan import Solver, TwinPlan
 DESIGNS = ("pad", "geltip")
 WIDTH_PX = 320
 UNCALIBRATED, CALIBRATION = "uncalibrated", "calibrated"
+MADE_BY = "made_by.json"
+"""In the folder of a calibration: the code that made it, and how."""
 
 RECORD = Record(
     path=Path(__file__).with_name("twin_figures.json"),
@@ -79,6 +82,8 @@ class TwinRun:
     folder: Path
     plan: TwinPlan
     store: Store
+    refining: str
+    """How far the calibration goes: `all` or `powers`."""
     monitor: Progress
 
     def figures(self) -> dict[str, Any]:
@@ -99,6 +104,7 @@ class TwinRun:
                 "calibration": made.photos[Kind.CALIBRATION],
                 "presses": made.photos[Kind.PRESS],
                 "failed": len(made.failed),
+                "refine": self.refining,
             },
             UNCALIBRATED: self.scored(drawn, UNCALIBRATED),
             CALIBRATION: self.scored(self.calibrated(drawn), CALIBRATION),
@@ -110,17 +116,19 @@ class TwinRun:
     def calibrated(self, design: SensorDesign) -> SensorDesign:
         """The design fitted to the twin's ball photographs, from the folder or fitted now."""
         out = self.folder / CALIBRATION
-        if not (out / CALIBRATED).exists():
+        made_by, now = out / MADE_BY, {"code": RECORD.code(), "refine": self.refining}
+        if not made_by.exists() or json.loads(made_by.read_bytes()) != now:
             photos = read_photo_set(self.folder / FOLDERS[Kind.CALIBRATION])
             fitted = calibrate(
                 design,
                 photos,
                 self.store,
                 lights="auto",
-                refining="all",
+                refining=self.refining,
                 monitor=self._told("calibrate"),
             )
             write_calibration(out, fitted, photos.idle)
+            write_atomically(made_by, json.dumps(now).encode())
         return load_design(str(out / CALIBRATED))
 
     def scored(self, design: SensorDesign, what: str) -> dict[str, float | None]:
@@ -157,6 +165,7 @@ def main(words: Sequence[str]) -> int:
         parser.add_argument(f"--{name}", type=int, default=usual)
     parser.add_argument("--width", type=int, default=WIDTH_PX)
     parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--refine", choices=("all", "powers"), default="all")
     parser.add_argument("--contact", choices=[each.value for each in Solver], default="fem")
     options = parser.parse_args(words)
     plan = TwinPlan(
@@ -177,6 +186,7 @@ def main(words: Sequence[str]) -> int:
             folder=options.folder / name,
             plan=plan,
             store=store,
+            refining=options.refine,
             monitor=progress,
         )
         for name in options.designs or DESIGNS
