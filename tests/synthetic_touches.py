@@ -1,7 +1,7 @@
-"""A data set of made-up images, and photographs of the same: a spot as large as its object.
+"""A data set of made-up images, and photographs of the same: a spot in the shape of its object.
 
-The spot of each object has a size of its own, stands where the skin is touched and is the brighter
-the deeper the press. So object, place, depth and pressure can all be told from it.
+It stands where the skin is touched and is the brighter the deeper the press. So object, place,
+depth and pressure can all be told from it.
 """
 
 from __future__ import annotations
@@ -26,16 +26,23 @@ from workbench.system.whole_files import write_atomically
 
 WIDTH, HEIGHT = 48, 36
 REST = 60
-RADIUS_PX = dict(zip(KINDS, (2.0, 4.0, 6.5, 9.0), strict=True))
+SHAPES = dict(zip(KINDS, ("cross", "bar", "disc", "ring"), strict=True))
 PX_PER_MM = 3.0
 
 
 def picture(
-    radius_px: float, middle_px: tuple[float, float], bright: float, shade: int = REST
+    shape: str, middle_px: tuple[float, float], bright: float, shade: int = REST
 ) -> np.ndarray:
     """A spot on even grey, shape (H, W, 3), uint8."""
     down, across = np.mgrid[:HEIGHT, :WIDTH]
-    inside = np.hypot(across - middle_px[0], down - middle_px[1]) < radius_px
+    x, y = np.abs(across - middle_px[0]), np.abs(down - middle_px[1])
+    away = np.hypot(x, y)
+    inside = {
+        "cross": (np.minimum(x, y) < 1.6) & (away < 8.0),
+        "bar": (x < 2.5) & (y < 8.0),
+        "disc": away < 6.0,
+        "ring": (away < 8.0) & (away > 5.0),
+    }[shape]
     image = np.full((HEIGHT, WIDTH, 3), shade, np.uint8)
     image[inside] += np.uint8(bright)
     return image
@@ -68,7 +75,7 @@ def touched(folder: Path, *, cases: int = 80) -> DataSet:
 
 def _sample(data: DataSet, case: Case, frame: int) -> Sample:
     bright = 150.0 * case.depth_at(frame) / case.depth_mm
-    png = png_bytes(picture(RADIUS_PX[case.indenter], place_px(case), bright))
+    png = png_bytes(picture(SHAPES[case.indenter], place_px(case), bright))
     made = made_up_sample(data, case, frame)
     return dataclasses.replace(made, fem=None, png=png, png_markers=png)
 
@@ -94,7 +101,7 @@ def photographed(folder: Path, count: int = 40, *, shade: int = REST + 25) -> Pa
         x_mm, y_mm = rng.uniform(-3.0, 3.0, 2)
         depth_mm = float(rng.choice([0.2, 0.4]))
         middle = WIDTH / 2 + PX_PER_MM * x_mm, HEIGHT / 2 + PX_PER_MM * y_mm
-        image = picture(RADIUS_PX[kind], middle, 375.0 * depth_mm, shade)
+        image = picture(SHAPES[kind], middle, 375.0 * depth_mm, shade)
         write_atomically(folder / f"p{number:03d}.png", png_bytes(image))
         rows.append(
             {

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import torch
 
-from tests.synthetic_touches import HEIGHT, RADIUS_PX, WIDTH, picture
+from tests.synthetic_touches import HEIGHT, WIDTH, picture
 from workbench.core.base.monitor import silent
 from workbench.tasks.networks.learn import Part, told_by
 from workbench.tasks.networks.lite import PENALTIES, Head, features, fit_values, installed
@@ -67,14 +67,11 @@ def test_a_head_tells_windows_by_their_order() -> None:
 def test_what_it_sees_tells_rings_from_discs_wherever_they_are() -> None:
     """Of 12 spots the nearest in features to each other one has its shape: a ring or a disc."""
     rng = np.random.default_rng(3)
-    idle = picture(0.0, (0.0, 0.0), 0.0)
+    idle = picture("disc", (0.0, 0.0), 0.0)
     inputs, kinds = [], []
     for number in range(24):
         middle = (WIDTH * rng.uniform(0.3, 0.7), HEIGHT * rng.uniform(0.3, 0.7))
-        image = picture(RADIUS_PX[list(RADIUS_PX)[2]], middle, 100.0)
-        if number % 2:
-            hole = picture(RADIUS_PX[list(RADIUS_PX)[1]], middle, 100.0)
-            image = idle + (image - hole)
+        image = picture("ring" if number % 2 else "disc", middle, 100.0)
         inputs.append(change([image], idle, VIEWS[Net.LITE]).grey)
         kinds.append(number % 2)
     seen = features(np.stack(inputs), silent, copies=0, moved=False, device="cpu")[:, 0, 0]

@@ -110,13 +110,16 @@ def outcome(
 def test_objects_are_told_from_renders_and_from_photographs(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, quick: None
 ) -> None:
-    """Spots of four sizes: over .8 at places never seen and in another light; null about 1/4."""
+    """Spots of four shapes, by a network of our own: at places never seen, and in another light.
+
+    Null is about a quarter.
+    """
     photos = photographed(tmp_path / "photos")
     found = outcome(tmp_path, monkeypatch, "objects", photos)
     rows = {row["test"]: row for row in found["rows"]}
     assert list(rows) == ["sim", "sim_by_place", "photos"]
     for row in rows.values():
-        assert row["metric"] == "accuracy" and row["value"] > 0.8
+        assert row["metric"] == "accuracy" and row["value"] > 0.7
         assert row["null"] < 0.45
     assert (rows["sim"]["paper"], rows["photos"]["paper"]) == (1.0, 0.913)
     assert rows["sim_by_place"]["paper"] is None
