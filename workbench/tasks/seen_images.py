@@ -17,6 +17,9 @@ from workbench.tasks.task import Net
 
 SIDES, LEAST_PX = 6.0, 16.0
 """Side of the square around a contact over the spread of what differs, and its least [px]."""
+SMOOTH_PX, OVER_NOISE, NEAR = 1.5, 6.0, 0.25
+"""Blur of differences where a contact is looked for [px], what is noise over the median [1], and
+how far from its peak it may reach, over the width."""
 FEWEST_CORNERS = 4
 CORNERS = {"maxCorners": 200, "qualityLevel": 0.05, "minDistance": 4.0}
 
@@ -87,11 +90,20 @@ def _strength(grey: np.ndarray) -> tuple[float, float]:
 def _contact(grey: np.ndarray) -> tuple[float, float, float]:
     """Column and row of the middle of what differs, and the side of a square around it [px].
 
-    Moments of the square of the difference: the side is `SIDES` times its standard deviation.
+    Moments of the square of the difference near its peak: the side is `SIDES` times its standard
+    deviation. What photographs have of noise everywhere is smoothed, and left out below
+    `OVER_NOISE` times what half of the pixels have.
     """
-    power = (grey.astype(np.float64) ** 2).sum(axis=(0, 3))
-    total = power.sum()
+    import cv2
+
+    smooth = [cv2.GaussianBlur(one.astype(np.float32), (0, 0), SMOOTH_PX) for one in grey]
+    power = (np.stack(smooth).astype(np.float64) ** 2).sum(axis=(0, 3))
+    power = np.maximum(power - OVER_NOISE * np.median(power), 0.0)
     height, width = power.shape
+    down, across = np.mgrid[:height, :width]
+    peak = np.unravel_index(int(power.argmax()), power.shape)
+    power[np.hypot(down - peak[0], across - peak[1]) > NEAR * width] = 0.0
+    total = power.sum()
     if not total:
         return 0.5 * (width - 1), 0.5 * (height - 1), float(width)
     by_row, by_column = power.sum(axis=1) / total, power.sum(axis=0) / total
