@@ -35,6 +35,13 @@ def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(trained, "SETTINGS", trained.SETTINGS | QUICK)
 
 
+@pytest.fixture
+def brief(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two epochs: for what is asked of any training, however little it learned."""
+    two = {place: (2, *rest) for place, (_, *rest) in QUICK.items()}
+    monkeypatch.setattr(trained, "SETTINGS", trained.SETTINGS | two)
+
+
 def trainer(folder: Path, name: str) -> Trainer:
     """Of the small network, on the processor."""
     return Trainer(task=task_of(name), net=Net.OWN, folder=folder, safety=None, device="cpu")
@@ -71,7 +78,7 @@ def test_the_window_network_tells_what_moves(tmp_path: Path, quick: None) -> Non
     assert (learned.told(test) == test.truth).mean() > 0.85
 
 
-def test_a_training_is_kept_and_another_seed_is_another(tmp_path: Path, quick: None) -> None:
+def test_a_training_is_kept_and_another_seed_is_another(tmp_path: Path, brief: None) -> None:
     """Read again it says the same, and nothing is learned."""
     found = windows(30)
     parts = Parts(np.arange(16), np.arange(16, 20), np.arange(20, 30))
@@ -157,7 +164,7 @@ def test_photographs_that_do_not_suit_are_told_before_anything_is_pressed(tmp_pa
     assert not (tmp_path / "out").exists()
 
 
-def test_spreads_are_those_of_three_seeds(tmp_path: Path, quick: None) -> None:
+def test_spreads_are_those_of_three_seeds(tmp_path: Path, brief: None) -> None:
     """Three networks, three values, their standard deviation."""
     found = windows(15)
     lessons = Lessons(
