@@ -34,6 +34,8 @@ ROOMS = {
     "robustness_sample": ("40 of these presses", "minutes"),
     "optics_mitsuba": ("the photon tracer beside Mitsuba 3; needs the extra `mitsuba`", "4 min"),
     "published": ("bodies of the presets and heads of objects beside those released", "2 min"),
+    "reading": ("touch read from renders, from photons, and from twins, by records", "seconds"),
+    "tasks": ("objects, slip and safety told by touch, by records", "seconds"),
 }
 """What each room of `workbench validate` measures, and about how long that takes undisturbed."""
 EACH = ("hybrid", "mpm_against_fem", "finger_45")

@@ -39,12 +39,15 @@ RANKS = """
     workbench.project  workbench.edit  workbench.live  workbench.report  workbench.report.exports
     workbench.variants  workbench.calibration  workbench.photographs  workbench.reading
     workbench.learning  workbench.learning.dataset  workbench.learning.making
-    workbench.learning.training
+    workbench.learning.training  workbench.twin
     workbench.proof  workbench.proof.validation  workbench.proof.validation.geometry
     workbench.proof.validation.optics  workbench.proof.validation.contact
     workbench.proof.validation.fem  workbench.proof.benchmarks
-    workbench.learning.evaluation  workbench.proof.validation.learned
-    workbench.proof.validation.published
+    workbench.learning.evaluation
+    workbench.tasks.networks  workbench.tasks  workbench.tasks.kinds
+    workbench.proof.validation.learned
+    workbench.proof.validation.published  workbench.proof.validation.reading
+    workbench.proof.validation.tasks
 
     workbench.door  workbench
 

@@ -70,6 +70,7 @@ NOUNS = {
     "command of a group": Noun(package="workbench.cli.groups", record="COMMAND"),
     "export": Noun(package="workbench.report.exports", record="EXPORT"),
     "family": Noun(package="designs", record="FAMILY"),
+    "task": Noun(package="workbench.tasks.kinds", record="TASK"),
 }
 
 

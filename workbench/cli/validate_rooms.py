@@ -21,6 +21,8 @@ from workbench.proof.validation.learned import forces
 from workbench.proof.validation.optics import mitsuba_witness
 from workbench.proof.validation.optics import room as optics
 from workbench.proof.validation.published import room as published
+from workbench.proof.validation.reading import room as reading
+from workbench.proof.validation.tasks import room as tasks
 
 ROOMS: dict[str, Callable[[], list[Row]]] = {
     "geometry": geometry.rows,
@@ -35,6 +37,8 @@ ROOMS: dict[str, Callable[[], list[Row]]] = {
     "robustness_sample": robustness.sample_rows,
     "optics_mitsuba": mitsuba_witness.rows,
     "published": published.rows,
+    "reading": reading.rows,
+    "tasks": tasks.rows,
 }
 
 REFERENCES = (("optics", "mitsuba"), ("fem", "calculix"))

@@ -77,6 +77,8 @@ BEGINNINGS = {
     "learned_advice": Judge.NONE,
     "learned_": Judge.ITSELF,
     "labels_": Judge.ITSELF,
+    "reading_": Judge.ITSELF,
+    "task_": Judge.ITSELF,
     "hex_": Judge.NONE,
     "mould_": Judge.NONE,
     "parts_": Judge.NONE,

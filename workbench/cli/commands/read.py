@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,7 +18,10 @@ from workbench.system.terminal import Progress, complain, say
 
 if TYPE_CHECKING:
     # It needs a device, which other commands need not wait for.
+    from workbench.reading.design_reader import DesignReader
     from workbench.reading.read_photo import Reading
+    from workbench.twin.scoring import ReadingScore
+    from workbench.twin.truth import Truth
 
 READERS = ("table",)
 
@@ -37,6 +40,8 @@ def options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--video", action="store_true", help=text)
     text = "fit a ball to each photo as a model of its image: place, radius, depth; seconds more"
     sub.add_argument("--ball", action="store_true", help=text)
+    text = "of photographs of a twin: its folder truth, and each reading is scored by it"
+    sub.add_argument("--truth", type=Path, metavar="DIR", help=text)
     add_set_option(sub)
     sub.add_argument("--json", action="store_true", help="progress and figures as JSON lines")
 
@@ -54,6 +59,7 @@ def run(options: argparse.Namespace, project: Project) -> int:
     design = with_typed(load_design(options.design, project=project), options.set)
     idle = _photo(options.idle)
     photos = [_photo(path) for path in options.photos]
+    truths = _truths(options.truth, options.photos)
     prepare(options.out, clear=(TABLE,))
     project.sweep()
     open_device()
@@ -70,6 +76,7 @@ def run(options: argparse.Namespace, project: Project) -> int:
         )
     # Of a long video only figures are kept, and what the next image begins with.
     rows, lines, before = [], [], None
+    scored = _Scored(opened, truths)
     for number, (name, path, photo) in enumerate(
         zip(names_of(options.photos), options.photos, photos, strict=True)
     ):
@@ -78,17 +85,58 @@ def run(options: argparse.Namespace, project: Project) -> int:
         if options.ball:
             found = with_ball(opened, found, photo)
         write_reading(options.out, name, found)
-        rows.append(found.figures)
+        rows.append(found.figures | scored.figures(found, path))
         lines.append(_line(found))
         before = found.touch if options.video else None
     write_table(options.out, rows)
     if options.json:
         say(json.dumps(rows, allow_nan=False))
         return 0
-    for line in lines:
+    for line in (*lines, *scored.lines()):
         say(line)
     say(f"open {options.out / TABLE}")
     return 0
+
+
+class _Scored:
+    """Readings beside what is known of them."""
+
+    def __init__(self, opened: DesignReader, truths: dict[Path, Truth]) -> None:
+        from workbench.twin.scoring import Scorer
+
+        self._scorer, self._truths = Scorer(opened), truths
+        self._scores: list[ReadingScore] = []
+
+    def figures(self, reading: Reading, path: Path) -> dict[str, Any]:
+        """The score of a reading as `reading.json` holds it; empty where nothing is known."""
+        if path not in self._truths:
+            return {}
+        self._scores.append(self._scorer.score(reading, self._truths[path]))
+        return {"score": self._scores[-1].figures}
+
+    def lines(self) -> list[str]:
+        """The mean of all scores, for people."""
+        from workbench.twin.scoring import mean_score
+
+        if not self._scores:
+            return []
+        mean = mean_score(self._scores)
+        return [
+            f"depth off by {mean.depth_mm:.3f} mm (nothing read: {mean.depth_null_mm:.3f}, normals "
+            f"known: {mean.depth_ceiling_mm:.3f}), normals by {mean.normal_deg:.1f} degrees "
+            f"({mean.normal_null_deg:.1f}), contact IoU {mean.contact_iou:.2f}, force off by "
+            f"{100.0 * mean.force_error:.0f} %, {100.0 * mean.within_sigma:.0f} % of depths within "
+            "one standard deviation"
+        ]
+
+
+def _truths(folder: Path | None, photos: list[Path]) -> dict[Path, Truth]:
+    """What is known of each photograph, by its path."""
+    from workbench.twin.truth import read_truth
+
+    if folder is None:
+        return {}
+    return {path: read_truth(folder / f"{path.stem}.npz") for path in photos}
 
 
 def _line(reading: Reading) -> str:

@@ -69,13 +69,18 @@ class Cameras:
             OpticsError: If a displacement is not finite.
         """
         seen = field.inner_mm if self._inner_seen else field.displacement_mm
-        return self._shoot(seen[frame])
+        return self.seen(seen[frame])
 
     def at_rest(self) -> Views:
         """Images and markers of the undeformed skin."""
-        return self._shoot(np.zeros((self._vertices, 3), np.float32))
+        return self.seen(np.zeros((self._vertices, 3), np.float32))
 
-    def _shoot(self, displacement_mm: np.ndarray) -> Views:
+    def seen(self, displacement_mm: np.ndarray) -> Views:
+        """Images and markers of the skin that the camera looks at, moved by (V, 3) [mm].
+
+        Raises:
+            OpticsError: If a displacement is not finite.
+        """
         plain = self._plain.images(displacement_mm[None])[0]
         marked, markers_px = self._marked.marked(displacement_mm)
         return Views(png=png_bytes(plain), png_markers=png_bytes(marked), markers_px=markers_px)

@@ -26,7 +26,11 @@ LEAST_RADIUS_MM = 0.1
 
 def built(optics: Optics, looks: Looks, *, seed: int, number: int) -> Optics:
     """Optics of built sensor `number`, the same however many there are."""
-    rng = np.random.default_rng((seed, number, 1))
+    return assembled(optics, looks, np.random.default_rng((seed, number, 1)))
+
+
+def assembled(optics: Optics, looks: Looks, rng: np.random.Generator) -> Optics:
+    """Optics of a sensor that is assembled by hand, off by what a generator draws."""
     return dataclasses.replace(
         optics,
         ring=_ring(optics.ring, looks, rng),

@@ -171,18 +171,30 @@ def spread_positions(
             hint="ask for fewer points or a smaller margin",
             at="recipe.points",
         )
-    chosen = [int(np.random.default_rng(seed).integers(len(places)))]
-    nearest_mm = np.linalg.norm(places - places[chosen[0]], axis=1)
-    while len(chosen) < count:
-        chosen.append(int(np.argmax(nearest_mm)))
-        away_mm = np.linalg.norm(places - places[chosen[-1]], axis=1)
-        nearest_mm = np.minimum(nearest_mm, away_mm)
+    chosen = far_apart(places, count, np.random.default_rng(seed))
     found = []
     for number, index in enumerate(chosen):
         x, y, z = (round(float(value), 6) + 0.0 for value in places[index])
         labels = {"x_mm": x, "y_mm": y, "z_mm": z}
         found.append(Position(name=f"point{number:03d}", target_mm=(x, y, z), labels=labels))
     return found
+
+
+def far_apart(places: np.ndarray, count: int, rng: np.random.Generator) -> list[int]:
+    """Numbers of places (N, 3) that lie as far apart as they can: farthest-point sampling.
+
+    Args:
+        places: At least one.
+        count: How many are chosen; beyond N some come again.
+        rng: Chooses the first.
+    """
+    chosen = [int(rng.integers(len(places)))]
+    nearest_mm = np.linalg.norm(places - places[chosen[0]], axis=1)
+    while len(chosen) < count:
+        chosen.append(int(np.argmax(nearest_mm)))
+        away_mm = np.linalg.norm(places - places[chosen[-1]], axis=1)
+        nearest_mm = np.minimum(nearest_mm, away_mm)
+    return chosen
 
 
 def inside_margin(skin: Skin, margin_mm: float) -> np.ndarray:

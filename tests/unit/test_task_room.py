@@ -1,0 +1,66 @@
+"""The room of tasks: recorded scores beside their null, stale once the code is another."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from workbench.core.base.errors import DesignError
+from workbench.proof.judge import judge
+from workbench.proof.validation.tasks import room, task_records
+from workbench.proof.validation.tasks.task_figures import wanted
+from workbench.proof.validation.tasks.task_records import TaskRecord
+
+ONE = TaskRecord(design="geltip", task="safety", size="small")
+
+
+def result(value: float) -> dict[str, Any]:
+    """What a task leaves."""
+    row = {"task": "safety", "test": "sim", "metric": "mae_peak_MPa", "value": value}
+    details = {"network": "lite", "tests": {"sim": {"tested_on": [34, 34, 34]}}}
+    return {
+        "result": {
+            "rows": [{**row, "spread": 0.01, "null": 0.07, "paper": 0.028}],
+            "details": details,
+        }
+    }
+
+
+@pytest.fixture
+def kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Records go to a folder of the test's."""
+    monkeypatch.setattr(task_records, "FOLDER", tmp_path)
+    return tmp_path
+
+
+def test_a_row_is_met_where_it_beats_its_null(kept: Path) -> None:
+    """.05 of .07 is met, .08 is not; the paper's stands in the case."""
+    for value, good in ((0.05, True), (0.08, False)):
+        ONE.record.make(lambda value=value: result(value))
+        (row,) = room.rows([ONE])
+        assert (row.value, row.null, row.unit, row.ok) == (value, 0.07, "MPa", good)
+        assert "the paper's 0.028" in row.case and "3 seeds of 34" in row.case
+        assert judge(row.name, row.case).value == "itself"
+
+
+def test_a_record_of_other_code_is_stale(kept: Path) -> None:
+    """And none at all is no row that is met."""
+    (row,) = room.rows([ONE])
+    assert not row.ok and "there is none" in row.case
+    ONE.record.make(lambda: result(0.05))
+    path = kept / "geltip_safety_small.json"
+    path.write_text(json.dumps({**json.loads(path.read_text()), "code": "another"}))
+    (row,) = room.rows([ONE])
+    assert row.stale and not row.ok
+    assert "task_figures FOLDER small geltip_safety" in row.case
+
+
+def test_records_are_asked_for_by_size_and_name() -> None:
+    """All of a size, or one; another is refused."""
+    assert len(wanted(["paper"])) == len(task_records.DONE)
+    assert [one.name for one in wanted(["small", "pad_safety"])] == ["pad_safety_small"]
+    with pytest.raises(DesignError, match="no task 'paw_slip_small' is on record"):
+        wanted(["small", "paw_slip"])

@@ -1,0 +1,1 @@
+"""What shipped designs tell apart by touch, as recorded."""

@@ -1,0 +1,63 @@
+"""Tasks by touch: the paper's three on shipped designs, each score beside null and paper.
+
+A row passes where it beats the method without a network. All images are the product's own, a
+twin's too: finite elements and photons made those, the contact solver and a light field what was
+learned from. So rows say what survives from one of our models to the other, not what a photograph
+of a built sensor would give.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from workbench.core.base.errors import StoreError
+from workbench.proof.row import Row, bounded, failed
+from workbench.proof.validation.tasks.task_records import SIZES, TaskRecord, task_records
+from workbench.tasks.outcome import WORDS
+
+UNITS = {"_mm": "mm", "_MPa": "MPa", "_N": "N", "_deg": "degree"}
+
+
+def rows(records: Sequence[TaskRecord] | None = None) -> list[Row]:
+    """Rows of all tasks on record; of the paper's size where it was run.
+
+    Args:
+        records: None: those that ship.
+    """
+    found = []
+    for one in task_records() if records is None else records:
+        if one.size == SIZES[0] or one.record.path.exists():
+            found += _rows(one)
+    return found
+
+
+def _rows(one: TaskRecord) -> list[Row]:
+    record = one.record
+    try:
+        result = record.figures()["result"]
+    except StoreError as error:
+        return [failed(f"task_{one.task}", f"{one.design}, {one.size}", why=error.message)]
+    return [_row(one, result, row) for row in result["rows"]]
+
+
+def _row(one: TaskRecord, result: Mapping[str, Any], row: Mapping[str, Any]) -> Row:
+    details = result["details"]
+    words = next(text for test, text in WORDS.items() if test.value == row["test"])
+    tested = details["tests"][row["test"]]["tested_on"]
+    paper = "" if row["paper"] is None else f"; the paper's {row['paper']:g}"
+    return bounded(
+        f"task_{one.task}",
+        f"{one.design}, {one.size}: {row['metric']} on {words}, +- {row['spread']:.2g} over "
+        f"{len(tested)} seeds of {tested[0]}, by {details['network']}{paper}",
+        row["value"],
+        unit=_unit(row["metric"]),
+        limit=row["null"],
+        sense="max" if row["metric"].startswith("mae_") else "min",
+        null=row["null"],
+        record=one.record,
+    )
+
+
+def _unit(metric: str) -> str:
+    return next((unit for ending, unit in UNITS.items() if metric.endswith(ending)), "1")

@@ -1,0 +1,1 @@
+"""Networks of the tasks, and how they learn; they need PyTorch."""

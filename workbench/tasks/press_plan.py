@@ -1,0 +1,103 @@
+"""What the tasks press into a design: patterns, depths and how fine, for any membrane.
+
+The paper's patterns go with the families that they are made for; any other membrane is pressed at
+places spread evenly over it. A membrane thinner than the paper's is pressed less deep, in as many
+steps.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from typing import Any, TypedDict, Unpack
+
+from workbench.core.design.design import SensorDesign
+from workbench.core.press.indenter import SEEN, UNSEEN, IndenterKind
+from workbench.learning.dataset.algorithms import BASE_MM
+from workbench.learning.dataset.positions import Pattern
+from workbench.learning.dataset.recipe import Recipe, Solvers
+from workbench.learning.dataset.variation import Looks, Vary
+from workbench.tasks.task import Size
+
+DEEPEST_SHARE = 0.4
+"""Of the elastomer's thickness that a press goes in at most [1]: the paper's, .8 of 2 mm."""
+COARSE_MM = 0.8
+"""Grid of the contact solver in small sets [mm]: a press takes half the time of one on .5 mm."""
+COARSE_HEX_MM = 0.6
+"""Edge of the mesh in small sets [mm]."""
+WIDTHS_PX = {Size.SMALL: 160, Size.PAPER: 320}
+"""Of images [px]."""
+LOOKS = {Size.SMALL: 3, Size.PAPER: 8}
+"""Built sensors that see the presses."""
+POINTS = 40
+"""Places on a membrane without a pattern of its own."""
+FRICTION = (0.2, 0.6)
+OBJECTS = tuple(kind for kind in (*SEEN, *UNSEEN) if kind.value not in ("ring", "rhombus"))
+"""The 12 objects of the paper's classification. Source: class names in its released script."""
+
+
+class Pressed(TypedDict, total=False):
+    """What a task's presses are besides: fields of a recipe."""
+
+    indenters: tuple[IndenterKind, ...]
+    size_mm: float
+    shear_mm: float
+    shear_step_mm: float
+    shear_directions: int
+    sequences: int
+
+
+def pattern_of(design: SensorDesign, *, side: bool = False) -> Pattern:
+    """The paper's pattern for a design's family where it has one, else `spread`.
+
+    Args:
+        design: Whose membrane is pressed.
+        side: Only where a finger holds what it grasps.
+    """
+    from designs.family import resolve_shape
+
+    if design.family == Pattern.FINGER.value:
+        shape: Any = resolve_shape(design.family, design.shape)
+        if shape.cylinder_mm > BASE_MM[-1]:
+            return Pattern.SIDE if side else Pattern.FINGER
+    if design.family == Pattern.PAD.value and not side:
+        return Pattern.PAD
+    return Pattern.SPREAD
+
+
+def pressed(
+    design: SensorDesign,
+    size: Size,
+    pattern: Pattern,
+    depth: tuple[float, int],
+    vary: Vary,
+    **more: Unpack[Pressed],
+) -> Recipe:
+    """A recipe of presses by the contact solver, seen by several built sensors.
+
+    Args:
+        design: What is pressed.
+        size: Small sets are pressed on a coarser grid and seen in fewer pixels.
+        pattern: Where.
+        depth: Wanted way in [mm], and its steps.
+        vary: What each press draws; its looks are set here.
+        more: As of a recipe.
+    """
+    wanted_mm, steps = depth
+    depth_mm = min(wanted_mm, DEEPEST_SHARE * design.layers.elastomer_mm)
+    step_mm = math.floor(1e4 * depth_mm / steps + 1e-6) / 1e4
+    made = Recipe(
+        design=design,
+        pattern=pattern,
+        points=POINTS,
+        depth_mm=round(step_mm * steps, 4),
+        depth_step_mm=step_mm,
+        solvers=Solvers.MPM,
+        image_width_px=WIDTHS_PX[size],
+        hold_out=False,
+        vary=dataclasses.replace(vary, looks=Looks(count=LOOKS[size])),
+        **more,
+    )
+    if size is Size.SMALL:
+        return dataclasses.replace(made, grid_mm=COARSE_MM, hex_mm=COARSE_HEX_MM)
+    return made

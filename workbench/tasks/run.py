@@ -1,0 +1,287 @@
+"""A task for a design from end to end: presses, trainings, tests.
+
+    data         presses of the task's recipe, seen by several built sensors, in `data`
+    sim          three seeds, renders split at random, as in the paper
+    sim_by_place three seeds, by place
+    photos       the user's own, told by the networks of `sim`
+    twin         photographs of a sensor with hidden parameters, told by the networks of `sim`
+    calibrated   light and camera fitted to the twin's ball, the presses seen anew, trained anew
+
+Stopped, it goes on where it was: presses, trainings and photographs that are there are kept.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import time
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from workbench.core.base.digest import digest
+from workbench.core.base.errors import DesignError
+from workbench.core.base.monitor import Monitor, part
+from workbench.core.design.design import SensorDesign
+from workbench.core.design.optics import Optics
+from workbench.learning.dataset.folder import DataSet
+from workbench.learning.dataset.lock import held
+from workbench.learning.dataset.recipe import Recipe
+from workbench.learning.making.collect import make
+from workbench.learning.making.watch import SetProgress
+from workbench.pipeline.devices import torch_device
+from workbench.project.design_toml import design_table
+from workbench.project.project import Project
+from workbench.tasks.examples import Examples, Seen, examples
+from workbench.tasks.lessons import SEEDS, Lessons
+from workbench.tasks.outcome import Tested, Trial
+from workbench.tasks.photo_folder import PhotoFolder
+from workbench.tasks.photo_training import on_photos
+from workbench.tasks.rendered import AtRest, Renders, Shown, rendered
+from workbench.tasks.reshoot import Reshot, sees_outer_skin
+from workbench.tasks.safety_scale import SafetyScale
+from workbench.tasks.seen_images import VIEWS
+from workbench.tasks.slip_delay import slip_delays
+from workbench.tasks.task import Look, Net, Size, Task, task_of
+from workbench.tasks.trained import Trained, Trainer, with_features
+from workbench.tasks.twin_test import calibrated, photographed, twin_plan
+
+SPANS = {
+    "data": (0.0, 0.45),
+    "images": (0.45, 0.47),
+    "features": (0.47, 0.55),
+    Trial.SIM: (0.55, 0.61),
+    Trial.PLACE: (0.61, 0.67),
+    Trial.PHOTOS: (0.67, 0.68),
+    Trial.TWIN: (0.68, 0.85),
+    "calibrate": (0.85, 0.9),
+    Trial.CALIBRATED: (0.9, 1.0),
+}
+"""Part of each step in the whole."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Plan:
+    """What is asked for."""
+
+    task: str
+    size: Size = Size.SMALL
+    net: Net = Net.LITE
+    photos: Path | None = None
+    jobs: int = 1
+    twin: bool = True
+    """Whether a twin is photographed too."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Result:
+    """What came out."""
+
+    plan: Plan
+    design: SensorDesign
+    tests: list[Tested]
+    details: dict[str, Any]
+
+
+def run_task(
+    design: SensorDesign, plan: Plan, out: Path, project: Project, monitor: Monitor
+) -> Result:
+    """Run a task, or the rest of it.
+
+    Args:
+        design: Whose sensor is to tell.
+        plan: Which task, how much, by which network.
+        out: All that is made comes here.
+        project: Its store keeps mesh and light.
+        monitor: Progress and cancellation.
+
+    Raises:
+        DesignError: If the photographs do not suit the task, or the design not the recipe.
+        StoreError: If the folder is another's, or cannot be written.
+        WorkbenchError: As stages, calibration and twin.
+    """
+    task = task_of(plan.task)
+    seen = None
+    if plan.photos is not None:
+        # Photographs that do not suit are told before anything is pressed.
+        folder = PhotoFolder.open(plan.photos)
+        seen = list(folder.seen(task, VIEWS[plan.net], design.optics.camera))
+    with held(out, doing="running the task in"):
+        work = _Work(
+            task=task,
+            plan=plan,
+            design=design,
+            recipe=task.recipe(design, plan.size),
+            out=out,
+            project=project,
+            monitor=monitor,
+            seconds={},
+        )
+        return work.run(seen)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Work:
+    """One task under way."""
+
+    task: Task
+    plan: Plan
+    design: SensorDesign
+    recipe: Recipe
+    out: Path
+    project: Project
+    monitor: Monitor
+    seconds: dict[str, float]
+    """Time of each step."""
+
+    def run(self, seen: list[Seen] | None) -> Result:
+        with self._timed("data"):
+            data = self._data()
+        own = Renders(data, marked=self._marked)
+        images = own.shown, own.at_rest
+        with self._timed("images"):
+            lessons = self._lessons(data, images)
+        tests, networks = [], dict[Trial, list[Trained]]()
+        for test in (Trial.SIM, Trial.PLACE):
+            with self._timed(test):
+                runs = lessons.learned(test, self._span(test))
+            networks[test] = [run.trained for run in runs]
+            tests.append(lessons.on_renders(test, runs))
+        if self.task.look is Look.WINDOW:
+            left = set(lessons.found.places[lessons.parts(Trial.PLACE)[0].test].tolist())
+            network = networks[Trial.PLACE][0]
+            delay = slip_delays(data, images, network, left, VIEWS[self.plan.net])
+            tests[-1].details["delay"] = delay
+        details = self._details(lessons, networks[Trial.SIM][0])
+        if seen is not None:
+            with self._timed(Trial.PHOTOS):
+                photos = _photos(seen, lessons)
+                tests.append(lessons.on_photos(Trial.PHOTOS, photos, networks[Trial.SIM]))
+                own_training = on_photos(lessons, photos, self._span(Trial.PHOTOS))
+                details["trained_on_photos"] = own_training
+        if self.plan.twin:
+            tests += self._twin(data, lessons, networks[Trial.SIM], details)
+        details["seconds"] = {name: round(value, 1) for name, value in self.seconds.items()}
+        return Result(plan=self.plan, design=self.design, tests=tests, details=details)
+
+    @property
+    def _marked(self) -> bool:
+        return self.task.look is not Look.PLAIN
+
+    def _span(self, name: str) -> Monitor:
+        return part(self.monitor, *SPANS[name])
+
+    @contextmanager
+    def _timed(self, name: str) -> Iterator[None]:
+        begun = time.monotonic()
+        yield
+        self.seconds[str(name)] = time.monotonic() - begun
+
+    def _data(self) -> DataSet:
+        monitor = self._span("data")
+
+        def tell(progress: SetProgress) -> None:
+            done = progress.done / max(progress.total, 1)
+            monitor(done, f"{progress.done} of {progress.total} samples")
+
+        return make(
+            self.recipe,
+            self.out / "data",
+            self.project,
+            jobs=self.plan.jobs,
+            tell=tell,
+            monitor=lambda stage, fraction, note: monitor(0.0, f"{stage} {note}"),
+        )
+
+    def _lessons(self, data: DataSet, images: tuple[Shown, AtRest]) -> Lessons:
+        """All examples of the renders, and who learns from them."""
+        seen = rendered(self.task, VIEWS[self.plan.net], data, images, self._span("images"))
+        found, scale = examples(self.task, seen), None
+        if self.task.safety:
+            scale = SafetyScale.of(found)
+            found = scale.with_safety(found)
+        trainer = Trainer(
+            task=self.task,
+            net=self.plan.net,
+            folder=self.out / "networks",
+            safety=scale,
+            device=torch_device(),
+        )
+        found = with_features(
+            found, self.task, self.plan.net, trainer.device, self._span("features")
+        )
+        return Lessons(name=self.plan.task, task=self.task, trainer=trainer, found=found)
+
+    def _twin(
+        self,
+        data: DataSet,
+        lessons: Lessons,
+        networks: list[Trained],
+        details: dict[str, Any],
+    ) -> list[Tested]:
+        """The tests on a twin, before and after it is calibrated."""
+        size, store, folder = self.plan.size, self.project.store, self.out / "twin"
+        plan = twin_plan(self.task, size, self.recipe, self.plan.jobs)
+        with self._timed(Trial.TWIN):
+            place, details["twin"] = photographed(
+                self.design, folder, plan, store, self._span(Trial.TWIN)
+            )
+            camera = self.design.optics.camera
+            seen = list(PhotoFolder.open(place).seen(self.task, VIEWS[self.plan.net], camera))
+            tests = [lessons.on_photos(Trial.TWIN, _photos(seen, lessons), networks)]
+        with self._timed(Trial.CALIBRATED):
+            try:
+                optics, details["calibration"] = calibrated(
+                    self.design, folder, size, store, self._span("calibrate")
+                )
+            except DesignError as error:
+                # Photographs that cannot be calibrated to are a result too.
+                details["calibration"] = {"why_not": error.message}
+                return tests
+            again = self._seen_anew(data, optics)
+            runs = again.learned(Trial.CALIBRATED, self._span(Trial.CALIBRATED))
+            learned = [run.trained for run in runs]
+            tests.append(again.on_photos(Trial.CALIBRATED, _photos(seen, again), learned))
+        return tests
+
+    def _seen_anew(self, data: DataSet, optics: Optics) -> Lessons:
+        """The same presses in calibrated light; where pins are seen, pressed anew."""
+        if sees_outer_skin(self.recipe, self.project):
+            anew = Reshot(self.recipe, optics, self.project, None, marked=self._marked)
+            return self._lessons(data, (anew.shown, anew.at_rest))
+        design = dataclasses.replace(self.design, optics=optics)
+        recipe = dataclasses.replace(self.recipe, design=design)
+        other = make(recipe, self.out / "data_calibrated", self.project, jobs=self.plan.jobs)
+        own = Renders(other, marked=self._marked)
+        return self._lessons(other, (own.shown, own.at_rest))
+
+    def _details(self, lessons: Lessons, network: Trained) -> dict[str, Any]:
+        trainer, found = lessons.trainer, lessons.found
+        scale = {} if trainer.safety is None else dataclasses.asdict(trainer.safety)
+        return {
+            "network": self.plan.net.value,
+            "weights_from": network.weights_from,
+            "parameters": sum(each.numel() for each in network.network.parameters()),
+            "learning": dataclasses.asdict(trainer.settings),
+            "device": trainer.device,
+            "seeds": list(SEEDS),
+            "examples": len(found),
+            "places": len(np.unique(found.places)),
+            "input_px": list(found.inputs.shape[2:4][::-1]),
+            "look": self.task.look.value,
+            "formula": self.task.formula,
+            **scale,
+            "design": digest(design_table(self.design)),
+            "recipe": self.recipe.key,
+        }
+
+
+def _photos(seen: Iterable[Seen], lessons: Lessons) -> Examples:
+    """Photographs as examples with the outputs of the renders."""
+    task, scale = lessons.task, lessons.trainer.safety
+    if scale is None:
+        return examples(task, seen, lessons.found.outputs)
+    return scale.with_safety(examples(task, seen, task.columns))

@@ -1,0 +1,280 @@
+"""Networks of a task: made by name, trained, kept in files, and asked.
+
+A training is kept under the key of all that it rests on; one that was ended by force begins anew,
+those before it are read.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import io
+import pickle
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from workbench.core.base.digest import digest
+from workbench.core.base.monitor import Monitor, silent
+from workbench.system.whole_files import write_atomically
+from workbench.tasks.examples import Examples
+from workbench.tasks.safety_scale import SafetyScale
+from workbench.tasks.splits import Parts
+from workbench.tasks.task import Look, Net, Task, Told
+
+if TYPE_CHECKING:
+    from torch import nn
+
+    from workbench.tasks.networks.learn import Learned, Part, Settings
+
+FORMAT = 1
+
+
+SETTINGS = {
+    (Net.LITE, Look.PLAIN): (80, 1e-3, 16, 0.1),
+    (Net.LITE, Look.MARKED): (80, 1e-3, 16, 0.1),
+    (Net.LITE, Look.WINDOW): (40, 1e-3, 16, 0.1),
+    (Net.OWN, Look.PLAIN): (60, 2e-3, 16, 1e-3),
+    (Net.OWN, Look.MARKED): (60, 2e-3, 16, 1e-3),
+    (Net.OWN, Look.WINDOW): (40, 2e-3, 8, 1e-3),
+    (Net.PAPER, Look.PLAIN): (50, 1e-3, 32, 0.0),
+    (Net.PAPER, Look.MARKED): (50, 1e-3, 32, 0.0),
+    (Net.PAPER, Look.WINDOW): (15, 5e-4, 4, 0.0),
+}
+"""Epochs, largest step, batch, weight decay. Source of the first three of the paper's: SimTac,
+*Sim2Real task setup*."""
+PAPER_CLASS_EPOCHS = 30
+"""Of its classifier of objects. Source: the same."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Scale:
+    """How values are told: those of a network are times `spread` and plus `middle`."""
+
+    middle: np.ndarray
+    spread: np.ndarray
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Trained:
+    """A network that has learned."""
+
+    network: nn.Module
+    net: Net
+    weights_from: str
+    outputs: tuple[str, ...]
+    scale: Scale | None
+    safety: SafetyScale | None
+    epoch: int
+    curve: list[dict[str, float]]
+
+    def told(self, found: Examples) -> np.ndarray:
+        """What it says of examples: classes (N,), or values (N, K) in their own units."""
+        from workbench.tasks.networks.learn import told_by
+
+        raw = told_by(self.network, _shown(found, self.net), found.at)
+        if self.scale is None:
+            return raw.argmax(axis=1)
+        values = self.scale.middle + self.scale.spread * raw
+        return values if self.safety is None else self.safety.both(values)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Trainer:
+    """Trains and keeps networks of one task in one folder."""
+
+    task: Task
+    net: Net
+    folder: Path
+    safety: SafetyScale | None
+    device: str
+
+    def trained(
+        self, name: str, found: Examples, parts: Parts, seed: int, monitor: Monitor
+    ) -> Trained:
+        """The network of a name: read if it was trained on the very same, else trained.
+
+        Args:
+            name: Of its file.
+            found: All examples.
+            parts: Which of them it learns from, and which choose its epoch.
+            seed: Of first weights and order.
+            monitor: Progress and cancellation.
+
+        Raises:
+            Cancelled: If the monitor says so.
+            PackageError: If a package that the network needs is not installed.
+            StoreError: If the file cannot be written.
+        """
+        import torch
+
+        from workbench.tasks.networks.learn import Part
+
+        torch.manual_seed(seed)
+        scale = _scale(found.only(parts.train), self.safety)
+        outputs = 1 if self.safety else len(found.outputs)
+        inputs = _shown(found, self.net)
+        train, validation = (
+            Part(inputs=inputs[rows], at=found.at[rows], truth=_wanted(found.truth[rows], scale))
+            for rows in (parts.train, parts.validation)
+        )
+        network, weights_from = made(self.net, self.task, outputs, train)
+        network.to(self.device)
+        path = self.folder / f"{name}-seed{seed}.pt"
+        key = self._key(found, parts, seed, weights_from)
+        kept = _read(path, key)
+        if kept is not None:
+            network.load_state_dict(kept["state"])
+            epoch, curve = kept["epoch"], kept["curve"]
+        else:
+            learned = self._learned(network, (train, validation), seed, monitor)
+            epoch, curve = learned.epoch, learned.curve
+            _write(path, key, {"state": network.state_dict(), "epoch": epoch, "curve": curve})
+        return Trained(
+            network=network,
+            net=self.net,
+            weights_from=weights_from,
+            outputs=found.outputs,
+            scale=scale,
+            safety=self.safety,
+            epoch=epoch,
+            curve=curve,
+        )
+
+    def _learned(
+        self, network: nn.Module, parts: tuple[Part, Part], seed: int, monitor: Monitor
+    ) -> Learned:
+        """Let a network learn; a head for values of images that are seen once is solved for."""
+        if self.net is Net.LITE and self.task.told is Told.VALUES:
+            from workbench.tasks.networks.lite import Head, fit_values
+
+            assert isinstance(network, Head)
+            return fit_values(network, parts)
+        from workbench.tasks.networks.learn import learn
+
+        return learn(network, parts, self.settings, seed, monitor)
+
+    @property
+    def settings(self) -> Settings:
+        """How long and how fast it learns."""
+        from workbench.tasks.networks.learn import Settings
+
+        epochs, rate, batch, decay = SETTINGS[self.net, self.task.look]
+        classes = self.task.told is Told.CLASS
+        if (self.net, self.task.look, classes) == (Net.PAPER, Look.PLAIN, True):
+            epochs = PAPER_CLASS_EPOCHS
+        return Settings(epochs=epochs, rate=rate, batch=batch, decay=decay, moved=classes)
+
+    def _key(self, found: Examples, parts: Parts, seed: int, weights_from: str) -> str:
+        from workbench.tasks.networks import shown
+
+        held_fixed = {"format": FORMAT, "net": self.net.value, "from": weights_from, "seed": seed}
+        held = dataclasses.asdict(self.safety) if self.safety else {}
+        return digest(
+            [
+                {**held_fixed, **held, "grey": shown.GREY, "gain": shown.GAIN},
+                dataclasses.asdict(self.settings),
+                [found.inputs, found.at, found.truth.astype(np.float64), *parts],
+                list(found.outputs),
+            ]
+        )
+
+
+def usual_network() -> Net:
+    """The network that learns where none is named."""
+    from workbench.tasks.networks.lite import installed
+
+    return Net.LITE if installed() else Net.OWN
+
+
+def with_features(found: Examples, task: Task, net: Net, device: str, monitor: Monitor) -> Examples:
+    """Examples with what a network that does not learn sees of them, where one takes part.
+
+    Raises:
+        Cancelled: If the monitor says so.
+    """
+    if net is not Net.LITE:
+        return found
+    from workbench.tasks.networks.lite import COPIES, features
+
+    moved = task.told is Told.CLASS
+    seen = features(found.inputs, monitor, copies=COPIES, moved=moved, device=device)
+    return dataclasses.replace(found, features=seen)
+
+
+def _shown(found: Examples, net: Net) -> np.ndarray:
+    """What a network is given of examples."""
+    if net is not Net.LITE:
+        return found.inputs
+    if found.features is not None:
+        return found.features
+    from workbench.pipeline.devices import torch_device
+    from workbench.tasks.networks.lite import features
+
+    return features(found.inputs, silent, copies=0, moved=False, device=torch_device())
+
+
+def made(net: Net, task: Task, outputs: int, part: Part) -> tuple[nn.Module, str]:
+    """A network by name, and where its first weights come from.
+
+    Args:
+        net: Which one.
+        task: Says whether it sees images or windows.
+        outputs: Numbers that it tells.
+        part: What it learns from.
+
+    Raises:
+        PackageError: If it needs a package that is not installed.
+    """
+    from workbench.core.base.packages import naming_packages
+
+    window = task.look is Look.WINDOW
+    if net is Net.OWN:
+        from workbench.tasks.networks.own import OwnNet, OwnWindowNet
+
+        return (OwnWindowNet if window else OwnNet)(outputs), "random weights"
+    if net is Net.LITE:
+        from workbench.tasks.networks.lite import WEIGHTS, Head
+
+        return Head(outputs, part), WEIGHTS
+    with naming_packages():
+        from workbench.tasks.networks.published import resnet, vgg_lstm
+
+        return (vgg_lstm if window else resnet)(outputs)
+
+
+def _scale(train: Examples, safety: SafetyScale | None) -> Scale | None:
+    """Middle and spread of the values to learn from; those of the coefficient are 0 and 1."""
+    if train.truth.ndim == 1:
+        return None
+    if safety is not None:
+        return Scale(middle=np.zeros(1), spread=np.ones(1))
+    spread = train.truth.std(axis=0)
+    return Scale(middle=train.truth.mean(axis=0), spread=np.where(spread > 0.0, spread, 1.0))
+
+
+def _wanted(truth: np.ndarray, scale: Scale | None) -> np.ndarray:
+    if scale is None:
+        return truth.astype(np.int64)
+    count = len(scale.middle)
+    return ((truth[:, :count] - scale.middle) / scale.spread).astype(np.float32)
+
+
+def _write(path: Path, key: str, content: dict[str, Any]) -> None:
+    import torch
+
+    buffer = io.BytesIO()
+    torch.save({"key": key, **content}, buffer)
+    write_atomically(path, buffer.getvalue())
+
+
+def _read(path: Path, key: str) -> dict[str, Any] | None:
+    """A kept training; None where there is none, or of something else."""
+    import torch
+
+    try:
+        found = torch.load(path, map_location="cpu", weights_only=True)
+    except (OSError, RuntimeError, EOFError, pickle.UnpicklingError):
+        return None
+    return found if found.get("key") == key else None

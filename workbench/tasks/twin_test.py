@@ -1,0 +1,102 @@
+"""The test on a twin: photographs of a sensor with hidden parameters, and its calibration.
+
+A task takes the twin's presses, or its slides where markers are seen. Light and camera are then
+fitted to the twin's photographs of a ball, as a builder would, without a look at what is hidden.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from pathlib import Path
+from typing import Any
+
+from workbench.core.base.monitor import Monitor
+from workbench.core.design.design import SensorDesign
+from workbench.core.design.optics import Optics
+from workbench.learning.dataset.recipe import Recipe
+from workbench.pipeline.store import Store
+from workbench.tasks.task import Look, Size, Task
+from workbench.twin.cases import Kind
+from workbench.twin.make import make_twin
+from workbench.twin.twin_folder import FOLDERS
+from workbench.twin.twin_plan import TwinPlan
+
+CALIBRATION = {Size.SMALL: 8, Size.PAPER: 20}
+PRESSES = {Size.SMALL: 24, Size.PAPER: 140}
+SLIDES = {Size.SMALL: 8, Size.PAPER: 100}
+WIDTH_PX = 320
+"""Of the twin's photographs [px]."""
+REFINED = {Size.SMALL: "powers", Size.PAPER: "all"}
+"""What is fitted: powers and colours of the lights alone, or camera and coating as well."""
+
+
+def twin_plan(task: Task, size: Size, recipe: Recipe, jobs: int) -> TwinPlan:
+    """How much of a twin a task needs; objects are as large as the middle of the recipe's."""
+    low_mm, high_mm = recipe.vary.size_mm or (recipe.size_mm, recipe.size_mm)
+    slides = task.look is not Look.PLAIN
+    return TwinPlan(
+        calibration=CALIBRATION[size],
+        presses=0 if slides else PRESSES[size],
+        slides=SLIDES[size] if slides else 0,
+        width_px=min(WIDTH_PX, recipe.design.optics.camera.width_px),
+        object_mm=0.5 * (low_mm + high_mm),
+        jobs=jobs,
+    )
+
+
+def photographed(
+    design: SensorDesign, out: Path, plan: TwinPlan, store: Store, monitor: Monitor
+) -> tuple[Path, dict[str, Any]]:
+    """Photograph a twin; the folder of the photographs to tell, and what is hidden.
+
+    Raises:
+        WorkbenchError: As `make_twin`.
+    """
+    made = make_twin(design, out, plan, store, monitor)
+    kind = Kind.SLIDE if plan.slides else Kind.PRESS
+    card = json.loads((made.folder / "card.json").read_bytes())
+    told = {
+        "photos": {kind.value: count for kind, count in made.photos.items()},
+        "failed": len(made.failed),
+        "contact": plan.contact.value,
+        "seed": plan.seed,
+        "hidden": card["hidden"],
+    }
+    return made.folder / FOLDERS[kind], told
+
+
+def calibrated(
+    design: SensorDesign, twin: Path, size: Size, store: Store, monitor: Monitor
+) -> tuple[Optics, dict[str, Any]]:
+    """Light and camera fitted to a twin's photographs of a ball, and how well they explain them.
+
+    Args:
+        design: The nominal one.
+        twin: Folder of the twin.
+        size: Says what is fitted.
+        store: Keeps presses and light.
+        monitor: Progress and cancellation.
+
+    Raises:
+        WorkbenchError: As `calibrate`.
+    """
+    from workbench.calibration.calibrate import calibrate
+    from workbench.calibration.fitted_design import with_unit
+    from workbench.calibration.photo_set import read_photo_set
+    from workbench.core.design.unit import unit
+
+    photos = read_photo_set(twin / FOLDERS[Kind.CALIBRATION])
+    height_px, width_px = photos.idle.shape[:2]
+    camera = dataclasses.replace(design.optics.camera, width_px=width_px, height_px=height_px)
+    sized = dataclasses.replace(
+        design, optics=dataclasses.replace(design.optics, camera=camera, cameras=())
+    )
+    found = calibrate(sized, photos, store, lights="known", monitor=monitor, refining=REFINED[size])
+    whole = with_unit(found.design, unit("unit.npz", found.unit_data))
+    return whole.optics, {
+        "fitted": REFINED[size],
+        "photos": len(photos.photos),
+        "error_grey": found.powers.error_grey,
+        "null_grey": found.powers.null_grey,
+    }

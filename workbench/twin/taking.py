@@ -1,0 +1,126 @@
+"""Which frames of a path become photographs, and what a table says of each."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sim.forces.slip import GROSS_SHARE
+from workbench.core.result.force_field import ForceField
+from workbench.learning.dataset.sequences import FRAMES
+from workbench.twin.cases import BALL_FRAMES, PRESS_FRAMES, Kind, TwinCase
+from workbench.twin.draw import Draws, Twin, stream
+
+LABELS = (
+    *("photo", "object", "place", "sequence", "frame", "slip", "depth_mm", "peak_MPa"),
+    *("force_x_N", "force_y_N", "force_z_N", "pose_x_mm", "pose_y_mm", "pose_z_mm"),
+)
+"""Columns of `labels.csv`; the pose is where the object touched first, in the sensor frame."""
+NUMBERS = {Kind.CALIBRATION: 1, Kind.PRESS: 2, Kind.SLIDE: 3}
+OF_A_KIND, OF_A_CASE = 2**24, 2**6
+"""Room for cases of a kind, and for photographs of a case, in the numbers of photographs."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Taken:
+    """One photograph that is to be taken."""
+
+    name: str
+    """Of its files, without ending; unique within a twin."""
+    case: TwinCase
+    frame: int
+    number: int
+    """That its photons and noise follow from."""
+    sequence: str = ""
+    """Of slides: which one, the frame's number in it, and whether all slides at its end."""
+    place_in_sequence: int = 0
+    slip: bool = False
+
+    @property
+    def marked(self) -> bool:
+        """Whether dots are printed on the skin: on images of slides."""
+        return self.case.kind is Kind.SLIDE
+
+
+def photos_of(twin: Twin, case: TwinCase, field: ForceField) -> list[Taken]:
+    """The photographs of a solved path, in order; none of a slide that does not slip in time."""
+    if case.kind is Kind.SLIDE:
+        return _sequences(twin, case, field)
+    frames = BALL_FRAMES if case.kind is Kind.CALIBRATION else PRESS_FRAMES
+    return [
+        Taken(
+            name=f"{case.id}_{frame}",
+            case=case,
+            frame=frame,
+            number=_number(case, frame),
+        )
+        for frame in range(frames)
+    ]
+
+
+def label_row(taken: Taken, field: ForceField) -> dict[str, str]:
+    """A photograph's line of `labels.csv`."""
+    frame, case = taken.frame, taken.case
+    force = dict(zip("xyz", -field.reaction_N[frame], strict=True))
+    target = dict(zip("xyz", field.target_mm, strict=True))
+    row = {
+        "photo": f"{taken.name}.png",
+        "object": case.name,
+        "place": case.place,
+        "depth_mm": f"{case.depth_at_mm(frame):.4f}",
+        "peak_MPa": f"{float(field.pressure_MPa[frame].max(initial=0.0)):.6f}",
+        **{f"force_{axis}_N": f"{value:.6f}" for axis, value in force.items()},
+        **{f"pose_{axis}_mm": f"{value:.4f}" for axis, value in target.items()},
+    }
+    if taken.sequence:
+        row |= {
+            "sequence": taken.sequence,
+            "frame": str(taken.place_in_sequence),
+            "slip": str(int(taken.slip)),
+        }
+    return row
+
+
+def onset(case: TwinCase, share: np.ndarray) -> int | None:
+    """First frame of gross slip of a slide, from 0; None where it never comes.
+
+    The rule of `workbench.learning.dataset.sequences`.
+
+    Args:
+        case: A slide.
+        share: Share of the contact that slides, frame by frame, shape (K,).
+    """
+    first = case.press.frames
+    whole = np.flatnonzero(share[first:] >= GROSS_SHARE)
+    return first + int(whole[0]) if len(whole) else None
+
+
+def _sequences(twin: Twin, case: TwinCase, field: ForceField) -> list[Taken]:
+    """One sequence that ends before gross slip and one that ends in it or after."""
+    begins = onset(case, field.sliding_share)
+    if begins is None or begins < FRAMES:
+        return []
+    rng = stream(twin.seed, Draws.SLIDES, 2**30 + case.number)
+    before = int(rng.integers(FRAMES - 1, begins))
+    after = int(rng.integers(begins, len(field.sliding_share)))
+    found = []
+    for slip, last in ((False, before), (True, after)):
+        word = "slip" if slip else "hold"
+        for place in range(FRAMES):
+            found.append(
+                Taken(
+                    name=f"{case.id}_{word}{place}",
+                    case=case,
+                    frame=last + 1 - FRAMES + place,
+                    number=_number(case, FRAMES * slip + place),
+                    sequence=f"{case.id}_{word}",
+                    place_in_sequence=place,
+                    slip=slip,
+                )
+            )
+    return found
+
+
+def _number(case: TwinCase, photo: int) -> int:
+    return NUMBERS[case.kind] * OF_A_KIND + case.number * OF_A_CASE + photo
