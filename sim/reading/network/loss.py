@@ -26,9 +26,8 @@ from sim.reading.network.spec import (
     TURN,
     Scales,
 )
+from sim.reading.pixel_maps import TOUCHED_MM
 
-TOUCHED_MM = 0.05
-"""Inward displacement from which skin counts as pressed in, as in `sim.reading.maps`."""
 MOVED_WEIGHT = 8.0
 """Of pixels whose skin moved, over others, which are many more."""
 TURN_WEIGHT, TOUCH_WEIGHT, PRESSURE_WEIGHT = 0.5, 0.05, 0.2

@@ -20,7 +20,7 @@ from sim.reading.network.spec import (
     TURN,
     Scales,
 )
-from sim.reading.network.unet import UNet, network_of
+from sim.reading.network.unet import UNet, channels_last, network_of
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -55,7 +55,7 @@ class Predictor:
             name: torch.from_numpy(np.ascontiguousarray(a)) for name, a in reader.arrays.items()
         }
         network = network_of(reader.spec, state).to(device)
-        self.network: UNet = network.to(memory_format=torch.channels_last)
+        self.network: UNet = channels_last(network)
 
     def read(self, idle: np.ndarray, photos: np.ndarray) -> Told:
         """Read photographs of the network's size.

@@ -72,16 +72,12 @@ def reader_bytes(reader: ReaderFile) -> bytes:
         "camera_px": reader.camera_px,
         "card": dict(reader.card),
     }
+    kept: dict[str, Any] = {HEAD: np.frombuffer(json.dumps(head).encode(), np.uint8)}
+    for name, array in arrays.items():
+        kept[WEIGHT + name] = array.astype(np.float16 if array.ndim > 1 else np.float32)
+    kept |= {REST + name: array for name, array in reader.rest.arrays().items()}
     buffer = io.BytesIO()
-    np.savez_compressed(
-        buffer,
-        head=np.frombuffer(json.dumps(head).encode(), np.uint8),
-        **{
-            WEIGHT + name: array.astype(np.float16 if array.ndim > 1 else np.float32)
-            for name, array in arrays.items()
-        },
-        **{REST + name: array for name, array in reader.rest.arrays().items()},
-    )
+    np.savez_compressed(buffer, **kept)
     return buffer.getvalue()
 
 

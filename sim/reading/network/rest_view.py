@@ -1,7 +1,7 @@
 """What a camera sees of the skin at rest, as small as a learned reader needs it.
 
-Pixels that see skin, their normals (coarsely: skins at rest are smooth), and where in the image each
-vertex is seen.
+Pixels that see skin, their normals (coarsely: skins at rest are smooth), and where in the image
+each vertex is seen.
 """
 
 from __future__ import annotations

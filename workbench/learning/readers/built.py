@@ -36,9 +36,7 @@ def plain_design(design: SensorDesign) -> SensorDesign:
 def built_sights(recipe: Recipe, count: int) -> list[Sight]:
     """What sees the views of a recipe's presses: so many sensors, and those that judge."""
     vary = dataclasses.replace(recipe.vary, looks=Looks(count=count + JUDGING))
-    return sights_of(
-        dataclasses.replace(recipe, images=True, image_width_px=COLUMNS, vary=vary)
-    )
+    return sights_of(dataclasses.replace(recipe, images=True, image_width_px=COLUMNS, vary=vary))
 
 
 def open_camera(sight: Sight, mesh: MembraneMesh, store: Store) -> PressCamera:

@@ -116,11 +116,10 @@ def learn(
 def _begun(lesson: Lesson, folder: Path) -> _Course:
     import torch
 
-    from sim.reading.network.unet import UNet
+    from sim.reading.network.unet import UNet, channels_last
 
     torch.manual_seed(lesson.seed)
-    network = UNet(lesson.spec, normed=True).to(lesson.device)
-    network = network.to(memory_format=torch.channels_last)
+    network = channels_last(UNet(lesson.spec, normed=True).to(lesson.device))
     average = copy.deepcopy(network)
     optimiser = torch.optim.AdamW(network.parameters(), lr=RATE, weight_decay=WEIGHT_DECAY)
     course = _Course(network=network, average=average, optimiser=optimiser)

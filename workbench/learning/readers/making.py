@@ -22,10 +22,9 @@ import numpy as np
 from workbench.core.base.errors import LaneError
 from workbench.core.base.monitor import Monitor, part
 from workbench.core.design.design import SensorDesign
-from workbench.learning.dataset.folder import DataSet
 from workbench.learning.dataset.sights import Sight
 from workbench.learning.making.collect import ONE_THREAD, environment, make, prepare
-from workbench.learning.making.watch import SetProgress
+from workbench.learning.making.watch import SetProgress, Tell
 from workbench.learning.readers.built import JUDGING, built_sights, open_camera, plain_design
 from workbench.learning.readers.presses import press_recipe
 from workbench.learning.readers.showing import BLOCK, Block, Showing, open_worker, show_blocks
@@ -111,11 +110,16 @@ def blocks_of(amount: Amount) -> list[Block]:
     looks, count = amount.looks, math.ceil(amount.views / BLOCK)
     judging = max(1, math.ceil(JUDGED_SHARE * count / 2))
     found = [
-        Block(name=f"judged-{half}-{k:04d}.zip", number=2 * k + half, look=looks + half,
-              judged=True, half=half)
+        Block(
+            name=f"judged-{half}-{k:04d}.zip",
+            number=2 * k + half,
+            look=looks + half,
+            judged=True,
+            half=half,
+        )
         for k in range(judging)
         for half in range(JUDGING)
-    ]  # fmt: skip
+    ]
     found += [
         Block(name=f"learned-{k:04d}.zip", number=k, look=k % looks, judged=False)
         for k in range(count)
@@ -137,10 +141,8 @@ def _press(task: Task, design: SensorDesign, project: Project, monitor: Monitor)
             )
             folder = task.folder / (JUDGED if judged else PRESSES)
 
-            def tell(progress: SetProgress) -> None:
-                share = (progress.done / max(progress.total, 1)) * cases / wanted
-                monitor(min(share, 1.0), f"press {progress.done} of {progress.total}")
-
+            share = part(monitor, 0.0, min(cases / wanted, 1.0))
+            tell = _teller(share, "presses that judge" if judged else "presses")
             make(recipe, folder, project, jobs=task.jobs, batch=task.batch, tell=tell)
         now = time.monotonic()
         pace_s = (now - begun) / max(cases - pressed, 1)
@@ -149,6 +151,14 @@ def _press(task: Task, design: SensorDesign, project: Project, monitor: Monitor)
         if more < 1:
             return
         cases += more
+
+
+def _teller(monitor: Monitor, what: str) -> Tell:
+    def tell(progress: SetProgress) -> None:
+        note = f"{what}: {progress.done} of {progress.total} states"
+        monitor(progress.done / max(progress.total, 1), note)
+
+    return tell
 
 
 def _write_looks(task: Task, project: Project, sights: Sequence[Sight]) -> None:
@@ -222,9 +232,3 @@ def _shares(blocks: Sequence[Block], count: int) -> list[list[Block]]:
         for share in shares
         if share
     ]
-
-
-def judged_presses(folder: Path) -> int:
-    """How many presses judge."""
-    data = DataSet.open(folder / JUDGED)
-    return sum(bool(data.frames(case)) for case in data.cases())

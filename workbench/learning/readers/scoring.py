@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sim.reading.network.spec import Scales
+from sim.reading.pixel_maps import TOUCHED_MM
 from workbench.learning.readers.view_set import ViewSet
 
 if TYPE_CHECKING:
@@ -66,8 +67,6 @@ def judged(
 
 def scores(batches: Iterator[Judged]) -> dict[str, Any]:
     """Figures of all views together; every error beside that of saying nothing."""
-    from sim.reading.network.loss import TOUCHED_MM
-
     off, null, ratio, angle, forces, fooled = [], [], [], [], [], []
     both = either = views = 0
     for batch in batches:

@@ -159,9 +159,8 @@ def _view(camera: PressCamera, state: State, look: int) -> View:
     shown = camera.show(state.displacement_mm, np.maximum(along_N / skin.shares_mm2, 0.0))
     return view_of(
         shown,
-        camera.idle,
-        camera.sees.reshape(camera.studio.imager.shape),
+        (camera.idle, camera.sees.reshape(camera.studio.imager.shape)),
         look=look,
         name=state.name,
-        force=state.force_N.sum(axis=0) if state.solved else None,
+        force_N=state.force_N.sum(axis=0) if state.solved else None,
     )

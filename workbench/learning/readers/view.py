@@ -50,9 +50,23 @@ class View:
 
 
 def view_of(
-    shown: ShownPress, idle: np.ndarray, sees: np.ndarray, *, look: int, name: str, force: np.ndarray | None
+    shown: ShownPress,
+    rest: tuple[np.ndarray, np.ndarray],
+    *,
+    look: int,
+    name: str,
+    force_N: np.ndarray | None,
 ) -> View:
-    """A view of what a camera shows."""
+    """A view of what a camera shows.
+
+    Args:
+        shown: What it shows.
+        rest: Its photograph at rest, (H, W, 3), and the pixels that see skin then, (H, W), bool.
+        look: Its number.
+        name: Of what is shown.
+        force_N: On the membrane, shape (3,); None where nobody knows.
+    """
+    idle, sees = rest
     hidden = np.isnan(shown.depth_mm) & sees
     changed = (shown.photo != idle).any(axis=2) | shown.turn.any(axis=2) | hidden
     changed |= (np.nan_to_num(shown.depth_mm) != 0.0) | (shown.surface_mm != 0.0)
@@ -64,8 +78,8 @@ def view_of(
     return View(
         look=look,
         name=name,
-        solved=force is not None,
-        force_N=np.zeros(3, np.float32) if force is None else force.astype(np.float32),
+        solved=force_N is not None,
+        force_N=np.zeros(3, np.float32) if force_N is None else force_N.astype(np.float32),
         box=box,
         photo=shown.photo[cut],
         depth_mm=shown.depth_mm[cut].astype(np.float16),

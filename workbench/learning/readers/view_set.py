@@ -63,9 +63,10 @@ class ViewSet:
             return torch.from_numpy(values).to(device, non_blocking=True).float()
 
         found = tensor(maps)
-        pictures = [tensor(each).permute(0, 3, 1, 2).contiguous() for each in (idle, photos)]
+        rested, touched = (tensor(k).permute(0, 3, 1, 2).contiguous() for k in (idle, photos))
         return (
-            *pictures,
+            rested,
+            touched,
             Wanted(
                 depth_mm=found[0],
                 surface_mm=found[1],
