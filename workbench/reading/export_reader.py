@@ -92,8 +92,9 @@ def export_reader(reader: ReaderFile, out: Path) -> tuple[Path, Path]:
     example = torch.full((1, 3, spec.rows, spec.columns), 100.0)
     buffer = io.BytesIO()
     with warnings.catch_warnings(), torch.inference_mode():
-        # PyTorch would rather have another format, which older versions cannot read.
-        warnings.simplefilter("ignore", DeprecationWarning)
+        # PyTorch would rather have another format, which older versions cannot read; and the size
+        # of the images is fixed, as it says.
+        warnings.simplefilter("ignore")
         traced = torch.jit.trace(standalone(reader), (example, example), check_trace=False)
         torch.jit.save(traced, buffer)
     width_px, height_px = reader.camera_px

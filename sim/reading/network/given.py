@@ -18,7 +18,7 @@ def given(idle: torch.Tensor, photos: torch.Tensor) -> torch.Tensor:
         idle: Grey levels at rest, shape (B, 3, H, W), or one for all.
         photos: Touched, shape (B, 3, H, W).
     """
-    count, _, rows, columns = photos.shape
+    count, rows, columns = photos.shape[0], int(photos.shape[2]), int(photos.shape[3])
     idle = idle.expand(count, -1, -1, -1)
     across = torch.linspace(-0.5, 0.5, columns, device=photos.device)
     down = torch.linspace(-0.5, 0.5, rows, device=photos.device)

@@ -15,12 +15,14 @@ import torch
 from torch import nn
 from torch.nn import functional
 
-from sim.reading.network.spec import INPUTS, OUTPUTS, ReaderSpec
+from sim.reading.network.spec import INPUTS, LOG_VARIANCE, OUTPUTS, ReaderSpec
 
 FOLD = 2
 FORCE_WIDTH = 64
 LEAST_VARIANCE = 1e-4
 """Of a scaled force."""
+FIRST_WEIGHT, FIRST_LOG = 1e-3, -6.0
+"""Spread of the last weights before learning, and what variances begin with [1]."""
 
 
 class UNet(nn.Module):
@@ -47,6 +49,24 @@ class UNet(nn.Module):
         self.shares = nn.Sequential(
             nn.Conv2d(widths[-1], FORCE_WIDTH, 1), nn.ReLU(), nn.Conv2d(FORCE_WIDTH, 4, 1)
         )
+        if normed:
+            self._begin_calm()
+
+    def _begin_calm(self) -> None:
+        """Before it learns it says that nothing moved and nothing pushes, and doubts that little.
+
+        Sums over hundreds of places would else begin far off.
+        """
+        for layer, doubt in (
+            (self.maps, slice(LOG_VARIANCE * FOLD**2, None)),
+            (self.shares[-1], 3),
+        ):
+            assert isinstance(layer, nn.Conv2d)
+            assert layer.bias is not None
+            nn.init.normal_(layer.weight, std=FIRST_WEIGHT)
+            nn.init.zeros_(layer.bias)
+            with torch.no_grad():
+                layer.bias[doubt] = FIRST_LOG
 
     def forward(self, images: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
         """Maps and forces."""
