@@ -99,11 +99,11 @@ def test_blocks_judge_by_sensors_that_nothing_is_learned_from() -> None:
 
 
 def test_a_short_training_beats_saying_nothing(tmp_path: Path) -> None:
-    """On dents that darken a photograph in proportion, after eight epochs of 48 views."""
-    network, rows = learn(lesson(epochs=8), tmp_path, nobody)
-    assert rows[-1]["epochs"] == pytest.approx(8.0)
+    """On dents that darken a photograph in proportion, after four epochs of 48 views."""
+    network, rows = learn(lesson(epochs=4), tmp_path, nobody)
+    assert rows[-1]["epochs"] == pytest.approx(4.0)
     found = scores(judged(network, views(16, seed=5), SCALES, "cpu", most=16))
-    assert found["depth_mae_mm"] < 0.8 * found["zero_mae_mm"]
+    assert found["depth_mae_mm"] < 0.9 * found["zero_mae_mm"]
     assert found["views"] == 16
 
 
@@ -121,7 +121,7 @@ def test_a_stopped_training_goes_on_and_another_is_refused(tmp_path: Path) -> No
         learn(asked, tmp_path, stop)
     _, rows = learn(asked, tmp_path, nobody)
     assert [row["views"] for row in rows] == [48, 96]
-    with pytest.raises(StoreError, match="another training|other data"):
+    with pytest.raises(StoreError, match="training of other data"):
         learn(lesson(key="other"), tmp_path, nobody)
 
 

@@ -10,6 +10,7 @@ import pytest
 import torch
 
 from sim.reading.network.augment import NONE, Disturbance, disturbed
+from sim.reading.network.crops import cut_to_contact
 from sim.reading.network.given import given
 from sim.reading.network.loss import Wanted, loss
 from sim.reading.network.predictor import Predictor, in_size
@@ -48,9 +49,7 @@ def test_folding_normalisation_changes_nothing() -> None:
 def test_the_full_network_has_about_a_million_parameters() -> None:
     """And the small one a fifth of it."""
     counts = {
-        size: sum(
-            each.numel() for each in UNet(spec_for(size, 640, 480), normed=False).parameters()
-        )
+        size: sum(part.numel() for part in UNet(spec_for(size, 4, 3), normed=False).parameters())
         for size in SIZES
     }
     assert 0.8e6 < counts["full"] < 1.1e6
@@ -193,3 +192,27 @@ def test_photographs_come_in_any_size() -> None:
     found = in_size([image], COLUMNS, ROWS)
     assert found.shape == (1, ROWS, COLUMNS, 3)
     assert np.allclose(found, 100.0)
+
+
+def test_a_window_holds_what_changed_or_forgets_the_force() -> None:
+    """Inputs and truth are cut alike; a contact that is too wide has no force."""
+    rng = np.random.default_rng(0)
+    depth = torch.zeros(2, 64, 96)
+    depth[0, 20:40, 50:70] = 0.5
+    depth[1, 2:60, 5:90] = 0.5
+    wanted = Wanted(
+        depth_mm=depth,
+        surface_mm=depth,
+        turn=torch.zeros(2, 3, 64, 96),
+        pressure_MPa=depth,
+        force_N=torch.ones(2, 3),
+        solved=torch.ones(2),
+    )
+    enters = depth[:, None].repeat(1, INPUTS, 1, 1)
+    boxes = [(20, 40, 50, 70), (2, 60, 5, 90)]
+    for _ in range(20):
+        parts, truth = cut_to_contact(enters, wanted, boxes, (32, 48), rng)
+        assert parts.shape == (2, INPUTS, 32, 48)
+        assert torch.equal(parts[:, 0], truth.depth_mm)
+        assert int((truth.depth_mm[0] > 0).sum()) == 400
+        assert truth.solved.tolist() == [1.0, 0.0]

@@ -17,7 +17,8 @@ from workbench.learning.dataset.recipe import Recipe
 from workbench.learning.dataset.variation import Drawn
 from workbench.learning.readers.states import State
 
-DEPTH_MM = (0.05, 1.4)
+LEAST_MM, DEEPEST = 0.05, 1.2
+"""Depth of a dent: from so much to so many depths of the solved presses."""
 TILT_DEG = 20.0
 """Largest tilt of an object about either axis across the way of the press."""
 TWO = 0.15
@@ -60,7 +61,7 @@ def _dent(
         about_x, about_y = rng.normal(0.0, TILT_DEG / 2.0, 2).clip(-TILT_DEG, TILT_DEG)
         points_mm = points_mm @ turn_matrix((float(about_x), float(about_y), 0.0)).T
         target_mm = targets_mm[rng.integers(len(targets_mm))]
-        depth_mm = float(rng.uniform(*DEPTH_MM))
+        depth_mm = float(rng.uniform(LEAST_MM, DEEPEST * recipe.depth_mm))
         try:
             moved = geometric_dent(skin, points_mm, faces, target_mm=target_mm, depth_mm=depth_mm)
         except WorkbenchError:

@@ -19,15 +19,17 @@ from typing import Any
 
 import numpy as np
 
-from workbench.core.base.errors import LaneError
+from workbench.core.base.errors import LaneError, SolveError
 from workbench.core.base.monitor import Monitor, part
 from workbench.core.design.design import SensorDesign
+from workbench.learning.dataset.folder import DataSet
 from workbench.learning.dataset.sights import Sight
 from workbench.learning.making.collect import ONE_THREAD, environment, make, prepare
 from workbench.learning.making.watch import SetProgress, Tell
 from workbench.learning.readers.built import JUDGING, built_sights, open_camera, plain_design
 from workbench.learning.readers.presses import press_recipe
 from workbench.learning.readers.showing import BLOCK, Block, Showing, open_worker, show_blocks
+from workbench.learning.readers.states import solved_cases
 from workbench.pipeline.devices import VARIABLE, open_device
 from workbench.project.project import Project
 from workbench.system.whole_files import write_atomically
@@ -37,6 +39,7 @@ LOOK_S = 0.5
 """Time between two looks at how many blocks there are [s]."""
 JUDGED_SHARE = 0.15
 """Presses that judge, of those that are learned from."""
+LEAST_JUDGED = 4
 FIRST_CASES = 4
 """Cases for each process before the pace is known."""
 PRESS_TIME, VIEW_TIME = 0.40, 0.15
@@ -82,6 +85,7 @@ def make_views(task: Task, project: Project, *, monitor: Monitor) -> None:
     recipe = press_recipe(design, judged=False, seed=task.seed)
     share = part(monitor, 0.0, 0.7)
     _press(task, design, project, share)
+    _check_judged(task.folder)
     sights = built_sights(recipe, task.amount.looks)
     monitor(0.7, "light of built sensors")
     prepare(
@@ -135,7 +139,7 @@ def _press(task: Task, design: SensorDesign, project: Project, monitor: Monitor)
     while True:
         begun = time.monotonic()
         for judged in (True, False):
-            count = max(2, round(JUDGED_SHARE * cases)) if judged else cases
+            count = max(LEAST_JUDGED, round(JUDGED_SHARE * cases)) if judged else cases
             recipe = dataclasses.replace(
                 press_recipe(design, judged=judged, seed=task.seed), cases=count
             )
@@ -151,6 +155,18 @@ def _press(task: Task, design: SensorDesign, project: Project, monitor: Monitor)
         if more < 1:
             return
         cases += more
+
+
+def _check_judged(folder: Path) -> None:
+    data = DataSet.open(folder / JUDGED)
+    if len(solved_cases(data)) < JUDGING:
+        reasons = [str(row["message"]) for row in data.failed().values()]
+        raise SolveError(
+            f"{len(solved_cases(data))} of the presses that judge a reader could be solved: "
+            f"{reasons[0] if reasons else 'all were stopped'}",
+            hint="press it in the app to see why, or ask for more --presses",
+            at="press",
+        )
 
 
 def _teller(monitor: Monitor, what: str) -> Tell:

@@ -15,7 +15,10 @@ from workbench.learning.dataset.variation import Vary
 
 PLACES = 240
 """Places all over the skin, each some 2 to 3 mm from the next."""
-DEPTH_MM, DEPTH_STEP_MM = 1.2, 0.3
+DEPTH_MM, WALL_SHARE = 1.2, 0.6
+"""Depth of the presses: so much, or this share of a thinner wall."""
+STEPS = 4
+"""Frames down to it."""
 SHEAR_MM, SHEAR_STEP_MM = 0.6, 0.3
 SIZE_MM = (3.0, 12.0)
 FRICTION = (0.2, 0.6)
@@ -34,13 +37,14 @@ def press_recipe(design: SensorDesign, *, judged: bool, seed: int = 0) -> Recipe
         seed: Of both.
     """
     young_MPa = design.material.young_MPa
+    depth_mm = min(DEPTH_MM, WALL_SHARE * design.layers.elastomer_mm)
     return Recipe(
         design=design,
         pattern=Pattern.SPREAD,
         points=PLACES,
         indenters=tuple(IndenterKind(name) for name in CLASSES),
-        depth_mm=DEPTH_MM,
-        depth_step_mm=DEPTH_STEP_MM,
+        depth_mm=depth_mm,
+        depth_step_mm=depth_mm / STEPS,
         shear_mm=SHEAR_MM,
         shear_step_mm=SHEAR_STEP_MM,
         solvers=Solvers.MPM,

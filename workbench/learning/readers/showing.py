@@ -21,7 +21,7 @@ from workbench.learning.dataset.recipe import Recipe
 from workbench.learning.dataset.sights import Sight
 from workbench.learning.readers.built import open_camera
 from workbench.learning.readers.dents import dent_state
-from workbench.learning.readers.states import PressStates, State, untouched
+from workbench.learning.readers.states import PressStates, State, solved_cases, untouched
 from workbench.learning.readers.view import View, block_bytes, view_of
 from workbench.pipeline.store import Store
 from workbench.system.whole_files import write_atomically
@@ -115,8 +115,8 @@ class _Bench:
         self._store = Store(showing.store)
         self._mesh: MembraneMesh = self._store.load("mesh", showing.sights[0].calls["mesh"].key)
         data, judged = DataSet.open(showing.presses), DataSet.open(showing.judged)
-        self._learned = PressStates(data, data.cases())
-        cases = judged.cases()
+        self._learned = PressStates(data, solved_cases(data))
+        cases = solved_cases(judged)
         self._judged = [PressStates(judged, cases[half::2]) for half in range(2)]
         self._cameras: dict[int, PressCamera] = {}
 

@@ -33,9 +33,8 @@ class PressStates:
     """The states of some finished cases of a data set."""
 
     def __init__(self, data: DataSet, cases: Sequence[Case]) -> None:
-        found = [(case, data.frames(case)) for case in cases]
         self._data = data
-        self._cases = [(case, frames) for case, frames in found if frames]
+        self._cases = [(case, data.frames(case)) for case in cases]
 
     def __len__(self) -> int:
         """How many cases."""
@@ -58,6 +57,11 @@ class PressStates:
             solved=True,
             name=case.id,
         )
+
+
+def solved_cases(data: DataSet) -> list[Case]:
+    """The cases of a data set of which there are states."""
+    return [case for case in data.cases() if data.frames(case)]
 
 
 def untouched(vertices: int) -> State:
