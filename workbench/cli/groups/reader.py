@@ -4,4 +4,4 @@ from __future__ import annotations
 
 from workbench.cli.command import Group
 
-GROUP = Group(place=12, help="Train a reader of touch for one design, and take it elsewhere.")
+GROUP = Group(place=11, help="Train a reader of touch for one design, and take it elsewhere.")
