@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import warnings
+from typing import Any
 
 import numpy as np
 import pytest
@@ -177,7 +178,7 @@ def test_the_module_for_other_programs_says_the_same() -> None:
     tensors = [torch.from_numpy(image).permute(2, 0, 1)[None] for image in (idle, photo)]
     with warnings.catch_warnings(), torch.inference_mode():
         warnings.simplefilter("ignore")
-        traced = torch.jit.trace(standalone(reader), tuple(tensors), check_trace=False)
+        traced: Any = torch.jit.trace(standalone(reader), tuple(tensors), check_trace=False)
         depth, sees, force, sigma = traced(*tensors)
     assert np.allclose(depth[0].numpy(), told.depth_mm[0], atol=1e-5)
     assert np.array_equal(sees[0].numpy(), reader.rest.sees)

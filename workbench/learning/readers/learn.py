@@ -32,9 +32,9 @@ WEIGHT_DECAY, LARGEST_STEP = 1e-4, 1.0
 AVERAGE = 0.998
 """Share of the old in the running average of weights, after the first steps."""
 BATCHES = {"cuda": 48, "cpu": 8}
-ROUND_S = {"cuda": 15.0, "cpu": 60.0}
+ROUND_S = {"cuda": 15.0, "cpu": 120.0}
 """Time between two rows of the curves, each with a checkpoint."""
-WATCHED = 64
+WATCHED = 48
 """Validation views of a row."""
 CROPPED_UNTIL, CROPPED = {"cuda": 0.0, "cpu": 0.7}, 0.9
 """Share of the training in which this share of batches is cut to the part around the contact, which

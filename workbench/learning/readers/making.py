@@ -5,8 +5,8 @@ Each part has a share of the time. Finished parts are kept, so that what was sto
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
-import io
 import math
 import multiprocessing
 import time
@@ -17,32 +17,31 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from workbench.core.base.errors import LaneError, SolveError
 from workbench.core.base.monitor import Monitor, part
 from workbench.core.design.design import SensorDesign
 from workbench.learning.dataset.folder import DataSet
-from workbench.learning.dataset.sights import Sight
 from workbench.learning.making.collect import ONE_THREAD, environment, make, prepare
 from workbench.learning.making.watch import SetProgress, Tell
-from workbench.learning.readers.built import JUDGING, built_sights, open_camera, plain_design
+from workbench.learning.readers.built import JUDGING, built_sights, plain_design
 from workbench.learning.readers.presses import press_recipe
 from workbench.learning.readers.showing import BLOCK, Block, Showing, open_worker, show_blocks
 from workbench.learning.readers.states import solved_cases
-from workbench.pipeline.devices import VARIABLE, open_device
+from workbench.pipeline.devices import VARIABLE
 from workbench.project.project import Project
-from workbench.system.whole_files import write_atomically
 
-PRESSES, JUDGED, VIEWS, LOOKS = "presses", "judged", "views", "looks.npz"
+PRESSES, JUDGED, VIEWS = "presses", "judged", "views"
 LOOK_S = 0.5
 """Time between two looks at how many blocks there are [s]."""
 JUDGED_SHARE = 0.15
 """Presses that judge, of those that are learned from."""
 LEAST_JUDGED = 4
-FIRST_CASES = 4
-"""Cases for each process before the pace is known."""
-PRESS_TIME, VIEW_TIME = 0.40, 0.15
+"""Presses that judge, however little time there is."""
+FRAMES = 6
+"""States of a press."""
+JUDGED_TIME = 0.2
+"""Share of the presses' time for those that judge."""
+PRESS_TIME, VIEW_TIME = 0.35, 0.15
 """Shares of the time in which presses and views are made; the rest is for learning."""
 
 
@@ -94,7 +93,6 @@ def make_views(task: Task, project: Project, *, monitor: Monitor) -> None:
         sights,
         lambda stage, fraction, note: monitor(0.7, f"light of built sensors: {note or stage}"),
     )
-    _write_looks(task, project, sights)
     showing = Showing(
         recipe=recipe,
         sights=tuple(sights),
@@ -132,29 +130,29 @@ def blocks_of(amount: Amount) -> list[Block]:
 
 
 def _press(task: Task, design: SensorDesign, project: Project, monitor: Monitor) -> None:
-    """Solve presses as long as there is time: both kinds in proportion."""
-    until = time.monotonic() + 60.0 * PRESS_TIME * task.minutes
-    wanted, cases = task.amount.cases, min(task.amount.cases, FIRST_CASES * task.jobs)
-    pressed = 0
-    while True:
-        begun = time.monotonic()
-        for judged in (True, False):
-            count = max(LEAST_JUDGED, round(JUDGED_SHARE * cases)) if judged else cases
-            recipe = dataclasses.replace(
-                press_recipe(design, judged=judged, seed=task.seed), cases=count
+    """Solve presses as long as there is time: first some that judge, then the others."""
+    judged = max(LEAST_JUDGED, round(JUDGED_SHARE * task.amount.cases))
+    minutes = PRESS_TIME * task.minutes
+    for what, name, count, share in (
+        ("presses that judge", JUDGED, judged, (0.0, JUDGED_TIME)),
+        ("presses", PRESSES, task.amount.cases, (JUDGED_TIME, 1.0)),
+    ):
+        recipe = press_recipe(design, judged=name == JUDGED, seed=task.seed)
+        until = time.monotonic() + 60.0 * minutes * (share[1] - share[0])
+        tell = _teller(part(monitor, *share), what, until, LEAST_JUDGED * FRAMES)
+        with contextlib.suppress(_TimeIsUp):
+            make(
+                dataclasses.replace(recipe, cases=count),
+                task.folder / name,
+                project,
+                jobs=task.jobs,
+                batch=task.batch,
+                tell=tell,
             )
-            folder = task.folder / (JUDGED if judged else PRESSES)
 
-            share = part(monitor, 0.0, min(cases / wanted, 1.0))
-            tell = _teller(share, "presses that judge" if judged else "presses")
-            make(recipe, folder, project, jobs=task.jobs, batch=task.batch, tell=tell)
-        now = time.monotonic()
-        pace_s = (now - begun) / max(cases - pressed, 1)
-        pressed = cases
-        more = min(wanted - cases, int((until - now) / max(pace_s, 1e-3)))
-        if more < 1:
-            return
-        cases += more
+
+class _TimeIsUp(Exception):
+    """No press is begun any more; what is done stays."""
 
 
 def _check_judged(folder: Path) -> None:
@@ -169,29 +167,16 @@ def _check_judged(folder: Path) -> None:
         )
 
 
-def _teller(monitor: Monitor, what: str) -> Tell:
+def _teller(monitor: Monitor, what: str, until: float, least: int) -> Tell:
+    """Tells how far presses are, and ends them once time is up and at least so many states are."""
+
     def tell(progress: SetProgress) -> None:
         note = f"{what}: {progress.done} of {progress.total} states"
-        monitor(progress.done / max(progress.total, 1), note)
+        monitor(min(progress.done / max(progress.total, 1), 1.0), note)
+        if time.monotonic() > until and progress.done >= least:
+            raise _TimeIsUp
 
     return tell
-
-
-def _write_looks(task: Task, project: Project, sights: Sequence[Sight]) -> None:
-    """Photographs at rest, and what is seen, of all built sensors; once."""
-    path = task.folder / LOOKS
-    if path.exists():
-        return
-    open_device()
-    mesh = project.store.load("mesh", sights[0].calls["mesh"].key)
-    cameras = [open_camera(sight, mesh, project.store) for sight in sights]
-    buffer = io.BytesIO()
-    np.savez_compressed(
-        buffer,
-        idle=np.stack([camera.idle for camera in cameras]),
-        sees=np.stack([c.sees.reshape(c.studio.imager.shape) for c in cameras]),
-    )
-    write_atomically(path, buffer.getvalue())
 
 
 def _show(showing: Showing, blocks: Sequence[Block], jobs: int, monitor: Monitor) -> None:

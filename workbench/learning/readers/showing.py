@@ -22,7 +22,7 @@ from workbench.learning.dataset.sights import Sight
 from workbench.learning.readers.built import open_camera
 from workbench.learning.readers.dents import dent_state
 from workbench.learning.readers.states import PressStates, State, solved_cases, untouched
-from workbench.learning.readers.view import View, block_bytes, view_of
+from workbench.learning.readers.view import View, block_bytes, look_bytes, look_name, view_of
 from workbench.pipeline.store import Store
 from workbench.system.whole_files import write_atomically
 
@@ -149,8 +149,16 @@ class _Bench:
     def _camera(self, look: int) -> PressCamera:
         if look not in self._cameras:
             sight = self._showing.sights[look]
-            self._cameras[look] = open_camera(sight, self._mesh, self._store)
+            camera = open_camera(sight, self._mesh, self._store)
+            self._cameras[look] = camera
+            path = self._showing.out / look_name(look)
+            if not path.exists():
+                write_atomically(path, look_bytes(camera.idle, _sees(camera)))
         return self._cameras[look]
+
+
+def _sees(camera: PressCamera) -> np.ndarray:
+    return camera.sees.reshape(camera.studio.imager.shape)
 
 
 def _view(camera: PressCamera, state: State, look: int) -> View:
@@ -159,7 +167,7 @@ def _view(camera: PressCamera, state: State, look: int) -> View:
     shown = camera.show(state.displacement_mm, np.maximum(along_N / skin.shares_mm2, 0.0))
     return view_of(
         shown,
-        (camera.idle, camera.sees.reshape(camera.studio.imager.shape)),
+        (camera.idle, _sees(camera)),
         look=look,
         name=state.name,
         force_N=state.force_N.sum(axis=0) if state.solved else None,

@@ -89,6 +89,23 @@ def view_of(
     )
 
 
+def look_name(look: int) -> str:
+    """File of a built sensor at rest."""
+    return f"look-{look:02d}.npz"
+
+
+def look_bytes(idle: np.ndarray, sees: np.ndarray) -> bytes:
+    """The file of a built sensor at rest.
+
+    Args:
+        idle: Its photograph, shape (H, W, 3), uint8.
+        sees: Pixels that see skin, shape (H, W), bool.
+    """
+    buffer = io.BytesIO()
+    np.savez_compressed(buffer, idle=idle, sees=sees)
+    return buffer.getvalue()
+
+
 def block_bytes(views: Sequence[View]) -> bytes:
     """The file of some views."""
     head = [

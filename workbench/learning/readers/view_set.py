@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import zipfile
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -10,7 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from workbench.learning.readers.making import LOOKS, VIEWS
+from workbench.core.base.errors import StoreError
+from workbench.learning.readers.making import VIEWS
 from workbench.learning.readers.view import View, block_from
 
 if TYPE_CHECKING:
@@ -78,14 +80,33 @@ class ViewSet:
         )
 
 
+def _look(path: Path) -> tuple[np.ndarray, np.ndarray]:
+    try:
+        with np.load(path) as file:
+            return file["idle"], file["sees"]
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
+        raise StoreError(
+            f"the built sensor {path} is damaged: {error}",
+            hint="delete the folder of the training and train again",
+            at=str(path),
+        ) from error
+
+
 def read_views(folder: Path, pattern: str) -> ViewSet:
     """The views of a training whose files have names of a pattern.
 
     Raises:
         StoreError: If a file is damaged.
     """
-    with np.load(folder / LOOKS) as file:
-        idle, sees = file["idle"], file["sees"]
+    looks = sorted((folder / VIEWS).glob("look-*.npz"))
+    numbers = [int(path.stem.split("-")[1]) for path in looks]
+    arrays = [_look(path) for path in looks]
+    count = max(numbers, default=-1) + 1
+    # A sensor that nothing was shown by, as time was up, has no views that would name it.
+    idle = np.zeros((count, *arrays[0][0].shape), np.uint8)
+    sees = np.zeros((count, *arrays[0][1].shape), bool)
+    for number, (rested, seen) in zip(numbers, arrays, strict=True):
+        idle[number], sees[number] = rested, seen
     paths = sorted((folder / VIEWS).glob(pattern))
     with ThreadPoolExecutor(READERS) as threads:
         blocks = list(threads.map(lambda path: block_from(path.read_bytes(), str(path)), paths))
