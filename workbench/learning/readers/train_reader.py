@@ -19,7 +19,7 @@ from sim.reading.network.reader_file import SUFFIX, ReaderFile, reader_bytes
 from sim.reading.network.spec import Scales, spec_for
 from workbench.calibration.stored import stored
 from workbench.core.base.digest import digest
-from workbench.core.base.errors import DesignError
+from workbench.core.base.errors import DesignError, StoreError
 from workbench.core.base.monitor import Monitor, part
 from workbench.core.design.design import SensorDesign
 from workbench.core.press.press_case import PressCase
@@ -176,9 +176,21 @@ def _make(
     device: str,
     monitor: Monitor,
 ) -> None:
-    """Make data unless it was made: what was stopped is gone on with."""
+    """Make data unless it was made: what was stopped is gone on with.
+
+    Raises:
+        StoreError: If the data there is of another design.
+        WorkbenchError: As `train_reader`.
+    """
     marker = folder / MADE
+    key = reader_digest(design)
     if marker.exists():
+        if json.loads(marker.read_bytes()).get("digest") != key:
+            raise StoreError(
+                f"{folder} holds presses of another design, or of this one before it changed",
+                hint="delete the folder, or give another --out",
+                at=str(folder),
+            )
         return
     most = AMOUNTS[device]
     amount = Amount(
@@ -196,7 +208,7 @@ def _make(
         seed=plan.seed,
     )
     make_views(task, project, monitor=monitor)
-    write_atomically(marker, json.dumps({"digest": reader_digest(design)}).encode())
+    write_atomically(marker, json.dumps({"digest": key}).encode())
 
 
 def _scales(design: SensorDesign, learned: ViewSet) -> Scales:
