@@ -109,6 +109,10 @@ def test_only_good_readers_ship() -> None:
     assert "0.90 of the errors" in why
 
 
+def unheard(stage: str, fraction: float, note: str) -> None:
+    """Nobody watches."""
+
+
 @pytest.mark.slow
 def test_a_reader_is_made_from_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Four presses, two views files, one epoch: not good, but whole, and found by its design."""
@@ -121,7 +125,7 @@ def test_a_reader_is_made_from_nothing(tmp_path: Path, monkeypatch: pytest.Monke
     rows: list[dict] = []
     # Views need a moment even where there is hardly any time.
     monkeypatch.setattr(making, "VIEW_TIME", 1e3)
-    done = train_reader.train_reader(design, out, project, plan, tell=rows.append, monitor=silent)
+    done = train_reader.train_reader(design, out, project, plan, tell=rows.append, monitor=unheard)
     assert done.path == out
     assert 0.0 < done.scores["zero_mae_mm"] < 1.3
     assert np.isfinite(done.scores["force_error"])
@@ -131,5 +135,5 @@ def test_a_reader_is_made_from_nothing(tmp_path: Path, monkeypatch: pytest.Monke
     assert reader.rest.sees.mean() > 0.5
     assert np.isfinite(reader.rest.vertex_px).any()
     assert out.with_name("pad-card.json").exists()
-    again = train_reader.train_reader(design, out, project, plan, tell=rows.append, monitor=silent)
+    again = train_reader.train_reader(design, out, project, plan, tell=rows.append, monitor=unheard)
     assert again.scores == done.scores

@@ -76,7 +76,7 @@ def run(options: argparse.Namespace, project: Project) -> int:
             **{name: getattr(options, name) for name in COUNTS},
         ),
         tell=lambda row: _say_row(row, as_json=options.json),
-        monitor=lambda fraction, note="": printer("reader", fraction, note),
+        monitor=printer,
     )
     if options.json:
         say(json.dumps({"reader": str(done.path), "scores": done.scores}))

@@ -48,14 +48,13 @@ def main(words: Sequence[str]) -> int:
     folder, minutes = Path(words[0]), float(words[1]) if len(words) > 1 else MINUTES
     project, bad = Project(folder / "project"), 0
     for name in words[2:] or MEMBRANES:
-        printer = Progress(as_json=False)
         done = train_reader(
             load_design(name),
             folder / f"{name}{SUFFIX}",
             project,
             ReaderPlan(size=SIZE, minutes=minutes, jobs=cores()),
             tell=lambda row: complain(str(row)),
-            monitor=lambda fraction, note="", p=printer: p("reader", fraction, note),
+            monitor=Progress(as_json=False),
         )
         lacking = shortcomings(done.scores)
         say(f"{name}: {done.scores}")

@@ -31,6 +31,7 @@ from workbench.learning.readers.reader_card import card_of, write_beside
 from workbench.learning.readers.scoring import honest, judged, scores
 from workbench.learning.readers.view_set import ViewSet, read_views
 from workbench.pipeline.devices import torch_device
+from workbench.planning.plan import StageMonitor, stage_monitor
 from workbench.project.project import Project
 from workbench.reading.reader_digest import reader_digest
 from workbench.system.whole_files import write_atomically
@@ -45,8 +46,6 @@ LEAST_LEARNING = 0.3
 MADE = "made.json"
 JUDGED_VIEWS = 512
 """Views of each built sensor that judges, at most."""
-MAKING = 0.5
-"""Share of the progress that is told for making data."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -87,7 +86,7 @@ def train_reader(
     plan: ReaderPlan,
     *,
     tell: Callable[[Row], None],
-    monitor: Monitor,
+    monitor: StageMonitor,
 ) -> TrainedReader:
     """Train a reader, or go on with a training.
 
@@ -97,7 +96,7 @@ def train_reader(
         project: Its store has, or gets, mesh and light.
         plan: How long, how large.
         tell: Told each row of the curves.
-        monitor: Progress and cancellation.
+        monitor: Progress of `data` and of `learn`, and cancellation.
 
     Raises:
         DesignError: If the design's seen skin is not the one that is touched.
@@ -107,18 +106,19 @@ def train_reader(
     from sim.reading.network.unet import folded_state
 
     begun = time.monotonic()
+    making, learning = (stage_monitor(monitor, stage) for stage in ("data", "learn"))
     device = torch_device()
     folder = training_folder(out)
     spec = spec_for(plan.size or ("full" if device == "cuda" else "small"), *_camera_px(design))
     with held(folder, doing="training in"):
-        mesh = stored(design, PressCase(), "mesh", project.store, part(monitor, 0.0, 0.01))
+        mesh = stored(design, PressCase(), "mesh", project.store, part(making, 0.0, 0.01))
         if mesh.seen is not mesh.outer:
             raise DesignError(
                 "the camera of this design sees the inner skin, not the one that is touched",
                 hint="learned readers are for designs without pins: use --reader table",
                 at="family",
             )
-        _make(design, folder, project, plan, device=device, monitor=part(monitor, 0.01, MAKING))
+        _make(design, folder, project, plan, device=device, monitor=part(making, 0.01, 1.0))
         learned, validation = read_views(folder, "learned-*"), read_views(folder, "judged-0-*")
         scales = _scales(design, learned)
         spent = time.monotonic() - begun
@@ -133,13 +133,13 @@ def train_reader(
             device=device,
             key=digest((reader_digest(design), spec, plan.seed, len(learned))),
         )
-        network, rows = learn(lesson, folder, _teller(tell, part(monitor, MAKING, 0.97)))
-        monitor(0.97, "how far its deviations may be trusted")
+        network, rows = learn(lesson, folder, _teller(tell, part(learning, 0.0, 0.97)))
+        learning(0.97, "how far its deviations may be trusted")
         checked = scores(judged(network, validation, scales, device, most=JUDGED_VIEWS))
         scales = honest(scales, checked)
         testing = read_views(folder, "judged-1-*")
         tested = scores(judged(network, testing, scales, device, most=JUDGED_VIEWS))
-        monitor(0.99, "its file")
+        learning(0.99, "its file")
         card = card_of(learned, folder, rows, device=device, seed=plan.seed)
         card["scores"] = {"validation": checked, "test": tested}
         reader = ReaderFile(
