@@ -111,7 +111,8 @@ class LearnedReader:
             self._idle, in_size([photo], self._spec.columns, self._spec.rows)
         )
         normal = _wide(self._normals + told.turn[0], self._camera)
-        normal /= np.maximum(np.linalg.norm(normal, axis=2, keepdims=True), 1e-6)
+        normal /= np.sqrt(np.maximum(np.einsum("hwc,hwc->hw", normal, normal), 1e-12))[:, :, None]
+        normal[~self._seen] = np.nan
         sigma_mm = told.sigma_mm[0]
         surface_mm = self._at_vertices(told.surface_mm[0])
         surface_sigma_mm = self._at_vertices(sigma_mm)
@@ -123,7 +124,7 @@ class LearnedReader:
             photo=name,
             maps=PixelMaps(
                 depth_mm=self._shown(told.depth_mm[0]),
-                normal=np.where(self._seen[:, :, None], normal, np.nan).astype(np.float32),
+                normal=normal,
                 contact=self._seen & (_wide(told.contact[0], self._camera) > 0.5),
                 sigma_mm=self._shown(sigma_mm),
             ),
@@ -141,7 +142,9 @@ class LearnedReader:
 
     def _shown(self, values: np.ndarray) -> np.ndarray:
         """A map in the camera's size, NaN where no skin is seen, (H, W), float32."""
-        return np.where(self._seen, _wide(values, self._camera), np.nan).astype(np.float32)
+        found = _wide(values, self._camera)
+        found[~self._seen] = np.nan
+        return found
 
     def _at_vertices(self, values: np.ndarray) -> np.ndarray:
         """A map at the vertices, where the camera sees them at rest, shape (V,); NaN elsewhere."""
