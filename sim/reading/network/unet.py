@@ -77,7 +77,8 @@ class UNet(nn.Module):
                 x = functional.max_pool2d(x, 2)
             x = block(x)
             kept.append(x)
-        shares = self.shares(x)
+        # Sums in full precision, whatever convolutions compute in.
+        shares = self.shares(x).float()
         force = shares[:, :3].sum(dim=(2, 3))
         variance = functional.softplus(shares[:, 3:]).sum(dim=(2, 3)) + LEAST_VARIANCE
         for number in range(len(self.up) - 1, -1, -1):

@@ -119,7 +119,7 @@ def train_reader(
                 at="family",
             )
         _make(design, folder, project, plan, device=device, monitor=part(making, 0.01, 1.0))
-        learned, validation = read_views(folder, "learned-*"), read_views(folder, "judged-0-*")
+        learned, validation, testing = _views(folder)
         scales = _scales(design, learned)
         spent = time.monotonic() - begun
         lesson = Lesson(
@@ -137,7 +137,6 @@ def train_reader(
         learning(0.97, "how far its deviations may be trusted")
         checked = scores(judged(network, validation, scales, device, most=JUDGED_VIEWS))
         scales = honest(scales, checked)
-        testing = read_views(folder, "judged-1-*")
         tested = scores(judged(network, testing, scales, device, most=JUDGED_VIEWS))
         learning(0.99, "its file")
         card = card_of(learned, folder, rows, device=device, seed=plan.seed)
@@ -209,6 +208,25 @@ def _make(
     )
     make_views(task, project, monitor=monitor)
     write_atomically(marker, json.dumps({"digest": key}).encode())
+
+
+def _views(folder: Path) -> tuple[ViewSet, ViewSet, ViewSet]:
+    """Views that are learned from, that validate and that test.
+
+    Raises:
+        StoreError: If a file is damaged.
+        DesignError: If time was up before there were any of a kind.
+    """
+    found = [read_views(folder, f"{name}-*") for name in ("learned", "judged-0", "judged-1")]
+    if not all(len(views) for views in found):
+        (folder / MADE).unlink(missing_ok=True)
+        raise DesignError(
+            "time was up before there were views to learn from and to judge by",
+            hint="run the same command with more --minutes: what is made is kept",
+            at="--minutes",
+        )
+    learned, validation, testing = found
+    return learned, validation, testing
 
 
 def _scales(design: SensorDesign, learned: ViewSet) -> Scales:

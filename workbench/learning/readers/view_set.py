@@ -101,7 +101,11 @@ def read_views(folder: Path, pattern: str) -> ViewSet:
     looks = sorted((folder / VIEWS).glob("look-*.npz"))
     numbers = [int(path.stem.split("-")[1]) for path in looks]
     arrays = [_look(path) for path in looks]
-    count = max(numbers, default=-1) + 1
+    if not looks:
+        return ViewSet(
+            views=[], idle=np.zeros((0, 0, 0, 3), np.uint8), sees=np.zeros((0, 0, 0), bool)
+        )
+    count = max(numbers) + 1
     # A sensor that nothing was shown by, as time was up, has no views that would name it.
     idle = np.zeros((count, *arrays[0][0].shape), np.uint8)
     sees = np.zeros((count, *arrays[0][1].shape), bool)
