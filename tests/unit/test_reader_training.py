@@ -15,7 +15,7 @@ from workbench.core.base.monitor import silent
 from workbench.core.design.design import SensorDesign
 from workbench.core.result.results import Skin
 from workbench.learning.dataset.cases import cases_of
-from workbench.learning.readers import making, train_reader
+from workbench.learning.readers import making, presses, train_reader
 from workbench.learning.readers.built import plain_design
 from workbench.learning.readers.presses import press_recipe
 from workbench.learning.readers.shipped_readers import shortcomings
@@ -115,8 +115,11 @@ def unheard(stage: str, fraction: float, note: str) -> None:
 
 @pytest.mark.slow
 def test_a_reader_is_made_from_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Four presses, two views files, one epoch: not good, but whole, and found by its design."""
-    monkeypatch.setattr(making, "LEAST_JUDGED", 2)
+    """Five presses, three files of views, one epoch: not good, but whole, and found again."""
+    for name, value in (("CLASSES", ["sphere"]), ("SIZE_MM", (4.0, 6.0)), ("DEPTH_MM", 0.3)):
+        monkeypatch.setattr(presses, name, value)
+    monkeypatch.setattr(presses, "STEPS", 1)
+    monkeypatch.setattr(making, "LEAST_JUDGED", 3)
     monkeypatch.setitem(SIZES, "small", (8, 8, 12, 12))
     monkeypatch.setenv("WORKBENCH_DEVICE", "cpu")
     design, project = small(), Project(tmp_path / "p")

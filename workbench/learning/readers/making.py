@@ -35,7 +35,7 @@ LOOK_S = 0.5
 """Time between two looks at how many blocks there are [s]."""
 JUDGED_SHARE = 0.15
 """Presses that judge, of those that are learned from."""
-LEAST_JUDGED = 4
+LEAST_JUDGED = 6
 """Presses that judge, however little time there is."""
 FRAMES = 6
 """States of a press."""
