@@ -17,10 +17,10 @@ from sim.optics.studio.render import Studio
 from sim.reading.rest_skin import RestSkin, normals_of, open_rest_skin
 from sim.reading.sight import Sight, at_rest, latest
 
-MOVED_MM = 2e-3
-"""Displacement below which a vertex rests: some tenth of a grey level."""
-TURNED = 3e-3
-"""Change of a normal below which it is at rest: a fifth of a degree."""
+MOVED_MM = 5e-3
+"""Displacement below which a vertex rests: a tenth of what counts as touched."""
+TURNED = 5e-3
+"""Change of a normal below which it is at rest: a third of a degree."""
 AROUND = 4
 """Displaced vertices from which the surface over a place at rest is interpolated."""
 NEAR_MM = 1e-3

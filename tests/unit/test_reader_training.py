@@ -124,10 +124,8 @@ def test_a_reader_is_made_from_nothing(tmp_path: Path, monkeypatch: pytest.Monke
     monkeypatch.setenv("WORKBENCH_DEVICE", "cpu")
     design, project = small(), Project(tmp_path / "p")
     out = reader_path(design, project)
-    plan = ReaderPlan(minutes=0.1, epochs=1, presses=2, views=32, looks=1)
+    plan = ReaderPlan(minutes=60.0, epochs=1, presses=2, views=32, looks=1)
     rows: list[dict] = []
-    # Views need a moment even where there is hardly any time.
-    monkeypatch.setattr(making, "VIEW_TIME", 1e3)
     done = train_reader.train_reader(design, out, project, plan, tell=rows.append, monitor=unheard)
     assert done.path == out
     assert 0.0 < done.scores["zero_mae_mm"] < 1.3
