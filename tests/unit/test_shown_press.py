@@ -1,6 +1,6 @@
 """What a camera shows of a known displacement: depths of surfaces, whatever way their points went.
 
-The skin is a ball of 15 mm radius, whose vertices the true depth of any displaced place is known of.
+The skin is a ball of 15 mm radius: the true depth of any displaced place is known.
 """
 
 from __future__ import annotations
