@@ -11,12 +11,13 @@ import pytest
 import torch
 
 from sim.reading.network.augment import NONE, Disturbance, disturbed
-from sim.reading.network.crops import cut_to_contact
+from sim.reading.network.crops import cut_to_contact, wider
 from sim.reading.network.given import given
 from sim.reading.network.loss import Wanted, loss
 from sim.reading.network.predictor import Predictor, in_size
 from sim.reading.network.reader_file import reader_bytes, reader_from_bytes
 from sim.reading.network.rest_view import RestView
+from sim.reading.network.shifts import SHIFT_PX, shifted
 from sim.reading.network.spec import (
     DEPTH,
     INPUTS,
@@ -217,3 +218,37 @@ def test_a_window_holds_what_changed_or_forgets_the_force() -> None:
         assert torch.equal(parts[:, 0], truth.depth_mm)
         assert int((truth.depth_mm[0] > 0).sum()) == 400
         assert truth.solved.tolist() == [1.0, 0.0]
+
+
+def test_a_shift_moves_photographs_and_truth_alike() -> None:
+    """A photograph that is its depth stays so but for its edges, and moves by some pixels."""
+    depth = torch.zeros(4, 60, 80)
+    depth[:, 20:40, 30:55] = 0.5
+    wanted = Wanted(
+        depth_mm=depth,
+        surface_mm=depth,
+        turn=depth[:, None].repeat(1, 3, 1, 1),
+        pressure_MPa=depth,
+        force_N=torch.ones(4, 3),
+        solved=torch.ones(4),
+    )
+    photos = 200.0 * depth[:, None].repeat(1, 3, 1, 1)
+    generator = torch.Generator().manual_seed(2)
+    idle, moved, truth = shifted(torch.full_like(photos, 7.0), photos, wanted, generator)
+    assert torch.allclose(idle, torch.tensor(7.0))
+    inside = torch.isfinite(truth.depth_mm)
+    assert 0.8 < float(inside.float().mean()) < 1.0
+    off = (moved[:, 0] / 200.0 - truth.depth_mm)[inside].abs()
+    # Only pixels on the edge of the patch are blended.
+    assert float((off > 0.01).float().mean()) < 0.04
+    assert torch.equal(truth.surface_mm[inside], truth.depth_mm[inside])
+    middles = [
+        torch.nonzero(torch.nan_to_num(each) > 0.25).float().mean(dim=0) for each in truth.depth_mm
+    ]
+    ways = torch.stack(middles) - torch.tensor([29.5, 42.0])
+    assert 0.5 < float(ways.abs().max()) < SHIFT_PX + 1.0
+
+
+def test_a_wider_box_stays_in_the_image() -> None:
+    """At its upper and left edges; windows clip the others."""
+    assert wider((1, 9, 20, 30), 3) == (0, 12, 17, 33)

@@ -35,7 +35,8 @@ def cut_to_contact(
     columns = min(window[1], enters.shape[3] // STEP * STEP)
     truth_rows, truth_columns = wanted.depth_mm.shape[1:]
     places = []
-    for top, bottom, left, right in boxes:
+    for top, low, left, far in boxes:
+        bottom, right = min(low, truth_rows), min(far, truth_columns)
         row = _begin(top, bottom, rows, min(enters.shape[2], truth_rows), rng)
         column = _begin(left, right, columns, min(enters.shape[3], truth_columns), rng)
         whole = row <= top and bottom <= row + rows and column <= left and right <= column + columns
@@ -57,6 +58,12 @@ def cut_to_contact(
         force_N=wanted.force_N,
         solved=wanted.solved * torch.tensor(solved, device=wanted.solved.device),
     )
+
+
+def wider(box: Box, by_px: int) -> Box:
+    """A box with a margin; at the image's upper and left edges none."""
+    top, bottom, left, right = box
+    return max(top - by_px, 0), bottom + by_px, max(left - by_px, 0), right + by_px
 
 
 def _begin(first: int, last: int, size: int, of: int, rng: np.random.Generator) -> int:

@@ -200,19 +200,21 @@ def _step(
     import torch
 
     from sim.reading.network.augment import Disturbance, disturbed
-    from sim.reading.network.crops import cut_to_contact
+    from sim.reading.network.crops import cut_to_contact, wider
     from sim.reading.network.given import given
     from sim.reading.network.loss import loss
+    from sim.reading.network.shifts import SHIFT_PX, shifted
 
     idle, photos, wanted = batch[1]
     rng = np.random.default_rng((lesson.seed, course.views))
     with torch.no_grad():
+        idle, photos, wanted = shifted(idle, photos, wanted, generator)
         idle, photos = disturbed(idle, photos, Disturbance(), generator)
         enters = given(idle, photos)
         height = photos.shape[2]
         if done < CROPPED_UNTIL[lesson.device] and rng.random() < CROPPED:
-            views = [lesson.learned.views[number] for number in batch[0]]
-            enters, wanted = cut_to_contact(enters, wanted, [v.box for v in views], WINDOW, rng)
+            boxes = [wider(lesson.learned.views[n].box, round(SHIFT_PX)) for n in batch[0]]
+            enters, wanted = cut_to_contact(enters, wanted, boxes, WINDOW, rng)
             height = wanted.depth_mm.shape[1]
         enters = enters.contiguous(memory_format=torch.channels_last)
     half = torch.autocast("cuda", torch.bfloat16, enabled=lesson.device == "cuda")
