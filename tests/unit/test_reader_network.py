@@ -121,8 +121,8 @@ def test_the_loss_is_least_at_the_truth_and_knows_no_force_of_dents() -> None:
     good, bad = (loss(maps, force, wanted, scales) for maps in (right, nothing))
     assert float(good["depth"]) == 0.0
     assert float(good["surface"]) == 0.0
-    # Moved pixels weigh 8 of 8 x 8 - 8 / 2 seen ones: .6 x 9 x 8 / (60 + 9 x 7).
-    assert float(bad["depth"]) == pytest.approx(0.6 * 9 * 8 / (60 + 9 * 7))
+    # Nine moved pixels of sixty seen ones weigh 20 each: .6 x 9 x 20 / (60 + 9 x 19).
+    assert float(bad["depth"]) == pytest.approx(0.6 * 9 * 20 / (60 + 9 * 19))
     assert float(good["force"]) == 0.0
     known = dataclasses.replace(wanted, solved=torch.ones(2))
     assert float(loss(right, force, known, scales)["force"]) > 0.0

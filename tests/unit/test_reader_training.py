@@ -138,3 +138,12 @@ def test_a_reader_is_made_from_nothing(tmp_path: Path, monkeypatch: pytest.Monke
     assert out.with_name("pad-card.json").exists()
     again = train_reader.train_reader(design, out, project, plan, tell=rows.append, monitor=unheard)
     assert again.scores == done.scores
+
+
+def test_a_training_that_goes_on_tells_its_share_of_this_run() -> None:
+    """From none to all, though half of it was over before."""
+    shares: list[float] = []
+    told = train_reader._teller(lambda row: None, lambda fraction, note="": shares.append(fraction))
+    for share in (0.5, 0.75, 1.0):
+        told(share, None)
+    assert shares == pytest.approx([0.0, 0.5, 1.0])

@@ -28,7 +28,7 @@ from sim.reading.network.spec import (
 )
 from sim.reading.pixel_maps import TOUCHED_MM
 
-MOVED_WEIGHT = 8.0
+MOVED_WEIGHT = 20.0
 """Of pixels whose skin moved, over others, which are many more."""
 TURN_WEIGHT, TOUCH_WEIGHT, PRESSURE_WEIGHT = 0.5, 0.05, 0.2
 VARIANCE_WEIGHT, FORCE_WEIGHT = 0.01, 0.1

@@ -36,7 +36,7 @@ ROUND_S = {"cuda": 15.0, "cpu": 120.0}
 """Time between two rows of the curves, each with a checkpoint."""
 WATCHED = 48
 """Validation views of a row."""
-CROPPED_UNTIL, CROPPED = {"cuda": 0.0, "cpu": 0.7}, 0.9
+CROPPED_UNTIL, CROPPED = {"cuda": 0.0, "cpu": 0.95}, 0.9
 """Share of the training in which this share of batches is cut to the part around the contact, which
 takes a quarter of the time; the rest sees whole images."""
 WINDOW = (128, 160)

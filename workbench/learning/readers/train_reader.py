@@ -237,8 +237,13 @@ def _scales(design: SensorDesign, learned: ViewSet) -> Scales:
 
 
 def _teller(tell: Callable[[Row], None], monitor: Monitor) -> Callable[[float, Row | None], None]:
+    first: float | None = None
+
     def told(share: float, row: Row | None) -> None:
-        monitor(min(share, 1.0), "learning")
+        nonlocal first
+        # Of a training that goes on, time left is told by the pace of this run.
+        first = min(share, 0.999) if first is None else first
+        monitor(min((share - first) / (1.0 - first), 1.0), "learning")
         if row is not None:
             tell(row)
 
