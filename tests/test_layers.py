@@ -33,13 +33,13 @@ RANKS = """
     sim.optics  sim.optics.camera  sim.optics.light  sim.optics.transport  sim.optics.field
     sim.optics.field.models  sim.optics.raster  sim.optics.studio
     sim.optics.maps  sim.optics.maps.kinds  sim.optics.proof
-    sim.reading
+    sim.reading  sim.reading.network
 
     workbench.view  workbench.pipeline  workbench.pipeline.stages  workbench.planning
     workbench.project  workbench.edit  workbench.live  workbench.report  workbench.report.exports
     workbench.variants  workbench.calibration  workbench.photographs  workbench.reading
     workbench.learning  workbench.learning.dataset  workbench.learning.making
-    workbench.learning.training  workbench.twin
+    workbench.learning.training  workbench.learning.readers  workbench.twin
     workbench.proof  workbench.proof.validation  workbench.proof.validation.geometry
     workbench.proof.validation.optics  workbench.proof.validation.contact
     workbench.proof.validation.fem  workbench.proof.benchmarks

@@ -2,37 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from sim.reading.pixel_maps import PixelMaps, pressed
 from sim.reading.reader import Reader, Touch
 from sim.reading.rest_skin import normals_of
-
-TOUCHED_MM = 0.05
-"""Least inward displacement that counts as contact."""
-SURE = 2.0
-"""And the least number of its standard deviations."""
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class PixelMaps:
-    """Of an image of H x W pixels; NaN where no skin is seen."""
-
-    depth_mm: np.ndarray
-    """Inward displacement of the skin that a pixel sees, shape (H, W), float32."""
-    normal: np.ndarray
-    """Its unit normals into the sensor, shape (H, W, 3), float32."""
-    contact: np.ndarray
-    """Whether it is pressed in, shape (H, W), bool."""
-    sigma_mm: np.ndarray
-    """Standard deviation of the depth, shape (H, W), float32."""
 
 
 def touched(touch: Touch) -> np.ndarray:
     """Vertices that are surely pressed in, shape (V,), bool."""
-    sigma_mm = np.nan_to_num(touch.sigma_mm, nan=np.inf)
-    return (touch.inward_mm > TOUCHED_MM) & (touch.inward_mm > SURE * sigma_mm)
+    return pressed(touch.inward_mm, touch.sigma_mm)
 
 
 def seen_by_pixels(reader: Reader, touch: Touch, values: np.ndarray) -> np.ndarray:

@@ -51,6 +51,17 @@ def moved(studio: Studio, rest: Sight, displacement_mm: np.ndarray) -> Sight:
         displacement_mm: Of the vertices of the seen skin.
     """
     light = studio.linear(displacement_mm[None].astype(np.float32))[0].reshape(-1, 3)
+    return latest(studio, rest, light)
+
+
+def latest(studio: Studio, rest: Sight, light: np.ndarray) -> Sight:
+    """The skin as the studio drew it last.
+
+    Args:
+        studio: The camera and its light.
+        rest: What it sees at rest.
+        light: Radiance of the pixels then, shape (N, 3).
+    """
     raster = studio.imager.raster
     found = raster.seen.triangle.to_numpy()[: raster.pixels]
     changed = np.flatnonzero(found != SAME)

@@ -61,7 +61,7 @@ def open_reader(
     """
     camera = design.optics.camera
     expect_size("the idle photo", idle, camera)
-    design = _looked_up(design)
+    design = looked_up(design)
     mesh = stored(design, PressCase(), "mesh", store, part(monitor, 0.0, 0.3))
     studio = lit_studio(design, mesh, store, part(monitor, 0.3, 0.7), "light of the sensor")
     from sim.optics.studio.unit_residual import read_unit
@@ -120,7 +120,7 @@ def expect_light(name: str, photo: np.ndarray, sees: np.ndarray) -> None:
         )
 
 
-def _looked_up(design: SensorDesign) -> SensorDesign:
+def looked_up(design: SensorDesign) -> SensorDesign:
     """The design in the best light that can be asked for any tilt: photons are counted in one pose,
     and models without a table know less of it."""
     if model_of(design.optics.light_model).tabulated:

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from workbench.reading.learned_reader import LearnedReading
 from workbench.reading.read_photo import Reading
 from workbench.report.image_files import png_bytes
 from workbench.system.whole_files import write_atomically
@@ -31,19 +32,21 @@ def names_of(photos: Sequence[Path]) -> list[str]:
     return found
 
 
-def write_reading(out: Path, name: str, reading: Reading) -> None:
+def write_reading(out: Path, name: str, reading: Reading | LearnedReading) -> None:
     """Write `NAME.npz` and `NAME_depth.png`."""
     buffer, maps = io.BytesIO(), reading.maps
+    more: dict[str, Any] = reading.more
     np.savez_compressed(
         buffer,
         depth_mm=maps.depth_mm,
         normal=maps.normal,
         contact=maps.contact,
         sigma_mm=maps.sigma_mm,
-        surface_displacement_mm=reading.touch.inward_mm.astype(np.float32),
-        surface_sigma_mm=reading.touch.sigma_mm.astype(np.float32),
+        surface_displacement_mm=reading.surface_mm.astype(np.float32),
+        surface_sigma_mm=reading.surface_sigma_mm.astype(np.float32),
         force_N=reading.force_N,
         force_sigma_N=np.float64(reading.force_sigma_N),
+        **more,
     )
     write_atomically(out / f"{name}.npz", buffer.getvalue())
     top_mm = max(LEAST_SCALE_MM, float(np.nanmax(maps.depth_mm, initial=0.0)))

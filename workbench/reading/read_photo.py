@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from sim.reading.pixel_maps import PixelMaps
 from workbench.reading.design_reader import DesignReader, expect_light, expect_size
 
 if TYPE_CHECKING:
     # They need the device that reading opens.
     from sim.reading.ball_model import FittedBall
     from sim.reading.layer_law import Layer
-    from sim.reading.maps import PixelMaps
     from sim.reading.reader import Touch
 
 UNKNOWN = np.full(3, np.nan)
@@ -38,15 +38,30 @@ class Reading:
     """The ball whose image fits the photograph, where one was asked for."""
 
     @property
+    def surface_mm(self) -> np.ndarray:
+        """Inward displacement of the vertices of the seen skin, shape (V,)."""
+        return self.touch.inward_mm
+
+    @property
+    def surface_sigma_mm(self) -> np.ndarray:
+        """Its standard deviation, shape (V,)."""
+        return self.touch.sigma_mm
+
+    @property
+    def more(self) -> dict[str, np.ndarray]:
+        """Further arrays of its file: none."""
+        return {}
+
+    @property
     def figures(self) -> dict[str, Any]:
         """What `reading.json` says of it; null where nothing is known."""
         return {
             "photo": self.photo,
             "peak_depth_mm": float(self.touch.inward_mm.max(initial=0.0)),
             "contact_area_mm2": self.contact_area_mm2,
-            "ball_radius_mm": _known(self.ball_radius_mm),
-            "force_N": [_known(value) for value in self.force_N.tolist()],
-            "force_sigma_N": _known(self.force_sigma_N),
+            "ball_radius_mm": known(self.ball_radius_mm),
+            "force_N": [known(value) for value in self.force_N.tolist()],
+            "force_sigma_N": known(self.force_sigma_N),
             "noise_grey": self.touch.noise_grey,
             "misfit": self.touch.misfit,
             "seconds": self.touch.seconds,
@@ -145,5 +160,6 @@ def _told(ball: FittedBall) -> dict[str, Any]:
     }
 
 
-def _known(value: float) -> float | None:
+def known(value: float) -> float | None:
+    """A number as a table holds it; None where it is not finite."""
     return value if np.isfinite(value) else None

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from workbench.reading.design_reader import DesignReader
+from workbench.reading.learned_reader import LearnedReading
 from workbench.reading.read_photo import Reading
 from workbench.twin.truth import Truth
 
@@ -27,6 +28,8 @@ MOVED_MM = 0.05
 """True depth from which skin counts as moved; `sim.reading.maps` calls so much contact."""
 READABLE_DEG = 3.0
 """Standard deviation of a tilt, by one pixel, up to which skin counts as readable."""
+PLAIN_NOISE_GREY = 1.0
+"""Noise by which skin counts as readable where a reading tells none."""
 REST_MM = 2e-3
 """Skin that moved less is held when known normals are integrated."""
 
@@ -79,13 +82,13 @@ class Scorer:
         self.opened = opened
         self._signal: np.ndarray | None = None
 
-    def score(self, reading: Reading, truth: Truth) -> ReadingScore:
+    def score(self, reading: Reading | LearnedReading, truth: Truth) -> ReadingScore:
         """Compare a reading with what its photograph shows."""
         from sim.reading.maps import touched
         from sim.reading.rest_skin import normals_of
         from sim.reading.true_surface import KnownSkin, integrated_mm, surface_over
 
-        reader, touch = self.opened.reader, reading.touch
+        reader, touch = self.opened.reader, self._touch(reading)
         skin = reader.rest.skin
         true = surface_over(
             skin,
@@ -119,6 +122,22 @@ class Scorer:
             force_N=true_N,
             force_read_N=float(np.linalg.norm(reading.force_N)),
             force_error=float(np.linalg.norm(reading.force_N - truth.force_N)) / max(true_N, 1e-9),
+        )
+
+    def _touch(self, reading: Reading | LearnedReading) -> Touch:
+        """A reading as a touch; a network says nothing of noise, and sees the skin at rest."""
+        from sim.reading.reader import Touch
+
+        if isinstance(reading, Reading):
+            return reading.touch
+        return Touch(
+            inward_mm=reading.surface_mm,
+            sigma_mm=reading.surface_sigma_mm,
+            misfit=float("nan"),
+            noise_grey=PLAIN_NOISE_GREY,
+            steps=0,
+            seconds=reading.seconds,
+            sight=self.opened.reader.rest.sight,
         )
 
     def _seen(self, touch: Touch) -> np.ndarray:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,13 +18,17 @@ from workbench.project.project import Project
 from workbench.system.terminal import Progress, complain, say
 
 if TYPE_CHECKING:
-    # It needs a device, which other commands need not wait for.
-    from workbench.reading.design_reader import DesignReader
+    # They need a device or PyTorch, which other commands need not wait for.
+    from workbench.core.base.monitor import Monitor
+    from workbench.core.design.design import SensorDesign
+    from workbench.reading.learned_reader import LearnedReading
     from workbench.reading.read_photo import Reading
-    from workbench.twin.scoring import ReadingScore
-    from workbench.twin.truth import Truth
+    from workbench.twin.scored_readings import ScoredReadings
 
-READERS = ("table",)
+LEARNED = "learned"
+READERS = ("table", LEARNED)
+Read = Callable[[str, np.ndarray], "Reading | LearnedReading"]
+"""Name of a photograph, and its grey levels, to what it says."""
 
 
 def options(sub: argparse.ArgumentParser) -> None:
@@ -34,8 +39,10 @@ def options(sub: argparse.ArgumentParser) -> None:
     text = "photograph of the untouched sensor, by the same camera in the same light"
     sub.add_argument("--idle", required=True, type=Path, metavar="PHOTO", help=text)
     sub.add_argument("--out", required=True, type=Path, metavar="DIR", help=OUT)
-    text = "table: the design's own light, without training (default: table)"
+    text = "table: the design's own light, without training; learned: a network (default: table)"
     sub.add_argument("--reader", choices=READERS, default=READERS[0], help=text)
+    text = "file of `reader train` (default: the project's for this design, or one that ships)"
+    sub.add_argument("--weights", type=Path, metavar="FILE", help=text)
     text = "each photo follows the one before at once: begin where that one ended"
     sub.add_argument("--video", action="store_true", help=text)
     text = "fit a ball to each photo as a model of its image: place, radius, depth; seconds more"
@@ -49,45 +56,36 @@ def options(sub: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace, project: Project) -> int:
     """Read touch from photographs of the sensor built from a design."""
     from workbench.edit.typed_fields import with_typed
-    from workbench.pipeline.devices import open_device
     from workbench.project.named_designs import load_design
-    from workbench.reading.design_reader import open_reader
     from workbench.reading.outputs import TABLE, names_of, write_reading, write_table
-    from workbench.reading.read_photo import read_photo, with_ball
     from workbench.system.folder import prepare
 
+    if options.weights is not None and options.reader != LEARNED:
+        raise DesignError(
+            "--weights are for the learned reader", hint="add --reader learned", at="--weights"
+        )
+    if options.ball and options.reader == LEARNED:
+        raise DesignError(
+            "--ball is for the reader by the design's light", hint="add --reader table", at="--ball"
+        )
     design = with_typed(load_design(options.design, project=project), options.set)
     idle = _photo(options.idle)
     photos = [_photo(path) for path in options.photos]
-    truths = _truths(options.truth, options.photos)
+    scored = _scored(options, design, idle, project)
     prepare(options.out, clear=(TABLE,))
     project.sweep()
-    open_device()
     printer = Progress(as_json=options.json)
-    opened = open_reader(
-        design,
-        idle,
-        project.store,
-        monitor=lambda fraction, note="": printer("read", 0.5 * fraction, note),
-    )
-    if not opened.tells_force:
-        complain(
-            "notice: the wall of this design rests on gel or air, or has pins: no force is told"
-        )
+    opened = _OPENED[options.reader](design, idle, options, project, printer)
     # Of a long video only figures are kept, and what the next image begins with.
-    rows, lines, before = [], [], None
-    scored = _Scored(opened, truths)
+    rows, lines = [], []
     for number, (name, path, photo) in enumerate(
         zip(names_of(options.photos), options.photos, photos, strict=True)
     ):
         printer("read", 0.5 + 0.5 * number / len(photos), path.name)
-        found = read_photo(opened, path.name, photo, before)
-        if options.ball:
-            found = with_ball(opened, found, photo)
+        found = opened(path.name, photo)
         write_reading(options.out, name, found)
-        rows.append(found.figures | scored.figures(found, path))
+        rows.append(found.figures | scored.figures(found, path.stem))
         lines.append(_line(found))
-        before = found.touch if options.video else None
     write_table(options.out, rows)
     if options.json:
         say(json.dumps(rows, allow_nan=False))
@@ -98,56 +96,84 @@ def run(options: argparse.Namespace, project: Project) -> int:
     return 0
 
 
-class _Scored:
-    """Readings beside what is known of them."""
+def _opened_table(
+    design: SensorDesign,
+    idle: np.ndarray,
+    options: argparse.Namespace,
+    project: Project,
+    printer: Progress,
+) -> Read:
+    """The reader by the design's light; of a video it begins where the photo before ended."""
+    from workbench.pipeline.devices import open_device
+    from workbench.reading.design_reader import open_reader
+    from workbench.reading.read_photo import read_photo, with_ball
 
-    def __init__(self, opened: DesignReader, truths: dict[Path, Truth]) -> None:
-        from workbench.twin.scoring import Scorer
+    open_device()
+    opened = open_reader(design, idle, project.store, monitor=_half(printer))
+    if not opened.tells_force:
+        complain(
+            "notice: the wall of this design rests on gel or air, or has pins: no force is told"
+        )
+    before = None
 
-        self._scorer, self._truths = Scorer(opened), truths
-        self._scores: list[ReadingScore] = []
+    def read(name: str, photo: np.ndarray) -> Reading:
+        nonlocal before
+        found = read_photo(opened, name, photo, before)
+        before = found.touch if options.video else None
+        return with_ball(opened, found, photo) if options.ball else found
 
-    def figures(self, reading: Reading, path: Path) -> dict[str, Any]:
-        """The score of a reading as `reading.json` holds it; empty where nothing is known."""
-        if path not in self._truths:
-            return {}
-        self._scores.append(self._scorer.score(reading, self._truths[path]))
-        return {"score": self._scores[-1].figures}
-
-    def lines(self) -> list[str]:
-        """The mean of all scores, for people."""
-        from workbench.twin.scoring import mean_score
-
-        if not self._scores:
-            return []
-        mean = mean_score(self._scores)
-        return [
-            f"depth off by {mean.depth_mm:.3f} mm (nothing read: {mean.depth_null_mm:.3f}, normals "
-            f"known: {mean.depth_ceiling_mm:.3f}), normals by {mean.normal_deg:.1f} degrees "
-            f"({mean.normal_null_deg:.1f}), contact IoU {mean.contact_iou:.2f}, force off by "
-            f"{100.0 * mean.force_error:.0f} %, {100.0 * mean.within_sigma:.0f} % of depths within "
-            "one standard deviation"
-        ]
+    return read
 
 
-def _truths(folder: Path | None, photos: list[Path]) -> dict[Path, Truth]:
-    """What is known of each photograph, by its path."""
+def _opened_learned(
+    design: SensorDesign,
+    idle: np.ndarray,
+    options: argparse.Namespace,
+    project: Project,
+    printer: Progress,
+) -> Read:
+    """The reader that was trained; each photo is read on its own."""
+    from workbench.calibration.stored import stored
+    from workbench.core.press.press_case import PressCase
+    from workbench.pipeline.devices import torch_device
+    from workbench.reading.find_reader import find_reader
+    from workbench.reading.learned_reader import LearnedReader
+
+    weights = find_reader(design, project, options.weights)
+    mesh = stored(design, PressCase(), "mesh", project.store, _half(printer))
+    return LearnedReader(weights, design.optics.camera, mesh, idle, torch_device()).read
+
+
+_OPENED = {"table": _opened_table, LEARNED: _opened_learned}
+
+
+def _scored(
+    options: argparse.Namespace, design: SensorDesign, idle: np.ndarray, project: Project
+) -> ScoredReadings:
+    """What readings are scored by: nothing without `--truth`."""
+    from workbench.twin.scored_readings import ScoredReadings
     from workbench.twin.truth import read_truth
 
-    if folder is None:
-        return {}
-    return {path: read_truth(folder / f"{path.stem}.npz") for path in photos}
+    stems = [path.stem for path in options.photos] if options.truth else []
+    truths = {stem: read_truth(options.truth / f"{stem}.npz") for stem in stems}
+    return ScoredReadings(design, idle, truths, project.store)
 
 
-def _line(reading: Reading) -> str:
+def _half(printer: Progress) -> Monitor:
+    return lambda fraction, note="": printer("read", 0.5 * fraction, note)
+
+
+def _line(reading: Reading | LearnedReading) -> str:
     """A reading in one line."""
     size_N = float(np.linalg.norm(reading.force_N))
     force = f"{size_N:.2f} +- {reading.force_sigma_N:.2f} N"
-    return (
-        f"{reading.photo:20} {reading.touch.inward_mm.max():5.2f} mm deep, "
+    line = (
+        f"{reading.photo:20} {reading.surface_mm.max():5.2f} mm deep, "
         f"{reading.contact_area_mm2:6.1f} mm2, "
-        f"{force if np.isfinite(size_N) else 'force unknown'}, misfit {reading.touch.misfit:.1f}"
+        f"{force if np.isfinite(size_N) else 'force unknown'}"
     )
+    misfit = reading.figures.get("misfit")
+    return line if misfit is None else f"{line}, misfit {misfit:.1f}"
 
 
 def _photo(path: Path) -> np.ndarray:

@@ -1,0 +1,1 @@
+"""Learned readers of touch: their training data, made from a design, and their training."""
