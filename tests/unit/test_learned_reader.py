@@ -23,6 +23,7 @@ from workbench.core.design.camera import Camera
 from workbench.core.design.design import SensorDesign
 from workbench.project.named_designs import load_design
 from workbench.project.project import Project
+from workbench.reading import find_reader as find_reader_module
 from workbench.reading.export_reader import export_reader
 from workbench.reading.find_reader import find_reader, reader_path
 from workbench.reading.learned_reader import LearnedReader
@@ -111,8 +112,17 @@ def kept(project: Project, name: str, **changes: object) -> Path:
     return path
 
 
-def test_a_reader_is_found_by_what_an_image_depends_on(tmp_path: Path) -> None:
+@pytest.mark.parametrize("name", ["geltip", "pad"])
+def test_presets_have_a_reader_that_ships(tmp_path: Path, name: str) -> None:
+    """Its digest is that of the preset as it ships today."""
+    assert find_reader(load_design(name), Project(tmp_path / "p"), None).design == name
+
+
+def test_a_reader_is_found_by_what_an_image_depends_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Not by names, nor by how the sensor is made; a change of light asks for another."""
+    monkeypatch.setattr(find_reader_module, "SHIPPED", tmp_path / "none")
     project, design = Project(tmp_path / "p"), load_design("pad")
     with pytest.raises(DesignError, match="no learned reader knows pad") as none:
         find_reader(design, project, None)
