@@ -10,6 +10,8 @@ BLUR_PX = 1.5
 """Of the difference, before it is judged: noise of 1 grey is then .19."""
 LEAST_GREY = 1.2
 """Least difference of changed pixels."""
+LEAST_SHARE = 0.03
+"""And over the largest difference: far from a strong contact it is light that bounced."""
 LEAST_NOISE_GREY = 0.3
 """Of whole grey levels."""
 REACH_PX = 6
@@ -54,7 +56,9 @@ def change(idle: np.ndarray, photo: np.ndarray, sees: np.ndarray) -> Change:
             offset = np.median(quiet, axis=0)
             noise_grey = max(LEAST_NOISE_GREY, _spread(quiet - offset))
         size = cv2.GaussianBlur(difference - offset, (0, 0), BLUR_PX)
-        over = np.abs(size).max(axis=2) > max(LEAST_GREY, noise_grey)
+        sizes = np.abs(size).max(axis=2)
+        least = max(LEAST_GREY, noise_grey, LEAST_SHARE * float(sizes[sees].max(initial=0.0)))
+        over = sizes > least
         certain = cv2.morphologyEx(over.astype(np.uint8), cv2.MORPH_OPEN, np.ones((3, 3))) > 0
         certain &= sees
         calm = sees & ~certain
