@@ -50,7 +50,7 @@ def test_bad_file_is_refused_and_a_box_becomes_a_sensor(
     wait_until(lambda: page.get_by_text("Shape ✓").count(), 60, "the brick is built")
     assert "Cut off below mm" in labels(page)
     assert not page.get_by_text("bad.stl has no faces").count()
-    page.get_by_text("No press of this sensor yet").first.wait_for()
+    page.get_by_text("preview: direct light, dent by geometry").wait_for()
     choose(page, "Clicks label", "actuator_1")
     page.wait_for_timeout(1000)
     before = view(page)
