@@ -33,10 +33,11 @@ RANKS = """
     sim.optics  sim.optics.camera  sim.optics.light  sim.optics.transport  sim.optics.field
     sim.optics.field.models  sim.optics.raster  sim.optics.studio
     sim.optics.maps  sim.optics.maps.kinds  sim.optics.proof
-    sim.reading  sim.reading.network
+    sim.condensed  sim.reading  sim.reading.network
 
     workbench.view  workbench.pipeline  workbench.pipeline.stages  workbench.planning
-    workbench.project  workbench.edit  workbench.live  workbench.report  workbench.report.exports
+    workbench.project  workbench.edit  workbench.live  workbench.sensor
+    workbench.report  workbench.report.exports
     workbench.variants  workbench.calibration  workbench.photographs  workbench.reading
     workbench.learning  workbench.learning.dataset  workbench.learning.making
     workbench.learning.training  workbench.learning.readers  workbench.twin

@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from workbench.learning.dataset.folder import DataSet
     from workbench.project.named_designs import load_design as load
     from workbench.project.project import Project
+    from workbench.sensor.sensor import Sensor
 
 __all__ = [
     "Camera",
@@ -54,6 +55,7 @@ __all__ = [
     "Press",
     "Project",
     "Results",
+    "Sensor",
     "Trajectory",
     "WorkbenchError",
     "__version__",
@@ -84,6 +86,7 @@ _PLACES = {
     "Press": "workbench.core.press.press",
     "Project": "workbench.project.project",
     "Results": "workbench.door.results",
+    "Sensor": "workbench.sensor.sensor",
     "Trajectory": "workbench.core.press.trajectory",
     "WorkbenchError": "workbench.core.base.errors",
     "choose_indenter": "workbench.edit.indenter_choice",

@@ -37,6 +37,7 @@ _MODULES = (
     "workbench.core.result.sampled",
     "workbench.core.press.fem",
     "workbench.core.result.force_field",
+    "workbench.core.result.condensed",
 )
 
 Arrays = dict[str, np.ndarray]

@@ -1,0 +1,1 @@
+"""A design as one call: poses of an object in, images and forces out; packs that carry it."""

@@ -1,0 +1,47 @@
+"""What a sensor feels and sees in one call: B presses side by side."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+
+@dataclass(frozen=True, kw_only=True)
+class Frame:
+    """Forces act on the object; all vectors are in the sensor's frame."""
+
+    rgb: np.ndarray
+    """Images, shape (B, H, W, 3), uint8."""
+    force_N: np.ndarray
+    """Shape (B, 3)."""
+    torque_Nmm: np.ndarray
+    """About the object's origin, shape (B, 3)."""
+    displacement_mm: np.ndarray
+    """Of the N nodes of the skin (`Sensor.skin.points_mm`), shape (B, N, 3)."""
+    pressure_MPa: np.ndarray
+    """At the nodes, shape (B, N)."""
+    slip: np.ndarray
+    """Share of the normal force that slides, shape (B,): 1 is gross slip."""
+    within_range: np.ndarray
+    """Whether the presses are of the kind that fast contact was fitted to, shape (B,), bool."""
+    notes: tuple[str, ...]
+    """Why they are not, a sentence for each press, or ""."""
+    looks: Callable[[], tuple[np.ndarray, np.ndarray]] = field(repr=False)
+    """Finds depth and dots, when they are asked for."""
+
+    @functools.cached_property
+    def _looked(self) -> tuple[np.ndarray, np.ndarray]:
+        return self.looks()
+
+    @property
+    def depth_mm(self) -> np.ndarray:
+        """Depth of the skin along the camera's axis, shape (B, H, W), float32; NaN beside it."""
+        return self._looked[0]
+
+    @property
+    def markers_px(self) -> np.ndarray:
+        """u, v of the printed dots, shape (B, M, 2), float32; NaN of those not seen."""
+        return self._looked[1]

@@ -1,0 +1,96 @@
+"""From a design to a pack: what is missing is computed and kept in the project."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sim.condensed.surface import surface_of
+from workbench.core.base.packages import naming_packages
+from workbench.core.design.design import SensorDesign
+from workbench.core.press.press_case import PressCase
+from workbench.live.live_press import live_design, small
+from workbench.pipeline.devices import open_device
+from workbench.planning.plan import InlineRunner, StageMonitor, evaluate, plan
+from workbench.project.design_toml import design_to_toml
+from workbench.project.named_designs import load_design
+from workbench.project.project import Project
+from workbench.sensor.pack import Pack
+
+if TYPE_CHECKING:
+    from sim.optics.studio.render import Studio
+
+STAGES = ("mesh", "bake", "table", "condensed", "hardening")
+
+
+def make_pack(
+    source: str | SensorDesign,
+    project: Project | Path | str | None = None,
+    *,
+    width_px: int | None = None,
+    monitor: StageMonitor | None = None,
+) -> Pack:
+    """A pack of a design.
+
+    Args:
+        source: A design, or its name or file.
+        project: Where results are kept; `.workbench`, or `$WORKBENCH_PROJECT`, by default.
+        width_px: Width of the images, the camera's own where left out or wider.
+        monitor: Told stage, fraction and note.
+
+    Raises:
+        DesignError: If there is no such design.
+        MeshingError: If its skin cannot be condensed.
+    """
+    where = project if isinstance(project, Project) else Project(project)
+    given = source if isinstance(source, SensorDesign) else load_design(source, project=where)
+    design = live_design(given)
+    if width_px is not None:
+        design = dataclasses.replace(design, optics=small(design.optics, width_px))
+    calls = plan(design, PressCase())
+    with naming_packages():
+        for _ in evaluate(
+            design, PressCase(), InlineRunner(where.store), wanted=STAGES, monitor=monitor
+        ):
+            pass
+    found = {name: where.store.load(name, calls[name].key) for name in STAGES if name in calls}
+    open_device()
+    from sim.optics.studio.render import Studio
+
+    mesh, skin = found["mesh"], found["condensed"]
+    studio = Studio(mesh, found["bake"], design.optics, table=found.get("table"))
+    return Pack(
+        name=design.name,
+        design_toml=design_to_toml(given),
+        skin=skin,
+        law=found["hardening"],
+        material=design.material,
+        surface=surface_of(skin.points_mm, skin.normals, mesh.seen.points_mm, mesh.seen.normals),
+        images=studio.imager.state(),
+        rest_depth_mm=rest_depth_mm(studio),
+        left_out=left_out(given),
+    )
+
+
+def rest_depth_mm(studio: Studio) -> np.ndarray:
+    """Depth of the untouched skin along the camera's axis, (H, W), float32; NaN beside it."""
+    nothing = np.zeros((0, studio.imager.raster.vertices, 3), dtype=np.float32)
+    return studio.shoot(nothing).depth_z_mm[0]
+
+
+def left_out(design: SensorDesign) -> tuple[str, ...]:
+    """What the camera of a design does that images of a pack do not show."""
+    camera = design.optics.camera
+    found = []
+    if camera.sensor.noise:
+        found.append("noise of the image sensor")
+    if camera.aperture_mm > 0.0:
+        found.append("blur out of focus")
+    if design.optics.cameras:
+        found.append("cameras after the first")
+    if live_design(design) is not design:
+        found.append("photons of each frame: light is looked up as it was baked")
+    return tuple(found)
