@@ -36,6 +36,7 @@ ROOMS = {
     "published": ("bodies of the presets and heads of objects beside those released", "2 min"),
     "reading": ("touch read from renders, from photons, and from twins, by records", "seconds"),
     "tasks": ("objects, slip and safety told by touch, by records", "seconds"),
+    "sensor": ("fast contact beside the contact solver, by a record", "seconds"),
 }
 """What each room of `workbench validate` measures, and about how long that takes undisturbed."""
 EACH = ("hybrid", "mpm_against_fem", "finger_45")

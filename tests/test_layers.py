@@ -48,7 +48,7 @@ RANKS = """
     workbench.tasks.networks  workbench.tasks  workbench.tasks.kinds
     workbench.proof.validation.learned
     workbench.proof.validation.published  workbench.proof.validation.reading
-    workbench.proof.validation.tasks
+    workbench.proof.validation.tasks  workbench.proof.validation.sensor
 
     workbench.door  workbench
 

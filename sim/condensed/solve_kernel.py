@@ -220,7 +220,7 @@ def pushed(
     stiff = way.dot(response)
     before = load.dot(way)
     after = before
-    # Spots move with the corners beside them too; all of a node alike is near enough within a round.
+    # Spots move with the corners beside them too; within a round all of a node move alike.
     beside = tm.vec3(0.0)
     begin, end = skin.spot_starts[node], skin.spot_starts[node + 1]
     for corner in range(2 * begin, 2 * end):

@@ -79,6 +79,8 @@ BEGINNINGS = {
     "labels_": Judge.ITSELF,
     "reading_": Judge.ITSELF,
     "task_": Judge.ITSELF,
+    "fast_": Judge.ITSELF,
+    "sensor_": Judge.NONE,
     "hex_": Judge.NONE,
     "mould_": Judge.NONE,
     "parts_": Judge.NONE,

@@ -10,11 +10,9 @@ import numpy as np
 
 
 @dataclass(frozen=True, kw_only=True)
-class Frame:
+class Felt:
     """Forces act on the object; all vectors are in the sensor's frame."""
 
-    rgb: np.ndarray
-    """Images, shape (B, H, W, 3), uint8."""
     force_N: np.ndarray
     """Shape (B, 3)."""
     torque_Nmm: np.ndarray
@@ -29,6 +27,14 @@ class Frame:
     """Whether the presses are of the kind that fast contact was fitted to, shape (B,), bool."""
     notes: tuple[str, ...]
     """Why they are not, a sentence for each press, or ""."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Frame(Felt):
+    """The same with what the camera sees."""
+
+    rgb: np.ndarray
+    """Images, shape (B, H, W, 3), uint8."""
     looks: Callable[[], tuple[np.ndarray, np.ndarray]] = field(repr=False)
     """Finds depth and dots, when they are asked for."""
 

@@ -22,7 +22,7 @@ from sim.condensed.lessons import collider_of
 from sim.optics.raster.imager import Imager
 from workbench.core.base.errors import DesignError
 from workbench.project.project import Project
-from workbench.sensor.frame import Frame
+from workbench.sensor.frame import Felt, Frame
 from workbench.sensor.pack import Pack, is_pack, read_pack
 from workbench.sensor.things import Thing, mesh_thing
 
@@ -127,23 +127,40 @@ class Sensor:
             DesignError: If a pose is not finite or its quaternion is zero.
             SolveError: If a press touches too much of the skin at once.
         """
+        rows, touch = self._touched(poses, thing)
+        moved = self._surface.displacement_mm(touch.displacement_mm)
+        return Frame(
+            rgb=self.drawn(moved),
+            looks=lambda: self._looked(moved),
+            **self._felt(rows, touch, thing),
+        )
+
+    def feel(self, poses: np.ndarray, thing: Thing) -> Felt:
+        """The next moment of each sensor without images; as `render`."""
+        rows, touch = self._touched(poses, thing)
+        return Felt(**self._felt(rows, touch, thing))
+
+    def drawn(self, moved_mm: np.ndarray) -> np.ndarray:
+        """Images of a skin that moved, (B, V, 3) [mm] at drawn vertices: (B, H, W, 3), uint8."""
+        return self._imager.images(moved_mm)
+
+    def _touched(self, poses: np.ndarray, thing: Thing) -> tuple[np.ndarray, Touch]:
         rows = checked_poses(poses)
         if len(rows) != self._count:
             self.reset(len(rows))
-        touch = self._fast.step(thing.collider, thing.placed(rows))
-        moved = self._surface.displacement_mm(touch.displacement_mm)
+        return rows, self._fast.step(thing.collider, thing.placed(rows))
+
+    def _felt(self, rows: np.ndarray, touch: Touch, thing: Thing) -> dict[str, Any]:
         notes = tuple(self._note(touch, row) for row in range(len(rows)))
-        return Frame(
-            rgb=self._imager.images(moved),
-            force_N=touch.force_N,
-            torque_Nmm=thing.about_origin(rows, touch.force_N, touch.moment_Nmm),
-            displacement_mm=touch.displacement_mm,
-            pressure_MPa=touch.pressure_MPa,
-            slip=touch.sliding,
-            within_range=np.array([not note for note in notes]),
-            notes=notes,
-            looks=lambda: self._looked(moved),
-        )
+        return {
+            "force_N": touch.force_N,
+            "torque_Nmm": thing.about_origin(rows, touch.force_N, touch.moment_Nmm),
+            "displacement_mm": touch.displacement_mm,
+            "pressure_MPa": touch.pressure_MPa,
+            "slip": touch.sliding,
+            "within_range": np.array([not note for note in notes]),
+            "notes": notes,
+        }
 
     def state(self) -> dict[str, np.ndarray]:
         """What all sensors remember, as arrays."""

@@ -1,0 +1,119 @@
+"""`wb.Sensor` in a loop: forces and images of a moving ball and of a moving mesh, frame by frame.
+
+The finger `geltip` at 320 x 240, from the default project: what it lacks is made first, minutes on
+a new machine, and is not timed.
+"""
+
+from __future__ import annotations
+
+import functools
+import statistics
+import time
+from collections.abc import Callable
+
+import numpy as np
+
+from workbench.pipeline.devices import chosen_device
+from workbench.proof.benchmarks.timing import RUNS
+from workbench.proof.row import Row, bounded, stated
+from workbench.sensor.sensor import Sensor
+from workbench.sensor.things import Thing
+
+DESIGN, WIDTH_PX = "geltip", 320
+FRAMES = 40
+DEPTH_MM, WAY_MM = 0.6, 0.1
+"""How deep the object stands, and how far it moves from frame to frame."""
+TIP_MM = 42.0
+LEAST_FPS = 60.0
+BATCH = 64
+HEAD_MM, SHANK_MM, LENGTH_MM = 6.0, 3.0, 4.0
+"""Of the bolt: its hexagonal head meets the skin."""
+
+
+def rows() -> list[Row]:
+    """All rows of the room."""
+    sensor = _sensor()
+    moving = {"ball of 6 mm": sensor.object("sphere", size_mm=6.0), "bolt, a mesh": bolt(sensor)}
+    found = []
+    for name, thing in moving.items():
+        found.append(
+            bounded(
+                "sensor_frames",
+                f"{name} slides on {DESIGN}, {WIDTH_PX} px, one sensor: force and image",
+                functools.partial(_rate, functools.partial(_loop, sensor, thing), FRAMES),
+                unit="1/s",
+                limit=LEAST_FPS,
+                sense="min",
+            )
+        )
+        found.append(
+            stated(
+                "sensor_forces",
+                f"{name}, the same, forces alone",
+                functools.partial(_rate, functools.partial(_feel, sensor, thing), FRAMES),
+                unit="1/s",
+            )
+        )
+    device, ball = chosen_device(), moving["ball of 6 mm"]
+    found.append(
+        stated(
+            "sensor_batch",
+            f"{BATCH} sensors side by side on {device}, {WIDTH_PX} px: force and image",
+            functools.partial(_rate, functools.partial(_batch, sensor, ball), BATCH),
+            unit="1/s",
+        )
+    )
+    return found
+
+
+@functools.cache
+def _sensor() -> Sensor:
+    return Sensor.load(DESIGN, width_px=WIDTH_PX)
+
+
+def poses(thing: Thing, count: int) -> np.ndarray:
+    """Ways of an object over the tip, to and fro, shape (count, 7)."""
+    step = np.arange(count)
+    aside = WAY_MM * np.abs((step % 40) - 20)
+    found = np.zeros((count, 7))
+    found[:, 0] = aside - 1.0
+    # Along the dome, so that it stays as deep.
+    found[:, 2] = TIP_MM - 15.0 + np.sqrt(15.0**2 - found[:, 0] ** 2)
+    found[:, 2] += thing.collider.half_height_mm + thing.centre_mm[2] - DEPTH_MM
+    found[:, 3] = 1.0
+    return found
+
+
+def bolt(sensor: Sensor) -> Thing:
+    """A hexagon bolt, its head down: a mesh, known by samples of its distance."""
+    import trimesh
+
+    head = trimesh.creation.cylinder(HEAD_MM / 2, 2.0, sections=6)
+    shank = trimesh.creation.cylinder(SHANK_MM / 2, LENGTH_MM, sections=24)
+    shank.apply_translation([0.0, 0.0, 1.0 + LENGTH_MM / 2 - 0.2])
+    return sensor.object(trimesh.boolean.union([head, shank], engine="manifold"))
+
+
+def _loop(sensor: Sensor, thing: Thing) -> None:
+    for pose in poses(thing, FRAMES):
+        sensor.render(pose, thing)
+
+
+def _feel(sensor: Sensor, thing: Thing) -> None:
+    for pose in poses(thing, FRAMES):
+        sensor.feel(pose, thing)
+
+
+def _batch(sensor: Sensor, thing: Thing) -> None:
+    sensor.render(poses(thing, BATCH), thing)
+
+
+def _rate(run: Callable[[], None], count: int) -> float:
+    """Frames a second, the median of runs after one to warm up."""
+    run()
+    times = []
+    for _ in range(RUNS):
+        begun = time.perf_counter()
+        run()
+        times.append(time.perf_counter() - begun)
+    return count / statistics.median(times)

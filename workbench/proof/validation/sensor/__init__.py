@@ -1,0 +1,1 @@
+"""Fast contact beside the contact solver: forces, shear, images."""
