@@ -1,7 +1,8 @@
 """How the skin that is drawn moves with the nodes of the condensed one.
 
-Moving least squares with a linear basis in the tangent plane (Lancaster and Salkauskas 1981), which
-reproduces rigid motion and even strain, over the nearest nodes of the same side of the skin.
+Moving least squares with a quadratic basis in the tangent plane (Lancaster and Salkauskas 1981),
+over the nearest nodes of the same side of the skin: a dent as round as a ball is drawn as deep as
+it is, where a linear basis would blunt it.
 """
 
 from __future__ import annotations
@@ -11,14 +12,14 @@ from typing import Any
 
 import numpy as np
 
-NEIGHBOURS = 10
+NEIGHBOURS = 14
 """Nodes that a vertex follows."""
-WIDTH = 1.0
+WIDTH = 0.8
 """Standard deviation of their weights, in distances of nodes."""
 SAME_SIDE = 0.3
 """Cosine between normals below which a node lies on another side."""
-RIDGE = 1e-6
-"""Added to the normal equations for vertices whose nodes lie on a line."""
+RIDGE = 1e-4
+"""Added to the normal equations, for vertices at a rim that few nodes surround."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -55,18 +56,13 @@ def surface_of(
     weight = np.exp(-0.5 * (away_mm / (WIDTH * spacing_mm)) ** 2)
     weight *= (facing > SAME_SIDE) | (np.arange(near.shape[1]) == 0)
     first, second = _tangents(normals)
-    basis = np.stack(
-        [
-            np.ones_like(weight),
-            np.einsum("vki,vi->vk", offset, first) / spacing_mm,
-            np.einsum("vki,vi->vk", offset, second) / spacing_mm,
-        ],
-        axis=2,
-    )
+    a = np.einsum("vki,vi->vk", offset, first) / spacing_mm
+    b = np.einsum("vki,vi->vk", offset, second) / spacing_mm
+    basis = np.stack([np.ones_like(a), a, b, a * a, a * b, b * b], axis=2)
     weighted = basis * weight[:, :, None]
     normal_equations = np.einsum("vka,vkb->vab", weighted, basis)
-    normal_equations[:, 1:, 1:] += RIDGE * np.eye(2)
-    constant = np.zeros((len(vertices_mm), 3, 1))
+    normal_equations[:, 1:, 1:] += RIDGE * np.eye(5)
+    constant = np.zeros((len(vertices_mm), 6, 1))
     constant[:, 0] = 1.0
     share = np.linalg.solve(normal_equations, constant)[:, :, 0]
     weights = np.einsum("vka,va->vk", weighted, share)

@@ -20,7 +20,8 @@ FITTED = ("sphere", "cylinder_end", "cube")
 FITTED_LIMIT, OTHER_LIMIT = 0.06, 0.10
 """Error of the normal force of kinds whose presses were fitted, and of others."""
 SHEAR_LIMIT, TORQUE_LIMIT, ANGLE_LIMIT_DEG = 0.10, 0.15, 5.0
-SSIM_LIMITS = {"5": 0.97, "10": 0.96}
+HALF_MM, HALF_LIMIT, WHOLE_LIMIT = 0.5, 0.97, 0.96
+"""SSIM asked up to this depth, and beyond."""
 FROM_MM = 0.2
 """Depth from which forces are judged."""
 
@@ -94,7 +95,7 @@ def _rows(case: str, figures: dict[str, Any], of: tuple[str, Record]) -> Iterato
             f"{case}, {depth[int(number) - 1]:g} mm: SSIM where the image changes; null: no dent",
             score,
             unit="1",
-            limit=SSIM_LIMITS[number],
+            limit=HALF_LIMIT if depth[int(number) - 1] <= HALF_MM else WHOLE_LIMIT,
             sense="min",
             null=figures["null_ssim"][number],
             record=kept,
