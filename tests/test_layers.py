@@ -35,7 +35,8 @@ RANKS = """
     sim.optics.maps  sim.optics.maps.kinds  sim.optics.proof
     sim.condensed  sim.reading  sim.reading.network
 
-    workbench.view  workbench.pipeline  workbench.pipeline.stages  workbench.planning
+    workbench.view  workbench.pipeline  workbench.pipeline.stages  workbench.pipeline.fast
+    workbench.planning
     workbench.project  workbench.edit  workbench.live  workbench.sensor
     workbench.report  workbench.report.exports
     workbench.variants  workbench.calibration  workbench.photographs  workbench.reading

@@ -56,16 +56,20 @@ NOUNS = {
     "stage": Noun(
         package="workbench.pipeline.stages",
         record="STAGE",
-        # These make calls that no plan has: drawings for lists, the parts of a deck, light alone.
+        # These make calls that no plan has: drawings for lists, the parts of a deck, light alone,
+        # presses to fit to.
         readers=(
             "workbench/calibration/stored.py",
             "workbench/report/thumbnails.py",
             "workbench/report/fem_case.py",
             "workbench/live/image_preview.py",
             "workbench/planning/advised.py",
+            "workbench/pipeline/fast/condensed.py",
+            "workbench/pipeline/fast/hardening.py",
             "ui/panels/simulate/network.py",
         ),
     ),
+    "stage of fast contact": Noun(package="workbench.pipeline.fast", record="STAGE"),
     "command": Noun(package="workbench.cli.commands", record="COMMAND"),
     "command of a group": Noun(package="workbench.cli.groups", record="COMMAND"),
     "export": Noun(package="workbench.report.exports", record="EXPORT"),

@@ -14,12 +14,17 @@ from sim.condensed.fast_contact import FastContact
 from sim.condensed.hardening import PlayedPress, fit, sharpness
 from sim.contact.objects.collider import Collider, make_collider
 from workbench.core.design.design import Elastomer
-from workbench.core.press.indenter import BALL, Indenter, IndenterKind
+from workbench.core.objects.kind import Shape, kinds
+from workbench.core.press.indenter import Indenter, IndenterKind
 from workbench.core.press.press import Press
 from workbench.core.result.condensed import CondensedSkin, Hardening
 from workbench.core.result.sensing import Contact
 
-KINDS = (BALL, IndenterKind("cylinder_end"), IndenterKind("cube"))
+KINDS = tuple(
+    IndenterKind(next(name for name, kind in kinds().items() if kind.shape is shape))
+    for shape in (Shape.SPHERE, Shape.CYLINDER_Z, Shape.CUBE)
+)
+"""A ball, a flat end, an edged block."""
 SIZE_MM = 6.0
 DEPTH_WALLS, LEAST_MM, MOST_MM = 0.5, 0.4, 1.5
 """Depth of the presses in walls, and within what it stays [mm]."""

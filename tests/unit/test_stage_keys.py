@@ -28,6 +28,7 @@ FILES = {"recipe", "package"}
 SEEN = {"bake", "table", "shoot", "maps"}
 LOOKED = {"table", "shoot", "maps"}
 SOLVED = {"fem", "forces"}
+CONDENSED = {"condensed", "hardening"}
 DEFORMED = {"press", "shoot", "learned", *SOLVED}
 RINGED = {"housing", "picture", *FILES}
 
@@ -57,9 +58,9 @@ def rerun(field: str, value: object) -> set[str]:
         ("optics.ring.emission_exponent", 2.0, SEEN),
         ("optics.ring.radius_mm", 8.5, {*SEEN, *RINGED}),
         ("optics.coating.albedo", 0.5, SEEN),
-        ("material.friction", 0.5, DEFORMED),
+        ("material.friction", 0.5, {"hardening", *DEFORMED}),
         ("material.density_g_cm3", 1.1, FILES),
-        ("material.young_MPa", 0.2, {"maps", *DEFORMED, *FILES}),
+        ("material.young_MPa", 0.2, {"maps", *CONDENSED, *DEFORMED, *FILES}),
         ("casting.silicone", "Solaris", FILES),
         ("casting.waste_percent", 30.0, FILES),
         ("mould.draft_deg", 1.0, {"mould", "picture", *FILES}),

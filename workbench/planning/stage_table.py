@@ -1,14 +1,16 @@
-"""All stages by name, in the order of their places: found in `workbench.pipeline.stages`."""
+"""All stages by name, in the order of their places: found in the packages that hold them."""
 
 from __future__ import annotations
 
 from workbench.core.base.records import records
 from workbench.pipeline.stage import Stage
 
+PACKAGES = ("workbench.pipeline.stages", "workbench.pipeline.fast")
 STAGES: dict[str, Stage] = {
     stage.name: stage
     for stage in sorted(
-        records("workbench.pipeline.stages", "STAGE").values(), key=lambda stage: stage.place
+        (stage for package in PACKAGES for stage in records(package, "STAGE").values()),
+        key=lambda stage: stage.place,
     )
 }
 IN_RUN = tuple(stage.name for stage in STAGES.values() if stage.in_run)

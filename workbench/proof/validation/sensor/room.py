@@ -11,12 +11,12 @@ from typing import Any
 
 import numpy as np
 
+from sim.condensed.lessons import KINDS
 from workbench.core.base.errors import StoreError
 from workbench.proof.row import Row, bounded, failed, stated
 from workbench.proof.validation.sensor import sensor_figures
 from workbench.system.record import Record
 
-FITTED = ("sphere", "cylinder_end", "cube")
 FITTED_LIMIT, OTHER_LIMIT = 0.06, 0.10
 """Error of the normal force of kinds whose presses were fitted, and of others."""
 SHEAR_LIMIT, TORQUE_LIMIT, ANGLE_LIMIT_DEG = 0.10, 0.15, 5.0
@@ -47,7 +47,7 @@ def _rows(case: str, figures: dict[str, Any], of: tuple[str, Record]) -> Iterato
     down = len(depth)
     force, full = np.array(figures["normal_N"]), np.array(figures["full_normal_N"])
     best = spring(depth, full[:down])
-    fitted = thing in FITTED
+    fitted = thing in list(KINDS)
     limit = FITTED_LIMIT if fitted else OTHER_LIMIT
     words = "fitted" if fitted else "left out of the fit"
     for number in np.flatnonzero(depth >= FROM_MM - 1e-9):

@@ -18,6 +18,7 @@ from typing import Any
 
 import numpy as np
 
+from sim.condensed.lessons import KINDS
 from workbench.core.base.errors import StoreError, WorkbenchError
 from workbench.core.design.design import SensorDesign
 from workbench.core.press.press import Press
@@ -35,7 +36,8 @@ from workbench.sensor.sensor import Sensor
 from workbench.system.record import Record
 
 DESIGNS = ("geltip", "pad", "trunk", "paw")
-OBJECTS = ("sphere", "cylinder_end", "cube", "flower")
+OBJECTS = (*(kind.value for kind in KINDS), "flower")
+"""Those that are fitted, and one that is not."""
 SIZE_MM = 6.0
 DEPTH_MM, FRAMES, SHEAR_MM = 1.0, 10, 0.5
 """Ten frames down, ten aside."""

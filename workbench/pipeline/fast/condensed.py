@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from workbench.core.base.digest import at_defaults
 from workbench.core.base.monitor import Monitor
 from workbench.core.design.design import Elastomer
 from workbench.core.result.condensed import CondensedSkin, SkinColumns
 from workbench.core.result.results import MembraneMesh
+from workbench.pipeline.fast.columns import STAGE as COLUMNS
+from workbench.pipeline.fast.columns import ColumnsInputs
 from workbench.pipeline.stage import PART, Call, Chain, Stage
-from workbench.pipeline.stages.columns import STAGE as COLUMNS
-from workbench.pipeline.stages.columns import ColumnsInputs
 from workbench.pipeline.stages.press import elastic
 from workbench.pipeline.store import Store
 
@@ -31,9 +32,14 @@ def inputs(chain: Chain) -> CondensedInputs:
     """The nodes and the material."""
     return CondensedInputs(
         mesh=chain.result("node_mesh"),
-        material=elastic(chain.design.material),
+        material=at_rest(chain.design.material),
         wall_mm=chain.design.layers.elastomer_mm,
     )
+
+
+def at_rest(material: Elastomer) -> Elastomer:
+    """A material without what a skin that is not touched does not know."""
+    return at_defaults(elastic(material), "friction", "kinetic_friction")
 
 
 def parts(given: CondensedInputs, store: Store) -> dict[str, tuple[Call, ...]]:

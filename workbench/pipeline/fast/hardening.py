@@ -15,8 +15,13 @@ from workbench.core.result.condensed import Hardening, SkinColumns
 from workbench.core.result.results import MaterialPoints, MembraneMesh
 from workbench.core.result.sensing import Contact
 from workbench.pipeline.devices import start_device
+from workbench.pipeline.fast.condensed import (
+    CondensedInputs,
+    at_rest,
+    load_mesh,
+    tile_call,
+)
 from workbench.pipeline.stage import PART, Chain, Stage
-from workbench.pipeline.stages.condensed import CondensedInputs, load_mesh, tile_call
 from workbench.pipeline.stages.press import STAGE as PRESS
 from workbench.pipeline.stages.press import PressInputs, elastic
 from workbench.pipeline.store import Store
@@ -68,7 +73,9 @@ def parts(given: HardeningInputs, store: Store) -> dict[str, Any]:
     centre_mm = points_mm[_centre(points_mm, given.target_mm)]
     away_mm = np.linalg.norm(points_mm - centre_mm, axis=1)
     near = [k for k, nodes in enumerate(tiles(points_mm)) if away_mm[nodes].min() < NEAR_MM]
-    skin = CondensedInputs(mesh=given.nodes, material=given.material, wall_mm=given.wall_mm)
+    skin = CondensedInputs(
+        mesh=given.nodes, material=at_rest(given.material), wall_mm=given.wall_mm
+    )
     presses = tuple(
         PRESS.call(
             PressInputs(

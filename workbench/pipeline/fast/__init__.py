@@ -1,0 +1,1 @@
+"""The stages of fast contact, one file each, as those of `workbench.pipeline.stages`."""
