@@ -35,7 +35,10 @@ def skin(taichi_device: str) -> CondensedSkin:
     return flat_skin(EDGE, SPACING_MM)
 
 
-@pytest.mark.parametrize("kind", ["sphere", "cube", "flower"])
+SLOWER = (pytest.param(kind, marks=pytest.mark.slow) for kind in ("cube", "flower"))
+
+
+@pytest.mark.parametrize("kind", ["sphere", *SLOWER])
 def test_the_kernels_are_their_twin(skin: CondensedSkin, kind: str) -> None:
     """Forces and displacements of every frame of a press with friction and shear."""
     from sim.condensed.fast_contact import FastContact

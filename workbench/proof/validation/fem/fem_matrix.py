@@ -51,7 +51,7 @@ RECORD = Record(
         *(f"workbench.core.objects.kinds.{thing}" for thing in OBJECTS if thing != WEDGE),
         "workbench.core.objects.kinds.mesh",
     ),
-    apart=FEM_APART,
+    apart=(*FEM_APART, "workbench.core.base.codec"),
 )
 PARTS = {"version", "made", "conditions", "bodies", "cases"}
 SAME = ("version", "conditions", "bodies", "code")
