@@ -479,3 +479,11 @@ def test_a_failed_export_leaves_nothing_of_an_earlier_one(
     assert run(tmp_path, "export", str(out / "design.toml"), "--out", str(out)) == 2
     assert not [name for name in old if (out / name).exists()]
     assert all((out / name).exists() for name in (*mine, "design.toml"))
+
+
+def test_export_asks_where_to(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Neither a folder for files nor one for a pack: refused before anything is built."""
+    assert run(tmp_path, "export", "finger") == 2
+    said = capsys.readouterr().err
+    assert "nothing says where the files go" in said
+    assert "--pack DIR" in said
