@@ -21,6 +21,7 @@ from sim.condensed.fast_contact import FastContact, Touch
 from sim.condensed.lessons import collider_of
 from sim.optics.raster.imager import Imager
 from workbench.core.base.errors import DesignError
+from workbench.planning.plan import StageMonitor
 from workbench.project.project import Project
 from workbench.sensor.frame import Felt, Frame
 from workbench.sensor.pack import Pack, is_pack, read_pack
@@ -57,6 +58,7 @@ class Sensor:
         *,
         project: Project | Path | str | None = None,
         width_px: int | None = None,
+        monitor: StageMonitor | None = None,
     ) -> Self:
         """A sensor from the folder of a pack, or from a design by name or file.
 
@@ -66,6 +68,7 @@ class Sensor:
             source: Folder of a pack, or the name or file of a design.
             project: Where results of a design are kept; as for `wb.evaluate`.
             width_px: Width of its images; a pack has its own.
+            monitor: Told stage, fraction and note while something is computed.
 
         Raises:
             DesignError: If there is no such pack or design, or it cannot be condensed.
@@ -81,7 +84,7 @@ class Sensor:
             return cls(read_pack(path))
         from workbench.sensor.making import make_pack
 
-        return cls(make_pack(str(source), project, width_px=width_px))
+        return cls(make_pack(str(source), project, width_px=width_px, monitor=monitor))
 
     @property
     def image_px(self) -> tuple[int, int]:
