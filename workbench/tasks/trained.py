@@ -104,7 +104,6 @@ class Trainer:
 
         Raises:
             Cancelled: If the monitor says so.
-            PackageError: If a package that the network needs is not installed.
             StoreError: If the file cannot be written.
         """
         import torch
@@ -223,12 +222,7 @@ def made(net: Net, task: Task, outputs: int, part: Part) -> tuple[nn.Module, str
         task: Says whether it sees images or windows.
         outputs: Numbers that it tells.
         part: What it learns from.
-
-    Raises:
-        PackageError: If it needs a package that is not installed.
     """
-    from workbench.core.base.packages import naming_packages
-
     window = task.look is Look.WINDOW
     if net is Net.OWN:
         from workbench.tasks.networks.own import OwnNet, OwnWindowNet
@@ -238,10 +232,10 @@ def made(net: Net, task: Task, outputs: int, part: Part) -> tuple[nn.Module, str
         from workbench.tasks.networks.lite import WEIGHTS, Head
 
         return Head(outputs, part), WEIGHTS
-    with naming_packages():
-        from workbench.tasks.networks.published import resnet, vgg_lstm
+    from workbench.tasks.networks.published import ResNet, VggLstm
 
-        return (vgg_lstm if window else resnet)(outputs)
+    published = (VggLstm if window else ResNet)(outputs)
+    return published, published.weights_from
 
 
 def _scale(train: Examples, safety: SafetyScale | None) -> Scale | None:
