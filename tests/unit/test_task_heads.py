@@ -10,7 +10,7 @@ from tests.synthetic_touches import HEIGHT, WIDTH, picture
 from workbench.core.base.monitor import silent
 from workbench.tasks.networks.learn import Part, told_by
 from workbench.tasks.networks.lite import PENALTIES, Head, features, fit_values, installed
-from workbench.tasks.seen_images import VIEWS, change
+from workbench.tasks.seen_images import change, whole
 from workbench.tasks.task import Net
 
 FEATURES = 40
@@ -24,7 +24,7 @@ def part(rng: np.random.Generator, count: int, truth: np.ndarray | None = None) 
     told = np.stack([flat[:, :3].sum(axis=1), 2.0 * flat[:, 5]], axis=1)
     return Part(
         inputs=seen,
-        at=rng.normal(size=(count, 5)).astype(np.float32),
+        at=rng.normal(size=(count, 8)).astype(np.float32),
         truth=told.astype(np.float32) if truth is None else truth,
     )
 
@@ -72,7 +72,7 @@ def test_what_it_sees_tells_rings_from_discs_wherever_they_are() -> None:
     for number in range(24):
         middle = (WIDTH * rng.uniform(0.3, 0.7), HEIGHT * rng.uniform(0.3, 0.7))
         image = picture("ring" if number % 2 else "disc", middle, 100.0)
-        inputs.append(change([image], idle, VIEWS[Net.LITE]).grey)
+        inputs.append(change([image], idle, whole(Net.LITE)).grey)
         kinds.append(number % 2)
     seen = features(np.stack(inputs), silent, copies=0, moved=False, device="cpu")[:, 0, 0]
     seen, known = seen.astype(np.float64), np.array(kinds)

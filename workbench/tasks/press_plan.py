@@ -108,17 +108,17 @@ def all_over(
         indenters: The objects.
     """
     amount = amounts[size]
-    shear = Pressed(shear_directions=0)
+    more = Pressed(indenters=indenters, shear_directions=0)
     if amount.shear_steps:
-        shear = Pressed(shear_mm=SHEAR_MM, shear_step_mm=SHEAR_MM / amount.shear_steps)
+        step_mm = SHEAR_MM / amount.shear_steps
+        more = Pressed(indenters=indenters, shear_mm=SHEAR_MM, shear_step_mm=step_mm)
     made = pressed(
         design,
         size,
         pattern_of(design),
         (depth_mm, amount.steps),
         amount.size_mm,
-        indenters=indenters,
-        **shear,
+        **more,
     )
     return dataclasses.replace(made, cases=amount.cases)
 

@@ -73,6 +73,8 @@ def _delay(
             places=np.full(len(changes), case.position.name),
             inputs=np.stack([each.grey for each in changes]),
             at=np.array([each.at for each in changes], np.float32),
+            feet_mm=np.array([each.foot_mm for each in changes]),
+            axes=np.array([each.axes for each in changes]),
             motion=np.zeros(len(changes)),
             truth=np.zeros(len(changes), np.int64),
             outputs=SLIP_NAMES,

@@ -18,6 +18,7 @@ import numpy as np
 from workbench.core.base.digest import digest
 from workbench.core.base.monitor import Monitor, silent
 from workbench.system.whole_files import write_atomically
+from workbench.tasks.contact_frame import in_contact_frame, in_sensor_frame
 from workbench.tasks.examples import Examples
 from workbench.tasks.safety_scale import SafetyScale
 from workbench.tasks.splits import Parts
@@ -77,7 +78,7 @@ class Trained:
         if self.scale is None:
             return raw.argmax(axis=1)
         values = self.scale.middle + self.scale.spread * raw
-        return values if self.safety is None else self.safety.both(values)
+        return in_sensor_frame(values, found) if self.safety is None else self.safety.both(values)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -111,11 +112,12 @@ class Trainer:
         from workbench.tasks.networks.learn import Part
 
         torch.manual_seed(seed)
-        scale = _scale(found.only(parts.train), self.safety)
+        truth = found.truth if found.truth.ndim == 1 else in_contact_frame(found)
+        scale = _scale(truth[parts.train], self.safety)
         outputs = 1 if self.safety else len(found.outputs)
         inputs = _shown(found, self.net)
         train, validation = (
-            Part(inputs=inputs[rows], at=found.at[rows], truth=_wanted(found.truth[rows], scale))
+            Part(inputs=inputs[rows], at=found.at[rows], truth=_wanted(truth[rows], scale))
             for rows in (parts.train, parts.validation)
         )
         network, weights_from = made(self.net, self.task, outputs, train)
@@ -144,12 +146,12 @@ class Trainer:
     def _learned(
         self, network: nn.Module, parts: tuple[Part, Part], seed: int, monitor: Monitor
     ) -> Learned:
-        """Let a network learn; a head for values of images that are seen once is solved for."""
-        if self.net is Net.LITE and self.task.told is Told.VALUES:
-            from workbench.tasks.networks.lite import Head, fit_values
+        """Let a network learn; a head for single images that are seen once is solved for."""
+        if self.net is Net.LITE and self.task.look is not Look.WINDOW:
+            from workbench.tasks.networks.lite import Head, fit_classes, fit_values
 
             assert isinstance(network, Head)
-            return fit_values(network, parts)
+            return (fit_classes if self.task.told is Told.CLASS else fit_values)(network, parts)
         from workbench.tasks.networks.learn import learn
 
         return learn(network, parts, self.settings, seed, monitor)
@@ -160,10 +162,10 @@ class Trainer:
         from workbench.tasks.networks.learn import Settings
 
         epochs, rate, batch, decay = SETTINGS[self.net, self.task.look]
-        classes = self.task.told is Told.CLASS
-        if (self.net, self.task.look, classes) == (Net.PAPER, Look.PLAIN, True):
+        if self.net is Net.PAPER and self.task.told is Told.CLASS and self.task.look is Look.PLAIN:
             epochs = PAPER_CLASS_EPOCHS
-        return Settings(epochs=epochs, rate=rate, batch=batch, decay=decay, moved=classes)
+        moved = turnable(self.task) and self.net is not Net.PAPER
+        return Settings(epochs=epochs, rate=rate, batch=batch, decay=decay, moved=moved)
 
     def _key(self, found: Examples, parts: Parts, seed: int, weights_from: str) -> str:
         from workbench.tasks.networks import shown
@@ -174,7 +176,7 @@ class Trainer:
             [
                 {**held_fixed, **held, "grey": shown.GREY, "gain": shown.GAIN},
                 dataclasses.asdict(self.settings),
-                [found.inputs, found.at, found.truth.astype(np.float64), *parts],
+                [found.inputs, found.at, found.truth.astype(np.float64), found.axes, *parts],
                 list(found.outputs),
             ]
         )
@@ -187,6 +189,11 @@ def usual_network() -> Net:
     return Net.LITE if installed() else Net.OWN
 
 
+def turnable(task: Task) -> bool:
+    """Whether what is told stays the same where a contact is turned: no direction is told."""
+    return task.told is Told.CLASS or task.safety
+
+
 def with_features(found: Examples, task: Task, net: Net, device: str, monitor: Monitor) -> Examples:
     """Examples with what a network that does not learn sees of them, where one takes part.
 
@@ -197,8 +204,7 @@ def with_features(found: Examples, task: Task, net: Net, device: str, monitor: M
         return found
     from workbench.tasks.networks.lite import COPIES, features
 
-    moved = task.told is Told.CLASS
-    seen = features(found.inputs, monitor, copies=COPIES, moved=moved, device=device)
+    seen = features(found.inputs, monitor, copies=COPIES, moved=turnable(task), device=device)
     return dataclasses.replace(found, features=seen)
 
 
@@ -238,14 +244,14 @@ def made(net: Net, task: Task, outputs: int, part: Part) -> tuple[nn.Module, str
     return published, published.weights_from
 
 
-def _scale(train: Examples, safety: SafetyScale | None) -> Scale | None:
+def _scale(truth: np.ndarray, safety: SafetyScale | None) -> Scale | None:
     """Middle and spread of the values to learn from; those of the coefficient are 0 and 1."""
-    if train.truth.ndim == 1:
+    if truth.ndim == 1:
         return None
     if safety is not None:
         return Scale(middle=np.zeros(1), spread=np.ones(1))
-    spread = train.truth.std(axis=0)
-    return Scale(middle=train.truth.mean(axis=0), spread=np.where(spread > 0.0, spread, 1.0))
+    spread = truth.std(axis=0)
+    return Scale(middle=truth.mean(axis=0), spread=np.where(spread > 0.0, spread, 1.0))
 
 
 def _wanted(truth: np.ndarray, scale: Scale | None) -> np.ndarray:

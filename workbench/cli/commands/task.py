@@ -51,6 +51,7 @@ def run(options: argparse.Namespace, project: Project) -> int:
     from workbench.tasks.run import Plan, run_task
     from workbench.tasks.task import Net, Size
     from workbench.tasks.trained import usual_network
+    from workbench.variants.kept_tasks import keep
 
     design = with_typed(load_design(options.design, project=project), options.set)
     plan = Plan(
@@ -72,6 +73,7 @@ def run(options: argparse.Namespace, project: Project) -> int:
         lambda fraction, note="": printer(options.task, fraction, note),
     )
     table = write_result(options.out, result)
+    keep(project, design, table)
     if options.json:
         say(json.dumps(table, allow_nan=False))
         return 0

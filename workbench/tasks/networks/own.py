@@ -72,7 +72,7 @@ class OwnNet(nn.Module):
         )
 
     def forward(self, images: Tensor, at: Tensor) -> Tensor:
-        """Numbers, shape (B, K), with where and how strong it is, (B, 5)."""
+        """Numbers, shape (B, K), with where and how strong it is, (B, 8)."""
         return self.head(torch.cat([self.eye(images[:, 0]), at], dim=1))
 
 
@@ -86,7 +86,7 @@ class OwnWindowNet(nn.Module):
         self.head = nn.Sequential(nn.Dropout(DROPOUT), nn.Linear(HIDDEN + PLACE, outputs))
 
     def forward(self, images: Tensor, at: Tensor) -> Tensor:
-        """Numbers, shape (B, K), with where and how strong it is, (B, 5)."""
+        """Numbers, shape (B, K), with where and how strong it is, (B, 8)."""
         shown = as_grey_changes(images)
         batch, frames = shown.shape[:2]
         features = self.eye(shown.flatten(0, 1)).reshape(batch, frames, -1)
