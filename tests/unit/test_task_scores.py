@@ -9,8 +9,8 @@ from workbench.tasks.examples import Examples
 from workbench.tasks.safety_scale import SafetyScale
 from workbench.tasks.scores import (
     balanced_accuracy,
+    best_threshold,
     confusion,
-    motion_threshold,
     rank_correlation,
     scored,
     trivial,
@@ -72,7 +72,7 @@ def test_the_threshold_of_motion_is_the_best_of_the_training_part() -> None:
         truth=np.array([0, 0, 1, 1]),
         outputs=("hold", "slip"),
     )
-    assert motion_threshold(train) == pytest.approx(0.035)
+    assert best_threshold(train.motion, train.truth) == pytest.approx(0.035)
     assert trivial(task_of("slip"), train, train).tolist() == [0, 0, 1, 1]
 
 

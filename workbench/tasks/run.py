@@ -36,6 +36,7 @@ from workbench.pipeline.devices import torch_device
 from workbench.project.design_toml import design_table
 from workbench.project.project import Project
 from workbench.tasks.examples import Examples, examples
+from workbench.tasks.features import with_features
 from workbench.tasks.lessons import SEEDS, Lessons
 from workbench.tasks.outcome import Tested, Trial
 from workbench.tasks.photo_folder import PhotoFolder
@@ -44,9 +45,9 @@ from workbench.tasks.rendered import AtRest, Renders, Shown, rendered
 from workbench.tasks.reshoot import Reshot, sees_outer_skin
 from workbench.tasks.safety_scale import SafetyScale
 from workbench.tasks.seen_images import View, view_of, whole
-from workbench.tasks.slip_delay import slip_delays
+from workbench.tasks.slip_delay import tell_slides
 from workbench.tasks.task import Look, Net, Size, Task, task_of
-from workbench.tasks.trained import Trained, Trainer, with_features
+from workbench.tasks.trained import Trained, Trainer
 from workbench.tasks.twin_test import calibrated, photographed, twin_plan
 
 SPANS = {
@@ -71,6 +72,8 @@ class Plan:
     size: Size = Size.SMALL
     net: Net = Net.LITE
     photos: Path | None = None
+    data: Path | None = None
+    """Folder of presses of the same recipe, made before or to be made; none: in the results'."""
     jobs: int = 1
     twin: bool = True
     """Whether a twin is photographed too."""
@@ -140,21 +143,17 @@ class _Work:
         with self._timed("data"):
             data = self._data()
         own = Renders(data, marked=self._marked)
-        images = own.shown, own.at_rest
         with self._timed("images"):
             view = self._view(self.design.optics)
-            lessons = self._lessons(data, images, view)
+            lessons = self._lessons(data, (own.shown, own.at_rest), view)
         tests, networks = [], dict[Trial, list[Trained]]()
         for test in (Trial.SIM, Trial.PLACE):
             with self._timed(test):
                 runs = lessons.learned(test, self._span(test))
             networks[test] = [run.trained for run in runs]
             tests.append(lessons.on_renders(test, runs))
-        if self.task.look is Look.WINDOW:
-            left = set(lessons.found.places[lessons.parts(Trial.PLACE)[0].test].tolist())
-            network = networks[Trial.PLACE][0]
-            delay = slip_delays(data, images, network, left, view)
-            tests[-1].details["delay"] = delay
+        if view.sight is not None and self.task.look is Look.WINDOW:
+            tell_slides(lessons, networks[Trial.PLACE][0], tests, self.recipe.shear_step_mm)
         details = self._details(lessons, networks[Trial.SIM][0])
         if folder is not None:
             with self._timed(Trial.PHOTOS):
@@ -189,7 +188,7 @@ class _Work:
 
         return make(
             self.recipe,
-            self.out / "data",
+            self.plan.data or self.out / "data",
             self.project,
             jobs=self.plan.jobs,
             tell=tell,
@@ -280,7 +279,7 @@ class _Work:
             "network": self.plan.net.value,
             "weights_from": network.weights_from,
             "parameters": sum(each.numel() for each in network.network.parameters()),
-            "learning": dataclasses.asdict(trainer.settings),
+            "learning": trainer.learning,
             "device": trainer.device,
             "seeds": list(SEEDS),
             "examples": len(found),

@@ -43,7 +43,7 @@ class View:
         return width, max(1, round(height_px * width / width_px))
 
 
-WIDTHS_PX = {Net.LITE: 160, Net.OWN: 160, Net.PAPER: 298}
+WIDTHS_PX = {Net.LITE: 160, Net.OWN: 160, Net.MOTION: 160, Net.PAPER: 298}
 """Of what each network sees [px]; 298 of 4:3 is 224 high, as in the paper's script."""
 
 

@@ -16,10 +16,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from workbench.core.base.digest import digest
-from workbench.core.base.monitor import Monitor, silent
+from workbench.core.base.monitor import Monitor
 from workbench.system.whole_files import write_atomically
 from workbench.tasks.contact_frame import in_contact_frame, in_sensor_frame
 from workbench.tasks.examples import Examples
+from workbench.tasks.features import HEADS, shown_to, turnable
 from workbench.tasks.safety_scale import SafetyScale
 from workbench.tasks.splits import Parts
 from workbench.tasks.task import Look, Net, Task, Told
@@ -29,16 +30,12 @@ if TYPE_CHECKING:
 
     from workbench.tasks.networks.learn import Learned, Part, Settings
 
-FORMAT = 1
+FORMAT = 2
 
 
 SETTINGS = {
-    (Net.LITE, Look.PLAIN): (80, 1e-3, 16, 0.1),
-    (Net.LITE, Look.MARKED): (80, 1e-3, 16, 0.1),
-    (Net.LITE, Look.WINDOW): (40, 1e-3, 16, 0.1),
     (Net.OWN, Look.PLAIN): (60, 2e-3, 16, 1e-3),
     (Net.OWN, Look.MARKED): (60, 2e-3, 16, 1e-3),
-    (Net.OWN, Look.WINDOW): (40, 2e-3, 8, 1e-3),
     (Net.PAPER, Look.PLAIN): (50, 1e-3, 32, 0.0),
     (Net.PAPER, Look.MARKED): (50, 1e-3, 32, 0.0),
     (Net.PAPER, Look.WINDOW): (15, 5e-4, 4, 0.0),
@@ -74,7 +71,7 @@ class Trained:
         """What it says of examples: classes (N,), or values (N, K) in their own units."""
         from workbench.tasks.networks.learn import told_by
 
-        raw = told_by(self.network, _shown(found, self.net), found.at)
+        raw = told_by(self.network, shown_to(self.net, found), found.at)
         if self.scale is None:
             return raw.argmax(axis=1)
         values = self.scale.middle + self.scale.spread * raw
@@ -115,7 +112,7 @@ class Trainer:
         truth = found.truth if found.truth.ndim == 1 else in_contact_frame(found)
         scale = _scale(truth[parts.train], self.safety)
         outputs = 1 if self.safety else len(found.outputs)
-        inputs = _shown(found, self.net)
+        inputs = shown_to(self.net, found)
         train, validation = (
             Part(inputs=inputs[rows], at=found.at[rows], truth=_wanted(truth[rows], scale))
             for rows in (parts.train, parts.validation)
@@ -146,23 +143,34 @@ class Trainer:
     def _learned(
         self, network: nn.Module, parts: tuple[Part, Part], seed: int, monitor: Monitor
     ) -> Learned:
-        """Let a network learn; a head for single images that are seen once is solved for."""
-        if self.net is Net.LITE and self.task.look is not Look.WINDOW:
-            from workbench.tasks.networks.lite import Head, fit_classes, fit_values
+        """Let a network learn; a head is solved for."""
+        if self.net in HEADS:
+            from workbench.tasks.networks.head import Head, fit_classes, fit_values
 
             assert isinstance(network, Head)
             return (fit_classes if self.task.told is Told.CLASS else fit_values)(network, parts)
         from workbench.tasks.networks.learn import learn
 
-        return learn(network, parts, self.settings, seed, monitor)
+        return learn(network, parts, self._settings, seed, monitor)
 
     @property
-    def settings(self) -> Settings:
+    def learning(self) -> dict[str, Any]:
+        """How it learns, as results tell it."""
+        if self.net not in HEADS:
+            return dataclasses.asdict(self._settings)
+        from workbench.tasks.networks.head import CLASS_PENALTIES, PENALTIES
+
+        classes = self.task.told is Told.CLASS
+        return {"penalties": list(CLASS_PENALTIES if classes else PENALTIES)}
+
+    @property
+    def _settings(self) -> Settings:
         """How long and how fast it learns."""
         from workbench.tasks.networks.learn import Settings
 
         epochs, rate, batch, decay = SETTINGS[self.net, self.task.look]
-        if self.net is Net.PAPER and self.task.told is Told.CLASS and self.task.look is Look.PLAIN:
+        classes = self.task.told is Told.CLASS
+        if (self.net, self.task.look, classes) == (Net.PAPER, Look.PLAIN, True):
             epochs = PAPER_CLASS_EPOCHS
         moved = turnable(self.task) and self.net is not Net.PAPER
         return Settings(epochs=epochs, rate=rate, batch=batch, decay=decay, moved=moved)
@@ -175,49 +183,11 @@ class Trainer:
         return digest(
             [
                 {**held_fixed, **held, "grey": shown.GREY, "gain": shown.GAIN},
-                dataclasses.asdict(self.settings),
+                self.learning,
                 [found.inputs, found.at, found.truth.astype(np.float64), found.axes, *parts],
                 list(found.outputs),
             ]
         )
-
-
-def usual_network() -> Net:
-    """The network that learns where none is named."""
-    from workbench.tasks.networks.lite import installed
-
-    return Net.LITE if installed() else Net.OWN
-
-
-def turnable(task: Task) -> bool:
-    """Whether what is told stays the same where a contact is turned: no direction is told."""
-    return task.told is Told.CLASS or task.safety
-
-
-def with_features(found: Examples, task: Task, net: Net, device: str, monitor: Monitor) -> Examples:
-    """Examples with what a network that does not learn sees of them, where one takes part.
-
-    Raises:
-        Cancelled: If the monitor says so.
-    """
-    if net is not Net.LITE:
-        return found
-    from workbench.tasks.networks.lite import COPIES, features
-
-    seen = features(found.inputs, monitor, copies=COPIES, moved=turnable(task), device=device)
-    return dataclasses.replace(found, features=seen)
-
-
-def _shown(found: Examples, net: Net) -> np.ndarray:
-    """What a network is given of examples."""
-    if net is not Net.LITE:
-        return found.inputs
-    if found.features is not None:
-        return found.features
-    from workbench.pipeline.devices import torch_device
-    from workbench.tasks.networks.lite import features
-
-    return features(found.inputs, silent, copies=0, moved=False, device=torch_device())
 
 
 def made(net: Net, task: Task, outputs: int, part: Part) -> tuple[nn.Module, str]:
@@ -229,18 +199,17 @@ def made(net: Net, task: Task, outputs: int, part: Part) -> tuple[nn.Module, str
         outputs: Numbers that it tells.
         part: What it learns from.
     """
-    window = task.look is Look.WINDOW
     if net is Net.OWN:
-        from workbench.tasks.networks.own import OwnNet, OwnWindowNet
+        from workbench.tasks.networks.own import OwnNet
 
-        return (OwnWindowNet if window else OwnNet)(outputs), "random weights"
-    if net is Net.LITE:
-        from workbench.tasks.networks.lite import WEIGHTS, Head
+        return OwnNet(outputs), "random weights"
+    if net in HEADS:
+        from workbench.tasks.networks.head import Head
 
-        return Head(outputs, part), WEIGHTS
+        return Head(outputs, part), HEADS[net]
     from workbench.tasks.networks.published import ResNet, VggLstm
 
-    published = (VggLstm if window else ResNet)(outputs)
+    published = (VggLstm if task.look is Look.WINDOW else ResNet)(outputs)
     return published, published.weights_from
 
 

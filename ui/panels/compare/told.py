@@ -52,6 +52,6 @@ without a network."
         path = variant_path(project, side.name) if side.name != NOW else None
         design = "NAME" if path is None else shlex.quote(str(path))
         where = shlex.quote(str(project.folder))
-        words = ("workbench --project", where, "task", EXAMPLE, design, "--out", f"told/{EXAMPLE}")
+        words = ("workbench task", EXAMPLE, design, "--out", f"told/{EXAMPLE}", "--project", where)
         saved = "Save the design as a file or a variant and type" if path is None else "Type"
         return f"{why} {saved}\n\n```\n{' '.join(words)} --no-twin\n```"

@@ -40,16 +40,6 @@ def varied(shown: Tensor, generator: torch.Generator, *, moved: bool) -> Tensor:
     return _moved(_recoloured(other, generator), generator) if moved else other
 
 
-def as_grey_changes(shown: Tensor) -> Tensor:
-    """Windows with, in place of colours, the grey change from rest, from before, from the first.
-
-    So what moves and what stays are told apart in each image. Shape (B, T, 3, h, w) as before.
-    """
-    grey = shown.mean(dim=2)
-    before = torch.cat([grey[:, :1], grey[:, :-1]], dim=1)
-    return torch.stack([grey, 2.0 * (grey - before), grey - grey[:, :1]], dim=2)
-
-
 def _recoloured(shown: Tensor, generator: torch.Generator) -> Tensor:
     """Colours of each example in another order, all of its images alike."""
     drawn = torch.rand((len(shown), shown.shape[2]), generator=generator, device=shown.device)
