@@ -13,7 +13,7 @@ from workbench.tasks.press_plan import Amount, all_over
 from workbench.tasks.task import Look, Null, Size, Task, Told
 
 DRAGGED = {
-    Size.SMALL: Amount(cases=108, size_mm=(5.0, 8.0), steps=2, shear_steps=2),
+    Size.SMALL: Amount(cases=60, size_mm=(5.0, 8.0), steps=2, shear_steps=2),
     Size.PAPER: Amount(cases=1000, size_mm=(3.0, 12.0), steps=8, shear_steps=6),
 }
 
