@@ -10,6 +10,7 @@ import pytest
 
 from tests.ui.conftest import Server
 from tests.ui.widgets import (
+    coarse_project,
     open_page,
     press,
     set_number,
@@ -26,10 +27,10 @@ pytestmark = [pytest.mark.ui, pytest.mark.slow]
 
 
 def test_results_of_both_variants_stand_beside_each_other(
-    unpressed_project: Path, page: Any, start_server: Callable[..., Server]
+    tmp_path: Path, page: Any, start_server: Callable[..., Server]
 ) -> None:
     """Without results it says the command; with them scores, and which object only B takes."""
-    folder = unpressed_project
+    folder = coarse_project(tmp_path)
     server = start_server(folder)
     open_page(page, server.url)
     wait_until(lambda: page.get_by_text("Shape ✓").count(), 60, "the shape is built")

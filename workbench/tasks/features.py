@@ -54,6 +54,11 @@ def with_features(found: Examples, task: Task, net: Net, device: str, monitor: M
     return dataclasses.replace(found, features=seen)
 
 
+def seen_once(found: Examples, net: Net) -> Examples:
+    """Examples with what a head is shown of them as they are, where one is to tell them."""
+    return dataclasses.replace(found, features=shown_to(net, found)) if net in HEADS else found
+
+
 def shown_to(net: Net, found: Examples) -> np.ndarray:
     """What a network is given of examples: differences, or features, found now if need be."""
     if net not in HEADS:

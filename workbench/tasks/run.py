@@ -36,7 +36,7 @@ from workbench.pipeline.devices import torch_device
 from workbench.project.design_toml import design_table
 from workbench.project.project import Project
 from workbench.tasks.examples import Examples, examples
-from workbench.tasks.features import with_features
+from workbench.tasks.features import seen_once, with_features
 from workbench.tasks.lessons import SEEDS, Lessons
 from workbench.tasks.outcome import Tested, Trial
 from workbench.tasks.photo_folder import PhotoFolder
@@ -204,9 +204,9 @@ class _Work:
         """Photographs as examples with the outputs of the renders."""
         task, scale = lessons.task, lessons.trainer.safety
         seen = folder.seen(task, view, self.design.optics.camera)
-        if scale is None:
-            return examples(task, seen, lessons.found.outputs)
-        return scale.with_safety(examples(task, seen, task.columns))
+        outputs = lessons.found.outputs if scale is None else task.columns
+        found = seen_once(examples(task, seen, outputs), self.plan.net)
+        return found if scale is None else scale.with_safety(found)
 
     def _lessons(self, data: DataSet, images: tuple[Shown, AtRest], view: View) -> Lessons:
         """All examples of the renders, and who learns from them."""
