@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from workbench.tasks.examples import Examples
-from workbench.tasks.slip_delay import slip_delays, told_by_frame
+from workbench.tasks.slip_delay import slip_delays, told_by_frame, within_frames
 from workbench.tasks.splits import by_place
 
 
@@ -43,6 +43,17 @@ def test_delays_are_counted_from_gross_slip() -> None:
     delays = slip_delays(network, found, 0.1)
     assert (delays["slides"], delays["missed"], delays["false_alarms"]) == (3, 1, 1)
     assert sorted(delays["frames"]) == [-1, 2] and delays["median_frames"] == 0.5
+
+
+def test_what_tells_the_time_tells_nothing_within_a_frame() -> None:
+    """Slides that slip from frames 8 and 12 on: frames 8 to 11 have both, and time tells a half."""
+    found = slides({"soon": 8, "late": 12})
+    clock: Any = SimpleNamespace(
+        told=lambda asked: np.array([int(int(n.split(":")[1]) >= 10) for n in asked.names])
+    )
+    sees: Any = SimpleNamespace(told=lambda asked: asked.truth)
+    assert (within_frames(clock, found), within_frames(sees, found)) == (0.5, 1.0)
+    assert within_frames(sees, slides({"soon": 8, "too": 8})) == 0.5
 
 
 @pytest.mark.parametrize(

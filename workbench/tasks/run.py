@@ -153,7 +153,7 @@ class _Work:
             networks[test] = [run.trained for run in runs]
             tests.append(lessons.on_renders(test, runs))
         if view.sight is not None and self.task.look is Look.WINDOW:
-            tell_slides(lessons, networks[Trial.PLACE][0], tests, self.recipe.shear_step_mm)
+            tell_slides(lessons, networks, tests, self.recipe.shear_step_mm)
         details = self._details(lessons, networks[Trial.SIM][0])
         if folder is not None:
             with self._timed(Trial.PHOTOS):

@@ -5,12 +5,13 @@ counted from the first frame in which 95 % of the contact slides; a negative one
 
 In renders every slide is pressed and dragged in the same steps, so that a window slips the more
 likely the later it is. What a threshold on the number of its last frame tells stands beside what
-the network does: one that tells no more need not have seen slip.
+the network does, and so does what the network tells among windows that end in the same frame,
+where time says nothing: there chance is a half.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -24,21 +25,28 @@ from workbench.tasks.trained import Trained
 
 
 def tell_slides(
-    lessons: Lessons, network: Trained, tests: Sequence[Tested], frame_mm: float
+    lessons: Lessons,
+    networks: Mapping[Trial, Sequence[Trained]],
+    tests: Sequence[Tested],
+    frame_mm: float,
 ) -> None:
-    """Add to details what the time alone tells in each test, and the delays in the last.
+    """Add to details what the time alone tells and what is told without it, and delays by place.
 
     Args:
         lessons: With all windows of all slides.
-        network: Of the first seed by place.
+        networks: Of all seeds, by test.
         tests: On renders, the last of them by place.
         frame_mm: Way of the object from frame to frame [mm].
     """
     for test in tests:
-        parts = lessons.parts(test.test)
+        parts, learned = lessons.parts(test.test), networks[test.test]
+        held_out = [lessons.found.only(each.test) for each in parts]
         test.details["told_by_frame_alone"] = told_by_frame(lessons.found, parts)
+        test.details["told_within_frames"] = float(
+            np.mean([within_frames(*each) for each in zip(learned, held_out, strict=True)])
+        )
     left = lessons.found.only(lessons.parts(Trial.PLACE)[0].test)
-    tests[-1].details["delay"] = slip_delays(network, left, frame_mm)
+    tests[-1].details["delay"] = slip_delays(networks[Trial.PLACE][0], left, frame_mm)
 
 
 def slip_delays(network: Trained, held_out: Examples, frame_mm: float) -> dict[str, Any]:
@@ -82,6 +90,21 @@ def told_by_frame(found: Examples, parts: Sequence[Parts]) -> float:
         at = best_threshold(frame[train].astype(np.float64), found.truth[train])
         scores.append(balanced_accuracy((frame[test] > at).astype(int), found.truth[test]))
     return float(np.mean(scores))
+
+
+def within_frames(network: Trained, held_out: Examples) -> float:
+    """Balanced accuracy among windows that end in the same frame, mean over such frames.
+
+    Frames in which all windows slip, or none does, do not count; without any it is a half.
+    """
+    told = network.told(held_out)
+    _, frame = _case_and_frame(held_out)
+    scores = [
+        balanced_accuracy(told[frame == each], held_out.truth[frame == each])
+        for each in np.unique(frame)
+        if len(np.unique(held_out.truth[frame == each])) > 1
+    ]
+    return float(np.mean(scores)) if scores else 0.5
 
 
 def _case_and_frame(found: Examples) -> tuple[np.ndarray, np.ndarray]:
