@@ -94,7 +94,7 @@ def test_motion_of_the_skin_is_told_in_millimetres() -> None:
     cloud = cv2.GaussianBlur(rng.normal(size=(64, 96)).astype(np.float32), (0, 0), 4.0) * 600.0
     moving = np.stack([cloud[:, 2 * k : 2 * k + 64] for k in range(8)])
     both = np.stack([moving, np.tile(cloud[:, :64], (8, 1, 1))])
-    found = motions(np.repeat(both[..., None], 3, axis=4).astype(np.int16), silent)
+    found = motions(np.repeat(both[..., None], 3, axis=4).astype(np.int16), 0.1875, silent)
     assert found.shape == (2, 1, 1, 21)
     in_the_middle = np.exp(found[:, 0, 0, :7])
     assert in_the_middle[0] == pytest.approx(0.375, rel=0.2)

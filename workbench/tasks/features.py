@@ -12,6 +12,7 @@ import numpy as np
 
 from workbench.core.base.monitor import Monitor, silent
 from workbench.tasks.examples import Examples
+from workbench.tasks.skin_sight import MM_PER_PX
 from workbench.tasks.task import Look, Net, Task, Told
 
 HEADS = {
@@ -48,7 +49,7 @@ def with_features(found: Examples, task: Task, net: Net, device: str, monitor: M
     elif net is Net.MOTION:
         from workbench.tasks.networks.motion import motions
 
-        seen = motions(found.inputs, monitor)
+        seen = motions(found.inputs, MM_PER_PX, monitor)
     else:
         return found
     return dataclasses.replace(found, features=seen)
@@ -68,7 +69,7 @@ def shown_to(net: Net, found: Examples) -> np.ndarray:
     if net is Net.MOTION:
         from workbench.tasks.networks.motion import motions
 
-        return motions(found.inputs, silent)
+        return motions(found.inputs, MM_PER_PX, silent)
     from workbench.pipeline.devices import torch_device
     from workbench.tasks.networks.lite import features
 

@@ -23,6 +23,7 @@ from workbench.core.result.results import MembraneMesh
 
 PATCH_PX, HALF_MM = 64, 6.0
 """Side of what is shown [px], and half of it on the skin [mm]."""
+MM_PER_PX = 2.0 * HALF_MM / PATCH_PX
 SMOOTH_PX, OVER_NOISE, NEAR_MM = 1.5, 6.0, 7.0
 """Blur of differences where a contact is looked for [px], what is noise over the median [1], and
 how far from its peak it may reach [mm]."""

@@ -14,33 +14,36 @@ import itertools
 import numpy as np
 
 from workbench.core.base.monitor import Monitor
-from workbench.tasks.skin_sight import HALF_MM, PATCH_PX
 
-MIDDLE = slice(PATCH_PX * 5 // 16, PATCH_PX * 11 // 16)
-"""Pixels of the middle of a patch: 4.5 of 12 mm."""
+MIDDLE = 5 / 16, 11 / 16
+"""Beginning and end of the middle of a patch, over its side."""
 LEAST_MM = 0.004
 """Way that counts as none [mm]: a fiftieth of a pixel."""
 LEVELS, WINDOW_PX, ITERATIONS, NEIGHBOURS_PX, SMOOTH_PX = 2, 15, 3, 5, 1.1
 """Of Farneback's method, as OpenCV has it."""
 
 
-def motions(inputs: np.ndarray, monitor: Monitor) -> np.ndarray:
+def motions(inputs: np.ndarray, mm_per_px: float, monitor: Monitor) -> np.ndarray:
     """Motion in windows laid flat, shape (N, 1, 1, 3 (T - 1)), float32, natural logarithms of mm.
 
     Args:
-        inputs: Differences [grey level], shape (N, T, `PATCH_PX`, `PATCH_PX`, 3), int16.
+        inputs: Differences [grey level], shape (N, T, S, S, 3), int16.
+        mm_per_px: Size of a pixel on the skin [mm].
         monitor: Progress and cancellation.
     """
     found = []
     for number, window in enumerate(inputs):
         monitor(number / len(inputs), f"{number} of {len(inputs)} seen")
-        found.append(_of_window(window))
+        found.append(np.log(_ways_px(window) * mm_per_px + LEAST_MM).T.ravel())
     count = 3 * (inputs.shape[1] - 1)
     return np.array(found, np.float32).reshape(len(inputs), 1, 1, count)
 
 
-def _of_window(window: np.ndarray) -> np.ndarray:
+def _ways_px(window: np.ndarray) -> np.ndarray:
+    """Three lengths of each step [px], shape (T - 1, 3)."""
     import cv2
+
+    middle = slice(*(round(share * window.shape[1]) for share in MIDDLE))
 
     grey = np.clip(window.mean(axis=3) + 128.0, 0, 255).astype(np.uint8)
     ways = []
@@ -58,6 +61,6 @@ def _of_window(window: np.ndarray) -> np.ndarray:
             0,
         )
         length = np.linalg.norm(flow, axis=2)
-        middle = flow[MIDDLE, MIDDLE].mean(axis=(0, 1))
-        ways.append((length[MIDDLE, MIDDLE].mean(), length.mean(), np.linalg.norm(middle)))
-    return np.log(np.array(ways) * 2.0 * HALF_MM / PATCH_PX + LEAST_MM).T.ravel()
+        together = np.linalg.norm(flow[middle, middle].mean(axis=(0, 1)))
+        ways.append((length[middle, middle].mean(), length.mean(), together))
+    return np.array(ways)

@@ -15,7 +15,7 @@ from typing import Any
 from workbench.core.base.errors import StoreError
 from workbench.proof.row import Row, bounded, failed
 from workbench.proof.validation.tasks.task_records import SIZES, TaskRecord, task_records
-from workbench.tasks.outcome import WORDS
+from workbench.tasks.outcome import WORDS, Trial
 
 UNITS = {"_mm": "mm", "_MPa": "MPa", "_N": "N", "_deg": "degree"}
 
@@ -39,12 +39,12 @@ def _rows(one: TaskRecord) -> list[Row]:
         result = record.figures()["result"]
     except StoreError as error:
         return [failed(f"task_{one.task}", f"{one.design}, {one.size}", why=error.message)]
-    return [_row(one, result, row) for row in result["rows"]]
+    return [_row(one, result, row) for row in result["rows"]] + _within_frames(one, result)
 
 
 def _row(one: TaskRecord, result: Mapping[str, Any], row: Mapping[str, Any]) -> Row:
     details = result["details"]
-    words = next(text for test, text in WORDS.items() if test.value == row["test"])
+    words = WORDS[Trial(row["test"])]
     test = details["tests"][row["test"]]
     tested, by_frame = test["tested_on"], test.get("told_by_frame_alone")
     null = row["null"] if by_frame is None else max(row["null"], by_frame)
@@ -61,6 +61,25 @@ def _row(one: TaskRecord, result: Mapping[str, Any], row: Mapping[str, Any]) -> 
         null=null,
         record=one.record,
     )
+
+
+def _within_frames(one: TaskRecord, result: Mapping[str, Any]) -> list[Row]:
+    """What is told of slip where the time says nothing; none of other tasks."""
+    return [
+        bounded(
+            f"task_{one.task}_within_frames",
+            f"{one.design}, {one.size}: balanced accuracy on {WORDS[Trial(name)]}, among windows "
+            f"that end in the same frame, {len(test['tested_on'])} seeds",
+            test["told_within_frames"],
+            unit="1",
+            limit=0.5,
+            sense="min",
+            null=0.5,
+            record=one.record,
+        )
+        for name, test in result["details"]["tests"].items()
+        if "told_within_frames" in test
+    ]
 
 
 def _unit(metric: str) -> str:
