@@ -19,7 +19,9 @@ from workbench.tasks.task import task_of
 
 
 def some(
-    truth: list[float] | np.ndarray, outputs: tuple[str, ...], motion: float = 0.0
+    truth: list[float] | list[list[float]] | np.ndarray,
+    outputs: tuple[str, ...],
+    motion: float = 0.0,
 ) -> Examples:
     """Examples of nothing, with a truth."""
     values = np.asarray(truth)
