@@ -24,7 +24,7 @@ from workbench.report.image_files import png_bytes
 from workbench.tasks.examples import examples
 from workbench.tasks.photo_folder import PhotoFolder
 from workbench.tasks.rendered import Renders, rendered
-from workbench.tasks.seen_images import VIEWS
+from workbench.tasks.seen_images import whole
 from workbench.tasks.task import Net, task_of
 
 CAMERA = Camera(width_px=4 * WIDTH, height_px=4 * HEIGHT)
@@ -32,7 +32,7 @@ CAMERA = Camera(width_px=4 * WIDTH, height_px=4 * HEIGHT)
 
 def read(folder: Path, task: str = "objects") -> list:
     """Everything a task takes from a folder."""
-    return list(PhotoFolder.open(folder).seen(task_of(task), VIEWS[Net.OWN], CAMERA))
+    return list(PhotoFolder.open(folder).seen(task_of(task), whole(Net.OWN), CAMERA))
 
 
 def test_photographs_count_as_their_difference_from_rest(tmp_path: Path) -> None:
@@ -123,7 +123,7 @@ def test_photographs_of_other_sizes_are_refused(tmp_path: Path) -> None:
     photographed(tmp_path, 4)
     wide = Camera(width_px=640, height_px=360)
     with pytest.raises(DesignError, match="48 x 36 pixels, the camera of the design 640 x 360"):
-        list(PhotoFolder.open(tmp_path).seen(task_of("objects"), VIEWS[Net.OWN], wide))
+        list(PhotoFolder.open(tmp_path).seen(task_of("objects"), whole(Net.OWN), wide))
     (tmp_path / "p002.png").write_bytes(png_bytes(dots(0.0)[:30]))
     with pytest.raises(DesignError, match=r"p002.png has 48 x 30 pixels, idle.png 48 x 36"):
         read(tmp_path)
@@ -152,7 +152,7 @@ def test_an_exported_data_set_reads_as_what_it_was(tmp_path: Path) -> None:
     data, task = touched(tmp_path / "data", cases=10), task_of("objects")
     assert export_images(data, tmp_path / "photos", silent) == 20
     own = Renders(data, marked=False)
-    ours = examples(task, rendered(task, VIEWS[Net.OWN], data, (own.shown, own.at_rest), silent))
+    ours = examples(task, rendered(task, whole(Net.OWN), data, (own.shown, own.at_rest), silent))
     theirs = examples(task, read(tmp_path / "photos"))
     assert (ours.inputs == theirs.inputs).all() and ours.outputs == theirs.outputs
     assert ours.places.tolist() == theirs.places.tolist()

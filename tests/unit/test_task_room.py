@@ -60,7 +60,24 @@ def test_a_record_of_other_code_is_stale(kept: Path) -> None:
 
 def test_records_are_asked_for_by_size_and_name() -> None:
     """All of a size, or one; another is refused."""
-    assert len(wanted(["paper"])) == len(task_records.DONE)
-    assert [one.name for one in wanted(["small", "pad_safety"])] == ["pad_safety_small"]
+    assert len(wanted(["paper"])) == len(task_records.DONE["paper"])
+    assert [one.name for one in wanted(["paper", "pad_safety"])] == ["pad_safety_paper"]
     with pytest.raises(DesignError, match="no task 'paw_slip_small' is on record"):
         wanted(["small", "paw_slip"])
+
+
+def test_slip_must_beat_the_time_alone(kept: Path) -> None:
+    """.83 against a motion of .5 and a frame's number of .85 is not met."""
+    row = {"task": "slip", "test": "sim", "metric": "balanced_accuracy", "value": 0.83}
+    alone, within = {"told_by_frame_alone": 0.85}, {"told_within_frames": 0.7}
+    test = {"tested_on": [80, 80, 80], **alone, **within}
+    found = {
+        "rows": [{**row, "spread": 0.1, "null": 0.5, "paper": None}],
+        "details": {"network": "motion", "tests": {"sim": test}},
+    }
+    one = TaskRecord(design="geltip", task="slip", size="small")
+    one.record.make(lambda: {"result": found})
+    slip, within_frames = room.rows([one])
+    assert (slip.null, slip.ok) == (0.85, False) and "number alone 0.85" in slip.case
+    assert (within_frames.value, within_frames.null, within_frames.ok) == (0.7, 0.5, True)
+    assert judge(within_frames.name, within_frames.case).value == "itself"

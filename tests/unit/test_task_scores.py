@@ -9,8 +9,8 @@ from workbench.tasks.examples import Examples
 from workbench.tasks.safety_scale import SafetyScale
 from workbench.tasks.scores import (
     balanced_accuracy,
+    best_threshold,
     confusion,
-    motion_threshold,
     rank_correlation,
     scored,
     trivial,
@@ -19,7 +19,9 @@ from workbench.tasks.task import task_of
 
 
 def some(
-    truth: list[float] | np.ndarray, outputs: tuple[str, ...], motion: float = 0.0
+    truth: list[float] | list[list[float]] | np.ndarray,
+    outputs: tuple[str, ...],
+    motion: float = 0.0,
 ) -> Examples:
     """Examples of nothing, with a truth."""
     values = np.asarray(truth)
@@ -27,7 +29,9 @@ def some(
         names=tuple(map(str, range(len(values)))),
         places=np.array(["here"] * len(values)),
         inputs=np.zeros((len(values), 1, 2, 2, 3), np.int16),
-        at=np.zeros((len(values), 5), np.float32),
+        at=np.zeros((len(values), 8), np.float32),
+        feet_mm=np.zeros((len(values), 3)),
+        axes=np.tile(np.eye(3), (len(values), 1, 1)),
         motion=np.full(len(values), motion),
         truth=values,
         outputs=outputs,
@@ -63,12 +67,14 @@ def test_the_threshold_of_motion_is_the_best_of_the_training_part() -> None:
         names=tuple("abcd"),
         places=np.array(list("abcd")),
         inputs=np.zeros((4, 8, 2, 2, 3), np.int16),
-        at=np.zeros((4, 5), np.float32),
+        at=np.zeros((4, 8), np.float32),
+        feet_mm=np.zeros((4, 3)),
+        axes=np.tile(np.eye(3), (4, 1, 1)),
         motion=motion,
         truth=np.array([0, 0, 1, 1]),
         outputs=("hold", "slip"),
     )
-    assert motion_threshold(train) == pytest.approx(0.035)
+    assert best_threshold(train.motion, train.truth) == pytest.approx(0.035)
     assert trivial(task_of("slip"), train, train).tolist() == [0, 0, 1, 1]
 
 

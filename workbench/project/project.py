@@ -5,6 +5,7 @@
   store/     results by stage and key; elsewhere if `$WORKBENCH_STORE` names a folder for them
   designs/   autosave.toml
   variants/  kept designs with their press, figures and thumbnails; `trash/` has deleted ones
+  tasks/     what tasks told apart, by design
   sweeps/    one-parameter sweeps with their figures
   bodies/    files of imported bodies by hash
   pictures/  backgrounds and patterns of markers by hash

@@ -45,7 +45,11 @@ class Examples:
     inputs: np.ndarray
     """Differences from rest [grey level], shape (N, T, h, w, 3), int16."""
     at: np.ndarray
-    """Where and how strong it is, as `Change` has it, shape (N, 5), float32."""
+    """Where and how strong it is, as `Change` has it, shape (N, 8), float32."""
+    feet_mm: np.ndarray
+    """Middle of each contact on the skin [mm], shape (N, 3)."""
+    axes: np.ndarray
+    """Axes of each contact, as `Touch` has them, shape (N, 3, 3)."""
     motion: np.ndarray
     """Of windows, over the width of the image, shape (N,)."""
     features: np.ndarray | None = None
@@ -65,6 +69,8 @@ class Examples:
             places=self.places[rows],
             inputs=self.inputs[rows],
             at=self.at[rows],
+            feet_mm=self.feet_mm[rows],
+            axes=self.axes[rows],
             motion=self.motion[rows],
             features=None if self.features is None else self.features[rows],
             truth=self.truth[rows],
@@ -100,6 +106,8 @@ def examples(task: Task, seen: Iterable[Seen], outputs: Sequence[str] = ()) -> E
         places=np.array([each.place for each in found]),
         inputs=np.stack([each.change.grey for each in found]),
         at=np.array([each.change.at for each in found], np.float32),
+        feet_mm=np.array([each.change.foot_mm for each in found]),
+        axes=np.array([each.change.axes for each in found]),
         motion=np.array([each.motion for each in found]),
         truth=truth,
         outputs=names,

@@ -9,6 +9,8 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any, TypedDict, Unpack
 
 from workbench.core.design.design import SensorDesign
@@ -34,13 +36,37 @@ POINTS = 40
 FRICTION = (0.2, 0.6)
 OBJECTS = tuple(kind for kind in (*SEEN, *UNSEEN) if kind.value not in ("ring", "rhombus"))
 """The 12 objects of the paper's classification. Source: class names in its released script."""
+DEPTH_MM = 0.8
+"""Way in that is wanted [mm]; a thin membrane is pressed less deep."""
+SHEAR_MM = 0.6
+"""Way aside of a press that is dragged [mm]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Amount:
+    """How many presses, of which objects, in how many frames."""
+
+    cases: int
+    size_mm: tuple[float, float]
+    """Least and largest object [mm]."""
+    steps: int
+    """Frames of a press."""
+    shear_steps: int = 0
+    """Frames of a drag aside; 0: straight presses."""
+
+
+STRAIGHT: Mapping[Size, Amount] = {
+    Size.SMALL: Amount(cases=144, size_mm=(7.0, 9.0), steps=2),
+    Size.PAPER: Amount(cases=1002, size_mm=(3.0, 12.0), steps=8),
+}
+"""Straight presses: what tells objects and places apart. At size `paper` they are as many images as
+the paper has."""
 
 
 class Pressed(TypedDict, total=False):
     """What a task's presses are besides: fields of a recipe."""
 
     indenters: tuple[IndenterKind, ...]
-    size_mm: float
     shear_mm: float
     shear_step_mm: float
     shear_directions: int
@@ -65,12 +91,44 @@ def pattern_of(design: SensorDesign, *, side: bool = False) -> Pattern:
     return Pattern.SPREAD
 
 
+def all_over(
+    design: SensorDesign,
+    size: Size,
+    amounts: Mapping[Size, Amount],
+    depth_mm: float = DEPTH_MM,
+    indenters: tuple[IndenterKind, ...] = OBJECTS,
+) -> Recipe:
+    """Presses of all objects, all over a membrane, turned at random about the way of the press.
+
+    Args:
+        design: What is pressed.
+        size: Which of the amounts.
+        amounts: How many presses at each size.
+        depth_mm: Way in that is wanted [mm].
+        indenters: The objects.
+    """
+    amount = amounts[size]
+    more = Pressed(indenters=indenters, shear_directions=0)
+    if amount.shear_steps:
+        step_mm = SHEAR_MM / amount.shear_steps
+        more = Pressed(indenters=indenters, shear_mm=SHEAR_MM, shear_step_mm=step_mm)
+    made = pressed(
+        design,
+        size,
+        pattern_of(design),
+        (depth_mm, amount.steps),
+        amount.size_mm,
+        **more,
+    )
+    return dataclasses.replace(made, cases=amount.cases)
+
+
 def pressed(
     design: SensorDesign,
     size: Size,
     pattern: Pattern,
     depth: tuple[float, int],
-    vary: Vary,
+    size_mm: tuple[float, float],
     **more: Unpack[Pressed],
 ) -> Recipe:
     """A recipe of presses by the contact solver, seen by several built sensors.
@@ -80,7 +138,7 @@ def pressed(
         size: Small sets are pressed on a coarser grid and seen in fewer pixels.
         pattern: Where.
         depth: Wanted way in [mm], and its steps.
-        vary: What each press draws; its looks are set here.
+        size_mm: Least and largest object [mm].
         more: As of a recipe.
     """
     wanted_mm, steps = depth
@@ -95,7 +153,12 @@ def pressed(
         solvers=Solvers.MPM,
         image_width_px=WIDTHS_PX[size],
         hold_out=False,
-        vary=dataclasses.replace(vary, looks=Looks(count=LOOKS[size])),
+        vary=Vary(
+            size_mm=size_mm,
+            spin_deg=(-180.0, 180.0),
+            friction=FRICTION,
+            looks=Looks(count=LOOKS[size]),
+        ),
         **more,
     )
     if size is Size.SMALL:

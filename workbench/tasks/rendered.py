@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
@@ -13,10 +14,13 @@ from workbench.learning.dataset.folder import MARKED, PLAIN, DataSet, background
 from workbench.learning.dataset.photo_export import windows
 from workbench.learning.dataset.photo_labels import SLIP, labels_of
 from workbench.learning.dataset.sample import Sample, decoded
+from workbench.learning.dataset.sequences import FRAMES, gross_slip
 from workbench.tasks.examples import Seen
 from workbench.tasks.seen_images import View, change, motion
 from workbench.tasks.task import Look, Task
 
+MOST_WINDOWS = 2000
+"""Of a data set of slides: more do not fit the memory of small machines, and overlap anyway."""
 Shown = Callable[[Case, Sample], np.ndarray]
 """The image of a sample, shape (H, W, 3), uint8."""
 AtRest = Callable[[Case], np.ndarray]
@@ -52,7 +56,8 @@ def rendered(
 
     Args:
         task: Says whether single images or windows are shown.
-        view: Says which part of an image is seen.
+        view: Says which part of an image is seen. Of windows, which overlap, all are shown where
+            it lays contacts flat; else those that the data set lists.
         data: The presses.
         images: Of a sample, and at rest; those of `Renders`, or others of the same presses.
         monitor: Progress.
@@ -61,9 +66,9 @@ def rendered(
         StoreError: If a sample is damaged.
     """
     shown, at_rest = images
-    listed = list(_windows(task, data))
-    for number, (case, frames, more) in enumerate(listed):
-        monitor(number / len(listed), case.id)
+    found = list(_windows(task, data, listed=view.sight is None))
+    for number, (case, frames, more) in enumerate(found):
+        monitor(number / len(found), case.id)
         samples = [data.sample(case, frame) for frame in frames]
         own = [shown(case, sample) for sample in samples]
         yield Seen(
@@ -75,14 +80,32 @@ def rendered(
         )
 
 
-def _windows(task: Task, data: DataSet) -> Iterator[tuple[Case, Sequence[int], dict[str, Any]]]:
+def _windows(
+    task: Task, data: DataSet, *, listed: bool
+) -> Iterator[tuple[Case, Sequence[int], dict[str, Any]]]:
     """Case, frames, and what is known of each example besides."""
     if task.look is Look.WINDOW:
-        for case, row in windows(data):
-            frames = range(row["first"], row["first"] + row["frames"])
-            yield case, frames, {SLIP: int(row["slip"])}
+        yield from _listed(data) if listed else _every(data)
         return
     for case in data.cases():
         for frame in data.frames(case):
             if frame >= case.first_new:
                 yield case, (frame,), {}
+
+
+def _listed(data: DataSet) -> Iterator[tuple[Case, Sequence[int], dict[str, Any]]]:
+    """The windows that the data set lists, as many with as without slip, as in the paper."""
+    for case, row in windows(data):
+        yield case, range(row["first"], row["first"] + row["frames"]), {SLIP: int(row["slip"])}
+
+
+def _every(data: DataSet) -> Iterator[tuple[Case, Sequence[int], dict[str, Any]]]:
+    """All windows of all slides, or one in so many that there are `MOST_WINDOWS` at most."""
+    slides = [case for case in data.cases() if len(data.frames(case)) == case.frames]
+    count = sum(max(0, case.frames - FRAMES + 1) for case in slides)
+    step = max(1, math.ceil(count / MOST_WINDOWS))
+    for case in slides:
+        onset = gross_slip(data, case)
+        for end in range(FRAMES, case.frames + 1, step):
+            slips = onset is not None and end - 1 >= onset
+            yield case, range(end - FRAMES, end), {SLIP: int(slips)}

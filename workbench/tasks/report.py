@@ -79,6 +79,13 @@ def _test(test: Tested, told: Told) -> list[str]:
     else:
         ranks = details["rank_correlation"].items()
         parts.append(html_page.table([(f"rank correlation of {k}", v) for k, v in ranks]))
+    if "told_by_frame_alone" in details:
+        by_frame = _number(details["told_by_frame_alone"])
+        within = _number(details["told_within_frames"])
+        parts.append(
+            f"<p>By the number of a window's last frame alone: {by_frame}. Among windows that end "
+            f"in the same frame, where chance is a half: {within}.</p>"
+        )
     if "delay" in details:
         delay = details["delay"]
         told_of = [(name.replace("_", " "), str(value)) for name, value in delay.items()]

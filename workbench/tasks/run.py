@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import dataclasses
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -30,12 +30,13 @@ from workbench.core.design.optics import Optics
 from workbench.learning.dataset.folder import DataSet
 from workbench.learning.dataset.lock import held
 from workbench.learning.dataset.recipe import Recipe
-from workbench.learning.making.collect import make
+from workbench.learning.making.collect import make, prepare
 from workbench.learning.making.watch import SetProgress
 from workbench.pipeline.devices import torch_device
 from workbench.project.design_toml import design_table
 from workbench.project.project import Project
-from workbench.tasks.examples import Examples, Seen, examples
+from workbench.tasks.examples import Examples, examples
+from workbench.tasks.features import seen_once, with_features
 from workbench.tasks.lessons import SEEDS, Lessons
 from workbench.tasks.outcome import Tested, Trial
 from workbench.tasks.photo_folder import PhotoFolder
@@ -43,10 +44,10 @@ from workbench.tasks.photo_training import on_photos
 from workbench.tasks.rendered import AtRest, Renders, Shown, rendered
 from workbench.tasks.reshoot import Reshot, sees_outer_skin
 from workbench.tasks.safety_scale import SafetyScale
-from workbench.tasks.seen_images import VIEWS
-from workbench.tasks.slip_delay import slip_delays
+from workbench.tasks.seen_images import View, view_of, whole
+from workbench.tasks.slip_delay import tell_slides
 from workbench.tasks.task import Look, Net, Size, Task, task_of
-from workbench.tasks.trained import Trained, Trainer, with_features
+from workbench.tasks.trained import Trained, Trainer
 from workbench.tasks.twin_test import calibrated, photographed, twin_plan
 
 SPANS = {
@@ -71,6 +72,8 @@ class Plan:
     size: Size = Size.SMALL
     net: Net = Net.LITE
     photos: Path | None = None
+    data: Path | None = None
+    """Folder of presses of the same recipe, made before or to be made; none: in the results'."""
     jobs: int = 1
     twin: bool = True
     """Whether a twin is photographed too."""
@@ -104,11 +107,10 @@ def run_task(
         WorkbenchError: As stages, calibration and twin.
     """
     task = task_of(plan.task)
-    seen = None
-    if plan.photos is not None:
+    folder = None if plan.photos is None else PhotoFolder.open(plan.photos)
+    if folder is not None:
         # Photographs that do not suit are told before anything is pressed.
-        folder = PhotoFolder.open(plan.photos)
-        seen = list(folder.seen(task, VIEWS[plan.net], design.optics.camera))
+        list(folder.seen(task, whole(plan.net), design.optics.camera))
     with held(out, doing="running the task in"):
         work = _Work(
             task=task,
@@ -120,7 +122,7 @@ def run_task(
             monitor=monitor,
             seconds={},
         )
-        return work.run(seen)
+        return work.run(folder)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -137,33 +139,30 @@ class _Work:
     seconds: dict[str, float]
     """Time of each step."""
 
-    def run(self, seen: list[Seen] | None) -> Result:
+    def run(self, folder: PhotoFolder | None) -> Result:
         with self._timed("data"):
             data = self._data()
         own = Renders(data, marked=self._marked)
-        images = own.shown, own.at_rest
         with self._timed("images"):
-            lessons = self._lessons(data, images)
+            view = self._view(self.design.optics)
+            lessons = self._lessons(data, (own.shown, own.at_rest), view)
         tests, networks = [], dict[Trial, list[Trained]]()
         for test in (Trial.SIM, Trial.PLACE):
             with self._timed(test):
                 runs = lessons.learned(test, self._span(test))
             networks[test] = [run.trained for run in runs]
             tests.append(lessons.on_renders(test, runs))
-        if self.task.look is Look.WINDOW:
-            left = set(lessons.found.places[lessons.parts(Trial.PLACE)[0].test].tolist())
-            network = networks[Trial.PLACE][0]
-            delay = slip_delays(data, images, network, left, VIEWS[self.plan.net])
-            tests[-1].details["delay"] = delay
+        if view.sight is not None and self.task.look is Look.WINDOW:
+            tell_slides(lessons, networks, tests, self.recipe.shear_step_mm)
         details = self._details(lessons, networks[Trial.SIM][0])
-        if seen is not None:
+        if folder is not None:
             with self._timed(Trial.PHOTOS):
-                photos = _photos(seen, lessons)
+                photos = self._photos(folder, lessons, view)
                 tests.append(lessons.on_photos(Trial.PHOTOS, photos, networks[Trial.SIM]))
                 own_training = on_photos(lessons, photos, self._span(Trial.PHOTOS))
                 details["trained_on_photos"] = own_training
         if self.plan.twin:
-            tests += self._twin(data, lessons, networks[Trial.SIM], details)
+            tests += self._twin(data, (lessons, view), networks[Trial.SIM], details)
         details["seconds"] = {name: round(value, 1) for name, value in self.seconds.items()}
         return Result(plan=self.plan, design=self.design, tests=tests, details=details)
 
@@ -189,16 +188,29 @@ class _Work:
 
         return make(
             self.recipe,
-            self.out / "data",
+            self.plan.data or self.out / "data",
             self.project,
             jobs=self.plan.jobs,
             tell=tell,
             monitor=lambda stage, fraction, note: monitor(0.0, f"{stage} {note}"),
         )
 
-    def _lessons(self, data: DataSet, images: tuple[Shown, AtRest]) -> Lessons:
+    def _view(self, optics: Optics) -> View:
+        """What is shown of the design by its own or by other optics."""
+        calls = prepare(self.recipe, self.project, [], None)
+        return view_of(self.plan.net, self.project.store.load("mesh", calls["mesh"].key), optics)
+
+    def _photos(self, folder: PhotoFolder, lessons: Lessons, view: View) -> Examples:
+        """Photographs as examples with the outputs of the renders."""
+        task, scale = lessons.task, lessons.trainer.safety
+        seen = folder.seen(task, view, self.design.optics.camera)
+        outputs = lessons.found.outputs if scale is None else task.columns
+        found = seen_once(examples(task, seen, outputs), self.plan.net)
+        return found if scale is None else scale.with_safety(found)
+
+    def _lessons(self, data: DataSet, images: tuple[Shown, AtRest], view: View) -> Lessons:
         """All examples of the renders, and who learns from them."""
-        seen = rendered(self.task, VIEWS[self.plan.net], data, images, self._span("images"))
+        seen = rendered(self.task, view, data, images, self._span("images"))
         found, scale = examples(self.task, seen), None
         if self.task.safety:
             scale = SafetyScale.of(found)
@@ -218,7 +230,7 @@ class _Work:
     def _twin(
         self,
         data: DataSet,
-        lessons: Lessons,
+        nominal: tuple[Lessons, View],
         networks: list[Trained],
         details: dict[str, Any],
     ) -> list[Tested]:
@@ -229,9 +241,9 @@ class _Work:
             place, details["twin"] = photographed(
                 self.design, folder, plan, store, self._span(Trial.TWIN)
             )
-            camera = self.design.optics.camera
-            seen = list(PhotoFolder.open(place).seen(self.task, VIEWS[self.plan.net], camera))
-            tests = [lessons.on_photos(Trial.TWIN, _photos(seen, lessons), networks)]
+            photos, lessons = PhotoFolder.open(place), nominal[0]
+            seen = self._photos(photos, *nominal)
+            tests = [lessons.on_photos(Trial.TWIN, seen, networks)]
         with self._timed(Trial.CALIBRATED):
             try:
                 optics, details["calibration"] = calibrated(
@@ -241,22 +253,24 @@ class _Work:
                 # Photographs that cannot be calibrated to are a result too.
                 details["calibration"] = {"why_not": error.message}
                 return tests
-            again = self._seen_anew(data, optics)
+            view = self._view(optics)
+            again = self._seen_anew(data, optics, view)
             runs = again.learned(Trial.CALIBRATED, self._span(Trial.CALIBRATED))
             learned = [run.trained for run in runs]
-            tests.append(again.on_photos(Trial.CALIBRATED, _photos(seen, again), learned))
+            seen = self._photos(photos, again, view)
+            tests.append(again.on_photos(Trial.CALIBRATED, seen, learned))
         return tests
 
-    def _seen_anew(self, data: DataSet, optics: Optics) -> Lessons:
+    def _seen_anew(self, data: DataSet, optics: Optics, view: View) -> Lessons:
         """The same presses in calibrated light; where pins are seen, pressed anew."""
         if sees_outer_skin(self.recipe, self.project):
             anew = Reshot(self.recipe, optics, self.project, None, marked=self._marked)
-            return self._lessons(data, (anew.shown, anew.at_rest))
+            return self._lessons(data, (anew.shown, anew.at_rest), view)
         design = dataclasses.replace(self.design, optics=optics)
         recipe = dataclasses.replace(self.recipe, design=design)
         other = make(recipe, self.out / "data_calibrated", self.project, jobs=self.plan.jobs)
         own = Renders(other, marked=self._marked)
-        return self._lessons(other, (own.shown, own.at_rest))
+        return self._lessons(other, (own.shown, own.at_rest), view)
 
     def _details(self, lessons: Lessons, network: Trained) -> dict[str, Any]:
         trainer, found = lessons.trainer, lessons.found
@@ -265,7 +279,7 @@ class _Work:
             "network": self.plan.net.value,
             "weights_from": network.weights_from,
             "parameters": sum(each.numel() for each in network.network.parameters()),
-            "learning": dataclasses.asdict(trainer.settings),
+            "learning": trainer.learning,
             "device": trainer.device,
             "seeds": list(SEEDS),
             "examples": len(found),
@@ -277,11 +291,3 @@ class _Work:
             "design": digest(design_table(self.design)),
             "recipe": self.recipe.key,
         }
-
-
-def _photos(seen: Iterable[Seen], lessons: Lessons) -> Examples:
-    """Photographs as examples with the outputs of the renders."""
-    task, scale = lessons.task, lessons.trainer.safety
-    if scale is None:
-        return examples(task, seen, lessons.found.outputs)
-    return scale.with_safety(examples(task, seen, task.columns))

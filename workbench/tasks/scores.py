@@ -54,16 +54,16 @@ def trivial(task: Task, train: Examples, test: Examples) -> np.ndarray:
         classes, often = np.unique(train.truth, return_counts=True)
         return np.full(count, classes[np.argmax(often)])
     if task.null is Null.MOTION:
-        return (test.motion > motion_threshold(train)).astype(np.int64)
+        return (test.motion > best_threshold(train.motion, train.truth)).astype(np.int64)
     middle = np.median if task.null is Null.MEDIAN else np.mean
     return np.tile(middle(train.truth, axis=0), (count, 1))
 
 
-def motion_threshold(train: Examples) -> float:
-    """The motion from which on slip is told, with the best balanced accuracy in training."""
-    edges = np.unique(train.motion)
+def best_threshold(values: np.ndarray, truth: np.ndarray) -> float:
+    """The value above which slip is told, with the best balanced accuracy of all."""
+    edges = np.unique(values)
     middles = np.concatenate([[edges[0] - 1.0], 0.5 * (edges[1:] + edges[:-1])])
-    found = [balanced_accuracy((train.motion > at).astype(int), train.truth) for at in middles]
+    found = [balanced_accuracy((values > at).astype(int), truth) for at in middles]
     return float(middles[int(np.argmax(found))])
 
 

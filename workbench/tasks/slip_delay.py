@@ -1,93 +1,113 @@
-"""How late slip is told: windows that end at each frame of a slide, one after the other.
+"""How late slip is told, and how well it is told from the time alone.
 
 A slide is told to slip in the first frame in which the window that ends there is. The delay is
 counted from the first frame in which 95 % of the contact slides; a negative one is a false alarm.
+
+In renders every slide is pressed and dragged in the same steps, so that a window slips the more
+likely the later it is. What a threshold on the number of its last frame tells stands beside what
+the network does, and so does what the network tells among windows that end in the same frame,
+where time says nothing: there chance is a half.
 """
 
 from __future__ import annotations
 
-from collections.abc import Set
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
-from sim.forces.slip import GROSS_SHARE
-from workbench.learning.dataset.cases import Case
-from workbench.learning.dataset.folder import DataSet
-from workbench.learning.dataset.photo_export import windows
-from workbench.learning.dataset.sequences import FRAMES
-from workbench.tasks.examples import SLIP_NAMES, Examples
-from workbench.tasks.rendered import AtRest, Shown
-from workbench.tasks.seen_images import View, change
+from workbench.tasks.examples import Examples
+from workbench.tasks.lessons import Lessons
+from workbench.tasks.outcome import Tested, Trial
+from workbench.tasks.scores import balanced_accuracy, best_threshold
+from workbench.tasks.splits import Parts
 from workbench.tasks.trained import Trained
 
 
-def slip_delays(
-    data: DataSet,
-    images: tuple[Shown, AtRest],
-    network: Trained,
-    places: Set[str],
-    view: View,
-) -> dict[str, Any]:
-    """Delays of the slides at some places.
+def tell_slides(
+    lessons: Lessons,
+    networks: Mapping[Trial, Sequence[Trained]],
+    tests: Sequence[Tested],
+    frame_mm: float,
+) -> None:
+    """Add to details what the time alone tells and what is told without it, and delays by place.
 
     Args:
-        data: With sequences.
-        images: Of a sample, and at rest.
-        network: That did not learn from these places.
-        places: Names of places on the skin.
-        view: Says which part of an image is seen.
+        lessons: With all windows of all slides.
+        networks: Of all seeds, by test.
+        tests: On renders, the last of them by place.
+        frame_mm: Way of the object from frame to frame [mm].
     """
-    cases = {case.id: case for case, _ in windows(data) if case.position.name in places}
+    for test in tests:
+        parts, learned = lessons.parts(test.test), networks[test.test]
+        held_out = [lessons.found.only(each.test) for each in parts]
+        test.details["told_by_frame_alone"] = told_by_frame(lessons.found, parts)
+        test.details["told_within_frames"] = float(
+            np.mean([within_frames(*each) for each in zip(learned, held_out, strict=True)])
+        )
+    left = lessons.found.only(lessons.parts(Trial.PLACE)[0].test)
+    tests[-1].details["delay"] = slip_delays(networks[Trial.PLACE][0], left, frame_mm)
+
+
+def slip_delays(network: Trained, held_out: Examples, frame_mm: float) -> dict[str, Any]:
+    """Delays of slides, in frames.
+
+    Args:
+        network: That did not learn from these slides.
+        held_out: All windows of some slides.
+        frame_mm: Way of the object from frame to frame [mm].
+    """
+    told = network.told(held_out)
+    case, frame = _case_and_frame(held_out)
     delays: list[int] = []
-    missed = 0
-    for case in cases.values():
-        found = _delay(data, images, network, case, view)
-        if found is None:
-            missed += 1
+    missed = slides = 0
+    for name in np.unique(case):
+        own = case == name
+        slips = frame[own & (held_out.truth == 1)]
+        if not len(slips):
+            continue
+        slides += 1
+        alarms = frame[own & (told == 1)]
+        if len(alarms):
+            delays.append(int(alarms.min() - slips.min()))
         else:
-            delays.append(found)
+            missed += 1
     return {
-        "slides": len(cases),
+        "slides": slides,
         "missed": missed,
         "false_alarms": sum(delay < 0 for delay in delays),
         "frames": delays,
         "median_frames": float(np.median(delays)) if delays else None,
-        "frame_mm": data.manifest["recipe"]["shear_step_mm"],
+        "frame_mm": frame_mm,
     }
 
 
-def _delay(
-    data: DataSet, images: tuple[Shown, AtRest], network: Trained, case: Case, view: View
-) -> int | None:
-    """Frames from gross slip to the first window that tells it; None where none does."""
-    shown, at_rest = images
-    samples = [data.sample(case, frame) for frame in range(case.frames)]
-    own = [shown(case, sample) for sample in samples]
-    ends = range(FRAMES, case.frames + 1)
-    rest = at_rest(case)
-    changes = [change(own[end - FRAMES : end], rest, view) for end in ends]
-    told = network.told(
-        Examples(
-            names=tuple(str(end) for end in ends),
-            places=np.full(len(changes), case.position.name),
-            inputs=np.stack([each.grey for each in changes]),
-            at=np.array([each.at for each in changes], np.float32),
-            motion=np.zeros(len(changes)),
-            truth=np.zeros(len(changes), np.int64),
-            outputs=SLIP_NAMES,
-        )
-    )
-    slides = np.flatnonzero(told == 1)
-    if not len(slides):
-        return None
-    return ends[int(slides[0])] - 1 - _onset(case, samples)
+def told_by_frame(found: Examples, parts: Sequence[Parts]) -> float:
+    """Balanced accuracy of a threshold on the last frame's number, mean over the splits."""
+    _, frame = _case_and_frame(found)
+    scores = []
+    for train, _, test in parts:
+        at = best_threshold(frame[train].astype(np.float64), found.truth[train])
+        scores.append(balanced_accuracy((frame[test] > at).astype(int), found.truth[test]))
+    return float(np.mean(scores))
 
 
-def _onset(case: Case, samples: list[Any]) -> int:
-    """First frame of gross slip; every case of a sequence has one."""
-    return next(
-        frame
-        for frame in range(case.press_frames, case.frames)
-        if (samples[frame].fem or samples[frame].mpm).sliding_share >= GROSS_SHARE
-    )
+def within_frames(network: Trained, held_out: Examples) -> float:
+    """Balanced accuracy among windows that end in the same frame, mean over such frames.
+
+    Frames in which all windows slip, or none does, do not count; without any it is a half.
+    """
+    told = network.told(held_out)
+    _, frame = _case_and_frame(held_out)
+    scores = [
+        balanced_accuracy(told[frame == each], held_out.truth[frame == each])
+        for each in np.unique(frame)
+        if len(np.unique(held_out.truth[frame == each])) > 1
+    ]
+    return float(np.mean(scores)) if scores else 0.5
+
+
+def _case_and_frame(found: Examples) -> tuple[np.ndarray, np.ndarray]:
+    """Case and number of the last frame of each window, of the names that renders have."""
+    named = [name.rpartition(":") for name in found.names]
+    return np.array([case for case, _, _ in named]), np.array([int(last) for _, _, last in named])

@@ -43,6 +43,8 @@ class Net(enum.StrEnum):
     """EfficientNet-Lite0 with ImageNet weights, of optional packages, and a head that learns."""
     OWN = "own"
     """Seven convolutions from random weights, where the packages are not there."""
+    MOTION = "motion"
+    """A head over the motion of the skin from image to image: of windows."""
     PAPER = "paper"
     """The paper's ResNet50, and VGG19 with an LSTM; for a GPU."""
 

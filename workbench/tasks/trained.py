@@ -16,9 +16,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from workbench.core.base.digest import digest
-from workbench.core.base.monitor import Monitor, silent
+from workbench.core.base.monitor import Monitor
 from workbench.system.whole_files import write_atomically
+from workbench.tasks.contact_frame import in_contact_frame, in_sensor_frame
 from workbench.tasks.examples import Examples
+from workbench.tasks.features import HEADS, shown_to, turnable
 from workbench.tasks.safety_scale import SafetyScale
 from workbench.tasks.splits import Parts
 from workbench.tasks.task import Look, Net, Task, Told
@@ -28,16 +30,12 @@ if TYPE_CHECKING:
 
     from workbench.tasks.networks.learn import Learned, Part, Settings
 
-FORMAT = 1
+FORMAT = 2
 
 
 SETTINGS = {
-    (Net.LITE, Look.PLAIN): (80, 1e-3, 16, 0.1),
-    (Net.LITE, Look.MARKED): (80, 1e-3, 16, 0.1),
-    (Net.LITE, Look.WINDOW): (40, 1e-3, 16, 0.1),
     (Net.OWN, Look.PLAIN): (60, 2e-3, 16, 1e-3),
     (Net.OWN, Look.MARKED): (60, 2e-3, 16, 1e-3),
-    (Net.OWN, Look.WINDOW): (40, 2e-3, 8, 1e-3),
     (Net.PAPER, Look.PLAIN): (50, 1e-3, 32, 0.0),
     (Net.PAPER, Look.MARKED): (50, 1e-3, 32, 0.0),
     (Net.PAPER, Look.WINDOW): (15, 5e-4, 4, 0.0),
@@ -73,11 +71,11 @@ class Trained:
         """What it says of examples: classes (N,), or values (N, K) in their own units."""
         from workbench.tasks.networks.learn import told_by
 
-        raw = told_by(self.network, _shown(found, self.net), found.at)
+        raw = told_by(self.network, shown_to(self.net, found), found.at)
         if self.scale is None:
             return raw.argmax(axis=1)
         values = self.scale.middle + self.scale.spread * raw
-        return values if self.safety is None else self.safety.both(values)
+        return in_sensor_frame(values, found) if self.safety is None else self.safety.both(values)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -104,7 +102,6 @@ class Trainer:
 
         Raises:
             Cancelled: If the monitor says so.
-            PackageError: If a package that the network needs is not installed.
             StoreError: If the file cannot be written.
         """
         import torch
@@ -112,11 +109,12 @@ class Trainer:
         from workbench.tasks.networks.learn import Part
 
         torch.manual_seed(seed)
-        scale = _scale(found.only(parts.train), self.safety)
+        truth = found.truth if found.truth.ndim == 1 else in_contact_frame(found)
+        scale = _scale(truth[parts.train], self.safety)
         outputs = 1 if self.safety else len(found.outputs)
-        inputs = _shown(found, self.net)
+        inputs = shown_to(self.net, found)
         train, validation = (
-            Part(inputs=inputs[rows], at=found.at[rows], truth=_wanted(found.truth[rows], scale))
+            Part(inputs=inputs[rows], at=found.at[rows], truth=_wanted(truth[rows], scale))
             for rows in (parts.train, parts.validation)
         )
         network, weights_from = made(self.net, self.task, outputs, train)
@@ -145,18 +143,28 @@ class Trainer:
     def _learned(
         self, network: nn.Module, parts: tuple[Part, Part], seed: int, monitor: Monitor
     ) -> Learned:
-        """Let a network learn; a head for values of images that are seen once is solved for."""
-        if self.net is Net.LITE and self.task.told is Told.VALUES:
-            from workbench.tasks.networks.lite import Head, fit_values
+        """Let a network learn; a head is solved for."""
+        if self.net in HEADS:
+            from workbench.tasks.networks.head import Head, fit_classes, fit_values
 
             assert isinstance(network, Head)
-            return fit_values(network, parts)
+            return (fit_classes if self.task.told is Told.CLASS else fit_values)(network, parts)
         from workbench.tasks.networks.learn import learn
 
-        return learn(network, parts, self.settings, seed, monitor)
+        return learn(network, parts, self._settings, seed, monitor)
 
     @property
-    def settings(self) -> Settings:
+    def learning(self) -> dict[str, Any]:
+        """How it learns, as results tell it."""
+        if self.net not in HEADS:
+            return dataclasses.asdict(self._settings)
+        from workbench.tasks.networks.head import CLASS_PENALTIES, PENALTIES
+
+        classes = self.task.told is Told.CLASS
+        return {"penalties": list(CLASS_PENALTIES if classes else PENALTIES)}
+
+    @property
+    def _settings(self) -> Settings:
         """How long and how fast it learns."""
         from workbench.tasks.networks.learn import Settings
 
@@ -164,7 +172,8 @@ class Trainer:
         classes = self.task.told is Told.CLASS
         if (self.net, self.task.look, classes) == (Net.PAPER, Look.PLAIN, True):
             epochs = PAPER_CLASS_EPOCHS
-        return Settings(epochs=epochs, rate=rate, batch=batch, decay=decay, moved=classes)
+        moved = turnable(self.task) and self.net is not Net.PAPER
+        return Settings(epochs=epochs, rate=rate, batch=batch, decay=decay, moved=moved)
 
     def _key(self, found: Examples, parts: Parts, seed: int, weights_from: str) -> str:
         from workbench.tasks.networks import shown
@@ -174,45 +183,11 @@ class Trainer:
         return digest(
             [
                 {**held_fixed, **held, "grey": shown.GREY, "gain": shown.GAIN},
-                dataclasses.asdict(self.settings),
-                [found.inputs, found.at, found.truth.astype(np.float64), *parts],
+                self.learning,
+                [found.inputs, found.at, found.truth.astype(np.float64), found.axes, *parts],
                 list(found.outputs),
             ]
         )
-
-
-def usual_network() -> Net:
-    """The network that learns where none is named."""
-    from workbench.tasks.networks.lite import installed
-
-    return Net.LITE if installed() else Net.OWN
-
-
-def with_features(found: Examples, task: Task, net: Net, device: str, monitor: Monitor) -> Examples:
-    """Examples with what a network that does not learn sees of them, where one takes part.
-
-    Raises:
-        Cancelled: If the monitor says so.
-    """
-    if net is not Net.LITE:
-        return found
-    from workbench.tasks.networks.lite import COPIES, features
-
-    moved = task.told is Told.CLASS
-    seen = features(found.inputs, monitor, copies=COPIES, moved=moved, device=device)
-    return dataclasses.replace(found, features=seen)
-
-
-def _shown(found: Examples, net: Net) -> np.ndarray:
-    """What a network is given of examples."""
-    if net is not Net.LITE:
-        return found.inputs
-    if found.features is not None:
-        return found.features
-    from workbench.pipeline.devices import torch_device
-    from workbench.tasks.networks.lite import features
-
-    return features(found.inputs, silent, copies=0, moved=False, device=torch_device())
 
 
 def made(net: Net, task: Task, outputs: int, part: Part) -> tuple[nn.Module, str]:
@@ -223,35 +198,29 @@ def made(net: Net, task: Task, outputs: int, part: Part) -> tuple[nn.Module, str
         task: Says whether it sees images or windows.
         outputs: Numbers that it tells.
         part: What it learns from.
-
-    Raises:
-        PackageError: If it needs a package that is not installed.
     """
-    from workbench.core.base.packages import naming_packages
-
-    window = task.look is Look.WINDOW
     if net is Net.OWN:
-        from workbench.tasks.networks.own import OwnNet, OwnWindowNet
+        from workbench.tasks.networks.own import OwnNet
 
-        return (OwnWindowNet if window else OwnNet)(outputs), "random weights"
-    if net is Net.LITE:
-        from workbench.tasks.networks.lite import WEIGHTS, Head
+        return OwnNet(outputs), "random weights"
+    if net in HEADS:
+        from workbench.tasks.networks.head import Head
 
-        return Head(outputs, part), WEIGHTS
-    with naming_packages():
-        from workbench.tasks.networks.published import resnet, vgg_lstm
+        return Head(outputs, part), HEADS[net]
+    from workbench.tasks.networks.published import ResNet, VggLstm
 
-        return (vgg_lstm if window else resnet)(outputs)
+    published = (VggLstm if task.look is Look.WINDOW else ResNet)(outputs)
+    return published, published.weights_from
 
 
-def _scale(train: Examples, safety: SafetyScale | None) -> Scale | None:
+def _scale(truth: np.ndarray, safety: SafetyScale | None) -> Scale | None:
     """Middle and spread of the values to learn from; those of the coefficient are 0 and 1."""
-    if train.truth.ndim == 1:
+    if truth.ndim == 1:
         return None
     if safety is not None:
         return Scale(middle=np.zeros(1), spread=np.ones(1))
-    spread = train.truth.std(axis=0)
-    return Scale(middle=train.truth.mean(axis=0), spread=np.where(spread > 0.0, spread, 1.0))
+    spread = truth.std(axis=0)
+    return Scale(middle=truth.mean(axis=0), spread=np.where(spread > 0.0, spread, 1.0))
 
 
 def _wanted(truth: np.ndarray, scale: Scale | None) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Compare: variants, their score card, two against each other, sweeps of one parameter, reports."""
+"""Compare: variants, score card, two against each other, what they tell apart, sweeps, reports."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from ui.desk.desk import Desk
 from ui.panels.compare.comparison_report import ReportFolder
 from ui.panels.compare.score_card import NOW_SHORT, ScoreFolder
 from ui.panels.compare.sweep import SweepFolder
+from ui.panels.compare.told import ToldFolder
 from ui.panels.compare.variants import VariantsFolder
 from ui.panels.compare.versus import VersusFolder
 from ui.panels.page import Page
@@ -36,6 +37,8 @@ class ComparePanel:
         self.score = ScoreFolder(desk)
         self.versus = VersusFolder(desk, self._side, self._thumbnail)
         self.variants.on_save = self.versus.fill
+        self.told = ToldFolder(desk)
+        self.versus.on_compare = self.told.show
         self.sweep = SweepFolder(desk, self._kept)
         self.report = ReportFolder(desk, self._reported)
         self.variants.list()

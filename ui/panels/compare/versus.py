@@ -48,6 +48,8 @@ class VersusFolder:
         self.ghosts = GhostView(desk.server, desk.session.store, on_error=desk.reports.tell)
         self.hidden = False
         """Whether parts are looked at, so that no ghost stands among them."""
+        self.on_compare: Callable[[Side | None, Side | None], None] = lambda a, b: None
+        """Set by the panel: told what is compared."""
         gui = desk.server.gui
         with gui.add_folder("A against B"):
             self._choices(gui)
@@ -130,6 +132,7 @@ class VersusFolder:
             self._pair(self.a, self.b)
         self._show_images()
         self.draw()
+        self.on_compare(self.a, self.b)
 
     def _thumbnails(self) -> str:
         """Thumbnails of those chosen, each below its letter, as HTML."""

@@ -27,11 +27,13 @@ def options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--out", required=True, type=Path, metavar="DIR", help=OUT)
     text = "small: minutes on two cores; paper: as many presses as the paper, for a GPU (small)"
     sub.add_argument("--size", choices=SIZES, default=SIZES[0], help=text)
-    text = "small: EfficientNet-Lite0 where its packages are, else seven convolutions; paper: \
-ResNet50, VGG19 and LSTM (default: small)"
+    text = "small: EfficientNet-Lite0 where its packages are, else seven convolutions, of slip the \
+motion of the skin; paper: ResNet50, VGG19 and LSTM (default: small)"
     sub.add_argument("--network", choices=NETWORKS, default=NETWORKS[0], help=text)
     text = "folder of own photographs with idle.png and labels.csv, which are tested on too"
     sub.add_argument("--photos", type=Path, metavar="DIR", help=text)
+    text = "folder of presses of another task of the same recipe (default: in --out)"
+    sub.add_argument("--data", type=Path, metavar="DIR", help=text)
     sub.add_argument("--no-twin", action="store_true", help="no test on a twin's photographs")
     sub.add_argument("--jobs", type=int, default=1, metavar="N", help="processes (default 1)")
     add_set_option(sub)
@@ -47,17 +49,19 @@ def run(options: argparse.Namespace, project: Project) -> int:
     from workbench.edit.typed_fields import with_typed
     from workbench.project.named_designs import load_design
     from workbench.system.folder import prepare
+    from workbench.tasks.features import usual_network
     from workbench.tasks.result_file import FILES, REPORT, write_result
     from workbench.tasks.run import Plan, run_task
-    from workbench.tasks.task import Net, Size
-    from workbench.tasks.trained import usual_network
+    from workbench.tasks.task import Net, Size, task_of
+    from workbench.variants.kept_tasks import keep
 
     design = with_typed(load_design(options.design, project=project), options.set)
     plan = Plan(
         task=options.task,
         size=Size(options.size),
-        net=usual_network() if options.network == NETWORKS[0] else Net.PAPER,
+        net=usual_network(task_of(options.task)) if options.network == NETWORKS[0] else Net.PAPER,
         photos=options.photos,
+        data=options.data,
         jobs=options.jobs,
         twin=not options.no_twin,
     )
@@ -72,6 +76,7 @@ def run(options: argparse.Namespace, project: Project) -> int:
         lambda fraction, note="": printer(options.task, fraction, note),
     )
     table = write_result(options.out, result)
+    keep(project, design, table)
     if options.json:
         say(json.dumps(table, allow_nan=False))
         return 0

@@ -54,7 +54,7 @@ def _pairs(data: DataSet, most: int) -> Iterator[tuple[Sequence, Sequence]]:
     for number, case in enumerate(data.cases()):
         if taken == most:
             return
-        onset = _onset(data, case)
+        onset = gross_slip(data, case)
         if onset is not None and onset >= FRAMES:
             taken += 1
             rng = np.random.default_rng((data.manifest["recipe"]["seed"], number, 2))
@@ -67,7 +67,7 @@ def _ending(case: Case, last: int, *, slip: bool) -> Sequence:
     return Sequence(case=case.id, first=first, frames=FRAMES, slip=slip, split=case.split.value)
 
 
-def _onset(data: DataSet, case: Case) -> int | None:
+def gross_slip(data: DataSet, case: Case) -> int | None:
     """First frame of gross slip, from 0; None where there is none, or frames are missing."""
     if len(data.frames(case)) < case.frames:
         return None

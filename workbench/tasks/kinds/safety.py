@@ -9,39 +9,25 @@ Source of task and scores: SimTac, *Sim2Real transfer of contact safety assessme
 
 from __future__ import annotations
 
-import dataclasses
-
 from workbench.core.design.design import SensorDesign
 from workbench.core.press.indenter import SEEN, UNSEEN
 from workbench.learning.dataset.positions import Pattern
 from workbench.learning.dataset.recipe import Recipe
-from workbench.learning.dataset.variation import Vary
-from workbench.tasks.press_plan import FRICTION, pattern_of, pressed
+from workbench.tasks.press_plan import DEPTH_MM, Amount, all_over, pattern_of
 from workbench.tasks.task import Look, Null, Published, Size, Task, Told
 
-CASES = {Size.SMALL: 84, Size.PAPER: 364}
-SIZES_MM = {Size.SMALL: (5.0, 8.0), Size.PAPER: (3.0, 12.0)}
-STEPS = {Size.SMALL: 2, Size.PAPER: 7}
+PRESSES = {
+    Size.SMALL: Amount(cases=84, size_mm=(5.0, 8.0), steps=2),
+    Size.PAPER: Amount(cases=364, size_mm=(3.0, 12.0), steps=7),
+}
 DEPTHS_MM = {Pattern.PAD: 1.05}
 """Of the paper's pad [mm]."""
-DEPTH_MM = 0.8
-"""Of any other membrane [mm]."""
 
 
 def recipe(design: SensorDesign, size: Size) -> Recipe:
     """Straight presses of fourteen objects, all over the membrane."""
-    vary = Vary(size_mm=SIZES_MM[size], spin_deg=(-180.0, 180.0), friction=FRICTION)
-    pattern = pattern_of(design)
-    made = pressed(
-        design,
-        size,
-        pattern,
-        (DEPTHS_MM.get(pattern, DEPTH_MM), STEPS[size]),
-        vary,
-        indenters=(*SEEN, *UNSEEN),
-        shear_directions=0,
-    )
-    return dataclasses.replace(made, cases=CASES[size])
+    depth_mm = DEPTHS_MM.get(pattern_of(design), DEPTH_MM)
+    return all_over(design, size, PRESSES, depth_mm, (*SEEN, *UNSEEN))
 
 
 TASK = Task(

@@ -12,8 +12,7 @@ import dataclasses
 
 from workbench.core.design.design import SensorDesign
 from workbench.learning.dataset.recipe import Recipe
-from workbench.learning.dataset.variation import Vary
-from workbench.tasks.press_plan import FRICTION, OBJECTS, pattern_of, pressed
+from workbench.tasks.press_plan import DEPTH_MM, OBJECTS, pattern_of, pressed
 from workbench.tasks.task import Look, Null, Published, Size, Task, Told
 
 CASES = {Size.SMALL: 24, Size.PAPER: 500}
@@ -24,13 +23,12 @@ SIZES_MM = {Size.SMALL: (5.0, 8.0), Size.PAPER: (3.0, 12.0)}
 
 def recipe(design: SensorDesign, size: Size) -> Recipe:
     """Slides of twelve objects along the side wall of a finger, or all over another membrane."""
-    vary = Vary(size_mm=SIZES_MM[size], spin_deg=(-180.0, 180.0), friction=FRICTION)
     made = pressed(
         design,
         size,
         pattern_of(design, side=True),
-        (0.8, 8),
-        vary,
+        (DEPTH_MM, 8),
+        SIZES_MM[size],
         indenters=OBJECTS,
         shear_mm=1.6,
         shear_step_mm=0.1,

@@ -42,7 +42,7 @@ class Part:
     """Differences [grey level], shape (N, T, h, w, 3), int16; or features and those of varied
     copies, shape (N, 1 + copies, T, F), float16."""
     at: np.ndarray
-    """Where and how strong it is, shape (N, 5), float32."""
+    """Where and how strong it is, shape (N, 8), float32."""
     truth: np.ndarray
     """Number of the class, (N,), int64; or scaled values, (N, K), float."""
 

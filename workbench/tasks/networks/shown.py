@@ -1,11 +1,14 @@
 """Differences from rest as networks are shown them, and how they are varied for training.
 
 They are divided by `GREY`. What is shown in training is made brighter or darker, each colour by
-itself, and noisy, as other lights and other cameras would have it. Where the place does not count,
-it is also turned, moved, enlarged and mirrored.
+itself, and noisy, as other lights and other cameras would have it. Where directions do not count,
+it is also turned, moved, enlarged and mirrored, and its colours change places, as behind lights
+whose colours stand in another order.
 """
 
 from __future__ import annotations
+
+import math
 
 import numpy as np
 import torch
@@ -17,9 +20,9 @@ GAIN = 0.25
 """By which each colour's difference is made stronger or weaker, at most [1]."""
 NOISE = 2.0
 """Standard deviation of the noise that is added [grey level]."""
-TURN_RAD, ZOOM, SHIFT = 0.5, 0.2, 0.15
+TURN_RAD, ZOOM, SHIFT = math.pi, 0.2, 0.15
 """By which images are turned, enlarged and moved at most; the last as a share of half a side."""
-PLACE = 5
+PLACE = 8
 """Numbers that say where and how strong a change is."""
 
 
@@ -29,22 +32,19 @@ def plain(inputs: np.ndarray, device: torch.device) -> Tensor:
 
 
 def varied(shown: Tensor, generator: torch.Generator, *, moved: bool) -> Tensor:
-    """The same by another light and another camera, and where asked for at another place."""
+    """The same by another light and another camera, and where asked for another way round."""
     batch, device = len(shown), shown.device
     gain = torch.rand((batch, 1, 3, 1, 1), generator=generator, device=device)
     noise = torch.randn(shown.shape, generator=generator, device=device)
     other = shown * (1.0 + GAIN * (2.0 * gain - 1.0)) + NOISE / GREY * noise
-    return _moved(other, generator) if moved else other
+    return _moved(_recoloured(other, generator), generator) if moved else other
 
 
-def as_grey_changes(shown: Tensor) -> Tensor:
-    """Windows with, in place of colours, the grey change from rest, from before, from the first.
-
-    So what moves and what stays are told apart in each image. Shape (B, T, 3, h, w) as before.
-    """
-    grey = shown.mean(dim=2)
-    before = torch.cat([grey[:, :1], grey[:, :-1]], dim=1)
-    return torch.stack([grey, 2.0 * (grey - before), grey - grey[:, :1]], dim=2)
+def _recoloured(shown: Tensor, generator: torch.Generator) -> Tensor:
+    """Colours of each example in another order, all of its images alike."""
+    drawn = torch.rand((len(shown), shown.shape[2]), generator=generator, device=shown.device)
+    order = drawn.argsort(dim=1)[:, None, :, None, None].expand_as(shown)
+    return shown.gather(2, order)
 
 
 def _moved(shown: Tensor, generator: torch.Generator) -> Tensor:

@@ -2,7 +2,7 @@
 
 `python -m workbench.proof.validation.tasks.task_figures FOLDER [SIZE [DESIGN_TASK]]` runs the tasks
 that are on record, one or all, in folders of FOLDER; what lies there already is kept. Small ones
-take minutes each on a free processor; `paper` is for a GPU.
+take minutes each on a free processor and leave the twin out; `paper` is for a GPU.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ from workbench.project.project import Project
 from workbench.proof.validation.tasks.task_records import SIZES, TaskRecord, task_records
 from workbench.system.processes import cores
 from workbench.system.terminal import Progress
+from workbench.tasks.features import usual_network
 from workbench.tasks.result_file import write_result
 from workbench.tasks.run import Plan, run_task
-from workbench.tasks.task import Net, Size
-from workbench.tasks.trained import usual_network
+from workbench.tasks.task import Net, Size, task_of
 
 
 def figures(one: TaskRecord, folder: Path) -> dict[str, Any]:
@@ -31,8 +31,9 @@ def figures(one: TaskRecord, folder: Path) -> dict[str, Any]:
     plan = Plan(
         task=one.task,
         size=size,
-        net=Net.PAPER if size is Size.PAPER else usual_network(),
+        net=Net.PAPER if size is Size.PAPER else usual_network(task_of(one.task)),
         jobs=cores(),
+        twin=size is Size.PAPER,
     )
     out, printer = folder / one.name, Progress(as_json=False)
     result = run_task(

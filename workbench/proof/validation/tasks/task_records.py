@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,9 +9,13 @@ from workbench.system.record import Record
 
 FOLDER = Path(__file__).parent
 COMMAND = "python -m workbench.proof.validation.tasks.task_figures FOLDER"
-DONE = (("geltip", "objects"), ("geltip", "slip"), ("geltip", "safety"), ("pad", "safety"))
-"""The paper's three on the finger; the last of them on the flat pad too, as in the paper."""
+FINGER, PAD = "geltip", "pad"
 SIZES = ("small", "paper")
+DONE = {
+    "small": tuple((FINGER, task) for task in ("objects", "slip", "safety", "pose", "force")),
+    "paper": ((FINGER, "objects"), (FINGER, "slip"), (PAD, "safety")),
+}
+"""All tasks on the finger; of the paper's size its three, safety on the flat pad as there."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -60,5 +63,6 @@ def task_records() -> list[TaskRecord]:
     """All that may be on record, the small ones first."""
     return [
         TaskRecord(design=design, task=task, size=size)
-        for size, (design, task) in itertools.product(SIZES, DONE)
+        for size in SIZES
+        for design, task in DONE[size]
     ]

@@ -1,0 +1,161 @@
+"""A head over features of examples: a linear map, solved for with a penalty on its size.
+
+It tells numbers by ridge regression, classes by logistic regression. Sources: Hoerl and Kennard,
+Ridge regression, 1970; Bishop, Pattern recognition and machine learning, 2006, section 4.3.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import torch
+from torch import Tensor, nn
+
+from workbench.tasks.networks.learn import Learned, Part
+
+WEIGHT = 5.0
+"""How much more each number of the place counts than each of the features, which are many."""
+PENALTIES = (30.0, 300.0, 3e3, 3e4, 3e5)
+"""Of ridge regression."""
+CLASS_PENALTIES = (30.0, 100.0, 300.0, 1000.0)
+"""Of logistic regression."""
+CLASS_STEPS = 60
+"""Of its minimisation, at most."""
+
+
+class Head(nn.Module):
+    """Features (B, 1, F) to K numbers."""
+
+    middle: Tensor
+    spread: Tensor
+
+    def __init__(self, outputs: int, part: Part) -> None:
+        """Begin at random.
+
+        Args:
+            outputs: K.
+            part: What it learns from: middle and spread of all it sees become 0 and 1. Where it
+                tells classes the place does not count: with few presses it leads astray.
+        """
+        super().__init__()
+        self.told_places = part.truth.dtype != np.int64
+        seen = part.inputs.reshape(-1, part.inputs.shape[-1]).astype(np.float32)
+        placed = self.places(torch.as_tensor(part.at)).numpy()
+        middle = np.concatenate([seen.mean(axis=0), placed.mean(axis=0)])
+        spread = np.concatenate([seen.std(axis=0), placed.std(axis=0) / WEIGHT])
+        spread = np.where(spread > 0.0, spread, 1.0)
+        self.register_buffer("middle", torch.as_tensor(middle, dtype=torch.float32))
+        self.register_buffer("spread", torch.as_tensor(spread, dtype=torch.float32))
+        features, places = seen.shape[1], placed.shape[1]
+        self.one = nn.Linear(features + places, outputs)
+
+    def places(self, at: Tensor) -> Tensor:
+        """Where and how strong it is, with squares and products, (B, 8) to (B, 44); or nothing."""
+        if not self.told_places:
+            return at[:, :0]
+        rows, columns = np.triu_indices(at.shape[1])
+        return torch.cat([at, at[:, rows] * at[:, columns]], dim=1)
+
+    def even(self, seen: Tensor, at: Tensor) -> tuple[Tensor, Tensor]:
+        """Features (B, 1, F) and where they are (B, P), all of middle 0 and spread 1."""
+        count = seen.shape[-1]
+        placed = (self.places(at) - self.middle[count:]) / self.spread[count:]
+        return (seen - self.middle[:count]) / self.spread[:count], placed
+
+    def forward(self, seen: Tensor, at: Tensor) -> Tensor:
+        """Numbers, shape (B, K), with where and how strong it is, (B, 8)."""
+        even, placed = self.even(seen, at)
+        return self.one(torch.cat([even[:, 0], placed], dim=1))
+
+
+def fit_values(head: Head, parts: tuple[Part, Part]) -> Learned:
+    """Solve a head for values of single images: ridge regression on all that it sees.
+
+    It ends with the penalty, of `PENALTIES`, that leaves the least error in the validation part.
+
+    Args:
+        head: Made for the first of the parts.
+        parts: What it learns from, copies too, and what chooses the penalty.
+    """
+    train, validation = parts
+    copies = train.inputs.shape[1]
+    known = np.concatenate([_row(head, train, copy) for copy in range(copies)])
+    truth = np.tile(train.truth, (copies, 1)).astype(np.float64)
+    held_out = _row(head, validation, 0)
+    middle = truth.mean(axis=0)
+    values, vectors = np.linalg.eigh(known @ known.T)
+    best, curve = (np.inf, 0, np.zeros((known.shape[1], truth.shape[1]))), []
+    for number, penalty in enumerate(PENALTIES):
+        dual = vectors @ ((vectors.T @ (truth - middle)) / (values[:, None] + penalty))
+        weights = known.T @ dual
+        errors = [
+            float(np.abs(rows @ weights + middle - wanted).mean())
+            for rows, wanted in ((known, truth), (held_out, validation.truth))
+        ]
+        curve.append({"train": errors[0], "validation": errors[1]})
+        if errors[1] < best[0]:
+            best = errors[1], number + 1, weights
+    head.one.weight.data = torch.as_tensor(best[2].T, dtype=torch.float32)
+    head.one.bias.data = torch.as_tensor(middle, dtype=torch.float32)
+    return Learned(epoch=best[1], curve=curve)
+
+
+def fit_classes(head: Head, parts: tuple[Part, Part]) -> Learned:
+    """Solve a head for classes: logistic regression on all that it sees.
+
+    sum of cross entropies + penalty / 2 |W|^2 is minimised by L-BFGS, each class counting the same
+    however often it occurs; it ends with the penalty, of `CLASS_PENALTIES`, that leaves the least
+    cross entropy in the validation part.
+
+    Args:
+        head: Made for the first of the parts.
+        parts: What it learns from, copies too, and what chooses the penalty.
+    """
+    train, validation = parts
+    copies = train.inputs.shape[1]
+    known = np.concatenate([_row(head, train, copy) for copy in range(copies)])
+    rows = torch.as_tensor(known, dtype=torch.float32)
+    truth = torch.as_tensor(np.tile(train.truth, copies))
+    held_out = torch.as_tensor(_row(head, validation, 0), dtype=torch.float32)
+    wanted = torch.as_tensor(validation.truth)
+    often = torch.bincount(torch.as_tensor(train.truth), minlength=head.one.out_features)
+    balance = len(train.truth) / (len(often) * often.clamp(min=1).to(torch.float32))
+    weights = torch.zeros((head.one.out_features, rows.shape[1] + 1), requires_grad=True)
+    best, curve = (np.inf, 0, weights.detach().clone()), []
+
+    def entropy(told: Tensor, truth: Tensor) -> Tensor:
+        return nn.functional.cross_entropy(told, truth, weight=balance)
+
+    def told(of: Tensor) -> Tensor:
+        return of @ weights[:, :-1].T + weights[:, -1]
+
+    # From the largest penalty on, each begins where the last ended.
+    for number, penalty in enumerate(sorted(CLASS_PENALTIES, reverse=True)):
+        solver = torch.optim.LBFGS([weights], max_iter=CLASS_STEPS, line_search_fn="strong_wolfe")
+
+        def loss(solver: Any = solver, penalty: float = penalty) -> Tensor:
+            solver.zero_grad()
+            size = 0.5 * penalty / len(rows) * (weights[:, :-1] ** 2).sum()
+            found = entropy(told(rows), truth) + size
+            found.backward()
+            return found
+
+        solver.step(loss)
+        with torch.no_grad():
+            left = [float(entropy(told(of), to)) for of, to in ((rows, truth), (held_out, wanted))]
+        curve.append({"train": left[0], "validation": left[1]})
+        if left[1] < best[0]:
+            best = left[1], number + 1, weights.detach().clone()
+    head.one.weight.data = best[2][:, :-1].to(head.one.weight.device)
+    head.one.bias.data = best[2][:, -1].to(head.one.weight.device)
+    return Learned(epoch=best[1], curve=curve)
+
+
+def _row(head: Head, part: Part, copy: int) -> np.ndarray:
+    """All that a head sees of a part, by one of the copies, shape (N, F + P)."""
+    device = head.middle.device
+    seen = torch.as_tensor(part.inputs[:, copy], device=device).float()
+    with torch.no_grad():
+        even, placed = head.even(seen, torch.as_tensor(part.at, device=device))
+        return torch.cat([even[:, 0], placed], dim=1).cpu().numpy().astype(np.float64)
