@@ -7,6 +7,8 @@ import numpy as np
 from sim.optics.raster.display import shown
 from sim.reading.changed import Change
 from sim.reading.fit import Prediction
+from sim.reading.misfit import BlockGrid
+from sim.reading.noise import Noise
 from sim.reading.patch import Patch, Posed
 from sim.reading.pixels import Slopes
 from sim.reading.sight import Sight, moved
@@ -47,6 +49,7 @@ class PhotoView:
         self._trusted = ((photo > BLACK_GREY) & (photo < WHITE_GREY)).astype(np.float64)
         self._lead = self._pixels[lead]
         """First pixel of each block, shape (P,)."""
+        self._grid = BlockGrid(row[lead] // edge, column[lead] // edge, edge)
         self._told = self._summed(self._trusted)
         self._photo = self._mean(photo)
         self._idle_light = self._mean(rest.idle_light[self._pixels])
@@ -54,6 +57,15 @@ class PhotoView:
         level = np.zeros((patch.count, 2))
         self._level_light = rest.light.at(patch.vertices, level)
         """Of the vertices at rest, by the light of the tilts, shape (n, 3)."""
+
+    def errors(self, seen: Prediction, noise: Noise) -> np.ndarray:
+        """Draws of what each block's colours are off by [grey], shape (P, 3, DRAWS).
+
+        Args:
+            seen: What a fit left unexplained.
+            noise: Of the photograph.
+        """
+        return self._grid.errors(seen.residual, self._told, noise)
 
     def untouched(self) -> Prediction:
         """What the patch shows at rest."""

@@ -10,12 +10,14 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from sim.reading.changed import Change, change
 from sim.reading.deviation import deviation_mm
 from sim.reading.fit import LEVELS, Fitted, Prediction, Priors, fitted
+from sim.reading.noise import Noise
 from sim.reading.patch import Patch
 from sim.reading.photo_view import PhotoView
 from sim.reading.rest_skin import bending, neighbours
@@ -60,8 +62,10 @@ class Reader:
     """Reads photographs of one sensor."""
 
     def __init__(self, rest: Untouched) -> None:
+        from scipy.sparse import diags
+
         self.rest = rest
-        self._bending = bending(rest.skin)
+        self._bent: Any = (diags(np.sqrt(rest.skin.shares_mm2)) @ bending(rest.skin)).tocsc()
         self._neighbours = neighbours(rest.skin)
 
     def read(self, photo: np.ndarray, start: Touch | None = None) -> Touch:
@@ -85,12 +89,12 @@ class Reader:
                 patch=patch,
                 priors=self._priors(chosen, calm),
                 view=view,
-                noise_grey=seen.noise_grey,
+                noise=seen.noise,
             )
             found = self._fitted(fit, seen, start)
             inward_mm[chosen] = found.inward_mm
-            # Errors of the light show as residuals that noise does not explain.
-            told_mm = deviation_mm(found.matrix) * max(1.0, found.misfit)
+            errors = view.errors(found.seen, seen.noise)
+            told_mm = deviation_mm(found.linear, errors)
             own_mm = np.hypot(OWN_SHARE * found.inward_mm, OWN_MM)
             sigma_mm[chosen] = np.hypot(told_mm, own_mm)
             sight = found.seen.sight
@@ -100,7 +104,7 @@ class Reader:
             inward_mm=inward_mm,
             sigma_mm=sigma_mm,
             misfit=misfit,
-            noise_grey=seen.noise_grey,
+            noise_grey=seen.noise.grey,
             steps=steps,
             seconds=time.perf_counter() - begun,
             sight=sight,
@@ -108,10 +112,7 @@ class Reader:
 
     def displaced_mm(self, touch: Touch) -> np.ndarray:
         """Displacement of the vertices [mm], shape (V, 3)."""
-        return self._displaced_mm(touch.inward_mm)
-
-    def _displaced_mm(self, inward_mm: np.ndarray) -> np.ndarray:
-        return inward_mm[:, None] * self.rest.skin.inward
+        return touch.inward_mm[:, None] * self.rest.skin.inward
 
     def _seen(self, sight: Sight) -> np.ndarray:
         """Vertices that some pixel sees, shape (V,), bool."""
@@ -137,19 +138,17 @@ class Reader:
 
     def _priors(self, chosen: np.ndarray, calm: np.ndarray) -> Priors:
         """What is believed of the free vertices (m,)."""
-        from scipy.sparse import diags
-
-        bent, share = self._bending[:, chosen], self.rest.skin.shares_mm2
+        bent = self._bent[:, chosen]
         return Priors(
-            bending=(bent.T @ diags(share) @ bent).tocsr(),
-            area_mm2=share[chosen],
+            bent=bent[np.unique(bent.indices)].tocsr(),
+            area_mm2=self.rest.skin.shares_mm2[chosen],
             calm=calm[chosen],
         )
 
     def _fitted(self, fit: _Fit, seen: Change, start: Touch | None) -> Fitted:
         """The fit from the guess that explains most."""
         chosen = fit.patch.vertices[: fit.patch.free]
-        nothing = fit.view.untouched().misfit(seen.noise_grey)
+        nothing = fit.view.untouched().misfit(seen.noise)
         enough = max(EXPLAINED * nothing, PLAIN)
         if start is not None:
             found = fit.fine(start.inward_mm[chosen])
@@ -189,7 +188,7 @@ class _Fit:
     patch: Patch
     priors: Priors
     view: PhotoView
-    noise_grey: float
+    noise: Noise
 
     def rough(self, start_mm: np.ndarray) -> Fitted:
         """By the light of the tilts alone: smooth, forgiving, and quick."""
@@ -206,5 +205,5 @@ class _Fit:
         levels: tuple[tuple[float, float], ...],
     ) -> Fitted:
         return fitted(
-            self.patch, self.priors, predict, start_mm, noise_grey=self.noise_grey, levels=levels
+            self.patch, self.priors, predict, start_mm, noise=self.noise, levels=levels
         )
