@@ -23,6 +23,10 @@ from sim.reading.pixels import Slopes, jacobian
 
 DRAWS = 24
 """A standard deviation is then known to a seventh."""
+UNKNOWN = 0.3
+"""Size of what is not known of the skin, over what the prior allows: skin under balls of 8 mm bends
+by a tenth of it, mean square over the patch, and a fit that trusts its photograph little would
+otherwise doubt everything."""
 SEED = 1
 
 
@@ -42,16 +46,23 @@ class Linear:
     """R of the prior, P = R^T R, sparse (q, m)."""
 
 
-def deviation_mm(linear: Linear, errors: np.ndarray) -> np.ndarray:
-    """Standard deviation of each move, shape (m,).
+def deviations_mm(
+    linear: Linear, noise: np.ndarray, light: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Standard deviations of each move, shape (m,) each: by noise and prior, and by the light.
 
     Args:
         linear: The fit.
-        errors: Draws of the error of each block and colour [grey], shape (P, 3, k).
+        noise: Draws of what each block and colour is off by, whatever is seen [grey],
+            shape (P, 3, k).
+        light: Likewise, of what grows with the change that is seen.
     """
-    count = errors.shape[2]
-    pulled = (linear.weight[:, :, None] * errors).reshape(-1, count)
-    by_errors = linear.by_move.T @ (jacobian(linear.slopes).T @ pulled)
-    unknown = np.random.default_rng(SEED).normal(size=(linear.root.shape[0], count))
-    moved_mm = linear.factors.solved(by_errors + linear.root.T @ unknown)
-    return np.sqrt((moved_mm**2).mean(axis=1))
+    random = np.random.default_rng(SEED)
+    unknown = UNKNOWN * random.normal(size=(linear.root.shape[0], noise.shape[2]))
+    errors = np.concatenate([noise, light], axis=2)
+    pulled = (linear.weight[:, :, None] * errors).reshape(-1, errors.shape[2])
+    pulls = linear.by_move.T @ (jacobian(linear.slopes).T @ pulled)
+    pulls[:, : noise.shape[2]] += linear.root.T @ unknown
+    square = linear.factors.solved(pulls) ** 2
+    by_noise, by_light = np.split(square, [noise.shape[2]], axis=1)
+    return np.sqrt(by_noise.mean(axis=1)), np.sqrt(by_light.mean(axis=1))

@@ -11,6 +11,8 @@ from sim.reading.rest_skin import normals_of
 
 def touched(touch: Touch) -> np.ndarray:
     """Vertices that are surely pressed in, shape (V,), bool."""
+    if touch.contact is not None:
+        return touch.contact
     return pressed(touch.inward_mm, touch.sigma_mm)
 
 

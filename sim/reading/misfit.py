@@ -17,6 +17,11 @@ TAKEN = 1.5
 """Variance of an error of light over what a fit leaves of it."""
 ALIKE = 2.0
 """Blur of such an error [blocks]."""
+DOUBT = 5.0
+"""Standard deviation of what the light makes of a change, over how far the light at rest is off:
+lamps in another place shine from another side, which the photograph at rest shows but little."""
+WIDE = 8.0
+"""Blur of such an error [blocks]: a dent is read too deep or too shallow as a whole."""
 AROUND = 3.0
 """Blur of its variance [blocks]."""
 SEED = 2
@@ -34,19 +39,28 @@ class BlockGrid:
         self._shape = int(self._rows.max(initial=0)) + 1, int(self._columns.max(initial=0)) + 1
         self._edge_px = edge_px
 
-    def errors(self, residual: np.ndarray, told: np.ndarray, noise: Noise) -> np.ndarray:
-        """Draws [grey], shape (P, 3, DRAWS).
+    def noise(self, residual: np.ndarray, told: np.ndarray, noise: Noise) -> np.ndarray:
+        """Draws of noise, and of what a fit left unexplained beyond it [grey], (P, 3, DRAWS).
 
         Args:
-            residual: That a fit leaves [grey], shape (P, 3).
+            residual: That it left [grey], shape (P, 3).
             told: Pixels of each block that say something, shape (P, 3).
             noise: Of the photograph.
         """
         alike = np.sqrt(noise.shared_px / (4.0 * np.pi)) / self._edge_px
         variance = noise.of_block(told)
-        size = np.sqrt(variance)[:, :, None]
-        light = np.sqrt(TAKEN * self._beyond(residual, variance))[:, :, None]
-        return size * self._drawn(alike, 0) + light * self._drawn(ALIKE, 1)
+        unexplained = np.sqrt(TAKEN * self._beyond(residual, variance))
+        noisy = np.sqrt(variance)[:, :, None] * self._drawn(alike, 0)
+        return noisy + unexplained[:, :, None] * self._drawn(ALIKE, 1)
+
+    def light(self, changed: np.ndarray, light_error: float) -> np.ndarray:
+        """Draws of what the light of another sensor makes of a change [grey], (P, 3, DRAWS).
+
+        Args:
+            changed: By how much each block changed [grey], shape (P, 3).
+            light_error: As `Untouched` has it.
+        """
+        return DOUBT * light_error * changed[:, :, None] * self._drawn(WIDE, 2)
 
     def _beyond(self, residual: np.ndarray, variance: np.ndarray) -> np.ndarray:
         """Variance of residuals around each block that noise does not explain, shape (P, 3)."""

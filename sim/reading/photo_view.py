@@ -52,20 +52,21 @@ class PhotoView:
         self._grid = BlockGrid(row[lead] // edge, column[lead] // edge, edge)
         self._told = self._summed(self._trusted)
         self._photo = self._mean(photo)
+        self._idle = self._mean(rest.idle.reshape(-1, 3)[self._pixels])
         self._idle_light = self._mean(rest.idle_light[self._pixels])
         self._exposure = rest.exposure[self._pixels]
         level = np.zeros((patch.count, 2))
         self._level_light = rest.light.at(patch.vertices, level)
         """Of the vertices at rest, by the light of the tilts, shape (n, 3)."""
 
-    def errors(self, seen: Prediction, noise: Noise) -> np.ndarray:
-        """Draws of what each block's colours are off by [grey], shape (P, 3, DRAWS).
+    def noise_errors(self, seen: Prediction, noise: Noise) -> np.ndarray:
+        """Draws of what blocks are off by, whatever they show [grey], shape (P, 3, DRAWS)."""
+        return self._grid.noise(seen.residual, self._told, noise)
 
-        Args:
-            seen: What a fit left unexplained.
-            noise: Of the photograph.
-        """
-        return self._grid.errors(seen.residual, self._told, noise)
+    def light_errors(self, seen: Prediction) -> np.ndarray:
+        """Draws of what blocks are off by as far as they changed [grey], shape (P, 3, DRAWS)."""
+        changed = self._photo - seen.residual - self._idle
+        return self._grid.light(changed, self._rest.light_error)
 
     def untouched(self) -> Prediction:
         """What the patch shows at rest."""

@@ -15,11 +15,12 @@ from typing import Any
 import numpy as np
 
 from sim.reading.changed import Change, change
-from sim.reading.deviation import deviation_mm
+from sim.reading.deviation import deviations_mm
 from sim.reading.fit import LEVELS, Fitted, Prediction, Priors, fitted
 from sim.reading.noise import Noise
 from sim.reading.patch import Patch
 from sim.reading.photo_view import PhotoView
+from sim.reading.pixel_maps import SUREST, pressed
 from sim.reading.rest_skin import bending, neighbours
 from sim.reading.sight import Sight
 from sim.reading.untouched import Untouched
@@ -56,6 +57,9 @@ class Touch:
     seconds: float
     sight: Sight
     """What the pixels see of the moved skin."""
+    contact: np.ndarray | None = None
+    """Vertices that are surely pressed in, shape (V,), bool; None where displacement and deviation
+    are all that is known."""
 
 
 class Reader:
@@ -79,7 +83,8 @@ class Reader:
         skin = self.rest.skin
         seen = change(self.rest.idle, photo, self.rest.sees.reshape(self.rest.shape))
         free, calm = self._moving(seen, start)
-        inward_mm, sigma_mm = np.zeros(skin.count), np.zeros(skin.count)
+        inward_mm, sigma_mm, doubt_mm = np.zeros((3, skin.count))
+        contact = np.zeros(skin.count, dtype=bool)
         misfit, steps, sight = 0.0, 0, self.rest.sight
         if np.count_nonzero(seen.certain) >= FEWEST_PIXELS and free.any():
             patch = Patch(skin, free)
@@ -93,12 +98,18 @@ class Reader:
             )
             found = self._fitted(fit, seen, start)
             inward_mm[chosen] = found.inward_mm
-            errors = view.errors(found.seen, seen.noise)
-            told_mm = deviation_mm(found.linear, errors)
+            by_noise_mm, by_light_mm = deviations_mm(
+                found.linear, view.noise_errors(found.seen, seen.noise), view.light_errors(found.seen)
+            )
             own_mm = np.hypot(OWN_SHARE * found.inward_mm, OWN_MM)
-            sigma_mm[chosen] = np.hypot(told_mm, own_mm)
+            sigma_mm[chosen] = np.hypot(np.hypot(by_noise_mm, by_light_mm), own_mm)
             sight = found.seen.sight
-            sigma_mm[free & ~self._seen(sight)] = np.nan
+            hidden = free & ~self.seen(sight)
+            sigma_mm[hidden] = np.nan
+            doubt_mm[chosen] = np.hypot(by_noise_mm, own_mm)
+            doubt_mm[hidden] = np.nan
+            changed = (free & ~calm) | self._shown(sight, seen.certain)
+            contact = self._contacts(inward_mm, doubt_mm, changed)
             misfit, steps = found.misfit, found.steps
         return Touch(
             inward_mm=inward_mm,
@@ -108,17 +119,39 @@ class Reader:
             steps=steps,
             seconds=time.perf_counter() - begun,
             sight=sight,
+            contact=contact,
         )
 
     def displaced_mm(self, touch: Touch) -> np.ndarray:
         """Displacement of the vertices [mm], shape (V, 3)."""
         return touch.inward_mm[:, None] * self.rest.skin.inward
 
-    def _seen(self, sight: Sight) -> np.ndarray:
+    def seen(self, sight: Sight) -> np.ndarray:
         """Vertices that some pixel sees, shape (V,), bool."""
-        seen = np.zeros(self.rest.skin.count, dtype=bool)
-        seen[self.rest.skin.faces[sight.face[self.rest.sees & (sight.face >= 0)]]] = True
-        return seen
+        return self._shown(sight, np.ones_like(self.rest.sees))
+
+    def _shown(self, sight: Sight, pixels: np.ndarray) -> np.ndarray:
+        """Vertices that some of these pixels see, (V,), bool."""
+        shown = np.zeros(self.rest.skin.count, dtype=bool)
+        sees = self.rest.sees & (sight.face >= 0) & pixels.ravel()
+        shown[self.rest.skin.faces[sight.face[sees]]] = True
+        return shown
+
+    def _contacts(
+        self, inward_mm: np.ndarray, doubt_mm: np.ndarray, changed: np.ndarray
+    ) -> np.ndarray:
+        """Vertices that are surely pressed in, (V,), bool: patches of them whose colour changed.
+
+        What grows with the depth read, as light that is off, makes no contact doubtful.
+        """
+        from scipy.sparse.csgraph import connected_components
+
+        deep = np.flatnonzero(pressed(inward_mm, doubt_mm))
+        _, patch = connected_components(self._neighbours[deep][:, deep], directed=False)
+        surest = changed[deep] & (inward_mm[deep] > SUREST * doubt_mm[deep])
+        found = np.zeros(len(inward_mm), dtype=bool)
+        found[deep] = np.isin(patch, patch[surest])
+        return found
 
     def _moving(self, seen: Change, start: Touch | None) -> tuple[np.ndarray, np.ndarray]:
         """Vertices that may move, and those that look at rest, (V,) bool each."""
