@@ -80,9 +80,7 @@ def fit_ball(
     return _fitted(dent, view, unknown, seen.noise)
 
 
-def _fitted(
-    dent: _Dent, view: PhotoView, unknown: np.ndarray, noise: Noise
-) -> FittedBall | None:
+def _fitted(dent: _Dent, view: PhotoView, unknown: np.ndarray, noise: Noise) -> FittedBall | None:
     """Gauss-Newton from a first guess (4,)."""
 
     def told(of: np.ndarray) -> np.ndarray:

@@ -30,7 +30,8 @@ COARSE = 8
 """Pixels along an edge of those from which such light is found."""
 HELD = 0.02
 """Weight of its median over that of calm pixels all around."""
-ROUNDS = 3
+MOST_ROUNDS = 6
+"""In which changed pixels and the light of the others are found from each other."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -64,15 +65,16 @@ def change(idle: np.ndarray, photo: np.ndarray, sees: np.ndarray) -> Change:
     blurred = cv2.GaussianBlur(difference, (0, 0), BLUR_PX)
     spread_grey = quiet_grey(blurred, sees)
     certain = near = np.zeros_like(sees)
-    for _ in range(ROUNDS):
+    for _ in range(MOST_ROUNDS):
         sizes = np.abs(blurred - light).max(axis=2)
         largest = float(sizes[sees].max(initial=0.0))
         over = sizes > max(LEAST_GREY, LEAST_SHARE * largest, SURE * spread_grey)
+        before = certain
         certain = cv2.morphologyEx(over.astype(np.uint8), cv2.MORPH_OPEN, np.ones((3, 3))) > 0
         certain &= sees
         near = cv2.dilate(certain.astype(np.uint8), disc) > 0
         calm = sees & ~near
-        if not calm.any():
+        if not calm.any() or (light.ndim > 1 and (certain == before).all()):
             break
         light = _light(difference, calm)
         left = (blurred - light)[calm]

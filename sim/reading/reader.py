@@ -98,9 +98,8 @@ class Reader:
             )
             found = self._fitted(fit, seen, start)
             inward_mm[chosen] = found.inward_mm
-            by_noise_mm, by_light_mm = deviations_mm(
-                found.linear, view.noise_errors(found.seen, seen.noise), view.light_errors(found.seen)
-            )
+            noise, light = view.noise_errors(found.seen, seen.noise), view.light_errors(found.seen)
+            by_noise_mm, by_light_mm = deviations_mm(found.linear, noise, light)
             own_mm = np.hypot(OWN_SHARE * found.inward_mm, OWN_MM)
             sigma_mm[chosen] = np.hypot(np.hypot(by_noise_mm, by_light_mm), own_mm)
             sight = found.seen.sight
@@ -237,6 +236,4 @@ class _Fit:
         start_mm: np.ndarray,
         levels: tuple[tuple[float, float], ...],
     ) -> Fitted:
-        return fitted(
-            self.patch, self.priors, predict, start_mm, noise=self.noise, levels=levels
-        )
+        return fitted(self.patch, self.priors, predict, start_mm, noise=self.noise, levels=levels)
