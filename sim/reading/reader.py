@@ -7,6 +7,7 @@ First the light of the tilts alone is asked from several guesses, then the rende
 
 from __future__ import annotations
 
+import dataclasses
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -80,45 +81,58 @@ class Reader:
             start: What an image just before it said: then only details are sought.
         """
         begun = time.perf_counter()
-        skin = self.rest.skin
         seen = change(self.rest.idle, photo, self.rest.sees.reshape(self.rest.shape))
         free, calm = self._moving(seen, start)
-        inward_mm, sigma_mm, doubt_mm = np.zeros((3, skin.count))
-        contact = np.zeros(skin.count, dtype=bool)
-        misfit, steps, sight = 0.0, 0, self.rest.sight
         if np.count_nonzero(seen.certain) >= FEWEST_PIXELS and free.any():
-            patch = Patch(skin, free)
-            chosen = patch.vertices[: patch.free]
-            view = PhotoView(self.rest, patch, seen)
-            fit = _Fit(
-                patch=patch,
-                priors=self._priors(chosen, calm),
-                view=view,
-                noise=seen.noise,
-            )
-            found = self._fitted(fit, seen, start)
-            inward_mm[chosen] = found.inward_mm
-            noise, light = view.noise_errors(found.seen, seen.noise), view.light_errors(found.seen)
-            by_noise_mm, by_light_mm = deviations_mm(found.linear, noise, light)
-            own_mm = np.hypot(OWN_SHARE * found.inward_mm, OWN_MM)
-            sigma_mm[chosen] = np.hypot(np.hypot(by_noise_mm, by_light_mm), own_mm)
-            sight = found.seen.sight
-            hidden = free & ~self.seen(sight)
-            sigma_mm[hidden] = np.nan
-            doubt_mm[chosen] = np.hypot(by_noise_mm, own_mm)
-            doubt_mm[hidden] = np.nan
-            changed = (free & ~calm) | self._shown(sight, seen.certain)
-            contact = self._contacts(inward_mm, doubt_mm, changed)
-            misfit, steps = found.misfit, found.steps
+            found = self._touch(seen, (free, calm), start)
+        else:
+            found = self._untouched(seen)
+        return dataclasses.replace(found, seconds=time.perf_counter() - begun)
+
+    def _untouched(self, seen: Change) -> Touch:
+        count = self.rest.skin.count
+        return Touch(
+            inward_mm=np.zeros(count),
+            sigma_mm=np.zeros(count),
+            misfit=0.0,
+            noise_grey=seen.noise.grey,
+            steps=0,
+            seconds=0.0,
+            sight=self.rest.sight,
+            contact=np.zeros(count, dtype=bool),
+        )
+
+    def _touch(
+        self, seen: Change, moving: tuple[np.ndarray, np.ndarray], start: Touch | None
+    ) -> Touch:
+        """What moved, of vertices that may and of those that look at rest, (V,) bool each."""
+        free, calm = moving
+        patch = Patch(self.rest.skin, free)
+        chosen = patch.vertices[: patch.free]
+        view = PhotoView(self.rest, patch, seen)
+        fit = _Fit(patch=patch, priors=self._priors(chosen, calm), view=view, noise=seen.noise)
+        found = self._fitted(fit, seen, start)
+        by_noise_mm, by_light_mm = deviations_mm(
+            found.linear, view.noise_errors(found.seen, seen.noise), view.light_errors(found.seen)
+        )
+        inward_mm, doubt_mm, sigma_mm = np.zeros((3, self.rest.skin.count))
+        inward_mm[chosen] = found.inward_mm
+        doubt_mm[chosen] = np.hypot(by_noise_mm, OWN_MM)
+        growing_mm = np.hypot(by_light_mm, OWN_SHARE * found.inward_mm)
+        sigma_mm[chosen] = np.hypot(doubt_mm[chosen], growing_mm)
+        sight = found.seen.sight
+        hidden = free & ~self.seen(sight)
+        doubt_mm[hidden] = sigma_mm[hidden] = np.nan
+        changed = (free & ~calm) | self._shown(sight, seen.certain)
         return Touch(
             inward_mm=inward_mm,
             sigma_mm=sigma_mm,
-            misfit=misfit,
+            misfit=found.misfit,
             noise_grey=seen.noise.grey,
-            steps=steps,
-            seconds=time.perf_counter() - begun,
+            steps=found.steps,
+            seconds=0.0,
             sight=sight,
-            contact=contact,
+            contact=self._contacts(inward_mm, doubt_mm, changed),
         )
 
     def displaced_mm(self, touch: Touch) -> np.ndarray:

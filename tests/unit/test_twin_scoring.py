@@ -83,7 +83,8 @@ def test_a_right_reading_and_one_of_nothing(
     rest, known = opened.reader.rest, truth(mesh, moved)
     depth_mm = np.einsum("vc,vc->v", moved, rest.skin.inward)
     right = opened.reader.read(photographed(rest.studio, moved))
-    right = dataclasses.replace(right, inward_mm=depth_mm, sigma_mm=np.full(len(depth_mm), 0.01))
+    sigma_mm = np.full(len(depth_mm), 0.01)
+    right = dataclasses.replace(right, inward_mm=depth_mm, sigma_mm=sigma_mm, contact=None)
     scorer = Scorer(opened)
     best = scorer.score(reading(opened, right, np.array([0.0, 0.0, -1.0])), known)
     # A dent moves along one direction, a reading along normals that turn by some degrees.
