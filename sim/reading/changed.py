@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim.reading.noise import Noise, noise_of, quiet_grey
+from sim.reading.noise import Noise, noise_of, quiet_grey, some
 
 BLUR_PX = 1.5
 """Of the difference, before it is judged: white noise of 1 grey is then .19."""
@@ -61,12 +61,12 @@ def change(idle: np.ndarray, photo: np.ndarray, sees: np.ndarray) -> Change:
     disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * REACH_PX + 1,) * 2)
     difference = photo.astype(np.float32) - idle.astype(np.float32)
     plain = difference[sees] if sees.any() else np.zeros((1, 3), np.float32)
-    light: np.ndarray = np.median(plain, axis=0)
+    light: np.ndarray = np.median(some(plain), axis=0)
     blurred = cv2.GaussianBlur(difference, (0, 0), BLUR_PX)
     spread_grey = quiet_grey(blurred, sees)
     certain = near = np.zeros_like(sees)
     for _ in range(MOST_ROUNDS):
-        sizes = np.abs(blurred - light).max(axis=2)
+        sizes = np.maximum.reduce(cv2.split(np.abs(blurred - light)))
         largest = float(sizes[sees].max(initial=0.0))
         over = sizes > max(LEAST_GREY, LEAST_SHARE * largest, SURE * spread_grey)
         before = certain
@@ -103,5 +103,7 @@ def _light(difference: np.ndarray, calm: np.ndarray) -> np.ndarray:
     summed = cv2.resize(difference * share[:, :, None], size, interpolation=cv2.INTER_AREA)
     blur = WIDE * size[0]
     weight = cv2.GaussianBlur(weight, (0, 0), blur)[:, :, None] + HELD
-    summed = cv2.GaussianBlur(summed, (0, 0), blur) + HELD * np.median(difference[calm], axis=0)
+    summed = cv2.GaussianBlur(summed, (0, 0), blur) + HELD * np.median(
+        some(difference[calm]), axis=0
+    )
     return cv2.resize(summed / weight, (columns, rows), interpolation=cv2.INTER_LINEAR)

@@ -21,6 +21,8 @@ QUIET = 0.5
 """Share of the tiles, the quietest, that show noise alone before it is known what changed."""
 LEAST_GREY = 0.3
 """Of whole grey levels."""
+WHOLE = 1.0 - 1e-4
+"""Share of the pixels of a tile that count, of one all of whose pixels do."""
 FEWEST = 12
 """Tiles from which it is told how many pixels share their noise."""
 MOST_JUDGED = 20_000
@@ -58,10 +60,10 @@ def noise_of(difference: np.ndarray, calm: np.ndarray) -> Noise:
     if not calm.any():
         return Noise(grey=LEAST_GREY)
     grey = max(LEAST_GREY, spread_grey(difference[calm]))
-    whole = tiles(calm).all(axis=(1, 3))
+    whole = tile_means(calm) > WHOLE
     if np.count_nonzero(whole) < FEWEST:
         return Noise(grey=grey)
-    means = tiles(difference).mean(axis=(1, 3))[whole]
+    means = tile_means(difference)[whole]
     shared_px = TILE_PX**2 * float((means**2).mean()) / grey**2
     return Noise(grey=grey, shared_px=max(1.0, shared_px))
 
@@ -73,23 +75,33 @@ def quiet_grey(difference: np.ndarray, sees: np.ndarray) -> float:
         difference: Shape (H, W, C).
         sees: Pixels that count, shape (H, W), bool.
     """
-    whole = tiles(sees).all(axis=(1, 3))
+    whole = tile_means(sees) > WHOLE
     if np.count_nonzero(whole) < FEWEST:
         return float(np.sqrt(np.median(difference[sees] ** 2))) if sees.any() else 0.0
-    variance = tiles(difference).var(axis=(1, 3))[whole].max(axis=1)
+    square, mean = tile_means(difference**2)[whole], tile_means(difference)[whole]
+    variance = (square - mean**2).max(axis=1)
     count = max(1, int(QUIET * len(variance)))
-    return float(np.sqrt(np.partition(variance, count - 1)[:count].mean()))
+    return float(np.sqrt(max(0.0, np.partition(variance, count - 1)[:count].mean())))
+
+
+def some(values: np.ndarray) -> np.ndarray:
+    """Some of many values (n, 3), evenly over them: about `MOST_JUDGED`."""
+    return values[:: max(1, len(values) // MOST_JUDGED)]
 
 
 def spread_grey(values: np.ndarray) -> float:
     """Standard deviation of noise (n, 3), in whole grey levels too, with outliers left out."""
-    size = np.abs(values[:: max(1, len(values) // MOST_JUDGED)])
+    size = np.abs(some(values))
     plain = size <= OUTLYING * max(float(np.median(size)), 1.0)
     return float(np.sqrt((size[plain] ** 2).mean()))
 
 
-def tiles(image: np.ndarray) -> np.ndarray:
-    """An image, (H, W, ...), cut into tiles: shape (h, TILE_PX, w, TILE_PX, ...)."""
+def tile_means(image: np.ndarray) -> np.ndarray:
+    """Means of an image, (H, W, ...), over whole tiles, shape (h, w, ...); none: empty."""
+    import cv2
+
     rows, columns = (size // TILE_PX for size in image.shape[:2])
-    cut = image[: rows * TILE_PX, : columns * TILE_PX]
-    return cut.reshape(rows, TILE_PX, columns, TILE_PX, *image.shape[2:])
+    if not rows or not columns:
+        return np.empty((0, 0, *image.shape[2:]), np.float32)
+    cut = image[: rows * TILE_PX, : columns * TILE_PX].astype(np.float32)
+    return cv2.resize(cut, (columns, rows), interpolation=cv2.INTER_AREA)

@@ -13,6 +13,7 @@ from sim.optics.raster.display import shown
 from sim.optics.studio.render import Studio
 from sim.reading.maps import pixel_maps, touched
 from sim.reading.reader import Reader
+from sim.reading.rest_skin import normals_of
 from sim.reading.untouched import open_untouched
 from tests.synthetic_light import lit
 from workbench.core.design.camera import Camera
@@ -79,7 +80,8 @@ def test_pixels_show_what_the_vertices_say(
 ) -> None:
     """Depth where skin is seen, NaN elsewhere; unit normals; contact in the middle of the dent."""
     touch = reader.read(photographed(studio, pressed(mesh)))
-    maps = pixel_maps(reader, touch)
+    skin = reader.rest.skin
+    maps = pixel_maps(reader, touch, normals_of(skin, reader.displaced_mm(touch)))
     sees = np.isfinite(maps.depth_mm)
     assert sees.any()
     assert maps.depth_mm[sees].max() == pytest.approx(touch.inward_mm.max(), rel=0.1)

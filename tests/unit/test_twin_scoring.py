@@ -11,6 +11,7 @@ from sim.optics.proof.specimen import dent, finger
 from sim.optics.studio.render import Studio
 from sim.reading.maps import pixel_maps
 from sim.reading.reader import Reader, Touch
+from sim.reading.rest_skin import normals_of
 from sim.reading.untouched import open_untouched
 from tests.synthetic_light import lit
 from tests.unit.test_reader import CAMERA, RING, photographed
@@ -65,10 +66,13 @@ def truth(mesh: MembraneMesh, moved: np.ndarray) -> Truth:
 
 
 def reading(opened: DesignReader, touch: Touch, force_N: np.ndarray) -> Reading:
+    skin = opened.reader.rest.skin
+    normals = normals_of(skin, opened.reader.displaced_mm(touch))
     return Reading(
         photo="a",
         touch=touch,
-        maps=pixel_maps(opened.reader, touch),
+        normals=normals,
+        maps=pixel_maps(opened.reader, touch, normals),
         force_N=force_N,
         force_sigma_N=0.1,
         contact_area_mm2=1.0,

@@ -55,7 +55,7 @@ PLACES = 3
 """Of them, the first that are dents: where a toe or a fold stands out beside the place, a ball that
 is let into the skin without contact would push it aside by millimetres."""
 BESIDE_MM = 0.25
-"""By which a dent may displace skin farther than it is deep; its soft foot takes .17 of it."""
+"""By which the deepest dent may displace skin farther than it is deep."""
 DEPTHS_MM = (0.3, 0.6, 1.0)
 INSIDE_MM = 3.0
 """From the skin, where the line of a dent begins."""
