@@ -11,7 +11,6 @@ import dataclasses
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -67,10 +66,10 @@ class Reader:
     """Reads photographs of one sensor."""
 
     def __init__(self, rest: Untouched) -> None:
-        from scipy.sparse import diags
+        from scipy.sparse import csc_matrix, diags
 
         self.rest = rest
-        self._bent: Any = (diags(np.sqrt(rest.skin.shares_mm2)) @ bending(rest.skin)).tocsc()
+        self._bent = csc_matrix(diags(np.sqrt(rest.skin.shares_mm2)) @ bending(rest.skin))
         self._neighbours = neighbours(rest.skin)
 
     def read(self, photo: np.ndarray, start: Touch | None = None) -> Touch:

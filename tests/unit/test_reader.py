@@ -5,6 +5,7 @@ A comparison of the product with itself; `validate reading` has photographs by o
 
 from __future__ import annotations
 
+import cv2
 import numpy as np
 import pytest
 
@@ -49,11 +50,16 @@ def pressed(mesh: MembraneMesh) -> np.ndarray:
     return dent(mesh.seen, at_mm=(13.0, 7.5, 22.0), depth_mm=0.5, radius_mm=3.0)
 
 
-def photographed(studio: Studio, moved: np.ndarray | None, noise_grey: float = 0.0) -> np.ndarray:
-    """A photograph of displaced skin, (V, 3), in whole grey levels."""
+def photographed(
+    studio: Studio,
+    moved: np.ndarray | None,
+    noise_grey: float = 0.0,
+    powers: tuple[float, float, float] = (1.0, 1.0, 1.0),
+) -> np.ndarray:
+    """A photograph of displaced skin, (V, 3), in whole grey levels; lamps of other powers."""
     count = studio.imager.raster.vertices
     shape = np.zeros((count, 3), dtype=np.float32) if moved is None else moved
-    light = np.clip(studio.linear(shape[None])[0] * studio.exposure, 0.0, 1.0)
+    light = np.clip(studio.linear(shape[None])[0] * studio.exposure * powers, 0.0, 1.0)
     noise = np.random.default_rng(7).normal(size=light.shape) * noise_grey
     return np.clip(np.round(255.0 * shown(light, CAMERA.sensor) + noise), 0, 255)
 
@@ -107,3 +113,38 @@ def test_an_untouched_sensor_reads_as_untouched(studio: Studio, reader: Reader) 
     touch = reader.read(photographed(studio, None, NOISE_GREY) + 2.0)
     assert touch.inward_mm.max() < 0.02
     assert not touched(touch).any()
+
+
+def test_noise_that_pixels_share_is_no_contact(
+    mesh: MembraneMesh, studio: Studio, reader: Reader
+) -> None:
+    """1 grey, alike over 2 px: contact lies in the dent, and half of the errors in a deviation."""
+    moved = pressed(mesh)
+    white = np.random.default_rng(5).normal(size=(120, 160, 3))
+    shared = cv2.GaussianBlur(white, (0, 0), 2.0)
+    touch = reader.read(photographed(studio, moved) + shared / shared.std())
+    depth_mm = np.einsum("vc,vc->v", moved, reader.rest.skin.inward)
+    deep, contact = depth_mm > 0.05, touched(touch)
+    assert not contact[depth_mm < 0.01].any()
+    assert (contact & deep).sum() > 0.5 * (contact | deep).sum()
+    known = deep & np.isfinite(touch.sigma_mm)
+    off_mm = np.abs(touch.inward_mm - depth_mm)[known]
+    assert 0.5 < (off_mm <= touch.sigma_mm[known]).mean() < 1.0
+
+
+def test_lamps_of_other_powers_read_the_same(
+    mesh: MembraneMesh, studio: Studio, reader: Reader
+) -> None:
+    """A tenth more and less: the idle photo tells them, and the deviation grows."""
+    powers, moved = (1.1, 0.9, 1.0), pressed(mesh)
+    plain = reader.read(photographed(studio, moved))
+    light = reader.rest.light
+    idle = photographed(studio, None, powers=powers)
+    other = Reader(open_untouched(studio, CAMERA, idle, light=light))
+    assert other.rest.light_error == pytest.approx(np.log(powers).std(), rel=0.2)
+    assert reader.rest.light_error < 0.005
+    found = other.read(photographed(studio, moved, powers=powers))
+    deepest = np.argmax(plain.inward_mm)
+    assert found.inward_mm[deepest] == pytest.approx(plain.inward_mm[deepest], abs=0.01)
+    assert found.sigma_mm[deepest] > 3.0 * plain.sigma_mm[deepest]
+    assert touched(found)[deepest]

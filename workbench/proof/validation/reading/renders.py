@@ -49,11 +49,11 @@ if TYPE_CHECKING:
 
 DESIGNS = ("pad", "geltip", "trunk", "paw")
 SIZE_PX = (320, 240)
-SPOTS = ((0.5, 0.5), (0.46, 0.66), (0.25, 0.375), (0.6, 0.4), (0.4, 0.3), (0.7, 0.6))
+SPOTS = ((0.5, 0.5), (0.46, 0.66), (0.25, 0.375), (0.35, 0.6), (0.6, 0.5))
 """Row and column of dents over the size of the image."""
 PLACES = 3
-"""Of them, the first that are dents: where a toe or a fold stands out beside the place, a ball that
-is let into the skin without contact would push it aside by millimetres."""
+"""Of them, the first that are dents: a ball that is let into the skin beside a toe of the paw would
+push that aside too, by up to 9 mm, as nothing here knows of contact."""
 BESIDE_MM = 0.25
 """By which the deepest dent may displace skin farther than it is deep."""
 DEPTHS_MM = (0.3, 0.6, 1.0)
