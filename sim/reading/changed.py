@@ -1,8 +1,8 @@
 """Where a photograph differs from the one at rest, by how much noise, and from what level on.
 
-Light also changes where nothing moved: a lamp flickers, and a contact darkens or lights its
-surroundings by light that bounced. What is alike over many pixels where skin is calm is taken for
-such light, and carried on into the contact.
+Of skin that looks calm all changes by one amount, as a lamp that flickers makes it, are taken off.
+Slow ones are left: a soft wall gives way a little far around a contact, and that is no light. Noise
+is what is left without them.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ photographs has a larger one."""
 REACH_PX = 6
 """How far around changed pixels skin may have moved."""
 WIDE = 0.075
-"""Of the width of the image: blur of the light that changes where nothing moved."""
+"""Of the width of the image: blur of changes that are too slow for noise."""
 COARSE = 8
-"""Pixels along an edge of those from which such light is found."""
-HELD = 0.02
-"""Weight of its median over that of calm pixels all around."""
-MOST_ROUNDS = 6
-"""In which changed pixels and the light of the others are found from each other."""
+"""Pixels along an edge of those from which such changes are found."""
+HELD = 1e-3
+"""Least weight of calm pixels around."""
+MOST_ROUNDS = 4
+"""In which changed pixels and what the others are off by are found from each other."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -39,7 +39,7 @@ class Change:
     """Of an image of H x W pixels."""
 
     photo: np.ndarray
-    """The photograph in the light of the one at rest [grey], shape (H, W, 3)."""
+    """The photograph on the level of the one at rest [grey], shape (H, W, 3)."""
     noise: Noise
     """Of the difference where nothing changed."""
     certain: np.ndarray
@@ -60,13 +60,16 @@ def change(idle: np.ndarray, photo: np.ndarray, sees: np.ndarray) -> Change:
 
     disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * REACH_PX + 1,) * 2)
     difference = photo.astype(np.float32) - idle.astype(np.float32)
-    plain = difference[sees] if sees.any() else np.zeros((1, 3), np.float32)
-    light: np.ndarray = np.median(some(plain), axis=0)
     blurred = cv2.GaussianBlur(difference, (0, 0), BLUR_PX)
     spread_grey = quiet_grey(blurred, sees)
-    certain = near = np.zeros_like(sees)
+    calm, certain, near = sees, np.zeros_like(sees), np.zeros_like(sees)
+    offset: np.ndarray = np.zeros(3)
+    slow: np.ndarray = np.zeros_like(difference)
     for _ in range(MOST_ROUNDS):
-        sizes = np.maximum.reduce(cv2.split(np.abs(blurred - light)))
+        if not calm.any():
+            break
+        offset = np.median(some(difference[calm]), axis=0)
+        sizes = np.maximum.reduce(cv2.split(np.abs(blurred - offset)))
         largest = float(sizes[sees].max(initial=0.0))
         over = sizes > max(LEAST_GREY, LEAST_SHARE * largest, SURE * spread_grey)
         before = certain
@@ -74,25 +77,25 @@ def change(idle: np.ndarray, photo: np.ndarray, sees: np.ndarray) -> Change:
         certain &= sees
         near = cv2.dilate(certain.astype(np.uint8), disc) > 0
         calm = sees & ~near
-        if not calm.any() or (light.ndim > 1 and (certain == before).all()):
+        slow = _slow(difference, calm)
+        if (certain == before).all() or not calm.any():
             break
-        light = _light(difference, calm)
-        left = (blurred - light)[calm]
+        left = (blurred - slow)[calm]
         spread_grey = float(np.sqrt((left**2).mean(axis=0).max()))
     return Change(
-        photo=photo - light,
-        noise=noise_of(difference - light, sees & ~near),
+        photo=photo - offset,
+        noise=noise_of(difference - slow, calm),
         certain=certain,
         near=near,
     )
 
 
-def _light(difference: np.ndarray, calm: np.ndarray) -> np.ndarray:
-    """What changed where nothing moved, alike over many pixels, shape (H, W, 3).
+def _slow(difference: np.ndarray, calm: np.ndarray) -> np.ndarray:
+    """What of a difference, (H, W, 3), is alike over many calm pixels, of the same shape.
 
     Args:
         difference: Of the photographs [grey], shape (H, W, 3).
-        calm: Pixels where nothing moved, shape (H, W), bool; some.
+        calm: Pixels that did not change, shape (H, W), bool.
     """
     import cv2
 
@@ -102,8 +105,6 @@ def _light(difference: np.ndarray, calm: np.ndarray) -> np.ndarray:
     weight = cv2.resize(share, size, interpolation=cv2.INTER_AREA)
     summed = cv2.resize(difference * share[:, :, None], size, interpolation=cv2.INTER_AREA)
     blur = WIDE * size[0]
-    weight = cv2.GaussianBlur(weight, (0, 0), blur)[:, :, None] + HELD
-    summed = cv2.GaussianBlur(summed, (0, 0), blur) + HELD * np.median(
-        some(difference[calm]), axis=0
-    )
-    return cv2.resize(summed / weight, (columns, rows), interpolation=cv2.INTER_LINEAR)
+    weight = np.maximum(cv2.GaussianBlur(weight, (0, 0), blur), HELD)[:, :, None]
+    mean = cv2.GaussianBlur(summed, (0, 0), blur) / weight
+    return cv2.resize(mean, (columns, rows), interpolation=cv2.INTER_LINEAR)
