@@ -23,7 +23,9 @@ AROUND = 3.0
 """Blur of its variance [blocks]."""
 DOUBT = 5.0
 """Standard deviation of what the light makes of a change, over how far the light at rest is off:
-lamps in another place shine from another side, which the photograph at rest shows but little."""
+lamps in another place shine from another side, which the photograph at rest shows but little. Of
+five sensors with lamps, coating and camera off, 66 % of the errors of dents are then within one
+standard deviation on average, of one sensor 25 to 100 %."""
 WIDE = 8.0
 """Blur of such an error [blocks]: a dent is read too deep or too shallow as a whole."""
 POINT = 0.3

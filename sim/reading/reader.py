@@ -34,8 +34,7 @@ EXPLAINED, PLAIN = 0.3, 1.5
 OWN_SHARE, OWN_MM = 0.02, 2e-3
 """Standard deviation of what a reading leaves out, over the depth and beside it [mm]: skin moves
 sideways too. Of 16 readings of pressed balls, .2 to 1 mm deep in pad and finger, without noise and
-with 1 grey of it, 67 % of the errors are then within one standard deviation (26 to 100 %), without
-it 21 %."""
+with 1 grey of it, 60 % of the errors are then within one standard deviation (10 to 97 %)."""
 FEWEST_PIXELS = 5
 """Changed pixels below which nothing was touched."""
 
