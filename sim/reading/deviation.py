@@ -24,9 +24,9 @@ from sim.reading.pixels import Slopes, jacobian
 DRAWS = 24
 """A standard deviation is then known to a seventh."""
 UNKNOWN = 0.3
-"""Size of what is not known of the skin, over what the prior allows. Under balls of 8 mm skin bends by
-.04 to .1 of that, root mean square over the patch; all of it would make a fit doubt too much that
-trusts its photograph little."""
+"""Size of what is not known of the skin, over what the prior allows. Under balls of 8 mm skin bends
+by .04 to .1 of that, root mean square over the patch; all of it would make a fit doubt too much
+that trusts its photograph little."""
 SEED = 1
 
 
