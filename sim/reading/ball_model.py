@@ -19,6 +19,7 @@ import numpy as np
 from sim.reading.changed import change
 from sim.reading.fit import Prediction
 from sim.reading.layer_law import Layer
+from sim.reading.noise import Noise
 from sim.reading.patch import Patch
 from sim.reading.photo_view import PhotoView
 from sim.reading.reader import Reader, Touch
@@ -76,16 +77,14 @@ def fit_ball(
     view = PhotoView(rest, patch, seen)
     dent = _Dent(reader, patch, touch, layer)
     unknown = np.array([0.0, 0.0, np.log(radius_mm), float(touch.inward_mm.max())])
-    return _fitted(dent, view, unknown, seen.noise_grey)
+    return _fitted(dent, view, unknown, seen.noise)
 
 
-def _fitted(
-    dent: _Dent, view: PhotoView, unknown: np.ndarray, noise_grey: float
-) -> FittedBall | None:
+def _fitted(dent: _Dent, view: PhotoView, unknown: np.ndarray, noise: Noise) -> FittedBall | None:
     """Gauss-Newton from a first guess (4,)."""
 
     def told(of: np.ndarray) -> np.ndarray:
-        return _residual(view.rendered(dent.inward_mm(of)), noise_grey)
+        return _residual(view.rendered(dent.inward_mm(of)), noise)
 
     now, damping = told(unknown), DAMPING
     slopes = _slopes(told, unknown, now)
@@ -117,9 +116,9 @@ def _fitted(
     )
 
 
-def _residual(seen: Prediction, noise_grey: float) -> np.ndarray:
+def _residual(seen: Prediction, noise: Noise) -> np.ndarray:
     """Residuals over noise of the blocks and colours that say something."""
-    return (np.sqrt(seen.told) * seen.residual / noise_grey).ravel()
+    return (seen.residual / np.sqrt(noise.of_block(seen.told))).ravel()
 
 
 def _slopes(

@@ -18,6 +18,8 @@ from typing import Any
 import numpy as np
 
 from sim.reading.banded import Banded
+from sim.reading.deviation import Linear
+from sim.reading.noise import Noise
 from sim.reading.patch import Patch, Posed
 from sim.reading.pixels import Slopes, gathered, on_tilts
 from sim.reading.sight import Sight
@@ -59,9 +61,9 @@ class Prediction:
     slopes: Callable[[], Slopes]
     """How it changes with the tilts; asked for where a step begins."""
 
-    def misfit(self, noise_grey: float) -> float:
+    def misfit(self, noise: Noise) -> float:
         """Root mean square of residual over noise, of the blocks [1]."""
-        over = self.told * self.residual**2 / noise_grey**2
+        over = self.residual**2 / noise.of_block(self.told)
         return float(np.sqrt(over.sum() / max(np.count_nonzero(self.told), 1)))
 
     @property
@@ -74,19 +76,19 @@ class Prediction:
 class Priors:
     """What is believed without a photograph, of the m free vertices."""
 
-    bending: Any
-    """Integral of (Lap h)^2, sparse (m, m)."""
+    bent: Any
+    """Lap h times the root of the area of each vertex [1/mm], sparse (v, m)."""
     area_mm2: np.ndarray
     """Shape (m,)."""
     calm: np.ndarray
     """Whether nothing changed there, shape (m,), bool."""
 
-    def stiffness(self, curvature: float):
-        """Half the second derivative of what an inward displacement costs, sparse (m, m)."""
-        from scipy.sparse import diags
+    def root(self, curvature: float):
+        """R of R^T R, half the second derivative of what an inward displacement costs, sparse."""
+        from scipy.sparse import diags, vstack
 
-        held = self.area_mm2 / np.where(self.calm, CALM_MM, MOVED_MM) ** 2
-        return (self.bending / curvature**2 + diags(held)).tocsr()
+        held = np.sqrt(self.area_mm2) / np.where(self.calm, CALM_MM, MOVED_MM)
+        return vstack([self.bent / curvature, diags(held)]).tocsr()
 
     def outward(self, inward_mm: np.ndarray) -> np.ndarray:
         """What is added to its diagonal where a displacement (m,) goes outward, shape (m,)."""
@@ -99,8 +101,8 @@ class Fitted:
 
     inward_mm: np.ndarray
     """Shape (m,)."""
-    matrix: Any
-    """Half the second derivative of the cost there, sparse (m, m)."""
+    linear: Linear
+    """The fit at its last step."""
     seen: Prediction
     """What it would show."""
     misfit: float
@@ -114,7 +116,7 @@ def fitted(
     predict: Callable[[np.ndarray], Prediction],
     start_mm: np.ndarray,
     *,
-    noise_grey: float,
+    noise: Noise,
     levels: tuple[tuple[float, float], ...],
 ) -> Fitted:
     """Fit the free vertices of a patch.
@@ -124,25 +126,26 @@ def fitted(
         priors: What is believed of it.
         predict: What the patch moved by (m,) [mm] would show.
         start_mm: First guess, shape (m,).
-        noise_grey: Standard deviation of a pixel.
+        noise: Of the photograph.
         levels: As `LEVELS`.
     """
     steps, inward_mm, seen = 0, start_mm, predict(start_mm)
     spread_grey = seen.spread_grey
-    matrix: Any = None
     for curvature, forgiving in levels:
-        error_grey = max(noise_grey, forgiving * spread_grey)
+        root = priors.root(curvature)
         level = _Level(
             patch=patch,
             priors=priors,
-            stiffness=priors.stiffness(curvature),
-            error_grey=error_grey,
+            root=root,
+            stiffness=(root.T @ root).tocsr(),
+            error_grey2=max(noise.of_many(), (forgiving * spread_grey) ** 2),
             robust=forgiving == 0.0,
         )
         damping, cost = FIRST_DAMPING, level.cost(inward_mm, seen)
-        matrix, pull = level.quadratic(inward_mm, seen)
+        near = level.near(inward_mm, seen)
         for _ in range(MOST_STEPS):
-            tried_mm = _stepped(inward_mm, matrix, pull, damping)
+            factors = Banded(near.matrix, damping)
+            tried_mm = _stepped(inward_mm, factors.solved(near.pull))
             tried = predict(tried_mm)
             steps += 1
             gain = cost - level.cost(tried_mm, tried)
@@ -151,25 +154,46 @@ def fitted(
                 continue
             if gain <= 0.0:
                 break
-            damping = max(0.2 * damping, LEAST_DAMPING)
             inward_mm, seen, cost = tried_mm, tried, cost - gain
-            matrix, pull = level.quadratic(inward_mm, seen)
             if gain < (WORTH_LAST if level.robust else WORTH) * cost:
                 break
+            damping = max(0.2 * damping, LEAST_DAMPING)
+            near = level.near(inward_mm, seen)
+    if damping > FIRST_DAMPING:
+        factors = Banded(near.matrix)
     return Fitted(
         inward_mm=inward_mm,
-        matrix=matrix,
+        linear=Linear(
+            factors=factors,
+            slopes=near.slopes,
+            by_move=near.by_move,
+            weight=near.weight,
+            root=root,
+        ),
         seen=seen,
-        misfit=seen.misfit(noise_grey),
+        misfit=seen.misfit(noise),
         steps=steps,
     )
 
 
-def _stepped(inward_mm: np.ndarray, matrix: Any, pull: np.ndarray, damping: float) -> np.ndarray:
-    """The displacement after a step of a quadratic."""
-    step = Banded(matrix, damping).solved(pull)
-    step *= min(1.0, FARTHEST_MM / max(float(np.abs(step).max(initial=0.0)), 1e-12))
-    return np.clip(inward_mm + step, *RANGE_MM)
+def _stepped(inward_mm: np.ndarray, step_mm: np.ndarray) -> np.ndarray:
+    """The displacement after a step, which is not too far."""
+    far = FARTHEST_MM / max(float(np.abs(step_mm).max(initial=0.0)), 1e-12)
+    return np.clip(inward_mm + min(1.0, far) * step_mm, *RANGE_MM)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Near:
+    """The quadratic that the cost is near a displacement."""
+
+    matrix: Any
+    """Half its second derivative, sparse (m, m)."""
+    pull: np.ndarray
+    """Half its fall, shape (m,)."""
+    slopes: Slopes
+    by_move: Any
+    weight: np.ndarray
+    """As `Linear` has them."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -178,10 +202,12 @@ class _Level:
 
     patch: Patch
     priors: Priors
+    root: Any
+    """R of the priors, sparse (q, m)."""
     stiffness: Any
-    """Of the priors, sparse (m, m)."""
-    error_grey: float
-    """That a pixel is given."""
+    """R^T R, sparse (m, m)."""
+    error_grey2: float
+    """Variance that a pixel is given."""
     robust: bool
     """Whether blocks far off count less."""
 
@@ -191,21 +217,27 @@ class _Level:
         believed = self.stiffness @ inward_mm + self.priors.outward(inward_mm) * inward_mm
         return float(told + inward_mm @ believed)
 
-    def quadratic(self, inward_mm: np.ndarray, seen: Prediction) -> tuple[Any, np.ndarray]:
-        """Half the second derivative of the cost, sparse (m, m), and half its fall, (m,)."""
+    def near(self, inward_mm: np.ndarray, seen: Prediction) -> _Near:
+        """The problem near a displacement (m,) and what it would show."""
         from scipy.sparse import diags
 
-        evidence = gathered(seen.slopes(), seen.residual, self._weight(seen))
+        slopes, weight = seen.slopes(), self._weight(seen)
+        evidence = gathered(slopes, seen.residual, weight)
         products, pulls = on_tilts(self.patch.faces, self.patch.count, evidence)
         by_move = self.patch.tilt_slopes(seen.posed)
         outward = self.priors.outward(inward_mm)
-        matrix = by_move.T @ (products @ by_move) + self.stiffness + diags(outward)
         believed = self.stiffness @ inward_mm + outward * inward_mm
-        return matrix.tocsr(), by_move.T @ pulls - believed
+        return _Near(
+            matrix=by_move.T @ (products @ by_move) + self.stiffness + diags(outward),
+            pull=by_move.T @ pulls - believed,
+            slopes=slopes,
+            by_move=by_move,
+            weight=weight,
+        )
 
     def _weight(self, seen: Prediction) -> np.ndarray:
         """One over the variance of each block and colour, shape (P, 3)."""
-        weight = seen.told / self.error_grey**2
+        weight = seen.told / self.error_grey2
         if not self.robust:
             return weight
         over = np.abs(seen.residual) * np.sqrt(weight)

@@ -6,11 +6,12 @@ import numpy as np
 
 from sim.reading.pixel_maps import PixelMaps, pressed
 from sim.reading.reader import Reader, Touch
-from sim.reading.rest_skin import normals_of
 
 
 def touched(touch: Touch) -> np.ndarray:
     """Vertices that are surely pressed in, shape (V,), bool."""
+    if touch.contact is not None:
+        return touch.contact
     return pressed(touch.inward_mm, touch.sigma_mm)
 
 
@@ -28,13 +29,13 @@ def seen_by_pixels(reader: Reader, touch: Touch, values: np.ndarray) -> np.ndarr
     return found.reshape(rows, columns, -1).astype(np.float32)
 
 
-def pixel_maps(reader: Reader, touch: Touch) -> PixelMaps:
-    """A touch as the camera sees it."""
+def pixel_maps(reader: Reader, touch: Touch, normals: np.ndarray) -> PixelMaps:
+    """A touch as the camera sees it; unit normals of the moved vertices, (V, 3), are its own."""
 
     def seen(values: np.ndarray) -> np.ndarray:
         return seen_by_pixels(reader, touch, values)
 
-    normal = seen(normals_of(reader.rest.skin, reader.displaced_mm(touch)))
+    normal = seen(normals)
     with np.errstate(invalid="ignore"):
         normal /= np.linalg.norm(normal, axis=2, keepdims=True)
         contact = seen(touched(touch).astype(np.float64))[:, :, 0] > 0.5

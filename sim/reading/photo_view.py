@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from sim.optics.raster.display import shown
+from sim.reading.block_errors import BlockErrors
 from sim.reading.changed import Change
 from sim.reading.fit import Prediction
+from sim.reading.noise import Noise
 from sim.reading.patch import Patch, Posed
 from sim.reading.pixels import Slopes
 from sim.reading.sight import Sight, moved
@@ -47,13 +49,24 @@ class PhotoView:
         self._trusted = ((photo > BLACK_GREY) & (photo < WHITE_GREY)).astype(np.float64)
         self._lead = self._pixels[lead]
         """First pixel of each block, shape (P,)."""
+        self._errors = BlockErrors(row[lead] // edge, column[lead] // edge, edge)
         self._told = self._summed(self._trusted)
         self._photo = self._mean(photo)
+        self._idle = self._mean(rest.idle.reshape(-1, 3)[self._pixels])
         self._idle_light = self._mean(rest.idle_light[self._pixels])
         self._exposure = rest.exposure[self._pixels]
         level = np.zeros((patch.count, 2))
         self._level_light = rest.light.at(patch.vertices, level)
         """Of the vertices at rest, by the light of the tilts, shape (n, 3)."""
+
+    def noise_errors(self, seen: Prediction, noise: Noise) -> np.ndarray:
+        """Draws of what blocks are off by, whatever they show [grey], shape (P, 3, DRAWS)."""
+        return self._errors.noise(seen.residual, self._told, noise)
+
+    def light_errors(self, seen: Prediction) -> np.ndarray:
+        """Draws of what blocks are off by as far as they changed [grey], shape (P, 3, DRAWS)."""
+        changed = self._photo - seen.residual - self._idle
+        return self._errors.light(changed, self._rest.light_error)
 
     def untouched(self) -> Prediction:
         """What the patch shows at rest."""

@@ -10,6 +10,8 @@ TOUCHED_MM = 0.05
 """Least inward displacement that counts as contact."""
 SURE = 2.0
 """And the least number of its standard deviations."""
+SUREST = 3.0
+"""Least number of standard deviations, somewhere in a contact."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -85,6 +85,20 @@ def gathered_plainly(slopes: Slopes, residual: np.ndarray, weight: np.ndarray) -
     return Evidence(products=products, pulls=pulls)
 
 
+def jacobian(slopes: Slopes):
+    """Grey levels of blocks and colours by all tilts, sparse (3 P, 2 n); 0 of unknown blocks."""
+    from scipy.sparse import csr_matrix
+
+    known = (slopes.triangles >= 0)[:, None, None, None]
+    corners = slopes.faces[np.maximum(slopes.triangles, 0)]
+    values = slopes.light[corners].transpose(0, 2, 1, 3) * slopes.grey[:, :, None, None]
+    values = np.where(known, values * slopes.corner_weights[:, None, :, None], 0.0)
+    columns = np.repeat((2 * corners[:, :, None] + np.arange(2))[:, None], 3, axis=1)
+    starts = np.arange(0, values.size + 1, 6)
+    shape = (3 * len(corners), 2 * len(slopes.light))
+    return csr_matrix((values.ravel(), columns.ravel(), starts), shape)
+
+
 def on_tilts(faces: np.ndarray, count: int, evidence: Evidence):
     """The same about all tilts: a sparse matrix (2 n, 2 n) and a vector (2 n,).
 

@@ -7,6 +7,7 @@ First the light of the tilts alone is asked from several guesses, then the rende
 
 from __future__ import annotations
 
+import dataclasses
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -14,10 +15,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim.reading.changed import Change, change
-from sim.reading.deviation import deviation_mm
+from sim.reading.deviation import deviations_mm
 from sim.reading.fit import LEVELS, Fitted, Prediction, Priors, fitted
+from sim.reading.noise import Noise
 from sim.reading.patch import Patch
 from sim.reading.photo_view import PhotoView
+from sim.reading.pixel_maps import SUREST, pressed
 from sim.reading.rest_skin import bending, neighbours
 from sim.reading.sight import Sight
 from sim.reading.untouched import Untouched
@@ -31,8 +34,7 @@ EXPLAINED, PLAIN = 0.3, 1.5
 OWN_SHARE, OWN_MM = 0.02, 2e-3
 """Standard deviation of what a reading leaves out, over the depth and beside it [mm]: skin moves
 sideways too. Of 16 readings of pressed balls, .2 to 1 mm deep in pad and finger, without noise and
-with 1 grey of it, 67 % of the errors are then within one standard deviation (26 to 100 %), without
-it 21 %."""
+with 1 grey of it, 60 % of the errors are then within one standard deviation (10 to 97 %)."""
 FEWEST_PIXELS = 5
 """Changed pixels below which nothing was touched."""
 
@@ -54,14 +56,19 @@ class Touch:
     seconds: float
     sight: Sight
     """What the pixels see of the moved skin."""
+    contact: np.ndarray | None = None
+    """Vertices that are surely pressed in, shape (V,), bool; None where displacement and deviation
+    are all that is known."""
 
 
 class Reader:
     """Reads photographs of one sensor."""
 
     def __init__(self, rest: Untouched) -> None:
+        from scipy.sparse import csc_matrix, diags
+
         self.rest = rest
-        self._bending = bending(rest.skin)
+        self._bent = csc_matrix(diags(np.sqrt(rest.skin.shares_mm2)) @ bending(rest.skin))
         self._neighbours = neighbours(rest.skin)
 
     def read(self, photo: np.ndarray, start: Touch | None = None) -> Touch:
@@ -72,52 +79,90 @@ class Reader:
             start: What an image just before it said: then only details are sought.
         """
         begun = time.perf_counter()
-        skin = self.rest.skin
         seen = change(self.rest.idle, photo, self.rest.sees.reshape(self.rest.shape))
         free, calm = self._moving(seen, start)
-        inward_mm, sigma_mm = np.zeros(skin.count), np.zeros(skin.count)
-        misfit, steps, sight = 0.0, 0, self.rest.sight
         if np.count_nonzero(seen.certain) >= FEWEST_PIXELS and free.any():
-            patch = Patch(skin, free)
-            chosen = patch.vertices[: patch.free]
-            view = PhotoView(self.rest, patch, seen)
-            fit = _Fit(
-                patch=patch,
-                priors=self._priors(chosen, calm),
-                view=view,
-                noise_grey=seen.noise_grey,
-            )
-            found = self._fitted(fit, seen, start)
-            inward_mm[chosen] = found.inward_mm
-            # Errors of the light show as residuals that noise does not explain.
-            told_mm = deviation_mm(found.matrix) * max(1.0, found.misfit)
-            own_mm = np.hypot(OWN_SHARE * found.inward_mm, OWN_MM)
-            sigma_mm[chosen] = np.hypot(told_mm, own_mm)
-            sight = found.seen.sight
-            sigma_mm[free & ~self._seen(sight)] = np.nan
-            misfit, steps = found.misfit, found.steps
+            found = self._touch(seen, (free, calm), start)
+        else:
+            found = self._untouched(seen)
+        return dataclasses.replace(found, seconds=time.perf_counter() - begun)
+
+    def _untouched(self, seen: Change) -> Touch:
+        count = self.rest.skin.count
+        return Touch(
+            inward_mm=np.zeros(count),
+            sigma_mm=np.zeros(count),
+            misfit=0.0,
+            noise_grey=seen.noise.grey,
+            steps=0,
+            seconds=0.0,
+            sight=self.rest.sight,
+            contact=np.zeros(count, dtype=bool),
+        )
+
+    def _touch(
+        self, seen: Change, moving: tuple[np.ndarray, np.ndarray], start: Touch | None
+    ) -> Touch:
+        """What moved, of vertices that may and of those that look at rest, (V,) bool each."""
+        free, calm = moving
+        patch = Patch(self.rest.skin, free)
+        chosen = patch.vertices[: patch.free]
+        view = PhotoView(self.rest, patch, seen)
+        fit = _Fit(patch=patch, priors=self._priors(chosen, calm), view=view, noise=seen.noise)
+        found = self._fitted(fit, seen, start)
+        by_noise_mm, by_light_mm = deviations_mm(
+            found.linear, view.noise_errors(found.seen, seen.noise), view.light_errors(found.seen)
+        )
+        inward_mm, doubt_mm, sigma_mm = np.zeros((3, self.rest.skin.count))
+        inward_mm[chosen] = found.inward_mm
+        doubt_mm[chosen] = np.hypot(by_noise_mm, OWN_MM)
+        growing_mm = np.hypot(by_light_mm, OWN_SHARE * found.inward_mm)
+        sigma_mm[chosen] = np.hypot(doubt_mm[chosen], growing_mm)
+        sight = found.seen.sight
+        hidden = free & ~self.seen(sight)
+        doubt_mm[hidden] = sigma_mm[hidden] = np.nan
+        changed = (free & ~calm) | self._shown(sight, seen.certain)
         return Touch(
             inward_mm=inward_mm,
             sigma_mm=sigma_mm,
-            misfit=misfit,
-            noise_grey=seen.noise_grey,
-            steps=steps,
-            seconds=time.perf_counter() - begun,
+            misfit=found.misfit,
+            noise_grey=seen.noise.grey,
+            steps=found.steps,
+            seconds=0.0,
             sight=sight,
+            contact=self._contacts(inward_mm, doubt_mm, changed),
         )
 
     def displaced_mm(self, touch: Touch) -> np.ndarray:
         """Displacement of the vertices [mm], shape (V, 3)."""
-        return self._displaced_mm(touch.inward_mm)
+        return touch.inward_mm[:, None] * self.rest.skin.inward
 
-    def _displaced_mm(self, inward_mm: np.ndarray) -> np.ndarray:
-        return inward_mm[:, None] * self.rest.skin.inward
-
-    def _seen(self, sight: Sight) -> np.ndarray:
+    def seen(self, sight: Sight) -> np.ndarray:
         """Vertices that some pixel sees, shape (V,), bool."""
-        seen = np.zeros(self.rest.skin.count, dtype=bool)
-        seen[self.rest.skin.faces[sight.face[self.rest.sees & (sight.face >= 0)]]] = True
-        return seen
+        return self._shown(sight, np.ones_like(self.rest.sees))
+
+    def _shown(self, sight: Sight, pixels: np.ndarray) -> np.ndarray:
+        """Vertices that some of these pixels see, (V,), bool."""
+        shown = np.zeros(self.rest.skin.count, dtype=bool)
+        sees = self.rest.sees & (sight.face >= 0) & pixels.ravel()
+        shown[self.rest.skin.faces[sight.face[sees]]] = True
+        return shown
+
+    def _contacts(
+        self, inward_mm: np.ndarray, doubt_mm: np.ndarray, changed: np.ndarray
+    ) -> np.ndarray:
+        """Vertices that are surely pressed in, (V,), bool: patches of them whose colour changed.
+
+        What grows with the depth read, as light that is off, makes no contact doubtful.
+        """
+        from scipy.sparse.csgraph import connected_components
+
+        deep = np.flatnonzero(pressed(inward_mm, doubt_mm))
+        _, patch = connected_components(self._neighbours[deep][:, deep], directed=False)
+        surest = changed[deep] & (inward_mm[deep] > SUREST * doubt_mm[deep])
+        found = np.zeros(len(inward_mm), dtype=bool)
+        found[deep] = np.isin(patch, patch[surest])
+        return found
 
     def _moving(self, seen: Change, start: Touch | None) -> tuple[np.ndarray, np.ndarray]:
         """Vertices that may move, and those that look at rest, (V,) bool each."""
@@ -137,19 +182,17 @@ class Reader:
 
     def _priors(self, chosen: np.ndarray, calm: np.ndarray) -> Priors:
         """What is believed of the free vertices (m,)."""
-        from scipy.sparse import diags
-
-        bent, share = self._bending[:, chosen], self.rest.skin.shares_mm2
+        bent = self._bent[:, chosen]
         return Priors(
-            bending=(bent.T @ diags(share) @ bent).tocsr(),
-            area_mm2=share[chosen],
+            bent=bent[np.unique(bent.indices)].tocsr(),
+            area_mm2=self.rest.skin.shares_mm2[chosen],
             calm=calm[chosen],
         )
 
     def _fitted(self, fit: _Fit, seen: Change, start: Touch | None) -> Fitted:
         """The fit from the guess that explains most."""
         chosen = fit.patch.vertices[: fit.patch.free]
-        nothing = fit.view.untouched().misfit(seen.noise_grey)
+        nothing = fit.view.untouched().misfit(seen.noise)
         enough = max(EXPLAINED * nothing, PLAIN)
         if start is not None:
             found = fit.fine(start.inward_mm[chosen])
@@ -189,7 +232,7 @@ class _Fit:
     patch: Patch
     priors: Priors
     view: PhotoView
-    noise_grey: float
+    noise: Noise
 
     def rough(self, start_mm: np.ndarray) -> Fitted:
         """By the light of the tilts alone: smooth, forgiving, and quick."""
@@ -205,6 +248,4 @@ class _Fit:
         start_mm: np.ndarray,
         levels: tuple[tuple[float, float], ...],
     ) -> Fitted:
-        return fitted(
-            self.patch, self.priors, predict, start_mm, noise_grey=self.noise_grey, levels=levels
-        )
+        return fitted(self.patch, self.priors, predict, start_mm, noise=self.noise, levels=levels)

@@ -17,6 +17,12 @@ from workbench.core.design.camera import Camera, ImageSensor
 
 DARK, BRIGHT = 0.02, 0.98
 """Display light between which the gain is found."""
+ALIKE = 0.02
+"""Blur of the light of the photograph over that of the design, over the width of the image."""
+HELD = 0.02
+"""Weight of its median where neither can be told, over that of pixels all around."""
+FARTHEST = 2.0
+"""By which that of a place is another one, at most: beyond that something else is seen."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,7 +46,10 @@ class Untouched:
     exposure: np.ndarray
     """Display light of the photograph per radiance, shape (N, 3)."""
     gain: float
-    """Light of the photograph over that of the design."""
+    """Light of the photograph over that of the design, of most pixels."""
+    light_error: float
+    """By how much it is another one from place to place and colour to colour: the standard
+    deviation of its logarithm over pixels that see skin [1]."""
     unit: UnitResidual | None = None
     """What the built sensor shows beyond its design's light."""
 
@@ -96,7 +105,9 @@ def open_untouched(
     sees = (sight.face >= 0) & (through > 0.0)
     exposure = studio.exposure.reshape(-1, 3).astype(np.float64)
     idle_light = light_of(idle.astype(np.float64).reshape(-1, 3) / 255.0, camera.sensor)
-    gain = _gain(idle_light[sees], (sight.light * exposure)[sees])
+    over = _over(idle_light, sight.light * exposure, sees, studio.imager.shape)
+    gain = float(np.median(over[sees])) if sees.any() else 1.0
+    error = np.log(over[sees] / gain)
     return Untouched(
         studio=studio,
         camera=camera,
@@ -107,14 +118,36 @@ def open_untouched(
         through=through,
         idle=idle.astype(np.float64),
         idle_light=idle_light,
-        exposure=gain * exposure,
+        exposure=over * exposure,
         gain=gain,
+        light_error=float(np.sqrt((error**2).mean())) if sees.any() else 0.0,
         unit=unit,
     )
 
 
-def _gain(photographed: np.ndarray, own: np.ndarray) -> float:
-    """Light of a photograph over that of the design, (P, 3) each, where neither is cut off."""
-    plain = (own.min(axis=1) > DARK) & (own.max(axis=1) < BRIGHT)
+def _over(
+    photographed: np.ndarray, own: np.ndarray, sees: np.ndarray, shape: tuple[int, int]
+) -> np.ndarray:
+    """Light of a photograph over that of the design around each pixel, shape (N, 3).
+
+    Args:
+        photographed: Display light, shape (N, 3).
+        own: The same of the design.
+        sees: Pixels that see skin, shape (N,), bool.
+        shape: Rows and columns.
+    """
+    import cv2
+
+    plain = sees & (own.min(axis=1) > DARK) & (own.max(axis=1) < BRIGHT)
     plain &= photographed.max(axis=1) < BRIGHT
-    return float(np.median(photographed[plain] / own[plain])) if plain.any() else 1.0
+    if not plain.any():
+        return np.ones_like(photographed)
+    most = np.median(photographed[plain] / own[plain])
+
+    def around(light: np.ndarray) -> np.ndarray:
+        image = (plain[:, None] * light).reshape(*shape, 3).astype(np.float32)
+        return cv2.GaussianBlur(image, (0, 0), ALIKE * shape[1]).reshape(-1, 3)
+
+    held = HELD * own[plain].mean(axis=0)
+    found = (around(photographed) + most * held) / (around(own) + held)
+    return np.clip(found, most / FARTHEST, most * FARTHEST).astype(np.float64)

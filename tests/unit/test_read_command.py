@@ -103,6 +103,7 @@ def reading(**values: Any) -> Reading:
             seconds=0.2,
             sight=Sight(face=np.zeros(48), weights=np.zeros((48, 3)), light=np.zeros((48, 3))),
         ),
+        normals=np.tile([0.0, 0.0, 1.0], (5, 1)),
         maps=PixelMaps(
             depth_mm=depth_mm,
             normal=np.zeros((6, 8, 3), dtype=np.float32),

@@ -5,6 +5,7 @@ A comparison of the product with itself; `validate reading` has photographs by o
 
 from __future__ import annotations
 
+import cv2
 import numpy as np
 import pytest
 
@@ -13,6 +14,7 @@ from sim.optics.raster.display import shown
 from sim.optics.studio.render import Studio
 from sim.reading.maps import pixel_maps, touched
 from sim.reading.reader import Reader
+from sim.reading.rest_skin import normals_of
 from sim.reading.untouched import open_untouched
 from tests.synthetic_light import lit
 from workbench.core.design.camera import Camera
@@ -48,11 +50,16 @@ def pressed(mesh: MembraneMesh) -> np.ndarray:
     return dent(mesh.seen, at_mm=(13.0, 7.5, 22.0), depth_mm=0.5, radius_mm=3.0)
 
 
-def photographed(studio: Studio, moved: np.ndarray | None, noise_grey: float = 0.0) -> np.ndarray:
-    """A photograph of displaced skin, (V, 3), in whole grey levels."""
+def photographed(
+    studio: Studio,
+    moved: np.ndarray | None,
+    noise_grey: float = 0.0,
+    powers: tuple[float, float, float] = (1.0, 1.0, 1.0),
+) -> np.ndarray:
+    """A photograph of displaced skin, (V, 3), in whole grey levels; lamps of other powers."""
     count = studio.imager.raster.vertices
     shape = np.zeros((count, 3), dtype=np.float32) if moved is None else moved
-    light = np.clip(studio.linear(shape[None])[0] * studio.exposure, 0.0, 1.0)
+    light = np.clip(studio.linear(shape[None])[0] * studio.exposure * powers, 0.0, 1.0)
     noise = np.random.default_rng(7).normal(size=light.shape) * noise_grey
     return np.clip(np.round(255.0 * shown(light, CAMERA.sensor) + noise), 0, 255)
 
@@ -79,7 +86,8 @@ def test_pixels_show_what_the_vertices_say(
 ) -> None:
     """Depth where skin is seen, NaN elsewhere; unit normals; contact in the middle of the dent."""
     touch = reader.read(photographed(studio, pressed(mesh)))
-    maps = pixel_maps(reader, touch)
+    skin = reader.rest.skin
+    maps = pixel_maps(reader, touch, normals_of(skin, reader.displaced_mm(touch)))
     sees = np.isfinite(maps.depth_mm)
     assert sees.any()
     assert maps.depth_mm[sees].max() == pytest.approx(touch.inward_mm.max(), rel=0.1)
@@ -105,3 +113,37 @@ def test_an_untouched_sensor_reads_as_untouched(studio: Studio, reader: Reader) 
     touch = reader.read(photographed(studio, None, NOISE_GREY) + 2.0)
     assert touch.inward_mm.max() < 0.02
     assert not touched(touch).any()
+
+
+def test_noise_that_pixels_share_is_no_contact(
+    mesh: MembraneMesh, studio: Studio, reader: Reader
+) -> None:
+    """1 grey, alike over 2 px: contact lies in the dent, and is less sure than by white noise."""
+    moved, clean = pressed(mesh), photographed(studio, pressed(mesh))
+    depth_mm = np.einsum("vc,vc->v", moved, reader.rest.skin.inward)
+    deep = depth_mm > 0.05
+    white = np.random.default_rng(1).normal(size=(120, 160, 3))
+    shared = cv2.GaussianBlur(white, (0, 0), 2.0)
+    touch, plain = (reader.read(clean + each / each.std()) for each in (shared, white))
+    contact = touched(touch)
+    assert not contact[depth_mm < 0.01].any()
+    assert (contact & deep).sum() > 0.5 * (contact | deep).sum()
+    assert np.nanmedian(touch.sigma_mm[deep]) > np.nanmedian(plain.sigma_mm[deep])
+
+
+def test_lamps_of_other_powers_read_the_same(
+    mesh: MembraneMesh, studio: Studio, reader: Reader
+) -> None:
+    """A tenth more and less: the idle photo tells them, and the deviation grows."""
+    powers, moved = (1.1, 0.9, 1.0), pressed(mesh)
+    plain = reader.read(photographed(studio, moved))
+    light = reader.rest.light
+    idle = photographed(studio, None, powers=powers)
+    other = Reader(open_untouched(studio, CAMERA, idle, light=light))
+    assert other.rest.light_error == pytest.approx(np.log(powers).std(), rel=0.2)
+    assert reader.rest.light_error < 0.005
+    found = other.read(photographed(studio, moved, powers=powers))
+    deepest = np.argmax(plain.inward_mm)
+    assert found.inward_mm[deepest] == pytest.approx(plain.inward_mm[deepest], abs=0.01)
+    assert found.sigma_mm[deepest] > 3.0 * plain.sigma_mm[deepest]
+    assert touched(found)[deepest]

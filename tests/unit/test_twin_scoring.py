@@ -11,6 +11,7 @@ from sim.optics.proof.specimen import dent, finger
 from sim.optics.studio.render import Studio
 from sim.reading.maps import pixel_maps
 from sim.reading.reader import Reader, Touch
+from sim.reading.rest_skin import normals_of
 from sim.reading.untouched import open_untouched
 from tests.synthetic_light import lit
 from tests.unit.test_reader import CAMERA, RING, photographed
@@ -65,10 +66,13 @@ def truth(mesh: MembraneMesh, moved: np.ndarray) -> Truth:
 
 
 def reading(opened: DesignReader, touch: Touch, force_N: np.ndarray) -> Reading:
+    skin = opened.reader.rest.skin
+    normals = normals_of(skin, opened.reader.displaced_mm(touch))
     return Reading(
         photo="a",
         touch=touch,
-        maps=pixel_maps(opened.reader, touch),
+        normals=normals,
+        maps=pixel_maps(opened.reader, touch, normals),
         force_N=force_N,
         force_sigma_N=0.1,
         contact_area_mm2=1.0,
@@ -83,7 +87,8 @@ def test_a_right_reading_and_one_of_nothing(
     rest, known = opened.reader.rest, truth(mesh, moved)
     depth_mm = np.einsum("vc,vc->v", moved, rest.skin.inward)
     right = opened.reader.read(photographed(rest.studio, moved))
-    right = dataclasses.replace(right, inward_mm=depth_mm, sigma_mm=np.full(len(depth_mm), 0.01))
+    sigma_mm = np.full(len(depth_mm), 0.01)
+    right = dataclasses.replace(right, inward_mm=depth_mm, sigma_mm=sigma_mm, contact=None)
     scorer = Scorer(opened)
     best = scorer.score(reading(opened, right, np.array([0.0, 0.0, -1.0])), known)
     # A dent moves along one direction, a reading along normals that turn by some degrees.

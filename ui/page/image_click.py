@@ -9,6 +9,7 @@ sliders' ends tell the camera's size, whatever the image's own size and however 
 from __future__ import annotations
 
 import html
+from collections.abc import Mapping
 
 COLUMN, ROW = "Pixel column px", "Pixel row px"
 """Labels of the sliders that a click on the tactile image fills."""
@@ -67,9 +68,18 @@ def image_clicks(on: bool, *, column: str = COLUMN, row: str = ROW) -> str:
         column: Label of the slider of columns that a click fills.
         row: The same of rows.
     """
-    if not on:
-        return ""
-    script = html.escape(" ".join(INSTALL.split()), quote=True)
+    return hidden_mark(TARGET, INSTALL, {"column": column, "row": row}) if on else ""
+
+
+def hidden_mark(target: str, install: str, labels: Mapping[str, str]) -> str:
+    """A piece of HTML that is not seen, installs a script, and tells it labels of sliders.
+
+    Args:
+        target: Its class; images after it get a crosshair.
+        install: The script.
+        labels: By the names of its data.
+    """
+    script = html.escape(" ".join(install.split()), quote=True)
     loads = f'<img alt="" style="display:none" src="{PIXEL_GIF}" onload="{script}">'
-    names = f'data-column="{html.escape(column)}" data-row="{html.escape(row)}"'
-    return f'<div class="{TARGET}" {names}>{CROSSHAIR.format(TARGET)}{loads}</div>'
+    data = " ".join(f'data-{name}="{html.escape(label)}"' for name, label in labels.items())
+    return f'<div class="{target}" {data}>{CROSSHAIR.format(target)}{loads}</div>'

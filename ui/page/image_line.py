@@ -5,9 +5,7 @@ As `image_click`, whose way of typing into boxes it shares: pressed on the image
 
 from __future__ import annotations
 
-import html
-
-from ui.page.image_click import PIXEL_GIF, TYPE_INTO_BOXES
+from ui.page.image_click import TYPE_INTO_BOXES, hidden_mark
 
 TARGET = "line-image"
 """Class of the piece of HTML; its parents are searched for images and boxes."""
@@ -49,7 +47,6 @@ for (const [name, handler] of Object.entries(window.lineImage))
 """
 )
 """Installs the handlers, in place of those of an earlier page of the same server."""
-CROSSHAIR = '<style>div:has(> .{0}) ~ div img[src^="blob:"]{{cursor:crosshair}}</style>'
 
 
 def image_lines(*, start: tuple[str, str], stop: tuple[str, str]) -> str:
@@ -59,8 +56,5 @@ def image_lines(*, start: tuple[str, str], stop: tuple[str, str]) -> str:
         start: Labels of the sliders of the column and the row where a line begins.
         stop: The same of where it ends.
     """
-    script = html.escape(" ".join(INSTALL.split()), quote=True)
-    loads = f'<img alt="" style="display:none" src="{PIXEL_GIF}" onload="{script}">'
     names = zip(("column", "row", "tocolumn", "torow"), (*start, *stop), strict=True)
-    data = " ".join(f'data-{name}="{html.escape(label)}"' for name, label in names)
-    return f'<div class="{TARGET}" {data}>{CROSSHAIR.format(TARGET)}{loads}</div>'
+    return hidden_mark(TARGET, INSTALL, dict(names))

@@ -42,3 +42,19 @@ class PreviewCall(Protocol):
             WorkbenchError: Whatever computing it raises.
         """
         ...
+
+
+class OwnCall:
+    """Base of a call that computes and stores what it needs by itself, beside simulations."""
+
+    __slots__ = ()
+
+    @property
+    def lane(self) -> str:
+        """The worker that answers it."""
+        return "sim"
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """No stage before it."""
+        return ()

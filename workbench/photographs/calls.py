@@ -18,6 +18,7 @@ from workbench.calibration.photo_set import IDLE, Circle
 from workbench.core.base.errors import DesignError
 from workbench.core.base.monitor import Monitor, part
 from workbench.core.design.design import SensorDesign
+from workbench.live.preview_call import OwnCall
 from workbench.photographs.photo_files import decoded
 from workbench.pipeline.store import Store
 from workbench.system.whole_files import write_atomically
@@ -39,7 +40,7 @@ class Found:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class FindContacts:
+class FindContacts(OwnCall):
     """The contacts of photographs in a folder; a `PreviewCall`."""
 
     folder: Path
@@ -56,11 +57,6 @@ class FindContacts:
         """What messages call it."""
         return "finding contacts"
 
-    @property
-    def needs(self) -> tuple[str, ...]:
-        """Nothing of the design."""
-        return ()
-
     def answer(self, store: Store, kept: dict[str, Any], monitor: Monitor) -> tuple[Found, ...]:
         """Look for each contact; a photograph without one says so and holds nothing up.
 
@@ -76,7 +72,7 @@ class FindContacts:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Calibrate:
+class Calibrate(OwnCall):
     """A calibration of a design to the photographs of a folder; a `PreviewCall`."""
 
     design: SensorDesign
@@ -88,19 +84,9 @@ class Calibrate:
     out: Path
 
     @property
-    def lane(self) -> str:
-        """The worker that answers it."""
-        return "sim"
-
-    @property
     def stage(self) -> str:
         """What messages call it."""
         return "calibration"
-
-    @property
-    def needs(self) -> tuple[str, ...]:
-        """Calibrating computes and stores what it needs by itself."""
-        return ()
 
     def answer(self, store: Store, kept: dict[str, Any], monitor: Monitor) -> Path:
         """Calibrate and write what comes of it; an earlier one stays until then."""

@@ -12,7 +12,8 @@ from sim.optics.raster.photo_file import read_rgb
 from workbench.calibration.photo_set import COLUMNS
 from workbench.core.base.errors import DesignError
 from workbench.core.design.photo import PICTURE_ENDINGS, photo
-from workbench.system.uploads import own_name
+from workbench.system.uploads import MOST_BYTES as MOST_UPLOADED
+from workbench.system.uploads import check_upload, own_name
 from workbench.system.zip_files import zip_members
 
 MOST_FILES, MOST_BYTES = 100, 400_000_000
@@ -48,6 +49,21 @@ def unpacked(name: str, content: bytes) -> dict[str, bytes]:
             hint="zip idle.png, the photographs and, where there is one, presses.csv",
         )
     return {own_name(path): data for path, data in members.items()}
+
+
+def unpacked_upload(name: str, content: bytes, *, hint: str) -> dict[str, bytes]:
+    """The files of what a browser sent.
+
+    Args:
+        name: As it was sent.
+        content: Its bytes.
+        hint: What to do with a larger one.
+
+    Raises:
+        DesignError: If it is too large, or as `unpacked`.
+    """
+    check_upload(name, content, limit_bytes=MOST_UPLOADED, hint=hint, at=AT)
+    return unpacked(name, content)
 
 
 def folder_files(project: Path, typed: str) -> dict[str, bytes]:

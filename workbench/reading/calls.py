@@ -16,6 +16,7 @@ from workbench.core.base.digest import digest
 from workbench.core.base.errors import DesignError
 from workbench.core.base.monitor import Monitor, part
 from workbench.core.design.design import SensorDesign
+from workbench.live.preview_call import OwnCall
 from workbench.photographs.photo_files import decoded
 from workbench.pipeline.store import Store
 from workbench.reading.camera_frames import CameraFrames
@@ -29,7 +30,7 @@ _READER, _FRAMES = "open reader", "open camera"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class ReadPhoto:
+class ReadPhoto(OwnCall):
     """One photograph of a folder; a `PreviewCall`."""
 
     design: SensorDesign
@@ -38,19 +39,9 @@ class ReadPhoto:
     out: Path
 
     @property
-    def lane(self) -> str:
-        """The worker that answers it."""
-        return "sim"
-
-    @property
     def stage(self) -> str:
         """What messages call it."""
         return "reading a photo"
-
-    @property
-    def needs(self) -> tuple[str, ...]:
-        """Reading computes and stores what it needs by itself."""
-        return ()
 
     def answer(self, store: Store, kept: dict[str, Any], monitor: Monitor) -> ShownReading:
         """Read it, and write what `workbench read` writes of it.
@@ -69,7 +60,7 @@ class ReadPhoto:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class ReadFrame:
+class ReadFrame(OwnCall):
     """The next frame of a camera or a video; a `PreviewCall`."""
 
     design: SensorDesign
@@ -80,19 +71,9 @@ class ReadFrame:
     project: Path
 
     @property
-    def lane(self) -> str:
-        """The worker that answers it."""
-        return "sim"
-
-    @property
     def stage(self) -> str:
         """What messages call it."""
         return "reading a frame"
-
-    @property
-    def needs(self) -> tuple[str, ...]:
-        """As of a photograph."""
-        return ()
 
     def answer(self, store: Store, kept: dict[str, Any], monitor: Monitor) -> ShownReading | None:
         """Read it; it begins where the frame before ended. None where a video is over.
@@ -110,26 +91,16 @@ class ReadFrame:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class TakeIdle:
+class TakeIdle(OwnCall):
     """The mean of some frames of the untouched sensor; a `PreviewCall`."""
 
     source: str
     project: Path
 
     @property
-    def lane(self) -> str:
-        """The worker that answers it."""
-        return "sim"
-
-    @property
     def stage(self) -> str:
         """What messages call it."""
         return "taking the idle photo"
-
-    @property
-    def needs(self) -> tuple[str, ...]:
-        """Nothing of the design."""
-        return ()
 
     def answer(self, store: Store, kept: dict[str, Any], monitor: Monitor) -> np.ndarray:
         """Shape (H, W, 3), uint8.
@@ -195,13 +166,11 @@ def _image(folder: Path, name: str) -> np.ndarray:
 def shown(lane: _LaneReader, image: np.ndarray, found: Any) -> ShownReading:
     """What the page shows of a reading."""
     from sim.reading.maps import seen_by_pixels, touched
-    from sim.reading.rest_skin import normals_of
 
     reader = lane.opened.reader
     skin, touch, maps = reader.rest.skin, found.touch, found.maps
     moved_mm = skin.points_mm + reader.displaced_mm(touch)
-    normals = normals_of(skin, reader.displaced_mm(touch))
-    tilt = _degrees(np.einsum("vc,vc->v", normals, skin.inward))
+    tilt = _degrees(np.einsum("vc,vc->v", found.normals, skin.inward))
     told = {
         Look.DEPTH: Told(pixels=maps.depth_mm, vertices=touch.inward_mm),
         Look.TILT: Told(pixels=seen_by_pixels(reader, touch, tilt)[:, :, 0], vertices=tilt),
@@ -214,7 +183,7 @@ def shown(lane: _LaneReader, image: np.ndarray, found: Any) -> ShownReading:
         name=found.photo,
         image=image,
         figures=found.figures,
-        skin=turned(lane.opened.mesh.seen, moved_mm, -normals),
+        skin=turned(lane.opened.mesh.seen, moved_mm, -found.normals),
         place_mm=seen_by_pixels(reader, touch, moved_mm),
         told=told,
     )

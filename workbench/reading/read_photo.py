@@ -26,6 +26,8 @@ class Reading:
 
     photo: str
     touch: Touch
+    normals: np.ndarray
+    """Unit normals into the sensor of the moved vertices, shape (V, 3)."""
     maps: PixelMaps
     force_N: np.ndarray
     """On the membrane in the sensor frame, shape (3,); NaN where the design tells none."""
@@ -85,17 +87,20 @@ def read_photo(
     """
     from sim.reading.ball import ball_radius_mm
     from sim.reading.maps import pixel_maps, touched
+    from sim.reading.rest_skin import normals_of
 
     rest, reader = opened.reader.rest, opened.reader
     expect_size(name, photo, rest.camera)
     expect_light(name, photo, rest.sees)
     touch = reader.read(photo, before)
+    normals = normals_of(rest.skin, reader.displaced_mm(touch))
     chosen = np.flatnonzero(touched(touch))
     force_N, sigma_N = _force(opened, touch, chosen)
     return Reading(
         photo=name,
         touch=touch,
-        maps=pixel_maps(reader, touch),
+        normals=normals,
+        maps=pixel_maps(reader, touch, normals),
         force_N=force_N,
         force_sigma_N=sigma_N,
         contact_area_mm2=float(rest.skin.shares_mm2[chosen].sum()),

@@ -95,7 +95,7 @@ class Scorer:
             KnownSkin(rest_mm=truth.rest_mm, displaced_mm=truth.displaced_mm, faces=truth.faces),
         )
         depth_mm = np.nan_to_num(true.depth_mm)
-        seen, area = self._seen(touch), skin.shares_mm2
+        seen, area = reader.seen(touch.sight), skin.shares_mm2
         moved = (depth_mm > MOVED_MM) & np.isfinite(true.depth_mm)
         judged = moved & seen
         error = touch.inward_mm - depth_mm
@@ -139,13 +139,6 @@ class Scorer:
             seconds=reading.seconds,
             sight=self.opened.reader.rest.sight,
         )
-
-    def _seen(self, touch: Touch) -> np.ndarray:
-        """Vertices that some pixel sees in the photograph, shape (V,), bool."""
-        rest, face = self.opened.reader.rest, touch.sight.face
-        found = np.zeros(rest.skin.count, bool)
-        found[rest.skin.faces[face[rest.sees & (face >= 0)]]] = True
-        return found
 
     def _readable(self, touch: Touch) -> np.ndarray:
         """Vertices on which a pixel's noise hides no more than `READABLE_DEG`, (V,), bool."""

@@ -15,8 +15,7 @@ from ui.desk.desk import Desk
 from ui.page.colours import AMBER
 from workbench.calibration.photo_set import FEWEST, LARGEST_BALL_MM, SMALLEST_BALL_MM
 from workbench.photographs.kept_photos import KeptPhotos, Use
-from workbench.photographs.photo_files import folder_files, unpacked
-from workbench.system.uploads import MOST_BYTES, check_upload
+from workbench.photographs.photo_files import folder_files, unpacked_upload
 
 EMPTY = (
     "Photograph the sensor you built, once with nothing on it and 10 to 20 times with a ball "
@@ -61,10 +60,9 @@ class PhotoIntake:
 
     def _sent(self) -> Mapping[str, bytes]:
         """What was uploaded, unpacked without the desk's lock."""
-        name, content = self.upload.value.name, self.upload.value.content
+        sent = self.upload.value
         hint = "load it in two parts, or copy it into the project and use From a folder"
-        check_upload(name, content, limit_bytes=MOST_BYTES, hint=hint, at="photographs")
-        return unpacked(name, content)
+        return unpacked_upload(sent.name, sent.content, hint=hint)
 
     def _take_folder(self, event: Any) -> None:
         self._take(folder_files(self.kept.root.parent, self.typed.value))

@@ -11,9 +11,8 @@ from ui.desk.desk import Desk
 from ui.page.colours import AMBER
 from workbench.core.base.errors import DesignError
 from workbench.photographs.kept_photos import KeptPhotos
-from workbench.photographs.photo_files import unpacked
+from workbench.photographs.photo_files import unpacked_upload
 from workbench.reading.kept_readings import KeptReadings
-from workbench.system.uploads import MOST_BYTES, check_upload
 
 EMPTY = (
     "Photograph the sensor you built with nothing on it, as `idle.png`, and touched: what touches "
@@ -47,10 +46,8 @@ class ReadIntake:
 
     def _sent(self) -> Mapping[str, bytes]:
         """What was uploaded, unpacked without the desk's lock."""
-        name, content = self.upload.value.name, self.upload.value.content
-        hint = "load it in two parts"
-        check_upload(name, content, limit_bytes=MOST_BYTES, hint=hint, at="photographs")
-        return unpacked(name, content)
+        sent = self.upload.value
+        return unpacked_upload(sent.name, sent.content, hint="load it in two parts")
 
     def _take(self, files: Mapping[str, bytes]) -> None:
         came = self.kept.take(files)

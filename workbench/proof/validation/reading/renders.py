@@ -3,6 +3,8 @@
 Nine dents of a ball of 8 mm, .3, .6 and 1 mm deep at three places of the image. By the renderer's
 own light the reader is compared with itself: the figures say what the method loses. Photons are of
 the same tracer that baked that light, traced in the pose; their noise is that of their number.
+Sensors that are built by hand, once but for their camera, say what a reading is worth without a
+calibration, and whether it knows.
 
     python -m workbench.proof.validation.reading.renders --photons 64
 
@@ -35,7 +37,7 @@ from workbench.reading.read_photo import read_photo
 from workbench.system.record import Record
 from workbench.system.terminal import complain
 from workbench.system.whole_files import write_atomically
-from workbench.twin.draw import Twin
+from workbench.twin.draw import Twin, draw_twin
 from workbench.twin.photographer import Photographer
 from workbench.twin.scoring import Scorer, mean_score
 from workbench.twin.truth import Truth
@@ -47,13 +49,20 @@ if TYPE_CHECKING:
 
 DESIGNS = ("pad", "geltip", "trunk", "paw")
 SIZE_PX = (320, 240)
-SPOTS = ((0.5, 0.5), (0.46, 0.66), (0.25, 0.375))
-"""Row and column of the dents over the size of the image."""
+SPOTS = ((0.5, 0.5), (0.46, 0.66), (0.25, 0.375), (0.35, 0.6), (0.6, 0.5))
+"""Row and column of dents over the size of the image."""
+PLACES = 3
+"""Of them, the first that are dents: a ball that is let into the skin beside a toe of the paw would
+push that aside too, by up to 9 mm, as nothing here knows of contact."""
+BESIDE_MM = 0.25
+"""By which the deepest dent may displace skin farther than it is deep."""
 DEPTHS_MM = (0.3, 0.6, 1.0)
 INSIDE_MM = 3.0
 """From the skin, where the line of a dent begins."""
 NOISE_GREY = 1.0
 PHOTONS_MILLIONS = 4
+BUILT_SEED, BUILT_NOISE_GREY = 3, 0.5
+"""Of the sensor that is built by hand, and of the mean of four of its photographs."""
 
 RECORD = Record(
     path=Path(__file__).with_name("renders.json"),
@@ -107,6 +116,9 @@ def _figures(name: str, photons_millions: int, store: Store) -> dict[str, Any]:
             photographer.photograph(moved, number, silent) if number else photographer.at_rest()
         ),
     }
+    for way, built in (("lamps", lamps_off(design)), ("built", built_by_hand(design))):
+        lit = lit_studio(built, mesh, store, silent, f"{name}, {way}")
+        ways[way] = rendered(lit, built, BUILT_NOISE_GREY)
     found: dict[str, Any] = {}
     for way, photos in ways.items():
         complain(f"{name}: {way}")
@@ -131,8 +143,8 @@ def scored(
 
 
 def dents(opened: DesignReader) -> list[Dent]:
-    """The dents of a design: where the pixels of `SPOTS` see skin."""
-    from sim.optics.raster.dents import Dent, DentKind
+    """The dents of a design: where the pixels of `SPOTS` see skin that a ball may press alone."""
+    from sim.optics.raster.dents import Dent, DentKind, dented
 
     rest, found = opened.reader.rest, []
     rows, columns = rest.shape
@@ -144,7 +156,7 @@ def dents(opened: DesignReader) -> list[Dent]:
         inward = rest.skin.inward[corners].mean(axis=0)
         inward /= np.linalg.norm(inward)
         begin = rest.sight.weights[pixel] @ rest.skin.points_mm[corners] + INSIDE_MM * inward
-        found += [
+        here = [
             Dent(
                 name=f"{row:g},{column:g},{depth_mm:g}",
                 kind=DentKind.SPHERE,
@@ -154,6 +166,11 @@ def dents(opened: DesignReader) -> list[Dent]:
             )
             for depth_mm in DEPTHS_MM
         ]
+        farthest_mm = float(np.linalg.norm(dented(opened.mesh.seen, here[-1]), axis=1).max())
+        if farthest_mm <= DEPTHS_MM[-1] + BESIDE_MM:
+            found += here
+        if len(found) == PLACES * len(DEPTHS_MM):
+            break
     return found
 
 
@@ -188,6 +205,18 @@ def rendered(studio: Studio, design: SensorDesign, noise_grey: float) -> Photos:
         return np.clip(np.round(grey + noise_grey * noise), 0, 255).astype(np.uint8)
 
     return photo
+
+
+def built_by_hand(design: SensorDesign) -> SensorDesign:
+    """The design with the optics of a twin: lamps, coating and camera are off as if by hand."""
+    return dataclasses.replace(design, optics=draw_twin(design, BUILT_SEED).design.optics)
+
+
+def lamps_off(design: SensorDesign) -> SensorDesign:
+    """The same with the design's own camera."""
+    built = built_by_hand(design)
+    optics = dataclasses.replace(built.optics, camera=design.optics.camera)
+    return dataclasses.replace(design, optics=optics)
 
 
 def sized(design: SensorDesign) -> SensorDesign:

@@ -24,6 +24,8 @@ WORDS = {
     "renders": "rendered by the reader's own light, in whole grey levels",
     "noise": f"the same with {renders.NOISE_GREY:g} grey level of noise in each photograph",
     "photons": "photographed by {millions} million photons",
+    "lamps": "of a sensor built by hand, whose lamps and coating are off and nobody calibrated",
+    "built": "of the same sensor, whose camera is off too",
 }
 
 
@@ -65,7 +67,7 @@ def _render_rows(
         "noise": NOISE_LIMIT_MM,
         "photons": PHOTON_LIMIT_MM if millions >= ENOUGH_MILLIONS else None,
     }
-    yield _depth_row(f"reading_{way}", case, scores, (limits[way], kept))
+    yield _depth_row(f"reading_{way}", case, scores, (limits.get(way), kept))
     asked = NORMAL_LIMIT_DEG if way == "renders" else None
     yield _normal_row(f"reading_{way}_normals", case, scores, (asked, kept))
     yield _share_row(f"reading_{way}_sigma", case, scores, kept)
