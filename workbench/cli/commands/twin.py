@@ -12,7 +12,7 @@ from workbench.cli.press_arguments import add_set_option
 from workbench.project.project import Project
 from workbench.system.terminal import Progress, say
 
-SOLVERS = ("fem", "mpm", "gent")
+SOLVERS = ("fem", "gent", "mpm")
 LIGHTS = ("photons", "mitsuba")
 USUAL = {"seed": 1, "calibration": 20, "presses": 140, "slides": 100}
 """Named here too, because the plan's own would import the whole program; a test compares."""
@@ -31,8 +31,8 @@ def options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--presses", type=int, default=USUAL["presses"], metavar="N", help=text)
     text = "sequences of objects that are dragged, half of them with slip (default: 100)"
     sub.add_argument("--slides", type=int, default=USUAL["slides"], metavar="N", help=text)
-    text = "fem: finite elements; mpm: the contact solver, quicker; gent: finite elements of a gel "
-    text += "that hardens by another law (default: fem)"
+    text = "fem: finite elements; gent: the same of a gel that hardens by another law; mpm: the "
+    text += "contact solver, quicker (default: fem)"
     sub.add_argument("--contact", choices=SOLVERS, default=SOLVERS[0], help=text)
     text = "photons: the tracer of the workbench; mitsuba: Mitsuba 3, with another coating and "
     text += "mirror images in the wall (default: photons)"
