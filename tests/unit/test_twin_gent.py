@@ -66,7 +66,7 @@ def test_hardening_grows_with_depth() -> None:
     """Jm of 1 needs more force than the neo-Hookean gel, and more so the deeper; it balances."""
     plain, found = neo_hookean(), hardened(1.0)
     more = found.normal_N / plain.normal_N - 1.0
-    assert 0.01 < more[0] < more[1] < 1.0
+    assert 0.005 < more[0] < more[1] < 1.0
     assert found.converged.all() and (found.balance < 1e-4).all()
     assert "Gent" in found.solver
 

@@ -50,7 +50,7 @@ LIMIT = 3.0
 """Jm [1]: a gel that is stretched to twice its length is 1.5 times as stiff as at rest."""
 MOST_SHARE = 0.95
 """Of Jm that I1 - 3 counts for: beyond, the chains would be at their end."""
-AGREED = 0.01
+AGREED = 0.003
 """By which the modulus of an increment may differ from that of its solution [1]."""
 MOST_ROUNDS = 6
 """Times that an increment is solved."""
