@@ -143,10 +143,10 @@ def test_a_process_is_ended_when_somebody_stops(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Not left to compute for nobody."""
-    begun: list[subprocess.Popen[bytes]] = []
+    begun: list[subprocess.Popen[Any]] = []
     plain = subprocess.Popen
 
-    def kept(*given: Any, **options: Any) -> subprocess.Popen[bytes]:
+    def kept(*given: Any, **options: Any) -> subprocess.Popen[Any]:
         begun.append(plain(["sleep", "60"], **options))
         return begun[-1]
 

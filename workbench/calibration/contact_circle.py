@@ -122,8 +122,8 @@ def _best_place(change: np.ndarray, radius_px: float) -> tuple[float, float, flo
     score = explained * np.sqrt(explained / np.maximum(within, LEAST_DISC * whole)) / whole
     row, column = np.unravel_index(int(score.argmax()), score.shape)
     share = explained[row, column] / whole
-    middle = (np.array([column, row]) + 0.5) * step - 0.5
-    return float(score[row, column]), float(share), *map(float, middle), float(radius_px)
+    across, down = (float((number + 0.5) * step - 0.5) for number in (column, row))
+    return float(score[row, column]), float(share), across, down, radius_px
 
 
 def _disc(reach: int, radius: float) -> np.ndarray:
