@@ -108,7 +108,7 @@ def test_a_contact_is_found_where_it_is(column: int, row: int, radius: int) -> N
 def test_a_contact_in_the_dark_is_no_nearer_to_the_light(
     column: int, row: int, radius: int
 ) -> None:
-    """Light that halves every 28 px makes one flank of a dent ten times the other's change.
+    """Light that halves every 28 px makes the change of one flank more than twice the other's.
 
     By the change itself such a contact is found a quarter of its radius off.
     """

@@ -178,7 +178,7 @@ def test_mitsuba_has_its_own_number_of_photons() -> None:
 @pytest.mark.slow
 @pytest.mark.usefixtures("taichi_device")
 def test_a_matte_skin_shines_as_the_product_says() -> None:
-    """Two tracers, one matte coating: mean radiance within 2 %, where noise is .5 %."""
+    """Two tracers, one matte coating: mean radiance of the upper skin within 2 %."""
     from sim.optics.transport.paths import Photons
     from sim.optics.transport.radiance import trace_radiance
 
