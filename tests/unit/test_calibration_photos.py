@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 import pytest
 
-from workbench.calibration.contact_circle import find_circle
+from workbench.calibration.contact_circle import find_circle, relative_change
 from workbench.calibration.drift import measured_drift
 from workbench.calibration.light_basis import contact_box
 from workbench.calibration.photo_set import COLUMNS, Circle, read_photo_set
@@ -102,6 +102,33 @@ def test_a_contact_is_found_where_it_is(column: int, row: int, radius: int) -> N
     found = find_circle(dent_change(column, row, radius) + noise, "p.png")
     assert np.hypot(found.column_px - column, found.row_px - row) < 0.2 * radius
     assert found.radius_px == pytest.approx(radius, rel=1 / 3)
+
+
+@pytest.mark.parametrize(("column", "row", "radius"), [(140, 75, 16), (150, 60, 20)])
+def test_a_contact_in_the_dark_is_no_nearer_to_the_light(
+    column: int, row: int, radius: int
+) -> None:
+    """Light that halves every 28 px makes the change of one flank more than twice the other's.
+
+    By the change itself such a contact is found a quarter of its radius off.
+    """
+    light = np.exp(-np.arange(WIDTH) / 40.0)[None, :, None] * np.ones((HEIGHT, 1, 3))
+    idle = np.clip(240.0 * light, 4.0, 255.0).astype(np.uint8)
+    change = dent_change(column, row, radius)
+    noise = np.random.default_rng(1).normal(0.0, 1.0, idle.shape)
+    taken = idle * (1.0 + 0.8 * change / np.abs(change).max()) + noise
+    found = find_circle(relative_change(taken, idle), "p.png")
+    assert np.hypot(found.column_px - column, found.row_px - row) < 0.2 * radius
+
+
+def test_what_is_cut_off_changes_nothing() -> None:
+    """A mirror image of a light, white at rest, and skin that becomes white."""
+    idle = np.full((20, 30, 3), 100, np.uint8)
+    idle[5, 5], taken = (255, 40, 40), np.full((20, 30, 3), 120.0)
+    taken[10, 10] = (90.0, 255.0, 90.0)
+    found = relative_change(taken, idle)
+    assert (found[5, 5] == 0.0).all() and (found[10, 10] == 0.0).all()
+    assert (found[15, 20] > 0.1).all()
 
 
 def test_no_contact_is_refused_by_name() -> None:

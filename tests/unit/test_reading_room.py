@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
+from argparse import Namespace
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ from workbench.proof.judge import Judge, judge
 from workbench.proof.row import Row
 from workbench.proof.validation.reading import renders, room, twin_figures
 from workbench.system.record import Record
+from workbench.twin.twin_plan import Light, Solver
 
 SCORES: dict[str, float | None] = {
     "count": 9.0,
@@ -92,6 +94,35 @@ def test_twins_are_asked_only_after_calibration(tmp_path: Path) -> None:
     for name, row in rows.items():
         assert row.null is not None or row.reference is not None
         assert judge(name) is Judge.ITSELF
+
+
+def test_nothing_is_asked_of_another_reality(tmp_path: Path) -> None:
+    """Its rows say whose photons they are; the learned reader stands beside the others."""
+    plan = {**PLAN, "contact": "gent", "light": "mitsuba", "photons_millions": 16}
+    ways = dict.fromkeys(("uncalibrated", "learned", "calibrated"), SCORES)
+    figures = {"designs": {"pad-other": {"plan": plan, **ways}}}
+    rows = {row.name: row for row in room.twin_rows(kept(twin_figures.RECORD, tmp_path, figures))}
+    assert rows["reading_twin_calibrated"].limit is None
+    assert "by gent and 16 million photons of Mitsuba" in rows["reading_twin_learned"].case
+    assert "photographs of a ball" not in rows["reading_twin_learned"].case
+
+
+def test_one_command_makes_twins_of_both_realities(tmp_path: Path) -> None:
+    """Each in its folder; where presses are by the contact solver, only the light is other."""
+    words: dict[str, Any] = {
+        **{"folder": tmp_path, "designs": ["pad", "geltip"], "seed": 1, "calibration": 20},
+        **{"presses": 140, "photons": 0, "other": 50, "width": 320, "jobs": 8, "refine": "all"},
+    }
+    runs = {run.key: run for run in twin_figures._runs(Namespace(**words, contact="fem"))}
+    assert list(runs) == ["pad", "geltip", "pad-other", "geltip-other"]
+    assert runs["pad"].plan.light is Light.PHOTONS
+    other = runs["geltip-other"]
+    assert (other.plan.light, other.plan.contact) == (Light.MITSUBA, Solver.GENT)
+    assert (other.plan.presses, other.name, other.folder.name) == (50, "geltip", other.key)
+    quick = list(twin_figures._runs(Namespace(**words, contact="mpm")))
+    assert [run.plan.contact for run in quick] == [Solver.MPM] * 4
+    alone = list(twin_figures._runs(Namespace(**(words | {"other": 0}), contact="fem")))
+    assert [run.key for run in alone] == ["pad", "geltip"]
 
 
 def test_without_a_record_rows_fail_and_say_how_to_make_it(tmp_path: Path) -> None:

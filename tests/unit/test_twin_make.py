@@ -27,7 +27,7 @@ from workbench.project.named_designs import load_design
 from workbench.twin import make as making
 from workbench.twin.cases import Kind, TwinCase
 from workbench.twin.make import make_twin, photo_names
-from workbench.twin.twin_plan import Solver, TwinPlan
+from workbench.twin.twin_plan import Light, Solver, TwinPlan
 
 PLAN = TwinPlan(calibration=6, presses=5, slides=2, width_px=32)
 
@@ -158,6 +158,7 @@ def test_the_command_names_the_plan_s_own_numbers() -> None:
     plan = TwinPlan()
     assert {name: getattr(plan, name) for name in command.USUAL} == command.USUAL
     assert command.SOLVERS == tuple(solver.value for solver in Solver)
+    assert command.LIGHTS == tuple(light.value for light in Light)
 
 
 def test_the_command_says_what_is_there(

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from workbench.calibration.contact_circle import MOST_SHIFT, find_circle
+from workbench.calibration.contact_circle import MOST_SHIFT, find_circle, relative_change
 from workbench.calibration.photo_set import BallPhoto, Circle
 
 BEYOND = 2.3
@@ -122,9 +122,9 @@ def seen_contact(
     """
     if circle is not None:
         return circle, measured_drift(image, idle, circle)
-    circle = find_circle(image.astype(np.float64) - idle, name)
+    circle = find_circle(relative_change(image.astype(np.float64), idle), name)
     drift = measured_drift(image, idle, circle)
-    circle = find_circle(drift.taken_back(image) - idle, name)
+    circle = find_circle(relative_change(drift.taken_back(image), idle), name)
     return circle, measured_drift(image, idle, circle)
 
 

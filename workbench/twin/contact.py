@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import dataclasses
+import time
 
 import numpy as np
 
 from workbench.calibration.stored import stored
+from workbench.core.base.digest import digest
 from workbench.core.base.errors import MeshingError
 from workbench.core.base.monitor import Monitor, part, silent
 from workbench.core.objects.kind import Shape
@@ -14,16 +16,20 @@ from workbench.core.press.fem import FemSettings
 from workbench.core.press.press_case import PressCase
 from workbench.core.result.force_field import ForceField, from_contact
 from workbench.core.result.results import MembraneMesh
+from workbench.pipeline.devices import start_device
 from workbench.pipeline.stage import Call
 from workbench.pipeline.store import Store
 from workbench.planning.plan import InlineRunner, plan
 from workbench.planning.stage_table import STAGES
 from workbench.twin.cases import TwinCase
 from workbench.twin.draw import Twin
+from workbench.twin.gent import LIMIT, VERSION, solve_hardening
 from workbench.twin.twin_plan import Solver, TwinPlan
 
 FEM = Solver.FEM.value
 """The stage of finite elements, which divides the body for itself."""
+GENT = Solver.GENT.value
+"""Where paths by Gent's law lie in the store."""
 NEARER_MM = 10.0
 """Radius of the part that takes part where one of 12 mm has too many cells: fields are good to
 some .005 mm, between the 9 and 12 mm of `FemSettings.radius_mm`."""
@@ -103,8 +109,32 @@ def pressed(
     if plan_.contact is Solver.MPM:
         return from_contact(stored(twin.design, given, "press", store, monitor))
     mesh = twin_mesh(twin, plan_, store, silent)
-    settings = fem_settings(mesh, case, plan_.hex_mm)
-    return stored(twin.design, dataclasses.replace(given, fem=settings), FEM, store, monitor)
+    given = dataclasses.replace(given, fem=fem_settings(mesh, case, plan_.hex_mm))
+    if plan_.contact is Solver.GENT:
+        return _hardening(twin, mesh, given, store, monitor)
+    return stored(twin.design, given, FEM, store, monitor)
+
+
+def _hardening(
+    twin: Twin, mesh: MembraneMesh, given: PressCase, store: Store, monitor: Monitor
+) -> ForceField:
+    """A path of a gel of Gent's law, from the store or solved now."""
+    press = plan(twin.design, given)[FEM]
+    key = digest({"press": press.key, "limit": LIMIT, "version": VERSION})
+    if store.has(GENT, key):
+        return store.load(GENT, key)
+    start_device(monitor)
+    find_parts, sampled = STAGES[FEM].parts, None
+    assert find_parts is not None
+    call: Call | None = find_parts(press.inputs, store).get("sampled")
+    if call is not None:
+        InlineRunner(store).run(call, part(monitor, 0.0, 0.1))
+        sampled = store.load(call.stage, call.key)
+    begun = time.monotonic()
+    material = press.inputs.material
+    found = solve_hardening(mesh, material, given, part(monitor, 0.1, 1.0), sampled=sampled)
+    store.save(GENT, key, found, seconds=time.monotonic() - begun, version=VERSION)
+    return store.load(GENT, key)
 
 
 def seen_displacement_mm(mesh: MembraneMesh, field: ForceField) -> np.ndarray:

@@ -33,12 +33,13 @@ from workbench.twin.cases import (
 )
 from workbench.twin.contact import pressed, seen_displacement_mm, twin_mesh
 from workbench.twin.draw import Twin, draw_twin
+from workbench.twin.mitsuba_photographer import MitsubaPhotographer, check_mitsuba
 from workbench.twin.photographer import Photographer
 from workbench.twin.pressing import press_ahead
 from workbench.twin.taking import Taken, label_row, photos_of
 from workbench.twin.truth import FOLDER, truth_of, write_truth
 from workbench.twin.twin_folder import TwinFolder, idle_files, open_folder
-from workbench.twin.twin_plan import TwinPlan
+from workbench.twin.twin_plan import Light, TwinPlan
 
 MOST_FAILED = 2
 """Paths that may fail or give nothing for each one that is wanted, and `SPARE` more."""
@@ -74,16 +75,19 @@ def make_twin(
     Raises:
         DesignError: If another twin is in the folder, or the camera sees no skin to press.
         MeshingError: If finite elements cannot divide the body.
+        DeviceError: If Mitsuba is asked for and cannot be used here.
         SolveError: If most paths cannot be solved.
         StoreError: If the folder cannot be written, or another process makes it.
         Cancelled: If the monitor says so; what is done stays.
     """
     design = _sized(design, plan)
     twin = draw_twin(design, plan.seed)
+    if plan.light is Light.MITSUBA:
+        check_mitsuba(twin.design.optics)
     with held(out, doing="making the twin in"):
         folder = open_folder(out, twin, design, plan)
         mesh = twin_mesh(twin, plan, store, part(monitor, 0.0, 0.5 * OPENED))
-        photographer = Photographer(
+        photographer = _photographer(plan)(
             twin, mesh, plan.photons(chosen_device()), part(monitor, 0.5 * OPENED, OPENED)
         )
         camera = design.optics.camera
@@ -103,6 +107,10 @@ def make_twin(
             photographer=photographer,
         )
         return work.run(part(monitor, OPENED, 1.0))
+
+
+def _photographer(plan: TwinPlan) -> type[Photographer]:
+    return MitsubaPhotographer if plan.light is Light.MITSUBA else Photographer
 
 
 def _sized(design: SensorDesign, plan: TwinPlan) -> SensorDesign:

@@ -8,6 +8,7 @@ shot noise of its own.
 from __future__ import annotations
 
 import dataclasses
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -26,6 +27,17 @@ if TYPE_CHECKING:
 
 REST = 0
 """Number of the photograph at rest; presses and slides count from 1."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Lit:
+    """A pose in its light."""
+
+    radiance: np.ndarray
+    """Of the seen skin's vertices toward the camera, shape (V, 3), float32."""
+    image: np.ndarray | None = None
+    """Linear light at the camera where more than the skin is seen, shape (H, W, 3); None: what
+    the workbench draws of that radiance."""
 
 
 class Photographer:
@@ -59,7 +71,7 @@ class Photographer:
             model=optics.light_model,
             monitor=part(monitor, 0.0, 0.1),
         )
-        self._rest = self._traced(None, REST, part(monitor, 0.1, 1.0))
+        self._rest = self._lit(None, REST, part(monitor, 0.1, 1.0))
         self.plain = self._studio(light, optics)
         markers = dataclasses.replace(optics.markers, visible=True)
         self._marked = self._studio(light, dataclasses.replace(optics, markers=markers))
@@ -68,7 +80,7 @@ class Photographer:
     def at_rest(self, *, marked: bool = False) -> np.ndarray:
         """The photograph of the untouched sensor, shape (H, W, 3), uint8."""
         studio = self._marked if marked else self.plain
-        return self._developed(self._whole(studio, self._rest), REST)
+        return self._developed(self._shown(studio, self._rest, None), REST)
 
     def photograph(
         self, displacement_mm: np.ndarray, number: int, monitor: Monitor, *, marked: bool = False
@@ -86,12 +98,17 @@ class Photographer:
         """
         studio = self._marked if marked else self.plain
         moved = np.asarray(displacement_mm, dtype=np.float32)
-        radiance = self._traced(moved, number, monitor)
-        linear = self._whole(studio, radiance)
-        drawn = studio.linear(moved[None], radiance=radiance[None])[0]
-        changed = _changed(studio)
-        linear[changed] = drawn[changed]
-        return self._developed(linear, number)
+        lit = self._lit(moved, number, monitor)
+        return self._developed(self._shown(studio, lit, moved), number)
+
+    def _shown(self, studio: Studio, lit: Lit, moved: np.ndarray | None) -> np.ndarray:
+        """Linear light of a pose, shape (H, W, 3), float32."""
+        linear = self._whole(studio, lit.radiance)
+        if moved is not None:
+            drawn = studio.linear(moved[None], radiance=lit.radiance[None])[0]
+            changed = _changed(studio)
+            linear[changed] = drawn[changed]
+        return linear
 
     def _studio(self, light: LightField, optics: Optics) -> Studio:
         from sim.optics.studio.render import Studio
@@ -100,27 +117,34 @@ class Photographer:
         sensor = dataclasses.replace(optics.camera.sensor, noise=False)
         camera = dataclasses.replace(optics.camera, sensor=sensor)
         return Studio(
-            self.mesh, light, dataclasses.replace(optics, camera=camera), radiance=self._rest
+            self.mesh,
+            light,
+            dataclasses.replace(optics, camera=camera),
+            radiance=self._rest.radiance,
         )
 
-    def _traced(self, moved: np.ndarray | None, number: int, monitor: Monitor) -> np.ndarray:
-        """Radiance of the seen skin's vertices toward the camera, shape (V, 3), float32."""
+    def _seed_of(self, number: int) -> int:
+        """Of a photograph's photons."""
+        return int(stream(self._seed, Draws.PHOTONS, number).integers(2**31))
+
+    def _lit(self, moved: np.ndarray | None, number: int, monitor: Monitor) -> Lit:
+        """A pose (V, 3) in the light that is traced through it; None: at rest."""
         from sim.optics.light.lights import place_leds
         from sim.optics.transport.paths import Photons
         from sim.optics.transport.radiance import trace_radiance
 
-        seed = int(stream(self._seed, Draws.PHOTONS, number).integers(2**31))
         leds = place_leds(self.optics.ring, self.optics.lamps)
         found = trace_radiance(
             self.mesh,
             leds,
             self.optics.camera,
             self.optics.transport,
-            Photons(count=self.photons, seed=seed),
+            Photons(count=self.photons, seed=self._seed_of(number)),
             displacement_mm=moved,
             monitor=monitor,
         )
-        return (len(leds.position_mm) / found.photons * found.radiance).astype(np.float32)
+        scale = len(leds.position_mm) / found.photons
+        return Lit(radiance=(scale * found.radiance).astype(np.float32))
 
     def _whole(self, studio: Studio, radiance: np.ndarray) -> np.ndarray:
         """Linear light as if no skin had moved, with this radiance (V, 3): shape (H, W, 3)."""

@@ -27,8 +27,9 @@ from workbench.report.image_files import png_bytes
 from workbench.system.whole_files import write_atomically
 from workbench.twin.cases import Kind
 from workbench.twin.draw import Twin, card
+from workbench.twin.gent import LIMIT
 from workbench.twin.taking import LABELS
-from workbench.twin.twin_plan import TwinPlan
+from workbench.twin.twin_plan import Light, TwinPlan
 
 CARD, DESIGN, FAILED, LABEL_TABLE = "card.json", "design.toml", "failed.json", "labels.csv"
 FOLDERS = {Kind.CALIBRATION: "calibration", Kind.PRESS: "presses", Kind.SLIDE: "slides"}
@@ -91,6 +92,9 @@ def open_folder(path: Path, twin: Twin, design: SensorDesign, plan: TwinPlan) ->
         StoreError: If it cannot be written.
     """
     held = {name: value for name, value in to_table(plan).items() if name not in COUNTED}
+    if plan.light is Light.PHOTONS:
+        # As it was before there was another light: twins of that time can be gone on with.
+        del held["light"]
     key = digest({"design": design_table(design), "plan": held})
     folder = TwinFolder(path=path)
     try:
@@ -110,8 +114,13 @@ def open_folder(path: Path, twin: Twin, design: SensorDesign, plan: TwinPlan) ->
         "design": design.name,
         "plan": held,
         "hidden": card(twin, design),
+        "light": {
+            "photons": "the tracer and the coating of the workbench",
+            "mitsuba": "Mitsuba 3: flakes of aluminium in a matte binder, mirrors in the wall",
+        }[plan.light.value],
         "truth": {
             "fem": "finite elements, converged",
+            "gent": f"finite elements, converged, of a gel by Gent's law, Jm = {LIMIT:g}",
             "mpm": "the contact solver: quicker, and not the ground truth",
         }[plan.contact.value],
     }

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from workbench.core.base.check import within
 from workbench.core.press.fem import QUALITY_MM
 
-GPU_PHOTONS, CPU_PHOTONS = 64, 4
-"""Millions of photons of an image where nothing is said."""
+GPU_PHOTONS, CPU_PHOTONS, MITSUBA_PHOTONS = 64, 4, 16
+"""Millions of photons of an image where nothing is said; Mitsuba traces on the processor."""
 MOST_PHOTOS = 100_000
 
 
@@ -18,8 +18,19 @@ class Solver(enum.StrEnum):
 
     FEM = "fem"
     """Finite elements: the truth of the product."""
+    GENT = "gent"
+    """Finite elements of a gel that hardens: another law than any that the product knows."""
     MPM = "mpm"
     """The contact solver: quicker, and what training sets are made by."""
+
+
+class Light(enum.StrEnum):
+    """What lights and sees the twin."""
+
+    PHOTONS = "photons"
+    """The product's own tracer and coating."""
+    MITSUBA = "mitsuba"
+    """Mitsuba 3: another tracer, another coating, and mirror images in the wall."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -35,6 +46,7 @@ class TwinPlan:
     slides: int = 100
     """Sequences of objects that are dragged, half of them with slip."""
     contact: Solver = Solver.FEM
+    light: Light = Light.PHOTONS
     photons_millions: int = 0
     """Photons of each image; 0: as many as suit the device."""
     width_px: int = 0
@@ -60,8 +72,11 @@ class TwinPlan:
         within(self.object_mm, 1.0, 50.0, what="object", unit="mm", at="object_mm")
         within(self.jobs, 1, 1024, what="processes", unit="", at="--jobs")
         object.__setattr__(self, "contact", Solver(self.contact))
+        object.__setattr__(self, "light", Light(self.light))
 
     def photons(self, device: str) -> int:
         """Photons of an image on a device, `cpu` or `cuda`."""
         usual = GPU_PHOTONS if device == "cuda" else CPU_PHOTONS
+        if self.light is Light.MITSUBA:
+            usual = MITSUBA_PHOTONS
         return 1_000_000 * (self.photons_millions or usual)

@@ -12,7 +12,8 @@ from workbench.cli.press_arguments import add_set_option
 from workbench.project.project import Project
 from workbench.system.terminal import Progress, say
 
-SOLVERS = ("fem", "mpm")
+SOLVERS = ("fem", "gent", "mpm")
+LIGHTS = ("photons", "mitsuba")
 USUAL = {"seed": 1, "calibration": 20, "presses": 140, "slides": 100}
 """Named here too, because the plan's own would import the whole program; a test compares."""
 
@@ -30,9 +31,13 @@ def options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--presses", type=int, default=USUAL["presses"], metavar="N", help=text)
     text = "sequences of objects that are dragged, half of them with slip (default: 100)"
     sub.add_argument("--slides", type=int, default=USUAL["slides"], metavar="N", help=text)
-    text = "fem: finite elements; mpm: the contact solver, quicker (default: fem)"
+    text = "fem: finite elements; gent: the same of a gel that hardens by another law; mpm: the "
+    text += "contact solver, quicker (default: fem)"
     sub.add_argument("--contact", choices=SOLVERS, default=SOLVERS[0], help=text)
-    text = "millions of photons of an image (default: 64 on a GPU, else 4)"
+    text = "photons: the tracer of the workbench; mitsuba: Mitsuba 3, with another coating and "
+    text += "mirror images in the wall (default: photons)"
+    sub.add_argument("--light", choices=LIGHTS, default=LIGHTS[0], help=text)
+    text = "millions of photons of an image (default: 64 on a GPU, else 4; of Mitsuba 16)"
     sub.add_argument("--photons", type=int, default=0, metavar="N", help=text)
     text = "width of the images [px], their shape kept (default: the design's)"
     sub.add_argument("--width", type=int, default=0, metavar="PX", help=text)
@@ -47,7 +52,7 @@ def run(options: argparse.Namespace, project: Project) -> int:
     from workbench.edit.typed_fields import with_typed
     from workbench.project.named_designs import load_design
     from workbench.twin.make import make_twin
-    from workbench.twin.twin_plan import Solver, TwinPlan
+    from workbench.twin.twin_plan import Light, Solver, TwinPlan
 
     plan = TwinPlan(
         seed=options.seed,
@@ -55,6 +60,7 @@ def run(options: argparse.Namespace, project: Project) -> int:
         presses=options.presses,
         slides=options.slides,
         contact=Solver(options.contact),
+        light=Light(options.light),
         photons_millions=options.photons,
         width_px=options.width,
         jobs=options.jobs,

@@ -2,7 +2,8 @@
 
 All rows rest on records, as a reading of one design takes minutes. Each is a comparison of the
 product with itself, some more so than others: a render is read by the light that made it; photons
-share the tracer; a twin shares the laws of contact and light, but none of its parameters.
+share the tracer; a twin shares the laws of contact and light, but none of its parameters; a twin by
+Gent's law and Mitsuba does not share these either.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from workbench.core.base.errors import StoreError
 from workbench.proof.row import Row, bounded, failed, stated
 from workbench.proof.validation.reading import renders, twin_figures
 from workbench.system.record import Record
+from workbench.twin.twin_plan import Light
 
 RENDER_LIMITS_MM = {"pad": 0.02, "geltip": 0.02, "trunk": 0.03, "paw": 0.03}
 NOISE_LIMIT_MM, PHOTON_LIMIT_MM, TWIN_LIMIT_MM = 0.03, 0.05, 0.08
@@ -75,15 +77,18 @@ def _render_rows(
 
 def _twin_rows(design: str, figures: dict[str, Any], kept: Record) -> Iterator[Row]:
     plan = figures["plan"]
+    product_s_own = plan.get("light", Light.PHOTONS) == Light.PHOTONS
     made = (
         f"{design}: {plan['presses']} presses by {plan['contact']} and "
-        f"{plan['photons_millions']} million photons, {plan['width_px']} px"
+        f"{plan['photons_millions']} million photons{'' if product_s_own else ' of Mitsuba'}, "
+        f"{plan['width_px']} px"
     )
-    for what in (twin_figures.UNCALIBRATED, twin_figures.CALIBRATION):
+    ways = (twin_figures.UNCALIBRATED, twin_figures.LEARNED, twin_figures.CALIBRATION)
+    for what in (way for way in ways if way in figures):
         scores, name = figures[what], f"reading_twin_{what}"
-        asked = what == twin_figures.CALIBRATION
+        asked = what == twin_figures.CALIBRATION and product_s_own
         by = f"{made}, {plan['calibration']} photographs of a ball, refined {plan['refine']}"
-        case = by if asked else made
+        case = by if what == twin_figures.CALIBRATION else made
         yield _depth_row(name, case, scores, (TWIN_LIMIT_MM if asked else None, kept))
         limit = NORMAL_LIMIT_DEG if asked else None
         yield _normal_row(f"{name}_normals", case, scores, (limit, kept))
