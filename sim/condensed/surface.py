@@ -7,6 +7,7 @@ it is, where a linear basis would blunt it.
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 from typing import Any
 
@@ -22,7 +23,7 @@ RIDGE = 1e-4
 """Added to the normal equations, for vertices at a rim that few nodes surround."""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
+@dataclass(frozen=True, kw_only=True)
 class Surface:
     """Weights of nodes in V vertices."""
 
@@ -31,13 +32,20 @@ class Surface:
     weights: np.ndarray
     """Of sum 1, shape (V, K), float32."""
 
+    @functools.cached_property
+    def _matrix(self) -> Any:
+        """The weights as a sparse matrix of V rows."""
+        from scipy.sparse import csr_array
+
+        starts = np.arange(0, self.nodes.size + 1, self.nodes.shape[1])
+        return csr_array((self.weights.ravel(), self.nodes.ravel(), starts))
+
     def displacement_mm(self, of_nodes_mm: np.ndarray) -> np.ndarray:
-        """Displacement of the vertices, shape (..., V, 3), float32, from that of nodes."""
-        count, vertices = self.nodes.shape[1], self.nodes.shape[0]
-        found = np.zeros((*of_nodes_mm.shape[:-2], vertices, 3), dtype=np.float32)
-        for k in range(count):
-            found += self.weights[:, k, None] * of_nodes_mm[..., self.nodes[:, k], :]
-        return found
+        """Displacement of the vertices, shape (B, V, 3), float32, from that of nodes (B, N, 3)."""
+        known = self._matrix.shape[1]
+        # Nodes beyond the last one that anything follows have no column.
+        moved = [self._matrix @ one[:known] for one in of_nodes_mm]
+        return np.stack(moved).astype(np.float32, copy=False)
 
 
 def surface_of(

@@ -218,12 +218,14 @@ def test_what_is_drawn_follows_the_nodes() -> None:
     slope = rng.normal(size=(3, 3))
     slope[:, 2] = 0.0
     moved = skin.points_mm @ slope.T + 0.3
-    assert surface.displacement_mm(moved) == pytest.approx(places @ slope.T + 0.3, abs=2e-3)
+    assert surface.displacement_mm(moved[None])[0] == pytest.approx(
+        places @ slope.T + 0.3, abs=2e-3
+    )
 
     def dent(at: np.ndarray) -> np.ndarray:
         return -0.5 * np.exp(-np.square(np.linalg.norm(at, axis=1) / 1.5))[:, None] * UP
 
     inside = np.abs(places).max(axis=1) < 2.0
-    drawn = surface.displacement_mm(dent(skin.points_mm))[inside]
+    drawn = surface.displacement_mm(dent(skin.points_mm)[None])[0][inside]
     assert drawn == pytest.approx(dent(places)[inside], abs=0.012)
     assert surface.weights.sum(axis=1) == pytest.approx(np.ones(40), abs=1e-6)

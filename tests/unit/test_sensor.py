@@ -247,3 +247,13 @@ def test_rows_of_the_room(tmp_path: Path) -> None:
     assert shear.value == pytest.approx(0.1)
     torque = next(row for row in rows if row.name == "fast_torque")
     assert not torque.ok
+
+
+def test_what_is_timed_touches(sensor: Sensor) -> None:
+    """The ball and the bolt of the benchmark press the tip in every frame, as deep as they say."""
+    from workbench.proof.benchmarks import sensor as bench
+
+    for thing in (sensor.object("sphere", size_mm=BALL_MM), bench.bolt(sensor)):
+        sensor.reset(1)
+        forces = [sensor.feel(pose, thing).force_N[0] for pose in bench.poses(thing, 40)[::8]]
+        assert min(force[2] for force in forces) > 0.1

@@ -79,7 +79,7 @@ def poses(thing: Thing, count: int) -> np.ndarray:
     found[:, 0] = aside - 1.0
     # Along the dome, so that it stays as deep.
     found[:, 2] = TIP_MM - 15.0 + np.sqrt(15.0**2 - found[:, 0] ** 2)
-    found[:, 2] += thing.collider.half_height_mm + thing.centre_mm[2] - DEPTH_MM
+    found[:, 2] += thing.collider.half_height_mm - thing.centre_mm[2] - DEPTH_MM
     found[:, 3] = 1.0
     return found
 
