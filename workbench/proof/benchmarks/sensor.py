@@ -7,14 +7,13 @@ a new machine, and is not timed.
 from __future__ import annotations
 
 import functools
-import statistics
-import time
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
 from workbench.pipeline.devices import chosen_device
-from workbench.proof.benchmarks.timing import RUNS
+from workbench.proof.benchmarks.timing import median_s
 from workbench.proof.row import Row, bounded, stated
 from workbench.sensor.sensor import Sensor
 from workbench.sensor.things import Thing
@@ -40,7 +39,7 @@ def rows() -> list[Row]:
             bounded(
                 "sensor_frames",
                 f"{name} slides on {DESIGN}, {WIDTH_PX} px, one sensor: force and image",
-                functools.partial(_rate, functools.partial(_loop, sensor, thing), FRAMES),
+                functools.partial(_rate, functools.partial(_follow, sensor.render, thing), FRAMES),
                 unit="1/s",
                 limit=LEAST_FPS,
                 sense="min",
@@ -50,7 +49,7 @@ def rows() -> list[Row]:
             stated(
                 "sensor_forces",
                 f"{name}, the same, forces alone",
-                functools.partial(_rate, functools.partial(_feel, sensor, thing), FRAMES),
+                functools.partial(_rate, functools.partial(_follow, sensor.feel, thing), FRAMES),
                 unit="1/s",
             )
         )
@@ -94,14 +93,10 @@ def bolt(sensor: Sensor) -> Thing:
     return sensor.object(trimesh.boolean.union([head, shank], engine="manifold"))
 
 
-def _loop(sensor: Sensor, thing: Thing) -> None:
+def _follow(call: Callable[[np.ndarray, Thing], Any], thing: Thing) -> None:
+    """Call with one pose after the other."""
     for pose in poses(thing, FRAMES):
-        sensor.render(pose, thing)
-
-
-def _feel(sensor: Sensor, thing: Thing) -> None:
-    for pose in poses(thing, FRAMES):
-        sensor.feel(pose, thing)
+        call(pose, thing)
 
 
 def _batch(sensor: Sensor, thing: Thing) -> None:
@@ -109,11 +104,5 @@ def _batch(sensor: Sensor, thing: Thing) -> None:
 
 
 def _rate(run: Callable[[], None], count: int) -> float:
-    """Frames a second, the median of runs after one to warm up."""
-    run()
-    times = []
-    for _ in range(RUNS):
-        begun = time.perf_counter()
-        run()
-        times.append(time.perf_counter() - begun)
-    return count / statistics.median(times)
+    """Frames a second."""
+    return count / median_s(run)
