@@ -69,7 +69,15 @@ NOUNS = {
             "ui/panels/simulate/network.py",
         ),
     ),
-    "stage of fast contact": Noun(package="workbench.pipeline.fast", record="STAGE"),
+    "stage of fast contact": Noun(
+        package="workbench.pipeline.fast",
+        record="STAGE",
+        # Tiles of a skin where it is touched.
+        readers=(
+            "workbench/planning/tile_columns.py",
+            "workbench/live/touch_press.py",
+        ),
+    ),
     "command": Noun(package="workbench.cli.commands", record="COMMAND"),
     "command of a group": Noun(package="workbench.cli.groups", record="COMMAND"),
     "export": Noun(package="workbench.report.exports", record="EXPORT"),

@@ -213,8 +213,8 @@ class Previewing(Slow):
         return PressPreview(
             contact=cast("Contact", None),
             images=np.zeros((2, 1, 1, 3), np.uint8),
-            way=f"{call.press.depth_mm}",
             seconds=0.0,
+            words=f"{call.press.depth_mm}",
         )
 
 

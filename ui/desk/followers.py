@@ -18,6 +18,7 @@ from workbench.live.requests import (
     LIVE,
     PREDICTION,
     SHAPE,
+    TOUCH,
 )
 from workbench.planning.running import PARTIAL
 
@@ -65,7 +66,6 @@ class Followers:
         desk.saving.edited()
         self.auto_update.edited()
         self._begin()
-        self.foresight.follow()
         desk.scene.rig.show_optics(session.design.optics)
         desk.shown_results.show_stored()
         if desk.current("build"):
@@ -79,6 +79,8 @@ class Followers:
             desk.scene.object.place(session.case.press)
         if desk.live:
             self.live_press.follow()
+        # After the press, which the hand waits for in the same worker.
+        self.foresight.follow()
         for panel in desk.panels:
             panel.refresh()
         self.image_preview.follow()
@@ -141,6 +143,8 @@ class Followers:
         desk = self.desk
         if job == LIVE:
             self.live_press.failed()
+        elif job == TOUCH:
+            self.live_press.touch_failed()
         elif job == FORESIGHT:
             self.foresight.failed()
         elif job == IMAGE_PREVIEW:

@@ -26,6 +26,7 @@ from workbench.live.requests import (
     PREDICTION,
     QUIET,
     SHAPE,
+    TOUCH,
     Event,
     Finished,
     PreviewDone,
@@ -148,6 +149,10 @@ class Jobs:
             # What was wrong with the design itself is told, once, by the job of its shape.
             if not event.failed:
                 log(f"{event.job}: {in_full(error.message, error.hint)}")
+            self.on_failed(error, event.job)
+        elif error is not None and event.job == TOUCH:
+            # The contact solver is asked instead, and tells what is wrong with the press itself.
+            log(f"{event.job}: {in_full(error.message, error.hint)}")
             self.on_failed(error, event.job)
         elif error is not None and event.job == PREDICTION:
             # Nobody asked for it; who asks by the button is told.

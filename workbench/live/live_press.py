@@ -23,8 +23,8 @@ from workbench.core.press.indenter import Indenter
 from workbench.core.press.motion import Mover
 from workbench.core.press.press import ContactSettings, Press
 from workbench.core.press.press_case import PressCase
-from workbench.core.result.results import MembraneMesh
 from workbench.core.result.sensing import Contact
+from workbench.live.kept_studio import KeptStudio
 from workbench.pipeline.stage import Ref
 from workbench.pipeline.store import Store
 from workbench.pipeline.surface_detail import detailed
@@ -32,7 +32,6 @@ from workbench.planning.plan import plan
 
 if TYPE_CHECKING:
     from sim.contact.live_contact import LiveContact
-    from sim.optics.studio.render import Studio
 
 NEEDED = ("mesh", "lattice", "bake", "table")
 """Stages that must be stored before a live call; the last only of models that have it."""
@@ -90,10 +89,10 @@ class PressPreview:
     """One frame."""
     images: np.ndarray
     """Background and image, shape (2, H, W, 3), uint8, at most `WIDEST_PX` wide."""
-    way: str
-    """How it was reached: `gone on`, `same region` or `anew`."""
     seconds: float
     """Time from the call to the answer [s]."""
+    words: str
+    """How it was reached."""
 
 
 def live_press(press: Press) -> Press:
@@ -146,7 +145,7 @@ class PressPreviewer:
 
     def __init__(self) -> None:
         self._live: LiveContact | None = None
-        self._studio: tuple[str, Studio] | None = None
+        self._studio = KeptStudio()
 
     def answer(self, store: Store, call: LiveCall, monitor: Monitor) -> PressPreview:
         """Press and look.
@@ -172,27 +171,19 @@ class PressPreviewer:
             key=call.key,
             monitor=monitor,
         )
-        studio = self._open_studio(store, call, mesh)
+        optics = small(call.optics)
+        studio = self._studio.open(store, mesh, call.light, call.table, optics)
         shown = detailed(call.optics, call.indenter, call.settings)
         young_MPa, poisson = call.material.young_MPa, call.material.poisson
         detail = open_detail(shown, mesh, contact, young_MPa=young_MPa, poisson=poisson)
+        images = studio.shoot(mesh.seen_displacement_mm(contact), detail=detail).rgb
+        seconds = time.perf_counter() - begun
         return PressPreview(
             contact=contact,
-            images=studio.shoot(mesh.seen_displacement_mm(contact), detail=detail).rgb,
-            way=self._live.way.value,
-            seconds=time.perf_counter() - begun,
+            images=images,
+            seconds=seconds,
+            words=f"settled in {seconds:.2f} s ({self._live.way}, {contact.substeps} substeps)",
         )
-
-    def _open_studio(self, store: Store, call: LiveCall, mesh: MembraneMesh) -> Studio:
-        from sim.optics.studio.render import Studio
-
-        optics = small(call.optics)
-        key = digest((call.mesh, call.light, call.table, optics))
-        if self._studio is None or self._studio[0] != key:
-            light = store.load(call.light.stage, call.light.key)
-            table = call.table and store.load(call.table.stage, call.table.key)
-            self._studio = (key, Studio(mesh, light, optics, table=table))
-        return self._studio[1]
 
 
 def small(optics: Optics, widest_px: int = WIDEST_PX) -> Optics:

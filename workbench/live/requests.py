@@ -15,6 +15,10 @@ SHAPE = "shape"
 """The job of the body that follows the sliders."""
 LIVE = "live"
 """The job of live presses: each request stops the one before."""
+TOUCH = "touch"
+"""The job of what follows the hand at once while a press is live."""
+COMPLIANCE = "compliance"
+"""The job of what live presses need of a skin, made while nothing else is asked for."""
 IMAGE_PREVIEW = "image preview"
 """The job of the image preview that follows the sliders."""
 FORESIGHT = "foresight"
@@ -25,11 +29,11 @@ DRAWN = "drawn object"
 """The job of the object's shape in the 3D view."""
 PREDICTION = "prediction"
 """The job of learned forces that nobody asked for: they follow a press that is done."""
-FOLLOWING = (SHAPE, FORESIGHT, IMAGE_PREVIEW, CUT, DRAWN, PREDICTION)
+FOLLOWING = (SHAPE, TOUCH, FORESIGHT, IMAGE_PREVIEW, CUT, DRAWN, PREDICTION)
 """Jobs too quick for a bar or a Cancel, unless one takes longer than `PATIENCE_S`."""
 PATIENCE_S = 4.0
 """What follows the hand and still runs after this gives way to a newer request [s]."""
-QUIET = (*FOLLOWING, LIVE)
+QUIET = (*FOLLOWING, LIVE, COMPLIANCE)
 """Jobs that follow the designer's hand: nothing is logged of them."""
 
 
