@@ -84,7 +84,7 @@ class Bench:
             editor=SimpleNamespace(edits=None),
             gizmos=[],
             on_turn=[],
-            jobs=SimpleNamespace(on_preview={}, submit=self._submit),
+            jobs=SimpleNamespace(on_preview={}, running={}, submit=self._submit),
             conductor=self.conductor,
             session=session,
             shown_results=SimpleNamespace(forget=lambda *names: None),
@@ -191,6 +191,10 @@ def test_the_skin_is_made_ready_in_the_quiet_and_not_against_a_persons_will(benc
     bench.asked()
     bench.after(READY_S + 0.1)
     assert bench.asked() == [COMPLIANCE]
+    bench.desk.jobs.running[COMPLIANCE] = SimpleNamespace(fraction=0.25)
+    bench.after(0.1)
+    assert bench.said.endswith("; skin 25% ready for quick touches")
+    del bench.desk.jobs.running[COMPLIANCE]
     bench.move()
     assert not bench.conductor.works_on(COMPLIANCE)
     bench.answer(LIVE)

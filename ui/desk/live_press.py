@@ -43,6 +43,8 @@ class LivePressFollower:
         """When the rest of the skin is asked for; None while it was, or may not."""
         self._unknown: TouchCall | None = None
         """A press that fast contact refused."""
+        self._said = self._told = ""
+        """What was said of the frame on show, and that with how far the skin is ready."""
         self._stops = 0
         """How often this stopped what makes the skin ready; a person may have, too."""
         desk.gizmos.append(self.gizmo)
@@ -59,10 +61,10 @@ class LivePressFollower:
         self._stops = desk.conductor.cancels(COMPLIANCE)
         self.gizmo.show(on)
         if on:
-            desk.live_said("solving")
+            self._say("solving")
             self.follow()
             return
-        desk.live_said("")
+        self._say("")
         desk.conductor.stop_live()
         desk.conductor.give_up(TOUCH)
         desk.scene.clear_frames()
@@ -80,14 +82,14 @@ class LivePressFollower:
         self._rest()
         touch = touch_call(session.design, session.case)
         if touch is None or self._refused(touch):
-            self.desk.live_said("solving")
+            self._say("solving")
             conductor.press_live(session.design, session.case)
             return
         if session.store.has(touch.nodes.stage, touch.nodes.key):
             conductor.stop_live()
         else:
             # The first time, nodes and their compliance take longer than a press.
-            self.desk.live_said("solving")
+            self._say("solving")
             conductor.press_live(session.design, session.case)
         conductor.ask(TOUCH, live_design(session.design), session.case, touch)
 
@@ -96,6 +98,7 @@ class LivePressFollower:
         desk, now_s = self.desk, self._clock()
         if not desk.live:
             return
+        self._tell_readiness()
         session, conductor = desk.session, desk.conductor
         if self._settle_at_s is not None and now_s >= self._settle_at_s:
             self._settle_at_s = None
@@ -147,8 +150,21 @@ class LivePressFollower:
         self.place_gizmo()
         desk.tell("live", preview)
         force_N = float(preview.contact.normal_N[-1])
-        desk.live_said(f"**{force_N:.3f} N** along the normal · {preview.words}")
+        self._say(f"**{force_N:.3f} N** along the normal · {preview.words}")
         return True
+
+    def _say(self, words: str) -> None:
+        self._said = self._told = words
+        self.desk.live_said(words)
+
+    def _tell_readiness(self) -> None:
+        """Say how far the skin is made ready; there is no bar for what nobody asked for."""
+        running = self.desk.jobs.running.get(COMPLIANCE)
+        share = f"; skin {running.fraction:.0%} ready for quick touches" if running else ""
+        words = f"{self._said}{share}"
+        if words != self._told:
+            self._told = words
+            self.desk.live_said(words)
 
     def place_gizmo(self) -> None:
         """Put the handle where the object stands."""
@@ -162,14 +178,14 @@ class LivePressFollower:
     def failed(self) -> None:
         """Take back what is said of a request that did not settle."""
         self._asked = None
-        self.desk.live_said("not solved: see the message")
+        self._say("not solved: see the message")
 
     def touch_failed(self) -> None:
         """Fast contact does not know this press: the contact solver follows the hand."""
         session = self.desk.session
         self._unknown = touch_call(session.design, session.case)
         if self.desk.live and not self.desk.conductor.works_on(LIVE):
-            self.desk.live_said("solving")
+            self._say("solving")
             self.desk.conductor.press_live(session.design, session.case)
 
     def _dragged(self, place_mm: np.ndarray, wxyz: np.ndarray) -> None:

@@ -11,7 +11,7 @@ from ui.page.colours import AMBER
 from ui.page.plain import plain
 from workbench.core.base.units import human_seconds
 from workbench.core.design.design import SensorDesign
-from workbench.live.requests import FOLLOWING, LIVE, PATIENCE_S, SHAPE, Progress
+from workbench.live.requests import COMPLIANCE, FOLLOWING, LIVE, PATIENCE_S, SHAPE, Progress
 from workbench.planning.stage_table import STAGES, label_of
 
 WIDTH_PX = 220
@@ -91,6 +91,9 @@ class Header:
 
 
 def _worth_a_bar(job: str, progress: Progress) -> bool:
+    if job == COMPLIANCE:
+        # Nobody asked for it, and it stops at the first touch of anything.
+        return False
     if job == LIVE:
         return progress.eta_s is not None and progress.eta_s > WAIT_S
     return job not in FOLLOWING or (job == SHAPE and progress.seconds > PATIENCE_S)

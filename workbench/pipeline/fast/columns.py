@@ -28,6 +28,7 @@ def columns(given: ColumnsInputs, *, monitor: Monitor) -> SkinColumns:
     from sim.condensed.columns import tile_columns
     from sim.condensed.tiles import reach_mm, tiles
 
+    monitor(0.0)
     nodes = tiles(given.mesh.outer.points_mm)[given.tile]
     return tile_columns(given.mesh, given.material, nodes, reach_mm(given.wall_mm))
 
