@@ -18,6 +18,7 @@ from workbench.core.base.errors import WorkbenchError
 from workbench.core.press.press_case import PressCase
 from workbench.core.result.condensed import Hardening
 from workbench.live.live_press import live_design
+from workbench.pipeline.devices import open_device
 from workbench.planning.plan import InlineRunner, evaluate, plan
 from workbench.project.named_designs import load_design
 from workbench.project.project import Project
@@ -56,6 +57,7 @@ def main(words: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("folder", type=Path)
     project = Project(parser.parse_args(words).folder)
+    open_device()
     try:
         general_law.RECORD.make(
             lambda: general_law.generalised({name: presses_of(name, project) for name in DESIGNS})
