@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Sequence
 
 import numpy as np
@@ -10,22 +11,39 @@ from sim.condensed.tiles import skin_normals, walls_mm
 from workbench.core.result.condensed import CondensedSkin, SkinColumns
 from workbench.core.result.results import MembraneMesh
 
+NOTHING = SkinColumns(
+    nodes=np.zeros(0, np.int32),
+    starts=np.zeros(1, np.int64),
+    neighbours=np.zeros(0, np.int32),
+    blocks_mm_N=np.zeros((0, 3, 3), np.float32),
+)
+"""The compliance of a skin of which nothing is known."""
+
+
+def bare(mesh: MembraneMesh, reach_mm: float) -> CondensedSkin:
+    """The skin of a membrane before anything is known of how it gives."""
+    return CondensedSkin(
+        points_mm=mesh.outer.points_mm,
+        normals=skin_normals(mesh),
+        wall_mm=walls_mm(mesh),
+        faces=mesh.outer.faces.astype(np.int32),
+        reach_mm=reach_mm,
+        compliance=NOTHING,
+    )
+
 
 def condensed(mesh: MembraneMesh, parts: Sequence[SkinColumns], reach_mm: float) -> CondensedSkin:
-    """The skin of a membrane with the columns of its tiles; what no tile holds does not move.
+    """The skin of a membrane with the columns of its tiles; what no tile holds does not move."""
+    return known(bare(mesh, reach_mm), parts)
+
+
+def known(skin: CondensedSkin, parts: Sequence[SkinColumns]) -> CondensedSkin:
+    """A skin with the columns of tiles.
 
     Two tiles know of a pair that lies across their border, each from a piece cut off elsewhere:
     the mean of both is taken, or the compliance would not be symmetric.
     """
-    walls = walls_mm(mesh)
-    return CondensedSkin(
-        points_mm=mesh.outer.points_mm,
-        normals=skin_normals(mesh),
-        wall_mm=walls,
-        faces=mesh.outer.faces.astype(np.int32),
-        reach_mm=reach_mm,
-        compliance=symmetric(len(mesh.outer.points_mm), parts),
-    )
+    return dataclasses.replace(skin, compliance=symmetric(len(skin.points_mm), parts))
 
 
 def symmetric(count: int, parts: Sequence[SkinColumns]) -> SkinColumns:

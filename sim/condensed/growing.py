@@ -7,12 +7,11 @@ whole skin has, differs by little.
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Callable
 
 import numpy as np
 
-from sim.condensed.assemble import condensed, symmetric
+from sim.condensed.assemble import bare, known
 from sim.condensed.fast_contact import FastContact, Touch
 from sim.condensed.frame_kernels import MARGIN
 from sim.condensed.tiles import reach_mm, tiles
@@ -48,7 +47,9 @@ class GrowingContact:
             columns: Finds the columns of a tile by its number.
         """
         self.law, self.material = law, material
-        self._mesh, self._reach_mm = mesh, reach_mm(wall_mm)
+        self._outer = mesh.outer
+        self.skin = bare(mesh, reach_mm(wall_mm))
+        """With the compliance that is known."""
         self._columns = columns
         self._tile_of = np.empty(len(mesh.outer.points_mm), dtype=np.int64)
         for number, nodes in enumerate(tiles(mesh.outer.points_mm)):
@@ -60,7 +61,7 @@ class GrowingContact:
     @property
     def nodes(self) -> Skin:
         """The outer skin at rest, a vertex for each node."""
-        return self._mesh.outer
+        return self._outer
 
     @property
     def tiles(self) -> int:
@@ -99,7 +100,7 @@ class GrowingContact:
 
     def touched(self, collider: Collider, poses: np.ndarray) -> set[int]:
         """Tiles with nodes that an object may touch at poses, (B, 7); at least one."""
-        points_mm = self._mesh.outer.points_mm
+        points_mm = self._outer.points_mm
         found: set[int] = set()
         for pose, rotation in zip(poses, rotations(poses[:, 3:]), strict=True):
             offsets = points_mm - pose[:3]
@@ -115,12 +116,8 @@ class GrowingContact:
     def _renew(self) -> None:
         """Take what is known now to the device; all presses go on."""
         before = self._fast
-        if before is None:
-            skin = condensed(self._mesh, list(self._parts.values()), self._reach_mm)
-        else:
-            rows = symmetric(len(self._tile_of), list(self._parts.values()))
-            skin = dataclasses.replace(before.skin, compliance=rows)
-        self._fast = FastContact(skin, self.law, self.material)
+        self.skin = known(self.skin, list(self._parts.values()))
+        self._fast = FastContact(self.skin, self.law, self.material)
         self._fast.reset(self._presses)
         if before is not None:
             self._fast.restore(before.state())

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,18 +12,23 @@ from sim.condensed.surface import surface_of
 from workbench.core.base.packages import naming_packages
 from workbench.core.design.design import SensorDesign
 from workbench.core.press.press_case import PressCase
+from workbench.core.result.condensed import CondensedSkin, Hardening
 from workbench.live.live_press import live_design, small
 from workbench.pipeline.devices import open_device
+from workbench.pipeline.store import Store
 from workbench.planning.plan import InlineRunner, StageMonitor, evaluate, plan
+from workbench.planning.tile_columns import tile_finder
 from workbench.project.design_toml import design_to_toml
 from workbench.project.named_designs import load_design
 from workbench.project.project import Project
 from workbench.sensor.pack import Pack
 
 if TYPE_CHECKING:
+    from sim.condensed.growing import GrowingContact
     from sim.optics.studio.render import Studio
 
-STAGES = ("mesh", "bake", "table", "condensed", "hardening")
+LIGHT = ("mesh", "bake", "table")
+WHOLE = (*LIGHT, "condensed", "hardening")
 
 
 def make_pack(
@@ -45,28 +50,79 @@ def make_pack(
         DesignError: If there is no such design.
         MeshingError: If its skin cannot be condensed.
     """
+    given, design, store = _begun(source, project, width_px)
+    found = _evaluated(design, store, WHOLE, monitor)
+    return _packed(given, design, found, (found["condensed"], found["hardening"]))
+
+
+def make_growing(
+    source: str | SensorDesign,
+    project: Project | Path | str | None = None,
+    *,
+    width_px: int | None = None,
+    monitor: StageMonitor | None = None,
+) -> tuple[Pack, GrowingContact]:
+    """A pack whose skin is bare, and contact that finds its compliance where it is touched.
+
+    Forces follow the general law unless the design's own presses are in the project. Arguments and
+    errors are those of `make_pack`.
+    """
+    given, design, store = _begun(source, project, width_px)
+    calls = plan(design, PressCase())
+    skin, law = calls["condensed"].inputs, calls["hardening"]
+    found = _evaluated(design, store, (*LIGHT, skin.mesh.stage), monitor)
+    from sim.condensed.general_law import general_law
+    from sim.condensed.growing import GrowingContact
+
+    fast = GrowingContact(
+        found[skin.mesh.stage],
+        skin.wall_mm,
+        store.load(law.stage, law.key) if store.has(law.stage, law.key) else general_law(),
+        design.material,
+        tile_finder(store, skin),
+    )
+    return _packed(given, design, found, (fast.skin, fast.law)), fast
+
+
+def _begun(
+    source: str | SensorDesign, project: Project | Path | str | None, width_px: int | None
+) -> tuple[SensorDesign, SensorDesign, Store]:
+    """The design as given, as it is rendered frame by frame, and where results are kept."""
     where = project if isinstance(project, Project) else Project(project)
     given = source if isinstance(source, SensorDesign) else load_design(source, project=where)
     design = live_design(given)
     if width_px is not None:
         design = dataclasses.replace(design, optics=small(design.optics, width_px))
+    return given, design, where.store
+
+
+def _evaluated(
+    design: SensorDesign, store: Store, wanted: tuple[str, ...], monitor: StageMonitor | None
+) -> dict[str, Any]:
+    """Results of stages by name, made where the store lacks them."""
     calls = plan(design, PressCase())
     with naming_packages():
-        for _ in evaluate(
-            design, PressCase(), InlineRunner(where.store), wanted=STAGES, monitor=monitor
-        ):
+        for _ in evaluate(design, PressCase(), InlineRunner(store), wanted=wanted, monitor=monitor):
             pass
-    found = {name: where.store.load(name, calls[name].key) for name in STAGES if name in calls}
     open_device()
+    return {name: store.load(name, calls[name].key) for name in wanted if name in calls}
+
+
+def _packed(
+    given: SensorDesign,
+    design: SensorDesign,
+    found: dict[str, Any],
+    contact: tuple[CondensedSkin, Hardening],
+) -> Pack:
     from sim.optics.studio.render import Studio
 
-    mesh, skin = found["mesh"], found["condensed"]
+    mesh, (skin, law) = found["mesh"], contact
     studio = Studio(mesh, found["bake"], design.optics, table=found.get("table"))
     return Pack(
         name=design.name,
         design_toml=design_to_toml(given),
         skin=skin,
-        law=found["hardening"],
+        law=law,
         material=design.material,
         surface=surface_of(skin.points_mm, skin.normals, mesh.seen.points_mm, mesh.seen.normals),
         images=studio.imager.state(),

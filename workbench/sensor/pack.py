@@ -21,13 +21,14 @@ from typing import Any
 
 import numpy as np
 
+from sim.condensed.assemble import NOTHING
 from sim.condensed.surface import Surface
 from workbench.core.base.codec import pack as packed
 from workbench.core.base.codec import unpack
 from workbench.core.base.errors import DesignError
 from workbench.core.base.version import VERSION
 from workbench.core.design.design import Elastomer
-from workbench.core.result.condensed import CondensedSkin, Hardening, SkinColumns
+from workbench.core.result.condensed import CondensedSkin, Hardening
 from workbench.sensor.halves import halved, made_whole
 from workbench.system.whole_files import write_atomically
 
@@ -36,13 +37,6 @@ FORMAT = 1
 HEAD, CONTACT, IMAGES, DESIGN = "pack.json", "contact.npz", "images.npz", "design.toml"
 HALF = "compliance."
 AT = "pack"
-NONE = SkinColumns(
-    nodes=np.zeros(0, np.int32),
-    starts=np.zeros(1, np.int64),
-    neighbours=np.zeros(0, np.int32),
-    blocks_mm_N=np.zeros((0, 3, 3), np.float32),
-)
-"""Stands in the tree for the compliance, whose halves are written instead."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,7 +69,8 @@ def write_pack(pack: Pack, folder: Path, others: dict[str, bytes]) -> list[Path]
     Raises:
         StoreError: If a file cannot be written.
     """
-    bare = dataclasses.replace(pack.skin, compliance=NONE)
+    # In place of the compliance, whose halves are written.
+    bare = dataclasses.replace(pack.skin, compliance=NOTHING)
     arrays, tree = packed({"skin": bare, "law": pack.law, "material": pack.material})
     contact = {
         **arrays,

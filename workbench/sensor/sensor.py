@@ -18,6 +18,7 @@ from typing import Any, Self
 import numpy as np
 
 from sim.condensed.fast_contact import FastContact, Touch
+from sim.condensed.growing import GrowingContact
 from sim.condensed.lessons import collider_of
 from sim.optics.raster.imager import Imager
 from workbench.core.base.errors import DesignError
@@ -38,14 +39,15 @@ DEEPER = 1.1
 class Sensor:
     """One design, any number of them side by side, on the compute device."""
 
-    def __init__(self, pack: Pack) -> None:
+    def __init__(self, pack: Pack, fast: GrowingContact | None = None) -> None:
+        """From a pack; `fast` where its skin is bare."""
         from workbench.pipeline.devices import open_device
 
         open_device()
         self.name, self.skin, self.law = pack.name, pack.skin, pack.law
         self.left_out = pack.left_out
         """What the design's camera does that images do not show."""
-        self._fast = FastContact(pack.skin, pack.law, pack.material)
+        self._fast = fast or FastContact(pack.skin, pack.law, pack.material)
         self._imager = Imager.from_state(pack.images)
         self._surface = pack.surface
         self._rest_depth_mm = pack.rest_depth_mm
@@ -58,6 +60,7 @@ class Sensor:
         *,
         project: Project | Path | str | None = None,
         width_px: int | None = None,
+        at_once: bool = False,
         monitor: StageMonitor | None = None,
     ) -> Self:
         """A sensor from the folder of a pack, or from a design by name or file.
@@ -68,6 +71,9 @@ class Sensor:
             source: Folder of a pack, or the name or file of a design.
             project: Where results of a design are kept; as for `wb.evaluate`.
             width_px: Width of its images; a pack has its own.
+            at_once: Begin with what is quick: how the skin gives is found where it is touched, a
+                second or two for each new place, and forces follow a law for all skins unless the
+                design's own presses are in the project. `law.errors` has what that was off by.
             monitor: Told stage, fraction and note while something is computed.
 
         Raises:
@@ -82,8 +88,11 @@ class Sensor:
                     at="width_px",
                 )
             return cls(read_pack(path))
-        from workbench.sensor.making import make_pack
+        from workbench.sensor.making import make_growing, make_pack
 
+        if at_once:
+            where = (str(source), project)
+            return cls(*make_growing(*where, width_px=width_px, monitor=monitor))
         return cls(make_pack(str(source), project, width_px=width_px, monitor=monitor))
 
     @property
