@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import re
 import shutil
 import signal
 import socket
@@ -46,6 +47,11 @@ ROWS = {
     "slider_to_callback": ("key press to the server's callback, another tab watching", 0.1),
     "other_tab_blocked": ("longest wait of a second tab while a press runs", 0.2),
     "playback_20k": ("frame to frame of a skin of 20 000 vertices, software rendering", 0.1),
+    "touch_answered": ("move of the handle: placed, pressed and rendered by fast contact", 0.1),
+    "drag_to_touch": (
+        "move of the handle to the dent in graphics memory, software rendering",
+        0.25,
+    ),
     "drag_to_settled": ("release of the handle to the settled skin, software rendering", 2.0),
 }
 """Case and limit [s] of each row, in the order they are measured."""
@@ -61,6 +67,12 @@ SETTLED_UPLOAD = """
 }
 """
 """Time of the last upload of a whole pressed skin after the release [ms]; one has 241 kB."""
+FIRST_DENT = SETTLED_UPLOAD.replace("large[large.length - 1]", "large[0]")
+"""The same of the first."""
+LIVE_ROWS = ("touch_answered", "drag_to_touch", "drag_to_settled")
+ANSWERED = re.compile(r"at once, in (\d+\.\d+) s")
+"""What the page says of a touch."""
+READY_MS = 20_000
 LEFT_DOCK_PX, RIGHT_DOCK_PX = 390, 355
 BLUE_MARGIN = 50
 """How much more blue than red and green the upright arm of the handle is."""
@@ -128,7 +140,7 @@ def _measure(program: str, figures_s: dict[str, float]) -> str:
                 page.locator('[role="tab"]').filter(has_text="Optics").wait_for(timeout=60_000)
                 figures_s["gui_usable"] = healthy_s + time.perf_counter() - start
                 figures_s["playback_20k"] = frame_s(page)[0]
-                figures_s["drag_to_settled"] = drag_s(page)
+                figures_s.update(drags_s(page))
                 page.locator('[role="tab"]').filter(has_text="Shape").click()
                 figures_s["slider_to_membrane"] = _slider_s(page)
                 figures_s["slider_to_callback"] = key_to_server_s(page, url)
@@ -185,26 +197,37 @@ def _slider_s(page: Any) -> float:
     return statistics.median(times)
 
 
-def drag_s(page: Any) -> float:
-    """Median time from letting the handle go to the settled skin in the graphics memory [s]."""
+def drags_s(page: Any) -> dict[str, float]:
+    """Median times of a live press by row [s]: of fast contact's answer, from a move of the handle
+    to the dent in the graphics memory, and from letting it go to the settled one there."""
     page.locator('[role="tab"]').filter(has_text="Simulate").click()
     label = page.locator("label[for]").filter(has_text="Live").first
     before = pixels(page)
     page.locator(f'[id="{label.get_attribute("for")}"]').click(force=True)
     page.get_by_text("settled in").wait_for()
-    # The lane loads kernels and the page its first skin.
-    page.wait_for_timeout(6_000)
-    times = []
+    # The lanes load kernels, the page its first skin, and the skin is made ready.
+    page.wait_for_timeout(READY_MS)
+    times: dict[str, list[float]] = {name: [] for name in LIVE_ROWS}
     for drag in range(DRAGS):
         x, y = arm(before, pixels(page))
         page.mouse.move(x, y)
+        page.wait_for_timeout(500)
         page.mouse.down()
-        page.mouse.move(x, y + DRAG_PX * (-1) ** drag, steps=8)
+        # The handle is held from its first move on.
+        page.mouse.move(x, y + (-1) ** drag, steps=2)
+        page.wait_for_timeout(2_000)
+        page.evaluate("() => { window.uploads = []; window.key = performance.now(); }")
+        page.mouse.move(x, y + DRAG_PX * (-1) ** drag, steps=2)
+        said = page.get_by_text(ANSWERED)
+        said.wait_for()
+        answered = ANSWERED.search(said.inner_text())
+        times["touch_answered"].append(float(answered[1]) if answered else float("nan"))
+        times["drag_to_touch"].append(page.evaluate(FIRST_DENT) / 1000)
         page.mouse.up()
         page.wait_for_timeout(6_000)
-        times.append(page.evaluate(SETTLED_UPLOAD) / 1000)
+        times["drag_to_settled"].append(page.evaluate(SETTLED_UPLOAD) / 1000)
     page.locator(f'[id="{label.get_attribute("for")}"]').click(force=True)
-    return statistics.median(times)
+    return {name: statistics.median(found) for name, found in times.items()}
 
 
 def pixels(page: Any) -> np.ndarray:
