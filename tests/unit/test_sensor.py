@@ -233,7 +233,9 @@ def test_rows_of_the_room(tmp_path: Path) -> None:
         "noted": 0,
     }
     kept = dataclasses.replace(sensor_figures.RECORD, path=tmp_path / "record.json")
-    kept.make(lambda: {"designs": {"geltip": {"fit": {}, "cube": figures, "flower": figures}}})
+    slid = {"across_N": [[0.05, 0, 0], [-0.1, 0, 0]], "full_across_N": [[0.1, 0, 0], [-0.1, 0, 0]]}
+    both = {"fit": {}, "cube": figures, "flower": figures, "slide": slid}
+    kept.make(lambda: {"designs": {"geltip": both}})
     rows = room.rows(kept)
     assert all(judge(row.name, row.case) for row in rows)
     force = [row for row in rows if row.name == "fast_force"]
@@ -245,6 +247,8 @@ def test_rows_of_the_room(tmp_path: Path) -> None:
     )
     shear = next(row for row in rows if row.name == "fast_shear")
     assert shear.value == pytest.approx(0.1)
+    there_and_back = next(row for row in rows if row.name == "fast_slide")
+    assert there_and_back.value == pytest.approx(0.5) and not there_and_back.ok
     torque = next(row for row in rows if row.name == "fast_torque")
     assert not torque.ok
 

@@ -37,7 +37,11 @@ def rows(kept: Record = sensor_figures.RECORD) -> list[Row]:
         for design, things in designs.items()
         for thing, figures in things.items()
         if thing != "fit"
-        for row in _rows(f"{design}, {thing}", figures, (thing, kept))
+        for row in (
+            _slid_rows(design, figures, kept)
+            if thing == sensor_figures.SLIDE
+            else _rows(f"{design}, {thing}", figures, (thing, kept))
+        )
     ]
 
 
@@ -105,6 +109,20 @@ def _rows(case: str, figures: dict[str, Any], of: tuple[str, Record]) -> Iterato
         f"{case}: frames of {len(force)} that the sensor says are beyond its range",
         figures["noted"],
         unit="1",
+        record=kept,
+    )
+
+
+def _slid_rows(design: str, figures: dict[str, Any], kept: Record) -> Iterator[Row]:
+    across, full = np.array(figures["across_N"]), np.array(figures["full_across_N"])
+    yield bounded(
+        "fast_slide",
+        f"{design}, sphere, slides {sensor_figures.SLIDE_MM:g} mm and back: largest error of the "
+        "tangential force over its peak",
+        float(np.linalg.norm(across - full, axis=1).max() / np.linalg.norm(full, axis=1).max()),
+        unit="1",
+        limit=SHEAR_LIMIT,
+        null=1.0,
         record=kept,
     )
 

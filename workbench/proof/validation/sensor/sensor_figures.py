@@ -21,6 +21,7 @@ import numpy as np
 from sim.condensed.lessons import KINDS
 from workbench.core.base.errors import StoreError, WorkbenchError
 from workbench.core.design.design import SensorDesign
+from workbench.core.press.motion import slide
 from workbench.core.press.press import Press
 from workbench.core.press.press_case import PressCase
 from workbench.core.result.results import MembraneMesh
@@ -36,12 +37,15 @@ from workbench.sensor.sensor import Sensor
 from workbench.system.record import Record
 
 DESIGNS = ("geltip", "pad", "trunk", "paw")
+BALL, SLIDE = "sphere", "slide"
 OBJECTS = (*(kind.value for kind in KINDS), "flower")
 """Those that are fitted, and one that is not."""
 SIZE_MM = 6.0
 DEPTH_MM, FRAMES, SHEAR_MM = 1.0, 10, 0.5
 """Ten frames down, ten aside."""
 WIDTH_PX = 320
+SLIDE_MM, SLID_DEPTH_MM = 2.0, 0.6
+"""Way of a ball along the skin and back, ten frames each, and how deep it stands."""
 IMAGES = (5, 10)
 """Frames whose images are compared, counted from one: half and all of the depth."""
 CHANGED_GREY = 2
@@ -165,19 +169,36 @@ def measured(name: str, project: Project) -> dict[str, Any]:
     design = load_design(name, project=project)
     sensor = Sensor(make_pack(design, project, width_px=WIDTH_PX))
     found: dict[str, Any] = {"fit": sensor.law.errors or {}}
+    target_mm = default_target_mm(design)
+    path = Press(target_mm=target_mm, depth_mm=DEPTH_MM, frames=FRAMES, shear_mm=(SHEAR_MM, 0.0))
     for thing in OBJECTS:
-        mesh, contact = _pressed(design, thing, project.store)
+        mesh, contact = _pressed(design, thing, path, project.store)
         found[thing] = figures_of(play(sensor, design, mesh, (thing, contact)))
+    there_and_back = (slide(SLIDE_MM, 0.0, frames=FRAMES), slide(-SLIDE_MM, 0.0, frames=FRAMES))
+    path = Press(target_mm=target_mm, depth_mm=SLID_DEPTH_MM, frames=FRAMES, strokes=there_and_back)
+    found[SLIDE] = slid(sensor, _pressed(design, BALL, path, project.store)[1])
     return found
 
 
-def _pressed(design: SensorDesign, thing: str, store: Store) -> tuple[MembraneMesh, Contact]:
-    path = Press(
-        target_mm=default_target_mm(design),
-        depth_mm=DEPTH_MM,
-        frames=FRAMES,
-        shear_mm=(SHEAR_MM, 0.0),
-    )
+def slid(sensor: Sensor, contact: Contact) -> dict[str, Any]:
+    """Tangential forces of a ball that slides to and fro, by both, frame by frame of the slide."""
+    from sim.condensed.lessons import before
+
+    thing = sensor.object(BALL, size_mm=SIZE_MM)
+    poses, normal = contact.indenter_pose, contact.normal
+    sensor.reset(1)
+    sensor.feel(before(poses), thing)
+    force = np.concatenate([sensor.feel(pose, thing).force_N for pose in poses])
+    across = [each - np.outer(each @ normal, normal) for each in (force, contact.reaction_N)]
+    return {
+        "across_N": across[0][FRAMES:].tolist(),
+        "full_across_N": across[1][FRAMES:].tolist(),
+    }
+
+
+def _pressed(
+    design: SensorDesign, thing: str, path: Press, store: Store
+) -> tuple[MembraneMesh, Contact]:
     case = PressCase(indenter=choose_indenter(thing, size_mm=SIZE_MM), press=path)
     for _ in evaluate(design, case, InlineRunner(store), wanted=("press",)):
         pass
