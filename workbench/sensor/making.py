@@ -90,10 +90,15 @@ def _begun(
     """The design as given, as it is rendered frame by frame, and where results are kept."""
     where = project if isinstance(project, Project) else Project(project)
     given = source if isinstance(source, SensorDesign) else load_design(source, project=where)
-    design = live_design(given)
-    if width_px is not None:
-        design = dataclasses.replace(design, optics=small(design.optics, width_px))
-    return given, design, where.store
+    return given, packed_design(given, width_px), where.store
+
+
+def packed_design(design: SensorDesign, width_px: int | None = None) -> SensorDesign:
+    """A design as a pack renders it: light as it was baked, images of this width."""
+    design = live_design(design)
+    if width_px is None:
+        return design
+    return dataclasses.replace(design, optics=small(design.optics, width_px))
 
 
 def _evaluated(

@@ -12,6 +12,7 @@ from ui.panels.make.checks import ChecksList, verdict
 from ui.panels.make.downloads import Downloads
 from ui.panels.make.parts import PartsTree
 from ui.panels.make.recipe import recipe_html
+from ui.panels.make.sensor_pack import SensorPack
 from ui.panels.page import Page
 from workbench.core.result.fabrication import FabricationCheck, FabricationPart
 from workbench.edit.forms import silicones
@@ -47,6 +48,7 @@ class MakePanel:
             self.recipe = gui.add_html("")
         self.downloads = Downloads(desk)
         self.checks = ChecksList(desk, self.tree)
+        self.pack = SensorPack(desk)
         self.asked = False
         self.offered: tuple[str, ...] = ()
 
