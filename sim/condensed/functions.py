@@ -15,8 +15,6 @@ TILT = 0.5
 a node of a linear skin sideways until it escapes."""
 LEAST_ALONG = 0.2
 """Cosine below which a distance is not counted along another direction."""
-COUPLING = 0.0
-"""Share of the coupling that is kept, of motion along the normal by forces across it."""
 _COS, _SIN = math.cos(TILT), math.sin(TILT)
 
 
@@ -78,14 +76,14 @@ def block_of(skin: ti.template(), pair):
 
 @ti.func
 def decoupled(block, moved, pushed):
-    """A block without the coupling of normal and tangential response.
+    """A block without the coupling of the responses along the normal and across it.
 
-    `moved` and `pushed` are the normals of the node that moves and of the one that is pushed. A
-    linear skin flows sideways under a dent far more than a true one does.
+    `moved` and `pushed` are the normals of the node that moves and of the one that is pushed; the
+    mean of both counts, or on a round skin what moves straight on would count as coupled. A linear
+    skin flows sideways under a dent far more than a true one does.
     """
-    by_push = block @ pushed
-    along = moved.dot(by_push)
-    to_normal = moved @ block
-    across = by_push - along * moved
-    back = to_normal - along * pushed
-    return block - across.outer_product(pushed) - (1.0 - COUPLING) * moved.outer_product(back)
+    normal = (moved + pushed) / ti.max((moved + pushed).norm(), 1e-6)
+    by_push, to_normal = block @ normal, normal @ block
+    along = normal.dot(by_push)
+    across, back = by_push - along * normal, to_normal - along * normal
+    return block - across.outer_product(normal) - normal.outer_product(back)

@@ -103,12 +103,13 @@ class PlainContact:
             for pair in range(rows.starts[node], rows.starts[node + 1]):
                 other = rows.neighbours[pair]
                 block = rows.blocks_mm_N[pair].T.astype(np.float64)
-                moved, pushed = skin.normals[other], skin.normals[node]
+                normal = skin.normals[other] + skin.normals[node]
+                normal = normal / max(np.linalg.norm(normal), 1e-6)
                 whole[other, :, number] = block
-                along = moved @ block @ pushed
-                across = block @ pushed - along * moved
-                back = moved @ block - along * pushed
-                bare[other, :, number] = block - np.outer(across, pushed) - np.outer(moved, back)
+                along = normal @ block @ normal
+                across = block @ normal - along * normal
+                back = normal @ block - along * normal
+                bare[other, :, number] = block - np.outer(across, normal) - np.outer(normal, back)
         return bare, whole
 
     def _forces(

@@ -12,7 +12,7 @@ from sim.condensed.assemble import symmetric
 from sim.condensed.hardening import Hardening, PlayedFrame, PlayedPress, factor, fit, reaction_N
 from sim.condensed.lessons import collider_of
 from sim.condensed.surface import surface_of
-from tests.synthetic_skin import flat_skin
+from tests.synthetic_skin import flat_skin, soft_skin
 from workbench.core.base.errors import SolveError
 from workbench.core.base.poses import rotations
 from workbench.core.design.design import Elastomer
@@ -20,6 +20,7 @@ from workbench.core.press.indenter import Indenter, IndenterKind
 from workbench.core.result.condensed import CondensedSkin, SkinColumns
 
 EDGE, SPACING_MM = 11, 0.6
+DOME_MM = 10.0
 UP = np.array([0.0, 0.0, 1.0])
 
 
@@ -57,6 +58,26 @@ def test_the_kernels_are_their_twin(skin: CondensedSkin, kind: str) -> None:
         assert np.abs(touch.displacement_mm[0] - moved).max() < 4e-3
     assert touch.force_N[0, 2] > 0.1
     assert touch.force_N[0, 0] < -0.01, "the skin holds back what is dragged over it"
+
+
+def test_the_kernels_are_their_twin_on_a_round_skin(taichi_device: str) -> None:
+    """Beside the top of a dome, where the normals of nodes that move each other differ."""
+    from sim.condensed.fast_contact import FastContact
+    from sim.condensed.reference import PlainContact
+
+    flat = flat_skin(EDGE, SPACING_MM)
+    x, y = flat.points_mm[:, 0], flat.points_mm[:, 1]
+    points = np.column_stack([x, y, np.sqrt(DOME_MM**2 - x**2 - y**2) - DOME_MM])
+    skin = soft_skin(points, (points + [0.0, 0.0, DOME_MM]) / DOME_MM, flat.faces)
+    thing = collider_of(Indenter(size_mm=6.0))
+    fast = FastContact(skin, Hardening(), Elastomer(friction=0.3))
+    plain = PlainContact(skin=skin, friction=0.3)
+    for pose in path()[[0, 2, 4]]:
+        touch = fast.step(thing, pose[None])
+        force, _ = plain.step(thing, pose[:3], rotations(pose[None, 3:])[0])
+        found = -force.sum(axis=0)
+        assert np.abs(touch.force_N[0] - found).max() < 5e-3 * max(np.abs(found).max(), 1e-3)
+    assert touch.force_N[0, 2] > 0.1
 
 
 def test_side_by_side_is_alone_to_the_last_bit(skin: CondensedSkin) -> None:
