@@ -68,7 +68,8 @@ def test_the_kernels_are_their_twin_on_a_round_skin(taichi_device: str) -> None:
     flat = flat_skin(EDGE, SPACING_MM)
     x, y = flat.points_mm[:, 0], flat.points_mm[:, 1]
     points = np.column_stack([x, y, np.sqrt(DOME_MM**2 - x**2 - y**2) - DOME_MM])
-    skin = soft_skin(points, (points + [0.0, 0.0, DOME_MM]) / DOME_MM, flat.faces)
+    normals = (points - np.array([0.0, 0.0, -DOME_MM])) / DOME_MM
+    skin = soft_skin(points, normals, flat.faces)
     thing = collider_of(Indenter(size_mm=6.0))
     fast = FastContact(skin, Hardening(), Elastomer(friction=0.3))
     plain = PlainContact(skin=skin, friction=0.3)
