@@ -5,6 +5,8 @@ from __future__ import annotations
 import errno
 import json
 import os
+import socket
+import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -20,6 +22,7 @@ from workbench.core.result.sensing import Metrics, Shot, TactileFrames
 from workbench.pipeline.store import DAMAGED, Store
 from workbench.pipeline.write_once import META
 from workbench.planning.plan import InlineRunner, evaluate, plan
+from workbench.system.unfinished import fresh_name, is_left_behind
 
 
 def drawing(value: int = 1) -> Picture:
@@ -192,6 +195,29 @@ def test_part_of_a_living_writer_is_kept(tmp_path: Path) -> None:
     part.mkdir(parents=True)
     assert Store(tmp_path).sweep() == 0
     assert part.exists()
+
+
+def test_part_of_another_host_is_kept_for_a_day(tmp_path: Path) -> None:
+    """Its processes cannot be asked from here: only what has long stood still is swept."""
+    numbers = (99_999_999, os.getpid())
+    parts = [tmp_path / "s" / f".part-{pid}@elsewhere-2.lab-x" for pid in numbers]
+    for part in parts:
+        part.mkdir(parents=True)
+    assert Store(tmp_path).sweep() == 0
+    long_ago = time.time() - 25 * 3600.0
+    os.utime(parts[0], (long_ago, long_ago))
+    assert Store(tmp_path).sweep() == 1
+    assert not parts[0].exists() and parts[1].exists()
+
+
+def test_a_name_of_this_process_is_not_left_behind_and_says_where_it_runs(tmp_path: Path) -> None:
+    """Two names differ; the host stands in them, so that others do not ask here for the process."""
+    names = {fresh_name(), fresh_name()}
+    assert len(names) == 2
+    for name in names:
+        assert f"-{os.getpid()}@{socket.gethostname()}-" in name
+        (tmp_path / name).touch()
+        assert not is_left_behind(tmp_path / name)
 
 
 def cut_short(folder: Path) -> None:

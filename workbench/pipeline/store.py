@@ -29,8 +29,8 @@ from workbench.core.base.codec import pack, unpack
 from workbench.core.base.errors import DamagedError, StoreError, shortened
 from workbench.pipeline.sparse import PARTS, mostly_zeros, pack_zeros, unpack_zeros
 from workbench.pipeline.write_once import META, discard, part_of, publish, write_file
-from workbench.system.processes import is_alive
 from workbench.system.terminal import complain
+from workbench.system.unfinished import UNFINISHED, is_left_behind
 
 DAMAGED = "damaged"
 """Folder of what could not be read, for whoever wants to know why."""
@@ -209,9 +209,8 @@ class Store:
             Folders removed.
         """
         removed = 0
-        for part in self.root.glob("*/.part-*"):
-            pid = part.name.split("-")[1]
-            if not (pid.isdecimal() and is_alive(int(pid))):
+        for part in self.root.glob(f"*/{UNFINISHED}"):
+            if is_left_behind(part):
                 shutil.rmtree(part, ignore_errors=True)
                 removed += 1
         entries: list[tuple[float, int, Path]] = []

@@ -1,6 +1,7 @@
 """Folders that are written once: whole under their name, or not there.
 
-A folder is filled under the name `.part-<pid>-...`, each of its files synced, and then renamed.
+A folder is filled under the name `.part-<pid>@<host>-...`, each of its files synced, and then
+renamed.
 """
 
 from __future__ import annotations
@@ -8,7 +9,6 @@ from __future__ import annotations
 import contextlib
 import errno
 import os
-import secrets
 import shutil
 import tempfile
 from collections.abc import Iterator
@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from workbench.core.base.errors import StoreError
+from workbench.system.unfinished import fresh_name, prefix
 
 META = "meta.json"
 """File that says what is in the folder; the last one that is written."""
@@ -32,7 +33,7 @@ def part_of(root: Path, stage: str) -> Iterator[Path]:
     try:
         folder = root / stage
         folder.mkdir(parents=True, exist_ok=True)
-        part = Path(tempfile.mkdtemp(dir=folder, prefix=f".part-{os.getpid()}-"))
+        part = Path(tempfile.mkdtemp(dir=folder, prefix=prefix()))
         yield part
     except OSError as error:
         raise _disk_error(error, root) from error
@@ -64,7 +65,7 @@ def publish(part: Path, final: Path) -> None:
 
 def discard(folder: Path) -> None:
     """Remove a result: one rename makes it absent, whatever interrupts the rest."""
-    aside = folder.with_name(f".part-{os.getpid()}-{secrets.token_hex(6)}")
+    aside = folder.with_name(fresh_name())
     folder.rename(aside)
     shutil.rmtree(aside, ignore_errors=True)
 

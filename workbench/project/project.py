@@ -28,14 +28,14 @@ from workbench.core.design.design import SensorDesign
 from workbench.pipeline.store import Store
 from workbench.project.design_toml import design_files, design_to_toml
 from workbench.system.names import LONGEST, is_name
-from workbench.system.processes import is_alive
+from workbench.system.unfinished import UNFINISHED, is_left_behind
 from workbench.system.whole_files import free_path, write_atomically
 
 VARIABLE = "WORKBENCH_PROJECT"
 DEFAULT_FOLDER = ".workbench"
 STORE_VARIABLE = "WORKBENCH_STORE"
 """Folder of the results of all projects: what one has computed, the others find."""
-PARTS = tuple(f"{folder}.part-*" for folder in ("", "*/", "*/trash/", "designs/previous/*/"))
+PARTS = tuple(f"{folder}{UNFINISHED}" for folder in ("", "*/", "*/trash/", "designs/previous/*/"))
 """Where files may lie that were being written when their writer was killed."""
 
 
@@ -101,8 +101,7 @@ class Project:
         self.store.sweep()
         for pattern in PARTS:
             for part in self.folder.glob(pattern):
-                pid = part.name.split("-")[1]
-                if part.is_file() and not (pid.isdecimal() and is_alive(int(pid))):
+                if part.is_file() and is_left_behind(part):
                     with contextlib.suppress(OSError):
                         part.unlink()
 

@@ -17,6 +17,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 from workbench.system.processes import is_alive, started
+from workbench.system.unfinished import fresh_name
 
 LOCK = "lock"
 
@@ -102,7 +103,7 @@ class LockFile:
                 self.path.unlink()
 
     def _written(self) -> Path:
-        part = self.path.with_name(f".part-{os.getpid()}-{secrets.token_hex(6)}")
+        part = self.path.with_name(fresh_name())
         part.write_text(json.dumps(asdict(self.own)), encoding="utf-8")
         return part
 
@@ -118,7 +119,7 @@ class LockFile:
 
     def _clear_dead(self) -> Holder | None:
         """Remove the lock of a process that has ended; a living one's stays, and is returned."""
-        aside = self.path.with_name(f".part-{os.getpid()}-{secrets.token_hex(6)}")
+        aside = self.path.with_name(fresh_name())
         with contextlib.suppress(FileNotFoundError):
             holder = _read(self.path)
             if holder is not None and holder.living:

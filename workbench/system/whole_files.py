@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import contextlib
 import os
-import secrets
 import tomllib
 from pathlib import Path
 from typing import Any
 
 from workbench.core.base.errors import StoreError, shortened
 from workbench.system.names import numbered
+from workbench.system.unfinished import fresh_name
 
 MAX_TOML_BYTES = 1_000_000
 """Of a design; what is larger is something else."""
@@ -61,7 +61,7 @@ def write_atomically(path: Path, content: bytes) -> None:
     Raises:
         StoreError: If the disk is full or read-only; the old file stays.
     """
-    part = path.with_name(f".part-{os.getpid()}-{secrets.token_hex(6)}")
+    part = path.with_name(fresh_name())
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with part.open("xb") as file:
