@@ -12,6 +12,7 @@ BY_HAND = (
     *(
         "browser",
         "calibration",
+        "cluster",
         "contact",
         "data-sets",
         "designs",

@@ -36,7 +36,7 @@ RANKS = """
     sim.condensed  sim.reading  sim.reading.network
 
     workbench.view  workbench.pipeline  workbench.pipeline.stages  workbench.pipeline.fast
-    workbench.planning
+    workbench.planning  workbench.cluster
     workbench.project  workbench.edit  workbench.live  workbench.sensor
     workbench.report  workbench.report.exports
     workbench.variants  workbench.calibration  workbench.photographs  workbench.reading

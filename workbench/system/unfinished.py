@@ -1,5 +1,7 @@
-"""Names of files and folders that are being written: by whom, so that what a dead process left
-behind can be told from what another is at, here or on another host that shares the folder.
+"""Names of what is being written: by whom, on which host.
+
+So what a dead process left behind can be told from what another is at, here or on a machine that
+shares the folder.
 """
 
 from __future__ import annotations

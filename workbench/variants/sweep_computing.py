@@ -1,10 +1,11 @@
-"""Computes the points of a sweep in this process."""
+"""Computes the points of a sweep, one after the other here or side by side on a cluster."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable
 
+from workbench.cluster.spreading import Spread, spread
 from workbench.core.base.errors import Cancelled, WorkbenchError
 from workbench.pipeline.stage import Outcome
 from workbench.planning.plan import InlineRunner, StageMonitor, evaluate
@@ -19,8 +20,9 @@ def compute(
     monitor: StageMonitor | None = None,
     on_outcome: Callable[[Outcome], None] = lambda outcome: None,
     on_point: Callable[[Sweep, int, float], None] = lambda what, number, seconds: None,
+    spread_on: Spread | None = None,
 ) -> Sweep:
-    """All points in order; one that fails is kept as such, and the next is computed.
+    """All points; one that fails is kept as such, and the others are computed.
 
     Args:
         what: The sweep; points that are stored cost nothing.
@@ -28,23 +30,33 @@ def compute(
         monitor: Told how far a stage is.
         on_outcome: Told each stage that is done.
         on_point: Told the sweep, the number of the point that is done or failed, and its seconds.
+        spread_on: Computes points side by side; one after the other in this process by default.
 
     Raises:
         Cancelled: If the user asked to stop; finished results are stored.
     """
-    runner = InlineRunner(project.store)
-    for number in range(len(what.points)):
+    on = spread_on or Spread(runner=InlineRunner(project.store), width=1)
+
+    def point(number: int) -> tuple[WorkbenchError | None, float]:
         started = time.monotonic()
         try:
             state = state_at(what, number)
             for outcome in evaluate(
-                state.design, state.case, runner, wanted=what.wanted, monitor=monitor
+                state.design, state.case, on.runner, wanted=what.wanted, monitor=monitor
             ):
                 on_outcome(outcome)
-            what = done(what, number, project.store, time.monotonic() - started)
         except Cancelled:
             raise
         except WorkbenchError as error:
-            what = failed(what, number, error)
-        on_point(what, number, time.monotonic() - started)
+            return error, time.monotonic() - started
+        return None, time.monotonic() - started
+
+    for number, (error, seconds) in spread(point, range(len(what.points)), on):
+        try:
+            if error is not None:
+                raise error
+            what = done(what, number, project.store, seconds)
+        except WorkbenchError as why:
+            what = failed(what, number, why)
+        on_point(what, number, seconds)
     return what

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from workbench.cli.body_arguments import add_body_options
+from workbench.cli.cluster_option import add_cluster_option, cluster_of
 from workbench.cli.command import Command
 from workbench.cli.held_state import base_state
 from workbench.cli.options import OUT
@@ -50,6 +51,7 @@ def options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--metric", metavar="NAME", help="figure of the plot (default: mean change)")
     sub.add_argument("--parts", action="store_true", help="also mould and housing, for checks")
     add_press_options(sub)
+    add_cluster_option(sub)
     sub.add_argument("--out", required=True, type=Path, metavar="DIR", help=OUT)
     sub.add_argument("--json", action="store_true", help="progress as one JSON object per line")
 
@@ -74,7 +76,10 @@ def run(options: argparse.Namespace, project: Project) -> int:
     prepare(options.out, clear=FILES)
     project.sweep()
     callbacks = {} if options.json else {"on_point": say_point}
-    what = compute(what, project, monitor=printer, on_outcome=printer.done, **callbacks)
+    with cluster_of(options.cluster, project.store, printer) as on:
+        what = compute(
+            what, project, monitor=printer, on_outcome=printer.done, spread_on=on, **callbacks
+        )
     contents = {
         "sweep.json": json.dumps(sweep_table(what), indent=1, allow_nan=False),
         "sweep.csv": sweep_csv(what),

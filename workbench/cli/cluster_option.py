@@ -1,0 +1,46 @@
+"""`--cluster`, for commands that compute many things."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from workbench.cluster.where import read_where
+from workbench.pipeline.store import Store
+from workbench.system.terminal import Progress, complain
+
+if TYPE_CHECKING:
+    from workbench.cluster.spreading import Spread
+
+HELP = "spread the work by Dask: local[:N], tcp://HOST:8786, or a TOML file (docs/cluster.md)"
+
+
+def add_cluster_option(sub: argparse.ArgumentParser) -> None:
+    """Add it to a command."""
+    sub.add_argument("--cluster", metavar="WHERE", help=HELP)
+
+
+@contextlib.contextmanager
+def cluster_of(words: str | None, store: Store, printer: Progress) -> Iterator[Spread | None]:
+    """Who computes side by side while this lasts; None where no cluster was asked for.
+
+    Raises:
+        DesignError: If there is no such cluster.
+        LaneError: If no worker comes.
+    """
+    if words is None:
+        yield None
+        return
+    where = read_where(words)
+    from workbench.cluster.cluster_runner import ClusterRunner
+    from workbench.cluster.opening import opened
+    from workbench.cluster.spreading import Spread
+
+    with opened(where, store) as cluster:
+        if not printer.as_json:
+            how = "store shared" if cluster.shared else "results are sent"
+            complain(f"{cluster.width} workers, {how}; Dask's page: {cluster.dashboard}")
+        runner = ClusterRunner(cluster, store)
+        yield Spread(runner=runner, width=cluster.width, stop=runner.stop)
