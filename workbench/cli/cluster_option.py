@@ -12,6 +12,7 @@ from workbench.pipeline.store import Store
 from workbench.system.terminal import Progress, complain
 
 if TYPE_CHECKING:
+    from workbench.cluster.opening import Cluster
     from workbench.cluster.spreading import Spread
 
 HELP = "spread the work by Dask: local[:N], tcp://HOST:8786, or a TOML file (docs/cluster.md)"
@@ -26,6 +27,23 @@ def add_cluster_option(sub: argparse.ArgumentParser) -> None:
 def cluster_of(words: str | None, store: Store, printer: Progress) -> Iterator[Spread | None]:
     """Who computes side by side while this lasts; None where no cluster was asked for.
 
+    Raises as `open_cluster`.
+    """
+    with open_cluster(words, store, printer) as cluster:
+        if cluster is None:
+            yield None
+            return
+        from workbench.cluster.cluster_runner import ClusterRunner
+        from workbench.cluster.spreading import Spread
+
+        runner = ClusterRunner(cluster, store)
+        yield Spread(runner=runner, width=cluster.width, stop=runner.stop)
+
+
+@contextlib.contextmanager
+def open_cluster(words: str | None, store: Store, printer: Progress) -> Iterator[Cluster | None]:
+    """The cluster while it is used; None where none was asked for.
+
     Raises:
         DesignError: If there is no such cluster.
         LaneError: If no worker comes.
@@ -34,13 +52,10 @@ def cluster_of(words: str | None, store: Store, printer: Progress) -> Iterator[S
         yield None
         return
     where = read_where(words)
-    from workbench.cluster.cluster_runner import ClusterRunner
     from workbench.cluster.opening import opened
-    from workbench.cluster.spreading import Spread
 
     with opened(where, store) as cluster:
         if not printer.as_json:
             how = "store shared" if cluster.shared else "results are sent"
             complain(f"{cluster.width} workers, {how}; Dask's page: {cluster.dashboard}")
-        runner = ClusterRunner(cluster, store)
-        yield Spread(runner=runner, width=cluster.width, stop=runner.stop)
+        yield cluster

@@ -64,7 +64,7 @@ def opened(where: Where, store: Store) -> Iterator[Cluster]:
                 at=AT,
             ) from error
         yield Cluster(
-            client=client, shared=_shared(client, store), dashboard=str(client.dashboard_link)
+            client=client, shared=all_see(client, store.root), dashboard=str(client.dashboard_link)
         )
 
 
@@ -126,9 +126,9 @@ def _started(where: Where) -> Any:
     return cluster
 
 
-def _shared(client: Any, store: Store) -> bool:
-    """Whether all workers see a file that is made in the store."""
-    token = Path(store.root) / f".cluster-{secrets.token_hex(6)}"
+def all_see(client: Any, folder: Path) -> bool:
+    """Whether all workers see a file that is made in a folder."""
+    token = folder / f".cluster-{secrets.token_hex(6)}"
     token.parent.mkdir(parents=True, exist_ok=True)
     token.touch()
     try:

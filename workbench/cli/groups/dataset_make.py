@@ -9,6 +9,7 @@ import time
 from pathlib import Path
 from typing import Any
 
+from workbench.cli.cluster_option import add_cluster_option, open_cluster
 from workbench.cli.command import Command
 from workbench.cli.dataset_estimate import say_estimate
 from workbench.cli.press_arguments import add_set_option
@@ -43,6 +44,7 @@ def options(sub: argparse.ArgumentParser) -> None:
     text = "contact solver, finite elements, or both (default: the recipe's)"
     sub.add_argument("--solver", choices=solvers, help=text)
     sub.add_argument("--no-images", action="store_true", help="fields and forces only")
+    add_cluster_option(sub)
     add_set_option(sub)
     text = "turn every object about the fixed X, then Y, then Z before it is pressed"
     sub.add_argument("--turn-deg", metavar="X,Y,Z", help=text)
@@ -91,15 +93,17 @@ def run(options: argparse.Namespace, project: Project) -> int:
     line = SampleLine(as_json=options.json)
     started = time.monotonic()
     try:
-        data = make_it(
-            recipe,
-            options.out,
-            project,
-            jobs=options.jobs,
-            batch=options.batch,
-            tell=line.tell,
-            monitor=printer,
-        )
+        with open_cluster(options.cluster, project.store, printer) as cluster:
+            data = make_it(
+                recipe,
+                options.out,
+                project,
+                jobs=options.jobs,
+                batch=options.batch,
+                tell=line.tell,
+                monitor=printer,
+                cluster=cluster,
+            )
     finally:
         line.end()
     counts = data.counts()

@@ -19,6 +19,7 @@ from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 from typing import Any, TypedDict, Unpack
 
+from workbench.cluster.opening import Cluster
 from workbench.core.base.errors import LaneError, MeshingError
 from workbench.core.press.press import ContactSettings
 from workbench.core.press.press_case import PressCase
@@ -33,6 +34,7 @@ from workbench.learning.dataset.repair import clear_parts
 from workbench.learning.dataset.sample_sheet import write_sheet
 from workbench.learning.dataset.sequences import write_sequences
 from workbench.learning.dataset.sights import LIGHT, Sight, sights_of, write_backgrounds
+from workbench.learning.making.cluster_workers import cluster_pools
 from workbench.learning.making.line import LOOK_S, Line
 from workbench.learning.making.presser import open_presser
 from workbench.learning.making.watch import Tell, Watch
@@ -68,6 +70,7 @@ class How(TypedDict, total=False):
     batch: int
     tell: Tell
     monitor: StageMonitor | None
+    cluster: Cluster | None
 
 
 def make(
@@ -83,7 +86,8 @@ def make(
         folder: Where; a data set of the same recipe in it is gone on with.
         project: Its store has, or gets, mesh, material points and light.
         how: `jobs`, processes; `batch`, presses side by side, 0 for what suits the device;
-            `tell`, told how far it is; `monitor`, progress of the stages before the first case.
+            `tell`, told how far it is; `monitor`, progress of the stages before the first case;
+            `cluster`, whose workers make the samples instead of `jobs` processes.
 
     Raises:
         StoreError: If the folder is another's, in use, or cannot be written.
@@ -112,7 +116,11 @@ def make(
         )
         write_backgrounds(folder, recipe, sights, project.store)
         try:
-            _collect(data, setup, jobs=jobs, batch=batch or side_by_side(), tell=tell)
+            cluster = how.get("cluster")
+            if cluster is None:
+                _collect(data, setup, jobs=jobs, batch=batch or side_by_side(), tell=tell)
+            else:
+                _collect_on(cluster, data, setup, batch=batch or ON_GPU, tell=tell)
         finally:
             finish(data)
     return data
@@ -152,12 +160,7 @@ def _check_hexes(recipe: Recipe, mesh: MembraneMesh) -> None:
 
 def _collect(data: DataSet, setup: Setup, *, jobs: int, batch: int, tell: Tell) -> None:
     """Solve what is not done and has not failed."""
-    failed = data.failed()
-    cases = [case for case in data.cases() if case.id not in failed]
-    done = {case.id: len(data.frames(case)) for case in cases}
-    todo = [case for case in cases if done[case.id] < case.frames]
-    watch = Watch(data, cases, done, len(failed), tell)
-    watch.look(())
+    todo, watch = _todo(data, tell)
     if not todo:
         return
     jobs = min(jobs, len(todo))
@@ -178,6 +181,29 @@ def _collect(data: DataSet, setup: Setup, *, jobs: int, batch: int, tell: Tell) 
             "out of memory: use fewer --jobs or a smaller --batch",
             at="dataset",
         ) from error
+
+
+def _todo(data: DataSet, tell: Tell) -> tuple[list[Case], Watch]:
+    """Cases that are not done and have not failed, and who counts."""
+    failed = data.failed()
+    cases = [case for case in data.cases() if case.id not in failed]
+    done = {case.id: len(data.frames(case)) for case in cases}
+    watch = Watch(data, cases, done, len(failed), tell)
+    watch.look(())
+    return [case for case in cases if done[case.id] < case.frames], watch
+
+
+def _collect_on(cluster: Cluster, data: DataSet, setup: Setup, *, batch: int, tell: Tell) -> None:
+    """The same by the workers of a cluster."""
+    todo, watch = _todo(data, tell)
+    if not todo:
+        return
+    with cluster_pools(cluster, setup) as pools:
+        if pools.pressers and setup.recipe.solvers is not Solvers.FEM:
+            size = min(batch, -(-len(todo) // len(pools.pressers)))
+            Line(pools.workers, pools.pressers, size, watch).run(todo)
+        else:
+            _one_by_one(todo, pools.workers, AHEAD * pools.width, watch)
 
 
 def _one_by_one(todo: Iterable[Case], workers: Executor, most: int, watch: Watch) -> None:

@@ -7,6 +7,7 @@ import signal
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
+from types import SimpleNamespace
 from typing import Any
 
 from workbench.core.base.errors import Cancelled, LaneError
@@ -49,6 +50,15 @@ def open_presser(device: str, gpu: int | None, stop: Any) -> None:
         os.environ[GPUS] = shown[gpu] if shown else str(gpu)
     os.environ[VARIABLE] = device
     open_device()
+
+
+def open_here() -> None:
+    """Make a process that others started a presser on the GPU that it sees."""
+    global _stop  # noqa: PLW0603
+    if _stop is None:
+        _stop = SimpleNamespace(value=0)
+        os.environ[VARIABLE] = "cuda"
+        open_device()
 
 
 def press_batch(problems: Sequence[bytes]) -> Pressed:

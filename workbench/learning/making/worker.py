@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import os
 import signal
+from types import SimpleNamespace
 from typing import Any
 
 from workbench.core.base.errors import WorkbenchError
 from workbench.learning.dataset.cases import Case
 from workbench.learning.making.solving import Bench
 from workbench.learning.making.worker_messages import Report, SettledPress, Setup
+from workbench.pipeline.devices import VARIABLE
 from workbench.system.processes import follow_parent
 
+NEVER = SimpleNamespace(value=0)
+"""The wish to stop of a process that is not told of it: its case ends, and none follows."""
 _bench: Bench | WorkbenchError | None = None
 """Of this worker process, or why it has none; a pool has no other place to keep it."""
 
@@ -25,6 +30,27 @@ def open_bench(setup: Setup, stop: Any) -> None:
         _bench = Bench(setup, stop)
     except WorkbenchError as error:
         _bench = error
+
+
+def open_here(setup: Setup, device: str = "") -> None:
+    """Make a process that others started a worker of a data set, unless it is one already.
+
+    Args:
+        setup: The data set.
+        device: Name of the device it computes on; "" for its own.
+
+    Raises:
+        WorkbenchError: If the store lacks what its cases share.
+    """
+    global _bench  # noqa: PLW0603
+    if isinstance(_bench, Bench) and (_bench.setup.key, _bench.setup.folder) == (
+        setup.key,
+        setup.folder,
+    ):
+        return
+    if device:
+        os.environ[VARIABLE] = device
+    _bench = Bench(setup, NEVER)
 
 
 def solve_case(case: Case) -> Report:

@@ -1,0 +1,63 @@
+"""A data set made by the workers of a cluster, beside the same made here."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+import pytest
+
+from tests.synthetic_presses import pad_recipe
+from workbench.cluster.opening import Cluster
+from workbench.core.base.errors import DesignError
+from workbench.learning.dataset.recipe import Solvers
+from workbench.learning.making.cluster_workers import cluster_pools
+from workbench.learning.making.collect import make
+from workbench.learning.making.worker_messages import Setup
+from workbench.pipeline.store import Store
+from workbench.project.project import Project
+
+
+class Blind:
+    """A client whose second worker is on a machine without the shared disk."""
+
+    def run(self, function: Any, path: str) -> dict[str, bool]:
+        return {"here": function(path), "there": False}
+
+
+def test_workers_that_do_not_see_the_folder_are_refused(tmp_path: Path) -> None:
+    """Before anything is made, with the folder and the remedy; the file that was tried is gone."""
+    cluster = Cluster(client=Blind(), shared=False, dashboard="")
+    setup = Setup(
+        recipe=pad_recipe(), key="k", folder=tmp_path, store=tmp_path, calls={}, sights=()
+    )
+    with pytest.raises(DesignError, match="not all workers") as caught:
+        with cluster_pools(cluster, setup):
+            raise AssertionError("there are no pools")
+    assert str(tmp_path) in caught.value.message and "disk" in caught.value.hint
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.slow
+def test_samples_of_a_cluster_are_those_made_here(tmp_path: Path) -> None:
+    """Two presses of two frames and more by two workers: every sample has the same forces."""
+    pytest.importorskip("distributed")
+    from workbench.cluster.opening import opened
+    from workbench.cluster.where import Where
+
+    recipe = dataclasses.replace(pad_recipe(cases=2), solvers=Solvers.MPM, grid_mm=1.0)
+    project = Project(tmp_path / "project")
+    store: Store = project.store
+    with opened(Where(kind="local", workers=2), store) as cluster:
+        there = make(recipe, tmp_path / "there", project, cluster=cluster)
+    here = make(recipe, tmp_path / "here", project)
+    assert there.counts() == here.counts() and here.counts()["cases_done"] == 2
+    pairs = list(zip(here.samples(repeats=True), there.samples(repeats=True), strict=True))
+    assert len(pairs) >= 4
+    for mine, its in pairs:
+        sample = [cast(Any, pair[1]) for pair in (mine, its)]
+        assert mine[0].id == its[0].id
+        forces = [each.mpm.reaction_N for each in sample]
+        assert np.array_equal(*forces) and np.linalg.norm(forces[0]) > 0.0
