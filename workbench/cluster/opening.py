@@ -69,7 +69,7 @@ def opened(where: Where, store: Store) -> Iterator[Cluster]:
 
 
 def _client(where: Where, open_things: contextlib.ExitStack) -> Any:
-    import dask
+    import dask.config
     from distributed import Client, LocalCluster
 
     # Stages may start processes, which those of a daemon must not.
