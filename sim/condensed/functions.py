@@ -78,12 +78,11 @@ def block_of(skin: ti.template(), pair):
 def decoupled(block, moved, pushed):
     """A block without the coupling of the responses along the normal and across it.
 
-    `moved` and `pushed` are the normals of the node that moves and of the one that is pushed; the
-    mean of both counts, or on a round skin what moves straight on would count as coupled. A linear
-    skin flows sideways under a dent far more than a true one does.
+    A linear skin flows sideways under a dent far more than a true one does. `moved` and `pushed`
+    are the normals of the node that moves and of the one that is pushed: across them each counts
+    for its own node, along them the mean of both (tried: both own, both mean, the other way round).
     """
     normal = (moved + pushed) / ti.max((moved + pushed).norm(), 1e-6)
-    by_push, to_normal = block @ normal, normal @ block
-    along = normal.dot(by_push)
-    across, back = by_push - along * normal, to_normal - along * normal
-    return block - across.outer_product(normal) - normal.outer_product(back)
+    along = normal.dot(block @ normal)
+    across = block - moved.outer_product(moved @ block)
+    return across - (across @ pushed).outer_product(pushed) + along * normal.outer_product(normal)

@@ -103,13 +103,15 @@ class PlainContact:
             for pair in range(rows.starts[node], rows.starts[node + 1]):
                 other = rows.neighbours[pair]
                 block = rows.blocks_mm_N[pair].T.astype(np.float64)
-                normal = skin.normals[other] + skin.normals[node]
-                normal = normal / max(np.linalg.norm(normal), 1e-6)
+                moved, pushed = skin.normals[other], skin.normals[node]
+                normal = (moved + pushed) / max(np.linalg.norm(moved + pushed), 1e-6)
                 whole[other, :, number] = block
-                along = normal @ block @ normal
-                across = block @ normal - along * normal
-                back = normal @ block - along * normal
-                bare[other, :, number] = block - np.outer(across, normal) - np.outer(normal, back)
+                across = block - np.outer(moved, moved @ block)
+                bare[other, :, number] = (
+                    across
+                    - np.outer(across @ pushed, pushed)
+                    + (normal @ block @ normal) * np.outer(normal, normal)
+                )
         return bare, whole
 
     def _forces(

@@ -114,7 +114,7 @@ def hardening(given: HardeningInputs, *, monitor: Monitor) -> Hardening:
 STAGE = Stage(
     name="hardening",
     label="Hardening of the skin",
-    version=2,
+    version=3,
     place=26,
     lane="sim",
     run=hardening,
