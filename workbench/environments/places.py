@@ -49,7 +49,7 @@ def inner_nodes(skin: CondensedSkin, margin_mm: float) -> np.ndarray:
     inner = np.flatnonzero(away_mm >= margin_mm)
     if not len(inner):
         raise DesignError(
-            f"no place of the skin is {margin_mm:.1f} mm from its edge, the middle {away_mm.max():.1f}",
+            f"no place on skin is {margin_mm:.1f} mm from its edge, {away_mm.max():.1f} at most",
             hint="take a smaller object, or a smaller margin_mm",
             at="margin_mm",
         )

@@ -82,7 +82,7 @@ class TouchEnv(gymnasium.Env[Seen, np.ndarray]):
         """What was felt and seen last."""
         width_px, height_px = self.sensor.image_px
         self.action_space = Box(-self.step_mm, self.step_mm, (3,), np.float32)
-        self.observation_space = Dict(
+        self.observation_space = Dict(  # pyright: ignore[reportAttributeAccessIssue]
             {
                 "image": Box(0, 255, (height_px, width_px, 3), np.uint8),
                 "force_N": Box(-MOST_N, MOST_N, (3,), np.float32),

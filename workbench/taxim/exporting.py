@@ -20,14 +20,13 @@ from workbench.planning.plan import InlineRunner, StageMonitor, evaluate, plan
 from workbench.project.project import Project
 from workbench.system.whole_files import write_atomically
 from workbench.taxim.files import files_of
-from workbench.taxim.programs import PROGRAMS, Program, shown
+from workbench.taxim.programs import PROGRAMS, shown
 from workbench.taxim.table import BINS, TableFit
 
 if TYPE_CHECKING:
     from workbench.taxim.dents import Dent, DentMaker
     from workbench.taxim.flatness import FlatView
 
-STAGES = ("mesh", "bake", "table")
 DENTS, TESTS = 160, 16
 """Dents that a table is fitted to, and others that it is measured on, of each object."""
 OTHER = IndenterKind("cube")
@@ -152,28 +151,37 @@ def report(
 def _opened(
     design: SensorDesign, project: Project, monitor: StageMonitor
 ) -> tuple[DentMaker, FlatView]:
+    from sim.optics.camera.camera import rotation_camera_to_sensor
+    from sim.optics.raster.skin_view import open_skin_view
+    from workbench.taxim.flatness import flat_view
+
     calls = plan(design, PressCase())
-    runner = InlineRunner(project.store)
-    for _ in evaluate(design, PressCase(), runner, wanted=STAGES, monitor=monitor):
-        pass
-    found = {name: project.store.load(name, calls[name].key) for name in STAGES if name in calls}
-    mesh = found["mesh"]
+
+    def found(*names: str) -> dict[str, Any]:
+        names = tuple(name for name in names if name in calls)
+        for _ in evaluate(
+            design, PressCase(), InlineRunner(project.store), wanted=names, monitor=monitor
+        ):
+            pass
+        return {name: project.store.load(name, calls[name].key) for name in names}
+
+    mesh, camera = found("mesh")["mesh"], design.optics.camera
     if len(mesh.tips_mm):
         raise DesignError(
             "the camera sees pins, and the format of Taxim is for smooth gels",
             hint="take --pack",
             at="--taxim",
         )
+    axis = rotation_camera_to_sensor(camera)[:, 2]
+    # Light takes long: what is not flat is refused before.
+    seen = open_skin_view(mesh, camera, index=design.optics.refractive_index)
+    view = flat_view(seen, mesh.seen, axis)
+    light = found("bake", "table")
     from workbench.pipeline.devices import open_device
 
     open_device()
-    from sim.optics.camera.camera import rotation_camera_to_sensor
     from sim.optics.studio.render import Studio
     from workbench.taxim.dents import DentMaker
-    from workbench.taxim.flatness import flat_view
 
-    studio = Studio(mesh, found["bake"], design.optics, table=found.get("table"))
-    still = np.zeros((0, len(mesh.seen.points_mm), 3), dtype=np.float32)
-    axis = rotation_camera_to_sensor(design.optics.camera)[:, 2]
-    view = flat_view(studio, mesh.seen, studio.shoot(still).normal[0], axis)
+    studio = Studio(mesh, light["bake"], design.optics, table=light.get("table"))
     return DentMaker(studio, mesh.seen, view, axis), view

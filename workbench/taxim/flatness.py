@@ -10,7 +10,7 @@ import numpy as np
 from workbench.core.base.errors import DesignError
 
 if TYPE_CHECKING:
-    from sim.optics.studio.render import Studio
+    from sim.optics.raster.skin_view import SkinView
     from workbench.core.result.results import Skin
 
 FACING_DEG = 10.0
@@ -35,22 +35,24 @@ class FlatView:
     """The 5th and the 95th hundredth."""
 
 
-def flat_view(studio: Studio, skin: Skin, normal: np.ndarray, axis: np.ndarray) -> FlatView:
-    """The flat part of an image at rest.
+def flat_view(view: SkinView, skin: Skin, axis: np.ndarray) -> FlatView:
+    """The flat part of an image at rest, before any light is known.
 
     Args:
-        studio: The camera.
-        skin: What it sees.
-        normal: Unit normals facing the camera that pixels see, (H, W, 3); 0 without skin.
+        view: What the pixels see of the skin.
+        skin: The undeformed skin.
         axis: The camera's axis, forward, shape (3,).
 
     Raises:
         DesignError: If too little of it is flat, or its scale differs too much over the image.
     """
     facing = float(np.cos(np.radians(FACING_DEG)))
-    there = np.linalg.norm(normal.astype(float), axis=2) > 0.5
-    flat = there & (-(normal.astype(float) @ axis) > facing)
-    share = float(flat.sum() / max(there.sum(), 1))
+    there = np.flatnonzero(np.diff(view.layer_start) > 0)
+    faces = skin.faces[view.layer_face[view.layer_start[there]]]
+    normals = np.asarray(skin.normals)[faces].mean(axis=1)
+    flat = np.zeros(view.height_px * view.width_px, dtype=bool)
+    flat[there] = normals @ axis > facing * np.linalg.norm(normals, axis=1)
+    share = float(flat.sum() / max(len(there), 1))
     if share < LEAST_FLAT:
         raise DesignError(
             f"{share:.0%} of the skin that the camera sees faces it within {FACING_DEG:g} degrees; "
@@ -58,7 +60,7 @@ def flat_view(studio: Studio, skin: Skin, normal: np.ndarray, axis: np.ndarray) 
             hint="take --pack: wb.Sensor shows curved skins",
             at="--taxim",
         )
-    low, middle, high = np.percentile(_scales(studio, skin, axis), [5.0, 50.0, 95.0])
+    low, middle, high = np.percentile(_scales(view, skin, axis), [5.0, 50.0, 95.0])
     if high > MOST_SPREAD * low:
         raise DesignError(
             f"a pixel sees from {low:.3f} to {high:.3f} mm of the flat skin; the format of Taxim "
@@ -67,17 +69,17 @@ def flat_view(studio: Studio, skin: Skin, normal: np.ndarray, axis: np.ndarray) 
             at="--taxim",
         )
     return FlatView(
-        flat=flat,
+        flat=flat.reshape(view.height_px, view.width_px),
         share=share,
         mm_per_px=float(middle),
         between_mm_per_px=(float(low), float(high)),
     )
 
 
-def _scales(studio: Studio, skin: Skin, axis: np.ndarray) -> np.ndarray:
+def _scales(view: SkinView, skin: Skin, axis: np.ndarray) -> np.ndarray:
     """mm per pixel of the flat triangles that the camera sees, shape (n,)."""
-    px = studio.vertex_pixels[:, :2].astype(float)
-    faces = skin.faces[(np.isfinite(px).all(axis=1) & studio.visible)[skin.faces].all(axis=1)]
+    px = view.start_pixel.astype(float)
+    faces = skin.faces[(view.projects & view.visible)[skin.faces].all(axis=1)]
     corners = skin.points_mm[faces]
     doubled = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     doubled_mm2 = np.abs(doubled @ axis)

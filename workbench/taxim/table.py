@@ -103,19 +103,15 @@ class TableFit:
 
     def table(self) -> np.ndarray:
         """The table, shape (125, 125, 6, 3), float64; slopes of no size add what `rest` says."""
-        from scipy.ndimage import gaussian_filter
-
         sums = self._sums.reshape(BINS, BINS, -1)
         count = self._count.reshape(BINS, BINS)
         found = np.zeros((BINS, BINS, TERMS, 3))
         todo = np.ones((BINS, BINS), dtype=bool)
         for spread in SPREADS:
             weight = 2.0 * np.pi * spread**2
-            around = ("nearest", "wrap")
-            pixels = weight * gaussian_filter(count, spread, mode=around)
+            pixels = weight * _blurred(count, spread)
             ready = todo & ((pixels >= ENOUGH) | (spread == SPREADS[-1]))
-            blurred = gaussian_filter(sums, spread, mode=around, axes=(0, 1))
-            found[ready] = _solved(weight * blurred[ready], pixels[ready])
+            found[ready] = _solved(weight * _blurred(sums, spread)[ready], pixels[ready])
             todo &= ~ready
         found[0] = self._rest
         return np.einsum("st,abtc->absc", self._of_pixels(), found)
@@ -132,6 +128,14 @@ class TableFit:
             (0.0, 0.0, 0.0, 0.0, 0.0, 1.0),
         ]
         return np.array(columns).T
+
+
+def _blurred(values: np.ndarray, spread: float) -> np.ndarray:
+    """Gaussian means over sizes and, all around, directions: both (125, 125, ...)."""
+    from scipy.ndimage import gaussian_filter1d
+
+    over_sizes = gaussian_filter1d(values, spread, axis=0, mode="nearest")
+    return gaussian_filter1d(over_sizes, spread, axis=1, mode="wrap")
 
 
 def _solved(sums: np.ndarray, pixels: np.ndarray) -> np.ndarray:
