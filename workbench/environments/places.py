@@ -49,7 +49,8 @@ def inner_nodes(skin: CondensedSkin, margin_mm: float) -> np.ndarray:
     inner = np.flatnonzero(away_mm >= margin_mm)
     if not len(inner):
         raise DesignError(
-            f"no place on skin is {margin_mm:.1f} mm from its edge, {away_mm.max():.1f} at most",
+            f"no place of the skin is {margin_mm:.1f} mm from its edge, only "
+            f"{away_mm.max():.1f} mm",
             hint="take a smaller object, or a smaller margin_mm",
             at="margin_mm",
         )

@@ -14,7 +14,7 @@ from typing import Any, Unpack
 import numpy as np
 
 from workbench.environments import MOST_STEPS
-from workbench.environments.touching import Seen, TouchEnv, Touching
+from workbench.environments.touching import MOST_N, Seen, TouchEnv, Touching, checked_goals
 
 CLOSE, OVER = 0.05, 0.2
 """Shares of the goal."""
@@ -43,8 +43,8 @@ class PressEnv(TouchEnv):
             options: See there.
         """
         super().__init__(sensor, render_mode=render_mode, **options)
-        self._goals_N = goals_N
-        self._goal_N = goals_N[0]
+        self._goals_N = checked_goals(goals_N, MOST_N, "N")
+        self._goal_N = self._goals_N[0]
         self._held = 0
 
     def reset(

@@ -14,7 +14,8 @@ from typing import Any, TypedDict, Unpack
 import numpy as np
 
 from sim.forces.slip import GROSS_SHARE
-from workbench.environments.touching import Seen, TouchEnv, Touching
+from workbench.core.base.check import within
+from workbench.environments.touching import MOST_MM, MOST_N, Seen, TouchEnv, Touching, checked_goals
 
 
 class Sliding(Touching, TypedDict, total=False):
@@ -39,9 +40,11 @@ class SlideEnv(TouchEnv):
         **options: Unpack[Sliding],
     ) -> None:
         """As `TouchEnv`, with the options of `Sliding`."""
-        self._depth_mm = options.pop("depth_mm", 0.3)
-        self._goals_mm = options.pop("goals_mm", (0.4, 0.6))
-        self._most_N = options.pop("most_N", 2.0)
+        depth_mm, most_N = options.pop("depth_mm", 0.3), options.pop("most_N", 2.0)
+        goals_mm = options.pop("goals_mm", (0.4, 0.6))
+        self._depth_mm = within(depth_mm, 0.05, 5.0, what="depth", unit="mm", at="depth_mm")
+        self._most_N = within(most_N, 1e-3, MOST_N, what="force", unit="N", at="most_N")
+        self._goals_mm = checked_goals(goals_mm, MOST_MM, "mm")
         super().__init__(sensor, render_mode=render_mode, **options)
         self._goal_mm = self._goals_mm[0]
 

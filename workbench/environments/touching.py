@@ -14,6 +14,7 @@ import gymnasium
 import numpy as np
 from gymnasium.spaces import Box, Dict
 
+from workbench.core.base.check import within
 from workbench.core.base.errors import DesignError
 from workbench.environments.places import Place, inner_nodes, place_at, touching_mm
 
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
     from workbench.sensor.sensor import Sensor
 
 Seen = dict[str, np.ndarray]
+LONGEST_MM = 1.0
+"""Of a step: contact is followed from step to step."""
 MOST_N, MOST_MM = 100.0, 100.0
 """Bounds of what is observed, which gymnasium asks for; nothing of a finger's size comes near."""
 
@@ -61,19 +64,14 @@ class TouchEnv(gymnasium.Env[Seen, np.ndarray]):
             options: See `Touching`.
 
         Raises:
-            DesignError: If there is no such sensor or object, or a step is not above 0.
+            DesignError: If there is no such sensor or object, or an option is refused.
         """
         self.render_mode = render_mode
         self.sensor = _loaded(sensor, options.get("width_px", 160))
         size_mm = options.get("size_mm", 6.0)
         self.thing = self.sensor.object(options.get("shape", "sphere"), size_mm=size_mm)
-        self.step_mm = options.get("step_mm", 0.1)
-        if not 0.0 < self.step_mm <= 1.0:
-            raise DesignError(
-                f"a step of {self.step_mm:g} mm is not in (0, 1] mm",
-                hint="contact is followed from step to step: .1 mm is a good one",
-                at="step_mm",
-            )
+        step_mm = options.get("step_mm", 0.1)
+        self.step_mm = within(step_mm, 1e-3, LONGEST_MM, what="step", unit="mm", at="step_mm")
         self._nodes = inner_nodes(self.sensor.skin, options.get("margin_mm", size_mm))
         self._place: Place = place_at(self.sensor.skin, int(self._nodes[0]))
         self._moved_mm = np.zeros(3)
@@ -148,6 +146,21 @@ class TouchEnv(gymnasium.Env[Seen, np.ndarray]):
         if self.render_mode is None or self.frame is None:
             return None
         return self.frame.rgb[0]
+
+
+def checked_goals(goals: tuple[float, float], most: float, unit: str) -> tuple[float, float]:
+    """Lowest and highest goal.
+
+    Raises:
+        DesignError: If one is not in (0, most], or the lowest is above the highest.
+    """
+    at = f"goals_{unit}"
+    low, high = (within(goal, 1e-3, most, what="goal", unit=unit, at=at) for goal in goals)
+    if low > high:
+        raise DesignError(
+            f"goals from {low:g} to {high:g} {unit}", hint="give the lowest first", at=at
+        )
+    return low, high
 
 
 def _loaded(sensor: Path | str, width_px: int) -> Sensor:
