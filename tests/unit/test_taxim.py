@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import io
 import json
 from pathlib import Path
@@ -9,8 +10,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from sim.optics.raster.skin_view import SkinView
 from workbench.core.base.errors import DesignError
+from workbench.core.result.results import Skin
 from workbench.taxim.files import files_of
+from workbench.taxim.flatness import flat_view
 from workbench.taxim.programs import PROGRAMS, shown, smoothed
 from workbench.taxim.table import BINS, TableFit, looked_up
 
@@ -175,17 +179,54 @@ def test_taxims_smoothing_wipes_out_dark_dots() -> None:
     assert smoothed(dotted)[31, 41] == pytest.approx([100.0] * 3, abs=1.0)
 
 
-def test_curved_skins_are_refused_with_how_flat_they_are() -> None:
-    """A finger that a camera sees from within."""
-    from sim.optics.proof.specimen import finger
+def sheet_view(bend_deg: float, from_mm: float = 0.0) -> tuple[SkinView, Skin]:
+    """A sheet 20 mm above the camera, seen without refraction; bent up beyond some x."""
     from sim.optics.raster.skin_view import open_skin_view
+    from tests.unit.test_dataset_cases import flat_skin
     from workbench.core.design.camera import Camera
-    from workbench.taxim.flatness import flat_view
+    from workbench.core.result.results import MembraneMesh
 
-    mesh = finger(edge_mm=1.0)
-    view = open_skin_view(mesh, Camera(width_px=96, height_px=72), index=1.4)
-    with pytest.raises(DesignError, match=r"% of the skin .* within 10 degrees; .* 75% or more"):
-        flat_view(view, mesh.seen, np.array([0.0, 0.0, 1.0]))
+    def raised(by_mm: float, slope: float) -> Skin:
+        flat = flat_skin(20.0, 1.0)
+        points = flat.points_mm + np.array([0.0, 0.0, by_mm])
+        points[:, 2] += slope * np.maximum(points[:, 0] - from_mm, 0.0)
+        bent = np.array([-slope, 0.0, 1.0]) / np.hypot(1.0, slope)
+        normals = np.where(points[:, :1] > from_mm, bent, flat.normals)
+        return dataclasses.replace(flat, points_mm=points, normals=normals)
+
+    outer = raised(20.0, np.tan(np.radians(bend_deg)))
+    cavity = raised(10.0, 0.0)
+    mesh = MembraneMesh(hexes=None, outer=outer, inner=outer, cavity=cavity)
+    camera = Camera(width_px=96, height_px=72, fov_x_deg=60.0, position_mm=(0.0, 0.0, 0.0))
+    return open_skin_view(mesh, camera, index=1.0), outer
+
+
+UP = np.array([0.0, 0.0, 1.0])
+
+
+def test_a_flat_skin_has_the_cameras_scale() -> None:
+    """2 tan(60 / 2 degrees) 20 mm over 96 pixels, all of it flat."""
+    view = flat_view(*sheet_view(0.0), UP)
+    assert view.share == 1.0
+    assert view.flat.shape == (72, 96)
+    assert view.mm_per_px == pytest.approx(2.0 * np.tan(np.radians(30.0)) * 20.0 / 96, rel=1e-3)
+
+
+def test_the_flat_part_is_where_it_is() -> None:
+    """Bent 20 degrees up beyond x = 8 mm of 11.5: whole columns on one side, (11.5 + 8) / 23."""
+    flat = flat_view(*sheet_view(20.0, 8.0), UP).flat
+    columns = flat.all(axis=0)
+    assert np.abs(np.diff(columns.astype(int))).sum() == 1
+    # A triangle of 1 mm is 4 pixels wide.
+    assert columns.sum() == pytest.approx(flat.any(axis=0).sum(), abs=5)
+    assert columns.sum() == pytest.approx(96 * (11.55 + 8.0) / 23.1, abs=6)
+
+
+def test_curved_skins_are_refused_with_how_flat_they_are() -> None:
+    """Half of a sheet is bent by 20 degrees: half of the image, less or more by perspective."""
+    assert flat_view(*sheet_view(5.0), UP).share == 1.0
+    with pytest.raises(DesignError, match=r"(4|5)\d% of the skin .* within 10 degrees; .* 75% or"):
+        flat_view(*sheet_view(20.0), UP)
 
 
 @pytest.mark.slow

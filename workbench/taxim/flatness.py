@@ -48,7 +48,7 @@ def flat_view(view: SkinView, skin: Skin, axis: np.ndarray) -> FlatView:
     """
     facing = float(np.cos(np.radians(FACING_DEG)))
     there = np.flatnonzero(np.diff(view.layer_start) > 0)
-    faces = skin.faces[view.layer_face[view.layer_start[there]]]
+    faces = view.faces[view.layer_face[view.layer_start[there]]]
     normals = np.asarray(skin.normals)[faces].mean(axis=1)
     flat = np.zeros(view.height_px * view.width_px, dtype=bool)
     flat[there] = normals @ axis > facing * np.linalg.norm(normals, axis=1)
