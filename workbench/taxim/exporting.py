@@ -13,6 +13,7 @@ import numpy as np
 from workbench.core.base.errors import DesignError
 from workbench.core.base.version import VERSION
 from workbench.core.design.design import SensorDesign
+from workbench.core.objects.kind import Shape, kinds
 from workbench.core.press.indenter import BALL, IndenterKind
 from workbench.core.press.press_case import PressCase
 from workbench.live.live_press import live_design, small
@@ -29,8 +30,8 @@ if TYPE_CHECKING:
 
 DENTS, TESTS = 160, 16
 """Dents that a table is fitted to, and others that it is measured on, of each object."""
-OTHER = IndenterKind("cube")
-"""An object that no table is fitted to."""
+OTHER = next(IndenterKind(name) for name, kind in kinds().items() if kind.shape is Shape.CUBE)
+"""An object with edges, that no table is fitted to."""
 REPORT = "taxim.json"
 
 
@@ -142,7 +143,7 @@ def report(
         "errors_grey": errors,
         "errors_meaning": (
             "mean absolute difference from the workbench's renders in what a dent moved; null: of "
-            "the image at rest; ball as fitted, at other places; cube not fitted"
+            f"the image at rest; {BALL} at other places than it was fitted to, {OTHER} not fitted"
         ),
         "left_out": ["shadows", "markers", "noise", "blur"],
     }
