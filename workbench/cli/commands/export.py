@@ -21,6 +21,9 @@ from workbench.system.terminal import Progress, complain, say
 PACK = """
 write a pack: all that `wb.Sensor.load` needs, for a simulator's loop; minutes for a new design
 """
+TAXIM = """
+write what Taxim, TacEx and Isaac Lab read of a flat sensor, fitted to its renders, with its error
+"""
 
 
 def options(sub: argparse.ArgumentParser) -> None:
@@ -31,6 +34,7 @@ def options(sub: argparse.ArgumentParser) -> None:
     add_fit_option(sub)
     sub.add_argument("--out", type=Path, metavar="DIR", help=OUT)
     sub.add_argument("--pack", type=Path, metavar="DIR", help=PACK)
+    sub.add_argument("--taxim", type=Path, metavar="DIR", help=TAXIM)
     sub.add_argument(
         "--width-px", type=int, metavar="N", help="width of a pack's images; the camera's own"
     )
@@ -55,7 +59,7 @@ def run(options: argparse.Namespace, project: Project) -> int:
     from workbench.project.named_designs import load_design
     from workbench.sensor.exporting import export_pack
 
-    if options.out is None and options.pack is None:
+    if options.out is None and options.pack is None and options.taxim is None:
         raise DesignError(
             "nothing says where the files go",
             hint="give --out DIR for bodies, moulds and meshes, --pack DIR for a pack, or both",
@@ -77,6 +81,13 @@ def run(options: argparse.Namespace, project: Project) -> int:
     if options.pack is not None:
         written = export_pack(
             start.design, options.pack, project, width_px=options.width_px, monitor=printer
+        )
+        _tell(written, options)
+    if options.taxim is not None:
+        from workbench.taxim.exporting import export_taxim
+
+        written = export_taxim(
+            start.design, options.taxim, project, width_px=options.width_px, monitor=printer
         )
         _tell(written, options)
     return code
