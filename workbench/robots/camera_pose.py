@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
-from sim.optics.camera.camera import pixel_directions
+from sim.optics.camera.camera import pixel_directions, rotation_camera_to_sensor
 from workbench.core.design.camera import Camera
 
 WIDEST_DEG = 170.0
@@ -30,6 +28,6 @@ def field_y_deg(camera: Camera) -> float:
     """
     middle = 0.5 * camera.width_px
     ends = np.array([[middle, 0.0], [middle, float(camera.height_px)]])
-    up, down = pixel_directions(camera, ends)
-    angle = math.degrees(math.atan2(float(np.linalg.norm(np.cross(up, down))), float(up @ down)))
-    return min(angle, WIDEST_DEG)
+    # Each from the optical axis: together they may be more than 180 degrees.
+    along = pixel_directions(camera, ends) @ rotation_camera_to_sensor(camera)[:, 2]
+    return min(float(np.degrees(np.arccos(along)).sum()), WIDEST_DEG)
