@@ -25,7 +25,7 @@ CAMERA = Camera(
 
 def part(name: str, mesh: trimesh.Trimesh, density_g_cm3: float, height_mm: float) -> RobotPart:
     """A mesh, lifted, as a part."""
-    points = np.asarray(mesh.vertices) + [0.0, 0.0, height_mm]
+    points = np.add(mesh.vertices, [0.0, 0.0, height_mm])
     return RobotPart(
         name=name, points_mm=points, faces=np.asarray(mesh.faces), density_g_cm3=density_g_cm3
     )

@@ -48,11 +48,11 @@ def test_halves_together_are_the_whole() -> None:
     """Two cubes side by side, apart from the origin, are the box of both."""
     cube = box((10.0, 10.0, 10.0))
     halves = [
-        of_body(np.asarray(cube.vertices) + [at, 7.0, -3.0], np.asarray(cube.faces), 2.0)
+        of_body(np.add(cube.vertices, [at, 7.0, -3.0]), np.asarray(cube.faces), 2.0)
         for at in (-5.0, 5.0)
     ]
     bar = box((20.0, 10.0, 10.0))
-    whole = of_body(np.asarray(bar.vertices) + [0.0, 7.0, -3.0], np.asarray(bar.faces), 2.0)
+    whole = of_body(np.add(bar.vertices, [0.0, 7.0, -3.0]), np.asarray(bar.faces), 2.0)
     found = together(halves)
     assert found.mass_kg == pytest.approx(whole.mass_kg)
     assert found.centre_m == pytest.approx(whole.centre_m)
@@ -71,7 +71,7 @@ def test_mujoco_reads_masses_and_inertias(mujoco: Any, folder: Path) -> None:
     model = mujoco.MjModel.from_xml_path(str(folder / "sensor.xml"))
     robot = made_robot()
     wanted = {
-        "sensor": together(part.inertia() for part in robot.rigid),
+        "sensor": together(body.inertia() for body in robot.rigid),
         "skin": robot.membrane.inertia(),
     }
     ball_kg = 1.07e-6 * 4.0 / 3.0 * math.pi * 15.0**3
@@ -101,8 +101,9 @@ def test_mujoco_has_the_meshes_in_metres(mujoco: Any, folder: Path) -> None:
         turned = data.geom(geom).xmat.reshape(3, 3)
         return 1e3 * (data.geom(geom).xpos + model.mesh_vert[first : first + count] @ turned.T)
 
-    for geom, part in {"foot": robot.foot, "tube": robot.rigid[0], "pad": robot.membrane}.items():
-        ends = np.stack([part.points_mm.min(axis=0), part.points_mm.max(axis=0)])
+    places = {"foot": robot.foot, "tube": robot.rigid[0], "pad": robot.membrane}
+    for geom, body in places.items():
+        ends = np.stack([body.points_mm.min(axis=0), body.points_mm.max(axis=0)])
         found = points_mm(geom)
         assert np.stack([found.min(axis=0), found.max(axis=0)]) == pytest.approx(ends, abs=1e-4)
     assert points_mm("taxels") == pytest.approx(robot.skin.points_mm, abs=1e-4)
@@ -188,7 +189,7 @@ def test_mujoco_reads_the_urdf(mujoco: Any, folder: Path) -> None:
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     robot = made_robot()
-    base = together(part.inertia() for part in robot.rigid)
+    base = together(body.inertia() for body in robot.rigid)
     assert model.body("made_base").mass[0] == pytest.approx(base.mass_kg, rel=SINGLE)
     skin_kg = robot.membrane.inertia().mass_kg
     assert model.body("made_skin").mass[0] == pytest.approx(skin_kg, rel=SINGLE)
