@@ -17,6 +17,7 @@ import numpy as np
 
 from workbench.core.base.frames import tangent
 from workbench.core.base.version import VERSION
+from workbench.core.result.results import Skin
 from workbench.robots.camera_pose import field_y_deg, opengl_wxyz
 from workbench.robots.inertia import M_OF_MM, Inertia, together
 from workbench.robots.mesh_files import SCALE, mesh_file
@@ -54,7 +55,7 @@ def mjcf(body: RobotBody) -> dict[str, bytes]:
     sensors = element(root, "sensor")
     element(sensors, "tactile", name="touch", geom="taxels", mesh="taxels")
     says = f"{body.name}, by sensor workbench {VERSION}; m, kg, s; no mass of camera, LEDs, cables"
-    return {MODEL: document(root, says), SKIN: _skin(body)}
+    return {MODEL: document(root, says), SKIN: taxels(body.skin)}
 
 
 def _geom(parent: ET.Element, part: RobotPart, **attributes: str) -> None:
@@ -86,8 +87,8 @@ def _camera(parent: ET.Element, body: RobotBody) -> None:
     )
 
 
-def _skin(body: RobotBody) -> bytes:
-    """The mesh of taxels, its vertices in the order of `Sensor.skin`."""
+def taxels(skin: Skin) -> bytes:
+    """A file with the mesh `taxels`, its vertices in the order of the skin's."""
     root = ET.Element("mujoco")
     element(
         element(root, "asset"),
@@ -96,9 +97,9 @@ def _skin(body: RobotBody) -> bytes:
         scale=numbers(SCALE),
         # It is no closed body.
         inertia="shell",
-        vertex=numbers(body.skin.points_mm),
-        normal=numbers(_frames(body.skin.normals)),
-        face=" ".join(map(str, body.skin.faces.ravel())),
+        vertex=numbers(skin.points_mm),
+        normal=numbers(_frames(skin.normals)),
+        face=" ".join(map(str, skin.faces.ravel())),
     )
     return document(root, "the taxels of sensor.xml")
 
