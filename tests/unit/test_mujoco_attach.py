@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tests.unit.test_sensor import small_pack
-from workbench.core.base.errors import DesignError
+from workbench.core.base.errors import DesignError, SolveError
 from workbench.core.base.packages import PackageError
 from workbench.sensor.sensor import Sensor
 from workbench.simulators.mujoco_attach import AttachOptions, attach
@@ -189,6 +189,25 @@ def test_a_simulation_that_begins_anew_is_felt_anew(sensor: Sensor) -> None:
     first = steps()
     mujoco.mj_resetData(model, data)
     assert np.array_equal(first, steps())
+
+
+def test_a_step_that_throws_the_ball_off_is_refused(sensor: Sensor) -> None:
+    """A spring and a mass alone, a hair on either side of k h (h + 2 t) = 4 m: it grows or not."""
+    mass_kg, stiffness_N_m, damping_s = 0.004, 2000.0, 1e-3
+    longest_s = (damping_s**2 + 4.0 * mass_kg / stiffness_N_m) ** 0.5 - damping_s
+    for factor, grows in ((0.98, False), (1.02, True)):
+        place, speed, step_s = 1.0, 0.0, factor * longest_s
+        for _ in range(400):
+            speed -= step_s * stiffness_N_m * (place + damping_s * speed) / mass_kg
+            place += step_s * speed
+        assert (abs(place) > 1.0) is grows
+    model, data = simulated(ball_over(0.4).replace('mass=".02"', 'mass="1e-4"'))
+    touch = attach(model, data, "skin", "ball", sensor, apply_force=True)
+    touch.feel()
+    data.time += 2e-3
+    with pytest.raises(SolveError, match=r"too long for 0\.1 g on a skin of .* limit is") as caught:
+        touch.feel()
+    assert "timestep" in caught.value.hint
 
 
 SHAPES = {

@@ -30,6 +30,7 @@ from workbench.simulators.mujoco_module import MjData, MjModel, mujoco
 from workbench.simulators.mujoco_names import body_number, by_body, geom_numbers
 from workbench.simulators.mujoco_pushes import Pushes, switch_contact_off
 from workbench.simulators.mujoco_shapes import MM_OF_M, thing_of_geom, thing_of_geoms
+from workbench.simulators.mujoco_step import check_step
 
 DAMPING_S = 1e-3
 """Of the applied force. Source: our choice, a loss factor of .2 at 32 Hz."""
@@ -126,7 +127,8 @@ class AttachedSensor:
         """What the sensor sees and feels now, after a step: a frame of one row.
 
         Raises:
-            SolveError: If the object touches too much of the skin at once.
+            SolveError: If the object touches too much of the skin at once, or the simulation's
+                step is too long for its mass.
         """
         frame = self.sensor.render(self._now(), self.felt_object.thing)
         self._keep(frame)
@@ -136,7 +138,8 @@ class AttachedSensor:
         """The same without an image, for steps between images.
 
         Raises:
-            SolveError: If the object touches too much of the skin at once.
+            SolveError: If the object touches too much of the skin at once, or the simulation's
+                step is too long for its mass.
         """
         felt = self.sensor.feel(self._now(), self.felt_object.thing)
         self._keep(felt)
@@ -194,12 +197,19 @@ class AttachedSensor:
         if pushed[:3] @ wrench[:3] <= 0.0:
             pushed = np.zeros(6)
         turned = self.data.xmat[self.body].reshape(3, 3)
-        rigid = self.felt_object
-        self._pushes.put(
-            (rigid.body, self.body),
-            (pushed.reshape(2, 3) @ turned.T).ravel(),
-            rigid.frame(self.data)[0],
-        )
+        force, moment = pushed.reshape(2, 3) @ turned.T
+        bodies = (self.felt_object.body, self.body)
+        place_m = self.felt_object.frame(self.data)[0]
+        if passed_s < np.inf:
+            check_step(
+                (self.model, self.data),
+                bodies,
+                (turned @ wrench[:3], place_m),
+                dent_m=float(np.linalg.norm(felt.displacement_mm[0], axis=1).max()) / MM_OF_M,
+                step_s=passed_s,
+                damping_s=self._damping_s,
+            )
+        self._pushes.put(bodies, np.concatenate([force, moment]), place_m)
 
 
 _HOLDERS: weakref.WeakKeyDictionary[Sensor, weakref.ref[AttachedSensor]] = (
