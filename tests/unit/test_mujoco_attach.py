@@ -13,7 +13,7 @@ from workbench.core.base.errors import DesignError, SolveError
 from workbench.core.base.packages import PackageError
 from workbench.sensor.sensor import Sensor
 from workbench.simulators.mujoco_attach import AttachOptions, attach
-from workbench.simulators.mujoco_shapes import thing_of_geom, thing_of_geoms
+from workbench.simulators.mujoco_shapes import distances_mm, thing_of_geom, thing_of_geoms
 
 mujoco = pytest.importorskip("mujoco")
 pytestmark = pytest.mark.usefixtures("taichi_device")
@@ -243,7 +243,7 @@ def test_a_geom_is_as_far_as_mujoco_says(name: str) -> None:
         if 0.0 < away_mm < 0.3:
             wanted.append(away_mm)
             pose = np.r_[0.0, 0.0, 0.0, AT_REST]
-            found.append(thing.distances_mm(place_mm[None], pose)[0])
+            found.append(distances_mm(thing, place_mm[None], pose)[0])
     error_mm = np.array(found) - wanted
     assert np.abs(error_mm).max() < tolerance_mm
     assert np.abs(np.median(error_mm)) < 0.01
@@ -270,7 +270,7 @@ def test_geoms_of_one_body_are_one_object() -> None:
     pose = np.r_[0.0, 0.0, 0.0, AT_REST]
     places = np.array([[0.0, 1.0, 2.2], [0.0, 5.2, 0.0], [5.2, 1.0, 0.0], [-4.8, 1.0, 0.0]])
     wanted_mm = [0.2, 0.2, 0.2, -0.2]
-    assert whole.distances_mm(places, pose) == pytest.approx(wanted_mm, abs=0.01)
+    assert distances_mm(whole, places, pose) == pytest.approx(wanted_mm, abs=0.01)
 
 
 def test_what_cannot_be_meant_is_refused(sensor: Sensor, monkeypatch: pytest.MonkeyPatch) -> None:

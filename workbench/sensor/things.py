@@ -33,12 +33,6 @@ class Thing:
         found[:, :3] += self._arms_mm(poses)
         return found
 
-    def distances_mm(self, points_mm: np.ndarray, pose: np.ndarray) -> np.ndarray:
-        """Signed distances of points, (N, 3), from the object at a pose, (7,): shape (N,)."""
-        (placed,) = self.placed(pose[None])
-        turned = rotations(placed[3:])
-        return self.collider.distance((points_mm - placed[:3]) @ turned)[0]
-
     def about_origin(
         self, poses: np.ndarray, force_N: np.ndarray, moment_Nmm: np.ndarray
     ) -> np.ndarray:

@@ -29,7 +29,12 @@ from workbench.sensor.things import Thing
 from workbench.simulators.mujoco_module import MjData, MjModel, mujoco
 from workbench.simulators.mujoco_names import body_number, by_body, geom_numbers
 from workbench.simulators.mujoco_pushes import Pushes, switch_contact_off
-from workbench.simulators.mujoco_shapes import MM_OF_M, thing_of_geom, thing_of_geoms
+from workbench.simulators.mujoco_shapes import (
+    MM_OF_M,
+    distances_mm,
+    thing_of_geom,
+    thing_of_geoms,
+)
 from workbench.simulators.mujoco_step import check_step
 
 DAMPING_S = 1e-3
@@ -168,7 +173,7 @@ class AttachedSensor:
         return int(
             np.argmin(
                 [
-                    rigid.thing.distances_mm(points_mm, pose).min()
+                    distances_mm(rigid.thing, points_mm, pose).min()
                     for rigid, pose in zip(self.objects, poses, strict=True)
                 ]
             )
