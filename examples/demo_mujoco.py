@@ -39,7 +39,7 @@ for side in ("left", "right"):
     spec.body(side).add_frame().attach_body(finger.body("sensor"), f"{side}_", "")
 model = spec.compile()
 data = mujoco.MjData(model)
-sensor = wb.Sensor.load(PACK)  # one for both: each finger has a touch of its own
+sensor = wb.Sensor.load(PACK)  # loaded once: each finger has a touch of its own
 skins = ("left_skin", "right_skin")
 fingers = [wb.attach(model, data, skin, "peg", sensor, apply_force=True) for skin in skins]
 try:

@@ -138,7 +138,7 @@ def test_an_excluded_pair_keeps_the_collisions_of_others(sensor: Sensor) -> None
         assert data.ncon == contacts
 
 
-def test_two_bodies_share_a_sensor(sensor: Sensor) -> None:
+def test_a_sensor_on_two_bodies_is_two_sensors(sensor: Sensor) -> None:
     """Sheared in turn, each feels to the last bit what it feels alone."""
     names = ("ball", "deep")
 

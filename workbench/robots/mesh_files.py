@@ -1,5 +1,4 @@
-"""The meshes of a sensor's parts, as STL files in mm that are scaled to metres where they are
-read."""
+"""The meshes of a sensor's parts: STL files in mm, scaled to metres where they are read."""
 
 from __future__ import annotations
 

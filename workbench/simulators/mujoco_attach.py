@@ -15,7 +15,6 @@ F is the force at rest, which knows no loss; t dF/dt is a Kelvin-Voigt solid's.
 
 from __future__ import annotations
 
-import weakref
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TypedDict, Unpack
@@ -23,6 +22,7 @@ from typing import TypedDict, Unpack
 import numpy as np
 
 from workbench.core.base.poses import pose_rows
+from workbench.sensor.beside import beside
 from workbench.sensor.frame import Felt, Frame
 from workbench.sensor.sensor import Sensor
 from workbench.sensor.things import Thing
@@ -85,7 +85,7 @@ def attach(
             `sensor.xml`, with its prefix.
         geoms: Names or numbers of what it may touch. Geoms of one body are one object; of several
             objects the one that stands deepest in the skin is felt.
-        sensor: The sensor. Several bodies may share one: each has a touch of its own.
+        sensor: The sensor; it may be put on several bodies, each with a touch of its own.
         options: `apply_force` and `damping_s`, see `AttachOptions`.
 
     Raises:
@@ -110,21 +110,19 @@ class AttachedSensor:
         sensor: Sensor,
         **options: Unpack[AttachOptions],
     ) -> None:
-        self.model, self.data, self.sensor, self.objects = model, data, sensor, objects
+        self.model, self.data, self.objects = model, data, objects
+        self.sensor = beside(sensor)
         self.body, self.felt_object = body, objects[0]
         self._damping_s = options.get("damping_s", DAMPING_S)
         self._pushes = Pushes(data) if options.get("apply_force", False) else None
         if self._pushes is not None:
             switch_contact_off(model, body, [rigid.body for rigid in objects])
-        self._kept: dict[str, np.ndarray] | None = None
         self.reset()
 
     def reset(self) -> None:
         """Forget all touches, as after the simulation was reset."""
         self._time_s, self._wrench = -np.inf, np.zeros(6)
-        self._kept = None
-        if _holder(self.sensor) is self:
-            del _HOLDERS[self.sensor]
+        self.sensor.reset(1)
         if self._pushes is not None:
             self._pushes.forget()
 
@@ -158,8 +156,9 @@ class AttachedSensor:
         mujoco().mj_kinematics(self.model, self.data)
         poses = [self._pose(rigid) for rigid in self.objects]
         number = self._deepest(poses) if len(poses) > 1 else 0
-        self._take(again=self.objects[number] is not self.felt_object)
-        self.felt_object = self.objects[number]
+        if self.objects[number] is not self.felt_object:
+            self.felt_object, self._wrench = self.objects[number], np.zeros(6)
+            self.sensor.reset(1)
         return poses[number]
 
     def _pose(self, rigid: Rigid) -> np.ndarray:
@@ -170,25 +169,8 @@ class AttachedSensor:
 
     def _deepest(self, poses: list[np.ndarray]) -> int:
         points_mm = self.sensor.skin.points_mm
-        return int(
-            np.argmin(
-                [
-                    distances_mm(rigid.thing, points_mm, pose).min()
-                    for rigid, pose in zip(self.objects, poses, strict=True)
-                ]
-            )
-        )
-
-    def _take(self, *, again: bool) -> None:
-        """Let the sensor go on from the last touch of this body; `again`: from none."""
-        holder = _holder(self.sensor)
-        if holder is not None and holder is not self:
-            holder._kept = self.sensor.state()
-        if again or (holder is not self and self._kept is None):
-            self.sensor.reset(1)
-        elif holder is not self and self._kept is not None:
-            self.sensor.restore(self._kept)
-        _HOLDERS[self.sensor] = weakref.ref(self)
+        pairs = zip(self.objects, poses, strict=True)
+        return int(np.argmin([distances_mm(r.thing, points_mm, pose).min() for r, pose in pairs]))
 
     def _keep(self, felt: Felt) -> None:
         """Remember what was felt, and apply its force where that is wanted."""
@@ -215,17 +197,6 @@ class AttachedSensor:
                 damping_s=self._damping_s,
             )
         self._pushes.put(bodies, np.concatenate([force, moment]), place_m)
-
-
-_HOLDERS: weakref.WeakKeyDictionary[Sensor, weakref.ref[AttachedSensor]] = (
-    weakref.WeakKeyDictionary()
-)
-"""Whose touch each sensor remembers."""
-
-
-def _holder(sensor: Sensor) -> AttachedSensor | None:
-    held = _HOLDERS.get(sensor)
-    return held() if held is not None else None
 
 
 def _rigid(model: MjModel, body: int, geoms: list[int]) -> Rigid:
