@@ -28,9 +28,9 @@ stiffness="150" damping="1"/><geom name="peg" type="cylinder" size=".005 .04" ma
 <body name="hand" pos="0 0 .05"><joint name="hand" type="slide" axis="0 0 1"/>
 <inertial pos="0 0 0" mass=".2" diaginertia="1e-4 1e-4 1e-4"/>
 <body name="left" pos="-.05 0 0" quat=".7071068 0 .7071068 0">
-<joint name="left" type="slide" axis="0 0 1" damping="2"/></body>
+<joint name="left" type="slide" axis="0 0 1" damping="10"/></body>
 <body name="right" pos=".05 0 0" quat=".7071068 0 -.7071068 0">
-<joint name="right" type="slide" axis="0 0 1" damping="2"/></body></body></worldbody>
+<joint name="right" type="slide" axis="0 0 1" damping="10"/></body></body></worldbody>
 <actuator><position joint="hand" kp="2000" kv="40"/><motor joint="left"/><motor joint="right"/>
 </actuator></mujoco>"""
 spec = mujoco.MjSpec.from_string(HAND)
