@@ -37,7 +37,8 @@ RANKS = """
 
     workbench.view  workbench.pipeline  workbench.pipeline.stages  workbench.pipeline.fast
     workbench.planning  workbench.cluster
-    workbench.project  workbench.edit  workbench.live  workbench.sensor
+    workbench.project  workbench.edit  workbench.live  workbench.robots  workbench.sensor
+    workbench.simulators
     workbench.report  workbench.report.exports
     workbench.variants  workbench.calibration  workbench.photographs  workbench.reading
     workbench.learning  workbench.learning.dataset  workbench.learning.making

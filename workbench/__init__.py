@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from workbench.project.named_designs import load_design as load
     from workbench.project.project import Project
     from workbench.sensor.sensor import Sensor
+    from workbench.simulators.mujoco_attach import attach
 
 __all__ = [
     "Camera",
@@ -59,6 +60,7 @@ __all__ = [
     "Trajectory",
     "WorkbenchError",
     "__version__",
+    "attach",
     "choose_indenter",
     "compare",
     "evaluate",
@@ -89,6 +91,7 @@ _PLACES = {
     "Sensor": "workbench.sensor.sensor",
     "Trajectory": "workbench.core.press.trajectory",
     "WorkbenchError": "workbench.core.base.errors",
+    "attach": "workbench.simulators.mujoco_attach",
     "choose_indenter": "workbench.edit.indenter_choice",
     "compare": "workbench.door.studies",
     "evaluate": "workbench.door.results",

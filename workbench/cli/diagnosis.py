@@ -45,6 +45,7 @@ OPTIONAL = {
     "pymeshlab": "isotropic remeshing (GPL-3.0)",
     "pypardiso": "fast sparse solver, extra [mkl]",
     "mitsuba": "path-traced reference images, extra [mitsuba]",
+    "mujoco": "sensors on robots in simulation, extra [robots]",
 }
 
 UNUSABLE = "UNUSABLE"

@@ -8,16 +8,20 @@ from typing import Any
 
 from workbench.core.design.design import SensorDesign
 from workbench.core.press.press_case import PressCase
-from workbench.core.result.results import MembraneMesh, Skin
-from workbench.planning.plan import StageMonitor, plan
+from workbench.core.result.results import Skin
+from workbench.planning.plan import InlineRunner, StageMonitor, evaluate, plan
 from workbench.project.design_toml import design_files
 from workbench.project.project import Project
+from workbench.robots.robot_body import robot_body
+from workbench.robots.robot_files import robot_files
 from workbench.sensor.making import make_pack
 from workbench.sensor.pack import write_pack
 
 DISTRIBUTION = "sensor-workbench"
 LICENSE = "LICENSE"
 SKINS = ("outer", "inner", "cavity")
+STAGES = ("build", "mesh", "housing")
+"""What its meshes and masses are of."""
 
 
 def export_pack(
@@ -28,7 +32,7 @@ def export_pack(
     width_px: int | None = None,
     monitor: StageMonitor | None = None,
 ) -> list[Path]:
-    """Write a pack; returns the paths.
+    """Write a pack, with the sensor as MJCF and URDF; returns the paths.
 
     Args:
         design: The sensor.
@@ -38,13 +42,20 @@ def export_pack(
         monitor: Told stage, fraction and note.
 
     Raises:
-        WorkbenchError: If the design cannot be condensed, or a file cannot be written.
+        WorkbenchError: If the design cannot be condensed, its rigid parts cannot be made, or a file
+            cannot be written.
     """
     pack = make_pack(design, project, width_px=width_px, monitor=monitor)
-    call = plan(design, PressCase())["mesh"]
-    mesh: MembraneMesh = project.store.load(call.stage, call.key)
+    case, runner = PressCase(), InlineRunner(project.store)
+    for _ in evaluate(design, case, runner, wanted=STAGES, monitor=monitor):
+        pass
+    calls = plan(design, case)
+    solid, mesh, housing = (project.store.load(name, calls[name].key) for name in STAGES)
     others = {f"{name}.stl": _stl(getattr(mesh, name)) for name in SKINS}
-    return write_pack(pack, folder, {**others, LICENSE: licence(), **dict(design_files(design))})
+    taxels = Skin(points_mm=pack.skin.points_mm, faces=pack.skin.faces, normals=pack.skin.normals)
+    robot = robot_files(robot_body(design, solid, housing, taxels))
+    files = {**others, **robot, LICENSE: licence(), **dict(design_files(design))}
+    return write_pack(pack, folder, files)
 
 
 def licence() -> bytes:

@@ -19,7 +19,7 @@ from workbench.report.export import chosen_exports, clear_exports, export_design
 from workbench.system.terminal import Progress, complain, say
 
 PACK = """
-write a pack: all that `wb.Sensor.load` needs, for a simulator's loop; minutes for a new design
+write a pack: all that `wb.Sensor.load` needs, and MJCF and URDF; minutes for a new design
 """
 TAXIM = """
 write what Taxim, TacEx and Isaac Lab read of a flat sensor, fitted to its renders, with its error

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from workbench.pipeline.devices import chosen_device
+from workbench.proof.benchmarks import sensor_peers
 from workbench.proof.benchmarks.timing import median_s
 from workbench.proof.row import Row, bounded, stated
 from workbench.sensor.sensor import Sensor
@@ -62,7 +63,7 @@ def rows() -> list[Row]:
             unit="1/s",
         )
     )
-    return found
+    return [*found, *sensor_peers.rows(sensor, poses(ball, FRAMES))]
 
 
 @functools.cache

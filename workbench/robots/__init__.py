@@ -1,0 +1,1 @@
+"""A sensor as robots' programs read it: masses, meshes, MJCF and URDF, in SI units."""

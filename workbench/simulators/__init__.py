@@ -1,0 +1,1 @@
+"""Sensors in the loops of other programs' physics: MuJoCo."""
