@@ -13,10 +13,9 @@ DRAFT = (
     "design.optics.baking.photons=400000",
     "design.optics.baking.nodes=2000",
     "case.settings.grid_mm=0.75",
-    "case.press.frames=5",
 )
 """Settings of trials where the file names none, our choice: a tenth of the photons, less than half
-of the places where light is gathered, half as many frames on a coarser grid of contact."""
+of the places where light is gathered, a coarser grid of contact."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
