@@ -41,7 +41,7 @@ RANKS = """
     workbench.report  workbench.report.exports
     workbench.variants  workbench.calibration  workbench.photographs  workbench.reading
     workbench.learning  workbench.learning.dataset  workbench.learning.making
-    workbench.learning.training  workbench.learning.readers  workbench.twin
+    workbench.learning.training  workbench.learning.readers  workbench.twin  workbench.search
     workbench.proof  workbench.proof.validation  workbench.proof.validation.geometry
     workbench.proof.validation.optics  workbench.proof.validation.contact
     workbench.proof.validation.fem  workbench.proof.benchmarks

@@ -70,7 +70,12 @@ def with_settings(state: State, settings: Iterable[str]) -> State:
         DesignError: If one is none, or is refused.
     """
     pairs = [setting.partition("=") for setting in settings]
-    return with_values(state, {path.strip(): text.strip() for path, _, text in pairs})
+    return with_values(state, {_full(path.strip()): text.strip() for path, _, text in pairs})
+
+
+def _full(path: str) -> str:
+    """The path of a field that may be written without `design`."""
+    return path if path.startswith((DESIGN, CASE)) else DESIGN + path
 
 
 def text_of(value: object) -> str:

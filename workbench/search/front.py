@@ -1,4 +1,4 @@
-"""The best of a search: designs that none beats in every goal, how fast they came, what mattered."""
+"""The best of a search: designs that none beats, how fast they came, and what mattered."""
 
 from __future__ import annotations
 

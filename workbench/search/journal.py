@@ -8,13 +8,12 @@ it was at is noted as failed, once it is known to be gone.
 from __future__ import annotations
 
 import contextlib
-import datetime
 import os
 import socket
 import warnings
 from collections.abc import Generator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from workbench.core.base.digest import digest
 from workbench.core.base.errors import DesignError, StoreError
@@ -29,8 +28,6 @@ JUDGED, BY, SAMPLER = "judged", "by", "sampler"
 """Attributes of a trial: what came of it, whose it is, who proposed it."""
 BASE, OF = "base", "problem"
 """Attributes of the study: the base's figures, and the digest of the problem."""
-UNMARKED = datetime.timedelta(minutes=10)
-"""Longer than any proposal takes."""
 
 
 def open_study(problem: Problem, path: Path) -> Any:
@@ -68,7 +65,7 @@ def open_study(problem: Problem, path: Path) -> Any:
     return study
 
 
-def _direction(want: Want) -> str:
+def _direction(want: Want) -> Literal["minimize", "maximize"]:
     return "maximize" if want is Want.MAX else "minimize"
 
 
@@ -100,13 +97,12 @@ def own_mark() -> dict[str, Any]:
 def fail_dead(study: Any) -> list[int]:
     """Note trials of processes that are gone as failed; returns their numbers.
 
-    One without a mark is being proposed, which takes seconds, or its process died meanwhile.
+    One without a mark is none of ours.
     """
     gone = []
     for trial in _running(study):
         mark = trial.user_attrs.get(BY)
-        age = datetime.datetime.now() - trial.datetime_start
-        if not Holder(**mark).living if mark else age > UNMARKED:
+        if mark is None or not Holder(**mark).living:
             # Another process may have noted it first.
             with contextlib.suppress(ValueError, RuntimeError):
                 study.tell(trial.number, state=_states().FAIL)

@@ -153,9 +153,7 @@ def _judged(
         raise
 
 
-def note(
-    study: Any, trial: Any, problem: Problem, judged: Judged, losses: Sequence[float]
-) -> None:
+def note(study: Any, trial: Any, problem: Problem, judged: Judged, losses: Sequence[float]) -> None:
     """Write a trial that has ended into the journal."""
     trial.set_user_attr(JUDGED, judged.table)
     trial.set_constraint(REFUSED, -1.0 if judged.status is Status.JUDGED else 1.0)
@@ -178,7 +176,9 @@ def _losses(problem: Problem, judged: Judged, before: Sequence[Judged]) -> list[
         if own is not None:
             found.append(goal.loss(own))
             continue
-        known = [goal.loss(one.figures[goal.figure]) for one in before if goal.figure in one.figures]
+        known = [
+            goal.loss(one.figures[goal.figure]) for one in before if goal.figure in one.figures
+        ]
         found.append(max(known, default=0.0))
     return found
 

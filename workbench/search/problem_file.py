@@ -42,7 +42,7 @@ from workbench.project.project import Project
 from workbench.project.state import State, fresh_state, read_state
 from workbench.search.applying import with_settings
 from workbench.search.consistent import expect_consistent
-from workbench.search.problem import DRAFT, Goal, Limit, Prices, Problem, Tolerances, Vary, Want
+from workbench.search.problem import DRAFT, Goal, Limit, Prices, Problem, Tolerances, Want
 from workbench.search.search_figures import KNOWN
 from workbench.search.varied import read_link, read_vary
 from workbench.search.wishes import Wish, wish_of
@@ -172,9 +172,12 @@ def _figure(row: Mapping[str, Any], at: str) -> str:
 def _with_wishes(stated: list[Any], wished: Iterable[Any]) -> tuple[Any, ...]:
     """Goals, or limits, of the file, then those of wishes for other figures."""
     found = {each.figure: each for each in (*reversed(list(wished)), *stated)}
-    return tuple(found[each.figure] for each in stated) + tuple(
-        each for name, each in found.items() if name not in {one.figure for one in stated}
-    )[::-1]
+    return (
+        tuple(found[each.figure] for each in stated)
+        + tuple(each for name, each in found.items() if name not in {one.figure for one in stated})[
+            ::-1
+        ]
+    )
 
 
 def _draft(table: Mapping[str, Any], base: State) -> tuple[str, ...]:
@@ -229,7 +232,9 @@ def _expect_known(table: Mapping[str, Any], names: Iterable[str], at: str) -> No
     for name in table:
         if name not in set(names):
             where = f"{at}.{name}" if at else name
-            raise DesignError(f"a search has no {shown(where)}", hint=suggest(name, names), at=where)
+            raise DesignError(
+                f"a search has no {shown(where)}", hint=suggest(name, names), at=where
+            )
 
 
 def number(value: object, at: str) -> float:

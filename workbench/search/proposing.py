@@ -46,8 +46,9 @@ class Proposals:
         by_sobol = count < STARTUP or count % EVERY == EVERY - 1
         name = SOBOL if by_sobol else self.guided_by
         self.study.sampler = self._samplers[name]
-        if self._left:
-            self.study.enqueue_trial(self._held)
+        # Marked before it runs: proposing takes seconds, in which a process may be killed.
+        held = self._held if self._left else {}
+        self.study.enqueue_trial(held, user_attrs={BY: own_mark()})
         with warnings.catch_warnings():
             # Optuna says of each choice that Sobol's sequence does not know it.
             warnings.simplefilter("ignore")

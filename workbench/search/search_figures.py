@@ -31,36 +31,26 @@ NEEDS = {"build": ("build",), "mould": ("mould", "housing", "recipe"), "bake": (
 """Stages that a figure of a stage asks for, where it is not that stage alone."""
 
 
-def _own(name: str, label: str, unit: str, better: Better, **more: str) -> Rule:
-    return Rule(name=name, label=label, unit=unit, better=better, **more)
+def _own(name: str, words: tuple[str, str], better: Better, stage: str, why: str) -> Rule:
+    """A figure; `words` are its label and its unit."""
+    label, unit = words
+    return Rule(name=name, label=label, unit=unit, better=better, stage=stage, why=why)
 
 
+LIKE = "PSNR over all images of the press; readers that were taught on the base go on"
+FALLS = "light that falls on the skin over all that LEDs emit; scattered light counts each time"
+TIP = f"skin within {TIP_MM:g} mm below its highest point that a camera sees"
+REACHES = "a smaller finger reaches into more"
+LOWER, HIGHER = Better.LOWER, Better.HIGHER
 OWN = {
     rule.name: rule
     for rule in (
-        _own(LEDS, "LEDs", "", Better.LOWER, why="each is placed and wired", stage=""),
-        _own(
-            *("body_height_mm", "height of the body", "mm", Better.LOWER),
-            why="a smaller finger reaches into more",
-            stage="build",
-        ),
-        _own(COST, "cost of parts", "", Better.LOWER, why="from [prices]", stage="build"),
-        _own(
-            *("light_on_skin_percent", "light on the skin", "%", Better.HIGHER),
-            why="light that falls on the skin, over all that LEDs emit; scattered light counts "
-            "each time it falls",
-            stage="bake",
-        ),
-        _own(
-            *("tip_seen_percent", "tip seen", "%", Better.HIGHER),
-            why=f"skin within {TIP_MM:g} mm below its highest point that a camera sees",
-            stage="maps",
-        ),
-        _own(
-            *(SAME, "likeness to the base's images", "dB", Better.HIGHER),
-            why="PSNR over all images of the press; readers that were taught on the base go on",
-            stage="shoot",
-        ),
+        _own(LEDS, ("LEDs", ""), LOWER, "", "each is placed and wired"),
+        _own("body_height_mm", ("height of the body", "mm"), LOWER, "build", REACHES),
+        _own(COST, ("cost of parts", ""), LOWER, "build", "what the designer pays"),
+        _own("light_on_skin_percent", ("light on the skin", "%"), HIGHER, "bake", FALLS),
+        _own("tip_seen_percent", ("tip seen", "%"), HIGHER, "maps", TIP),
+        _own(SAME, ("likeness to the base's images", "dB"), HIGHER, "shoot", LIKE),
     )
 }
 KNOWN: Mapping[str, Rule] = {**RULES, **OWN}

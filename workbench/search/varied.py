@@ -154,4 +154,6 @@ def _expect_known(row: Mapping[str, Any], names: tuple[str, ...], at: str) -> No
     for name in row:
         if name not in names:
             where = f"{at}.{name}"
-            raise DesignError(f"a search has no {shown(where)}", hint=suggest(name, names), at=where)
+            raise DesignError(
+                f"a search has no {shown(where)}", hint=suggest(name, names), at=where
+            )
