@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.toy_search import LIMIT, LIMITED, X, Y, Toy, beyond, toy_problem
+from tests.toy_search import LIMIT, LIMITED, Toy, X, Y, beyond, toy_problem
 from workbench.core.base.errors import Cancelled, DesignError
 from workbench.search.front import Found, found_of, hypervolume, importance, progress_lines
 from workbench.search.journal import FILE, open_study

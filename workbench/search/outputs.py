@@ -1,4 +1,4 @@
-"""The files of a search: `front.json`, `designs/*.toml`, `trials.csv`, `summary.json`."""
+"""The files of a search: `front.json`, `designs/*.toml`, `trials.csv` and more."""
 
 from __future__ import annotations
 
@@ -14,12 +14,13 @@ from workbench.project.project import Project
 from workbench.project.state import State, case_table
 from workbench.search.finalists import Finalist
 from workbench.search.front import Found
+from workbench.search.front_plot import front_svg
 from workbench.search.judged import savings
 from workbench.system.folder import remove_stale
 from workbench.system.whole_files import write_atomically
 
 FRONT, TABLE, SUMMARY, REPORT = "front.json", "trials.csv", "summary.json", "report.html"
-DESIGNS = "designs"
+PLOT, DESIGNS = "front.svg", "designs"
 
 
 def write_front(out: Path, found: Found, listed: Sequence[Finalist], project: Project) -> None:
@@ -35,6 +36,7 @@ def write_front(out: Path, found: Found, listed: Sequence[Finalist], project: Pr
     rows = [front_row(one) for one in listed]
     write_atomically(out / FRONT, json.dumps(rows, indent=1, allow_nan=False).encode())
     write_atomically(out / TABLE, trials_csv(found).encode())
+    write_atomically(out / PLOT, front_svg(found).encode())
     write_atomically(out / SUMMARY, json.dumps(summary(found), indent=1).encode())
 
 
