@@ -57,12 +57,15 @@ class Toy:
     def __init__(self, *, refused_above: float = 9.0, slow_s: float = 0.0) -> None:
         self.refused_above = refused_above
         self.slow_s = slow_s
+        """Time that each design takes [s]; of one that takes any it is printed when it begins."""
         self.of_the_press: frozenset[str] = frozenset()
         self.asked: list[Mapping[str, Value]] = []
 
     def judge(self, values: Mapping[str, Value], monitor: Monitor) -> Judged:
         monitor(0.5, "toy")
-        time.sleep(self.slow_s)
+        if self.slow_s:
+            print("judging", flush=True)
+            time.sleep(self.slow_s)
         self.asked.append(values)
         x, y = float(values[X]), float(values[Y])
         if x + y > self.refused_above:
