@@ -70,12 +70,18 @@ class Toy:
         x, y = float(values[X]), float(values[Y])
         if x + y > self.refused_above:
             return Judged(status=Status.REFUSED, reason="beyond the line", parameters=values)
-        figures = {F: x**2 + (y - 0.5) ** 2, G: (x - 1) ** 2 + (y - 0.5) ** 2, LIMITED: 100.0 * x}
+        figures = closed_forms(x, y)
         ran = {"press": 1} if self.of_the_press else {}
         return Judged(status=Status.JUDGED, figures=figures, parameters=values, ran=ran)
 
     def judge_base(self, monitor: Monitor) -> Judged:
-        return self.judge({X: 1.0, Y: 1.0}, monitor)
+        monitor(0.5, "toy")
+        figures = closed_forms(1.0, 1.0)
+        return Judged(status=Status.JUDGED, figures=figures, parameters={X: 1.0, Y: 1.0})
+
+
+def closed_forms(x: float, y: float) -> dict[str, float]:
+    return {F: x**2 + (y - 0.5) ** 2, G: (x - 1) ** 2 + (y - 0.5) ** 2, LIMITED: 100.0 * x}
 
 
 def beyond(judged: Judged) -> float:

@@ -63,7 +63,7 @@ def test_fields_of_the_press_are_known_from_its_key(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_what_cannot_be_built_or_breaks_a_known_limit_costs_no_press(tmp_path: Path) -> None:
-    """Too much silicone is known from the body, a misplaced LED too: nothing is baked or pressed."""
+    """Too much silicone is known from the body, a misplaced LED too: no bake, no press."""
     problem, project = small_problem(tmp_path)
     judge = DesignEvaluator(problem, project)
     thick = judge.judge({"design.layers.elastomer_mm": 4.5}, silent)

@@ -18,7 +18,7 @@ from workbench.project.project import Project
 from workbench.search.finalists import Finalist, finalists, twin_of, worst_figures
 from workbench.search.front import Found, found_of
 from workbench.search.front_plot import front_svg, lines_svg
-from workbench.search.journal import FILE, open_study
+from workbench.search.journal import FILE
 from workbench.search.judged import savings
 from workbench.search.kept_searches import (
     Asked,

@@ -117,7 +117,7 @@ def test_what_cannot_be_searched_is_refused_with_a_remedy(what: str, tmp_path: P
 
 def test_a_figure_that_the_light_model_has_not_is_refused(tmp_path: Path) -> None:
     """Photons traced for each frame have no maps; the paper's fields no evenness."""
-    for model in ("photons", "plane"):
+    for model in ("photons", "linear"):
         base = tmp_path / "base.toml"
         base.write_text(f'family = "finger"\n[optics]\nlight_model = "{model}"\n')
         with pytest.raises(DesignError, match="does not exist for the base"):
