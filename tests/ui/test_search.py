@@ -24,12 +24,13 @@ pytestmark = [pytest.mark.ui, pytest.mark.slow]
 
 Start = Callable[..., Server]
 SEARCHED_S = 300
+CYLINDER = "Shape: Straight length [mm]"
 
 
 def ask(page: Any) -> None:
-    """The wall may vary; little silicone, and as high as can be."""
-    choose(page, "Varied parameter", "Layers: elastomer [mm]")
-    for label, value in (("Lowest", 1.5), ("Highest", 3.5)):
+    """The straight part may vary; little silicone, and as high as can be."""
+    choose(page, "Varied parameter", CYLINDER)
+    for label, value in (("Lowest", 20), ("Highest", 32)):
         boxes(page, label).first.fill(str(value))
         boxes(page, label).first.press("Tab")
     press(page, "Let it vary")
@@ -59,7 +60,7 @@ def test_a_search_is_started_watched_stopped_gone_on_with_and_its_best_opened(
         lambda: page.get_by_text(re.compile("varies nothing|no goal")).count(), 20, "refused"
     )
     ask(page)
-    wait_until(lambda: page.get_by_text("Layers: elastomer [mm], 1.5 to 3.5").count(), 20, "told")
+    wait_until(lambda: page.get_by_text(f"{CYLINDER}, 20 to 32").count(), 20, "told")
     set_number(page, "Designs to compute", 12)
     press(page, "Start search")
     button(page, "Stop search").wait_for(timeout=20_000)
@@ -72,15 +73,15 @@ def test_a_search_is_started_watched_stopped_gone_on_with_and_its_best_opened(
     wait_until(lambda: page.get_by_text(re.compile("Finished: ")).count(), SEARCHED_S, "the end")
     assert summary(pressed_project)["trials"] == 12
 
-    # By the closed form every wall is on the front: a thicker one is heavier and higher.
+    # Every design is on the front: a longer one is heavier and higher.
     (folder,) = (pressed_project / "searches").iterdir()
     rows = json.loads((folder / "front.json").read_text())
-    walls = [row["parameters"]["design.layers.elastomer_mm"] for row in rows]
-    assert walls == sorted(walls)
+    lengths = [row["parameters"]["design.shape.cylinder_mm"] for row in rows]
+    assert len(lengths) == 12 and lengths == sorted(lengths)
     choose(page, "Design of the front", "front 01")
     press(page, "Open as variant")
     project = Project(pressed_project)
     wait_until(lambda: list_variants(project), 30, "a variant is kept")
     (name,) = list_variants(project)
     kept = (pressed_project / "variants" / f"{name}.toml").read_text()
-    assert design_from_toml(kept).layers.elastomer_mm == walls[0]
+    assert design_from_toml(kept).shape["cylinder_mm"] == lengths[0]

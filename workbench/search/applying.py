@@ -7,7 +7,9 @@ import json
 from collections.abc import Iterable, Mapping
 
 from workbench.core.base.errors import DesignError, shown
+from workbench.edit.item_fields import read_field
 from workbench.edit.typed_fields import with_typed
+from workbench.project.design_toml import design_table
 from workbench.project.state import State
 from workbench.search.problem import Link, Problem, Value
 from workbench.variants.sweep_fields import aimed, field_value, find_field, with_value
@@ -28,6 +30,18 @@ def state_of(problem: Problem, values: Mapping[str, Value], *, draft: bool = Fal
     """
     state = with_values(problem.base, {**values, **followed(problem, values)})
     return with_settings(state, problem.draft) if draft else state
+
+
+def base_parameters(problem: Problem) -> dict[str, Value]:
+    """What the base has in the varied fields; choices as they are typed."""
+    found: dict[str, Value] = {}
+    for vary in problem.vary:
+        if vary.choices:
+            table = {"design": design_table(problem.base.design)}
+            found[vary.path] = text_of(read_field(table, vary.path))
+        else:
+            found[vary.path] = field_value(problem.base, vary.path)
+    return found
 
 
 def followed(problem: Problem, values: Mapping[str, Value]) -> dict[str, Value]:

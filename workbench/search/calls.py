@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from workbench.core.base.monitor import Monitor
+from workbench.core.base.packages import naming_packages
 from workbench.live.preview_call import OwnCall
 from workbench.pipeline.store import Store
 
@@ -36,6 +37,11 @@ class SearchCall(OwnCall):
 
     def answer(self, store: Store, kept: dict[str, Any], monitor: Monitor) -> int:
         """Search; returns how many designs are on the front."""
+        # The command line names a package that is missing by itself.
+        with naming_packages():
+            return self._searched(store, monitor)
+
+    def _searched(self, store: Store, monitor: Monitor) -> int:
         from workbench.pipeline.devices import open_device
         from workbench.project.project import Project
         from workbench.search.kept_searches import kept_problem, search_folder

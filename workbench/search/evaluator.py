@@ -26,7 +26,6 @@ from workbench.search.even_light import POWERS, evened, light_of_leds
 from workbench.search.judged import Judged, Status
 from workbench.search.problem import Problem, Value
 from workbench.search.search_figures import SAME, Found, all_figures, stages_of
-from workbench.variants.sweep_fields import field_value
 
 STEPS = (("build",), ("mould", "housing", "recipe"), ("bake",), ("maps",), ("shoot",))
 """Stages in the order of what they cost."""
@@ -234,16 +233,3 @@ def _untouched(case: Any) -> Any:
     """A press that is not computed need not reach the skin."""
     path = dataclasses.replace(case.press, depth_mm=1e-3)
     return dataclasses.replace(case, press=path)
-
-
-def base_values(problem: Problem) -> dict[str, Value]:
-    """What the base has in varied fields, where it lies in their ranges; else nothing."""
-    found: dict[str, Value] = {}
-    for vary in problem.vary:
-        if vary.choices:
-            return {}
-        value = field_value(problem.base, vary.path)
-        if not vary.low <= value <= vary.high:
-            return {}
-        found[vary.path] = round(value) if vary.whole else value
-    return found

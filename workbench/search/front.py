@@ -164,9 +164,8 @@ def importance(found: Found, study: Any) -> dict[str, dict[str, float]]:
 
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            shares[goal.figure] = get_param_importances(
-                known, evaluator=_anova(found.problem.seed), target=value
-            )
+            each = get_param_importances(known, evaluator=_anova(found.problem.seed), target=value)
+        shares[goal.figure] = {name: float(share) for name, share in each.items()}
     return shares
 
 

@@ -11,6 +11,7 @@ from workbench.core.base.version import VERSION
 from workbench.pipeline.store import Store
 from workbench.report.html_page import figure, page, table
 from workbench.report.thumbnails import thumbnail_png
+from workbench.search.applying import base_parameters
 from workbench.search.finalists import Finalist
 from workbench.search.front import Found, progress_lines
 from workbench.search.front_plot import (
@@ -125,7 +126,8 @@ def _designs(found: Found, listed: Sequence[Finalist]) -> str:
     if base is not None:
         figures = [base.figures.get(name) for name in (*goals, *limits)]
         cells = [cell for value in figures for cell in (_number(value), "", "")]
-        rows.insert(0, ["base", "", *("" for _ in names), *cells])
+        own = base_parameters(problem)
+        rows.insert(0, ["base", "", *(_value(own.get(name)) for name in names), *cells])
     header = "".join(f"<th>{html.escape(text)}</th>" for text in head)
     body = "".join(
         "<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in row) + "</tr>" for row in rows

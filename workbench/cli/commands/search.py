@@ -38,7 +38,11 @@ def options(sub: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace, project: Project) -> int:
-    """Look for designs by goals: what may vary, what is wanted, what must hold."""
+    """Look for designs by goals: what may vary, what is wanted, what must hold.
+
+    Returns:
+        The exit code: 1 where no design keeps all limits.
+    """
     from workbench.pipeline.devices import open_device
     from workbench.search.loop import Budget
     from workbench.search.outputs import FRONT, summary
@@ -69,7 +73,7 @@ def run(options: argparse.Namespace, project: Project) -> int:
     else:
         say(f"{len(found.front)} designs in {options.out / FRONT}")
         say(f"open {options.out / 'report.html'}")
-    return 0 if found.front else 3
+    return 0 if found.front else 1
 
 
 def _say_trial(told: Told) -> None:
