@@ -32,4 +32,4 @@ class SearchPanel:
         """Nothing here follows results of the design."""
 
 
-PAGE = Page(place=9, label="Search", build=SearchPanel)
+PAGE = Page(place=6, label="Search", build=SearchPanel)
