@@ -1,13 +1,13 @@
 """Powers of a ring's LEDs for even light on the skin, by least squares: no trials.
 
-Light is linear in the powers: with a_lv the light of LED l alone at vertex v, the light is
-sum over l of p_l a_lv, and
+Light is linear in the powers: with a_lv the light of LED l alone at vertex v, and w_v its area,
 
     min over p >= 0 of  sum over v of w_v (sum over l of p_l a_lv - 1)^2
 
-with w_v the area of v, makes it as even as these LEDs can. The figure is the 5th over the 95th
-percentile, which does not see what lies beyond these; so rounds follow in which the light that
-lies there has no weight, and the best round by the figure counts.
+The figure is the 5th over the 95th percentile, which does not see what lies beyond these. So rounds
+follow in which the places beyond have no weight, and the best of all rounds is climbed from by the
+figure itself, on the light that is known (simplex of Nelder and Mead 1965): the squares come near
+its top, not onto it.
 
 Left out: light that the skin scatters onto itself, which depends on the powers too, but is
 smoother than what comes straight. The figures of the trial have it all the same.
@@ -24,6 +24,10 @@ from workbench.core.result.results import MembraneMesh
 
 POWERS = "design.optics.ring.powers"
 ROUNDS = 12
+PLACES = 4000
+"""Of the skin that the climb looks at, evenly among all."""
+CLIMB = 400
+"""Evaluations of the figure in the climb."""
 LOW, HIGH = 5.0, 95.0
 """Percentiles of the figure `light_evenness_p5_over_p95_1`."""
 
@@ -54,23 +58,39 @@ def even_powers(light: np.ndarray, areas_mm2: np.ndarray, *, given: np.ndarray) 
     from scipy.optimize import nnls
 
     level = float(light.mean()) * len(light)
-    rows = light.T / level
     weight = np.sqrt(areas_mm2 / areas_mm2.sum())
     kept = np.ones(len(weight), dtype=bool)
-    best, most = np.ones(len(light)), evenness(light.sum(axis=0) + given, areas_mm2)
+    found = [np.ones(len(light))]
     for _ in range(ROUNDS):
-        scale = (weight * kept)[:, None]
-        powers, _ = nnls(rows * scale, scale[:, 0] * (1.0 - given / level))
+        scale = weight * kept
+        powers, _ = nnls(light.T / level * scale[:, None], scale * (1.0 - given / level))
+        found.append(powers)
         total = powers @ light + given
-        found = evenness(total, areas_mm2)
-        if found > most:
-            best, most = powers, found
         low, high = _percentiles(total, areas_mm2)
-        inside = (total >= low) & (total <= high)
-        if (inside == kept).all():
-            break
-        kept = inside
-    return best
+        kept = (total >= low) & (total <= high)
+
+    def by_figure(each: np.ndarray) -> float:
+        return evenness(each @ light + given, areas_mm2)
+
+    best = max(found, key=by_figure)
+    return max((best, _climbed(best, light, areas_mm2, given)), key=by_figure)
+
+
+def _climbed(
+    powers: np.ndarray, light: np.ndarray, areas_mm2: np.ndarray, given: np.ndarray
+) -> np.ndarray:
+    """Powers from which no small step makes the light more even on `PLACES`."""
+    from scipy.optimize import minimize
+
+    some = np.s_[:: -(-light.shape[1] // PLACES)]
+    seen, around, weight = light[:, some], given[some], areas_mm2[some]
+
+    def uneven(tried: np.ndarray) -> float:
+        return -evenness(np.abs(tried) @ seen + around, weight)
+
+    # The simplex begins with steps of a share of each power, so none may be 0.
+    start = np.maximum(powers, 1e-2 * powers.max())
+    return np.abs(minimize(uneven, start, method="Nelder-Mead", options={"maxfev": CLIMB}).x)
 
 
 def evenness(light: np.ndarray, areas_mm2: np.ndarray) -> float:
