@@ -10,6 +10,7 @@ from __future__ import annotations
 import contextlib
 import os
 import socket
+import sys
 import warnings
 from collections.abc import Generator, Sequence
 from pathlib import Path
@@ -45,7 +46,7 @@ def open_study(problem: Problem, path: Path) -> Any:
     path.parent.mkdir(parents=True, exist_ok=True)
     _mend(path)
     try:
-        storage = JournalStorage(JournalFileBackend(str(path)))
+        storage = JournalStorage(JournalFileBackend(str(path), _lock(path)))
         study = optuna.create_study(
             study_name=NAME,
             storage=storage,
@@ -55,7 +56,8 @@ def open_study(problem: Problem, path: Path) -> Any:
         with warnings.catch_warnings():
             # Its dashboard names the axes by it; that this is new is no news to the designer.
             warnings.simplefilter("ignore")
-            study.set_metric_names([goal.figure for goal in problem.goals])
+            if study.metric_names is None:
+                study.set_metric_names([goal.figure for goal in problem.goals])
     except (ValueError, KeyError, OSError) as error:
         raise StoreError(
             f"{path} cannot be read: {error}", hint="remove it, or name another --out", at=str(path)
@@ -152,12 +154,21 @@ def _torn(path: Path) -> bool:
         return file.read(1) != b"\n"
 
 
+def _lock(path: Path) -> Any:
+    """Optuna's own lock of the file, which takes over from a writer that was killed.
+
+    By a symbolic link, which works on shared folders, but on Windows asks for a right of its own.
+    """
+    from optuna.storages.journal import JournalFileOpenLock, JournalFileSymlinkLock
+
+    kind = JournalFileOpenLock if sys.platform == "win32" else JournalFileSymlinkLock
+    return kind(str(path))
+
+
 @contextlib.contextmanager
 def _locked(path: Path) -> Generator[None]:
-    """Optuna's own lock of the file, which takes over from a writer that was killed."""
-    from optuna.storages.journal import JournalFileSymlinkLock
-
-    lock = JournalFileSymlinkLock(str(path))
+    """The file for one writer."""
+    lock = _lock(path)
     lock.acquire()
     try:
         yield

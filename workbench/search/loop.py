@@ -21,6 +21,7 @@ from workbench.core.base.monitor import Monitor, part, silent
 from workbench.search.journal import (
     BASE,
     JUDGED,
+    SAMPLER,
     ended_trials,
     open_study,
     running_count,
@@ -55,6 +56,8 @@ class Told:
     counted: int
     """Trials so far that count."""
     wanted: int
+    study: Any
+    """All trials so far, an `optuna.Study`."""
 
 
 class SearchError(WorkbenchError):
@@ -104,7 +107,7 @@ def search(
         pressed = "press" in {**judged.ran, **judged.found}
         proposals.settled(values, pressed=pressed)
         counted += judged.status is not Status.REFUSED
-        on_trial(_told(trial, judged, counted, budget))
+        on_trial(_told(study, trial, judged, counted, budget))
     return study
 
 
@@ -183,13 +186,12 @@ def _losses(problem: Problem, judged: Judged, before: Sequence[Judged]) -> list[
     return found
 
 
-def _told(trial: Any, judged: Judged, counted: int, budget: Budget) -> Told:
-    from workbench.search.journal import SAMPLER
-
+def _told(study: Any, trial: Any, judged: Judged, counted: int, budget: Budget) -> Told:
     return Told(
         number=trial.number,
         sampler=trial.user_attrs[SAMPLER],
         judged=judged,
         counted=counted,
         wanted=budget.trials,
+        study=study,
     )

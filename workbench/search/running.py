@@ -42,7 +42,7 @@ def run_search(
     span = part(monitor, 0.0, 0.9)
 
     def noted(told: Told) -> None:
-        found = found_of(problem, open_study(problem, out / FILE))
+        found = found_of(problem, told.study)
         write_front(out, found, finalists(found, project, confirm=False), project)
         on_trial(told)
 
