@@ -41,6 +41,8 @@ def ask(page: Any) -> None:
         choose(page, "Figure", figure)
         choose(page, "Wanted", wanted)
         press(page, "Add goal")
+        told = page.get_by_text(f"goal: {figure}, {wanted}")
+        wait_until(told.count, 20, "the goal is told")
 
 
 def summary(project: Path) -> dict[str, Any]:
