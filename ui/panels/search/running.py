@@ -156,7 +156,8 @@ def _told(found: Standing) -> str:
         for name, label in (("press", "presses"), ("bake", "bakes"), ("shoot", "images"))
         if count[name] or reused[name]
     )
-    return (
+    words = (
         f"{about.get('trials', 0)} designs computed, {about.get('refused', 0)} refused, "
-        f"{about.get('front', 0)} on the front; {saved}."
+        f"{about.get('front', 0)} on the front"
     )
+    return f"{words}; {saved}." if saved else f"{words}."
