@@ -93,7 +93,7 @@ def _framed(across: Axis, up: Axis, titles: tuple[str, str], content: str) -> st
     ]
     x_title, y_title = (html.escape(title) for title in titles)
     return (
-        f"<svg viewBox='0 0 {WIDTH} {HEIGHT}' width='{WIDTH}' role='img'>"
+        f"<svg viewBox='0 0 {WIDTH} {HEIGHT}' width='{WIDTH}' style='max-width:100%' role='img'>"
         f"<g font-size='12' fill='{INK}'>{''.join(lines)}"
         f"<text x='{LEFT}' y='{HEIGHT - 6}'>{x_title}</text>"
         f"<text x='14' y='{floor}' transform='rotate(-90 14 {floor})'>{y_title}</text></g>"
