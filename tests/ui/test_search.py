@@ -23,7 +23,7 @@ pytest.importorskip("optuna")
 pytestmark = [pytest.mark.ui, pytest.mark.slow]
 
 Start = Callable[..., Server]
-SEARCHED_S = 300
+SEARCHED_S, CONFIRMED_S = 300, 600
 CYLINDER = "Shape: Straight length [mm]"
 
 
@@ -72,7 +72,8 @@ def test_a_search_is_started_watched_stopped_gone_on_with_and_its_best_opened(
     before = summary(pressed_project)["trials"]
     assert before < 12
     press(page, "Continue search")
-    wait_until(lambda: page.get_by_text(re.compile("Finished: ")).count(), SEARCHED_S, "the end")
+    ended = page.get_by_text(re.compile("Finished: "))
+    wait_until(ended.count, CONFIRMED_S, "four of the front are pressed and confirmed")
     assert summary(pressed_project)["trials"] == 12
 
     # Every design is on the front: a longer one is heavier and higher.
