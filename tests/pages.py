@@ -22,6 +22,7 @@ BY_HAND = (
         "maps",
     ),
     "optics",
+    "search",
 )
 """Pages that no generator writes; those about the program's inside have tests of their own."""
 

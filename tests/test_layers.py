@@ -44,6 +44,7 @@ RANKS = """
     workbench.learning  workbench.learning.dataset  workbench.learning.making
     workbench.learning.training  workbench.learning.readers  workbench.learning.lerobot
     workbench.environments  workbench.taxim  workbench.twin
+    workbench.search
     workbench.proof  workbench.proof.validation  workbench.proof.validation.geometry
     workbench.proof.validation.optics  workbench.proof.validation.contact
     workbench.proof.validation.fem  workbench.proof.benchmarks
@@ -58,7 +59,7 @@ RANKS = """
     ui.page  ui.scene  ui.desk
     ui.panels  ui.panels.compare  ui.panels.make  ui.panels.mesh  ui.panels.optics  ui.panels.shape
     ui.panels.simulate  ui.panels.view  ui.panels.results  ui.panels.calibrate
-    ui.panels.read
+    ui.panels.read  ui.panels.search
     ui
     workbench.cli  workbench.cli.groups  workbench.cli.commands
 """.split()

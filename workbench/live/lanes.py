@@ -44,7 +44,7 @@ WARM_UP = {
 """What each lane imports before its first job, so that the first click is warm.
 
 `cad` shapes and meshes, `sim` presses and renders, `look` answers what follows the designer's hand
-while the other two are busy.
+while the other two are busy. A lane of another name imports what its calls need as they come.
 """
 
 
@@ -66,7 +66,7 @@ class Lane:
         self._pipe, child = self._context.Pipe()
         self._process = self._context.Process(
             target=serve,
-            args=(self.name, WARM_UP[self.name], self.store.root, child, self._cancelled),
+            args=(self.name, WARM_UP.get(self.name, ()), self.store.root, child, self._cancelled),
             name=f"workbench-{self.name}",
             daemon=True,
         )

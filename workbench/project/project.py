@@ -7,6 +7,7 @@
   variants/  kept designs with their press, figures and thumbnails; `trash/` has deleted ones
   tasks/     what tasks told apart, by design
   sweeps/    one-parameter sweeps with their figures
+  searches/  searches by goals, each with its journal, front and report
   bodies/    files of imported bodies by hash
   pictures/  backgrounds and patterns of markers by hash
   indenters/ meshes of STL indenters by key

@@ -134,7 +134,7 @@ def with_value(state: State, field: SweepField, value: float) -> State:
         return _with_case(state, rest, number)
     design = with_field(state.design, rest, number)
     check_design(design)
-    return State(design=design, case=_aimed(state, dataclasses.replace(state, design=design)))
+    return State(design=design, case=aimed(state, dataclasses.replace(state, design=design)))
 
 
 def _with_case(state: State, path: str, value: Any) -> State:
@@ -149,7 +149,7 @@ def _with_case(state: State, path: str, value: Any) -> State:
     return State(design=state.design, case=dataclasses.replace(state.case, **{part: changed}))
 
 
-def _aimed(before: State, after: State) -> PressCase:
+def aimed(before: State, after: State) -> PressCase:
     """The press of a changed design: aimed anew where it was aimed as the family says."""
     press, design = before.case.press, before.design
     # A body from a file has to be built to be aimed at: its target stays.
