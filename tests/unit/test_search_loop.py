@@ -6,6 +6,8 @@ import os
 import signal
 import subprocess
 import sys
+import threading
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -14,10 +16,15 @@ import pytest
 
 from tests.toy_search import LIMIT, LIMITED, Toy, X, Y, beyond, toy_problem
 from workbench.core.base.errors import Cancelled, DesignError
+from workbench.core.base.monitor import Monitor
+from workbench.pipeline.store import Store
+from workbench.planning.plan import InlineRunner
+from workbench.project.project import Project
 from workbench.search.front import Found, found_of, hypervolume, importance, progress_lines
 from workbench.search.journal import FILE, open_study
-from workbench.search.judged import Status
+from workbench.search.judged import Judged, Status
 from workbench.search.loop import Budget, SearchError, search
+from workbench.search.problem import Value
 from workbench.search.proposing import GUIDED, SOBOL, STARTUP
 
 pytest.importorskip("optuna")
@@ -150,6 +157,42 @@ def test_two_processes_share_a_search(tmp_path: Path) -> None:
     assert 8 <= len(numbers) <= 9
     assert len(set(numbers)) == len(numbers)
     assert all(said)
+
+
+def test_threads_of_a_cluster_share_a_search(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Two trials at once, as on two workers: the budget holds for both together, each number is
+    there once, and a run that goes on computes no more."""
+    from workbench.cluster.spreading import Spread
+    from workbench.search import running
+
+    both = threading.Barrier(2, timeout=60.0)
+    judged: list[Mapping[str, Value]] = []
+
+    class Together(Toy):
+        def judge(self, values: Mapping[str, Value], monitor: Monitor) -> Judged:
+            if len(judged) < 2:
+                judged.append(values)
+                both.wait()
+            return super().judge(values, monitor)
+
+    monkeypatch.setattr(running, "DesignEvaluator", lambda *given, **named: Together())
+    monkeypatch.setattr(running, "write_front", lambda *given: None)
+    monkeypatch.setattr(running, "finalists", lambda *given, **named: [])
+    monkeypatch.setattr(running, "write_results", lambda *given, **named: "the front")
+    numbers: list[int] = []
+    for _ in range(2):
+        found = running.run_search(
+            toy_problem(tmp_path),
+            Project(tmp_path / "project"),
+            tmp_path,
+            Budget(trials=6),
+            on_trial=lambda told: numbers.append(told.number),
+            spread_on=Spread(runner=InlineRunner(Store(tmp_path / "store")), width=2),
+        )
+        assert found == "the front"
+        assert 6 <= len(numbers) <= 7 and len(set(numbers)) == len(numbers)
 
 
 def test_trials_that_share_a_press_come_in_groups(tmp_path: Path) -> None:

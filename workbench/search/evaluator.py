@@ -18,7 +18,7 @@ from workbench.core.base.errors import Cancelled, DesignError, WorkbenchError
 from workbench.core.base.monitor import Monitor, silent
 from workbench.pipeline.stage import Call
 from workbench.planning.foresight import expect_fit
-from workbench.planning.plan import InlineRunner, evaluate, needed, plan
+from workbench.planning.plan import InlineRunner, Runner, evaluate, needed, plan
 from workbench.project.project import Project
 from workbench.project.state import State
 from workbench.search.applying import followed, state_of
@@ -57,10 +57,18 @@ class _Trial:
 
 
 class DesignEvaluator:
-    """Judges designs of a problem in this process."""
+    """Judges designs of a problem; stages run in this process, or where a runner lets them."""
 
-    def __init__(self, problem: Problem, project: Project, *, draft: bool = True) -> None:
+    def __init__(
+        self,
+        problem: Problem,
+        project: Project,
+        *,
+        draft: bool = True,
+        runner: Runner | None = None,
+    ) -> None:
         self.problem = problem
+        self.runner = runner or InlineRunner(project.store)
         self.project = project
         self.draft = draft
         names = tuple(each.figure for each in (*problem.goals, *problem.limits))
@@ -171,12 +179,11 @@ class DesignEvaluator:
         if not wanted:
             return
         design, case = trial.state.design, trial.state.case
-        runner = InlineRunner(self.project.store)
 
         def told(stage: str, fraction: float, note: str) -> None:
             monitor(0.5, f"{stage} {100.0 * fraction:.0f} %")
 
-        for outcome in evaluate(design, case, runner, wanted=wanted, monitor=told):
+        for outcome in evaluate(design, case, self.runner, wanted=wanted, monitor=told):
             if not (trial.ran[outcome.stage] or trial.found[outcome.stage]):
                 (trial.found if outcome.cached else trial.ran)[outcome.stage] += 1
         trial.ran, trial.found = +trial.ran, +trial.found
@@ -198,8 +205,7 @@ class DesignEvaluator:
         from geometry.surface.surface import vertex_areas_mm2
 
         design, case = trial.state.design, trial.state.case
-        runner = InlineRunner(self.project.store)
-        for outcome in evaluate(design, case, runner, wanted=("mesh",)):
+        for outcome in evaluate(design, case, self.runner, wanted=("mesh",)):
             if outcome.stage == "mesh":
                 (trial.found if outcome.cached else trial.ran)["mesh"] += 1
         mesh = self.project.store.load("mesh", trial.calls["mesh"].key)

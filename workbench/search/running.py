@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable
 from pathlib import Path
 
+from workbench.cluster.spreading import Spread, spread
 from workbench.core.base.errors import Cancelled
 from workbench.core.base.monitor import Monitor, part, silent
+from workbench.planning.plan import InlineRunner
 from workbench.project.project import Project
 from workbench.search.evaluator import DesignEvaluator
 from workbench.search.finalists import finalists
@@ -27,8 +30,12 @@ def run_search(
     *,
     monitor: Monitor = silent,
     on_trial: Callable[[Told], None] = lambda told: None,
+    spread_on: Spread | None = None,
 ) -> Found:
     """Search, confirm the front, and write all files; a search that is there already goes on.
+
+    On a cluster so many trials are under way at once as it has workers; each thread works on the
+    search as a process of its own would.
 
     The front is written after every trial. One that is stopped writes its report too, with nothing
     confirmed and nothing said of what matters, since whoever stops does not wait.
@@ -38,16 +45,22 @@ def run_search(
         SearchError: If nearly every proposal is refused.
         Cancelled: If the user asked to stop.
     """
-    evaluator = DesignEvaluator(problem, project)
-    span = part(monitor, 0.0, 0.9)
+    on = spread_on or Spread(runner=InlineRunner(project.store), width=1)
+    span, writing = part(monitor, 0.0, 0.9), threading.Lock()
 
     def noted(told: Told) -> None:
-        found = found_of(problem, told.study)
-        write_front(out, found, finalists(found, project, confirm=False), project)
-        on_trial(told)
+        with writing:
+            found = found_of(problem, told.study)
+            write_front(out, found, finalists(found, project, confirm=False), project)
+            on_trial(told)
+
+    def work(number: int) -> None:
+        evaluator = DesignEvaluator(problem, project, runner=on.runner)
+        search(problem, evaluator, out / FILE, budget, monitor=span, on_trial=noted)
 
     try:
-        search(problem, evaluator, out / FILE, budget, monitor=span, on_trial=noted)
+        for _ in spread(work, range(on.width), on):
+            pass
         return write_results(problem, project, out, monitor=part(monitor, 0.9, 1.0))
     except (Cancelled, KeyboardInterrupt):
         write_results(problem, project, out, confirm=False)

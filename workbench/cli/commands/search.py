@@ -12,6 +12,7 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from workbench.cli.cluster_option import add_cluster_option, cluster_of
 from workbench.cli.command import Command
 from workbench.cli.options import OUT
 from workbench.core.base.check import within
@@ -34,6 +35,7 @@ def options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--trials", type=int, metavar="N", help=text)
     text = "stop after so long, the running trial ends first"
     sub.add_argument("--minutes", type=float, metavar="M", help=text)
+    add_cluster_option(sub)
     sub.add_argument("--json", action="store_true", help="progress and results as JSON lines")
 
 
@@ -60,14 +62,16 @@ def run(options: argparse.Namespace, project: Project) -> int:
     project.sweep()
     open_device()
     printer = Progress(as_json=options.json)
-    found = run_search(
-        problem,
-        project,
-        options.out,
-        Budget(trials=trials, minutes=minutes),
-        monitor=lambda fraction, note="": printer("search", fraction, note),
-        on_trial=_say_json if options.json else _say_trial,
-    )
+    with cluster_of(options.cluster, project.store, printer) as on:
+        found = run_search(
+            problem,
+            project,
+            options.out,
+            Budget(trials=trials, minutes=minutes),
+            monitor=lambda fraction, note="": printer("search", fraction, note),
+            on_trial=_say_json if options.json else _say_trial,
+            spread_on=on,
+        )
     if options.json:
         say(json.dumps(summary(found)))
     else:
