@@ -13,6 +13,8 @@ from workbench.core.base.errors import WorkbenchError
 
 NAMES = {
     "cv2": "opencv-python-headless",
+    "dask": "dask[distributed]",
+    "distributed": "dask[distributed]",
     "lib3mf": "build123d",
     "msgspec": "viser",
     "OCP": "build123d",
