@@ -42,7 +42,9 @@ DIMENSIONLESS = set(
     # Directions of any length.
     "Shines along,Lies along,"
     # A scale of its own, and numbers in the unit of the parameter that is chosen above them.
-    "Shore A,From,To".split(",")
+    "Shore A,From,To,Lowest,Highest,Value,"
+    # A count.
+    "Designs to compute".split(",")
 )
 NUMBERS = ("Slider", "MultiSlider", "Number", "Vector2", "Vector3")
 PARTS_S = 240
