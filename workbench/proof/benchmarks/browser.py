@@ -222,6 +222,8 @@ def drags_s(page: Any) -> dict[str, float]:
         said.wait_for()
         answered = ANSWERED.search(said.inner_text())
         times["touch_answered"].append(float(answered[1]) if answered else float("nan"))
+        # The graphics memory has the dent a little later than the page its words.
+        page.wait_for_timeout(1_000)
         times["drag_to_touch"].append(page.evaluate(FIRST_DENT) / 1000)
         page.mouse.up()
         page.wait_for_timeout(6_000)
