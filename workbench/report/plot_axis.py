@@ -44,3 +44,19 @@ def _round_step(step: float) -> float:
 def tick_text(value: float) -> str:
     """A number beside a tick; what is left of rounding is 0."""
     return f"{0.0 if abs(value) < 1e-12 else value:.4g}"
+
+
+def grid_lines(across: Axis, up: Axis) -> str:
+    """A line and a number at each tick of both axes of a plot, as SVG."""
+    left, right, top, floor = across.low_px, across.high_px, up.high_px, up.low_px
+    lines = [
+        f"<path d='M{left},{up(v):.1f} H{right}' stroke='{FAINT}'/>"
+        f"<text x='{left - 6}' y='{up(v) + 4:.1f}' text-anchor='end'>{tick_text(v)}</text>"
+        for v in up.ticks
+    ]
+    lines += [
+        f"<path d='M{across(v):.1f},{top} V{floor}' stroke='{FAINT}'/>"
+        f"<text x='{across(v):.1f}' y='{floor + 16}' text-anchor='middle'>{tick_text(v)}</text>"
+        for v in across.ticks
+    ]
+    return "".join(lines)

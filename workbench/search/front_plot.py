@@ -8,7 +8,7 @@ from __future__ import annotations
 import html
 from collections.abc import Mapping, Sequence
 
-from workbench.report.plot_axis import FAINT, INK, LINE, Axis, tick_text
+from workbench.report.plot_axis import INK, LINE, Axis, grid_lines
 from workbench.search.front import Found, Trial
 from workbench.search.problem import Goal, Want
 from workbench.search.proposing import SOBOL
@@ -80,21 +80,11 @@ def _dot(trial: Trial, x: float, y: float, *, best: bool) -> str:
 
 
 def _framed(across: Axis, up: Axis, titles: tuple[str, str], content: str) -> str:
-    floor, right = HEIGHT - BOTTOM, WIDTH - RIGHT
-    lines = [
-        f"<path d='M{LEFT},{up(v):.1f} H{right}' stroke='{FAINT}'/>"
-        f"<text x='{LEFT - 6}' y='{up(v) + 4:.1f}' text-anchor='end'>{tick_text(v)}</text>"
-        for v in up.ticks
-    ]
-    lines += [
-        f"<path d='M{across(v):.1f},{TOP} V{floor}' stroke='{FAINT}'/>"
-        f"<text x='{across(v):.1f}' y='{floor + 16}' text-anchor='middle'>{tick_text(v)}</text>"
-        for v in across.ticks
-    ]
+    floor = HEIGHT - BOTTOM
     x_title, y_title = (html.escape(title) for title in titles)
     return (
         f"<svg viewBox='0 0 {WIDTH} {HEIGHT}' width='{WIDTH}' style='max-width:100%' role='img'>"
-        f"<g font-size='12' fill='{INK}'>{''.join(lines)}"
+        f"<g font-size='12' fill='{INK}'>{grid_lines(across, up)}"
         f"<text x='{LEFT}' y='{HEIGHT - 6}'>{x_title}</text>"
         f"<text x='14' y='{floor}' transform='rotate(-90 14 {floor})'>{y_title}</text></g>"
         f"{content}</svg>"

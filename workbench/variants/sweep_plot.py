@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import html
 
-from workbench.report.plot_axis import FAILED, FAINT, INK, LINE, Axis, tick_text
+from workbench.report.plot_axis import FAILED, INK, LINE, Axis, grid_lines
 from workbench.variants.sweeps import Status, Sweep, base_value, curve
 from workbench.view.metric_rules import rule
 
@@ -40,26 +40,12 @@ def sweep_svg(sweep: Sweep, metric: str) -> str:
     safe = html.escape(title)
     return (
         f"<svg viewBox='0 0 {WIDTH} {HEIGHT}' width='{WIDTH}' style='max-width:100%' role='img' "
-        f"aria-label='{safe}'>{_grid(across, up)}"
+        f"aria-label='{safe}'><g font-size='12' fill='{INK}'>"
+        f"{grid_lines(across, up)}</g>"
         f"<polyline points='{points}' fill='none' stroke='{LINE}' stroke-width='2'/>"
         f"<g fill='{LINE}'>{dots}</g>{crosses}"
         f"<text x='{LEFT}' y='{HEIGHT - 6}' font-size='12' fill='{INK}'>{safe}</text></svg>"
     )
-
-
-def _grid(across: Axis, up: Axis) -> str:
-    floor, right = HEIGHT - BOTTOM, WIDTH - RIGHT
-    lines = [
-        f"<path d='M{LEFT},{up(v):.1f} H{right}' stroke='{FAINT}'/>"
-        f"<text x='{LEFT - 6}' y='{up(v) + 4:.1f}' text-anchor='end'>{tick_text(v)}</text>"
-        for v in up.ticks
-    ]
-    lines += [
-        f"<path d='M{across(v):.1f},{TOP} V{floor}' stroke='{FAINT}'/>"
-        f"<text x='{across(v):.1f}' y='{floor + 16}' text-anchor='middle'>{tick_text(v)}</text>"
-        for v in across.ticks
-    ]
-    return f"<g font-size='12' fill='{INK}'>{''.join(lines)}</g>"
 
 
 def _cross(x: float, message: str) -> str:
