@@ -91,8 +91,8 @@ class GrowingContact:
             SolveError: As there, and if the finite elements of a tile fail.
         """
         missing = sorted(self.touched(collider, poses) - self._parts.keys())
-        for tile in missing:
-            self._parts[tile] = self._columns(tile)
+        # All of them or none: one that fails must not leave others that the device never gets.
+        self._parts |= {tile: self._columns(tile) for tile in missing}
         if missing or self._fast is None:
             self._renew()
         assert self._fast is not None
