@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from workbench.core.base.digest import digest
-from workbench.core.base.monitor import Monitor
+from workbench.core.base.monitor import Monitor, silent
 from workbench.core.design.design import Elastomer, SensorDesign
 from workbench.core.design.optics import Optics
 from workbench.core.press.indenter import Indenter
@@ -113,6 +113,8 @@ class Toucher:
 
     def __init__(self) -> None:
         self._studio = KeptStudio()
+        self._monitor: Monitor = silent
+        """Of the call that is answered: what is kept outlives the one that made it."""
         self._skin: tuple[str, GrowingContact] | None = None
         self._outer: tuple[Ref, Surface] | None = None
         self._object: tuple[Indenter, Collider] | None = None
@@ -126,13 +128,14 @@ class Toucher:
         from workbench.pipeline.devices import open_device
 
         begun = time.perf_counter()
+        self._monitor = monitor
         open_device()
         from sim.condensed.placing import placed_near
         from sim.condensed.told import contact_of
         from workbench.core.base.poses import pose_rows
 
         mesh: MembraneMesh = store.load(call.mesh.stage, call.mesh.key)
-        fast = self._contact(store, call, monitor)
+        fast = self._contact(store, call)
         thing = self._collider(call.indenter)
         approach = placed_near(mesh.outer, thing, call.press)
         count = STEPS * call.press.approach_frames
@@ -148,7 +151,10 @@ class Toucher:
             contact=contact, images=images, seconds=seconds, words=_words(fast.law, seconds)
         )
 
-    def _contact(self, store: Store, call: TouchCall, monitor: Monitor) -> GrowingContact:
+    def _tell(self, fraction: float, note: str = "") -> None:
+        self._monitor(fraction, note)
+
+    def _contact(self, store: Store, call: TouchCall) -> GrowingContact:
         from sim.condensed.general_law import general_law
         from sim.condensed.growing import GrowingContact
 
@@ -161,7 +167,7 @@ class Toucher:
                 call.skin.wall_mm,
                 law,
                 call.material,
-                tile_finder(store, call.skin, monitor),
+                tile_finder(store, call.skin, self._tell),
             )
             self._skin = key, fast
         return self._skin[1]
