@@ -45,6 +45,8 @@ class Editor:
         """Told when the editor changes, in words; without a lock of this object."""
         self.on_lost: list[Callable[[int], None]] = []
         """Told the number of a tab that is there still and edits no more."""
+        self._leavings = 0
+        """How often the tab that edits has left."""
         self._notes: dict[int, list[Any]] = {}
         self._presence = Presence(server)
         self._since = ""
@@ -165,7 +167,9 @@ class Editor:
         if await self._presence.answers(tab):
             return
         with self._lock:
-            if self.tab != tab or client.client_id not in self.server.get_clients():
+            # None: it has left meanwhile, and who came before that was noticed is its reload.
+            free = self.tab in (tab, None) and self._shut is None
+            if not free or client.client_id not in self.server.get_clients():
                 return
             before = self._hand_over(client)
         self._presence.cut(tab)
@@ -178,15 +182,20 @@ class Editor:
             if self.tab != client.client_id:
                 return
             self.tab = None
-        timer = threading.Timer(self.reload_s, self._promote)
+            self._leavings += 1
+            timer = threading.Timer(self.reload_s, self._promote, (self._leavings,))
         timer.daemon = True
         timer.start()
 
-    def _promote(self) -> None:
-        """Let the tab that has followed longest edit, where none has come back."""
+    def _promote(self, leaving: int) -> None:
+        """Let the tab that has followed longest edit, where none has come back.
+
+        One that came back and left again is waited for anew: by another timer.
+        """
         with self._lock:
             clients = self.server.get_clients()
-            if self.tab is not None or self._shut is not None or not clients:
+            taken = self.tab is not None or self._shut is not None
+            if taken or leaving != self._leavings or not clients:
                 return
             self._hand_over(clients[min(clients)])
         self._tell_change(None)
