@@ -93,7 +93,12 @@ class FastContact:
             array.fill(0.0)
 
     def step(self, collider: Collider, poses: np.ndarray) -> Touch:
-        """Move the object of each press to its pose and find what is felt there.
+        """Move the object of each press to its pose and find what is felt there; as `advance`."""
+        self.advance(collider, poses)
+        return self._touch()
+
+    def advance(self, collider: Collider, poses: np.ndarray) -> None:
+        """Move the object of each press to its pose; what is felt stays on the device.
 
         Args:
             collider: The object.
@@ -116,9 +121,13 @@ class FastContact:
         solve_kernel.solve(
             count, at, self._skin, thing, past, choice, work, self._felt, rules, self._lanes
         )
-        frame_kernels.spread(count, self._skin, choice, work, past, self._felt, rules)
+        frame_kernels.spread(count, self._skin, choice, work, past, self._felt, rules, self._lanes)
         frame_kernels.feel(count, at, self._skin, thing, past, choice, work, self._felt, rules)
-        return self._touch()
+
+    @property
+    def felt(self) -> Any:
+        """What the last frame gave, a `bundles.Felt` on the device."""
+        return self._felt
 
     @property
     def presses(self) -> int:

@@ -24,7 +24,15 @@ from sim.condensed.bundles import (
     Skin,
     Work,
 )
-from sim.condensed.functions import block_of, decoupled, distance_at, origin_of, rotation_of
+from sim.condensed.functions import (
+    block_of,
+    decoupled,
+    distance_at,
+    origin_of,
+    rotation_of,
+    share_of,
+    wait,
+)
 from sim.optics.light.kernel_types import Floats, Integers
 
 MARGIN = 0.45
@@ -146,20 +154,29 @@ def gather(presses: ti.i32, skin: Skin, chosen: Choice, work: Work, rules: Rules
 
 @ti.kernel
 def spread(
-    presses: ti.i32, skin: Skin, chosen: Choice, work: Work, past: Memory, felt: Felt, rules: Rules
+    presses: ti.i32,
+    skin: Skin,
+    chosen: Choice,
+    work: Work,
+    past: Memory,
+    felt: Felt,
+    rules: Rules,
+    lanes: ti.template(),
 ):
     """Displacement of all nodes: as solved near what touches, by the whole compliance beyond.
 
-    What is solved for leaves out that a dent pushes its surroundings outwards; the whole compliance
-    has too much of that where the object is.
+    `lanes` threads a press; of a node that pushes each takes other neighbours, so that sums are in
+    the order of the candidates whatever the number. What is solved for leaves out that a dent
+    pushes its surroundings outwards; the whole compliance has too much of that where the object is.
     """
     nodes = skin.points.shape[0]
     for at in range(presses * nodes):
         past.settled[at] = tm.vec3(0.0)
         felt.full[at] = tm.vec3(0.0)
         felt.away[at] = BLEND_MM
-    ti.loop_config(block_dim=1)
-    for press in range(presses):
+    ti.loop_config(block_dim=lanes)
+    for thread in range(presses * lanes):
+        press, lane = thread // lanes, thread % lanes
         first = press * rules.most
         for number in range(ti.min(chosen.counts[press], rules.most)):
             push = tm.vec3(0.0)
@@ -167,7 +184,9 @@ def spread(
                 push[c] = work.pushes[3 * (first + number) + c]
             if push.norm() > 0.0:
                 node = chosen.candidates[first + number]
-                for pair in range(skin.row_starts[node], skin.row_starts[node + 1]):
+                begin = skin.row_starts[node]
+                for k in range(share_of(skin.row_starts[node + 1] - begin, lane, lanes)):
+                    pair = begin + lane + lanes * k
                     other = skin.row_nodes[pair]
                     entry = press * nodes + other
                     block = block_of(skin, pair).transpose()
@@ -176,6 +195,7 @@ def spread(
                     past.settled[entry] += bare @ push
                     far = (skin.points[other] - skin.points[node]).norm()
                     felt.away[entry] = ti.min(felt.away[entry], far)
+            wait(lanes)
     for at in range(presses * nodes):
         share = felt.away[at] / BLEND_MM
         felt.displacement[at] = (1.0 - share) * past.settled[at] + share * felt.full[at]

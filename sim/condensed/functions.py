@@ -86,3 +86,16 @@ def decoupled(block, moved, pushed):
     along = normal.dot(block @ normal)
     across = block - moved.outer_product(moved @ block)
     return across - (across @ pushed).outer_product(pushed) + along * normal.outer_product(normal)
+
+
+@ti.func
+def wait(lanes: ti.template()):
+    """Let the threads of a press meet."""
+    if ti.static(lanes > 1):
+        ti.simt.block.sync()
+
+
+@ti.func
+def share_of(count, lane, lanes: ti.template()):
+    """How many of so many entries a thread has: lane, lane + lanes ..."""
+    return (count - lane + lanes - 1) // lanes

@@ -90,13 +90,26 @@ class GrowingContact:
         Raises:
             SolveError: As there, and if the finite elements of a tile fail.
         """
+        return self._ready(collider, poses).step(collider, poses)
+
+    def advance(self, collider: Collider, poses: np.ndarray) -> None:
+        """As `FastContact.advance`; raises as `step`."""
+        self._ready(collider, poses).advance(collider, poses)
+
+    @property
+    def felt(self) -> Any:
+        """As `FastContact.felt`, once something has been touched."""
+        assert self._fast is not None
+        return self._fast.felt
+
+    def _ready(self, collider: Collider, poses: np.ndarray) -> FastContact:
         missing = sorted(self.touched(collider, poses) - self._parts.keys())
         # All of them or none: one that fails must not leave others that the device never gets.
         self._parts |= {tile: self._columns(tile) for tile in missing}
         if missing or self._fast is None:
             self._renew()
         assert self._fast is not None
-        return self._fast.step(collider, poses)
+        return self._fast
 
     def touched(self, collider: Collider, poses: np.ndarray) -> set[int]:
         """Tiles with nodes that an object may touch at poses, (B, 7); at least one."""

@@ -32,7 +32,14 @@ from sim.condensed.bundles import (
     Skin,
     Work,
 )
-from sim.condensed.functions import clamped, distance_at, origin_of, rotation_of
+from sim.condensed.functions import (
+    clamped,
+    distance_at,
+    origin_of,
+    rotation_of,
+    share_of,
+    wait,
+)
 from sim.optics.light.kernel_types import Floats
 
 SOFTNESS = 0.15
@@ -117,19 +124,6 @@ def solve(
         if lane == 0:
             felt.totals[TOTALS * press + MOVED] = moved
             felt.totals[TOTALS * press + SWEEPS] = ti.cast(swept, ti.f32)
-
-
-@ti.func
-def wait(lanes: ti.template()):
-    """Let the threads of a press meet."""
-    if ti.static(lanes > 1):
-        ti.simt.block.sync()
-
-
-@ti.func
-def share_of(count, lane, lanes: ti.template()):
-    """How many of so many entries a thread has: lane, lane + lanes ..."""
-    return (count - lane + lanes - 1) // lanes
 
 
 @ti.func

@@ -13,20 +13,26 @@ answers whatever the way there.
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
 from sim.condensed.fast_contact import FastContact, Touch
 from sim.condensed.growing import GrowingContact
 from sim.condensed.lessons import collider_of
+from sim.condensed.tensors import touch_tensors
 from sim.optics.raster.imager import Imager
 from workbench.core.base.errors import DesignError
+from workbench.core.base.packages import naming_packages
 from workbench.planning.plan import StageMonitor
 from workbench.project.project import Project
 from workbench.sensor.frame import Felt, Frame
 from workbench.sensor.pack import Pack, is_pack, read_pack
+from workbench.sensor.tensor_frame import Range, TensorEye, TensorFelt, TensorFrame, felt_tensors
 from workbench.sensor.things import Thing, mesh_thing
+
+if TYPE_CHECKING:
+    import torch
 
 FEW_NODES = 6
 """Nodes that touch below which forces are coarse."""
@@ -52,6 +58,7 @@ class Sensor:
         self._surface = pack.surface
         self._rest_depth_mm = pack.rest_depth_mm
         self._count = 0
+        self._tensor_eye: TensorEye | None = None
 
     @classmethod
     def load(
@@ -152,14 +159,45 @@ class Sensor:
         rows, touch = self._touched(poses, thing)
         return Felt(**self._felt(rows, touch, thing))
 
+    def render_tensors(self, poses: np.ndarray | torch.Tensor, thing: Thing) -> TensorFrame:
+        """As `render`, but all that is felt and seen stays on the device, as tensors of PyTorch.
+
+        On a GPU nothing but the poses goes through the processor's memory.
+
+        Raises:
+            PackageError: If PyTorch is not installed.
+            DesignError, SolveError: As `render`.
+        """
+        felt = self.feel_tensors(poses, thing)
+        if self._tensor_eye is None:
+            self._tensor_eye = TensorEye(self._surface, self._imager, self._rest_depth_mm)
+        return self._tensor_eye.frame(felt)
+
+    def feel_tensors(self, poses: np.ndarray | torch.Tensor, thing: Thing) -> TensorFelt:
+        """The same without images."""
+        with naming_packages():
+            import torch
+        rows = self._ready(poses.cpu() if isinstance(poses, torch.Tensor) else poses)
+        self._fast.advance(thing.collider, thing.placed(rows))
+        touch = touch_tensors(self._fast.felt, len(rows), len(self.skin.points_mm))
+        within = Range(
+            deepest=DEEPER * self.law.deepest, unsettled_mm=UNSETTLED_MM, fewest=FEW_NODES
+        )
+        return felt_tensors(touch, thing.arms_mm(rows), within)
+
     def drawn(self, moved_mm: np.ndarray) -> np.ndarray:
         """Images of a skin that moved, (B, V, 3) [mm] at drawn vertices: (B, H, W, 3), uint8."""
         return self._imager.images(moved_mm)
 
-    def _touched(self, poses: np.ndarray, thing: Thing) -> tuple[np.ndarray, Touch]:
+    def _ready(self, poses: Any) -> np.ndarray:
+        """Checked poses, and as many sensors as they are."""
         rows = checked_poses(poses)
         if len(rows) != self._count:
             self.reset(len(rows))
+        return rows
+
+    def _touched(self, poses: np.ndarray, thing: Thing) -> tuple[np.ndarray, Touch]:
+        rows = self._ready(poses)
         return rows, self._fast.step(thing.collider, thing.placed(rows))
 
     def _felt(self, rows: np.ndarray, touch: Touch, thing: Thing) -> dict[str, Any]:

@@ -30,16 +30,17 @@ class Thing:
     def placed(self, poses: np.ndarray) -> np.ndarray:
         """Poses of the collider, (B, 7), from those of the object's own frame."""
         found = poses.copy()
-        found[:, :3] += self._arms_mm(poses)
+        found[:, :3] += self.arms_mm(poses)
         return found
 
     def about_origin(
         self, poses: np.ndarray, force_N: np.ndarray, moment_Nmm: np.ndarray
     ) -> np.ndarray:
         """Moments about the origin of the object's own frame, (B, 3)."""
-        return moment_Nmm + np.cross(self._arms_mm(poses), force_N).astype(moment_Nmm.dtype)
+        return moment_Nmm + np.cross(self.arms_mm(poses), force_N).astype(moment_Nmm.dtype)
 
-    def _arms_mm(self, poses: np.ndarray) -> np.ndarray:
+    def arms_mm(self, poses: np.ndarray) -> np.ndarray:
+        """Ways from the origin of the object's own frame to the collider's, (B, 3)."""
         return rotations(poses[:, 3:]) @ self.centre_mm
 
 

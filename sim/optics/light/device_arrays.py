@@ -27,9 +27,14 @@ def on_device(array: np.ndarray, *, vector: int = 0) -> Any:
     return made
 
 
-def readable(array: np.ndarray, *, vector: int = 0) -> Any:
-    """Where kernels find a contiguous array: in NumPy's own memory, or in a copy on the GPU."""
-    return on_device(array, vector=vector) if computes_on_gpu() else array
+def readable(array: Any, *, vector: int = 0) -> Any:
+    """Where kernels find a contiguous array: in NumPy's own memory, or in a copy on the GPU.
+
+    A tensor of PyTorch that lies on the device is taken as it is.
+    """
+    if computes_on_gpu() and isinstance(array, np.ndarray):
+        return on_device(array, vector=vector)
+    return array
 
 
 def empty(kind: Any, count: int, *, vector: int = 0) -> Any:

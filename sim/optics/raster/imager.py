@@ -112,7 +112,10 @@ class Imager:
 
     def look(self, displacement_mm: np.ndarray, radiance: np.ndarray | None = None) -> None:
         """Find, shade and ink what the pixels of at most one batch of frames see."""
-        moved = np.ascontiguousarray(displacement_mm, dtype=np.float32)
+        self.look_at(np.ascontiguousarray(displacement_mm, dtype=np.float32), radiance)
+
+    def look_at(self, moved: Any, radiance: np.ndarray | None = None) -> None:
+        """The same of a contiguous array of float32, or of a tensor on the device."""
         self.raster.look(moved)
         self.shader.shade(radiance, whole=self.whole_shadows)
         if len(self.backdrop.dots_mm):
@@ -126,8 +129,12 @@ class Imager:
 
     def expose(self, images: np.ndarray) -> None:
         """Write the grey levels of the frames looked at, shape (k, N, 3), uint8."""
-        gain = ti.math.vec3(*(self.backdrop.exposure * (LUT_STEPS - 1)).tolist())
         images[:] = self.backdrop.background_rgb
+        self.draw_over(images)
+
+    def draw_over(self, images: Any) -> None:
+        """Write what changed over images of the background, (k, N, 3), uint8: array or tensor."""
+        gain = ti.math.vec3(*(self.backdrop.exposure * (LUT_STEPS - 1)).tolist())
         expose: Any = compose_kernels.expose
         expose(self.raster.seen, self._picture, gain, self._curve, images)
 
@@ -137,10 +144,10 @@ class Imager:
         gather_light: Any = compose_kernels.gather_light
         gather_light(self.raster.seen, self._picture, linear)
 
-    def describe(self, normal: np.ndarray, depth_z_mm: np.ndarray) -> None:
-        """Write what the first frame's changed pixels see: normals (N, 3), depths (N,), float32."""
+    def describe(self, normal: Any, depth_z_mm: Any, frames: int = 1) -> None:
+        """Write what changed pixels of the first frames see: normals (k N, 3), depths (k N,)."""
         describe: Any = compose_kernels.describe
-        describe(1, *self._looks(), normal, depth_z_mm)
+        describe(frames, *self._looks(), normal, depth_z_mm)
 
     def ink(self) -> tuple[np.ndarray, np.ndarray]:
         """Nearest dot and covered share of the first frame's pixels, each (N,).
@@ -149,6 +156,11 @@ class Imager:
         """
         count = self.raster.pixels
         return self._marker.to_numpy()[:count], self._ink.to_numpy()[:count]
+
+    @property
+    def inked(self) -> tuple[Any, Any]:
+        """Nearest dot and covered share of all pixels looked at, on the device; see `ink`."""
+        return self._marker, self._ink
 
     def marker_px(self) -> np.ndarray:
         """u, v [px] of the dots in the first frame, (M, 2), float32; NaN of those not seen."""

@@ -100,10 +100,10 @@ class Raster:
         self.transmittance = on_device(view.transmittance)
         self._seen_start, self._seen_pixel = on_device(view.seen_start), on_device(view.seen_pixel)
 
-    def look(self, displacement_mm: np.ndarray) -> None:
+    def look(self, displacement_mm: Any) -> None:
         """Find what every pixel sees in k frames of displacement [mm], shape (k, V, 3), float32.
 
-        k is at most `frames`.
+        k is at most `frames`; an array, or a tensor of PyTorch on the device.
         """
         frames, placed = len(displacement_mm), self.posed.placed
         displacement = readable(displacement_mm, vector=3)
