@@ -8,6 +8,7 @@ whole skin has, differs by little.
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
