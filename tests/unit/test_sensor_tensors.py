@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.unit.test_sensor import BALL_MM, at_tip, small_pack
-from workbench.core.base.errors import DesignError
+from workbench.core.base.errors import DesignError, DeviceError
 from workbench.sensor.frame import Frame
 from workbench.sensor.sensor import Sensor
 from workbench.sensor.tensor_frame import TensorFrame
@@ -64,6 +64,16 @@ def test_the_next_frame_leaves_the_last_one_as_it_was() -> None:
     assert torch.equal(first.force_N, kept[0])
     assert torch.equal(first.rgb, kept[1])
     assert first.force_N.shape == (1, 3)
+
+
+def test_a_pytorch_without_the_gpu_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A CPU-only build beside a GPU is common: what to install or take instead is said."""
+    from sim.condensed import tensors
+
+    monkeypatch.setattr(tensors, "computes_on_gpu", lambda: True)
+    monkeypatch.setattr(torch.cuda, "is_available", lambda: False)
+    with pytest.raises(DeviceError, match="finds no CUDA device"):
+        tensors.tensor_device()
 
 
 def test_a_pose_that_is_no_number_is_refused() -> None:

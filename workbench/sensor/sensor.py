@@ -166,6 +166,7 @@ class Sensor:
 
         Raises:
             PackageError: If PyTorch is not installed.
+            DeviceError: If the device is a GPU that this build of PyTorch does not know.
             DesignError, SolveError: As `render`.
         """
         felt = self.feel_tensors(poses, thing)
