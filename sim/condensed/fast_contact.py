@@ -158,19 +158,21 @@ class FastContact:
 
     def played(self, press: int) -> PlayedFrame:
         """Forces of a press's last frame as solved, not yet hardened."""
-        nodes = len(self.skin.points_mm)
-        part = slice(press * nodes, (press + 1) * nodes)
-        held = self._past.held.to_numpy()[part]
+        nodes, most = len(self.skin.points_mm), self._most
+        held = self._past.held.to_numpy()[press * nodes : (press + 1) * nodes]
+        slots = self._slots.to_numpy()[press * nodes : (press + 1) * nodes]
         on = np.flatnonzero(held)
-        force = self._past.force.to_numpy()[part][on].astype(np.float64)
-        moved = self._past.settled.to_numpy()[part][on].astype(np.float64)
-        normals = self.skin.normals[on]
-        deep = np.einsum("ni,ni->n", force, normals)[:, None] * normals
-        s = -np.einsum("ni,ni->n", moved, normals) / self.skin.wall_mm[on]
+        at = press * most + slots[on]
+        ways = self._work.ways.to_numpy()[at].astype(np.float64)
+        force = self._work.pushes.to_numpy().reshape(-1, 3)[at].astype(np.float64)
+        moved = self._work.moves.to_numpy().reshape(-1, 3)[at].astype(np.float64)
+        inward = -self.skin.normals[on]
+        along = np.einsum("ni,ni->n", force, inward)[:, None]
+        s = np.einsum("ni,ni->n", moved, inward) / self.skin.wall_mm[on]
         return PlayedFrame(
             s=np.maximum(s, 0.0),
-            deep_N=deep,
-            side_N=force - deep,
+            deep_N=along * ways,
+            side_N=turned_back(force - along * inward, inward, ways),
             slides=held[on] == bundles.SLIDES,
         )
 
@@ -281,3 +283,11 @@ def own_mm_N(skin: CondensedSkin) -> np.ndarray:
     normals = skin.normals[pushed[own]]
     found[pushed[own]] = np.einsum("ni,nij,nj->n", normals, rows.blocks_mm_N[own], normals)
     return found
+
+
+def turned_back(vectors: np.ndarray, before: np.ndarray, after: np.ndarray) -> np.ndarray:
+    """The twin of `functions.turned` for rows, all (N, 3)."""
+    both = before + after
+    share = np.einsum("ni,ni->n", both, vectors) / (1.0 + np.einsum("ni,ni->n", before, after))
+    along = np.einsum("ni,ni->n", before, vectors)
+    return vectors - share[:, None] * both + 2.0 * along[:, None] * after

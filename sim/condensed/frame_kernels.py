@@ -31,6 +31,7 @@ from sim.condensed.functions import (
     origin_of,
     rotation_of,
     share_of,
+    turned,
     wait,
 )
 from sim.optics.light.kernel_types import Floats, Integers
@@ -239,17 +240,17 @@ def feel(
             for c in ti.static(range(3)):
                 push[c] = work.pushes[3 * at + c]
                 moved[c] = work.moves[3 * at + c]
-            along = push.dot(work.ways[at])
+            normal, way = skin.normals[node], work.ways[at]
+            along = -push.dot(normal)
             if along > 0.0:
                 touching += 1
-                normal, place = skin.normals[node], skin.points[node] + moved
+                place = skin.points[node] + moved
                 s = ti.max(-moved.dot(normal) / skin.walls[node], 0.0)
                 worst = ti.max(worst, s)
                 s = ti.min(s, rules.deepest)
-                across = (push - along * work.ways[at]).norm()
-                ratio = ti.max(ratio, across / along)
+                across = turned(push + along * normal, -normal, way)
+                ratio = ti.max(ratio, across.norm() / along)
                 slides = work.slid[at] == 1
-                deep = push.dot(normal) * normal
                 by_normal = hardened(
                     s, thing.sharpness, rules.normal_a, rules.normal_b, rules.normal_c
                 )
@@ -262,7 +263,7 @@ def feel(
                         rules.tangential_b,
                         rules.tangential_c,
                     )
-                hard = by_normal * deep + by_side * (push - deep)
+                hard = by_normal * along * way + by_side * across
                 felt.traction[entry] = hard
                 felt.pressure[entry] = by_normal * along / skin.areas[node]
                 load -= hard

@@ -89,6 +89,14 @@ def decoupled(block, moved, pushed):
 
 
 @ti.func
+def turned(vector, before, after):
+    """A vector turned as the unit vector `before` is to come to `after`, the shortest way."""
+    both = before + after
+    share = both.dot(vector) / (1.0 + before.dot(after))
+    return vector - share * both + 2.0 * before.dot(vector) * after
+
+
+@ti.func
 def wait(lanes: ti.template()):
     """Let the threads of a press meet."""
     if ti.static(lanes > 1):

@@ -91,10 +91,11 @@ def fit(presses: Sequence[PlayedPress]) -> Hardening:
     sharp = {press.sharpness for press in presses}
 
     def law(numbers: np.ndarray) -> Hardening:
-        a, b, c, d, e, f = numbers.tolist()
+        a, b, c, d, f = numbers.tolist()
         # One sharpness cannot tell what it changes.
         c, f = (c, f) if len(sharp) > 1 else (0.0, 0.0)
-        return Hardening(normal=(a, b, c), tangential=(d, e, f), deepest=deepest)
+        # Presses are sheared at one depth, which tells no curve.
+        return Hardening(normal=(a, b, c), tangential=(d, 0.0, f), deepest=deepest)
 
     def cost(numbers: np.ndarray) -> np.ndarray:
         errors = []
@@ -103,7 +104,9 @@ def fit(presses: Sequence[PlayedPress]) -> Hardening:
             errors += [normal[FIRST:], TANGENTIAL_WEIGHT * across[FIRST:]]
         return np.concatenate(errors)
 
-    found = law(least_squares(cost, np.array([0.5, 1.5, 0.0, 0.5, 0.0, 0.0])).x)
+    # A wall that thins never gives way more: the normal curve rises from where it starts.
+    least = [0.0, 0.0, *[-np.inf] * 3]
+    found = law(least_squares(cost, [0.5, 1.5, 0.0, 0.0, 0.0], bounds=(least, np.inf)).x)
     errors = {
         press.name: float(np.abs(residuals(press, found)[0][FIRST:]).max()) for press in presses
     }

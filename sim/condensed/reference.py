@@ -68,7 +68,10 @@ class PlainContact:
     def step(
         self, collider: Collider, origin_mm: np.ndarray, rotation: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Forces on the nodes as solved [N] and displacement of all nodes [mm], both (N, 3)."""
+        """Forces on the nodes as solved [N] and displacement of all nodes [mm], both (N, 3).
+
+        What is remembered of the forces is in the frames of the nodes.
+        """
         skin, past = self.skin, self.past
         pose = (origin_mm, rotation)
         at_rest, _ = _distance(collider, skin.points_mm, pose)
@@ -86,7 +89,10 @@ class PlainContact:
             away = np.minimum(away, np.where(self._moved_by(node), distance, BLEND_MM))
         share = (away / BLEND_MM)[:, None]
         self._remember(nodes, force, settled, slid, slips, pose)
-        return past.force_N.copy(), (1.0 - share) * settled + share * full
+        found = past.force_N.copy()
+        for node, way in zip(nodes, self._ways, strict=True):
+            found[node] = _turned(found[node], -skin.normals[node], way)
+        return found, (1.0 - share) * settled + share * full
 
     def _moved_by(self, node: int) -> np.ndarray:
         rows = self.skin.compliance
@@ -222,9 +228,10 @@ class PlainContact:
     ) -> tuple[np.ndarray, bool]:
         """The force that settles a node, the others as they are, and whether it slides."""
         gaps, way = seen
+        inward = -self.skin.normals[node]
         areas = self.spots.areas_mm2[self.spots.starts[node] : self.spots.starts[node + 1]]
-        response = own @ way
-        stiff, before = way @ response, force @ way
+        response = own @ inward
+        stiff, before = way @ response, force @ inward
         softness = SOFTNESS * self._own[node] * self._areas[node]
         after = before
         for _ in range(NEWTON):
@@ -233,14 +240,15 @@ class PlainContact:
             residual = softness * after + areas[over] @ opened[over]
             after = max(after - residual / (softness + stiff * areas[over].sum()), 0.0)
         if self.friction == 0.0 or after == 0.0:
-            return after * way, False
+            return after * inward, False
         slip = slip + response * (after - before)
         slip = slip - (slip @ way) * way
-        side = force - before * way - slip / (TANGENTIAL * (np.trace(own) - stiff))
+        soft = TANGENTIAL * (np.trace(own) - inward @ response)
+        side = _turned(force - before * inward, inward, way) - slip / soft
         size, most_N = np.linalg.norm(side), self.friction * after
         if size > most_N:
-            return after * way + side * most_N / size, True
-        return after * way + side, False
+            return after * inward + _turned(side, way, inward) * most_N / size, True
+        return after * inward + _turned(side, way, inward), False
 
     def _remember(
         self,
@@ -252,13 +260,19 @@ class PlainContact:
         pose: tuple[np.ndarray, np.ndarray],
     ) -> None:
         past, rest, (origin, rotation) = self.past, self.skin.points_mm[nodes], pose
-        touches = np.einsum("mi,mi->m", force, self._ways) > 0.0
+        touches = np.einsum("mi,mi->m", force, self.skin.normals[nodes]) < 0.0
         place = np.where(slid[:, None], rest + self._moves, rest - slips)
         past.force_N[:], past.held[:] = 0.0, False
         past.force_N[nodes[touches]] = force[touches]
         past.held[nodes[touches]] = True
         past.anchor_mm[nodes] = (place - origin) @ rotation
         past.settled_mm, past.pose = settled, pose
+
+
+def _turned(vector: np.ndarray, before: np.ndarray, after: np.ndarray) -> np.ndarray:
+    """A vector turned as the unit vector `before` is to come to `after`, by Rodrigues' formula."""
+    axis, cosine = np.cross(before, after), before @ after
+    return cosine * vector + np.cross(axis, vector) + (axis @ vector) / (1.0 + cosine) * axis
 
 
 def _distance(

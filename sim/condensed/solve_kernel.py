@@ -11,6 +11,11 @@ surroundings take to be covered. G is stiffened by as much
 (`frame_kernels.STIFFENED`), so that covered nodes move as the
 wall does. Coulomb's law ties a node to its tie: the tangential force follows the way from
 it, at most friction times l (Moreau 1988, solved node after node as Jean 1999 does).
+
+f is kept in the frame of its node: as far as the push direction is turned from the inward normal,
+the force is turned back (`functions.turned`). A skin that gives way turns with the object, and so
+does what it answers to a pressure; a linear skin, pushed askew, would flow from under a ball and
+slide where a true one sticks.
 """
 
 # Taichi reads annotations and operators in its own way.
@@ -38,6 +43,7 @@ from sim.condensed.functions import (
     origin_of,
     rotation_of,
     share_of,
+    turned,
     wait,
 )
 from sim.optics.light.kernel_types import Floats
@@ -198,7 +204,8 @@ def pushed(
     work: ti.template(),
     rules: ti.template(),
 ):
-    """Change of the force on a candidate [N] that settles it, the others as they are."""
+    """Change of the force on a candidate [N], in its own frame, that settles it, the others as they
+    are."""
     node = chosen.candidates[at]
     room = rules.most
     number = at % room
@@ -210,9 +217,10 @@ def pushed(
         moved[i] = work.moves[3 * at + i] - work.starts[3 * at + i]
         for j in ti.static(range(3)):
             own[i, j] = work.columns[9 * room * at + 3 * room * j + 3 * number + i]
-    response = own @ way
+    inward = -skin.normals[node]
+    response = own @ inward
     stiff = way.dot(response)
-    before = load.dot(way)
+    before = load.dot(inward)
     after = before
     # Spots move with the corners beside them too; within a round all of a node move alike.
     beside = tm.vec3(0.0)
@@ -236,14 +244,14 @@ def pushed(
                 overlap -= skin.spot_areas[spot] * open_mm
         after -= (softness * after - overlap) / (softness + stiff * covered)
         after = ti.max(after, 0.0)
-    found = after * way
+    found = after * inward
     if rules.friction > 0.0 and after > 0.0:
         slip = moved + response * (after - before)
         for i in ti.static(range(3)):
             slip[i] += work.slips[at][i] + work.starts[3 * at + i]
         slip -= slip.dot(way) * way
-        soft = TANGENTIAL * (own.trace() - stiff)
-        side = load - before * way - slip / soft
+        soft = TANGENTIAL * (own.trace() - inward.dot(response))
+        side = turned(load - before * inward, inward, way) - slip / soft
         size = side.norm()
         most_N = rules.friction * after
         if work.slid[at] == 1:
@@ -253,5 +261,5 @@ def pushed(
             side *= rules.sliding_friction * after / size
         else:
             work.slid[at] = 0
-        found += side
+        found += turned(side, way, inward)
     return found - load

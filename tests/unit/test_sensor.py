@@ -228,6 +228,8 @@ def test_rows_of_the_room(tmp_path: Path) -> None:
         "worst_angle_deg": 1.0,
         "torque_error": 0.2,
         "full_torque_Nmm": 1.0,
+        "slip": [0.0, 0.0, 0.2, 0.3],
+        "full_slip": [0.0, 0.0, 0.05, 0.35],
         "ssim": {"2": 0.98},
         "null_ssim": {"2": 0.9},
         "noted": 0,
@@ -251,6 +253,11 @@ def test_rows_of_the_room(tmp_path: Path) -> None:
     assert there_and_back.value == pytest.approx(0.5) and not there_and_back.ok
     torque = next(row for row in rows if row.name == "fast_torque")
     assert not torque.ok
+    slip = next(row for row in rows if row.name == "fast_slip")
+    assert slip.value == pytest.approx(0.15) and not slip.ok
+    assert slip.null == 1.0
+    sheared = next(row for row in rows if row.name == "fast_slip_sheared")
+    assert sheared.value == pytest.approx(0.05)
 
 
 def test_what_is_timed_touches(sensor: Sensor) -> None:

@@ -114,7 +114,7 @@ def hardening(given: HardeningInputs, *, monitor: Monitor) -> Hardening:
 STAGE = Stage(
     name="hardening",
     label="Hardening of the skin",
-    version=3,
+    version=5,
     place=26,
     lane="sim",
     run=hardening,

@@ -20,6 +20,8 @@ from workbench.system.record import Record
 FITTED_LIMIT, OTHER_LIMIT = 0.06, 0.10
 """Error of the normal force of kinds whose presses were fitted, and of others."""
 SHEAR_LIMIT, TORQUE_LIMIT, ANGLE_LIMIT_DEG = 0.10, 0.15, 5.0
+SLIP_LIMIT = 0.10
+"""Of force here, of area in the contact solver."""
 HALF_MM, HALF_LIMIT, WHOLE_LIMIT = 0.5, 0.97, 0.96
 """SSIM asked up to this depth, and beyond."""
 FROM_MM = 0.2
@@ -91,6 +93,25 @@ def _rows(case: str, figures: dict[str, Any], of: tuple[str, Record]) -> Iterato
         unit="1",
         limit=TORQUE_LIMIT,
         null=1.0,
+        record=kept,
+    )
+    slips, full_slips = np.array(figures["slip"]), np.array(figures["full_slip"])
+    apart = np.abs(slips - full_slips)
+    yield bounded(
+        "fast_slip",
+        f"{case}, straight: largest difference of the share that slides; null: all slides",
+        float(apart[:down].max()),
+        unit="1",
+        limit=SLIP_LIMIT,
+        null=float(1.0 - full_slips[:down].min()),
+        record=kept,
+    )
+    yield stated(
+        "fast_slip_sheared",
+        f"{case}, {depth[-1]:g} mm, sheared: largest difference of the share that slides",
+        float(apart[down:].max()),
+        unit="1",
+        null=float(np.abs(1.0 - full_slips[down:]).max()),
         record=kept,
     )
     for number, score in figures["ssim"].items():

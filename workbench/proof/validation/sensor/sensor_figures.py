@@ -84,6 +84,8 @@ class Played:
     force_N: np.ndarray
     """By the sensor, shape (K, 3)."""
     torque_Nmm: np.ndarray
+    slip: np.ndarray
+    """Share that slides by the sensor, shape (K,)."""
     images: dict[int, tuple[float, float]]
     """Of a frame, SSIM in the box that changes, and that of no dent."""
     noted: int
@@ -116,6 +118,7 @@ def play(
         contact=contact,
         force_N=np.concatenate([frame.force_N for frame in frames]),
         torque_Nmm=np.concatenate([frame.torque_Nmm for frame in frames]),
+        slip=np.concatenate([frame.slip for frame in frames]),
         images=images,
         noted=sum(not frame.within_range[0] for frame in frames),
     )
@@ -158,6 +161,8 @@ def figures_of(played: Played) -> dict[str, Any]:
             np.linalg.norm(played.torque_Nmm[-1] - contact.moment_Nmm[-1]) / max(turning, 1e-9)
         ),
         "full_torque_Nmm": float(turning),
+        "slip": played.slip.tolist(),
+        "full_slip": contact.sliding_share.tolist(),
         "ssim": {str(number): pair[0] for number, pair in played.images.items()},
         "null_ssim": {str(number): pair[1] for number, pair in played.images.items()},
         "noted": played.noted,
