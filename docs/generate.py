@@ -13,6 +13,7 @@ from docs import (
     generate_command_line,
     generate_fields,
     generate_parts,
+    generate_scale,
     generate_speed,
     generate_trust,
 )
@@ -23,6 +24,7 @@ PAGES: dict[str, Callable[[], str]] = {
     "command-line.md": generate_command_line.page,
     "fields.md": generate_fields.page,
     "parts.md": generate_parts.page,
+    "scale.md": generate_scale.page,
     "speed.md": generate_speed.page,
     "trust.md": generate_trust.page,
 }

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from workbench.core.press.trajectory import Trajectory
     from workbench.door.force_network import ForceNetwork
     from workbench.door.results import Results, evaluate
-    from workbench.door.studies import compare, sweep
+    from workbench.door.studies import compare, search_designs, sweep
     from workbench.edit.indenter_choice import choose_indenter
     from workbench.learning.dataset.algorithms import finger_algorithm
     from workbench.learning.dataset.folder import DataSet
@@ -69,6 +69,7 @@ __all__ = [
     "load",
     "release",
     "roll",
+    "search_designs",
     "slide",
     "sweep",
     "twist",
@@ -100,6 +101,7 @@ _PLACES = {
     "load": "workbench.project.named_designs:load_design",
     "release": "workbench.core.press.motion",
     "roll": "workbench.core.press.motion",
+    "search_designs": "workbench.door.studies",
     "slide": "workbench.core.press.motion",
     "sweep": "workbench.door.studies",
     "twist": "workbench.core.press.motion",

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, cast
 
@@ -10,14 +12,18 @@ import numpy as np
 import pytest
 
 from tests.synthetic_presses import pad_recipe
+from workbench.cli.command_line import parser
+from workbench.cli.commands import task
 from workbench.cluster.opening import Cluster
-from workbench.core.base.errors import DesignError
+from workbench.core.base.errors import Cancelled, DesignError
 from workbench.learning.dataset.recipe import Solvers
+from workbench.learning.making import collect
 from workbench.learning.making.cluster_workers import cluster_pools
 from workbench.learning.making.collect import make
 from workbench.learning.making.worker_messages import Setup
 from workbench.pipeline.store import Store
 from workbench.project.project import Project
+from workbench.tasks import run
 
 
 class Blind:
@@ -38,6 +44,33 @@ def test_workers_that_do_not_see_the_folder_are_refused(tmp_path: Path) -> None:
             raise AssertionError("there are no pools")
     assert str(tmp_path) in caught.value.message and "disk" in caught.value.hint
     assert not list(tmp_path.iterdir())
+
+
+def test_presses_of_a_task_are_made_where_the_task_looks_for_them(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By the workers first: the same recipe in the same folder, so the task finds all of them."""
+    given = list[tuple[Any, Path, Any]]()
+
+    def noted(recipe: Any, folder: Path, project: Project, **how: Any) -> None:
+        given.append((recipe.key, folder, how.get("cluster")))
+        if "cluster" not in how:
+            raise Cancelled("far enough")
+
+    @contextlib.contextmanager
+    def opened(*_: object) -> Iterator[Cluster]:
+        yield Cluster(client=Blind(), shared=True, dashboard="")
+
+    monkeypatch.setattr(collect, "make", noted)
+    monkeypatch.setattr(run, "make", noted)
+    monkeypatch.setattr(task, "open_cluster", opened)
+    typed = ["task", "safety", "pad", "--out", str(tmp_path / "out"), "--cluster", "local:2"]
+    options = parser().parse_args([*typed, "--json"])
+    with pytest.raises(Cancelled):
+        task.run(options, Project(tmp_path / "project"))
+    there, here = given
+    assert there[:2] == here[:2] and there[1] == tmp_path / "out" / "data"
+    assert isinstance(there[2], Cluster) and here[2] is None
 
 
 @pytest.mark.slow

@@ -17,6 +17,7 @@ from workbench.proof.benchmarks import (
     optics,
     pipeline,
     sensor,
+    stages,
 )
 from workbench.proof.row import Row, gathered
 
@@ -35,6 +36,12 @@ def everything() -> list[Row]:
     return [row for room, rows in PARTS.items() for row in gathered(room, rows)]
 
 
-ROOMS = {**PARTS, "efficiency": efficiency.rows, "sensor": sensor.rows, "all": everything}
-"""`efficiency` measures what others do again, in the paper's sizes, and `sensor` needs a design
-that was condensed, so `all` leaves them out."""
+ROOMS = {
+    **PARTS,
+    "efficiency": efficiency.rows,
+    "sensor": sensor.rows,
+    "stages": stages.rows,
+    "all": everything,
+}
+"""`efficiency` measures what others do again, in the paper's sizes, `sensor` needs a design that
+was condensed, and `stages` a cluster and many minutes, so `all` leaves them out."""

@@ -5,9 +5,11 @@ from __future__ import annotations
 import argparse
 import contextlib
 from collections.abc import Iterator
+from concurrent.futures import CancelledError
 from typing import TYPE_CHECKING
 
-from workbench.cluster.where import read_where
+from workbench.cluster.scheduler_lost import scheduler_lost
+from workbench.cluster.where import AT, read_where
 from workbench.pipeline.store import Store
 from workbench.system.terminal import Progress, complain
 
@@ -46,7 +48,7 @@ def open_cluster(words: str | None, store: Store, printer: Progress) -> Iterator
 
     Raises:
         DesignError: If there is no such cluster.
-        LaneError: If no worker comes.
+        LaneError: If no worker comes, or the scheduler is lost while this lasts.
     """
     if words is None:
         yield None
@@ -58,4 +60,8 @@ def open_cluster(words: str | None, store: Store, printer: Progress) -> Iterator
         if not printer.as_json:
             how = "store shared" if cluster.shared else "results are sent"
             complain(f"{cluster.width} workers, {how}; Dask's page: {cluster.dashboard}")
-        yield cluster
+        try:
+            yield cluster
+        except CancelledError as error:
+            # Of what Dask had in hand; who asks to stop raises another one.
+            raise scheduler_lost(AT) from error

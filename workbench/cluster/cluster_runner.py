@@ -8,10 +8,12 @@ from __future__ import annotations
 
 import threading
 import time
+from concurrent.futures import CancelledError
 from typing import Any
 
 from workbench.cluster import remote
 from workbench.cluster.opening import Cluster
+from workbench.cluster.scheduler_lost import scheduler_lost
 from workbench.cluster.shipped import packed, unpacked
 from workbench.core.base.errors import Cancelled, LaneError, WorkbenchError
 from workbench.core.base.monitor import Monitor
@@ -48,7 +50,8 @@ class ClusterRunner:
 
         Raises:
             Cancelled: If the monitor raised it; the task ends at its next report.
-            LaneError: If the workers that tried it were lost one after the other.
+            LaneError: If the workers that tried it were lost one after the other, or the scheduler
+                was.
             WorkbenchError: Whatever the stage raises.
         """
         if self.store.has(call.stage, call.key):
@@ -99,6 +102,9 @@ class ClusterRunner:
                 hint="they may be out of memory: start fewer on a machine, or use a coarser mesh",
                 at=call.stage,
             ) from error
+        except CancelledError as error:
+            # Nobody else cancels what is waited for.
+            raise scheduler_lost(call.stage) from error
         finally:
             self._told.pop(f"{call.stage}-{call.key}", None)
         if self._cluster.shared:

@@ -1,10 +1,15 @@
-"""Several designs: one number in steps, and two of them side by side."""
+"""Several designs: one number in steps, two side by side, those that a search by goals finds."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 
+from workbench.core.base.monitor import Monitor, silent
+from workbench.core.base.packages import naming_packages
 from workbench.door.results import Results
+from workbench.project.project import Project
+from workbench.search.front import Found
 from workbench.variants.comparison import Change, changes
 from workbench.variants.sweep_computing import compute
 from workbench.variants.sweeps import Span, Sweep, make_sweep
@@ -44,3 +49,45 @@ def compare(a: Results, b: Results, stages: Sequence[str] = ("shoot", "maps")) -
     for results in (a, b):
         results.compute(*stages)
     return changes(a.figures, b.figures)
+
+
+def search_designs(
+    file: Path | str,
+    out: Path | str,
+    *,
+    trials: int | None = None,
+    minutes: float = float("inf"),
+    project: Project | Path | str | None = None,
+    monitor: Monitor | None = None,
+) -> Found:
+    """Designs looked for by goals, as `workbench search` does it; what is in `out` goes on.
+
+    Args:
+        file: What may vary, what is wanted and what must hold, as TOML.
+        out: Folder of the journal, the front and the report.
+        trials: Designs to compute in all; the file's number when left out.
+        minutes: No design is begun after so long.
+        project: Folder that keeps results; `.workbench`, or `$WORKBENCH_PROJECT`, by default.
+        monitor: Told fraction and note; one that raises `Cancelled` loses the running trial alone.
+
+    Returns:
+        All its `trials`, and of these the `front`: those within the limits that no other beats. Of
+        each there are `judged.parameters` and `judged.figures` by name.
+
+    Raises:
+        DesignError: If the file says what cannot be searched, or `out` holds another search.
+        PackageError: If a package is missing.
+        WorkbenchError: If nearly every design is refused.
+    """
+    with naming_packages():
+        from workbench.pipeline.devices import open_device
+        from workbench.search.loop import Budget
+        from workbench.search.problem_file import load_problem
+        from workbench.search.running import run_search
+
+        where = project if isinstance(project, Project) else Project(project)
+        problem = load_problem(Path(file), where)
+        wanted = problem.trials if trials is None else trials
+        open_device()
+        budget = Budget(trials=wanted, minutes=minutes)
+        return run_search(problem, where, Path(out), budget, monitor=monitor or silent)

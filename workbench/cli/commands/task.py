@@ -5,8 +5,9 @@ from __future__ import annotations
 import argparse
 import json
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from workbench.cli.cluster_option import add_cluster_option, open_cluster
 from workbench.cli.command import Command
 from workbench.cli.options import DESIGN, OUT
 from workbench.cli.press_arguments import add_set_option
@@ -14,6 +15,10 @@ from workbench.core.base.errors import DesignError
 from workbench.core.base.records import names
 from workbench.project.project import Project
 from workbench.system.terminal import Progress, say
+
+if TYPE_CHECKING:
+    from workbench.core.design.design import SensorDesign
+    from workbench.tasks.run import Plan
 
 SIZES = ("small", "paper")
 NETWORKS = ("small", "paper")
@@ -36,6 +41,7 @@ motion of the skin; paper: ResNet50, VGG19 and LSTM (default: small)"
     sub.add_argument("--data", type=Path, metavar="DIR", help=text)
     sub.add_argument("--no-twin", action="store_true", help="no test on a twin's photographs")
     sub.add_argument("--jobs", type=int, default=1, metavar="N", help="processes (default 1)")
+    add_cluster_option(sub)
     add_set_option(sub)
     sub.add_argument("--json", action="store_true", help="progress and results as JSON lines")
 
@@ -68,6 +74,8 @@ def run(options: argparse.Namespace, project: Project) -> int:
     prepare(options.out, clear=FILES)
     project.sweep()
     printer = Progress(as_json=options.json)
+    if options.cluster is not None:
+        press_on_cluster(design, plan, options, project, printer)
     result = run_task(
         design,
         plan,
@@ -84,6 +92,28 @@ def run(options: argparse.Namespace, project: Project) -> int:
         say(_line(row))
     say(f"open {options.out / REPORT}")
     return 0
+
+
+def press_on_cluster(
+    design: SensorDesign,
+    plan: Plan,
+    options: argparse.Namespace,
+    project: Project,
+    printer: Progress,
+) -> None:
+    """Make the presses of a task where `run_task` finds them; the rest of it runs here.
+
+    Raises:
+        LaneError: If the cluster has no worker, or loses its scheduler.
+        WorkbenchError: As `make`.
+    """
+    from workbench.learning.making.collect import make
+    from workbench.tasks.task import task_of
+
+    recipe = task_of(plan.task).recipe(design, plan.size)
+    folder = plan.data or options.out / "data"
+    with open_cluster(options.cluster, project.store, printer) as cluster:
+        make(recipe, folder, project, monitor=printer, cluster=cluster)
 
 
 def _line(row: dict[str, Any]) -> str:
