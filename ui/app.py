@@ -30,6 +30,7 @@ from ui.page.callbacks import run_in_order
 from ui.page.editor import Editor
 from ui.page.help import Help
 from ui.page.incoming import Incoming
+from ui.page.theme import Theme
 from ui.panels.page import pages
 from ui.panels.results.page import ResultsPanel
 from ui.panels.view.page import ViewPanel
@@ -40,7 +41,6 @@ from workbench.live.conductor import Conductor
 from workbench.live.lanes import LaneRunner
 from workbench.project.project import Project
 
-BRAND = (37, 99, 235)
 DRAWING = (
     "cv2",
     "scipy.sparse",
@@ -125,10 +125,10 @@ def build_desk(
     """Lay out all panels and show what is stored for the design."""
     run_in_order(server)
     gui = server.gui
-    gui.configure_theme(dark_mode=True, show_logo=False, show_share_button=False, brand_color=BRAND)
     gui.main_panel.dock_left()
     gui.main_panel.set_width(385)
     incoming = Incoming(server, editor)
+    Theme(server, incoming)
     with server.atomic():
         found = pages()
         guide = Help(server, incoming, {label: page.help for label, page in found.items()})
