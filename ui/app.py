@@ -30,6 +30,7 @@ from ui.page.callbacks import run_in_order
 from ui.page.editor import Editor
 from ui.page.help import Help
 from ui.page.incoming import Incoming
+from ui.page.style import mend
 from ui.page.theme import Theme
 from ui.panels.page import pages
 from ui.panels.results.page import ResultsPanel
@@ -126,10 +127,12 @@ def build_desk(
     run_in_order(server)
     gui = server.gui
     gui.main_panel.dock_left()
-    gui.main_panel.set_width(385)
+    # What the strip of stages needs to stand on one row.
+    gui.main_panel.set_width(345)
     incoming = Incoming(server, editor)
     Theme(server, incoming)
     with server.atomic():
+        mend(gui)
         found = pages()
         guide = Help(server, incoming, {label: page.help for label, page in found.items()})
         desk = Desk(server, session, conductor, editor, fast=fast)

@@ -1,0 +1,44 @@
+"""What the page's own style sheet mends of viser's; each rule says why.
+
+viser takes no style sheet, but shows HTML, and a sheet in it holds for the whole page. A rule whose
+part viser names otherwise one day holds for nothing: `tests/ui/test_looks.py` measures the page.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+SHEET = """<style>
+/* Names of widgets, hints in boxes, ends of sliders, notifications: viser's grey has a contrast of 3 to 4. */
+:root[data-mantine-color-scheme="dark"] {
+  --mantine-color-dimmed: #b4b4b4;
+  --mantine-color-placeholder: #a6a6a6;
+  --mantine-primary-color-light-color: #8ab4ff;
+}
+:root[data-mantine-color-scheme="light"] {
+  --mantine-color-dimmed: #565d64;
+  --mantine-color-placeholder: #666c72;
+}
+/* On a light page viser takes a paler shade of the brand, on which white has 3.6. */
+:root[data-mantine-color-scheme="light"] {
+  --mantine-color-custom-6: #2563eb;
+  --mantine-color-custom-7: #1d4fc4;
+}
+.mantine-Slider-markLabel, .mantine-Notification-description { color: var(--mantine-color-dimmed); }
+/* viser fades tabs that are not chosen, and the chosen one is too dark a blue on a dark page. */
+[role="tab"] { opacity: 1 !important; }
+:root[data-mantine-color-scheme="dark"] [role="tab"][aria-selected="true"] {
+  color: #8ab4ff !important;
+}
+/* A closed folder is a heading with a line, not a box with nothing in it. */
+.mantine-Paper-root:has(> .mantine-Paper-root > .tabler-icon-chevron-down) {
+  border-width: 1px 0 0;
+  border-radius: 0;
+  padding-bottom: 0;
+}
+</style>"""
+
+
+def mend(gui: Any) -> None:
+    """Lay the style sheet into the page; it is seen nowhere itself."""
+    gui.add_html(SHEET)
