@@ -22,15 +22,21 @@ from typing import Any
 from playwright.sync_api import sync_playwright
 
 from docs.page_shots import pressed
-from tests.ui.conftest import Server
+from tests.ui.conftest import SOFTWARE, Server
 from tests.ui.page_faults import Fault, docks_share, faults, places, quiet, unfold
 from tests.ui.widgets import DRAW_WHEN_LOOKED_AT, coarse_project, looking, tab
 from ui.page.theme import DARK, LIGHT, STORED
-from workbench.proof.benchmarks.browser import FLAGS
 
 OUT = Path("out/looks")
 SIZES = ((1280, 720), (1440, 900), (1920, 1080), (400, 800))
 """Pixels of a small laptop, a laptop, a desktop, and a window for reading results."""
+KEEP_DRAWN = """
+const open = HTMLCanvasElement.prototype.getContext;
+HTMLCanvasElement.prototype.getContext = function (kind, given) {
+  return open.call(this, kind, kind === "webgl2" ? {...given, preserveDrawingBuffer: true} : given);
+};
+"""
+"""What was drawn of the 3D view stays while nothing is drawn, for the pictures that follow."""
 CHOOSE = "localStorage.setItem('viser-user:{key}', '{choice}')"
 
 
@@ -43,14 +49,14 @@ def main(wanted: list[str]) -> None:
     shares: dict[str, float] = {}
     found: dict[Fault, list[str]] = defaultdict(list)
     with Server(project.resolve()) as server, sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=program, args=list(FLAGS))
+        browser = playwright.chromium.launch(executable_path=program, args=list(SOFTWARE))
         for width, height in SIZES:
             for choice in (DARK, LIGHT):
                 look = f"{width}x{height}-{choice}"
                 if wanted and not any(word in look for word in wanted):
                     continue
                 page = browser.new_page(viewport={"width": width, "height": height})
-                page.add_init_script(DRAW_WHEN_LOOKED_AT)
+                page.add_init_script(KEEP_DRAWN + DRAW_WHEN_LOOKED_AT)
                 page.add_init_script(CHOOSE.format(key=STORED, choice=choice))
                 opened(page, server.url)
                 shares[look] = docks_share(page)
@@ -91,9 +97,12 @@ def write(shares: dict[str, float], found: dict[Fault, list[str]]) -> None:
     text = json.dumps({"share_of_docks": shares, "faults": rows}, indent=1, ensure_ascii=False)
     (OUT / "faults.json").write_text(text + "\n", encoding="utf-8")
     lines = [f"docks take {100 * share:.0f} % of {look}" for look, share in shares.items()]
+    alike: dict[tuple[str, str], list[Fault]] = defaultdict(list)
     for fault in sorted(found):
-        where = found[fault]
-        lines.append(f"{fault.kind}: {fault.what} ({fault.more}), {len(where)} times: {where[0]}")
+        alike[fault.kind, fault.more].append(fault)
+    for (kind, more), group in alike.items():
+        what = ", ".join(fault.what for fault in group)
+        lines.append(f"{kind}, {more}: {what}; first in {found[group[0]][0]}")
     (OUT / "faults.txt").write_text("\n".join(lines) + "\n", encoding="utf-8")
     print("\n".join(lines))
 

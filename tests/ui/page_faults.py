@@ -12,6 +12,7 @@ from typing import Any
 
 FOLDED = ".mantine-Paper-root > .mantine-Paper-root:has(> .tabler-icon-chevron-down):visible"
 """Title of a folder that is closed."""
+TO_THE_TOP = "document.querySelectorAll('div').forEach((node) => { node.scrollTop = 0; })"
 TABS = '[role="tab"]:visible'
 NOTE = ".mantine-Notification-closeButton"
 
@@ -64,8 +65,8 @@ MEASURE = """
     const layers = [];
     for (let up = node; up; up = up.parentElement) {
       const style = getComputedStyle(up);
-      // Of a gradient or picture nothing is known.
-      if (style.backgroundImage !== "none") return null;
+      // Of a picture nothing is known; viser's gradients are the lines below tabs.
+      if (style.backgroundImage.includes("url(")) return null;
       layers.unshift(rgba(style.backgroundColor));
       if (layers[0][3] === 1) return layers.reduce((below, top) => over(top, below));
     }
@@ -154,6 +155,7 @@ def places(page: Any) -> Iterator[str]:
         page.locator(TABS).nth(number).click()
         # A tab's widgets are laid out after the click, and a fold opens slowly.
         page.wait_for_timeout(400)
+        page.evaluate(TO_THE_TOP)
         yield name.strip() or str(number)
 
 
