@@ -128,7 +128,7 @@ def build_desk(
     gui = server.gui
     gui.main_panel.dock_left()
     # What the strip of stages needs to stand on one row.
-    gui.main_panel.set_width(345)
+    gui.main_panel.set_width(350)
     incoming = Incoming(server, editor)
     Theme(server, incoming)
     with server.atomic():

@@ -156,6 +156,8 @@ def places(page: Any) -> Iterator[str]:
         # A tab's widgets are laid out after the click, and a fold opens slowly.
         page.wait_for_timeout(400)
         page.evaluate(TO_THE_TOP)
+        # On a narrow page all docks are in one sheet that scrolls.
+        page.locator(TABS).nth(number).scroll_into_view_if_needed()
         yield name.strip() or str(number)
 
 

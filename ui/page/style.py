@@ -30,6 +30,12 @@ SHEET = """<style>
 :root[data-mantine-color-scheme="dark"] [role="tab"][aria-selected="true"] {
   color: #8ab4ff !important;
 }
+/* Text may use the whole width: else the strip of stages takes two rows. */
+[style*="max-width: 95%"] { max-width: 100% !important; }
+/* A narrow window: the sheet at the bottom takes all of its width. */
+@media (max-width: 36em) {
+  [style*="width: 20em"] { width: 100% !important; }
+}
 /* A closed folder is a heading with a line, not a box with nothing in it. */
 .mantine-Paper-root:has(> .mantine-Paper-root > .tabler-icon-chevron-down) {
   border-width: 1px 0 0;
