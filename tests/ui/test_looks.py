@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
+import shutil
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -31,14 +33,19 @@ KNOWN: dict[tuple[str, str], str] = {}
 
 @pytest.fixture(scope="module")
 def found(
-    browser: Any, warm: WarmStart, tmp_path_factory: pytest.TempPathFactory
+    browser: Any,
+    warm: WarmStart,
+    pressed_store: Path,
+    tmp_path_factory: pytest.TempPathFactory,
 ) -> Iterator[list[tuple[str, Fault]]]:
     """Faults of every tab with all its folders open, with the tab's name."""
     project = coarse_project(tmp_path_factory.mktemp("looks"))
+    shutil.copytree(pressed_store, project / "store")
     with Server(project, warm=warm) as server:
         page = browser.new_page(viewport={"width": 1280, "height": 720})
         page.add_init_script(DRAW_WHEN_LOOKED_AT)
         open_page(page, server.url)
+        page.get_by_text("Image ✓").wait_for()
         rows = []
         for name in places(page):
             unfold(page)
