@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 SHEET = """<style>
-/* Names of widgets, hints in boxes, ends of sliders, notifications: viser's grey has a contrast of 3 to 4. */
+/* Names of widgets, hints, ends of sliders, notifications: viser's grey has 3 to 4 of contrast. */
 :root[data-mantine-color-scheme="dark"] {
   --mantine-color-dimmed: #b4b4b4;
   --mantine-color-placeholder: #a6a6a6;
@@ -19,10 +19,11 @@ SHEET = """<style>
   --mantine-color-dimmed: #565d64;
   --mantine-color-placeholder: #666c72;
 }
-/* On a light page viser takes a paler shade of the brand, on which white has 3.6. */
+/* On a light page viser takes paler shades of brand and grey, on which white has 3.3 to 3.6. */
 :root[data-mantine-color-scheme="light"] {
   --mantine-color-custom-6: #2563eb;
   --mantine-color-custom-7: #1d4fc4;
+  --mantine-color-gray-filled: #5c636a;
 }
 .mantine-Slider-markLabel, .mantine-Notification-description { color: var(--mantine-color-dimmed); }
 /* viser fades tabs that are not chosen, and the chosen one is too dark a blue on a dark page. */
