@@ -11,7 +11,7 @@ PARALLEL := -n auto --maxprocesses 4 --dist loadfile --no-loadscope-reorder
 ALONE := OMP_NUM_THREADS=1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test check demo bench docs format lock browser clean
+.PHONY: help setup run test check demo bench docs looks format lock browser clean
 
 help: ## Print this help
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "make %-8s %s\n", $$1, $$2}'
@@ -60,6 +60,9 @@ browser:
 
 docs: setup ## Write the pages that are made from the program
 	$(BIN)/python -m docs.generate
+
+looks: .venv/dev.stamp browser ## Photograph every page in all sizes, list what overlaps, is cut or faint
+	@CHROMIUM="$$(bash .ci/chromium)" $(BIN)/python -m docs.looks
 
 format: .venv/dev.stamp ## Format and sort imports
 	$(BIN)/ruff check --fix-only

@@ -30,6 +30,8 @@ from ui.page.callbacks import run_in_order
 from ui.page.editor import Editor
 from ui.page.help import Help
 from ui.page.incoming import Incoming
+from ui.page.style import mend
+from ui.page.theme import Theme
 from ui.panels.page import pages
 from ui.panels.results.page import ResultsPanel
 from ui.panels.view.page import ViewPanel
@@ -40,7 +42,6 @@ from workbench.live.conductor import Conductor
 from workbench.live.lanes import LaneRunner
 from workbench.project.project import Project
 
-BRAND = (37, 99, 235)
 DRAWING = (
     "cv2",
     "scipy.sparse",
@@ -125,11 +126,13 @@ def build_desk(
     """Lay out all panels and show what is stored for the design."""
     run_in_order(server)
     gui = server.gui
-    gui.configure_theme(dark_mode=True, show_logo=False, show_share_button=False, brand_color=BRAND)
     gui.main_panel.dock_left()
-    gui.main_panel.set_width(385)
+    # What the strip of stages needs to stand on one row.
+    gui.main_panel.set_width(350)
     incoming = Incoming(server, editor)
+    Theme(server, incoming)
     with server.atomic():
+        mend(gui)
         found = pages()
         guide = Help(server, incoming, {label: page.help for label, page in found.items()})
         desk = Desk(server, session, conductor, editor, fast=fast)

@@ -60,7 +60,7 @@ class Header:
         """Which stages are done, stale or running; those begun have told nothing yet."""
         active = {*begun, *(progress.stage for progress in running.values())}
         marks = {True: "✓", False: "○"}
-        text = " &nbsp;".join(
+        text = "&nbsp; ".join(
             f"{record.label} {'▶' if stage in active else marks[fresh[stage]]}"
             for stage, record in STAGES.items()
             if record.on_strip and stage in fresh

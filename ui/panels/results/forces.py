@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from viser import uplot
 
-from ui.page.colours import AMBER, BLUE, GREEN, WHITE
+from ui.page.colours import AMBER, BLUE, GREEN, GREY
 from workbench.core.press.press import Press
 from workbench.core.result.sensing import Contact
 from workbench.view.forces import gross_slip, slip_curve
@@ -33,7 +33,7 @@ class ForcesTab:
                 uplot.Series(label="depth mm"),
                 uplot.Series(label="normal force N", stroke=BLUE, width=2),
                 uplot.Series(label="tangential force N", stroke=AMBER, width=2),
-                uplot.Series(label="frame on show", stroke=WHITE, width=1),
+                uplot.Series(label="frame on show", stroke=GREY, width=1),
             ),
             scales={"x": uplot.Scale(time=False)},
             title="Force [N] against depth [mm], way in",
@@ -111,7 +111,7 @@ class ForcesTab:
             f"{slip_words(contact, k)}\n\n"
             f"peak {number(contact.normal_N.max(), '.3f')} N · residual "
             f"{number(contact.residual.max(), '.1e')} · force balance "
-            f"{number(100 * force_balance(contact), '.2f')} % · friction ratio ≤ "
+            f"{number(100 * force_balance(contact), '.2f')}\N{NO-BREAK SPACE}% · friction ratio ≤ "
             f"{number(contact.friction_ratio.max(), '.3f')}"
         )
         text = f"{note}\n\n{text}" if note else text

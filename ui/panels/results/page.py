@@ -58,6 +58,8 @@ class ResultsPanel:
             self.log = gui.add_html("")
         self.dock.dock_right()
         self.dock.set_width(350)
+        # On a narrow page docks are sections of one sheet, closed unless told otherwise.
+        self.dock.expand()
         self.timeline = Timeline(desk, self._show_frame)
 
     def _show_frame(self, number: int) -> None:

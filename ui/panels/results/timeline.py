@@ -52,6 +52,7 @@ class Timeline:
         with self.panel.add_tab("Pace"):
             self._pace()
         self.panel.float(x=15, y=-15, width=WIDTH_PX)
+        self.panel.expand()
         self.player = Player(self.frame)
         self.frame.on_update(guarded(lambda event: self.on_frame(self.number)))
         self.steps.on_click(guarded(lambda event: self._stepped()))

@@ -1,0 +1,51 @@
+"""What the page's own style sheet mends of viser's; each rule says why.
+
+viser takes no style sheet, but shows HTML, and a sheet in it holds for the whole page. A rule whose
+part viser names otherwise one day holds for nothing: `tests/ui/test_looks.py` measures the page.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+SHEET = """<style>
+/* Names of widgets, hints, ends of sliders, notifications: viser's grey has 3 to 4 of contrast. */
+:root[data-mantine-color-scheme="dark"] {
+  --mantine-color-dimmed: #b4b4b4;
+  --mantine-color-placeholder: #a6a6a6;
+  --mantine-primary-color-light-color: #8ab4ff;
+}
+:root[data-mantine-color-scheme="light"] {
+  --mantine-color-dimmed: #565d64;
+  --mantine-color-placeholder: #666c72;
+}
+/* On a light page viser takes paler shades of brand and grey, on which white has 3.3 to 3.6. */
+:root[data-mantine-color-scheme="light"] {
+  --mantine-color-custom-6: #2563eb;
+  --mantine-color-custom-7: #1d4fc4;
+  --mantine-color-gray-filled: #5c636a;
+}
+.mantine-Slider-markLabel, .mantine-Notification-description { color: var(--mantine-color-dimmed); }
+/* viser fades tabs that are not chosen, and the chosen one is too dark a blue on a dark page. */
+[role="tab"] { opacity: 1 !important; }
+:root[data-mantine-color-scheme="dark"] [role="tab"][aria-selected="true"] {
+  color: #8ab4ff !important;
+}
+/* Text may use the whole width: else the strip of stages takes two rows. */
+[style*="max-width: 95%"] { max-width: 100% !important; }
+/* A narrow window: the sheet at the bottom takes all of its width. */
+@media (max-width: 36em) {
+  [style*="width: 20em"] { width: 100% !important; }
+}
+/* A closed folder is a heading with a line, not a box with nothing in it. */
+.mantine-Paper-root:has(> .mantine-Paper-root > .tabler-icon-chevron-down) {
+  border-width: 1px 0 0;
+  border-radius: 0;
+  padding-bottom: 0;
+}
+</style>"""
+
+
+def mend(gui: Any) -> None:
+    """Lay the style sheet into the page; it is seen nowhere itself."""
+    gui.add_html(SHEET)
