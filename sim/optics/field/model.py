@@ -73,6 +73,8 @@ class Model:
     shading: Shading
     bake: Callable[[Lights, Monitor], Baked]
     """Light of each LED at each vertex of the undeformed skin."""
+    title: str = ""
+    """What designers read in the list; "" of one that goes by its name."""
     quick: bool = False
     """Whether it bakes while a hand moves a slider."""
     straight: bool = False

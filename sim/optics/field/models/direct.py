@@ -33,6 +33,7 @@ def bake(lights: Lights, monitor: Monitor) -> Baked:
 
 MODEL = Model(
     place=5,
+    title="direct light and shadows",
     hint="1/r², shadows and gloss, no scattered light; quick",
     shading=Shading.DIRECT,
     bake=bake,

@@ -26,6 +26,7 @@ def bake(lights: Lights, monitor: Monitor) -> Baked:
 
 MODEL = Model(
     place=4,
+    title="shortest way on the skin",
     hint="along the shortest way on the skin; the paper's geodesic field",
     shading=Shading.FIELD,
     bake=bake,

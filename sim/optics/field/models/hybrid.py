@@ -7,6 +7,7 @@ from sim.optics.field.model import Model, Shading
 
 MODEL = Model(
     place=7,
+    title="traced light and shadows",
     hint="traced photons, with the soft shadow of each LED; the best quick images",
     shading=Shading.HYBRID,
     bake=gathered,

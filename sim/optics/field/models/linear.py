@@ -14,6 +14,7 @@ def bake(lights: Lights, monitor: Monitor) -> Baked:
 
 MODEL = Model(
     place=0,
+    title="straight rays",
     hint="straight rays of even strength; the paper's linear field",
     shading=Shading.FIELD,
     bake=bake,

@@ -19,6 +19,7 @@ def bake(lights: Lights, monitor: Monitor) -> Baked:
 
 MODEL = Model(
     place=8,
+    title="traced anew each frame",
     hint="photons traced anew for every frame; slow, the reference",
     shading=Shading.GIVEN,
     bake=bake,

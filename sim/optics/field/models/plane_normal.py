@@ -26,6 +26,7 @@ def bake(lights: Lights, monitor: Monitor) -> Baked:
 
 MODEL = Model(
     place=3,
+    title="along the skin, by normals",
     hint="along the skin, in the plane of the light's normal; ours after the paper's",
     shading=Shading.FIELD,
     bake=bake,

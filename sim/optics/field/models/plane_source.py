@@ -32,6 +32,7 @@ def bake(lights: Lights, monitor: Monitor) -> Baked:
 
 MODEL = Model(
     place=2,
+    title="along the skin, as coded",
     hint="along the skin, in the plane of the way from axis to light; the paper's code",
     shading=Shading.FIELD,
     bake=bake,

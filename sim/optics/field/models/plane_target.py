@@ -20,6 +20,7 @@ def bake(lights: Lights, monitor: Monitor) -> Baked:
 
 MODEL = Model(
     place=1,
+    title="along the skin",
     hint="along the skin, in the plane of the target's normal; the paper's",
     shading=Shading.FIELD,
     bake=bake,

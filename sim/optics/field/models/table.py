@@ -7,6 +7,7 @@ from sim.optics.field.model import Model, Shading
 
 MODEL = Model(
     place=6,
+    title="traced light, quickest",
     hint="traced photons in a table over the skin's tilt; quickest images",
     shading=Shading.TABLE,
     bake=gathered,
