@@ -163,9 +163,8 @@ class Jobs:
             self.on_failed(error, event.job)
         elif error is not None and not self.asked_now(event.request, event.failed):
             # Its message would stand above a design that it does not tell of.
-            log(
-                f"{job_words(event.job)}, of an earlier design: {in_full(error.message, error.hint)}"
-            )
+            why = in_full(error.message, error.hint)
+            log(f"{job_words(event.job)}, of an earlier design: {why}")
         elif error is not None:
             self.reports.report(error, job="" if event.job in (SHAPE, DRAWN) else event.job)
             self.on_failed(error, event.job)
