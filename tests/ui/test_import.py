@@ -51,15 +51,15 @@ def test_bad_file_is_refused_and_a_box_becomes_a_sensor(
     assert "Cut off below mm" in labels(page)
     assert not page.get_by_text("bad.stl has no faces").count()
     page.get_by_text("preview: direct light, dent by geometry").wait_for()
-    choose(page, "Clicks label", "actuator_1")
+    choose(page, "Clicks label", "driven part 2")
     page.wait_for_timeout(1000)
     before = view(page)
     box = page.locator("canvas").first.bounding_box()
     page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
-    page.get_by_text("actuator_1", exact=False).filter(has_text="face").wait_for()
+    page.get_by_text("driven part 2", exact=False).filter(has_text="face").wait_for()
     page.mouse.move(box["x"] + 5, box["y"] + box["height"] - 5)
     wait_until(lambda: changed_share(before, view(page)) > TINTED, 60, "the face is tinted")
-    page.get_by_text("actuator_1 blue").first.wait_for()
+    page.get_by_text("driven part 2: blue").first.wait_for()
 
     other = tmp_path / "slab.stl"
     trimesh.creation.box((30.0, 30.0, 30.0)).export(other)

@@ -50,7 +50,7 @@ def test_light_model_lamp_lens_and_views(
     """A model, an area of light, a fisheye and a second camera: rendered, seen as normals."""
     server = start_server(pressed_project)
     optics(page, server, pressed=True)
-    choose(page, "Model", "linear")
+    choose(page, "Model", "straight rays")
     page.get_by_text("the paper's linear field").wait_for()
     folder(page, "LED ring")
     folder(page, "Further lights")
@@ -71,7 +71,7 @@ def test_light_model_lamp_lens_and_views(
     choose(page, "Show", "normals")
     page.get_by_text("normals toward the camera").wait_for()
     wait_until(lambda: image_source(page) != first, 20, "the image is another")
-    choose(page, "Show", "depth_z")
+    choose(page, "Show", "depth")
     page.get_by_text("depth along the optical axis").wait_for()
     page.screenshot(path=str(tmp_path / "views.png"))
     choose(page, "Camera", "camera 2")
@@ -126,7 +126,7 @@ def test_maps_are_measured_shown_and_read(
     page.get_by_role("tab", name="Maps").click()
     set_number(page, "View deg", 80)
     page.get_by_text("the design has changed").wait_for()
-    choose(page, "Model", "photons")
+    choose(page, "Model", "traced anew each frame")
     button(page, "Measure maps").click()
     page.get_by_text("leave no light to map").first.wait_for()
 

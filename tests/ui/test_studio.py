@@ -97,10 +97,10 @@ def test_strokes_are_run_in_order_and_named(
     choose(page, "Stroke", "slide")
     set_number(page, "Stroke frames", 2)
     button(page, "Add stroke").click()
-    page.get_by_text("1 slide:3,0 ×2").wait_for()
+    page.get_by_text("1 slide 3,0 ×2").wait_for()
     button(page, "Run press").click()
     wait_until(lambda: page.get_by_text("Image ✓").count(), 180, "the image is rendered")
-    page.get_by_text("frame 4 of 4, stroke 1: slide:3,0").wait_for()
+    page.get_by_text("frame 4 of 4, stroke 1: slide 3,0").wait_for()
     for quantity, unit in (("pressure", "kPa"), ("slip distance", "mm")):
         tab(page, "Skin").click()
         choose(page, "Colours", quantity)

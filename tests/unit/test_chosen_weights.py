@@ -94,7 +94,7 @@ def test_the_shipped_displacement_goes_with_the_shipped_force(
     force, displacement = weights_files(settings)
     assert force is not None and force.name == own.name and displacement is None
     assert offered(tmp_path, settings, "displacement") == {
-        f"shipped: {shipped.name}": str(shipped),
+        f"shipped, {shipped.name.partition('-')[0]}": str(shipped),
         "contact solver's own": "",
     }
     asked = LearnedSettings(weights=str(own), displacement=str(shipped))
@@ -211,7 +211,7 @@ def test_choices_are_those_of_the_project_and_what_stands(
     }
     shipped_file = force_file(none_shipped, friction=0.4)
     assert offered(project.folder, LearnedSettings(), "weights") == {
-        f"shipped: {shipped_file.name}": "",
+        f"shipped, {shipped_file.name.partition('-')[0]}": "",
         kept.name: str(kept),
     }
     moved = offered(project.folder, LearnedSettings(displacement=NONE), "displacement")

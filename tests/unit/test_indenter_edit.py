@@ -3,31 +3,37 @@
 from __future__ import annotations
 
 import dataclasses
+from collections import Counter
 
 import numpy as np
 import pytest
 
 from workbench.core.base.errors import DesignError
+from workbench.core.objects.kind import Group
 from workbench.core.press.indenter import SEEN, UNSEEN, Indenter, IndenterKind
 from workbench.core.press.texture import Pattern, Texture
 from workbench.edit.indenter_edit import (
     another,
     edge_mm,
     gallery,
+    gallery_heading,
     pictured,
     resized,
     rounded,
     uploaded,
 )
+from workbench.view.object_words import EVERYDAY, HEADINGS
 
 
 def test_gallery_holds_every_object_once() -> None:
     """10 seen, 4 unseen, 14 as released with their sizes, other primitives, everyday objects."""
     names = gallery()
-    assert sum(label.startswith("released") for label in names) == 14
-    assert names["released: sphere r27 12 mm"] == "released_sphere_r27"
-    assert sum(label.startswith("seen") for label in names) == len(SEEN) == 10
-    assert sum(label.startswith("unseen") for label in names) == len(UNSEEN) == 4
+    assert names["sphere r27, 12 mm"] == "released_sphere_r27"
+    under = Counter(gallery_heading(name) for name in names.values())
+    assert under[HEADINGS[Group.RELEASED]] == 14
+    assert under[HEADINGS[Group.SEEN]] == len(SEEN) == 10
+    assert under[HEADINGS[Group.UNSEEN]] == len(UNSEEN) == 4
+    assert under[EVERYDAY] == 3
     primitives = {kind.value for kind in IndenterKind if kind is not IndenterKind.MESH}
     assert primitives < set(names.values())
     assert {"mug", "screwdriver", "banana"} <= set(names.values())

@@ -69,7 +69,7 @@ def test_an_error_of_what_nobody_asked_for_is_only_logged(jobs: Jobs, told: Told
     """Learned forces follow a press by themselves: one line in the log, nothing red."""
     jobs.pump([failed(PREDICTION)])
     assert told.errors == []
-    assert told.lines == ["prediction: no face is sensing. Name one."]
+    assert told.lines == ["forces by the network: no face is sensing. Name one."]
 
 
 def test_an_error_of_another_design_is_only_logged(jobs: Jobs, told: Told) -> None:

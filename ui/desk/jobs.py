@@ -16,6 +16,7 @@ from workbench.core.base.units import human_seconds
 from workbench.core.design.design import SensorDesign
 from workbench.core.press.press_case import PressCase
 from workbench.live.conductor import Conductor
+from workbench.live.job_words import job_words
 from workbench.live.preview_call import PreviewCall
 from workbench.live.requests import (
     CUT,
@@ -75,7 +76,7 @@ class Jobs:
     ) -> None:
         """Ask for stages; `then` takes the place of reporting how it ended."""
         if job not in QUIET:
-            self.reports.log(f"{job}: started")
+            self.reports.log(f"{job_words(job)}: started")
         # Under the pump's lock, so that its end is not handled before it is known who waits.
         with self.reports.lock:
             self._wait(self.conductor.submit(job, design, case, wanted), then)
@@ -85,7 +86,7 @@ class Jobs:
 
         The answer itself goes to `on_preview`, before.
         """
-        self.reports.log(f"{job}: started")
+        self.reports.log(f"{job_words(job)}: started")
         with self.reports.lock:
             self._wait(self.conductor.ask(job, state.design, state.case, call), then)
 
@@ -135,11 +136,11 @@ class Jobs:
         if event.superseded:
             if not quiet:
                 # Who waited for it is not told: the newer request has its own.
-                log(f"{event.job}: replaced by a newer request")
+                log(f"{job_words(event.job)}: replaced by a newer request")
         elif isinstance(error, Cancelled):
             if not quiet:
-                log(f"{event.job}: cancelled")
-                text = f"{event.job} was stopped; earlier results are kept"
+                log(f"{job_words(event.job)}: cancelled")
+                text = f"{job_words(event.job)} was stopped; earlier results are kept"
                 self.reports.notify("Cancelled", text)
             if then is not None:
                 then(event)
@@ -148,23 +149,24 @@ class Jobs:
         elif error is not None and event.job in (FORESIGHT, IMAGE_PREVIEW, CUT):
             # What was wrong with the design itself is told, once, by the job of its shape.
             if not event.failed:
-                log(f"{event.job}: {in_full(error.message, error.hint)}")
+                log(f"{job_words(event.job)}: {in_full(error.message, error.hint)}")
             self.on_failed(error, event.job)
         elif error is not None and event.job == TOUCH:
             # The contact solver is asked instead, and tells what is wrong with the press itself.
-            log(f"{event.job}: {in_full(error.message, error.hint)}")
+            log(f"{job_words(event.job)}: {in_full(error.message, error.hint)}")
             self.on_failed(error, event.job)
         elif error is not None and event.job == PREDICTION:
             # Nobody asked for it; who asks by the button is told.
-            log(f"{event.job}: {in_full(error.message, error.hint)}")
+            log(f"{job_words(event.job)}: {in_full(error.message, error.hint)}")
         elif error is not None and event.job == LIVE:
             self.reports.report(error)
             self.on_failed(error, event.job)
         elif error is not None and not self.asked_now(event.request, event.failed):
             # Its message would stand above a design that it does not tell of.
-            log(f"{event.job}, of an earlier design: {in_full(error.message, error.hint)}")
+            why = in_full(error.message, error.hint)
+            log(f"{job_words(event.job)}, of an earlier design: {why}")
         elif error is not None:
             self.reports.report(error, job="" if event.job in (SHAPE, DRAWN) else event.job)
             self.on_failed(error, event.job)
         elif not quiet:
-            log(f"{event.job}: finished in {human_seconds(event.seconds)}")
+            log(f"{job_words(event.job)}: finished in {human_seconds(event.seconds)}")

@@ -16,6 +16,7 @@ from ui.page.colours import RED
 from ui.page.fields import Fields
 from ui.page.plain import plain
 from workbench.core.base.errors import WorkbenchError
+from workbench.live.job_words import job_words
 
 NOTICE_S = 15.0
 LOG_LINES = 200
@@ -126,7 +127,8 @@ class Reports:
             self.places[job].content = f"<span style='color:{RED}'>{text}</span>"
             self.places[job].visible = True
         if job or not at_field:
-            title = f"{job.capitalize()} failed" if job else "Not possible"
+            what = job_words(job)
+            title = f"{what[0].upper()}{what[1:]} failed" if job else "Not possible"
             self.notices += self.notify(title, words, color="red")
         self._crashes[error.hint] += 1
         if "\n" in error.hint and self._crashes[error.hint] == 1:

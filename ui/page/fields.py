@@ -8,8 +8,10 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from ui.page.callbacks import put
+from ui.page.choice_hint import told_with_name
 from ui.page.field_words import Field, find_field, in_words, refused_html
 from workbench.core.base.errors import WorkbenchError
+from workbench.view.choice_words import named
 
 TYPED_S = 0.8
 """Quiet time after which a text is read: viser tells of every letter [s]."""
@@ -100,8 +102,11 @@ class Fields:
         return True
 
     def choice(self, label: str, path: str, options: Sequence[Any], *, hint: str = "") -> Any:
-        """A drop-down over the members of an enumeration."""
-        return self.options(label, path, {str(m.value): m for m in options}, hint=hint)
+        """A drop-down over the members of an enumeration, in words; its hint tells their names."""
+        choices = named(options)
+        handle = self.options(label, path, choices, hint=hint)
+        told_with_name(handle, hint, {text: str(m.value) for text, m in choices.items()})
+        return handle
 
     def options(self, label: str, path: str, named: Mapping[str, Any], *, hint: str = "") -> Any:
         """A drop-down over values with names for people."""

@@ -80,7 +80,9 @@ class Header:
             self.progress.value = 100.0 * now.fraction
             left = f"about {human_seconds(now.eta_s)} left" if now.eta_s is not None else ""
             name = label_of(now.stage)
-            parts = (f"{name} {100 * now.fraction:.0f} %", left, plain(now.note))
+            # How far forces are from balance says nothing to who waits.
+            note = now.note.partition(", residual ")[0]
+            parts = (f"{name} {100 * now.fraction:.0f} %", left, plain(note))
             self.progress_text.content = " · ".join(part for part in parts if part)
 
     def show_notice(self, notices: Mapping[str, str]) -> None:

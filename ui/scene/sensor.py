@@ -14,6 +14,7 @@ import numpy as np
 from ui.scene.nodes import Meshes
 from workbench.core.result.results import Label, Solid
 from workbench.project.aim import SkinPlace, skin_place
+from workbench.view.region_words import region_words
 from workbench.view.scene_shapes import first_hit, outer_faces, skin_parts
 from workbench.view.section_cut import Plane, clip
 
@@ -92,8 +93,10 @@ class SensorView:
         numbers = sorted(
             int(name.partition("_")[2]) for name in self.skin.nodes if name.startswith("actuator_")
         )
-        names = (f"actuator_{n} {ACTUATOR_NAMES[n % len(ACTUATOR_NAMES)]}" for n in numbers)
-        return ", ".join(names)
+        return ", ".join(
+            f"{region_words(f'actuator_{n}')}: {ACTUATOR_NAMES[n % len(ACTUATOR_NAMES)]}"
+            for n in numbers
+        )
 
     def dim(self, dimmed: bool) -> None:
         """Draw it as a shadow of what was, while another sensor's body is built, or as it is."""

@@ -86,7 +86,7 @@ class ClusterRunner:
         while not future.done():
             if self._stopped.is_set():
                 raise Cancelled("cancelled by the user")
-            monitor(*self._told.get(name, (0.0, "waiting for a worker")))
+            monitor(*self._told.get(name, (0.0, "waiting for a free machine")))
             time.sleep(POLL_S)
 
     def _taken(self, call: Call, future: Any) -> Outcome:

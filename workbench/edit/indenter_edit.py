@@ -27,6 +27,7 @@ from workbench.edit.indenter_choice import (
 from workbench.pipeline.store import Store
 from workbench.planning.plan import plan
 from workbench.system.uploads import MOST_BYTES, check_upload, own_name, uploaded_file
+from workbench.view.object_words import heading, object_words
 
 AT = "indenter"
 SMALLER_MESH = "reduce the mesh, or use workbench run --indenter FILE"
@@ -36,27 +37,21 @@ SAFE = 1.0 / 1.01
 
 
 def gallery() -> dict[str, str]:
-    """Names of all objects by their label: the paper's by group, then the others."""
+    """Names of all objects by their words: the paper's by group, then the others."""
     from geometry.objects.everyday import EVERYDAY
 
     found = {
-        f"{group}: {_label(kind)}": kind.value
+        object_words(kind.value, kind_of(kind)): kind.value
         for group in Group
         for kind in IndenterKind
         if kind_of(kind).group is group and kind is not OF_TRIANGLES
     }
-    return {**found, **{f"everyday: {_words(name)}": name for name in EVERYDAY}}
+    return {**found, **{object_words(name): name for name in EVERYDAY}}
 
 
-def _label(kind: IndenterKind) -> str:
-    """What a kind is called under the heading of its group; a released head with its size."""
-    record = kind_of(kind)
-    words = _words(kind.removeprefix(f"{record.group}_"))
-    return words if record.own_mm is None else f"{words} {record.own_mm:.3g} mm"
-
-
-def _words(name: str) -> str:
-    return name.replace("_", " ")
+def gallery_heading(name: str) -> str:
+    """Under which an object of the gallery stands."""
+    return heading(kind_of(name) if name in set(IndenterKind) else None)
 
 
 def another(name: str, now: Indenter) -> Indenter:
@@ -112,7 +107,7 @@ def rounded(indenter: Indenter, radius_mm: float) -> Indenter:
         return dataclasses.replace(indenter, mesh_rounding_mm=radius_mm)
     if indenter.record.edge_share is None:
         raise DesignError(
-            f"a {_words(indenter.kind)} has no edges to round",
+            f"a {object_words(indenter.kind.value)} has no edges to round",
             hint=f"the radius is for objects with edges; {DEFAULT_EDGE_RADIUS_MM:g} mm is usual",
             at="indenter.edge_radius_mm",
         )

@@ -47,6 +47,13 @@ WARM_UP = {
 while the other two are busy. A lane of another name imports what its calls need as they come.
 """
 
+WAITING = {
+    "cad": "waiting until another body is shaped or meshed",
+    "sim": "waiting until another press or image is done",
+    "look": "waiting until another preview is done",
+}
+"""What is told of a call whose lane works on another one."""
+
 
 class Lane:
     """One worker process; `run` blocks the calling thread until the call is done."""
@@ -91,7 +98,7 @@ class Lane:
 
     def _in_turn(self, call: Call | PreviewCall, monitor: Monitor, grace_s: float) -> Any:
         while not self._turn.acquire(timeout=0.1):
-            monitor(0.0, f"waiting for the {self.name} worker")
+            monitor(0.0, WAITING.get(self.name, "waiting for other work to end"))
         try:
             return self._run(call, monitor, grace_s)
         finally:

@@ -182,7 +182,7 @@ class PressPreviewer:
             contact=contact,
             images=images,
             seconds=seconds,
-            words=f"settled in {seconds:.2f} s ({self._live.way}, {contact.substeps} substeps)",
+            words=f"settled in {seconds:.2f} s ({self._live.way})",
         )
 
 

@@ -108,7 +108,8 @@ def offered(folder: Path, settings: LearnedSettings, field: str) -> dict[str, st
     if is_shipped(target):
         path = shipped_weights(target)
         alone = target is Target.DISPLACEMENT and settings.weights != SHIPPED
-        found[f"shipped: {path.name}"] = str(path) if alone else SHIPPED
+        size = path.name.partition("-")[0]
+        found[f"shipped, {size}"] = str(path) if alone else SHIPPED
     if target is Target.DISPLACEMENT:
         # Where none ships, or none goes with the force network, asking for it comes to the same.
         plain = now == SHIPPED and SHIPPED not in found.values()

@@ -10,6 +10,7 @@ import math
 import numpy as np
 
 from workbench.core.press.press import Press
+from workbench.view.choice_words import stroke_words
 
 MISSING = "–"
 
@@ -34,7 +35,7 @@ def _moved(press: Press, frame: int) -> str:
     for number, stroke in enumerate(press.strokes, start=1):
         last += stroke.frames
         if frame <= last:
-            return f"stroke {number}: {stroke.text}"
+            return f"stroke {number}: {stroke_words(stroke)}"
     return "at rest"
 
 

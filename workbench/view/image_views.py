@@ -31,7 +31,7 @@ class View(enum.StrEnum):
     IMAGE = "image"
     DIFFERENCE = "difference"
     NORMALS = "normals"
-    DEPTH = "depth_z"
+    DEPTH = "depth"
     MARKERS = "markers"
     MOTION = "marker motion"
     CONTACT = "contact mask"

@@ -9,10 +9,12 @@ import viser
 from sim.optics.field.model import model_of
 from ui.desk.desk import Desk
 from ui.page.callbacks import put
+from ui.page.choice_hint import told_with_name
 from workbench.core.design.optics import Composition, MarkerPattern
 from workbench.core.design.photo import PICTURE_ENDINGS, photo
 from workbench.project.photos import shipped_photos
 from workbench.system.uploads import own_name
+from workbench.view.picture_words import picture_words
 
 COATING, MARKERS = "design.optics.coating", "design.optics.markers"
 BACKGROUND = "design.optics.background"
@@ -55,7 +57,7 @@ class AppearanceFolders:
             "Pattern",
             f"{MARKERS}.pattern",
             list(MarkerPattern),
-            hint="even: over the whole skin; grid or rings about the tip; picture: of a file",
+            hint="How the dots lie; one from a picture is loaded below",
         )
         span = (0.5, 10.0, 0.25)
         fields.slider(
@@ -85,12 +87,14 @@ class AppearanceFolders:
         hint = "A photograph of the sensor at rest, to which the contact is added"
         self.background = gui.add_dropdown("Background", (RENDERED,), hint=hint)
         self.background.on_update(desk.guarded(self._choose))
+        files = {picture_words(name): name for name in shipped_photos()}
+        told_with_name(self.background, hint, files)
         fields.anchor("Background", BACKGROUND)
         hint = "Of as many pixels as the camera has"
         self.photograph = gui.add_upload_button("Load photograph", mime_type=PICTURES,
                                                 icon=viser.Icon.PHOTO_UP, hint=hint)  # fmt: skip
         self.photograph.on_upload(desk.guarded(self._load_photograph))
-        hint = "absolute: dents cast shadows on all of the skin, which takes longer"
+        hint = "All anew takes longer: dents then cast shadows on all of the skin"
         path = "design.optics.composition"
         fields.choice("Composition", path, list(Composition), hint=hint)
         hint = "Textures of the object that are finer than the contact's grid"
@@ -115,9 +119,10 @@ class AppearanceFolders:
     def _choose(self, event: Any) -> None:
         if event.client is None:
             return
-        name, now = self.background.value, self.desk.session.design.optics.background
-        if now is None or name != now.name:
-            self.desk.edit(BACKGROUND, shipped_photos().get(name))
+        chosen, now = self.background.value, self.desk.session.design.optics.background
+        if now is None or chosen != picture_words(now.name):
+            shipped = {picture_words(name): photo for name, photo in shipped_photos().items()}
+            self.desk.edit(BACKGROUND, shipped.get(chosen))
         self.refresh()
 
     def refresh(self) -> None:
@@ -131,8 +136,8 @@ class AppearanceFolders:
         pictured = optics.markers.pattern is MarkerPattern.PICTURE
         reveal(f"{MARKERS}.picture_mm", pictured)
         reveal(f"{MARKERS}.spacing_mm", not pictured)
-        now = RENDERED if optics.background is None else optics.background.name
-        names = (RENDERED, *shipped_photos())
+        now = RENDERED if optics.background is None else picture_words(optics.background.name)
+        names = (RENDERED, *map(picture_words, shipped_photos()))
         names = names if now in names else (*names, now)
         if tuple(self.background.options) != names:
             self.background.options = names

@@ -82,14 +82,14 @@ class CameraFolders:
             "Lens",
             f"{FIRST}.lens",
             list(LensModel),
-            hint="Projection: pinhole for narrow views, equidistant for fisheyes, or OpenCV's",
+            hint="Ordinary for narrow views, fisheye for wide ones; calibrated ones by OpenCV",
         )
         fields.text(
             "Distortion",
             f"{FIRST}.distortion",
             read=lambda text: read_numbers(text, at=f"{self.path.split('.', 1)[1]}.distortion"),
             write=number_words,
-            hint="opencv: k1, k2, p1, p2, k3; opencv_fisheye: k1 to k4; empty is none",
+            hint="Of calibrated lenses: k1, k2, p1, p2, k3; of fisheyes k1 to k4; empty is none",
         )
         fields.number(
             "Width px",

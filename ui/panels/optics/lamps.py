@@ -13,7 +13,10 @@ from workbench.core.design.lighting import Lamp, LampKind, LedMount
 from workbench.edit.item_fields import without_item
 from workbench.edit.light_edit import colour_words, new_lamp, read_colour
 from workbench.system.names import NONE
+from workbench.view.choice_words import named, words
 
+LAMP_KINDS = named(LampKind)
+"""Lamps by what designers read."""
 LAMPS, AMBIENT = "design.optics.lamps", "design.optics.ambient"
 
 
@@ -30,7 +33,7 @@ class LampsFolder:
         with gui.add_folder("Further lights", expand_by_default=False):
             self.add = gui.add_button_group(
                 "Add lamp",
-                tuple(kind.value for kind in LampKind),
+                tuple(LAMP_KINDS),
                 hint="A point, a line or an area of light, beside the ring",
             )
             self.add.on_click(desk.guarded(self._add))
@@ -68,7 +71,7 @@ class LampsFolder:
         return self.desk.session.design.optics.lamps
 
     def _add(self, event: Any) -> None:
-        lamp = new_lamp(LampKind(event.target.value), self.desk.session.design.optics.ring)
+        lamp = new_lamp(LAMP_KINDS[event.target.value], self.desk.session.design.optics.ring)
         self.number = len(self.lamps) + 1
         self._put((*self.lamps, lamp))
 
@@ -88,7 +91,7 @@ class LampsFolder:
         """List the lamps as they stand, and edit the chosen one."""
         lamps = self.lamps
         self.number = max(1, min(self.number, len(lamps)))
-        names = tuple(f"lamp {k}: {lamp.kind.value}" for k, lamp in enumerate(lamps, 1)) or (NONE,)
+        names = tuple(f"lamp {k}: {words(lamp.kind)}" for k, lamp in enumerate(lamps, 1)) or (NONE,)
         if tuple(self.choice.options) != names:
             self.choice.options = names
         put(self.choice, names[self.number - 1])
@@ -156,7 +159,7 @@ class LampsFolder:
             "Sits in",
             f"{path}.mount",
             list(LedMount),
-            hint="cavity: in the air behind the skin; shell: in the clear support",
+            hint="What surrounds the lamp",
         )
         fields.anchor("Lamp", path)
 

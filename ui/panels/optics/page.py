@@ -94,7 +94,7 @@ class OpticsPanel:
             "Mount",
             f"{RING}.mount",
             list(LedMount),
-            hint="cavity: in the air behind the skin; shell: in the clear support",
+            hint="What surrounds the LEDs; those in the support light it from its edge",
         )
         hint = "Of each sector: red, #ff0000, 525nm, 525nm/35nm or 5600K, with commas between"
         fields.text(

@@ -15,6 +15,7 @@ from typing import Any
 import viser
 
 from ui.desk.desk import Desk
+from ui.page.choice_hint import told_with_name
 from ui.page.plain import plain
 from workbench.core.base.errors import Cancelled, DesignError, WorkbenchError
 from workbench.core.design.design import SensorDesign
@@ -28,9 +29,14 @@ from workbench.core.design.imported import (
 )
 from workbench.live.requests import Finished
 from workbench.system.uploads import MOST_BYTES, check_upload, own_name
+from workbench.view.choice_words import named, words
+from workbench.view.region_words import region_words
 
 AIM = "nothing: a click aims"
-REGIONS = ("base", *(f"actuator_{i}" for i in range(4)))
+REGIONS = {region_words(name): name for name in ("base", *(f"actuator_{i}" for i in range(4)))}
+"""Labels of faces by what designers read."""
+UNITS = named(LengthUnit)
+"""Units by what designers read."""
 BODY = "design.body"
 
 
@@ -43,8 +49,8 @@ class IntakeFolder:
         """What was last uploaded, kept until it is read: another unit may make it readable."""
         gui, fields = desk.server.gui, desk.fields
         hint = "Of an STL; a STEP file says its own"
-        units = tuple(unit.value for unit in LengthUnit)
-        self.unit = gui.add_dropdown("File unit", units, hint=hint)
+        self.unit = gui.add_dropdown("File unit", tuple(UNITS), hint=hint)
+        told_with_name(self.unit, hint, UNITS)
         self.unit.on_update(desk.guarded(self._choose_unit))
         fields.anchor("File unit", f"{BODY}.unit")
         hint = "The sensing side as a closed body, at most 40 MB; replaces the design"
@@ -77,6 +83,7 @@ class IntakeFolder:
         self.drop.on_click(desk.guarded(self._drop_inner))
         hint = "A second click on a face takes the label back"
         self.label = gui.add_dropdown("Clicks label", (AIM, *REGIONS), hint=hint)
+        told_with_name(self.label, hint, REGIONS)
         fields.anchor("Clicks label", f"{BODY}.picks")
 
     @property
@@ -88,7 +95,7 @@ class IntakeFolder:
         return self._received(self.outer, at="body.outer")
 
     def _load_outer(self, file: BodyFile) -> None:
-        unit = LengthUnit(self.unit.value)
+        unit = UNITS[self.unit.value]
         self._try(ImportedBody(outer=file, unit=unit))
 
     def _sent_inner(self) -> BodyFile:
@@ -105,7 +112,7 @@ class IntakeFolder:
     def _choose_unit(self, event: Any) -> None:
         body = self.trial or self.body
         if event.client is not None and body is not None:
-            self._try(dataclasses.replace(body, unit=LengthUnit(self.unit.value)))
+            self._try(dataclasses.replace(body, unit=UNITS[self.unit.value]))
 
     def _mend(self, event: Any) -> None:
         if self.trial is not None:
@@ -174,13 +181,13 @@ class IntakeFolder:
         solid, body = self.desk.scene.body.solid, self.body
         if self.label.value == AIM or body is None or solid is None or not len(solid.patches):
             return False
-        patch, region = int(solid.patches[face]), self.label.value
+        patch, region = int(solid.patches[face]), REGIONS[self.label.value]
         if patch >= 0:
             kept = tuple(pick for pick in body.picks if pick.patch != patch)
             again = Pick(patch=patch, region=region) in body.picks
             new = () if again else (Pick(patch=patch, region=region),)
             self.desk.edit(f"{BODY}.picks", (*kept, *new))
-            self.desk.log(f"face {patch}: {'no label' if again else region}")
+            self.desk.log(f"face {patch}: {'no label' if again else region_words(region)}")
         return True
 
     def refresh(self) -> None:
@@ -190,8 +197,8 @@ class IntakeFolder:
         self.drop.visible = body is not None and body.inner is not None
         if body is None:
             self.label.value = AIM
-        elif self.unit.value != body.unit.value:
-            self.unit.value = body.unit.value
+        elif self.unit.value != words(body.unit):
+            self.unit.value = words(body.unit)
         if self.trial is None:
             self.said.content = "" if body is None else _summary(body)
 
@@ -206,5 +213,6 @@ def _name(body: ImportedBody) -> str:
 
 def _summary(body: ImportedBody) -> str:
     inner = "even wall" if body.inner is None else f"inner {plain(body.inner.name)}"
-    picks = ", ".join(f"face {pick.patch} {plain(pick.region)}" for pick in body.picks)
+    labels = ((pick.patch, region_words(pick.region)) for pick in body.picks)
+    picks = ", ".join(f"face {patch}: {plain(label)}" for patch, label in labels)
     return " · ".join(part for part in (f"outer {plain(body.outer.name)}", inner, picks) if part)

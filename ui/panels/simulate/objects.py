@@ -10,6 +10,7 @@ import viser
 
 from ui.desk.desk import Desk
 from ui.page.callbacks import put
+from ui.page.choice_hint import told_with_name
 from ui.page.gallery import Card
 from ui.panels.simulate.touching import TouchingRows
 from workbench.core.base.errors import Cancelled, DesignError
@@ -24,6 +25,7 @@ from workbench.edit.indenter_edit import (
     cad_trial,
     edge_mm,
     gallery,
+    gallery_heading,
     needs_cad,
     pictured,
     resized,
@@ -33,16 +35,12 @@ from workbench.edit.indenter_edit import (
 from workbench.edit.shipped_thumbnails import shipped_thumbnail
 from workbench.live.object_file import ObjectFile
 from workbench.live.requests import Finished
+from workbench.view.choice_words import named, words
 
 JOB = "object"
 LOADED = "loaded mesh"
-PLAIN = tuple(p.value for p in Pattern if p is not Pattern.IMAGE)
-GROUPS = {
-    "seen": "The paper's, seen in training",
-    "unseen": "The paper's, unseen in training",
-    "released": "The paper's, in the sizes that were released",
-}
-"""Headings of the gallery, by the first word of a label."""
+PATTERNS = named((*(p for p in Pattern if p is not Pattern.IMAGE), Pattern.IMAGE))
+"""Textures by what designers read."""
 SPAN_MM, MESH_SPAN_MM = 30.0, 300.0
 """Ends of the size slider."""
 
@@ -61,13 +59,12 @@ class ObjectFolder:
         gui, guarded = desk.server.gui, desk.guarded
         now = desk.session.case.indenter
         with gui.add_folder("Object"):
-            hint = (
-                "The paper's objects, seen or unseen in training or as released; others; everyday"
-            )
+            hint = "What is pressed in; the gallery shows all as pictures"
             self.kind = gui.add_dropdown(
                 "Object shape", (*self.names, LOADED), initial_value=self._label(now), hint=hint
             )
             self.kind.on_update(guarded(self._choose))
+            told_with_name(self.kind, hint, self.names)
             hint = "All objects as pictures of the face that touches"
             button = gui.add_button("Gallery of objects", icon=viser.Icon.LAYOUT_GRID, hint=hint)
             button.on_click(guarded(self._open_gallery))
@@ -95,12 +92,12 @@ class ObjectFolder:
 
     def _texture_widgets(self, now: Indenter) -> None:
         gui, guarded, texture = self.desk.server.gui, self.desk.guarded, now.texture
+        hint = "What is raised on the face that touches"
+        now_raised = words(texture.pattern)
         self.pattern = gui.add_dropdown(
-            "Pattern",
-            (*PLAIN, Pattern.IMAGE.value),
-            initial_value=texture.pattern.value,
-            hint="What is raised on the face that touches",
+            "Pattern", tuple(PATTERNS), initial_value=now_raised, hint=hint
         )
+        told_with_name(self.pattern, hint, PATTERNS)
         self.height = gui.add_slider(
             "Height mm", 0.0, 2.0, 0.05, texture.height_mm, hint="How far the texture stands out"
         )
@@ -135,16 +132,10 @@ class ObjectFolder:
     def _open_gallery(self, event: Any) -> None:
         cards = []
         for label, name in self.names.items():
-            group, _, words = label.partition(": ")
             png = shipped_thumbnail(f"object-{name}")
-            cards.append(Card(name=words, png=png, group=GROUPS.get(group, group)))
-        labels = {label.partition(": ")[2]: label for label in self.names}
-
-        def choose(words: str) -> None:
-            self._start(labels[words])
-
+            cards.append(Card(name=label, png=png, group=gallery_heading(name)))
         desk = self.desk
-        desk.galleries.show(event.client, "Object to press", cards, desk.guarded(choose))
+        desk.galleries.show(event.client, "Object to press", cards, desk.guarded(self._start))
 
     def _size(self) -> float:
         return float(self.size.value)
@@ -171,7 +162,7 @@ class ObjectFolder:
         """Take the texture that the widgets describe."""
         if event.client is None:
             return
-        now, pattern = self.desk.session.case.indenter, Pattern(self.pattern.value)
+        now, pattern = self.desk.session.case.indenter, PATTERNS[self.pattern.value]
         if pattern is Pattern.IMAGE and now.texture.image is None:
             raise DesignError(
                 "there is no picture yet", hint="press Load picture", at="indenter.texture.image"
@@ -243,7 +234,7 @@ class ObjectFolder:
         put(self.kind, self._label(now))
         put(self.size, min(max(now.size_mm, 0.5), MESH_SPAN_MM))
         put(self.edge, min(edge_mm(now), 3.0))
-        put(self.pattern, now.texture.pattern.value)
+        put(self.pattern, words(now.texture.pattern))
         put(self.height, min(now.texture.height_mm, 2.0))
         put(self.pitch, min(max(now.texture.pitch_mm, 0.2), 20.0))
         put(self.soft, now.soft is not None)

@@ -38,6 +38,7 @@ class SimulatePanel:
         self.motion = MotionFolder(desk)
         with gui.add_folder("Solver", expand_by_default=False):
             self._solver_widgets()
+            self.solved = gui.add_markdown("")
         self.found = ""
         self.refresh()
 
@@ -85,7 +86,7 @@ class SimulatePanel:
         fields.number("Region mm", "case.settings.active_radius_mm", step=1.0, hint=hint)
         hint = "Share of the force that the chosen region may cost"
         fields.number("Region error", "case.settings.region_error", step=0.001, hint=hint)
-        hint = "lattice: the workbench's own; particles: the published way, for comparison"
+        hint = "How contact is computed; the published way is for comparison"
         fields.choice("Method", "case.settings.method", list(Method), hint=hint)
 
     def _run(self, event: Any) -> None:
@@ -144,19 +145,19 @@ class SimulatePanel:
             self.numbers.content = text
 
     def show(self, stage: str, result: Any) -> None:
-        """Show the force of the last frame, with its residual and penetration beside it."""
+        """Show the force of the last frame; how well it was solved stands in *Solver*."""
         if stage == "object":
             self.objects.touching.show(result)
         if stage == "sensor":
-            self.found = self.numbers.content = ""
+            self.found = self.numbers.content = self.solved.content = ""
         if stage == "press":
-            self.found = (
-                f"**{number(result.normal_N[-1], '.3f')} N** along the normal · residual "
-                f"{number(result.residual.max(), '.1e')} · penetration "
-                f"{number(1e3 * result.penetration_mm.max(), '.0f')} µm · {result.substeps} "
-                "substeps"
-            )
+            self.found = f"**{number(result.normal_N[-1], '.3f')} N** along the normal"
             self.numbers.content = self.found
+            self.solved.content = (
+                f"<small>last press: forces balance to {number(result.residual.max(), '.1e')}, "
+                f"object sinks {number(1e3 * result.penetration_mm.max(), '.0f')} µm into the "
+                f"skin, {result.substeps} substeps</small>"
+            )
 
 
 PAGE = Page(place=4, label="Simulate", build=SimulatePanel)

@@ -7,12 +7,16 @@ from typing import Any
 import viser
 
 from ui.desk.desk import Desk
+from ui.page.choice_hint import told_with_name
 from workbench.core.press.motion import Mover, Stroke, StrokeKind
 from workbench.edit.path_template import template_csv
 from workbench.edit.strokes import EXAMPLES, read_stroke
 from workbench.edit.trajectories import uploaded_trajectory
+from workbench.view.choice_words import named, stroke_words, words
 
 UP, REMOVE = "Up", "Remove"
+KINDS = named(StrokeKind)
+"""Strokes by what designers read."""
 AMOUNTS = {
     StrokeKind.PRESS: "mm deeper",
     StrokeKind.SLIDE: "mm along U,V",
@@ -20,7 +24,7 @@ AMOUNTS = {
     StrokeKind.ROLL: "degree, axis in degree from U",
     StrokeKind.LIFT: "mm outward",
     StrokeKind.RELEASE: "mm clear of the skin",
-    StrokeKind.HOLD: "nothing: only frames",
+    StrokeKind.HOLD: "nothing but frames",
     StrokeKind.MOVE: "mm along U,V,n",
 }
 
@@ -37,13 +41,11 @@ class MotionFolder:
             self.summary = gui.add_markdown("")
             self.list = gui.add_folder("Strokes")
             desk.fields.anchor("Strokes", "case.press.strokes")
-            kinds = tuple(kind.value for kind in StrokeKind)
+            hint = "What the object does after the approach"
             self.kind = gui.add_dropdown(
-                "Stroke",
-                kinds,
-                initial_value=StrokeKind.SLIDE.value,
-                hint="What the object does after the approach",
+                "Stroke", tuple(KINDS), initial_value=words(StrokeKind.SLIDE), hint=hint
             )
+            told_with_name(self.kind, hint, KINDS)
             self.kind.on_update(guarded(lambda event: self._suggest()))
             self.amount = gui.add_text("Amount", "", hint="In the unit that stands below")
             self.unit = gui.add_markdown("")
@@ -72,16 +74,17 @@ class MotionFolder:
         self.refresh()
 
     def _suggest(self) -> None:
-        kind = StrokeKind(self.kind.value)
-        words = EXAMPLES[kind].split(":")
-        self.amount.value = words[1] if len(words) > 1 and kind is not StrokeKind.HOLD else ""
+        kind = KINDS[self.kind.value]
+        parts = EXAMPLES[kind].split(":")
+        self.amount.value = parts[1] if len(parts) > 1 and kind is not StrokeKind.HOLD else ""
         self.unit.content = f"<small>{AMOUNTS[kind]}</small>"
 
     def _add(self, event: Any) -> None:
         frames = int(self.frames.value)
-        kind, amount = self.kind.value, self.amount.value.strip()
-        words = f"{kind}:{frames}" if kind == StrokeKind.HOLD else f"{kind}:{amount}"
-        stroke = read_stroke(words if amount or kind == StrokeKind.HOLD else kind, frames=frames)
+        kind, amount = KINDS[self.kind.value], self.amount.value.strip()
+        holds = kind is StrokeKind.HOLD
+        typed = f"{kind}:{frames}" if holds else f"{kind}:{amount}"
+        stroke = read_stroke(typed if amount or holds else kind.value, frames=frames)
         self._put((*self.desk.session.case.press.strokes, stroke))
 
     def _put(self, strokes: tuple[Stroke, ...]) -> None:
@@ -139,7 +142,7 @@ class MotionFolder:
         self.rows.clear()
         with self.list:
             for number, stroke in enumerate(strokes):
-                label = f"{number + 1} {stroke.text} ×{stroke.frames}"
+                label = f"{number + 1} {stroke_words(stroke)} ×{stroke.frames}"
                 row = self.desk.server.gui.add_button_group(label, (UP, REMOVE))
                 row.on_click(self.desk.guarded(self._handler(number)))
                 self.rows.append(row)
