@@ -131,9 +131,9 @@ def test_frames_are_named_by_what_happens() -> None:
         "untouched",
         "approach",
         "shear",
-        "stroke 1: slide:3,0",
-        "stroke 1: slide:3,0",
-        "stroke 2: release:0.5",
+        "stroke 1: slide 3,0",
+        "stroke 1: slide 3,0",
+        "stroke 2: let go 0.5",
         "at rest",
     ]
     poses = tuple((0.0, 0.0, z, 1.0, 0.0, 0.0, 0.0) for z in (46.0, 45.0))

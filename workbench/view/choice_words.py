@@ -1,12 +1,14 @@
 """What designers read for each choice of a design or a press; files keep the technical names.
 
-Of a member without words, as a light model that was added, the underscores go.
+A light model is called what the first line of its file begins with, up to the colon. Of a member
+without words the underscores go.
 """
 
 from __future__ import annotations
 
 import enum
 from collections.abc import Iterable, Mapping
+from importlib import import_module
 from typing import TypeVar
 
 from workbench.core.design.camera import LensModel
@@ -17,6 +19,7 @@ from workbench.core.press.motion import Mover, Stroke, StrokeKind
 from workbench.core.press.press import Extent, Method
 from workbench.core.press.texture import Pattern
 
+MODELS = "sim.optics.field.models"
 Choice = TypeVar("Choice", bound=enum.StrEnum)
 WORDS: dict[type[enum.StrEnum], Mapping[str, str]] = {
     LensModel: {
@@ -24,17 +27,6 @@ WORDS: dict[type[enum.StrEnum], Mapping[str, str]] = {
         LensModel.EQUIDISTANT: "fisheye",
         LensModel.OPENCV: "ordinary, calibrated",
         LensModel.OPENCV_FISHEYE: "fisheye, calibrated",
-    },
-    LightModel: {
-        LightModel("direct"): "direct light and shadows",
-        LightModel("geodesic"): "shortest way on the skin",
-        LightModel("hybrid"): "traced light and shadows",
-        LightModel("linear"): "straight rays",
-        LightModel("photons"): "traced anew each frame",
-        LightModel("plane_normal"): "along the skin, by normals",
-        LightModel("plane_source"): "along the skin, as coded",
-        LightModel("plane_target"): "along the skin",
-        LightModel("table"): "traced light, quickest",
     },
     LedMount: {
         LedMount.CAVITY: "in the air behind the skin",
@@ -85,7 +77,11 @@ WORDS: dict[type[enum.StrEnum], Mapping[str, str]] = {
 
 def words(choice: enum.StrEnum) -> str:
     """What a designer reads for a choice."""
-    return WORDS.get(type(choice), {}).get(choice, choice.value.replace("_", " "))
+    plain = choice.value.replace("_", " ")
+    if isinstance(choice, LightModel):
+        said, colon, _ = (import_module(f"{MODELS}.{choice}").__doc__ or "").partition(":")
+        return said[0].lower() + said[1:] if colon else plain
+    return WORDS.get(type(choice), {}).get(choice, plain)
 
 
 def named(choices: Iterable[Choice]) -> dict[str, Choice]:

@@ -1,4 +1,4 @@
-"""A straight line with 1/r^2, the LED's lobe, cast shadows and a GGX coating."""
+"""Direct light and shadows: a straight line with 1/r^2, the LED's lobe, and a GGX coating."""
 
 from __future__ import annotations
 

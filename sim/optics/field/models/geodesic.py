@@ -1,4 +1,4 @@
-"""Along the shortest way on the skin: the paper's geodesic light field.
+"""Shortest way on the skin: the paper's geodesic light field.
 
 Where no way on the skin leads to the light, the straight line takes its place.
 """

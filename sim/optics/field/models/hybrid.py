@@ -1,4 +1,4 @@
-"""Unscattered photons as one virtual LED each, with shadows, and a table of the rest."""
+"""Traced light and shadows: unscattered photons as one virtual LED each, a table of the rest."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A straight line: the paper's linear light field."""
+"""Straight rays: the paper's linear light field."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Photons traced anew for every frame: the slow reference."""
+"""Traced anew each frame: photons for all of them, the slow reference."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Along the skin, in the plane of light, target and the skin's normal at the light.
+"""Along the skin, by normals: in the plane of light, target and the normal at the light.
 
 P = n_S x (T - S), with n_S the normal of the skin nearest to the light: like `plane_source`, for a
 body that is not round about its axis.

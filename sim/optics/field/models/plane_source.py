@@ -1,4 +1,4 @@
-"""Along the skin, in the plane of light, target and the way from axis to light: released code.
+"""Along the skin, as coded: in the plane of light, target and the way from axis to light.
 
 The paper sets up a plane by the normal P = n x L of light S, target T and the skin's normal n at
 the target, L = S - T, and takes the tangent at T of the curve in which it cuts the skin ("Offline

@@ -1,4 +1,4 @@
-"""Along the skin, in the plane of light, target and the target's normal: the paper's text.
+"""Along the skin: in the plane of light, target and the target's normal, as the paper's text says.
 
 With P = n_T x L the tangent toward the light is the part of L tangential to the skin,
 (L - (L . n_T) n_T) / |...|.

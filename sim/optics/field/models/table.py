@@ -1,4 +1,4 @@
-"""Traced photons, gathered for every tilt of the skin's normal."""
+"""Traced light, quickest: photons gathered for every tilt of the skin's normal."""
 
 from __future__ import annotations
 
