@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import html
 import re
-import socket
 import subprocess
 import sys
 import tempfile
@@ -17,26 +16,18 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from tests.ui.inventory import Control, controls, laid_out
+from tests.ui.inventory import MORE, Control, controls, laid_out
 from workbench.edit.indenter_edit import gallery, gallery_heading
 from workbench.live.job_words import WORDS
 from workbench.live.lanes import WAITING
 from workbench.planning.stage_table import STAGES
 from workbench.proof.benchmarks.tab import Tab
+from workbench.system.free_port import free_port
 from workbench.view.object_words import EVERYDAY, HEADINGS
 
-DESIGN = """
+DESIGN = f"""
 name = "mine"
-family = "finger"
-[[optics.lamps]]
-kind = "area"
-[[optics.cameras]]
-[optics.camera.sensor]
-noise = true
-[optics.markers]
-visible = true
-"""
-"""Brings out what only some designs show."""
+family = "finger"{MORE}"""
 ROOT = Path(__file__).parent.parent
 HEAD = """# Words of the page
 
@@ -74,9 +65,7 @@ def laid_out_page(folder: Path) -> Tab:
     path.write_text(DESIGN, encoding="utf-8")
     session = Session(project)
     session.open(None)
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
+    port = free_port()
     server = viser.ViserServer(host="127.0.0.1", port=port, verbose=False)
     conductor = Conductor(project.store, _Nobody())
     build_desk(server, session, conductor, Editor(server), fast=True, tour=False)

@@ -7,8 +7,8 @@ from typing import Any
 
 import cv2  # noqa: TID253 (a program of its own, not part of the package)
 import numpy as np
-from playwright.sync_api import TimeoutError as TooLate
 
+from tests.ui.page_faults import quiet
 from tests.ui.widgets import control, press, wait_until
 
 FOLDER = Path(__file__).parent / "screens"
@@ -61,15 +61,6 @@ def pressed(page: Any) -> None:
     if page.get_by_text("Image ○").count():
         press(page, "Update results")
     fresh(page, "Image")
-
-
-def quiet(page: Any) -> None:
-    """Close notifications, which would hide the view."""
-    for _ in range(6):
-        try:
-            page.locator(".mantine-Notification-closeButton").first.click(timeout=400)
-        except TooLate:
-            return
 
 
 def command(page: Any, name: str) -> None:

@@ -9,18 +9,19 @@ from __future__ import annotations
 
 import statistics
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 
 from workbench.cluster.simulation import WORK, Step
 from workbench.learning.dataset.estimate import PAPER_SAMPLES
 from workbench.proof.benchmarks.records import RoomRecord, read_record, shipped_records
 from workbench.proof.validation.fem.fem_matrix import RECORD as FEM
+from workbench.search.problem import Problem
 
 KEPT = Path(__file__).parent / "scale" / "stages.json"
 DESIGNS = 1_000_000
-PER_PRESS = 3
-"""Trials that share a press: the default of `per_press` in `workbench.search.problem`."""
+(PER_PRESS,) = (each.default for each in fields(Problem) if each.name == "per_press")
+"""Trials that share a press, if a problem says nothing else."""
 ASKER, SCHEDULER, DISK = "the one who asks", "Dask's scheduler", "the shared disk"
 OWN, LIT = "a press of its own", "on that press"
 """Cases of the record: a design that is pressed, and one that is only lit anew."""

@@ -11,8 +11,9 @@ from typing import Any
 import cv2  # noqa: TID253 (a program of its own, not part of the package)
 import numpy as np
 
-from docs.page_shots import LONG_S, SIZE, command, fresh, number, pressed, quiet, shoot, tick
+from docs.page_shots import LONG_S, SIZE, command, fresh, number, pressed, shoot, tick
 from docs.photo_set import photo_set
+from tests.ui.page_faults import quiet
 from tests.ui.widgets import (
     button,
     choose,

@@ -17,9 +17,10 @@ from pathlib import Path
 
 from playwright.sync_api import sync_playwright
 
-from docs.page_shots import FOLDER, SIZE, pressed, quiet
+from docs.page_shots import FOLDER, SIZE, pressed
 from docs.screen_steps import STEPS
 from tests.ui.conftest import Server
+from tests.ui.page_faults import quiet
 from tests.ui.widgets import tab
 from workbench.proof.benchmarks.browser import FLAGS
 

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 from sim.condensed import bundles, tensor_kernels
 from sim.condensed.surface import Surface
 from sim.optics.light import copy_kernels
-from sim.optics.light.device_arrays import computes_on_gpu, on_device
-from workbench.core.base.errors import DeviceError
+from sim.optics.light.device_arrays import on_device
+from sim.optics.light.tensor_device import tensor_device
 
 if TYPE_CHECKING:
     import torch
@@ -28,26 +28,6 @@ class TouchTensors:
     """(B, N, 3)."""
     pressure_MPa: torch.Tensor
     """(B, N)."""
-
-
-def tensor_device() -> str:
-    """What PyTorch calls the open device.
-
-    Raises:
-        DeviceError: If that is a GPU and this build of PyTorch knows none.
-    """
-    import torch
-
-    if not computes_on_gpu():
-        return "cpu"
-    if not torch.cuda.is_available():
-        raise DeviceError(
-            f"the sensor is on a GPU, and PyTorch {torch.__version__} finds no CUDA device",
-            hint="install a CUDA build of PyTorch, take render and feel, or set "
-            "WORKBENCH_DEVICE=cpu",
-            at="device",
-        )
-    return "cuda"
 
 
 def touch_tensors(felt: Any, presses: int, nodes: int) -> TouchTensors:

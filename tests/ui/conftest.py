@@ -6,7 +6,6 @@ import contextlib
 import os
 import shutil
 import signal
-import socket
 import subprocess
 import sys
 import time
@@ -22,17 +21,11 @@ from tests.ui.warm_start import WarmStart
 from tests.ui.widgets import DRAW_WHEN_LOOKED_AT, coarse_project
 from workbench.proof.benchmarks.browser import FLAGS
 from workbench.proof.benchmarks.tab import Tab
+from workbench.system.free_port import free_port
 
 START_LIMIT_S = 60
 SOFTWARE = (*FLAGS, "--disable-gpu-compositing")
 """The page is put together without the software GPU: that took more time than all workers."""
-
-
-def free_port() -> int:
-    """A port that nobody listens on."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
 
 
 class Server:

@@ -15,6 +15,16 @@ KINDS = (
     "Slider MultiSlider Number Text Checkbox Dropdown ButtonGroup Button UploadButton "
     "Vector2 Vector3 Rgb Rgba"
 ).split()
+MORE = """
+[[optics.lamps]]
+kind = "area"
+[[optics.cameras]]
+[optics.camera.sensor]
+noise = true
+[optics.markers]
+visible = true
+"""
+"""What brings further controls out: a lamp, a second camera, noise, markers."""
 HEADER = "above the tabs"
 LAST = "Help: View"
 """What is laid out last."""

@@ -15,23 +15,13 @@ from typing import Any
 import pytest
 
 from tests.ui.conftest import Server
-from tests.ui.inventory import HEADER, Control, controls, laid_out
+from tests.ui.inventory import HEADER, MORE, Control, controls, laid_out
 from tests.ui.warm_start import WarmStart
 from tests.ui.widgets import COARSE, button, open_page, tab, wait_until
 from workbench.proof.benchmarks.tab import Tab
 
 pytestmark = [pytest.mark.ui, pytest.mark.slow]
 
-MORE = """
-[[optics.lamps]]
-kind = "area"
-[[optics.cameras]]
-[optics.camera.sensor]
-noise = true
-[optics.markers]
-visible = true
-"""
-"""What brings further controls out: a lamp, a second camera, noise, markers."""
 UNITS = "mm deg MPa % px e dB".split()
 DIMENSIONLESS = set(
     "LEDs,Frames,Vents,Steps,Frame,Samples,Photons,Light nodes,Light seed,Noise seed,Stroke frames,"

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import os
 import signal
-import socket
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -25,15 +24,10 @@ from workbench.core.design.design import SensorDesign
 from workbench.core.press.press_case import PressCase
 from workbench.pipeline.store import Store
 from workbench.planning.plan import plan
+from workbench.system.free_port import free_port
 from workbench.system.terminal import Progress
 
 ROOT = Path(__file__).parents[2]
-
-
-def free_port() -> int:
-    with socket.socket() as found:
-        found.bind(("127.0.0.1", 0))
-        return found.getsockname()[1]
 
 
 @contextlib.contextmanager

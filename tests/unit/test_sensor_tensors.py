@@ -68,12 +68,12 @@ def test_the_next_frame_leaves_the_last_one_as_it_was() -> None:
 
 def test_a_pytorch_without_the_gpu_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     """A CPU-only build beside a GPU is common: what to install or take instead is said."""
-    from sim.condensed import tensors
+    from sim.optics.light import tensor_device
 
-    monkeypatch.setattr(tensors, "computes_on_gpu", lambda: True)
+    monkeypatch.setattr(tensor_device, "computes_on_gpu", lambda: True)
     monkeypatch.setattr(torch.cuda, "is_available", lambda: False)
     with pytest.raises(DeviceError, match="finds no CUDA device"):
-        tensors.tensor_device()
+        tensor_device.tensor_device()
 
 
 def test_a_pose_that_is_no_number_is_refused() -> None:

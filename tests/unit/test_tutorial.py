@@ -8,7 +8,6 @@ import os
 import re
 import shlex
 import signal
-import socket
 import subprocess
 import sys
 import time
@@ -17,6 +16,8 @@ import urllib.request
 from pathlib import Path
 
 import pytest
+
+from workbench.system.free_port import free_port
 
 ROOT = Path(__file__).parents[2]
 TUTORIAL = (ROOT / "docs" / "tutorial.md").read_text(encoding="utf-8")
@@ -59,9 +60,7 @@ def workbench(words: list[str], folder: Path) -> subprocess.CompletedProcess[str
 
 def opens(words: list[str], folder: Path) -> bool:
     """Whether a server answers; on a port of its own, and it is ended as by Ctrl-C."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = str(probe.getsockname()[1])
+    port = str(free_port())
     words = [port if word == words[words.index("--port") + 1] else word for word in words]
     command = [sys.executable, "-m", "workbench.cli", *words]
     with subprocess.Popen(command, cwd=folder, env=environment()) as server:

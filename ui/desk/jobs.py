@@ -132,15 +132,15 @@ class Jobs:
         error = event.error
         _, then = self._then.pop(id(event.request), (None, None))
         log = self.reports.log
-        quiet = event.job in QUIET
+        quiet, name = event.job in QUIET, job_words(event.job)
         if event.superseded:
             if not quiet:
                 # Who waited for it is not told: the newer request has its own.
-                log(f"{job_words(event.job)}: replaced by a newer request")
+                log(f"{name}: replaced by a newer request")
         elif isinstance(error, Cancelled):
             if not quiet:
-                log(f"{job_words(event.job)}: cancelled")
-                text = f"{job_words(event.job)} was stopped; earlier results are kept"
+                log(f"{name}: cancelled")
+                text = f"{name} was stopped; earlier results are kept"
                 self.reports.notify("Cancelled", text)
             if then is not None:
                 then(event)
@@ -149,24 +149,24 @@ class Jobs:
         elif error is not None and event.job in (FORESIGHT, IMAGE_PREVIEW, CUT):
             # What was wrong with the design itself is told, once, by the job of its shape.
             if not event.failed:
-                log(f"{job_words(event.job)}: {in_full(error.message, error.hint)}")
+                log(f"{name}: {in_full(error.message, error.hint)}")
             self.on_failed(error, event.job)
         elif error is not None and event.job == TOUCH:
             # The contact solver is asked instead, and tells what is wrong with the press itself.
-            log(f"{job_words(event.job)}: {in_full(error.message, error.hint)}")
+            log(f"{name}: {in_full(error.message, error.hint)}")
             self.on_failed(error, event.job)
         elif error is not None and event.job == PREDICTION:
             # Nobody asked for it; who asks by the button is told.
-            log(f"{job_words(event.job)}: {in_full(error.message, error.hint)}")
+            log(f"{name}: {in_full(error.message, error.hint)}")
         elif error is not None and event.job == LIVE:
             self.reports.report(error)
             self.on_failed(error, event.job)
         elif error is not None and not self.asked_now(event.request, event.failed):
             # Its message would stand above a design that it does not tell of.
             why = in_full(error.message, error.hint)
-            log(f"{job_words(event.job)}, of an earlier design: {why}")
+            log(f"{name}, of an earlier design: {why}")
         elif error is not None:
             self.reports.report(error, job="" if event.job in (SHAPE, DRAWN) else event.job)
             self.on_failed(error, event.job)
         elif not quiet:
-            log(f"{job_words(event.job)}: finished in {human_seconds(event.seconds)}")
+            log(f"{name}: finished in {human_seconds(event.seconds)}")

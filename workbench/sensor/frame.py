@@ -5,8 +5,11 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Generic, TypeVar
 
 import numpy as np
+
+Array = TypeVar("Array")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -30,24 +33,29 @@ class Felt:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Frame(Felt):
-    """The same with what the camera sees."""
+class Seen(Generic[Array]):
+    """What the camera sees, as arrays or tensors."""
 
-    rgb: np.ndarray
+    rgb: Array
     """Images, shape (B, H, W, 3), uint8."""
-    looks: Callable[[], tuple[np.ndarray, np.ndarray]] = field(repr=False)
+    looks: Callable[[], tuple[Array, Array]] = field(repr=False)
     """Finds depth and dots, when they are asked for."""
 
     @functools.cached_property
-    def _looked(self) -> tuple[np.ndarray, np.ndarray]:
+    def _looked(self) -> tuple[Array, Array]:
         return self.looks()
 
     @property
-    def depth_mm(self) -> np.ndarray:
+    def depth_mm(self) -> Array:
         """Depth of the skin along the camera's axis, shape (B, H, W), float32; NaN beside it."""
         return self._looked[0]
 
     @property
-    def markers_px(self) -> np.ndarray:
+    def markers_px(self) -> Array:
         """u, v of the printed dots, shape (B, M, 2), float32; NaN of those not seen."""
         return self._looked[1]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Frame(Seen[np.ndarray], Felt):
+    """What a sensor feels and sees."""

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import functools
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,6 +12,7 @@ from sim.condensed.surface import Surface
 from sim.condensed.tensors import SurfaceTensors, TouchTensors
 from sim.optics.raster.imager import Imager
 from sim.optics.raster.tensor_images import TensorImages
+from workbench.sensor.frame import Seen
 
 if TYPE_CHECKING:
     import torch
@@ -32,26 +31,8 @@ class TensorFelt:
 
 
 @dataclass(frozen=True, kw_only=True)
-class TensorFrame(TensorFelt):
-    """As `Frame`: images, (B, H, W, 3), uint8."""
-
-    rgb: torch.Tensor
-    looks: Callable[[], tuple[torch.Tensor, torch.Tensor]] = field(repr=False)
-    """Finds depth and dots, when they are asked for."""
-
-    @functools.cached_property
-    def _looked(self) -> tuple[torch.Tensor, torch.Tensor]:
-        return self.looks()
-
-    @property
-    def depth_mm(self) -> torch.Tensor:
-        """Depth of the skin along the camera's axis, (B, H, W); NaN beside it."""
-        return self._looked[0]
-
-    @property
-    def markers_px(self) -> torch.Tensor:
-        """u, v of the printed dots, (B, M, 2); NaN of those not seen."""
-        return self._looked[1]
+class TensorFrame(Seen["torch.Tensor"], TensorFelt):
+    """As `Frame`, of tensors."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sim.optics.light import copy_kernels
-from sim.optics.light.device_arrays import computes_on_gpu
+from sim.optics.light.tensor_device import tensor_device
 from sim.optics.raster.imager import Imager
 from sim.optics.raster.raster_kernels import SAME
 
@@ -24,8 +24,7 @@ class TensorImages:
         import torch
 
         self._imager = imager
-        device = "cuda" if computes_on_gpu() else "cpu"
-        back = imager.backdrop
+        device, back = tensor_device(), imager.backdrop
         self._background = torch.from_numpy(back.background_rgb).to(device)
         self._rest_depth = torch.from_numpy(rest_depth_mm.ravel()).to(device)
         self._rest_marker = torch.from_numpy(back.marker).to(device).long()

@@ -7,7 +7,6 @@ import os
 import re
 import shutil
 import signal
-import socket
 import statistics
 import subprocess
 import sys
@@ -27,6 +26,7 @@ from workbench.project.named_designs import load_design
 from workbench.proof.benchmarks.playback import WATCH_DRAWS, frame_s
 from workbench.proof.benchmarks.tabs import blocked_s, key_to_server_s
 from workbench.proof.row import Row, bounded, failed
+from workbench.system.free_port import free_port
 
 FLAGS = (
     "--use-angle=swiftshader",
@@ -153,9 +153,7 @@ def _measure(program: str, figures_s: dict[str, float]) -> str:
 
 @contextlib.contextmanager
 def _server(design: Path, project: Path) -> Iterator[tuple[str, float]]:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
+    port = free_port()
     command = [
         sys.executable,
         "-m",
