@@ -10,7 +10,15 @@ from ui.page.imaging import scale_bar, table
 from workbench.core.result.maps import DesignerMaps, SkinMap
 from workbench.core.result.sensing import TactileFrames
 from workbench.view.colour_scale import NOTHING_GREY, YES, scale_colours, viridis
-from workbench.view.image_views import NO_CHANGE, OF_IMAGES, View, looked, views, visible_change
+from workbench.view.image_views import (
+    NO_CHANGE,
+    OF_IMAGES,
+    View,
+    looked,
+    views,
+    visible_change,
+    wiped,
+)
 from workbench.view.map_display import map_look, score_rows, scores, value_at, value_words
 
 HIGH, WIDE = 8, 12
@@ -211,3 +219,42 @@ def test_legend_and_table_escape_and_name_units() -> None:
     assert "3 mm" in bar
     assert "left:50.0%" in bar
     assert "<b>" not in table(("a",), (("<b>",),))
+
+
+def test_a_chosen_gain_is_taken_as_it_is() -> None:
+    """+10 and -10 grey levels twice and 32 times, clipped at the ends; the automatic one is 8."""
+    given = frames()
+    for gain, seen in ((2, (148, 128, 108)), (32, (255, 128, 0))):
+        change, told = visible_change(given.rgb[1], given.rgb[0], gain)
+        assert told == gain
+        assert tuple(change[4, 6]) == seen
+    words = looked(View.DIFFERENCE, given.rgb, 1, given, gain=4).words
+    assert "× 4" in words
+
+
+def test_false_colour_has_one_scale_for_the_frame_and_the_rest() -> None:
+    """The channel that moved most, 10 of 10; and 8 grey levels at least, so that noise is dark."""
+    given = frames()
+    found = looked(View.CHANGE, given.rgb, 1, given)
+    assert found.bar is not None
+    assert (found.bar.high, found.bar.unit) == (10.0, "grey")
+    assert tuple(found.rgb[4, 6]) == YES
+    rest = looked(View.CHANGE, given.rgb, 0, given, beside=1)
+    assert rest.bar == found.bar
+    assert (rest.rgb == viridis(np.array(0.0))).all()
+    faint = given.rgb.copy()
+    faint[1] = faint[0] + 1
+    nothing = looked(View.CHANGE, faint, 1)
+    assert nothing.bar is not None
+    assert nothing.bar.high == 8.0
+
+
+@pytest.mark.parametrize(("share", "column"), [(0.0, 0), (0.5, WIDE // 2), (1.0, WIDE)])
+def test_a_wipe_has_what_was_on_the_left(share: float, column: int) -> None:
+    """Rest up to the line and the frame beyond, whole images at the ends without a line."""
+    was, now = (np.full((HIGH, WIDE, 3), grey, np.uint8) for grey in (10, 200))
+    both = wiped(now, was, share)
+    line = 1 if 0 < column < WIDE else 0
+    assert (both[:, : column - line] == 10).all()
+    assert (both[:, column + line :] == 200).all()
+    assert (both[:, column - line : column + line] == 255).all()

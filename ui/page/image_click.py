@@ -15,6 +15,8 @@ COLUMN, ROW = "Pixel column px", "Pixel row px"
 """Labels of the sliders that a click on the tactile image fills."""
 PIXEL_GIF = "data:image/gif;base64,R0lGODlhAQABAIAAAAAAAP///yH5BAEAAAAALAAAAAABAAEAAAIBRAA7"
 """An image that loads at once, by which the page runs the handler's script."""
+PAUSE_MS = 60
+"""A place under the mouse is told once the mouse has rested so long: each is drawn in 3D [ms]."""
 TARGET = "probe-image"
 """Class of the piece of HTML; its parents are searched for images and boxes."""
 TYPE_INTO_BOXES = """
@@ -38,13 +40,18 @@ INSTALL = (
     TYPE_INTO_BOXES
     + """
 document.removeEventListener('click', window.probeImage, true);
-window.probeImage = event => {
-  if (event.target.tagName !== 'IMG' || !event.target.src.startsWith('blob:')) return;
+document.removeEventListener('pointermove', window.probeUnder, true);
+window.probeAt = (event, hovered) => {
+  const image = event.target;
+  if (image.tagName !== 'IMG' || !image.src.startsWith('blob:')) return;
+  if (window.imageMoved || event.buttons) return;
   for (const mark of document.querySelectorAll('.probe-image')) {
     let tab = mark;
     while (tab && !tab.querySelector('img[src^="blob:"]')) tab = tab.parentElement;
-    if (!tab || !tab.contains(event.target)) continue;
-    const box = event.target.getBoundingClientRect();
+    const whole = image.closest('.whole-image') && tab && tab.querySelector('.zoom-image');
+    if (!tab || !(whole || tab.contains(image))) continue;
+    if (hovered && !mark.dataset.hover) continue;
+    const box = image.getBoundingClientRect();
     event.stopPropagation();
     window.typeIntoBoxes(tab, {
       [mark.dataset.column]: (event.clientX - box.left) / box.width,
@@ -53,33 +60,58 @@ window.probeImage = event => {
     return;
   }
 };
+window.probeImage = event => window.probeAt(event, false);
+window.probeUnder = event => {
+  clearTimeout(window.probeSoon);
+  window.probeSoon = setTimeout(() => window.probeAt(event, true), PAUSE);
+};
 document.addEventListener('click', window.probeImage, true);
+document.addEventListener('pointermove', window.probeUnder, true);
 """
-)
+).replace("PAUSE", str(PAUSE_MS))
 """Installs the handler, in place of one of an earlier page of the same server."""
 CROSSHAIR = '<style>div:has(> .{0}) ~ div img[src^="blob:"]{{cursor:crosshair}}</style>'
 
 
-def image_clicks(on: bool, *, column: str = COLUMN, row: str = ROW) -> str:
+def image_clicks(on: bool, *, hover: bool = False, column: str = COLUMN, row: str = ROW) -> str:
     """What stands before the images, as HTML: the handler where clicks are wanted, or nothing.
 
     Args:
         on: Whether clicks are wanted.
+        hover: Whether the place under the mouse is wanted too, without a click.
         column: Label of the slider of columns that a click fills.
         row: The same of rows.
     """
-    return hidden_mark(TARGET, INSTALL, {"column": column, "row": row}) if on else ""
+    labels = {"column": column, "row": row} | ({"hover": "1"} if hover else {})
+    return hidden_mark(TARGET, INSTALL, labels) if on or hover else ""
 
 
-def hidden_mark(target: str, install: str, labels: Mapping[str, str]) -> str:
-    """A piece of HTML that is not seen, installs a script, and tells it labels of sliders.
+def hidden_mark(
+    target: str,
+    install: str,
+    labels: Mapping[str, str],
+    *,
+    inside: str = "",
+    crosshair: bool = True,
+) -> str:
+    """A piece of HTML that installs a script, and tells it labels of sliders.
 
     Args:
-        target: Its class; images after it get a crosshair.
+        target: Its class.
         install: The script.
         labels: By the names of its data.
+        inside: What is seen of it, HTML.
+        crosshair: Whether images after it get a crosshair.
     """
-    script = html.escape(" ".join(install.split()), quote=True)
-    loads = f'<img alt="" style="display:none" src="{PIXEL_GIF}" onload="{script}">'
     data = " ".join(f'data-{name}="{html.escape(label)}"' for name, label in labels.items())
-    return f'<div class="{target}" {data}>{CROSSHAIR.format(target)}{loads}</div>'
+    cross = CROSSHAIR.format(target) if crosshair else ""
+    return f'<div class="{target}" {data}>{cross}{inside}{script_in_html(install)}</div>'
+
+
+def script_in_html(script: str) -> str:
+    """HTML that is not seen and runs a script once it stands in the page.
+
+    A page runs no script tag that is put into it later, but an image that loads.
+    """
+    written = html.escape(" ".join(script.split()), quote=True)
+    return f'<img alt="" style="display:none" src="{PIXEL_GIF}" onload="{written}">'

@@ -13,7 +13,7 @@ PALETTE = "Ctrl + K"
 TASKS = (
     *("Gallery", "Save design", "Undo", "Redo"),
     *("Run press", "Live press", "Render image", "Update results", "Cancel what runs"),
-    *("Play or pause", "Previous frame", "Next frame"),
+    *("Play or pause", "Previous frame", "Next frame", "Image"),
     *("Fit view", "Look from", "Section", "Measure distance", "End measuring"),
     *("Keyboard map", "Tour", "Help on"),
 )

@@ -37,6 +37,23 @@ SHEET = """<style>
 @media (max-width: 36em) {
   [style*="width: 20em"] { width: 100% !important; }
 }
+/* Small buttons above an image, and an image over the page: viser has neither. */
+.image-tools { display: flex; gap: 4px; margin: 2px 10px 6px; font-size: 12px; }
+.image-tools button {
+  border: 1px solid var(--mantine-color-default-border); border-radius: 4px; padding: 2px 8px;
+  background: var(--mantine-color-default); color: var(--mantine-color-text); cursor: pointer;
+}
+.image-tools button:focus-visible { outline: 2px solid var(--mantine-primary-color-filled); }
+.zoom-image ~ div img[src^="blob:"], div:has(> .zoom-image) ~ div img[src^="blob:"] {
+  width: 100%;
+}
+.whole-image {
+  position: fixed; inset: 0; z-index: 9; padding-top: 8px; background: var(--mantine-color-body);
+}
+.whole-image .image-tools label { margin-left: 12px; color: var(--mantine-color-text); }
+.whole-image .image-tools input { vertical-align: middle; width: 200px; }
+.whole-frame { position: relative; margin: 0 auto; overflow: hidden; }
+.whole-frame img { display: block; width: 100%; }
 /* A closed folder is a heading with a line, not a box with nothing in it. */
 .mantine-Paper-root:has(> .mantine-Paper-root > .tabler-icon-chevron-down) {
   border-width: 1px 0 0;

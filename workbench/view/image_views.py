@@ -18,7 +18,11 @@ NO_CHANGE = "no change seen: no camera pixel sees a contact in this frame"
 ROUNDING_GREY = 1
 """Change of the grey level that rounding alone can make."""
 MOST_GAIN = 8
-"""A change is strengthened so much at most."""
+"""A change is strengthened so much at most, where the gain is not chosen."""
+LEAST_SCALE_GREY = 8
+"""Least end of the scale of a change in false colour: rounding and noise stay dark."""
+LINE_GREY = 255
+"""Grey level of the line between what was and what is."""
 SATURATING = 0.1
 """Share of the whole change in grey levels that may saturate."""
 ARROW_SHARE = 0.08
@@ -30,6 +34,7 @@ class View(enum.StrEnum):
 
     IMAGE = "image"
     DIFFERENCE = "difference"
+    CHANGE = "change in false colour"
     NORMALS = "normals"
     DEPTH = "depth"
     MARKERS = "markers"
@@ -37,7 +42,7 @@ class View(enum.StrEnum):
     CONTACT = "contact mask"
 
 
-OF_IMAGES = (View.IMAGE, View.DIFFERENCE)
+OF_IMAGES = (View.IMAGE, View.DIFFERENCE, View.CHANGE)
 """Views that need nothing but the images: a live press has no more."""
 
 
@@ -83,6 +88,7 @@ def looked(
     frames: TactileFrames | None = None,
     *,
     beside: int = 0,
+    gain: int | None = None,
 ) -> Looked:
     """A view of one frame.
 
@@ -91,14 +97,18 @@ def looked(
         images: Background and frames, shape (1 + K, H, W, 3), uint8.
         number: Frame, 0 for the background.
         frames: The fields that belong to the images, if known.
-        beside: Frame that this one is looked at beside, whose depths have the same colours.
+        beside: Frame that this one is looked at beside, whose depths and changes have the same
+            colours.
+        gain: What a difference is multiplied by; None chooses it.
     """
     image = np.asarray(images[number])
     if view is View.DIFFERENCE:
-        change, gain = visible_change(image, np.asarray(images[0]))
+        change, times = visible_change(image, np.asarray(images[0]), gain)
         unseen = unseen_words(image, np.asarray(images[0])) if number else ""
-        words = f"change of grey level about mid grey, × {gain}"
+        words = f"change of grey level about mid grey, × {times}"
         return Looked(rgb=change, words="; ".join(part for part in (words, unseen) if part))
+    if view is View.CHANGE:
+        return _change(*(np.asarray(images[k]) for k in (number, beside, 0)))
     if frames is None or view is View.IMAGE:
         return Looked(rgb=image, words="")
     if view is View.NORMALS:
@@ -112,13 +122,17 @@ def looked(
     return _motion(image, frames, number)
 
 
-def visible_change(image: np.ndarray, background: np.ndarray) -> tuple[np.ndarray, int]:
-    """The change about mid grey, and the factor that makes it visible (at most 8).
+def visible_change(
+    image: np.ndarray, background: np.ndarray, gain: int | None = None
+) -> tuple[np.ndarray, int]:
+    """The change about mid grey, and its factor: the one given, or what makes it visible (<= 8).
 
     What saturates is a tenth of the change at most, as one sparkle would hide the rest. Counted by
     pixels instead, a faint change all over the image would have a strong contact blown out.
     """
     change = image.astype(np.int16) - background.astype(np.int16)
+    if gain is not None:
+        return np.clip(128 + gain * change.astype(np.int32), 0, 255).astype(np.uint8), gain
     largest_first = -np.sort(-np.abs(change), axis=None)
     together = np.cumsum(largest_first, dtype=np.int64)
     most = int(largest_first[np.searchsorted(together, SATURATING * together[-1])])
@@ -130,6 +144,34 @@ def unseen_words(image: np.ndarray, background: np.ndarray) -> str:
     """What is said beside a difference that is plain grey; "" of one that shows something."""
     change = np.abs(image.astype(np.int16) - background.astype(np.int16))
     return NO_CHANGE if change.max(initial=0) <= ROUNDING_GREY else ""
+
+
+def wiped(image: np.ndarray, rest: np.ndarray, share: float) -> np.ndarray:
+    """What was on the left and what is on the right of a line, shape (H, W, 3), uint8.
+
+    Args:
+        image: What is.
+        rest: What was; of the same shape.
+        share: Where the line stands, over the width: 0 shows what is, 1 what was.
+    """
+    wide = image.shape[1]
+    column = round(min(max(share, 0.0), 1.0) * wide)
+    both = np.concatenate([rest[:, :column], image[:, column:]], axis=1)
+    if 0 < column < wide:
+        both[:, column - 1 : column + 1] = LINE_GREY
+    return both
+
+
+def _change(image: np.ndarray, other: np.ndarray, background: np.ndarray) -> Looked:
+    """How far grey levels moved, the channel that moved most; one scale for both frames."""
+    moved, beside = (
+        np.abs(frame.astype(np.int16) - background.astype(np.int16)).max(axis=-1)
+        for frame in (image, other)
+    )
+    high = float(max(moved.max(initial=0), beside.max(initial=0), LEAST_SCALE_GREY))
+    rgb = scale_colours(moved.astype(np.float32), 0.0, high)
+    bar = Bar(low=0.0, high=high, unit="grey")
+    return Looked(rgb=rgb, words="change of the grey level that moved most", bar=bar)
 
 
 def _normals(normal: np.ndarray) -> Looked:

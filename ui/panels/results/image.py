@@ -5,19 +5,35 @@ Blinking between the frame and the rest shows small changes better than two imag
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from ui.desk.desk import Desk
 from ui.page.blink import Blink
+from ui.page.image_zoom import image_zoom
 from ui.page.imaging import placeholder, scale_bar, table
 from ui.page.offer import offer
+from ui.panels.results.image_size import ImageSize
 from ui.panels.results.probe import Probe
 from workbench.core.result.sensing import Shot, TactileFrames
 from workbench.view.close_up import close_up
-from workbench.view.image_views import View, crossed, looked, unseen_words, views, visible_change
+from workbench.view.image_views import (
+    Looked,
+    View,
+    crossed,
+    looked,
+    unseen_words,
+    views,
+    visible_change,
+    wiped,
+)
 from workbench.view.map_display import scores
 from workbench.view.metric_rules import rule
 
+WIPE = "Rest on the left %"
+GAINS = {"as fits": None, **{f"× {gain}": gain for gain in (1, 2, 4, 8, 16, 32)}}
+"""What differences are multiplied by."""
 BLINK_S = 0.5
 """How long each of the two blinking images is shown [s]."""
 NO_IMAGE = "No press of this sensor yet: *Run press* makes an image."
@@ -33,7 +49,7 @@ CHANGE_COMES = ("Its change against the untouched skin", "appears here.")
 class ImageTab:
     """Widgets of the tab."""
 
-    def __init__(self, desk: Desk) -> None:
+    def __init__(self, desk: Desk, dock: Any) -> None:
         self.desk = desk
         gui = desk.server.gui
         self.cameras: tuple[tuple[np.ndarray, TactileFrames | None], ...] = ()
@@ -46,16 +62,14 @@ class ImageTab:
         )
         hint = "What the first image is; below it stands its change"
         self.view = gui.add_dropdown("Show", (View.IMAGE.value,), visible=False, hint=hint)
-        for handle in (self.camera, self.view):
-            handle.on_update(desk.guarded(lambda event: self.show(self.number)))
-        hint = "Show the untouched skin every other half second"
-        self.blink = gui.add_checkbox("Blink with rest", False, visible=False, hint=hint)
-        self.blink.on_update(desk.guarded(lambda event: self._blinks()))
+        self.size = ImageSize(desk, dock)
+        gui.add_html(image_zoom(wipe=WIPE))
         clicks = gui.add_html("")
         self.image = gui.add_image(placeholder(*IMAGE_COMES), format="jpeg")
         self.rest = gui.add_image(placeholder(), format="jpeg", visible=False)
         self.turns = Blink(desk.server, self.image, self.rest, period_s=BLINK_S)
         self.legend = gui.add_html("")
+        self._beside_rest()
         self.close_text = gui.add_markdown("", visible=False)
         self.close = gui.add_image(placeholder(), format="jpeg", visible=False)
         self.change_text = gui.add_markdown("")
@@ -65,6 +79,19 @@ class ImageTab:
             self.numbers = gui.add_html("")
         self.probe = Probe(desk, clicks)
         self.probe.on_moved = lambda: self.show(self.number)
+
+    def _beside_rest(self) -> None:
+        """Widgets that compare with the untouched skin."""
+        gui, guarded = self.desk.server.gui, self.desk.guarded
+        hint = "Left of a white line the untouched skin stands, right of it the frame"
+        self.wipe = gui.add_slider(WIPE, 0, 100, 1, 0, visible=False, hint=hint)
+        hint = "Show the untouched skin every other half second"
+        self.blink = gui.add_checkbox("Blink with rest", False, visible=False, hint=hint)
+        hint = "What the difference is multiplied by; as fits: 8 at most, little of it saturates"
+        self.gain = gui.add_dropdown("Strengthen change", tuple(GAINS), visible=False, hint=hint)
+        for handle in (self.camera, self.view, self.wipe, self.gain):
+            handle.on_update(guarded(lambda event: self.show(self.number)))
+        self.blink.on_update(guarded(lambda event: self._blinks()))
 
     @property
     def last(self) -> int | None:
@@ -94,8 +121,9 @@ class ImageTab:
         self.close.visible = self.close_text.visible = False
         self.image.image = placeholder(*IMAGE_COMES)
         self.change.image = placeholder(*CHANGE_COMES)
-        self.camera.visible = self.view.visible = self.measures.visible = False
-        self.blink.visible = self.blink.value = False
+        for handle in (self.camera, self.view, self.measures, *self._comparing):
+            handle.visible = False
+        self.blink.value = False
 
     def say(self, text: str) -> None:
         """Write above the image."""
@@ -108,7 +136,12 @@ class ImageTab:
         offer(self.camera, names)
         offer(self.view, tuple(view.value for view in views(self.cameras[0][1])))
         self.camera.visible, self.view.visible = len(names) > 1, True
-        self.blink.visible = True
+        for handle in self._comparing:
+            handle.visible = True
+
+    @property
+    def _comparing(self) -> tuple[Any, ...]:
+        return self.wipe, self.blink, self.gain
 
     def chosen(self) -> tuple[np.ndarray, TactileFrames | None]:
         """Images and fields of the chosen camera."""
@@ -122,8 +155,14 @@ class ImageTab:
         self.number = number = min(number, len(images) - 1)
         self.probe.follow(self.camera.options.index(self.camera.value), number)
         what = View(self.view.value)
-        found = looked(what, images, number, frames)
-        change, gain = visible_change(np.asarray(images[number]), np.asarray(images[0]))
+        found = self._looked(what, number)
+        image = found.rgb
+        if self.wipe.value:
+            rest = self._looked(what, 0, beside=number)
+            image = wiped(image, rest.rgb, self.wipe.value / 100)
+        change, gain = visible_change(
+            np.asarray(images[number]), np.asarray(images[0]), GAINS[self.gain.value]
+        )
         nothing = unseen_words(np.asarray(images[number]), np.asarray(images[0])) if number else ""
         unseen = f" · **{nothing}**" if nothing else ""
         bar = found.bar
@@ -131,9 +170,9 @@ class ImageTab:
         words = f"<div style='font-size:12px;margin:2px 12px'>{found.words}</div>"
         scale = "" if bar is None else scale_bar(bar.low, bar.high, bar.unit)
         with self.desk.server.atomic():
-            self.image.image = self._crossed(found.rgb)
+            self.image.image = self._crossed(image)
             if self.blink.value:
-                rest = looked(what, images, 0, frames, beside=number)
+                rest = self._looked(what, 0, beside=number)
                 self.rest.image = self._crossed(rest.rgb)
             self.legend.content = scale + words if found.words else ""
             self.close.visible = self.close_text.visible = near is not None
@@ -144,6 +183,11 @@ class ImageTab:
             self.change.visible = self.change_text.visible = what is not View.DIFFERENCE
             self.change_text.content = f"Difference to the background, × {gain}{unseen}"
             self.change.image = change
+
+    def _looked(self, what: View, number: int, *, beside: int = 0) -> Looked:
+        images, frames = self.chosen()
+        gain = GAINS[self.gain.value]
+        return looked(what, images, number, frames, beside=beside, gain=gain)
 
     def _crossed(self, image: np.ndarray) -> np.ndarray:
         """The image with a cross at the chosen pixel, of the camera's or of fewer pixels."""

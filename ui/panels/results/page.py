@@ -48,7 +48,7 @@ class ResultsPanel:
         self.dock = gui.add_panel()
         # Five labels without icons fit on one row.
         with self.dock.add_tab("Tactile image"):
-            self.image = ImageTab(desk)
+            self.image = ImageTab(desk, self.dock)
         with self.dock.add_tab("Forces"):
             self.forces = ForcesTab(gui)
             self.sources = SourcesFolder(desk)
@@ -57,10 +57,10 @@ class ResultsPanel:
         with self.dock.add_tab("Log"):
             self.log = gui.add_html("")
         self.dock.dock_right()
-        self.dock.set_width(350)
         # On a narrow page docks are sections of one sheet, closed unless told otherwise.
         self.dock.expand()
         self.timeline = Timeline(desk, self._show_frame)
+        self.image.size.on_size = self.timeline.narrow
 
     def _show_frame(self, number: int) -> None:
         # Or the page draws the view once for the skin and once for the image.

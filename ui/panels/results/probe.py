@@ -51,7 +51,10 @@ class Probe:
             hint = "A click on the image shows the place on the skin that the pixel sees; "
             hint += "a click on the skin shows its pixel, instead of aiming the press there"
             self.on = gui.add_checkbox("Probe on click", False, hint=hint)
-            self.on.on_update(guarded(lambda event: self._switch()))
+            hint = "The place on the skin follows the mouse over the image"
+            self.under = gui.add_checkbox("Probe under the mouse", False, hint=hint)
+            for handle in (self.on, self.under):
+                handle.on_update(guarded(lambda event: self._switch()))
             hint = "Shows where on the skin this pixel looks, from the left"
             self.column = gui.add_slider(COLUMN, 0, 1, 1, 0, hint=hint)
             hint = "Shows where on the skin this pixel looks, from the top"
@@ -70,7 +73,7 @@ class Probe:
             self.clear()
 
     def _switch(self) -> None:
-        self.clicks.content = image_clicks(bool(self.on.value))
+        self.clicks.content = image_clicks(bool(self.on.value), hover=bool(self.under.value))
 
     def follow(self, camera: int, frame: int) -> None:
         """Look through another camera, or at another frame, by the same pixel."""

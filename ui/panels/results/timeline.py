@@ -25,8 +25,9 @@ SKIN = {
 UNKNOWN = "not given by this source"
 DOUBT = "doubtful"
 """A badge for forces of a network that does not know the press; the panel says what."""
-WIDTH_PX = 515
-"""What is left between the docks on a page of 1280 pixels, less its margins."""
+WIDTH_PX, NARROW_PX = 515, 300
+"""What is left between the docks on a page of 1280 pixels, less its margins; and beside a large
+image."""
 
 
 class Timeline:
@@ -63,6 +64,10 @@ class Timeline:
     def number(self) -> int:
         """The frame on show."""
         return int(self.frame.value)
+
+    def narrow(self, narrow: bool) -> None:
+        """Take less room, or all that there is between the docks."""
+        self.panel.set_width(NARROW_PX if narrow else WIDTH_PX)
 
     def _looks(self) -> None:
         gui, guarded = self.desk.server.gui, self.desk.guarded
