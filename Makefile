@@ -11,7 +11,7 @@ PARALLEL := -n auto --maxprocesses 4 --dist loadfile --no-loadscope-reorder
 ALONE := OMP_NUM_THREADS=1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test check demo bench docs looks format lock browser clean
+.PHONY: help setup run test check demo bench docs first looks format lock browser clean
 
 help: ## Print this help
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "make %-8s %s\n", $$1, $$2}'
@@ -60,6 +60,9 @@ browser:
 
 docs: setup ## Write the pages that are made from the program
 	$(BIN)/python -m docs.generate
+
+first: setup ## Make the results that ship with the program anew, a minute or two
+	$(BIN)/python -m docs.first_results
 
 looks: .venv/dev.stamp browser ## Photograph every page in all sizes, list what overlaps, is cut or faint
 	@CHROMIUM="$$(bash .ci/chromium)" $(BIN)/python -m docs.looks

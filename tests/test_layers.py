@@ -56,7 +56,7 @@ RANKS = """
 
     workbench.door  workbench
 
-    ui.page  ui.scene  ui.desk
+    ui.patches  ui.page  ui.scene  ui.desk
     ui.panels  ui.panels.compare  ui.panels.make  ui.panels.mesh  ui.panels.optics  ui.panels.shape
     ui.panels.simulate  ui.panels.view  ui.panels.results  ui.panels.calibrate
     ui.panels.read  ui.panels.search

@@ -30,16 +30,17 @@ from ui.page.callbacks import run_in_order
 from ui.page.editor import Editor
 from ui.page.help import Help
 from ui.page.incoming import Incoming
-from ui.page.style import mend
 from ui.page.theme import Theme
 from ui.panels.page import pages
 from ui.panels.results.page import ResultsPanel
 from ui.panels.view.page import ViewPanel
+from ui.patches.style import mend
 from ui.tenancy import Tenancy
-from workbench.core.base.errors import DesignError
+from workbench.core.base.errors import DesignError, StoreError
 from workbench.core.base.version import VERSION
 from workbench.live.conductor import Conductor
 from workbench.live.lanes import LaneRunner
+from workbench.pipeline.first_results import unpack_first
 from workbench.project.project import Project
 
 DRAWING = (
@@ -158,7 +159,12 @@ def build_desk(
 
 
 def first_look(desk: Desk) -> None:
-    """Show stored results; a newcomer's first design is pressed in the background."""
+    """Show stored results; a newcomer's first design is pressed in the background.
+
+    Of the design that a new project begins with, results ship.
+    """
+    if not any(desk.session.fresh().values()) and not desk.editor.is_shut:
+        _begin_with_what_ships(desk)
     fresh = desk.session.fresh()
     desk.changed()
     if desk.session.notice:
@@ -167,6 +173,17 @@ def first_look(desk: Desk) -> None:
     if not any(fresh.values()) and not desk.editor.is_shut:
         desk.log("first start: pressing the example in the background, a minute or so")
         desk.run("press", ("press", "shoot"))
+
+
+def _begin_with_what_ships(desk: Desk) -> None:
+    """Put results of the example that ship into an empty store; without them it is pressed."""
+    try:
+        put = unpack_first(desk.session.store, desk.session.calls()["build"].key)
+    except StoreError as error:
+        desk.log(f"{error.message}: {error.hint}")
+        return
+    if put:
+        desk.log("first start: the example's contact and image came with the program")
 
 
 def warm_up() -> None:

@@ -7,7 +7,7 @@ them is told in `ui.desk.followers`.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, Protocol
 
 import numpy as np
@@ -73,6 +73,10 @@ class Desk:
         """The sensor is to be looked at, not the parts to print."""
         self.live_said: Signal[[str]] = Signal()
         """How the live press goes, in words."""
+        self.figured: Signal[[Mapping[str, float]]] = Signal()
+        """Figures of the design as it stands, as far as they are known."""
+        self.limited: Signal[[]] = Signal()
+        """The project's own limits of figures have changed."""
         self.live_switched: Signal[[bool]] = Signal()
         """The live press is wanted, or no longer."""
         self.live = False

@@ -6,6 +6,7 @@ from ui.desk.aiming import Aiming
 from ui.desk.auto_update import AutoUpdate
 from ui.desk.desk import Desk
 from ui.desk.foresight import Foresight
+from ui.desk.headline import HeadlineRow
 from ui.desk.image_preview import ImagePreviewFollower
 from ui.desk.live_press import LivePressFollower
 from ui.desk.object_follower import ObjectFollower
@@ -40,6 +41,7 @@ class Followers:
         self.foresight = Foresight(desk)
         self.image_preview = ImagePreviewFollower(desk)
         self.object = ObjectFollower(desk)
+        self.headline = HeadlineRow(desk)
         self._sensor: tuple[str, str] | None = None
         self._built = ""
         """Key of the body that was asked for last; empty once it is there."""
@@ -122,6 +124,7 @@ class Followers:
             desk.scene.rig.forget_image()
             desk.scene.body.dim(True)
             desk.tell("sensor", None)
+            self.headline.forget()
             self.refresh_header()
         self._sensor = sensor
 

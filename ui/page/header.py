@@ -28,6 +28,7 @@ class Header:
     def __init__(self, gui: Any, *, on_cancel: Callable[[Any], None]) -> None:
         self.title = gui.add_markdown("")
         self.strip = gui.add_markdown("")
+        self.headline = gui.add_html("")
         self.banner = gui.add_markdown("", visible=False)
         self.unsaved = gui.add_markdown("", visible=False)
         self.notice = gui.add_markdown("", visible=False)

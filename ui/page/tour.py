@@ -14,7 +14,7 @@ import time
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from ui.page.image_click import PIXEL_GIF
+from ui.patches.image_click import PIXEL_GIF
 
 NEXT, CLOSE = "Next", "Close"
 WIDTH_PX = 500

@@ -12,10 +12,10 @@ import viser
 from ui.desk.desk import Desk
 from ui.page.callbacks import put
 from ui.page.colours import AMBER
-from ui.page.image_click import image_clicks
 from ui.page.imaging import placeholder
 from ui.page.offer import offer
 from ui.page.plain import plain
+from ui.patches.image_click import image_clicks
 from workbench.calibration.photo_set import IDLE, Circle
 from workbench.core.base.errors import Cancelled
 from workbench.live.requests import Finished

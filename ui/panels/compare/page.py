@@ -8,6 +8,7 @@ from typing import Any
 
 from ui.desk.desk import Desk
 from ui.panels.compare.comparison_report import ReportFolder
+from ui.panels.compare.limits import LimitsFolder
 from ui.panels.compare.score_card import NOW_SHORT, ScoreFolder
 from ui.panels.compare.sweep import SweepFolder
 from ui.panels.compare.told import ToldFolder
@@ -35,6 +36,7 @@ class ComparePanel:
         self._timer: threading.Timer | None = None
         self.variants = VariantsFolder(desk, self._listed)
         self.score = ScoreFolder(desk)
+        self.limits = LimitsFolder(desk)
         self.versus = VersusFolder(desk, self._side, self._thumbnail)
         self.variants.on_save = self.versus.fill
         self.told = ToldFolder(desk)
@@ -67,7 +69,9 @@ class ComparePanel:
         return [(e.name, e.variant.metrics) for e in self.variants.entries if e.variant is not None]
 
     def _score(self) -> None:
-        self.score.load([(NOW_SHORT, self._as_it_stands().figures), *self._variants()])
+        figures = self._as_it_stands().figures
+        self.desk.figured(figures)
+        self.score.load([(NOW_SHORT, figures), *self._variants()])
 
     def _thumbnail(self, name: str) -> Path | None:
         """File of the thumbnail of a variant, if it has one."""

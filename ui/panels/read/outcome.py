@@ -9,8 +9,8 @@ from viser import uplot
 
 from ui.desk.desk import Desk
 from ui.page.colours import BLUE
-from ui.page.image_line import image_lines
 from ui.page.imaging import placeholder, scale_bar, swatch
+from ui.patches.image_line import image_lines
 from workbench.photographs.pictures import sized
 from workbench.reading.shown_reading import Look, ShownReading
 from workbench.view.colour_scale import NOTHING_GREY, YES

@@ -11,11 +11,11 @@ import numpy as np
 
 from ui.desk.desk import Desk
 from ui.page.blink import Blink
-from ui.page.image_zoom import image_zoom
 from ui.page.imaging import placeholder, scale_bar, table
 from ui.page.offer import offer
 from ui.panels.results.image_size import ImageSize
 from ui.panels.results.probe import Probe
+from ui.patches.image_zoom import image_zoom
 from workbench.core.result.sensing import Shot, TactileFrames
 from workbench.view.close_up import close_up
 from workbench.view.image_views import (

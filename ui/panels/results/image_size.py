@@ -10,8 +10,8 @@ from collections.abc import Callable
 from typing import Any
 
 from ui.desk.desk import Desk
-from ui.page.image_click import script_in_html
-from ui.page.image_zoom import FILL_PAGE
+from ui.patches.image_click import script_in_html
+from ui.patches.image_zoom import FILL_PAGE
 
 SMALL_PX = 350
 LARGE_PX = 600

@@ -1,6 +1,6 @@
 """From a pixel of the tactile image to the skin it sees, and from a click on the skin to its pixel.
 
-A pixel is chosen by a click on the image (`ui.page.image_click`) or by its column and row, and
+A pixel is chosen by a click on the image (`ui.patches.image_click`) or by its column and row, and
 shown by a cross.
 """
 
@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from ui.desk.desk import Desk
-from ui.page.image_click import COLUMN, ROW, image_clicks
+from ui.patches.image_click import COLUMN, ROW, image_clicks
 from workbench.core.result.results import MembraneMesh
 from workbench.view.frame_words import number as written
 from workbench.view.pixel_link import PixelLink, SkinPoint, frame_link

@@ -54,6 +54,33 @@ SHEET = """<style>
 .whole-image .image-tools input { vertical-align: middle; width: 200px; }
 .whole-frame { position: relative; margin: 0 auto; overflow: hidden; }
 .whole-frame img { display: block; width: 100%; }
+/* The headline: figures side by side, each opening its reason over what stands below. */
+.headline { position: relative; display: flex; gap: 4px; margin: 0 10px 8px; }
+.headline details { flex: 1 1 0; min-width: 0; }
+.headline summary {
+  display: grid; grid-template-columns: 1fr auto; list-style: none; cursor: pointer;
+  padding: 3px 5px; border-radius: 4px; border: 1px solid var(--mantine-color-default-border);
+  border-bottom: 3px solid var(--mantine-color-dimmed); color: var(--mantine-color-text);
+}
+.headline summary span {
+  grid-column: 1 / 3; font-size: 11px; color: var(--mantine-color-dimmed); white-space: nowrap;
+}
+.headline summary b { font-size: 13px; font-weight: 600; white-space: nowrap; overflow: hidden; }
+.headline summary i { font-size: 10px; font-style: normal; align-self: center; }
+.headline summary:focus-visible { outline: 2px solid var(--mantine-primary-color-filled); }
+.headline .good summary { border-bottom-color: #30a46c; }
+.headline .fair summary { border-bottom-color: #f5a623; }
+.headline .poor summary { border-bottom-color: #e5484d; }
+.headline .old summary b { font-weight: 400; font-style: italic; }
+.headline details > div {
+  position: absolute; left: 0; right: 0; top: 100%; z-index: 30; padding: 8px 10px;
+  font-size: 13px; line-height: 1.45; border-radius: 4px; color: var(--mantine-color-text);
+  background: var(--mantine-color-body); border: 1px solid var(--mantine-color-default-border);
+}
+.headline button {
+  border: 0; padding: 0; background: none; cursor: pointer; text-decoration: underline;
+  font: inherit; color: var(--mantine-color-anchor);
+}
 /* A closed folder is a heading with a line, not a box with nothing in it. */
 .mantine-Paper-root:has(> .mantine-Paper-root > .tabler-icon-chevron-down) {
   border-width: 1px 0 0;

@@ -5,7 +5,7 @@ As `image_click`, whose way of typing into boxes it shares: pressed on the image
 
 from __future__ import annotations
 
-from ui.page.image_click import TYPE_INTO_BOXES, hidden_mark
+from ui.patches.image_click import TYPE_INTO_BOXES, hidden_mark
 
 TARGET = "line-image"
 """Class of the piece of HTML; its parents are searched for images and boxes."""

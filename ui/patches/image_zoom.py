@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from ui.page.image_click import TYPE_INTO_BOXES, hidden_mark
+from ui.patches.image_click import TYPE_INTO_BOXES, hidden_mark
 
 TARGET = "zoom-image"
 """Class of the piece of HTML; its parents are searched for images and boxes."""

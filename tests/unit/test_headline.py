@@ -1,0 +1,112 @@
+"""The headline: standings by limits of either direction, own limits kept in a file, its HTML."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from ui.page.headline_html import MARKS, headline_html
+from workbench.core.base.errors import DesignError
+from workbench.project.limits import FILE, read_limits, write_limits
+from workbench.view.headline import HEADLINES, Bounds, Standing, headlines
+from workbench.view.metric_rules import RULES, Better
+
+CONTRAST, DENT, FORCE = "contact_contrast_1", "readable_dent_median_mm", "peak_normal_force_N"
+
+
+def standing(figure: str, figures: dict[str, float], **own: Bounds) -> Standing:
+    """How one of them stands."""
+    shown = headlines(figures, own)
+    return next(one.standing for one in shown if one.headline.figure == figure)
+
+
+@pytest.mark.parametrize(
+    ("bounds", "value", "expected"),
+    [
+        (Bounds(good=10.0, poor=3.0), 10.0, Standing.GOOD),
+        (Bounds(good=10.0, poor=3.0), 9.9, Standing.FAIR),
+        (Bounds(good=10.0, poor=3.0), 3.0, Standing.POOR),
+        (Bounds(good=0.1, poor=0.5), 0.1, Standing.GOOD),
+        (Bounds(good=0.1, poor=0.5), 0.3, Standing.FAIR),
+        (Bounds(good=0.1, poor=0.5), 0.7, Standing.POOR),
+    ],
+)
+def test_limits_hold_both_ways(bounds: Bounds, value: float, expected: Standing) -> None:
+    """The ends belong to good and to poor, whether more or less is better."""
+    assert bounds.standing(value) is expected
+    assert standing(CONTRAST, {CONTRAST: value}, **{CONTRAST: bounds}) is expected
+
+
+def test_our_limits_go_the_way_of_the_score_card() -> None:
+    """A figure that is better when higher is good above poor; every headline has a rule."""
+    for one in HEADLINES:
+        better = RULES[one.figure].better
+        if one.bounds is not None:
+            assert (one.bounds.good > one.bounds.poor) == (better is Better.HIGHER)
+
+
+def test_force_has_no_limit_until_the_designer_sets_one() -> None:
+    """Stiff or soft is a choice; what is not known says what to run."""
+    assert standing(FORCE, {FORCE: 3.0}) is Standing.PLAIN
+    assert standing(FORCE, {FORCE: 3.0}, **{FORCE: Bounds(good=1.0, poor=2.0)}) is Standing.POOR
+    assert standing(FORCE, {}) is Standing.OPEN
+    assert "Run press" in headlines({}, {})[0].reason
+
+
+@pytest.mark.parametrize(
+    ("value", "text"), [(143.4, "143"), (100.0, "100"), (99.4, "99"), (0.0343, "0.034")]
+)
+def test_figures_are_brief(value: float, text: str) -> None:
+    """Two digits, or whole numbers; never a power of ten."""
+    assert headlines({DENT: value}, {})[3].text == f"{text} mm"
+
+
+def test_makeable_counts_the_checks() -> None:
+    """A failed one is poor, one to look at fair, none good; not checked is not known."""
+    for bad, look_at, expected in (
+        (1, 2, Standing.POOR),
+        (0, 2, Standing.FAIR),
+        (0, 0, Standing.GOOD),
+    ):
+        counts = {"checks_bad": float(bad), "checks_warning": float(look_at)}
+        assert standing("checks_bad", counts) is expected
+    assert standing("checks_bad", {}) is Standing.OPEN
+
+
+def test_a_figure_of_before_an_edit_says_so() -> None:
+    """It keeps its value, marked; one that is known anew is not marked."""
+    shown = {
+        one.headline.figure: one
+        for one in headlines({FORCE: 2.0}, {}, before={FORCE: 1.0, CONTRAST: 0.2})
+    }
+    assert not shown[FORCE].old
+    assert shown[FORCE].text == "2 N"
+    assert shown[CONTRAST].old
+    assert "before the last edits" in shown[CONTRAST].reason
+    assert "(0.2)" in headline_html(tuple(shown.values()))
+
+
+def test_own_limits_are_kept_and_bad_ones_refused(tmp_path: Path) -> None:
+    """To the last digit and back; equal ends, words and broken files are said with the file."""
+    assert read_limits(tmp_path) == {}
+    kept = {CONTRAST: Bounds(good=0.123456789, poor=0.1), DENT: Bounds(good=0.1, poor=0.3)}
+    write_limits(tmp_path, kept)
+    assert read_limits(tmp_path) == kept
+    with pytest.raises(DesignError, match="two different numbers"):
+        write_limits(tmp_path, {DENT: Bounds(good=0.1, poor=0.1)})
+    assert read_limits(tmp_path) == kept
+    for text in ("[a\n", "[a]\ngood = 'x'\npoor = 1\n", "a = 3\n", "[a]\ngood = nan\npoor = 1\n"):
+        (tmp_path / FILE).write_text(text)
+        with pytest.raises(DesignError) as refused:
+            read_limits(tmp_path)
+        assert refused.value.hint
+
+
+def test_hue_is_not_the_only_carrier() -> None:
+    """Good, fair, poor and not known have marks of different shapes, and words for a reader."""
+    marks = [mark for mark, _ in MARKS.values()]
+    assert len(set(marks)) == len(marks)
+    text = headline_html(headlines({CONTRAST: 0.01}, {}))
+    assert 'aria-label="Contrast: 0.01, poor"' in text
+    assert "■" in text
