@@ -31,6 +31,7 @@ from ui.page.editor import Editor
 from ui.page.help import Help
 from ui.page.incoming import Incoming
 from ui.page.theme import Theme
+from ui.page.tour import ENLARGED, PRESSED, SHAPED, Tour
 from ui.panels.page import pages
 from ui.panels.results.page import ResultsPanel
 from ui.panels.view.page import ViewPanel
@@ -153,9 +154,30 @@ def build_desk(
                     guide.button(label)
     if tour:
         guide.begin()
+    _lead(guide.steps, desk, results)
     editor.on_change = incoming.on_refused = desk.reports.log_soon
     threading.Thread(target=desk.jobs.pump_forever, name="pump", daemon=True).start()
     return desk
+
+
+def _lead(tour: Tour, desk: Desk, results: ResultsPanel) -> None:
+    """Tell the tour what the visitor did."""
+
+    def enlarged(large: bool) -> None:
+        if large:
+            tour.happened(ENLARGED)
+
+    def shaped(path: str) -> None:
+        if path.startswith("design.shape"):
+            tour.happened(SHAPED)
+
+    def pressed(stage: str, result: Any) -> None:
+        if stage == "shoot":
+            tour.happened(PRESSED)
+
+    desk.edited.connect(shaped)
+    desk.shown_results.on_result.connect(pressed)
+    results.image.size.sized.connect(enlarged)
 
 
 def first_look(desk: Desk) -> None:
@@ -178,7 +200,8 @@ def first_look(desk: Desk) -> None:
 def _begin_with_what_ships(desk: Desk) -> None:
     """Put results of the example that ship into an empty store; without them it is pressed."""
     try:
-        put = unpack_first(desk.session.store, desk.session.calls()["build"].key)
+        wanted = {stage: call.key for stage, call in desk.session.calls().items()}
+        put = unpack_first(desk.session.store, wanted)
     except StoreError as error:
         desk.log(f"{error.message}: {error.hint}")
         return

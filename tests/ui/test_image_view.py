@@ -94,6 +94,7 @@ def test_a_zoomed_image_is_moved_and_clicked_as_it_is_seen(pressed: Any) -> None
     click_pixel(page, 170, 110)
     wait_until(lambda: near(page, 170, 110), 20, "the enlarged pixel is the one clicked")
 
+    tools.scroll_into_view_if_needed()
     frame = image(page).locator("xpath=..").bounding_box()
     middle = frame["x"] + frame["width"] / 2, frame["y"] + frame["height"] / 2
     before = image(page).bounding_box()

@@ -32,7 +32,7 @@ DIMENSIONLESS = set(
     # Directions of any length.
     "Shines along,Lies along,"
     # A scale of its own, and numbers in the unit of the parameter that is chosen above them.
-    "Shore A,From,To,Lowest,Highest,Value,"
+    "Shore A,From,To,Lowest,Highest,Value,Good from,Poor from,"
     # A count.
     "Designs to compute".split(",")
 )

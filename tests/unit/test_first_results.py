@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ui.desk.session import DEFAULT_DESIGN
+from ui.desk.session import DEFAULT_DESIGN, Session
 from workbench.core.base.errors import StoreError
 from workbench.core.press.press_case import PressCase
 from workbench.door.results import evaluate
@@ -31,7 +31,7 @@ from workbench.project.project import Project
 def project(tmp_path_factory: pytest.TempPathFactory) -> Project:
     """A new project, into which the shipped results were put."""
     found = Project(tmp_path_factory.mktemp("first"))
-    put = unpack_first(found.store, shipped_keys()["build"])
+    put = unpack_first(found.store, shipped_keys())
     assert set(put) == set(STAGES)
     return found
 
@@ -47,6 +47,12 @@ def test_what_ships_is_not_stale(project: Project) -> None:
     calls = plan(results.design, results.case)
     assert shipped_keys() == {stage: calls[stage].key for stage in STAGES}
     assert all(outcome.cached for outcome in results.outcomes)
+
+
+def test_a_new_project_begins_with_it(tmp_path: Path) -> None:
+    """The keys of a session that has not been touched are those that ship."""
+    calls = Session(Project(tmp_path)).calls()
+    assert {stage: calls[stage].key for stage in STAGES} == shipped_keys()
 
 
 def test_the_first_page_shows_a_contact(project: Project) -> None:
@@ -65,16 +71,17 @@ def test_it_is_small_enough_for_every_installation() -> None:
 
 
 def test_only_what_is_missing_is_put_and_only_for_its_body(tmp_path: Path) -> None:
-    """Another body has none; a second time nothing is missing; one removed comes back."""
+    """The same body meshed otherwise has none; the second time nothing is missing; one removed
+    comes back."""
     store = Store(tmp_path / "store")
-    assert unpack_first(store, "0" * 32) == ()
-    assert not store.root.exists()
     keys = shipped_keys()
-    unpack_first(store, keys["build"])
-    assert unpack_first(store, keys["build"]) == ()
+    assert unpack_first(store, keys | {"mesh": "0" * 32}) == ()
+    assert not store.root.exists()
+    assert set(unpack_first(store, keys)) == set(STAGES)
+    assert unpack_first(store, keys) == ()
     for path in store.path("build", keys["build"]).iterdir():
         path.unlink()
-    assert unpack_first(store, keys["build"]) == ("build",)
+    assert unpack_first(store, keys) == ("build",)
     assert store.has("build", keys["build"])
 
 
@@ -99,14 +106,14 @@ def test_a_damaged_archive_is_said_and_leaves_nothing(tmp_path: Path) -> None:
     broken = tmp_path / "broken.zip"
     data = bytearray(FILE.read_bytes())
     broken.write_bytes(data[: len(data) // 2])
-    store, key = Store(tmp_path / "store"), shipped_keys()["build"]
+    store, keys = Store(tmp_path / "store"), shipped_keys()
     with pytest.raises(StoreError, match="cannot be read"):
-        unpack_first(store, key, broken)
+        unpack_first(store, keys, broken)
     with zipfile.ZipFile(FILE) as archive:
         place = archive.getinfo(next(n for n in archive.namelist() if n.startswith("shoot/")))
     data[place.header_offset + 400] ^= 0xFF
     broken.write_bytes(data)
     with pytest.raises(StoreError, match="cannot be read"):
-        unpack_first(store, key, broken)
-    assert not store.has("shoot", shipped_keys()["shoot"])
+        unpack_first(store, keys, broken)
+    assert not store.has("shoot", keys["shoot"])
     assert not list(store.root.glob("*/.part-*"))

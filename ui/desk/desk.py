@@ -77,6 +77,8 @@ class Desk:
         """Figures of the design as it stands, as far as they are known."""
         self.limited: Signal[[]] = Signal()
         """The project's own limits of figures have changed."""
+        self.edited: Signal[[str]] = Signal()
+        """A field was changed by hand; told by its name."""
         self.live_switched: Signal[[bool]] = Signal()
         """The live press is wanted, or no longer."""
         self.live = False
@@ -137,6 +139,7 @@ class Desk:
                 self.reports.report(error, edited=path)
                 return
             self.reports.settle(path)
+            self.edited(path)
             if not path.startswith(("design.mould", "design.housing", "design.casting")):
                 self.put_parts_away()
             self.changed()

@@ -1,4 +1,4 @@
-"""Help in the page: a sheet for each panel, the keyboard map, and a tour of three steps.
+"""Help in the page: a sheet for each panel, the keyboard map, and a tour.
 
 The texts of the panels stand beside these, those of the tour are in `tour.py`.
 The tour is shown once per browser, which remembers it (`localStorage`), and again on request.

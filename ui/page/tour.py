@@ -1,8 +1,11 @@
-"""The tour of three steps: a window above the sensor, which opens the tab it speaks of.
+"""The tour: a window above the sensor that lets the visitor do each step, and opens its tab.
 
-It belongs to one tab of the browser and covers neither docks nor timeline, so that what it tells of
-can be tried while it is on show. viser cannot choose a tab from here, so a step runs a line of
-script in the page: it presses Enter on the tab (viser's tabs take no clicks of a script), and a
+A step that awaits something goes on by itself once it has happened, whoever did it, and the hand
+has rested: the tab under a slider must not change while it is dragged. *Next* leaves a step out.
+
+The window belongs to one tab of the browser and covers neither docks nor timeline, so that what it
+tells of can be done while it is on show. viser cannot choose a tab from here, so a step runs a line
+of script in the page: it presses Enter on the tab (viser's tabs take no clicks of a script), and a
 frame glows around all that the step points at.
 """
 
@@ -10,13 +13,17 @@ from __future__ import annotations
 
 import html
 import json
+import threading
 import time
 from collections.abc import Callable
+from functools import partial
 from typing import Any, NamedTuple
 
 from ui.patches.image_click import PIXEL_GIF
 
 NEXT, CLOSE = "Next", "Close"
+REST_S = 2.5
+"""So long after something was done last the tour goes on [s]."""
 WIDTH_PX = 500
 """Room between the docks on a page of 1280 pixels, less a margin on both sides."""
 POINT = """
@@ -46,25 +53,37 @@ class Step(NamedTuple):
     """Markdown."""
     tabs: tuple[str, ...]
     """Tabs that the step points at; the first is opened."""
+    awaits: str = ""
+    """What the visitor does, by its name here; "" where there is nothing to do."""
 
 
+SHAPED, PRESSED, ENLARGED = "shaped", "pressed", "enlarged"
 STEPS = (
     Step(
-        "1 of 3: shape the sensor",
-        "On the left, under **Shape**, choose where to start from and drag a slider: the body "
-        "below follows. Every number has a unit and a hint; what cannot be made is refused with "
-        "the limit, and **Undo** (Ctrl + Z) takes anything back.",
+        "1 of 4: shape the sensor",
+        "Under **Shape** on the left, drag **Outer radius mm**: the body below follows. What "
+        "cannot be made is refused with the limit, and **Undo** (Ctrl + Z) takes anything back.",
         ("Shape",),
+        SHAPED,
     ),
     Step(
-        "2 of 3: press it",
-        "On the left, under **Simulate**, choose an object, click the skin where it shall press, "
-        "then *Run press* (R). On the right stand the **Tactile image** and the **Forces**; the "
-        "timeline at the bottom plays the frames (P).",
+        "2 of 4: press it",
+        "Click the skin where a ball shall press it, then **Run press** (R): contact, light "
+        "and image are computed for your shape, half a minute or so. Meanwhile, look at the "
+        "objects under **Simulate**, or turn the sensor by a drag.",
         ("Simulate", "Tactile image", "Forces"),
+        PRESSED,
     ),
     Step(
-        "3 of 3: compare, make",
+        "3 of 4: see what it feels",
+        "Press I: the tactile image stands large beside the sensor (W: over the page). "
+        "J and K step through the frames, **Rest on the left %** wipes over to the "
+        "untouched skin. The figures at the top left each open their reason.",
+        ("Tactile image",),
+        ENLARGED,
+    ),
+    Step(
+        "4 of 4: compare, make",
         "The line of stages at the top left says what is up to date (✓) and what is stale (○). "
         "**Compare** keeps variants; **Make** checks walls and writes moulds and parts. All is "
         "saved as you go; Ctrl + K finds every command, H shows the keys.",
@@ -85,6 +104,9 @@ class Tour:
 
     def __init__(self, server: Any) -> None:
         self._open: dict[int, tuple[Any, Any]] = {}
+        self._going_on: dict[int, tuple[str, Callable[[], None]]] = {}
+        """What each tab's step awaits, and what shows the next."""
+        self._soon: threading.Timer | None = None
         server.on_client_disconnect(self._left)
 
     def show(self, client: Any, number: int, on_end: Callable[[], None]) -> None:
@@ -121,9 +143,27 @@ class Tour:
         self._open[client.client_id] = (panel, escape)
         if last:
             on_end()
+        else:
+            go_on = partial(self.show, client, number + 1, on_end)
+            self._going_on[client.client_id] = (step.awaits, go_on)
+
+    def happened(self, what: str) -> None:
+        """Go on in all tabs whose step awaits this, once nothing more happens."""
+        if any(awaits == what for awaits, _ in list(self._going_on.values())):
+            if self._soon is not None:
+                self._soon.cancel()
+            self._soon = threading.Timer(REST_S, self._go_on, (what,))
+            self._soon.daemon = True
+            self._soon.start()
+
+    def _go_on(self, what: str) -> None:
+        for awaits, go_on in list(self._going_on.values()):
+            if awaits == what:
+                go_on()
 
     def close(self, client: Any) -> None:
         """Take the window of a tab away, if there is one."""
+        self._going_on.pop(client.client_id, None)
         found = self._open.pop(client.client_id, None)
         if found is not None:
             for handle in found:
@@ -131,3 +171,4 @@ class Tour:
 
     async def _left(self, client: Any) -> None:
         self._open.pop(client.client_id, None)
+        self._going_on.pop(client.client_id, None)

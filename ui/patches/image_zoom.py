@@ -71,8 +71,9 @@ for (const [name, handler] of Object.entries((window.imageZoom || {}).handlers |
     const box = image.parentElement.getBoundingClientRect();
     return [(event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height];
   };
-  const of = event => event.target.tagName === 'IMG' && images().includes(event.target)
-    ? event.target : null;
+  /* An image whose next picture is still loading has no size; it is known by how it is drawn. */
+  const of = event => event.target.tagName === 'IMG'
+    && (event.target.style.transform || images().includes(event.target)) ? event.target : null;
   const close = () => { if (page) { page.whole.remove(); page = null; } };
   const fit = () => {
     if (!page) return;

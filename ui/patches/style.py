@@ -55,18 +55,21 @@ SHEET = """<style>
 .whole-frame { position: relative; margin: 0 auto; overflow: hidden; }
 .whole-frame img { display: block; width: 100%; }
 /* The headline: figures side by side, each opening its reason over what stands below. */
-.headline { position: relative; display: flex; gap: 4px; margin: 0 10px 8px; }
-.headline details { flex: 1 1 0; min-width: 0; }
+.headline { position: relative; display: flex; gap: 3px; margin: 0 10px 8px; }
+.headline details { flex: 1 1 auto; min-width: 0; }
 .headline summary {
-  display: grid; grid-template-columns: 1fr auto; list-style: none; cursor: pointer;
-  padding: 3px 5px; border-radius: 4px; border: 1px solid var(--mantine-color-default-border);
+  display: grid; grid-template-columns: auto auto; list-style: none; cursor: pointer;
+  padding: 3px 4px; border-radius: 4px; border: 1px solid var(--mantine-color-default-border);
   border-bottom: 3px solid var(--mantine-color-dimmed); color: var(--mantine-color-text);
 }
 .headline summary span {
-  grid-column: 1 / 3; font-size: 11px; color: var(--mantine-color-dimmed); white-space: nowrap;
+  grid-column: 1 / 3; font-size: 10.5px; color: var(--mantine-color-dimmed); white-space: nowrap;
 }
-.headline summary b { font-size: 13px; font-weight: 600; white-space: nowrap; overflow: hidden; }
-.headline summary i { font-size: 10px; font-style: normal; align-self: center; }
+.headline summary b { font-size: 12px; font-weight: 600; white-space: nowrap; }
+.headline summary i {
+  font-size: 9px; font-style: normal; align-self: center; justify-self: end;
+}
+.headline details:not([open]) > div { display: none; }
 .headline summary:focus-visible { outline: 2px solid var(--mantine-primary-color-filled); }
 .headline .good summary { border-bottom-color: #30a46c; }
 .headline .fair summary { border-bottom-color: #f5a623; }

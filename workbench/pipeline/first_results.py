@@ -39,12 +39,12 @@ def shipped_keys(file: Path = FILE) -> dict[str, str]:
     return {path.parts[0]: path.parts[1] for path in paths if len(path.parts) == 3}
 
 
-def unpack_first(store: Store, build_key: str, file: Path = FILE) -> tuple[str, ...]:
-    """Put the shipped results into a store, if they are those of this body.
+def unpack_first(store: Store, wanted: Mapping[str, str], file: Path = FILE) -> tuple[str, ...]:
+    """Put the shipped results into a store, if all of them are wanted.
 
     Args:
         store: Where they are missing.
-        build_key: Key of the body of the design that is begun with; another body has none.
+        wanted: Keys by stage of the design and press that are begun with; others have none.
         file: The archive.
 
     Returns:
@@ -54,7 +54,7 @@ def unpack_first(store: Store, build_key: str, file: Path = FILE) -> tuple[str, 
         StoreError: If the archive is damaged, or the disk full or read-only.
     """
     keys = shipped_keys(file)
-    if keys.get("build") != build_key:
+    if not keys or any(wanted.get(stage) != key for stage, key in keys.items()):
         return ()
     put = tuple(stage for stage, key in keys.items() if not store.has(stage, key))
     try:

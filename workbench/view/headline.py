@@ -169,7 +169,7 @@ def _makeable(headline: Headline, bad: int, look_at: int) -> Shown:
         text, standing = "no", Standing.POOR
         reason = f"{_checks(bad)} failed: it cannot be printed, cast or assembled as it is."
     elif look_at:
-        text, standing = "with care", Standing.FAIR
+        text, standing = "mostly", Standing.FAIR
         reason = f"{_checks(look_at)} to look at: each may cost a second casting."
     else:
         text, standing, reason = "yes", Standing.GOOD, "All checks of the parts passed."

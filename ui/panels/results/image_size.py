@@ -6,10 +6,10 @@ and the image is as wide as the dock. The whole page is one tab's own.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 from ui.desk.desk import Desk
+from ui.desk.signal import Signal
 from ui.patches.image_click import script_in_html
 from ui.patches.image_zoom import FILL_PAGE
 
@@ -27,7 +27,7 @@ class ImageSize:
         self.desk = desk
         self.dock = dock
         self.large = False
-        self.on_size: Callable[[bool], None] = lambda large: None
+        self.sized: Signal[[bool]] = Signal()
         """Told whether the image is large, and little room is left to the 3D view."""
         self._scripts: dict[int, Any] = {}
         """What was last laid into a tab, by its number."""
@@ -45,7 +45,7 @@ class ImageSize:
         """Give the dock one of its two widths."""
         self.large = large
         self.dock.set_width(LARGE_PX if large else SMALL_PX)
-        self.on_size(large)
+        self.sized(large)
 
     def fill(self, client: Any) -> None:
         """Show the image over the whole page of a tab, or end that."""

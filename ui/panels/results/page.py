@@ -60,7 +60,7 @@ class ResultsPanel:
         # On a narrow page docks are sections of one sheet, closed unless told otherwise.
         self.dock.expand()
         self.timeline = Timeline(desk, self._show_frame)
-        self.image.size.on_size = self.timeline.narrow
+        self.image.size.sized.connect(self.timeline.narrow)
 
     def _show_frame(self, number: int) -> None:
         # Or the page draws the view once for the skin and once for the image.
