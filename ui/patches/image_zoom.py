@@ -30,7 +30,7 @@ for (const [name, handler] of Object.entries((window.imageZoom || {}).handlers |
   document.removeEventListener(name, handler, {capture: true});
 (() => {
   const at = {times: 1, x: 0, y: 0};
-  let page = null, drag = null;
+  let page = null, drag = null, down = {ms: -1e9, x: 0, y: 0};
   const tab = () => {
     for (const mark of document.querySelectorAll('.zoom-image')) {
       let around = mark;
@@ -129,6 +129,12 @@ for (const [name, handler] of Object.entries((window.imageZoom || {}).handlers |
     pointerdown: event => {
       const image = of(event);
       window.imageMoved = false;
+      /* Not dblclick: an image that a click has drawn anew is another element by the second one. */
+      const near = Math.hypot(event.clientX - down.x, event.clientY - down.y) < 6;
+      const twice = image && near && event.timeStamp - down.ms < 350;
+      down = twice ? {ms: -1e9, x: 0, y: 0}
+        : {ms: event.timeStamp, x: event.clientX, y: event.clientY};
+      if (twice) return acts[at.times > 1 ? 'all' : 'page']();
       if (image && at.times > 1)
         drag = {image, from: shares(image, event), x: at.x, y: at.y};
     },
@@ -142,7 +148,6 @@ for (const [name, handler] of Object.entries((window.imageZoom || {}).handlers |
     },
     pointerup: () => { drag = null; },
     dragstart: event => { if (of(event)) event.preventDefault(); },
-    dblclick: event => { if (of(event)) acts[at.times > 1 ? 'all' : 'page'](); },
     click: event => {
       const tool = event.target.closest && event.target.closest('.image-tools [data-act]');
       if (tool) acts[tool.dataset.act]();
