@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
+from ui.desk.desk import Desk
 from ui.page.headline_html import headline_html
 from workbench.core.base.errors import DesignError
 from workbench.project.limits import read_limits
@@ -14,7 +14,7 @@ from workbench.view.headline import Bounds, headlines
 class HeadlineRow:
     """What stands in the row; figures come from the page that compares."""
 
-    def __init__(self, desk: Any) -> None:
+    def __init__(self, desk: Desk) -> None:
         self.desk = desk
         self.figures: dict[str, float] = {}
         """Those of the design as it stands."""
