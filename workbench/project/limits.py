@@ -59,10 +59,11 @@ def write_limits(folder: Path, limits: Mapping[str, Bounds]) -> None:
 
 
 def _bounds(path: Path, name: str, entry: Any) -> Bounds:
-    ends = [entry.get(end) for end in ("good", "poor")] if isinstance(entry, dict) else []
-    if len(ends) != 2 or any(isinstance(e, bool) or not isinstance(e, int | float) for e in ends):
+    ends: list[Any] = [entry.get("good"), entry.get("poor")] if isinstance(entry, dict) else []
+    numbers = [float(end) for end in ends if _is_number(end)]
+    if len(numbers) != 2:
         raise _broken(path, f"{name} needs two numbers, good and poor")
-    good, poor = float(ends[0]), float(ends[1])
+    good, poor = numbers
     if not (math.isfinite(good) and math.isfinite(poor)) or good == poor:
         raise DesignError(
             f"limits of {name}: good {good:g} and poor {poor:g} must be two different numbers",
@@ -70,6 +71,10 @@ def _bounds(path: Path, name: str, entry: Any) -> Bounds:
             at=name,
         )
     return Bounds(good=good, poor=poor)
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 def _broken(path: Path, why: str) -> DesignError:
