@@ -124,9 +124,10 @@ def test_a_click_on_the_picture_finds_what_a_click_on_the_skin_had_there(
     assert abs(slider_value(page, "Pixel column px") - column) <= 1
     assert abs(slider_value(page, "Pixel row px") - row) <= 1
     back = told(page)
-    # A mouse knows whole points, and a pixel is not as large: it may be the next one.
+    # A mouse knows whole points, and a pixel is about as large: it may be the next one across a
+    # corner (1.41 pixels), from a place that may be at a corner of its own (0.71).
     assert back is not None
-    assert np.linalg.norm(np.subtract(back.place_mm, there.place_mm)) < 2.0 * there.size_mm
+    assert np.linalg.norm(np.subtract(back.place_mm, there.place_mm)) < 2.2 * there.size_mm
     wait_until(lambda: marked(page, bare), 20, "the place is marked in the view")
 
     click_pixel(page, 130, 140, number=1)

@@ -116,7 +116,8 @@ def test_maps_are_measured_shown_and_read(
     page.screenshot(path=str(tmp_path / "map.png"))
     box = page.locator("canvas").first.bounding_box()
     page.mouse.click(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
-    told = page.get_by_text("mm:", exact=False)
+    # The reasons of the headline, which are folded away, have lengths too.
+    told = page.get_by_text("mm:", exact=False).locator("visible=true")
     wait_until(told.count, 20, "the value is told")
     assert "deg" in told.first.inner_text()
 
