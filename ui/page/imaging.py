@@ -82,8 +82,10 @@ def legend(
         else ""
     )
     return (
-        f"<div style='font-size:12px;margin:0 12px'>{html.escape(title)}{mark}"
-        f"<span style='float:right'>0 to {high:.3g} {html.escape(unit)}</span>"
+        # Beside each other where there is room, else one below the other.
+        "<div style='font-size:12px;margin:0 12px'><div style='display:flex;flex-wrap:wrap;"
+        f"justify-content:space-between'><span>{html.escape(title)}{mark}</span>"
+        f"<span>0 to {high:.3g} {html.escape(unit)}</span></div>"
         f"<div style='height:8px;border-radius:3px;background:linear-gradient(90deg,{colours})'>"
         "</div></div>"
     )

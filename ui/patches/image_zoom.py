@@ -21,8 +21,8 @@ TARGET = "zoom-image"
 MOST_TIMES = 16
 """Further in, a pixel of the camera is larger than a thumb."""
 STEP = 1.25
-BAR_PX = 150
-"""Height that the timeline's bar takes below an image that fills the page."""
+BAR_PX = 190
+"""Height that the timeline's bar, narrow and so higher, takes below an image over the page."""
 INSTALL = (
     TYPE_INTO_BOXES
     + """
