@@ -11,7 +11,6 @@ frame glows around all that the step points at.
 
 from __future__ import annotations
 
-import html
 import json
 import threading
 import time
@@ -19,7 +18,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any, NamedTuple
 
-from ui.patches.image_click import PIXEL_GIF
+from ui.patches.image_click import script_in_html
 
 NEXT, CLOSE = "Next", "Close"
 REST_S = 2.5
@@ -95,8 +94,7 @@ STEPS = (
 def pointing(tabs: tuple[str, ...], turn: int) -> str:
     """The script that opens the first tab and lets all of them glow, as HTML that runs it once."""
     source = POINT.replace("NAMES", json.dumps(tabs)).replace("TURN", str(turn))
-    script = html.escape(" ".join(source.split()), quote=True)
-    return f'<img alt="" style="display:none" src="{PIXEL_GIF}" onload="{script}">'
+    return script_in_html(source)
 
 
 class Tour:
