@@ -185,28 +185,28 @@ def first_look(desk: Desk) -> None:
 
     Of the design that a new project begins with, results ship.
     """
-    if not any(desk.session.fresh().values()) and not desk.editor.is_shut:
-        _begin_with_what_ships(desk)
-    fresh = desk.session.fresh()
+    begun = any(desk.session.fresh().values()) or desk.editor.is_shut
+    begun = begun or _begin_with_what_ships(desk)
     desk.changed()
     if desk.session.notice:
         desk.log(desk.session.notice)
         desk.reports.remark(desk.session.notice)
-    if not any(fresh.values()) and not desk.editor.is_shut:
+    if not begun:
         desk.log("first start: pressing the example in the background, a minute or so")
         desk.run("press", ("press", "shoot"))
 
 
-def _begin_with_what_ships(desk: Desk) -> None:
-    """Put results of the example that ship into an empty store; without them it is pressed."""
+def _begin_with_what_ships(desk: Desk) -> bool:
+    """Put results of the example that ship into an empty store; whether there are any."""
     try:
         wanted = {stage: call.key for stage, call in desk.session.calls().items()}
         put = unpack_first(desk.session.store, wanted)
     except StoreError as error:
         desk.log(f"{error.message}: {error.hint}")
-        return
+        return False
     if put:
         desk.log("first start: the example's contact and image came with the program")
+    return bool(put)
 
 
 def warm_up() -> None:

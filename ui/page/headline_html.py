@@ -49,7 +49,7 @@ def _chip(one: Shown) -> str:
     text = html.escape(f"({one.text})" if one.old else one.text)
     name = f"{word}: {text}, {one.standing.value}"
     return (
-        f'<details name="headline" class="{kind}{" old" if one.old else ""}">'
+        f'<details name="headline" class="{kind}">'
         f'<summary aria-label="{name}" title="{name}"><span>{word}</span>'
         f"<b>{text}</b><i>{mark}</i></summary>"
         f"<div>{html.escape(one.reason)} "

@@ -15,7 +15,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from workbench.core.base.errors import DesignError, StoreError
+from workbench.core.base.errors import DesignError
 from workbench.system.whole_files import write_atomically
 from workbench.view.headline import Bounds
 
@@ -52,10 +52,7 @@ def write_limits(folder: Path, limits: Mapping[str, Bounds]) -> None:
         f'["{name}"]\ngood = {bounds.good!r}\npoor = {bounds.poor!r}\n'
         for name, bounds in sorted(limits.items())
     )
-    try:
-        write_atomically(path, text.encode())
-    except OSError as error:
-        raise StoreError(f"{path} cannot be written: {error.strerror}", at=str(path)) from error
+    write_atomically(path, text.encode())
 
 
 def _bounds(path: Path, name: str, entry: Any) -> Bounds:
