@@ -107,7 +107,8 @@ def test_strokes_are_run_in_order_and_named(
         tab(page, "Timeline").click()
         title = f"{quantity.capitalize()} of the skin, scale of all frames"
         page.get_by_text(title).wait_for()
-        assert unit in page.get_by_text(title).inner_text()
+        beside_the_title = page.get_by_text(title).locator("..")
+        assert unit in beside_the_title.inner_text()
     page.get_by_role("tab", name="Forces").click()
     page.get_by_text("Stick to slip, frame by frame").wait_for()
     assert "nan" not in page.locator("body").inner_text().lower()
