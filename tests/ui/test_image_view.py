@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from tests.ui.conftest import Server
-from tests.ui.test_image_click import click_pixel, image, near, told
+from tests.ui.test_image_click import MIDDLE, click_pixel, image, near, told
 from tests.ui.widgets import control, open_page, slider_value, tab, wait_until
 
 pytestmark = [pytest.mark.ui, pytest.mark.slow]
@@ -73,11 +73,15 @@ def test_the_image_is_large_beside_the_sensor_and_over_the_page(pressed: Any) ->
     box = whole.bounding_box()
     assert box["height"] > 0.7 * page.viewport_size["height"]
     assert not inside(box, bar.bounding_box())
+    scene = page.locator("canvas[data-engine]")
+    corner = scene.bounding_box()
+    assert 200 < corner["width"] < 400 and not inside(box, corner), "the 3D view beside it"
     assert whole.get_attribute("src") == image(page).get_attribute("src")
     now = whole.get_attribute("src")
     page.keyboard.press("j")
     wait_until(lambda: whole.get_attribute("src") != now, 20, "the frame before is shown there too")
     page.keyboard.press("Escape")
+    wait_until(lambda: scene.bounding_box()["width"] > 1000, 20, "the 3D view has its place again")
     wait_until(lambda: not whole.count(), 20, "the page is seen again")
 
 
@@ -122,6 +126,12 @@ def test_a_zoomed_image_is_moved_and_clicked_as_it_is_seen(pressed: Any) -> None
     for share in (0.3, 0.6):
         page.mouse.move(frame["x"] + share * frame["width"], y, steps=3)
         wait_until(lambda at=share: _near_column(page, int(320 * at)), 20, "without a click")
+    before = told(page)
+    page.mouse.move(*MIDDLE, steps=3)
+    wait_until(lambda: told(page) not in (None, before), 20, "the skin under the mouse has a pixel")
+    assert not page.get_by_text("The press aims elsewhere").count(), (
+        "a mouse that rests aims at nothing"
+    )
 
 
 def _near_column(page: Any, column: int) -> bool:

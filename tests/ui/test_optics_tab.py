@@ -74,7 +74,8 @@ def test_light_model_lamp_lens_and_views(
     choose(page, "Show", "depth")
     page.get_by_text("depth along the optical axis").wait_for()
     page.screenshot(path=str(tmp_path / "views.png"))
-    choose(page, "Camera", "camera 2")
+    button(page, "camera 2").click()
+    button(page, "● camera 2").wait_for()
     choose(page, "Show", "image")
     wait_until(lambda: image_source(page) != first, 20, "the other camera sees something else")
 

@@ -24,6 +24,7 @@ from ui.page.fields import Fields
 from ui.page.gallery import Galleries
 from ui.page.header import Header
 from ui.scene.gizmo import Gizmo
+from ui.scene.pointing import rests
 from ui.scene.scene import Scene
 from workbench.core.base.errors import WorkbenchError
 from workbench.core.design.design import SensorDesign
@@ -67,6 +68,8 @@ class Desk:
         """The desk itself has corrected the state; told in words."""
         self.clicked: Signal[[Any]] = Signal()
         """A click into the 3D view, as viser tells it."""
+        self.rested: Signal[[np.ndarray, np.ndarray]] = Signal()
+        """The mouse rests over the skin; told by its ray, while a page is asked to tell it."""
         self.object_drawn: Signal[[]] = Signal()
         """The object in the 3D view has another shape, or stands elsewhere."""
         self.put_parts_away: Signal[[]] = Signal()
@@ -91,7 +94,7 @@ class Desk:
         self.log = self.reports.log
         self.galleries = Galleries(server, editor)
         self.background = BackgroundThread(on_error=self.reports.tell)
-        on_click = self.guarded(self.clicked)
+        on_click = self.guarded(self._pointed)
         self.scene = Scene(server, fast=fast, on_click=on_click, background=self.background)
         self.panels: list[Panel] = []
         self.pick: Callable[[int], bool] = lambda face: False
@@ -128,6 +131,12 @@ class Desk:
             shape = resolve_shape(design.family, design.shape)
             return getattr(shape, path.rsplit(".", 1)[1])
         return read_field(self.session.state, path)
+
+    def _pointed(self, event: Any) -> None:
+        if rests(event):
+            self.rested(np.asarray(event.ray_origin), np.asarray(event.ray_direction))
+        else:
+            self.clicked(event)
 
     def edit(self, path: str, value: Any) -> None:
         """Change one field; a refused value is explained and leaves the last good state."""

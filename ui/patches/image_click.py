@@ -4,6 +4,9 @@ A piece of HTML beside the image installs one handler in the page. It turns the 
 into a column and a row of the camera and types both into the sliders' boxes, so that all else goes
 the way of typed values: a tab that follows is refused, and the server knows of no second way. The
 sliders' ends tell the camera's size, whatever the image's own size and however large it is shown.
+
+Where the place under the mouse is wanted, a mouse that rests over the 3D view is told by a click of
+the page's own there, with keys held by which `ui.scene.pointing` knows it.
 """
 
 from __future__ import annotations
@@ -61,9 +64,20 @@ window.probeAt = (event, hovered) => {
   }
 };
 window.probeImage = event => window.probeAt(event, false);
+window.clickForTheMouse = event => {
+  if (!document.querySelector('.probe-image[data-hover]') || event.buttons) return;
+  const keys = {ctrlKey: true, altKey: true, shiftKey: true};
+  for (const name of ['pointerdown', 'pointerup'])
+    event.target.dispatchEvent(new PointerEvent(name, {...keys, bubbles: true, button: 0,
+      pointerId: event.pointerId, pointerType: 'mouse', isPrimary: true,
+      clientX: event.clientX, clientY: event.clientY}));
+};
 window.probeUnder = event => {
   clearTimeout(window.probeSoon);
-  window.probeSoon = setTimeout(() => window.probeAt(event, true), PAUSE);
+  if (!event.isTrusted) return;
+  const scene = event.target.tagName === 'CANVAS' && event.target.dataset.engine;
+  window.probeSoon = setTimeout(
+    () => scene ? window.clickForTheMouse(event) : window.probeAt(event, true), PAUSE);
 };
 document.addEventListener('click', window.probeImage, true);
 document.addEventListener('pointermove', window.probeUnder, true);

@@ -5,9 +5,9 @@ of one size in a tab are looked at alike, so that an image and its change show t
 CSS changes: nothing is sent, a tab that follows may look as it likes, and a click still finds its
 pixel, since its place is told from the image as it is drawn.
 
-Filling the page puts one more image over docks and 3D view, below floating bars, so that the
-timeline stands under it. It takes each new picture of the tab's first image as soon as that is
-loaded.
+Filling the page puts one more image over the docks, below floating bars, so that the timeline
+stands under it; the 3D view, which draws itself for the room it has, stands in a corner meanwhile.
+The image takes each new picture of the tab's first image as soon as that is loaded.
 """
 
 from __future__ import annotations
@@ -74,7 +74,16 @@ for (const [name, handler] of Object.entries((window.imageZoom || {}).handlers |
   /* An image whose next picture is still loading has no size; it is known by how it is drawn. */
   const of = event => event.target.tagName === 'IMG'
     && (event.target.style.transform || images().includes(event.target)) ? event.target : null;
-  const close = () => { if (page) { page.whole.remove(); page = null; } };
+  const scene = () => {
+    const canvas = document.querySelector('canvas[data-engine]');
+    return canvas && canvas.closest('[style*="z-index: 0"]');
+  };
+  const close = () => {
+    if (!page) return;
+    page.whole.remove();
+    page = null;
+    if (scene()) scene().classList.remove('scene-in-the-corner');
+  };
   const fit = () => {
     if (!page) return;
     const ratio = page.image.naturalWidth / page.image.naturalHeight || 4 / 3;
@@ -95,6 +104,7 @@ for (const [name, handler] of Object.entries((window.imageZoom || {}).handlers |
     tools.querySelector('[data-act=page]').textContent = 'Close (Esc)';
     whole.firstChild.prepend(...tools.childNodes);
     (root || document.body).append(whole);
+    if (scene()) scene().classList.add('scene-in-the-corner');
     page = {whole, frame: whole.lastChild, image: whole.querySelector('img')};
     page.image.src = around.querySelector('img[src^="blob:"]').src;
     const wipe = whole.querySelector('input');

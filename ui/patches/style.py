@@ -53,6 +53,13 @@ SHEET = """<style>
 .whole-image .image-tools label { margin-left: 12px; color: var(--mantine-color-text); }
 .whole-image .image-tools input { vertical-align: middle; width: 200px; }
 .whole-frame { position: relative; margin: 0 auto; overflow: hidden; }
+/* The 3D view while the image has the page; viser sizes it in its own style. */
+.scene-in-the-corner {
+  position: fixed !important; right: 12px; bottom: 12px; z-index: 11 !important;
+  width: 26vw !important; height: 26vh !important; border-radius: 6px; overflow: hidden;
+  box-shadow: 0 0 0 1px var(--mantine-color-default-border);
+}
+@media (max-width: 36em) { .scene-in-the-corner { display: none; } }
 .whole-frame img { display: block; width: 100%; }
 /* The headline: figures side by side, each opening its reason over what stands below. */
 .headline { position: relative; display: flex; gap: 3px; margin: 0 10px 8px; }

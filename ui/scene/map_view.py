@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ui.page.imaging import coloured_glb
+from ui.scene.pointing import listen
 from workbench.core.result.results import Skin
 from workbench.view.section_cut import Plane
 
@@ -38,7 +39,7 @@ class MapView:
         points = np.asarray(skin.points_mm, np.float32)
         glb = coloured_glb(points, np.asarray(skin.faces), colours, self.plane)
         self._node = self.api.add_glb(f"/map/{self._series}", glb)
-        self._node.on_click(self.on_click)
+        listen(self._node, self.on_click)
         if before is not None:
             before.remove()
 

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from ui.scene.pointing import listen
 from workbench.view.section_cut import Plane, clip, packed
 
 DIMMED = 0.06
@@ -64,7 +65,7 @@ class Meshes:
         )
         node.visible = self._shown and self.allowed
         if self.on_click is not None:
-            node.on_click(self.on_click)
+            listen(node, self.on_click)
         self.nodes[name] = node
         return node
 
@@ -109,7 +110,7 @@ class Meshes:
             if on_click is None:
                 node.remove_click_callback()
             else:
-                node.on_click(on_click)
+                listen(node, on_click)
 
     def set_opacity(self, opacity: float) -> None:
         """Draw all of them with this opacity in [0, 1]."""

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from ui.page.background_thread import BackgroundThread
+from ui.scene.pointing import listen
 from ui.scene.pressed_frames import PressedFrames, pressed_frames
 from workbench.core.result.results import Skin
 from workbench.core.result.sensing import Contact
@@ -239,7 +240,7 @@ class PressedView:
         while len(self._nodes) >= MOST_KEPT:
             self._nodes.pop(next(iter(self._nodes))).remove()
         node = self.api.add_glb(f"/frames/{self._series}/{number}", glb, visible=False)
-        node.on_click(self.on_click)
+        listen(node, self.on_click)
         self._nodes[number] = node
 
     def _follow_arrows(self) -> None:

@@ -13,6 +13,7 @@ from ui.desk.desk import Desk
 from ui.page.blink import Blink
 from ui.page.imaging import placeholder, scale_bar, table
 from ui.page.offer import offer
+from ui.panels.results.camera_row import CameraRow
 from ui.panels.results.image_size import ImageSize
 from ui.panels.results.probe import Probe
 from ui.patches.image_zoom import image_zoom
@@ -57,9 +58,8 @@ class ImageTab:
         self.number = 0
         """Frame on show."""
         self.caption = gui.add_markdown(NO_IMAGE)
-        self.camera = gui.add_dropdown(
-            "Camera", ("camera 1",), visible=False, hint="Whose image is shown"
-        )
+        self.camera = CameraRow(desk)
+        self.camera.chosen.connect(lambda: self.show(self.number))
         hint = "What the first image is; below it stands its change"
         self.view = gui.add_dropdown("Show", (View.IMAGE.value,), visible=False, hint=hint)
         self.size = ImageSize(desk, dock)
@@ -89,7 +89,7 @@ class ImageTab:
         self.blink = gui.add_checkbox("Blink with rest", False, visible=False, hint=hint)
         hint = "What the difference is multiplied by; as fits: 8 at most, little of it saturates"
         self.gain = gui.add_dropdown("Strengthen change", tuple(GAINS), visible=False, hint=hint)
-        for handle in (self.camera, self.view, self.wipe, self.gain):
+        for handle in (self.view, self.wipe, self.gain):
             handle.on_update(guarded(lambda event: self.show(self.number)))
         self.blink.on_update(guarded(lambda event: self._blinks()))
 
@@ -121,7 +121,8 @@ class ImageTab:
         self.close.visible = self.close_text.visible = False
         self.image.image = placeholder(*IMAGE_COMES)
         self.change.image = placeholder(*CHANGE_COMES)
-        for handle in (self.camera, self.view, self.measures, *self._comparing):
+        self.camera.hide()
+        for handle in (self.view, self.measures, *self._comparing):
             handle.visible = False
         self.blink.value = False
 
@@ -132,10 +133,9 @@ class ImageTab:
 
     def _offer(self) -> None:
         """Offer the cameras and views that there are."""
-        names = tuple(f"camera {k}" for k in range(1, len(self.cameras) + 1))
-        offer(self.camera, names)
+        self.camera.offer(len(self.cameras))
         offer(self.view, tuple(view.value for view in views(self.cameras[0][1])))
-        self.camera.visible, self.view.visible = len(names) > 1, True
+        self.view.visible = True
         for handle in self._comparing:
             handle.visible = True
 
@@ -145,7 +145,7 @@ class ImageTab:
 
     def chosen(self) -> tuple[np.ndarray, TactileFrames | None]:
         """Images and fields of the chosen camera."""
-        return self.cameras[self.camera.options.index(self.camera.value)]
+        return self.cameras[self.camera.number]
 
     def show(self, number: int) -> None:
         """Show a frame, the last one where there are not so many."""
@@ -153,7 +153,7 @@ class ImageTab:
             return
         images, frames = self.chosen()
         self.number = number = min(number, len(images) - 1)
-        self.probe.follow(self.camera.options.index(self.camera.value), number)
+        self.probe.follow(self.camera.number, number)
         what = View(self.view.value)
         found = self._looked(what, number)
         image = found.rgb

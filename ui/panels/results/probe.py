@@ -45,13 +45,17 @@ class Probe:
         """What was last looked through: camera and frame; press and mesh."""
         self._nodes: list[Any] = []
         desk.click_handlers.append(self.takes)
+        desk.rested.connect(self._follow_mouse)
         gui, guarded = desk.server.gui, desk.guarded
         self.folder = gui.add_folder("Pixel and skin", expand_by_default=False, visible=False)
         with self.folder:
             hint = "A click on the image shows the place on the skin that the pixel sees; "
             hint += "a click on the skin shows its pixel, instead of aiming the press there"
             self.on = gui.add_checkbox("Probe on click", False, hint=hint)
-            hint = "The place on the skin follows the mouse over the image"
+            hint = (
+                "The place on the skin follows the mouse over the image, and the pixel the mouse "
+            )
+            hint += "over the skin"
             self.under = gui.add_checkbox("Probe under the mouse", False, hint=hint)
             for handle in (self.on, self.under):
                 handle.on_update(guarded(lambda event: self._switch()))
@@ -124,8 +128,21 @@ class Probe:
 
     def takes(self, origin: np.ndarray, direction: np.ndarray) -> bool:
         """Take a click while probing."""
+        return bool(self.on.value) and self._shows_at(origin, direction)
+
+    def _follow_mouse(self, origin: np.ndarray, direction: np.ndarray) -> None:
+        if self.under.value:
+            self._shows_at(origin, direction)
+
+    def _shows_at(self, origin: np.ndarray, direction: np.ndarray) -> bool:
+        """Show the pixel of the place where a ray meets the skin; whether there is a skin to ask.
+
+        Args:
+            origin: Start of the ray [mm], shape (3,).
+            direction: Unit direction, shape (3,).
+        """
         scene, link = self.desk.scene, self._link()
-        if not self.on.value or link is None or scene.hidden:
+        if link is None or scene.hidden:
             return False
         surface = scene.pressed.surface()
         if surface is not None:

@@ -24,6 +24,7 @@ import numpy as np
 from workbench.project.design_toml import design_to_toml
 from workbench.project.named_designs import load_design
 from workbench.proof.benchmarks.playback import WATCH_DRAWS, frame_s
+from workbench.proof.benchmarks.ring_drag import ring_drag_s
 from workbench.proof.benchmarks.tabs import blocked_s, key_to_server_s
 from workbench.proof.row import Row, bounded, failed
 from workbench.system.free_port import free_port
@@ -51,6 +52,10 @@ ROWS = {
     "drag_to_touch": (
         "move of the handle to the dent in graphics memory, software rendering",
         0.25,
+    ),
+    "ring_drag_to_preview": (
+        "move of the LED ring's handle to the changed preview of the image",
+        0.5,
     ),
     "drag_to_settled": ("release of the handle to the settled skin, software rendering", 2.0),
 }
@@ -141,6 +146,7 @@ def _measure(program: str, figures_s: dict[str, float]) -> str:
                 figures_s["gui_usable"] = healthy_s + time.perf_counter() - start
                 figures_s["playback_20k"] = frame_s(page)[0]
                 figures_s.update(drags_s(page))
+                figures_s["ring_drag_to_preview"] = _ring_drag_s(page)
                 page.locator('[role="tab"]').filter(has_text="Shape").click()
                 figures_s["slider_to_membrane"] = _slider_s(page)
                 figures_s["slider_to_callback"] = key_to_server_s(page, url)
@@ -193,6 +199,20 @@ def _slider_s(page: Any) -> float:
         page.wait_for_timeout(3_000)
         times.append(page.evaluate(FIRST_UPLOAD) / 1000)
     return statistics.median(times)
+
+
+def _ring_drag_s(page: Any) -> float:
+    page.locator('[role="tab"]').filter(has_text="Optics").click()
+    page.wait_for_timeout(2_000)
+    before = pixels(page)
+
+    def shown() -> tuple[int, int]:
+        label = page.locator("label[for]").filter(has_text="Ring handle").first
+        page.locator(f'[id="{label.get_attribute("for")}"]').click(force=True)
+        page.wait_for_timeout(2_000)
+        return arm(before, pixels(page))
+
+    return ring_drag_s(page, shown)
 
 
 def drags_s(page: Any) -> dict[str, float]:

@@ -1,0 +1,50 @@
+"""How soon the image's preview follows a drag of the LED ring, in headless Chromium."""
+
+from __future__ import annotations
+
+import statistics
+from collections.abc import Callable
+from typing import Any
+
+DRAGS = 5
+DRAG_PX = 24
+REST_MS = 4_000
+"""Between two drags: previews of the one before have come."""
+WATCH_IMAGES = """
+() => {
+  window.pictures = [];
+  document.addEventListener("load", event => {
+    if (event.target.tagName === "IMG" && event.target.src.startsWith("blob:"))
+      window.pictures.push(performance.now());
+  }, true);
+}
+"""
+"""Notes when an image of the page has a new picture."""
+FIRST_PICTURE = "() => window.pictures.length ? window.pictures[0] - window.moved : 1e9"
+
+
+def ring_drag_s(page: Any, arm: Callable[[], tuple[int, int]]) -> float:
+    """Median time from a move of the ring's handle to the changed preview in the page [s].
+
+    Args:
+        page: At a design whose image is computed.
+        arm: Switches the handle on, and tells the pixel of the tip of its arm.
+    """
+    page.evaluate(WATCH_IMAGES)
+    x, y = arm()
+    times = []
+    for drag in range(DRAGS + 1):
+        # From where the last drag has left it.
+        page.mouse.move(x, y)
+        page.mouse.down()
+        page.mouse.move(x, y + (-1) ** drag, steps=2)
+        page.wait_for_timeout(REST_MS)
+        page.evaluate("() => { window.pictures = []; window.moved = performance.now(); }")
+        y += DRAG_PX * (-1) ** drag
+        page.mouse.move(x, y, steps=2)
+        page.wait_for_timeout(REST_MS)
+        times.append(page.evaluate(FIRST_PICTURE) / 1000)
+        page.mouse.up()
+        page.wait_for_timeout(REST_MS)
+    # The first one also loads what renders it.
+    return statistics.median(times[1:])
