@@ -16,6 +16,8 @@ from workbench.view.section_cut import Plane, clip, packed
 
 DIMMED = 0.06
 """Opacity of what belongs to another state."""
+GLASS = 0.25
+"""Opacity of what is looked through."""
 
 
 class Meshes:
@@ -38,6 +40,8 @@ class Meshes:
         """In place of the opacity of their looks."""
         self.dimmed = False
         """Whether they are of another state: what takes their place is being made."""
+        self.glass = False
+        """Whether they are looked through, at what is inside."""
         self._own: dict[str, float | None] = {}
         """Opacity of the looks of each mesh; None where it has none."""
         self._shown = True
@@ -59,10 +63,10 @@ class Meshes:
         if name in self.nodes:
             replace(self.nodes[name], vertices, triangles)
             return self.nodes[name]
-        opacity = {} if self.opacity is None else {"opacity": self.opacity}
-        node = self.api.add_mesh_simple(
-            f"{self.prefix}/{name}", vertices, triangles, **{"side": "double", **looks, **opacity}
-        )
+        drawn = {"side": "double", **looks}
+        if (opacity := self._opacity(name)) is not None:
+            drawn["opacity"] = opacity
+        node = self.api.add_mesh_simple(f"{self.prefix}/{name}", vertices, triangles, **drawn)
         node.visible = self._shown and self.allowed
         if self.on_click is not None:
             listen(node, self.on_click)
@@ -115,17 +119,31 @@ class Meshes:
     def set_opacity(self, opacity: float) -> None:
         """Draw all of them with this opacity in [0, 1]."""
         self.opacity = opacity
-        for node in self.nodes.values():
-            node.opacity = opacity
+        self._fade()
 
     def dim(self, dimmed: bool) -> None:
         """Draw them as a shadow of what was, or as they are."""
         if dimmed == self.dimmed:
             return
         self.dimmed = dimmed
+        self._fade()
+
+    def look_through(self, glass: bool) -> None:
+        """Draw them as glass, or as they are."""
+        if glass != self.glass:
+            self.glass = glass
+            self._fade()
+
+    def _opacity(self, name: str) -> float | None:
+        if self.dimmed:
+            return DIMMED
+        if self.glass:
+            return GLASS
+        return self._own[name] if self.opacity is None else self.opacity
+
+    def _fade(self) -> None:
         for name, node in self.nodes.items():
-            own = self._own[name] if self.opacity is None else self.opacity
-            node.opacity = DIMMED if dimmed else own
+            node.opacity = self._opacity(name)
 
 
 def drawable(points: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -57,6 +57,8 @@ class Scene:
         """Set by the view's panel: called once what is on show reaches elsewhere."""
         self.hidden = False
         """Whether parts are looked at in place of the sensor."""
+        self.inside: set[str] = set()
+        """Names of the handles inside the skin that are on."""
         self.shown_frame = 0
         self.grid: Any = None
         self._prepare(fast)
@@ -119,7 +121,7 @@ class Scene:
 
     def _painted(self) -> None:
         """The colours of a press are there."""
-        if self.hidden:
+        if self.hidden or self.inside:
             self.pressed.show(0)
         self._show_skin(not self.hidden and not self.pressed.drawn)
         self.on_painted()
@@ -130,7 +132,7 @@ class Scene:
     def show_live(self, skin: Skin, contact: Contact) -> None:
         """Show the one frame of a live press."""
         self.shown_frame = 1
-        if self.hidden:
+        if self.hidden or self.inside:
             return
         with self.server.atomic():
             self.pressed.load_live(skin, contact)
@@ -149,14 +151,14 @@ class Scene:
 
     def _show_skin(self, wanted: bool) -> None:
         """Show the plain skin at rest, unless a map takes its place."""
-        self.body.show_skin(wanted and not self.map.on)
+        self.body.show_skin(wanted and (not self.map.on or bool(self.inside)))
 
     def show_map(self, skin: Skin, colours: np.ndarray) -> None:
         """Show the skin at rest in the colours of a map, shape (V, 3), uint8."""
         with self.server.atomic():
             self.map.load(skin, colours)
-            self.map.show(not self.hidden)
-            self._show_skin(False)
+            self.map.show(not self.hidden and not self.inside)
+            self._show_skin(bool(self.inside))
             self.show_frame(0)
 
     def clear_map(self) -> None:
@@ -177,10 +179,30 @@ class Scene:
         if self.hidden:
             return
         with self.server.atomic():
-            self.pressed.show(number)
+            self.pressed.show(0 if self.inside else number)
             self._show_skin(not self.pressed.drawn)
             self.object.press(contact, max(number, 1) - 1)
             self.section.follow()
+
+    def look_inside(self, whose: str, wanted: bool) -> None:
+        """Look through the skin at rest while a handle inside is on, which it would cover.
+
+        viser gives the mouse to the nearest thing that takes clicks, whatever is drawn over it:
+        the skin takes none meanwhile.
+        """
+        if wanted == (whose in self.inside):
+            return
+        (self.inside.add if wanted else self.inside.discard)(whose)
+        glass = bool(self.inside)
+        with self.server.atomic():
+            for meshes in (self.body.skin, self.body.support):
+                meshes.look_through(glass)
+            self.body.skin.take_clicks(None if glass else self.on_click)
+            self.map.show(self.map.on and not self.hidden and not glass)
+            if self.pressed.contact is None:
+                self._show_skin(not self.hidden)
+            else:
+                self.show_frame(self.shown_frame)
 
     def resting_nodes(self) -> list[str]:
         """Names of what a pressed frame takes the place of."""

@@ -42,7 +42,7 @@ class Handle:
     ) -> None:
         self.desk = desk
         self.path = path
-        hint = "Drag it in the 3D view; one drag is one step of undo"
+        hint = "Drag it in the 3D view, through the skin; one drag is one step of undo"
         self.box = desk.server.gui.add_checkbox(label, False, hint=hint)
         self.box.on_update(desk.guarded(lambda event: self.follow()))
         name = "/handles/" + label.split(maxsplit=1)[0].lower()
@@ -57,7 +57,9 @@ class Handle:
     def follow(self) -> None:
         """Stand at what is edited, if the box is ticked."""
         path = self.path()
-        self.gizmo.show(bool(self.box.value) and bool(path))
+        shown = bool(self.box.value) and bool(path)
+        self.gizmo.show(shown)
+        self.desk.scene.look_inside(self.gizmo.handle.name, shown)
         if path:
             self.gizmo.place(*_pose(self.desk.read(path)))
 

@@ -8,6 +8,8 @@ from typing import Any
 
 DRAGS = 5
 DRAG_PX = 24
+HOVER_MS = 500
+"""Until the page knows that the handle is under the mouse."""
 REST_MS = 4_000
 """Between two drags: previews of the one before have come."""
 WATCH_IMAGES = """
@@ -34,13 +36,14 @@ def ring_drag_s(page: Any, arm: Callable[[], tuple[int, int]]) -> float:
     x, y = arm()
     times = []
     for drag in range(DRAGS + 1):
-        # From where the last drag has left it.
+        # Up first: the ring stands low. Each from where the last one has left it.
         page.mouse.move(x, y)
+        page.wait_for_timeout(HOVER_MS)
         page.mouse.down()
-        page.mouse.move(x, y + (-1) ** drag, steps=2)
+        page.mouse.move(x, y - (-1) ** drag, steps=2)
         page.wait_for_timeout(REST_MS)
         page.evaluate("() => { window.pictures = []; window.moved = performance.now(); }")
-        y += DRAG_PX * (-1) ** drag
+        y -= DRAG_PX * (-1) ** drag
         page.mouse.move(x, y, steps=2)
         page.wait_for_timeout(REST_MS)
         times.append(page.evaluate(FIRST_PICTURE) / 1000)
