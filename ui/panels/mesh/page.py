@@ -31,10 +31,10 @@ class MeshPanel:
     def __init__(self, desk: Desk) -> None:
         self.desk = desk
         gui, fields = desk.server.gui, desk.fields
-        hint = "Edge of a hexahedron and of a skin triangle"
-        fields.slider("Hexahedra mm", "design.meshing.hex_mm", span=(0.2, 1.5, 0.05), hint=hint)
+        hint = "Edge of a cell of the body (a hexahedron) and of a triangle of its skin"
+        fields.slider("Cell size mm", "design.meshing.hex_mm", span=(0.2, 1.5, 0.05), hint=hint)
         hint = "Edge of a tetrahedron; halving it takes four times as long"
-        fields.slider("Tet edge mm", "design.meshing.tet_mm", span=(0.6, 4.0, 0.1), hint=hint)
+        fields.slider("Tetrahedron size mm", "design.meshing.tet_mm", span=(0.6, 4.0, 0.1), hint=hint)
         check = gui.add_button(
             "Check mesh",
             icon=viser.Icon.CHART_HISTOGRAM,
