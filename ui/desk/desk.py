@@ -79,7 +79,7 @@ class Desk:
         self.figured: Signal[[Mapping[str, float]]] = Signal()
         """Figures of the design as it stands, as far as they are known."""
         self.limited: Signal[[]] = Signal()
-        """The project's own limits of figures have changed."""
+        """The project's own limits of figures, or prices, have changed."""
         self.edited: Signal[[str]] = Signal()
         """A field was changed by hand; told by its name."""
         self.live_switched: Signal[[bool]] = Signal()

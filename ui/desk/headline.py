@@ -8,7 +8,8 @@ from ui.desk.desk import Desk
 from ui.page.headline_html import headline_html
 from workbench.core.base.errors import DesignError
 from workbench.project.limits import read_limits
-from workbench.view.headline import Bounds, headlines
+from workbench.project.prices import Prices, parts_cost, read_prices
+from workbench.view.headline import COST_RULE, Bounds, headlines
 
 
 class HeadlineRow:
@@ -21,29 +22,42 @@ class HeadlineRow:
         self.before: dict[str, float] = {}
         """Last known of each figure."""
         self.limits: dict[str, Bounds] = {}
+        self.prices: Prices | None = None
         self.read_limits()
         desk.figured.connect(self.take)
         desk.limited.connect(self.follow_limits)
         self.draw()
 
     def follow_limits(self) -> None:
-        """The project's limits have changed."""
+        """The project's limits or prices have changed."""
         self.read_limits()
-        self.draw()
+        for known in (self.figures, self.before):
+            known.pop(COST_RULE.name, None)
+        self.take(self.figures)
 
     def read_limits(self) -> None:
-        """Take the project's own limits, unless their file cannot be read; that is said."""
+        """Take the project's own limits and prices; a file that cannot be read is told of."""
+        folder = self.desk.session.project.folder
+        self.limits, self.prices = {}, None
         try:
-            self.limits = read_limits(self.desk.session.project.folder)
+            self.limits = read_limits(folder)
+            self.prices = read_prices(folder)
         except DesignError as error:
-            self.limits = {}
             self.desk.log(f"{error.message}: {error.hint}")
 
     def take(self, figures: Mapping[str, float]) -> None:
         """Show figures of the design as it stands; what is not known anew keeps its last value."""
-        self.figures = dict(figures)
-        self.before |= figures
+        self.figures = {**figures, **self._cost()}
+        self.before |= self.figures
         self.draw()
+
+    def _cost(self) -> dict[str, float]:
+        """What the parts cost, where prices and the body are known."""
+        session = self.desk.session
+        solid = None if self.prices is None else session.result("build")
+        if self.prices is None or solid is None:
+            return {}
+        return {COST_RULE.name: parts_cost(session.design, solid.volume_mm3, self.prices)}
 
     def forget(self) -> None:
         """Another sensor: nothing is known of it."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import enum
 from dataclasses import dataclass
 
+from workbench.project.prices import Prices
 from workbench.project.state import State
 
 Value = float | int | str
@@ -98,17 +99,6 @@ class Limit:
         """The limit for people, without its unit."""
         ends = (("at least", self.at_least), ("at most", self.at_most))
         return " and ".join(f"{name} {end:g}" for name, end in ends if end is not None)
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Prices:
-    """What parts cost, in the designer's own currency; for the figure `parts_cost_1`."""
-
-    base: float = 0.0
-    led: float = 0.0
-    camera: float = 0.0
-    gram: float = 0.0
-    """Of silicone."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

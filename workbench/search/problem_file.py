@@ -38,11 +38,12 @@ from workbench.core.base.errors import DesignError, shown
 from workbench.core.base.mapping import from_table, suggest
 from workbench.project.design_toml import parse_toml
 from workbench.project.named_designs import load_design
+from workbench.project.prices import Prices
 from workbench.project.project import Project
 from workbench.project.state import State, fresh_state, read_state
 from workbench.search.applying import with_settings
 from workbench.search.consistent import expect_consistent
-from workbench.search.problem import DRAFT, Goal, Limit, Prices, Problem, Tolerances, Want
+from workbench.search.problem import DRAFT, Goal, Limit, Problem, Tolerances, Want
 from workbench.search.search_figures import KNOWN
 from workbench.search.varied import read_link, read_vary
 from workbench.search.wishes import Wish, wish_of

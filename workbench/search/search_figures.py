@@ -13,20 +13,20 @@ from typing import Any
 
 import numpy as np
 
-from workbench.core.base.units import volume_ml
 from workbench.core.result.maps import DesignerMaps
 from workbench.core.result.results import Label, MembraneMesh, Solid
 from workbench.core.result.sensing import Shot
 from workbench.pipeline.store import Store
+from workbench.project.prices import Prices, parts_cost
 from workbench.project.state import State
-from workbench.search.problem import Prices
 from workbench.variants.score_card import Figures, figures, finite_figures
+from workbench.view.headline import COST_RULE
 from workbench.view.metric_rules import RULES, Better, Rule
 
 TIP_MM = 5.0
 """Skin that lies no more than this below its highest point is the tip [mm]."""
 SAME = "same_image_psnr_dB"
-COST, LEDS = "parts_cost_1", "led_count_1"
+COST, LEDS = COST_RULE.name, "led_count_1"
 NEEDS = {"build": ("build",), "mould": ("mould", "housing", "recipe"), "bake": ("bake",)}
 """Stages that a figure of a stage asks for, where it is not that stage alone."""
 
@@ -47,7 +47,7 @@ OWN = {
     for rule in (
         _own(LEDS, ("LEDs", ""), LOWER, "", "each is placed and wired"),
         _own("body_height_mm", ("height of the body", "mm"), LOWER, "build", REACHES),
-        _own(COST, ("cost of parts", ""), LOWER, "build", "what the designer pays"),
+        COST_RULE,
         _own("light_on_skin_percent", ("light on the skin", "%"), HIGHER, "bake", FALLS),
         _own("tip_seen_percent", ("tip seen", "%"), HIGHER, "maps", TIP),
         _own(SAME, ("likeness to the base's images", "dB"), HIGHER, "shoot", LIKE),
@@ -113,11 +113,7 @@ def _cost(found: Found) -> float | None:
     prices, solid = found.prices, found.result("build")
     if prices is None or solid is None:
         return None
-    design = found.state.design
-    grams = volume_ml(solid.volume_mm3) * design.material.density_g_cm3
-    cameras = len(design.optics.all_cameras)
-    parts = prices.led * _leds(found) + prices.camera * cameras + prices.gram * grams
-    return prices.base + parts
+    return parts_cost(found.state.design, solid.volume_mm3, prices)
 
 
 def _light_percent(found: Found) -> float | None:

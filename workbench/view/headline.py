@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from workbench.view.frame_words import MISSING, number
-from workbench.view.metric_rules import REMEDIES, rule
+from workbench.view.metric_rules import REMEDIES, Better, Rule, rule
 
 
 class Standing(enum.StrEnum):
@@ -59,6 +59,8 @@ class Headline:
     remedy: str
     """What makes it better, for a designer."""
     bounds: Bounds | None = None
+    by_choice: bool = False
+    """Whether it stands there only where the designer has given what it needs."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -75,6 +77,14 @@ class Shown:
     """Whether it is of the design before the last edits."""
 
 
+COST_RULE = Rule(
+    name="parts_cost_1",
+    label="cost of parts",
+    unit="",
+    better=Better.LOWER,
+    why="LEDs, cameras, silicone and the rest, at the designer's own prices",
+    stage="build",
+)
 MAKEABLE, LOOK_AT = "checks_bad", "checks_warning"
 HEADLINES = (
     Headline(
@@ -110,6 +120,13 @@ HEADLINES = (
         tab="Make",
         remedy="Each check says beside it what would mend it",
     ),
+    Headline(
+        figure=COST_RULE.name,
+        word="Parts",
+        tab="Compare",
+        remedy="Fewer LEDs, one camera or a thinner wall cost less",
+        by_choice=True,
+    ),
 )
 
 
@@ -128,6 +145,8 @@ def headlines(
     """
     found = []
     for headline in HEADLINES:
+        if headline.by_choice and headline.figure not in {**figures, **(before or {})}:
+            continue
         old = headline.figure not in figures and headline.figure in (before or {})
         shown = _shown(headline, (before or {}) if old else figures, own)
         if old:
@@ -138,7 +157,7 @@ def headlines(
 
 
 def _shown(headline: Headline, figures: Mapping[str, float], own: Mapping[str, Bounds]) -> Shown:
-    meant = rule(headline.figure)
+    meant = COST_RULE if headline.figure == COST_RULE.name else rule(headline.figure)
     value = figures.get(headline.figure)
     if value is None:
         run = REMEDIES.get(meant.stage, "")

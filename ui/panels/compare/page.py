@@ -9,6 +9,7 @@ from typing import Any
 from ui.desk.desk import Desk
 from ui.panels.compare.comparison_report import ReportFolder
 from ui.panels.compare.limits import LimitsFolder
+from ui.panels.compare.prices import PricesFolder
 from ui.panels.compare.score_card import NOW_SHORT, ScoreFolder
 from ui.panels.compare.sweep import SweepFolder
 from ui.panels.compare.told import ToldFolder
@@ -37,6 +38,7 @@ class ComparePanel:
         self.variants = VariantsFolder(desk, self._listed)
         self.score = ScoreFolder(desk)
         self.limits = LimitsFolder(desk)
+        self.prices = PricesFolder(desk)
         self.versus = VersusFolder(desk, self._side, self._thumbnail)
         self.variants.on_save = self.versus.fill
         self.told = ToldFolder(desk)
