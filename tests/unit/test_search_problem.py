@@ -9,6 +9,7 @@ import pytest
 from workbench.cli.command_line import main
 from workbench.core.base.errors import DesignError
 from workbench.planning.plan import plan
+from workbench.project.prices import Prices, write_prices
 from workbench.project.project import Project
 from workbench.search.applying import state_of
 from workbench.search.problem import Goal, Limit, Problem, Want
@@ -49,6 +50,17 @@ def test_a_whole_file_is_read(tmp_path: Path) -> None:
     assert problem.limits == (Limit(figure="tip_seen_percent", at_least=80.0),)
     assert (problem.tolerances.twins, problem.tolerances.led_mm) == (3, 0.3)
     assert problem.even_light and problem.seed == 7
+
+
+def test_the_projects_prices_count_where_the_cost_is_asked_for(tmp_path: Path) -> None:
+    """A file's own take their place; a search that asks for no cost goes on when they change."""
+    asked = f'{WHOLE}[[limit]]\nfigure = "parts_cost_1"\nat_most = 90\n'
+    prices = Prices(led=0.4, camera=18.0)
+    (tmp_path / "project").mkdir()
+    write_prices(tmp_path / "project", prices)
+    assert read(asked, tmp_path).prices == prices
+    assert read(f"{asked}[prices]\nled = 2\n", tmp_path).prices == Prices(led=2.0)
+    assert read(WHOLE, tmp_path).prices is None
 
 
 def test_values_reach_the_design_and_links_follow(tmp_path: Path) -> None:

@@ -38,13 +38,13 @@ from workbench.core.base.errors import DesignError, shown
 from workbench.core.base.mapping import from_table, suggest
 from workbench.project.design_toml import parse_toml
 from workbench.project.named_designs import load_design
-from workbench.project.prices import Prices
+from workbench.project.prices import Prices, read_prices
 from workbench.project.project import Project
 from workbench.project.state import State, fresh_state, read_state
 from workbench.search.applying import with_settings
 from workbench.search.consistent import expect_consistent
 from workbench.search.problem import DRAFT, Goal, Limit, Problem, Tolerances, Want
-from workbench.search.search_figures import KNOWN
+from workbench.search.search_figures import COST, KNOWN
 from workbench.search.varied import read_link, read_vary
 from workbench.search.wishes import Wish, wish_of
 from workbench.system.whole_files import kept_text, toml_table
@@ -108,11 +108,18 @@ def read_problem(text: str, project: Project, *, folder: Path) -> Problem:
         limits=_with_wishes(limits, (limit for wish in wishes for limit in wish.limits)),
         draft=_draft(table, base),
         tolerances=_tolerances(table, wishes),
-        prices=from_table(Prices, table["prices"], at="prices") if "prices" in table else None,
+        prices=_prices(table, project, [each.figure for each in (*goals, *limits)]),
         **{name: _scalar(table, name) for name in SCALARS if name in table},
     )
     expect_consistent(problem)
     return problem
+
+
+def _prices(table: Mapping[str, Any], project: Project, figures: list[str]) -> Prices | None:
+    """Those of the file, else the project's where the cost is asked for: only then they count."""
+    if "prices" in table:
+        return from_table(Prices, table["prices"], at="prices")
+    return read_prices(project.folder) if COST in figures else None
 
 
 def base_of(name: Any, project: Project, folder: Path) -> State:

@@ -34,9 +34,7 @@ class MeshPanel:
         hint = "Edge of a cell of the body (a hexahedron) and of a triangle of its skin"
         fields.slider("Cell size mm", "design.meshing.hex_mm", span=(0.2, 1.5, 0.05), hint=hint)
         hint = "Edge of a tetrahedron; halving it takes four times as long"
-        fields.slider(
-            "Tetrahedra mm", "design.meshing.tet_mm", span=(0.6, 4.0, 0.1), hint=hint
-        )
+        fields.slider("Tetrahedra mm", "design.meshing.tet_mm", span=(0.6, 4.0, 0.1), hint=hint)
         check = gui.add_button(
             "Check mesh",
             icon=viser.Icon.CHART_HISTOGRAM,

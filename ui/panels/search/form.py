@@ -13,7 +13,7 @@ from ui.page.plain import plain
 from workbench.core.base.errors import DesignError
 from workbench.search.kept_searches import Asked
 from workbench.search.problem import Goal, Limit, Vary, Want
-from workbench.search.search_figures import COST, KNOWN
+from workbench.search.search_figures import KNOWN
 from workbench.search.wishes import WISHES
 from workbench.system.names import NONE
 from workbench.variants.sweep_fields import SweepField, field_value, sweep_fields
@@ -36,8 +36,7 @@ class FormFolder:
         self.limits: dict[str, Limit] = {}
         self.fields: dict[str, SweepField] = {}
         self.family = ""
-        # Prices stand in files only: there is no widget for a table of the designer's own.
-        self.figures = {_titled(name): name for name in KNOWN if name != COST}
+        self.figures = {_titled(name): name for name in KNOWN}
         gui = desk.server.gui
         with gui.add_folder("What is looked for"):
             hint = "Goals and limits in words; more can be added below"
