@@ -89,7 +89,7 @@ def _expect_figures(problem: Problem) -> None:
                 at=name,
             )
         if name == COST and problem.prices is None:
-            hint = "write [prices] with led, camera, gram and base, or set My prices on the page Compare"
+            hint = "write [prices] with led, camera, gram and base, or set My prices on Compare"
             raise DesignError(f"{name} needs prices", hint=hint, at="prices")
 
 
