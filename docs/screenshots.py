@@ -47,7 +47,7 @@ def main(wanted: list[str]) -> None:
         server = Server(project)
         try:
             browser = playwright.chromium.launch(executable_path=program, args=list(FLAGS))
-            page = browser.new_page(viewport=SIZE)  # pyright: ignore[reportArgumentType]
+            page = browser.new_page(viewport=SIZE, color_scheme="dark")  # pyright: ignore[reportArgumentType]
             page.set_default_timeout(60_000)
             page.goto(server.url)
             tab(page, "Shape").wait_for()

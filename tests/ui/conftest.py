@@ -150,7 +150,9 @@ def unpressed_project(pressed_store: Path, tmp_path: Path) -> Path:
 @pytest.fixture
 def page(browser: Any) -> Iterator[Any]:
     """A fresh tab that may download; its 3D view is drawn while a test looks at it."""
-    context = browser.new_context(viewport={"width": 1280, "height": 1000}, accept_downloads=True)
+    context = browser.new_context(
+        viewport={"width": 1280, "height": 1000}, accept_downloads=True, color_scheme="dark"
+    )
     context.add_init_script(DRAW_WHEN_LOOKED_AT)
     tab = context.new_page()
     tab.set_default_timeout(60_000)

@@ -96,7 +96,9 @@ def test_a_click_on_the_picture_finds_what_a_click_on_the_skin_had_there(
     A place clicked on the skin has a pixel; that pixel, clicked in the image, sees the place.
     """
     server = start_server(pressed_project)
-    context = browser.new_context(viewport={"width": 1280, "height": 1000}, device_scale_factor=1.5)
+    context = browser.new_context(
+        viewport={"width": 1280, "height": 1000}, device_scale_factor=1.5, color_scheme="dark"
+    )
     context.add_init_script(DRAW_WHEN_LOOKED_AT)
     page = context.new_page()
     page.set_default_timeout(60_000)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +12,8 @@ import pytest
 from tests.ui.conftest import Server
 from tests.ui.page_faults import Fault, faults, places, unfold
 from tests.ui.warm_start import WarmStart
-from tests.ui.widgets import DRAW_WHEN_LOOKED_AT, coarse_project, open_page
+from tests.ui.widgets import DRAW_WHEN_LOOKED_AT, coarse_project, open_page, tab, wait_until
+from ui.page.theme import DARK, STORED
 
 pytestmark = [pytest.mark.ui, pytest.mark.slow]
 
@@ -39,7 +40,7 @@ def found(
     project = coarse_project(tmp_path_factory.mktemp("looks"))
     shutil.copytree(pressed_store, project / "store")
     with Server(project, warm=warm) as server:
-        page = browser.new_page(viewport={"width": 1280, "height": 720})
+        page = browser.new_page(viewport={"width": 1280, "height": 720}, color_scheme="dark")
         page.add_init_script(DRAW_WHEN_LOOKED_AT)
         open_page(page, server.url)
         page.get_by_text("Image ✓").wait_for()
@@ -80,3 +81,21 @@ def test_no_text_is_cut(found: list[tuple[str, Fault]]) -> None:
 def test_contrast_is_at_least_4_5(found: list[tuple[str, Fault]]) -> None:
     """WCAG 2, level AA: 4.5, or 3 for large letters."""
     assert of_kind(found, "contrast") == []
+
+
+def test_the_page_is_as_the_system_until_the_browser_has_chosen(
+    browser: Any, start_server: Callable[..., Server], tmp_path: Path
+) -> None:
+    """Light in a light system; dark there once it was chosen, as after a reload."""
+    server = start_server(coarse_project(tmp_path))
+    context = browser.new_context(color_scheme="light")
+    page = context.new_page()
+    open_page(page, server.url)
+    scheme = "document.documentElement.dataset.mantineColorScheme"
+    wait_until(lambda: page.evaluate(scheme) == "light", 30, "the system's")
+    page.evaluate(f"localStorage.setItem('viser-user:{STORED}', '{DARK}')")
+    page.reload()
+    tab(page, "Shape").wait_for()
+    page.wait_for_timeout(3_000)
+    assert page.evaluate(scheme) == "dark"
+    context.close()

@@ -137,7 +137,7 @@ def _measure(program: str, figures_s: dict[str, float]) -> str:
             with _server(finger, project) as (url, healthy_s), sync_playwright() as playwright:
                 figures_s["healthz"] = healthy_s
                 opened = playwright.chromium.launch(executable_path=program, args=list(FLAGS))
-                page = opened.new_page(viewport={"width": 1280, "height": 900})
+                page = opened.new_page(viewport={"width": 1280, "height": 900}, color_scheme="dark")
                 start = time.perf_counter()
                 page.add_init_script(WATCH_UPLOADS)
                 page.add_init_script(WATCH_DRAWS)
