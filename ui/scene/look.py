@@ -68,6 +68,6 @@ class Look:
             if what is Seen.OBJECT:
                 scene.object.fade(opacity)
             elif what is Seen.LEDS:
-                scene.rig.fade_lights(opacity)
+                scene.rig.leds.fade(opacity)
             elif what in self._groups:
                 self._groups[what].set_opacity(opacity)

@@ -8,11 +8,9 @@ from typing import Any
 import numpy as np
 
 from ui.scene.lamps import LampsView
+from ui.scene.ring_leds import RingLeds
 from workbench.core.design.camera import Camera, LensModel
-from workbench.core.design.leds import colour_sectors, led_places
-from workbench.core.design.lighting import LedRing
 from workbench.core.design.optics import Optics
-from workbench.edit.led_colours import shown_colour
 
 FRUSTUM_MM = 4.0
 """Size of a frustum; viser gives all of one size the same volume."""
@@ -36,20 +34,18 @@ class RigView:
     def __init__(self, server: Any) -> None:
         self.server = server
         self.api = server.scene
-        self.leds: list[Any] = []
+        self.leds = RingLeds(self.api)
         self.lamps = LampsView(self.api)
         self.cameras: list[Any] = []
         self.lights_allowed = True
         """Whether the designer wants to see LEDs and lamps at all."""
         self.cameras_allowed = True
-        self._opacity: float | None = None
-        """Of the LEDs, if the designer chose one."""
         self._shown = True
 
     def show_optics(self, optics: Optics) -> None:
         """Show all lights and cameras of a design."""
         with self.server.atomic():
-            self.show_lights(optics.ring)
+            self.leds.show_ring(optics.ring)
             self.lamps.show_lamps(optics.lamps)
             if len(self.cameras) != len(optics.all_cameras):
                 # Images are told apart by the numbers of cameras, and these have moved up.
@@ -59,21 +55,6 @@ class RigView:
             for number, camera in enumerate(optics.all_cameras):
                 self._show_camera(number, camera)
             self.show(self._shown)
-
-    def show_lights(self, ring: LedRing) -> None:
-        """Show the LEDs of a ring in their colours."""
-        places, _ = led_places(ring)
-        sectors = colour_sectors(ring)
-        while len(self.leds) > ring.count:
-            self.leds.pop().remove()
-        for i, place in enumerate(places):
-            colour = shown_colour(ring.colours[sectors[i]])
-            if i == len(self.leds):
-                led = self.api.add_icosphere(f"/leds/{i}", radius=0.7, subdivisions=2)
-                led.opacity = self._opacity
-                self.leds.append(led)
-            self.leds[i].position = place
-            self.leds[i].color = colour
 
     def _show_camera(self, number: int, camera: Camera) -> None:
         """Show a camera as a frustum."""
@@ -108,16 +89,9 @@ class RigView:
         """Show or hide lights and cameras, as far as the designer wants to see them."""
         self._shown = visible
         self.lamps.show(visible and self.lights_allowed)
-        for node in self.leds:
-            node.visible = visible and self.lights_allowed
+        self.leds.show(visible and self.lights_allowed)
         for node in self.cameras:
             node.visible = visible and self.cameras_allowed
-
-    def fade_lights(self, opacity: float) -> None:
-        """Draw the LEDs with an opacity in [0, 1]."""
-        self._opacity = opacity
-        for node in self.leds:
-            node.opacity = opacity
 
     def allow(self, *, lights: bool, cameras: bool) -> None:
         """Let them be seen, or hide them whatever else is shown."""

@@ -197,6 +197,7 @@ class Scene:
         with self.server.atomic():
             for meshes in (self.body.skin, self.body.support):
                 meshes.look_through(glass)
+            self.rig.leds.show_letters(glass)
             self.body.skin.take_clicks(None if glass else self.on_click)
             self.map.show(self.map.on and not self.hidden and not glass)
             if self.pressed.contact is None:
