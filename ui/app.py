@@ -35,6 +35,7 @@ from ui.page.tour import ENLARGED, PRESSED, SHAPED, Tour
 from ui.panels.page import pages
 from ui.panels.results.page import ResultsPanel
 from ui.panels.view.page import ViewPanel
+from ui.patches.everywhere import mend_everywhere
 from ui.patches.style import mend
 from ui.tenancy import Tenancy
 from workbench.core.base.errors import DesignError, StoreError
@@ -135,6 +136,7 @@ def build_desk(
     Theme(server, incoming)
     with server.atomic():
         mend(gui)
+        mend_everywhere(gui)
         found = pages()
         guide = Help(server, incoming, {label: page.help for label, page in found.items()})
         desk = Desk(server, session, conductor, editor, fast=fast)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 from collections.abc import Callable, Collection, Mapping
 from typing import Any
 
@@ -9,6 +10,7 @@ import viser
 
 from ui.page.colours import AMBER
 from ui.page.plain import plain
+from ui.patches.leading import leading
 from workbench.core.base.units import human_seconds
 from workbench.core.design.design import SensorDesign
 from workbench.live.requests import COMPLIANCE, FOLLOWING, LIVE, PATIENCE_S, SHAPE, Progress
@@ -18,6 +20,8 @@ WIDTH_PX = 220
 """Width of the panel of the running job; viser cuts the widgets of a narrower one at the right."""
 MARGIN_PX = 4
 """From the panel to the dock on the right; notifications end 225 px from it at 1280 px."""
+HOME_KEY = "o"
+"""The key of the start page."""
 WAIT_S = 3.0
 """A live press that takes longer than this is worth a bar and a Cancel."""
 
@@ -26,7 +30,7 @@ class Header:
     """Widgets that every page of the left dock has above it."""
 
     def __init__(self, gui: Any, *, on_cancel: Callable[[Any], None]) -> None:
-        self.title = gui.add_markdown("")
+        self.title = gui.add_html("")
         self.strip = gui.add_markdown("")
         self.headline = gui.add_html("")
         self.banner = gui.add_markdown("", visible=False)
@@ -46,8 +50,10 @@ class Header:
         self.job_panel.float(x=-MARGIN_PX, y=15, width=WIDTH_PX)
 
     def show_design(self, design: SensorDesign) -> None:
-        """Name and family."""
-        text = f"**{plain(design.name)}** · {plain(design.family)}"
+        """The way home, name and family."""
+        home = leading("Start", {"key": HOME_KEY}, kind="home")
+        names = f"<b>{html.escape(design.name)}</b> · {html.escape(design.family)}"
+        text = f'<div class="design-title">{home}<span>{names}</span></div>'
         if self.title.content != text:
             self.title.content = text
 

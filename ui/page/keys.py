@@ -11,7 +11,7 @@ from typing import Any
 
 PALETTE = "Ctrl + K"
 TASKS = (
-    *("Gallery", "Save design", "Undo", "Redo"),
+    *("Start page", "Gallery", "Save design", "Undo", "Redo"),
     *("Run press", "Live press", "Render image", "Update results", "Cancel what runs"),
     *("Play or pause", "Previous frame", "Next frame", "Image"),
     *("Fit view", "Look from", "Section", "Measure distance", "End measuring"),

@@ -6,6 +6,7 @@ import html
 
 from ui.desk.desk import Desk
 from ui.page.offer import offer
+from ui.patches.leading import empty_state
 from workbench.variants.comparison_tables import card_table, remedies, scrolled
 from workbench.variants.score_card import Figures, card, sorted_by
 from workbench.view.metric_rules import RULES
@@ -14,6 +15,13 @@ BY_NAME = "name"
 SORTS = {BY_NAME: "", **{rule.label: name for name, rule in RULES.items() if rule.stage}}
 """What the card can be sorted by, as people call it."""
 NOW_SHORT = "as it stands"
+NOTHING = empty_state(
+    "The score card sets designs side by side: press this one, save it as a variant, change "
+    "something and press again.",
+    "Run press (R)",
+    key="r",
+)
+"""What stands in place of a table of dashes."""
 
 
 class ScoreFolder:
@@ -24,6 +32,7 @@ class ScoreFolder:
         gui = desk.server.gui
         with gui.add_folder("Score card"):
             hint = "The best comes first; of a neutral figure the lowest"
+            self.empty = gui.add_html(NOTHING)
             self.sort = gui.add_dropdown("Sort by", tuple(SORTS), hint=hint)
             self.sort.on_update(desk.guarded(lambda event: self._draw()))
             hint = "Otherwise those that decide: force, signal, view, light, mass, checks"
@@ -38,9 +47,19 @@ class ScoreFolder:
             offer(self.sort, tuple(SORTS))
             self._draw()
 
+    def _offer(self, known: bool) -> None:
+        """Show the card, or what to do for one."""
+        self.empty.visible = not known
+        for handle in (self.sort, self.every, self.table):
+            handle.visible = known
+
     def _draw(self) -> None:
         metric = SORTS[self.sort.value]
         order = sorted_by(self.designs, metric) if metric else self.designs
+        if not any(figures for _, figures in self.designs):
+            self._offer(False)
+            return
+        self._offer(True)
         shown = card(order, chief_only=not self.every.value)
         words = "↑ higher is better, ↓ lower is better, – neutral: rest on a figure for the reason"
         words = f"★ best; {words}. {remedies(shown)}"

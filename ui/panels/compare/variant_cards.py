@@ -8,10 +8,16 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ui.page.colours import AMBER, RED
+from ui.patches.leading import empty_state
 from workbench.pipeline.store import Store
 from workbench.variants.variant_files import Entry
 from workbench.variants.variants import Variant, stored_keys
 
+NOTHING = empty_state(
+    "No variant yet: one keeps the design as it stands, with its press, images and figures.",
+    "Save the first variant",
+    press="Save variant",
+)
 MOST_THUMBNAILS = 40
 """Thumbnails in the list; each is some 30 KB of the page."""
 
@@ -19,7 +25,7 @@ MOST_THUMBNAILS = 40
 def cards_html(entries: Sequence[Entry], store: Store) -> str:
     """All variants, or a word where there is none."""
     if not entries:
-        return "<p style='margin:8px'>No variant yet: press a design, then save it.</p>"
+        return NOTHING
     shown = "".join(
         _card(entry, store, drawn=number < MOST_THUMBNAILS) for number, entry in enumerate(entries)
     )

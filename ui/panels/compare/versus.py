@@ -14,6 +14,7 @@ from ui.page.imaging import placeholder
 from ui.page.offer import offer
 from ui.page.plain import plain
 from ui.panels.compare.variant_cards import thumbnail_html
+from ui.patches.leading import empty_state
 from ui.scene.ghost import COLOURS, Ghost, GhostView
 from workbench.core.base.errors import DesignError
 from workbench.system.names import NONE
@@ -25,6 +26,11 @@ from workbench.variants.comparison_words import sentences
 
 BESIDE, BLINK, DIFFERENCE = "side by side", "blink", "difference"
 BLINK_S = 0.6
+NOTHING = empty_state(
+    "There is only the design as it stands: save it, change something, and compare both.",
+    "Save it as a variant",
+    press="Save variant",
+)
 STANDS_BESIDE, OVERLAID = "beside A", "over A"
 
 
@@ -126,10 +132,13 @@ class VersusFolder:
         self.thumbnails.content = self._thumbnails()
         if self.a is None or self.b is None:
             self.both = None
-            self.tables.content, self.words.content = "", "Choose A and B."
+            self.words.content = "Choose A and B."
+            self.tables.content = "" if len(self.choice_a.options) > 2 else NOTHING
         else:
             self._tell(self.a, self.b)
             self._pair(self.a, self.b)
+        for handle in (self.mode, self.moment):
+            handle.visible = self.both is not None
         self._show_images()
         self.draw()
         self.on_compare(self.a, self.b)

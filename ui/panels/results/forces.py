@@ -8,13 +8,16 @@ import numpy as np
 from viser import uplot
 
 from ui.page.colours import AMBER, BLUE, GREEN, GREY
+from ui.patches.leading import empty_state
 from workbench.core.press.press import Press
 from workbench.core.result.sensing import Contact
 from workbench.view.forces import gross_slip, slip_curve
 from workbench.view.frame_words import finite, number, of_frame, phase
 from workbench.view.press_figures import force_balance, frame_depths_mm
 
-NO_PRESS = "No press of this sensor yet."
+NO_PRESS = empty_state(
+    "No press of this sensor yet: it tells forces, frame by frame.", "Run press (R)", key="r"
+)
 MOST_ROWS = 400
 """Frames of the table."""
 
@@ -23,7 +26,8 @@ class ForcesTab:
     """Widgets of the tab."""
 
     def __init__(self, gui: Any) -> None:
-        self.text = gui.add_markdown(NO_PRESS)
+        self.empty = gui.add_html(NO_PRESS)
+        self.text = gui.add_markdown("", visible=False)
         empty = (np.zeros(2), np.zeros(2), np.zeros(2))
         self._curves = empty
         self._marked = -1
@@ -38,6 +42,7 @@ class ForcesTab:
             scales={"x": uplot.Scale(time=False)},
             title="Force [N] against depth [mm], way in",
             aspect=1.5,
+            visible=False,
         )
         self.slip = gui.add_uplot(
             empty,
@@ -49,20 +54,30 @@ class ForcesTab:
             scales={"x": uplot.Scale(time=False)},
             title="Stick to slip, frame by frame",
             aspect=1.5,
+            visible=False,
         )
-        with gui.add_folder("Frame by frame", expand_by_default=False):
+        self.rows = gui.add_folder("Frame by frame", expand_by_default=False, visible=False)
+        with self.rows:
             self.table = gui.add_html("")
+
+    def _offer(self, known: bool) -> None:
+        """Show the figures and plots, or what to do for them."""
+        self.empty.visible = not known
+        for handle in (self.text, self.depth, self.slip, self.rows):
+            handle.visible = known
 
     def clear(self) -> None:
         """Show no press."""
+        self._offer(False)
         zero = np.zeros(2)
         self._curves = zero, zero, zero
-        self.text.content, self.table.content = NO_PRESS, ""
+        self.text.content = self.table.content = ""
         self.depth.data = (zero, zero, zero, zero)
         self.slip.data = (zero, zero, zero)
 
     def load(self, press: Press, contact: Contact) -> None:
         """Show all frames of a press."""
+        self._offer(True)
         depth_mm = finite(np.array(frame_depths_mm(press, contact)))
         # A plot goes to the right: the way in ends where the object first stops going deeper.
         falls = np.flatnonzero(np.diff(depth_mm) <= 0.0)

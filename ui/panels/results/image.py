@@ -17,6 +17,7 @@ from ui.panels.results.camera_row import CameraRow
 from ui.panels.results.image_size import ImageSize
 from ui.panels.results.probe import Probe
 from ui.patches.image_zoom import image_zoom
+from ui.patches.leading import empty_state
 from workbench.core.result.sensing import Shot, TactileFrames
 from workbench.view.close_up import close_up
 from workbench.view.image_views import (
@@ -37,7 +38,8 @@ GAINS = {"as fits": None, **{f"× {gain}": gain for gain in (1, 2, 4, 8, 16, 32)
 """What differences are multiplied by."""
 BLINK_S = 0.5
 """How long each of the two blinking images is shown [s]."""
-NO_IMAGE = "No press of this sensor yet: *Run press* makes an image."
+NO_IMAGE = "No press of this sensor yet."
+BEGIN = empty_state("A press shows what the camera sees of it.", "Run press (R)", key="r")
 IMAGE_COMES = (
     "The tactile image appears here.",
     "Run press (R) computes it;",
@@ -58,6 +60,7 @@ class ImageTab:
         self.number = 0
         """Frame on show."""
         self.caption = gui.add_markdown(NO_IMAGE)
+        self.begin = gui.add_html(BEGIN)
         self.camera = CameraRow(desk)
         self.camera.chosen.connect(lambda: self.show(self.number))
         hint = "What the first image is; below it stands its change"
@@ -112,6 +115,7 @@ class ImageTab:
     def forget(self) -> None:
         """There are no images; what was last on show stays."""
         self.cameras = ()
+        self.begin.visible = True
         self.say(NO_IMAGE)
 
     def clear(self) -> None:
@@ -136,6 +140,7 @@ class ImageTab:
         self.camera.offer(len(self.cameras))
         offer(self.view, tuple(view.value for view in views(self.cameras[0][1])))
         self.view.visible = True
+        self.begin.visible = False
         for handle in self._comparing:
             handle.visible = True
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import dataclasses
 import threading
+from collections.abc import Sequence
 from typing import Any
 
 import viser
@@ -238,25 +239,28 @@ class DesignFiles:
         self.forget()
 
     def _open_gallery(self, event: Any) -> None:
-        kept = {f"{found.name}{MARK}": found for found in self.shelf.entries()}
-        shipped = [
-            Card(name=name, words=_short(purpose(name)), png=shipped_thumbnail(f"start-{name}"))
-            for name in choices()
+        desk, cards = self.desk, (*shipped_cards(), *self.own_cards(self.shelf.entries()))
+        desk.galleries.show(event.client, "Start from", cards, desk.guarded(self.choose))
+
+    def choose(self, name: str) -> None:
+        """Open what a card stands for."""
+        kept = name.removesuffix(MARK)
+        if name.endswith(MARK) and kept in saved_names(self.project):
+            self._open_kept(kept)
+        else:
+            self._start(name)
+
+    def own_cards(self, entries: Sequence[SavedDesign], group: str = YOURS) -> list[Card]:
+        """Cards of kept designs."""
+        return [
+            Card(
+                name=f"{found.name}{MARK}",
+                words=_short(found.reason or found.family),
+                png=self._thumbnail(found),
+                group=group,
+            )
+            for found in entries
         ]
-        own = [self._own_card(label, found) for label, found in kept.items()]
-
-        def choose(name: str) -> None:
-            if name in kept:
-                self._open_kept(kept[name].name)
-            else:
-                self._start(name)
-
-        desk, cards = self.desk, (*shipped, *own)
-        desk.galleries.show(event.client, "Start from", cards, desk.guarded(choose))
-
-    def _own_card(self, label: str, found: SavedDesign) -> Card:
-        words = found.reason or found.family
-        return Card(name=label, words=_short(words), png=self._thumbnail(found), group=YOURS)
 
     def _thumbnail(self, found: SavedDesign) -> bytes | None:
         """What was drawn of a kept design, else its family's thumbnail."""
@@ -267,6 +271,19 @@ class DesignFiles:
             if store.has(call.stage, call.key):
                 return bytes(store.load(call.stage, call.key).png)
         return shipped_thumbnail(f"start-{found.family}")
+
+
+def shipped_cards(group: str = "") -> list[Card]:
+    """Cards of all that a design can start from."""
+    return [
+        Card(
+            name=name,
+            words=_short(purpose(name)),
+            png=shipped_thumbnail(f"start-{name}"),
+            group=group,
+        )
+        for name in choices()
+    ]
 
 
 def _short(words: str) -> str:

@@ -10,6 +10,7 @@ from ui.panels.page import Page
 from ui.panels.shape.design_files import DesignFiles
 from ui.panels.shape.intake import IntakeFolder
 from ui.panels.shape.material import MaterialFolder
+from ui.panels.shape.start_page import StartPage
 from workbench.edit.forms import choices, family, load_design, purpose, sliders
 
 OWN = "own design"
@@ -31,6 +32,7 @@ class ShapePanel:
         self.start.on_update(desk.guarded(self._start_from))
         self.about = gui.add_markdown("")
         self.files = DesignFiles(desk)
+        StartPage(desk, self.files)
         self.files.gallery_button()
         self.files.name_widgets()
         self._history()

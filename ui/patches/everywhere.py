@@ -1,0 +1,15 @@
+"""What holds for the whole page from its beginning: scripts and rules of several of the patches."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ui.patches import keyboard, leading, remembering
+from ui.patches.image_click import script_in_html
+
+
+def mend_everywhere(gui: Any) -> None:
+    """Lay all of them into the page; they are seen nowhere themselves."""
+    scripts = (leading.LEAD, keyboard.mend_keyboard(), remembering.remember())
+    sheet = f"<style>{leading.SHEET}{keyboard.SHEET}</style>"
+    gui.add_html(sheet + "".join(script_in_html(script) for script in scripts))
