@@ -22,6 +22,7 @@ from typing import Any
 from playwright.sync_api import sync_playwright
 
 from docs.page_shots import pressed
+from tests.ui.axe import axe_faults, axe_script
 from tests.ui.conftest import SOFTWARE, Server
 from tests.ui.page_faults import Fault, docks_share, faults, places, quiet, unfold
 from tests.ui.widgets import DRAW_WHEN_LOOKED_AT, coarse_project, looking, tab
@@ -43,6 +44,9 @@ CHOOSE = "localStorage.setItem('viser-user:{key}', '{choice}')"
 def main(wanted: list[str]) -> None:
     """Write all pictures and faults of the sizes and themes that are wanted."""
     program = os.environ.get("CHROMIUM") or shutil.which("chromium")
+    script = axe_script()
+    if script is None:
+        print("no axe-core: npm could not bring it", flush=True)
     project = OUT / "project"
     if not project.is_dir():
         coarse_project(OUT)
@@ -60,7 +64,7 @@ def main(wanted: list[str]) -> None:
                 page.add_init_script(CHOOSE.format(key=STORED, choice=choice))
                 opened(page, server.url)
                 shares[look] = docks_share(page)
-                for name, fault in looks(page, look):
+                for name, fault in looks(page, look, script):
                     found[fault].append(f"{look}-{name}")
                 page.close()
         browser.close()
@@ -77,8 +81,8 @@ def opened(page: Any, url: str) -> None:
         page.wait_for_timeout(3_000)
 
 
-def looks(page: Any, look: str) -> list[tuple[str, Fault]]:
-    """Photograph all tabs, closed and open; faults with the tab that has them."""
+def looks(page: Any, look: str, script: str | None) -> list[tuple[str, Fault]]:
+    """Photograph all tabs, closed and open; faults with the tab that has them, by axe too."""
     found = []
     for name in places(page):
         short = re.sub(r"\W+", "_", name).strip("_").lower() or "help"
@@ -87,6 +91,8 @@ def looks(page: Any, look: str) -> list[tuple[str, Fault]]:
         quiet(page)
         page.screenshot(path=OUT / f"{look}-{short}-open.png")
         found += [(short, fault) for fault in faults(page)]
+        if script is not None:
+            found += [(short, fault) for fault in axe_faults(page, script)]
         print(f"{look} {name}", flush=True)
     return found
 

@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from tests.ui.axe import axe_faults, axe_script
 from tests.ui.conftest import Server
 from tests.ui.page_faults import Fault, faults, places, unfold
 from tests.ui.warm_start import WarmStart
@@ -44,10 +45,12 @@ def found(
         page.add_init_script(DRAW_WHEN_LOOKED_AT)
         open_page(page, server.url)
         page.get_by_text("Image ✓").wait_for()
-        rows = []
+        rows, script = [], axe_script()
         for name in places(page):
             unfold(page)
             rows += [(name, fault) for fault in faults(page)]
+            if script is not None:
+                rows += [(name, fault) for fault in axe_faults(page, script)]
         yield rows
         page.close()
 
@@ -99,3 +102,62 @@ def test_the_page_is_as_the_system_until_the_browser_has_chosen(
     page.wait_for_timeout(3_000)
     assert page.evaluate(scheme) == "dark"
     context.close()
+
+
+def test_axe_finds_nothing_serious(found: list[tuple[str, Fault]]) -> None:
+    """Names of all controls and images, roles and what they hold: WCAG 2.2 as axe-core checks."""
+    if axe_script() is None:
+        pytest.skip("npm could not bring axe-core")
+    assert of_kind(found, "axe") == []
+
+
+MOUSE_ONLY = """
+() => [...document.querySelectorAll('body *')].filter(node => {
+  const style = getComputedStyle(node), box = node.getBoundingClientRect();
+  const hand = style.cursor === 'pointer' || style.cursor === 'ew-resize';
+  if (!hand || box.width < 2 || box.height < 2 || style.pointerEvents === 'none') return false;
+  const keys = 'a[href], button, input, summary, textarea, [tabindex="0"], label';
+  if (node.closest(keys) || node.closest('img, canvas')) return false;
+  /* The track of a slider, and what stands beside a box that has the focus. */
+  return !node.closest('.mantine-Slider-root, .mantine-Input-wrapper');
+}).map(node => (node.innerText || node.className || node.tagName).toString().slice(0, 60))
+"""
+"""What shows a hand to the mouse, and neither is in the order of Tab nor in what is."""
+
+
+def test_nothing_is_reached_by_the_mouse_alone(
+    pressed_project: Path, page: Any, start_server: Callable[..., Server]
+) -> None:
+    """Start by its key, a picture by Tab, closed by Escape; a folder and a dock's edge by keys."""
+    server = start_server(pressed_project)
+    open_page(page, server.url)
+    page.locator("[data-title]").first.wait_for()
+    assert page.evaluate(MOUSE_ONLY) == []
+    page.keyboard.press("o")
+    page.locator('[data-name="Import a body"]').wait_for()
+    page.wait_for_timeout(500)
+    page.keyboard.press("Tab")
+    assert page.evaluate("document.activeElement.dataset.name")
+    page.keyboard.press("Escape")
+    page.locator('[data-name="Import a body"]').wait_for(state="detached")
+    layers = page.locator("[data-title]").filter(has_text="Layers").first
+    layers.focus()
+    page.keyboard.press("Enter")
+    page.locator('[data-title][aria-expanded="false"]').filter(has_text="Layers").wait_for()
+    edge = page.locator('[data-dock-region-resize="left"]')
+    width = "document.querySelector('[data-dock-region=left]').offsetWidth"
+    page.wait_for_function("window.keptDocks.back")
+    before = page.evaluate(width)
+    edge.focus()
+    page.keyboard.press("ArrowLeft")
+    page.wait_for_timeout(1500)
+    now = page.evaluate(width)
+    assert before - now > 10
+    tab(page, "Forces").press("Enter")
+    page.wait_for_timeout(1500)
+    page.reload()
+    tab(page, "Shape").wait_for()
+    page.wait_for_function("window.keptDocks && window.keptDocks.back")
+    page.wait_for_timeout(500)
+    assert abs(page.evaluate(width) - now) < 3
+    assert tab(page, "Forces").get_attribute("aria-selected") == "true"

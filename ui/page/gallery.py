@@ -26,8 +26,12 @@ CARD = (
     "border:1px solid #8886;border-radius:8px;padding:6px;cursor:pointer;text-align:center;"
     "font:inherit;font-size:11px;line-height:1.25;background:none;color:inherit"
 )
-HIDE = "<style>.mantine-Modal-content:has([data-name]) div:has(> label){display:none}</style>"
-"""viser's own buttons of the cards' names, which would say all of them twice."""
+HIDE = (
+    "<style>.mantine-Modal-content:has([data-name]) div:has(> label){display:none}"
+    ".mantine-Modal-content:has([data-name])"
+    "{flex:0 0 min(860px,calc(100vw - 24px)) !important}</style>"
+)
+"""viser's own buttons of the cards' names say all of them twice, and its windows are narrow."""
 ICONS = {
     "body": "M12 3l8 4.5v9L12 21l-8-4.5v-9zM12 12l8-4.5M12 12v9M12 12L4 7.5",
     "photo": "M4 8h3l2-3h6l2 3h3v11H4zM12 10a3.5 3.5 0 1 0 0 7a3.5 3.5 0 1 0 0-7",

@@ -16,6 +16,8 @@ from collections.abc import Mapping
 
 from ui.patches.image_click import TYPE_INTO_BOXES, hidden_mark
 
+TAB = "Tactile image"
+"""Label of the tab that has the images."""
 TARGET = "zoom-image"
 """Class of the piece of HTML; its parents are searched for images and boxes."""
 MOST_TIMES = 16
@@ -118,7 +120,17 @@ for (const [name, handler] of Object.entries((window.imageZoom || {}).handlers |
   };
   const acts = {
     out: () => about(at.times / STEP, 0.5, 0.5), in: () => about(at.times * STEP, 0.5, 0.5),
-    all: () => about(1, 0, 0), page: () => page ? close() : open(),
+    all: () => about(1, 0, 0), page: () => {
+      if (page) return close();
+      const [around] = tab();
+      const first = around && around.querySelector('img[src^="blob:"]');
+      if (first && first.offsetParent) return open();
+      /* In a tab that is not chosen images are not there, or no longer hold a picture. */
+      for (const one of document.querySelectorAll('[role=tab]'))
+        if (one.textContent.trim() === 'NAMED')
+          one.dispatchEvent(new KeyboardEvent('keydown', {key: 'Enter', bubbles: true}));
+      setTimeout(open, 700);
+    },
   };
   window.imageZoom = {acts, handlers: {
     load: event => {
@@ -191,10 +203,12 @@ def image_zoom(*, wipe: str) -> str:
         INSTALL.replace("MOST", str(MOST_TIMES))
         .replace("STEP", str(STEP))
         .replace("BAR", str(BAR_PX))
+        .replace("NAMED", TAB)
     )
     tools = "".join(
-        f'<button type="button" data-act="{act}" aria-label="{hint}" title="{hint}">{text}</button>'
+        f'<button type="button" data-act="{act}"{"" if text[1:] else label} {title}>{text}</button>'
         for act, (text, hint) in TOOLS.items()
+        for label, title in ((f' aria-label="{hint}"', f'title="{hint}"'),)
     )
     row = f'<div class="image-tools">{tools}</div>'
     return hidden_mark(TARGET, install, {"wipe": wipe}, inside=row, crosshair=False)

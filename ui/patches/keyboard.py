@@ -61,7 +61,7 @@ MEND = """
   };
   const images = () => {
     for (const image of document.querySelectorAll('img[src^="blob:"]:not([alt])')) {
-      const group = image.closest('[data-dock-group]');
+      const group = image.closest('[data-dock-group], .mantine-Tabs-root');
       const tab = group && group.querySelector('[role=tab][aria-selected=true]');
       const words = image.parentElement.previousElementSibling;
       put(image, 'alt', (words && words.textContent.trim())

@@ -53,7 +53,7 @@ SHEET = """
   border-radius: 4px; padding: 3px 10px; background: none; cursor: pointer; font: inherit;
   color: var(--mantine-color-text); }
 .empty-state button { display: block; margin-top: 6px; }
-.design-title { margin: 8px 10px; font-size: 14px; color: var(--mantine-color-text);
+.design-title { margin: 0 10px; font-size: 14px; color: var(--mantine-color-text);
   display: flex; gap: 8px; align-items: baseline; }
 .design-title > span { overflow: hidden; text-overflow: ellipsis; }
 .home { font-size: 12px; padding: 1px 8px; flex-shrink: 0; }

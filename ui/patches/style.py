@@ -36,6 +36,9 @@ SHEET = """<style>
 /* A narrow window: the sheet at the bottom takes all of its width. */
 @media (max-width: 36em) {
   [style*="width: 20em"] { width: 100% !important; }
+  /* As a table it would grow with its plots, and they with it. */
+  .mantine-ScrollArea-viewport > .mantine-ScrollArea-content,
+  .mantine-ScrollArea-viewport > div { display: block !important; min-width: 0 !important; }
 }
 /* Small buttons above an image, and an image over the page: viser has neither. */
 .image-tools { display: flex; gap: 4px; margin: 2px 10px 6px; font-size: 12px; }

@@ -12,6 +12,7 @@ from ui.panels.results.image import ImageTab
 from ui.panels.results.maps import MapsPanel
 from ui.panels.results.sources import STAGES, SourcesFolder
 from ui.panels.results.timeline import Timeline
+from ui.patches.image_zoom import TAB
 from workbench.core.base.errors import SolveError
 from workbench.core.press.press import Press
 from workbench.core.result.sensing import Contact, Shot
@@ -47,7 +48,7 @@ class ResultsPanel:
         gui = desk.server.gui
         self.dock = gui.add_panel()
         # Five labels without icons fit on one row.
-        with self.dock.add_tab("Tactile image"):
+        with self.dock.add_tab(TAB):
             self.image = ImageTab(desk, self.dock)
         with self.dock.add_tab("Forces"):
             self.forces = ForcesTab(gui)
