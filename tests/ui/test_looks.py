@@ -118,6 +118,8 @@ MOUSE_ONLY = """
   if (!hand || box.width < 2 || box.height < 2 || style.pointerEvents === 'none') return false;
   const keys = 'a[href], button, input, summary, textarea, [tabindex="0"], label';
   if (node.closest(keys) || node.closest('img, canvas')) return false;
+  /* How large a floating window is can be told by the mouse alone: viser's own. */
+  if (node.closest('[data-dock-resize]')) return false;
   /* The track of a slider, and what stands beside a box that has the focus. */
   return !node.closest('.mantine-Slider-root, .mantine-Input-wrapper');
 }).map(node => (node.innerText || node.className || node.tagName).toString().slice(0, 60))
