@@ -44,7 +44,8 @@ def start(tmp_path: Path) -> StartPage:
     """The page of a project that has nothing yet, on a desk that keeps what it is given."""
     project = Project(tmp_path)
     given: list[State] = []
-    gui = SimpleNamespace(add_command=lambda *words, **look: SimpleNamespace(on_trigger=lambda act: None))
+    command = SimpleNamespace(on_trigger=lambda act: None)
+    gui = SimpleNamespace(add_command=lambda *words, **look: command)
     session: Any = SimpleNamespace(
         project=project, given=given, replace_state=given.append, design=load_design("finger")
     )
