@@ -21,7 +21,7 @@ RANKS = """
     workbench.system
 
     geometry  geometry.formats  geometry.drawing  geometry.surface  geometry.body
-    designs
+    designs  designs.dimensions
     geometry.intake  geometry.objects  geometry.volume  geometry.mould  geometry.housing
     geometry.workshop
 

@@ -82,6 +82,7 @@ NOUNS = {
     "command of a group": Noun(package="workbench.cli.groups", record="COMMAND"),
     "export": Noun(package="workbench.report.exports", record="EXPORT"),
     "family": Noun(package="designs", record="FAMILY"),
+    "main sizes of a family": Noun(package="designs.dimensions", record="DIMENSIONS"),
     "task": Noun(package="workbench.tasks.kinds", record="TASK"),
 }
 

@@ -49,6 +49,8 @@ class Session:
         self._past: list[State] = []
         self._future: list[State] = []
         self._last_edit = ("", -1e9)
+        self._held = ""
+        """The field whose handle a hand holds: all of its edits are one step of undo."""
         self.state = fresh_state(load_design(DEFAULT_DESIGN))
         self._planned: tuple[State | None, dict[str, Call]] = (None, {})
 
@@ -168,12 +170,19 @@ class Session:
         """Take a whole other design, for example a preset; the press stays, aimed anew."""
         self.replace_state(fresh_state(design, self.case))
 
+    def hold(self, field: str) -> None:
+        """A hand takes hold of a field's handle, or lets go: ""; a drag is one step of undo."""
+        if field != self._held:
+            self._held, self._last_edit = field, ("", -1e9)
+
     def _commit(self, state: State, field: str) -> None:
         if state == self.state:
             return
         now = self._clock()
         name, when = self._last_edit
-        if name != field or now - when > COALESCE_S:
+        if field != self._held:
+            self._held = ""
+        if name != field or (now - when > COALESCE_S and not self._held):
             self._past = [*self._past[-UNDO_LIMIT:], self.state]
         self._last_edit = (field, now)
         self._future.clear()

@@ -189,6 +189,10 @@ class Fields:
             self._fields[field.path] = field
         self._restore([new + path.removeprefix(old) for path in moved])
 
+    def widget(self, path: str) -> Any:
+        """The widget that is bound to a field."""
+        return self._fields[path].handle
+
     def reveal(self, path: str, wanted: bool) -> None:
         """Show or hide a widget that means nothing for some designs."""
         handle = self._fields[path].handle

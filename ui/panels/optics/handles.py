@@ -69,6 +69,7 @@ class Handle:
             return
         before = self.desk.read(path)
         after = _at(before, place_mm, wxyz)
+        self.desk.session.hold(path if self.gizmo.held else "")
         if after != before:
             self.desk.edit(path, after)
             self.desk.fields.refresh()

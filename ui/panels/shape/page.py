@@ -8,6 +8,7 @@ from ui.desk.desk import Desk
 from ui.page.callbacks import put
 from ui.panels.page import Page
 from ui.panels.shape.design_files import DesignFiles
+from ui.panels.shape.drawn_sizes import DrawnSizes
 from ui.panels.shape.intake import IntakeFolder
 from ui.panels.shape.material import MaterialFolder
 from ui.panels.shape.start_page import StartPage
@@ -36,6 +37,7 @@ class ShapePanel:
         self.files.gallery_button()
         self.files.name_widgets()
         self._history()
+        self.sizes = DrawnSizes(desk)
         self.folder = gui.add_folder("Body")
         self.family = ""
         self._fill()
@@ -126,10 +128,12 @@ class ShapePanel:
         self._tell_about()
         self.files.refresh()
         self.material.refresh()
+        self.sizes.refresh()
 
     def show(self, stage: str, result: Any) -> None:
         """An imported body's faces can be picked once it is built."""
         self.intake.show(stage, result)
+        self.sizes.show(stage, result)
         if stage == "build":
             self._tell_about()
 
