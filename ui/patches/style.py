@@ -94,6 +94,23 @@ SHEET = """<style>
   border: 0; padding: 0; background: none; cursor: pointer; text-decoration: underline;
   font: inherit; color: var(--mantine-color-anchor);
 }
+/* The cube that turns with the eye, over the 3D view. */
+.view-cube { position: fixed; z-index: 1; width: 96px; height: 96px; pointer-events: none; }
+.view-cube svg { position: absolute; inset: 0; overflow: visible; }
+.view-cube line { stroke-width: 2; }
+.view-cube text {
+  font: 600 11px sans-serif; text-anchor: middle; dominant-baseline: middle; paint-order: stroke;
+  stroke: var(--mantine-color-body); stroke-width: 4px;
+}
+.view-cube button {
+  position: absolute; left: 28px; top: 28px; width: 40px; height: 40px; padding: 0;
+  font: 600 10px sans-serif; cursor: pointer; pointer-events: auto; border-radius: 2px;
+  color: var(--mantine-color-text); background: var(--mantine-color-body);
+  border: 1px solid var(--mantine-color-dimmed);
+}
+.view-cube button:hover, .view-cube button:focus-visible {
+  color: #fff; background: var(--mantine-primary-color-filled);
+}
 /* A closed folder is a heading with a line, not a box with nothing in it. */
 .mantine-Paper-root:has(> .mantine-Paper-root > .tabler-icon-chevron-down) {
   border-width: 1px 0 0;

@@ -38,6 +38,9 @@ class Side(enum.StrEnum):
     TOP = "Top"
     CONTACT = "Contact"
     ISOMETRIC = "Isometric"
+    BACK = "Back"
+    LEFT = "Left"
+    BOTTOM = "Bottom"
 
 
 TOWARD = {
@@ -47,8 +50,13 @@ TOWARD = {
     Side.TOP: (0.0, -0.001, 1.0),
     # From the side that bodies are first seen from.
     Side.ISOMETRIC: (1.0, 1.0, 1.0),
+    Side.BACK: (0.0, 1.0, 0.0),
+    Side.LEFT: (-1.0, 0.0, 0.0),
+    Side.BOTTOM: (0.0, -0.001, -1.0),
 }
 """Directions from the sensor toward the eye, of any length; Z is up."""
+USUAL = (Side.FRONT, Side.RIGHT, Side.TOP, Side.CONTACT, Side.ISOMETRIC)
+"""Those that have a button; the others are on the cube in the corner of the view, and have keys."""
 STEEPEST = 0.999
 """Largest share of the upright axis in a direction toward the eye."""
 

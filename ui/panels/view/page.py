@@ -14,10 +14,11 @@ import viser
 from ui.desk.desk import Desk
 from ui.panels.page import Page
 from ui.panels.view.hand_out import save_scene
+from ui.patches.view_cube import FACES, ViewCube
 from ui.scene.look import OPACITY, Look, Seen
 from ui.scene.measure import Measure
 from ui.scene.reach import Reach
-from ui.scene.views import Side
+from ui.scene.views import USUAL, Side
 from workbench.view.section_cut import Axis, Plane
 
 STEP_MM = 0.1
@@ -43,12 +44,15 @@ class ViewPanel:
 
     def _sides(self) -> None:
         gui, guarded = self.desk.server.gui, self.desk.guarded
-        hint = "Keys 1 to 5; in this tab only. Contact looks onto the place of the press"
-        self.sides = gui.add_button_group("Look from", [side.value for side in Side], hint=hint)
+        hint = "Keys 1 to 8; in this tab only. Contact looks onto the place of the press"
+        self.sides = gui.add_button_group("Look from", [side.value for side in USUAL], hint=hint)
         self.sides.on_click(guarded(lambda event: self._turn(Side(self.sides.value), event)))
         for number, side in enumerate(Side, start=1):
             command = gui.add_command(f"Look from: {side.value}", hotkey=str(number))  # pyright: ignore[reportArgumentType]
             command.on_trigger(guarded(partial(self._turn, side)))
+        keys = {side.value: str(number) for number, side in enumerate(Side, start=1)}
+        self.cube = ViewCube(self.desk.server, {word: keys[word] for word in FACES})
+        self.desk.on_turn.append(self.cube.turn)
 
         hint = "Look at all that is on show, from where you look now (F)"
         fit = gui.add_button("Fit view", icon=viser.Icon.FOCUS_CENTERED, hint=hint)
