@@ -202,7 +202,7 @@ def make(page: Any) -> None:
     """The mould, exploded, with its checks."""
     tab(page, "Make").click()
     press(page, "Make parts")
-    wait_until(lambda: button(page, "Download all (zip)").count(), LONG_S, "the parts are made")
+    wait_until(lambda: button(page, "Download part STL").count(), LONG_S, "the parts are made")
     quiet(page)
     page.keyboard.press("f")
     page.get_by_text("Checks", exact=True).first.scroll_into_view_if_needed()

@@ -77,7 +77,7 @@ def test_every_control_on_show_is_reached_by_its_name(server: Server, page: Any)
     wait_until(lambda: page.get_by_text("Image ✓").count(), 180, "the example is pressed")
     tab(page, "Make").click()
     button(page, "Make parts").click()
-    wait_until(lambda: button(page, "Download all (zip)").count(), PARTS_S, "the parts are made")
+    wait_until(lambda: button(page, "Download part STL").count(), PARTS_S, "the parts are made")
     found = [control for control in listed(server) if control.visible]
     assert {"Show parts", "All mould parts", "Lamp colour", "Camera"} <= {c.label for c in found}
     named = Counter((c.page, c.label) for c in found)

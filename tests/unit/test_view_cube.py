@@ -78,7 +78,6 @@ def test_a_tab_is_told_once_the_pump_turns_and_only_when_it_has_turned() -> None
 
     begun: list[Any] = []
     server: Any = SimpleNamespace(
-        gui=SimpleNamespace(add_html=lambda text: None),
         on_client_connect=begun.append,
         on_client_disconnect=begun.append,
     )

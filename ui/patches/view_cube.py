@@ -78,11 +78,12 @@ class ViewCube:
         self._cubes: dict[int, Any] = {}
         self._turned: dict[int, tuple[float, ...]] = {}
         """Where tabs look from that have turned since they were told."""
-        server.gui.add_html(script_in_html(INSTALL))
         server.on_client_connect(self._begin)
         server.on_client_disconnect(lambda client: self._end(client.client_id))
 
     def _begin(self, client: Any) -> None:
+        # Of a tab's own, at the root: what stands in a closed tab of the dock is not in the page.
+        client.gui.add_html(script_in_html(INSTALL))
         self._cubes[client.client_id] = client.gui.add_html("")
 
         @client.camera.on_update

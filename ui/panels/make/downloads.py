@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -27,6 +28,9 @@ class Downloads:
 
     def __init__(self, desk: Desk) -> None:
         self.desk = desk
+        self._waiting: tuple[Any, str] | None = None
+        """Tab that waits for all files, and the key of what it asked for: of another design it gets
+        none."""
         self.folder = desk.server.gui.add_folder("Files", visible=False)
         with self.folder:
             self._fill()
@@ -38,14 +42,21 @@ class Downloads:
             label = f"Download part {name.upper()}"
             button = gui.add_button(label, icon=viser.Icon.DOWNLOAD, hint=hint)
             button.on_click(desk.guarded(partial(self._one, name)))
-        hint = "All parts, assemblies, build sheet and parts list"
-        everything = gui.add_button("Download all (zip)", hint=hint)
-        everything.on_click(desk.guarded(self._all))
 
     def offer(self, parts: tuple[FabricationPart, ...]) -> None:
-        """Offer the files of these parts."""
+        """Offer the files of these parts, and send them all to who waits for them."""
         self.folder.visible = bool(parts)
         self.part.options = tuple(part.name for part in parts) or (NONE,)
+        waiting, self._waiting = self._waiting, None
+        if waiting is not None and waiting[1] == self._key():
+            if parts:
+                self._send(waiting[0])
+            else:
+                self._waiting = waiting
+
+    def _key(self) -> str:
+        """Of the files of the design as it stands."""
+        return self.desk.session.calls()["package"].key
 
     def _bundle(self) -> Bundle:
         bundle = self.desk.session.result("package")
@@ -67,7 +78,15 @@ class Downloads:
         content = files[found].tobytes()
         event.client.send_file_download(wanted[1:], content, save_immediately=True)
 
-    def _all(self, event: Any) -> None:
+    def all(self, event: Any, make: Callable[[Any], None]) -> None:
+        """Send everything, made first where it is not there yet."""
+        if self.desk.session.fresh()["package"]:
+            self._send(event.client)
+            return
+        self._waiting = event.client, self._key()
+        make(event)
+
+    def _send(self, client: Any) -> None:
         files = {name: data.tobytes() for name, data in self._bundle().files.items()}
         name = f"{self.desk.session.design.name}-parts.zip"
-        event.client.send_file_download(name, zipped(files), save_immediately=True)
+        client.send_file_download(name, zipped(files), save_immediately=True)

@@ -36,6 +36,11 @@ class MakePanel:
         hint = "Mould, housing, recipe and files; half a minute or so"
         button = gui.add_button("Make parts", icon=viser.Icon.PRINTER, hint=hint)
         button.on_click(desk.guarded(self._make))
+        hint = (
+            "All parts, assemblies, build sheet and parts list; makes them first where they are not"
+        )
+        everything = gui.add_button("Download all (zip)", icon=viser.Icon.DOWNLOAD, hint=hint)
+        everything.on_click(desk.guarded(lambda event: self.downloads.all(event, self._make)))
         desk.reports.beside("parts")
         self.status = gui.add_markdown(NOTHING)
         self.tree = PartsTree(desk)

@@ -48,9 +48,12 @@ class DrawnSizes:
             self.lines.show([(line, self._words(line)) for line in found], size_mm)
 
     def show(self, stage: str, result: Any) -> None:
-        """Make room for parts and meshes that are looked at in place of the sensor."""
+        """Follow the size of a new body; make room for parts and meshes that are looked at."""
         if stage == "covered":
             self.covered = bool(result)
+        elif stage == "build":
+            self._shown = ()
+        if stage in ("build", "covered"):
             self.refresh()
 
     def _words(self, line: Dimension) -> str:
