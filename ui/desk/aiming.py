@@ -43,7 +43,10 @@ class Aiming:
         place = f"{x:.1f}, {y:.1f}, {z:.1f} mm"
         desk.log(f"target {place}")
         # A click may have been meant for something else; on most tabs nothing else would tell.
-        desk.reports.notify("The press aims elsewhere", f"target {place}; Ctrl+Z takes it back")
+        told = f"target {place}; Ctrl+Z takes it back"
+        if not desk.live:
+            told += ". L drags the press over the skin, with force and image at once"
+        desk.reports.notify("The press aims elsewhere", told)
 
     def show_body(self, solid: Solid) -> None:
         """Show another body, with its aim on the skin and the object on it."""
