@@ -68,6 +68,13 @@ def test_figures_are_brief(value: float, text: str) -> None:
     assert headlines({DENT: value}, {})[3].text == f"{text} mm"
 
 
+def test_a_dent_that_no_skin_has_is_none() -> None:
+    """A white image: its figure is a division by no light at all, which is no length to show."""
+    shown = headlines({DENT: 2e11}, {})[3]
+    assert (shown.text, shown.standing) == ("none", Standing.POOR)
+    assert "white" in shown.reason
+
+
 def test_makeable_counts_the_checks() -> None:
     """A failed one is poor, one to look at fair, none good; not checked is not known."""
     for bad, look_at, expected in (

@@ -15,6 +15,7 @@ from workbench.view.image_views import (
     OF_IMAGES,
     View,
     looked,
+    unseen_words,
     views,
     visible_change,
     wiped,
@@ -105,6 +106,18 @@ def test_a_plain_grey_difference_says_so() -> None:
     words = [looked(View.DIFFERENCE, rgb, number).words for number in range(3)]
     assert [NO_CHANGE in found for found in words] == [False, True, False]
     assert all("× " in found for found in words)
+
+
+def test_an_image_that_is_too_bright_says_so() -> None:
+    """White everywhere is no lack of contact; a twentieth of it is said beside the change."""
+    dark, white = np.full((10, 20, 3), 90, np.uint8), np.full((10, 20, 3), 255, np.uint8)
+    assert unseen_words(dark, dark) == NO_CHANGE
+    assert unseen_words(white, white).startswith("no change seen: 100 % of the pixels are white")
+    spot = dark.copy()
+    spot[0, :10] = 255
+    assert unseen_words(spot, dark).startswith("5 % of the pixels are white")
+    spot[0, :10, 2] = 200
+    assert unseen_words(spot, dark) == ""
 
 
 def test_normals_are_coloured_by_axis() -> None:

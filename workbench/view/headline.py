@@ -85,6 +85,9 @@ COST_RULE = Rule(
     why="LEDs, cameras, silicone and the rest, at the designer's own prices",
     stage="build",
 )
+DENT = "readable_dent_median_mm"
+UNREADABLE_MM = 1000.0
+"""A dent deeper than any skin: none is read."""
 MAKEABLE, LOOK_AT = "checks_bad", "checks_warning"
 HEADLINES = (
     Headline(
@@ -108,7 +111,7 @@ HEADLINES = (
         bounds=Bounds(good=80.0, poor=50.0),
     ),
     Headline(
-        figure="readable_dent_median_mm",
+        figure=DENT,
         word="Least dent",
         tab="Maps",
         remedy="More contrast, more pixels on the skin or less noise make smaller dents readable",
@@ -166,6 +169,9 @@ def _shown(headline: Headline, figures: Mapping[str, float], own: Mapping[str, B
     if headline.figure == MAKEABLE:
         return _makeable(headline, int(value), int(figures.get(LOOK_AT, 0.0)))
     bounds = own.get(headline.figure, headline.bounds)
+    if headline.figure == DENT and value > UNREADABLE_MM:
+        reason = "No dent can be read: the skin is too dark, or its pixels are white."
+        return Shown(headline=headline, text="none", standing=Standing.POOR, reason=reason)
     text = f"{_brief(value)} {meant.unit}".strip()
     label = f"{meant.label[0].upper()}{meant.label[1:]}"
     what = f"{label} is {number(value)} {meant.unit}".rstrip() + f": {meant.why}."

@@ -15,6 +15,9 @@ from workbench.core.result.sensing import TactileFrames
 from workbench.view.colour_scale import NOTHING_GREY, scale_colours
 
 NO_CHANGE = "no change seen: no camera pixel sees a contact in this frame"
+BURNT = "{share:.0f} % of the pixels are white: less LED power, or a shorter exposure, shows more"
+BURNT_SHARE = 0.02
+"""Of the pixels saturated in every colour, from which it is said."""
 ROUNDING_GREY = 1
 """Change of the grey level that rounding alone can make."""
 MOST_GAIN = 8
@@ -141,9 +144,17 @@ def visible_change(
 
 
 def unseen_words(image: np.ndarray, background: np.ndarray) -> str:
-    """What is said beside a difference that is plain grey; "" of one that shows something."""
+    """What is said beside a difference that shows nothing, or of an image that is too bright.
+
+    Returns:
+        "" of a difference that shows something in an image that is not saturated.
+    """
+    share = float((image == np.iinfo(np.uint8).max).all(axis=-1).mean()) if image.size else 0.0
+    burnt = BURNT.format(share=100.0 * share) if share >= BURNT_SHARE else ""
     change = np.abs(image.astype(np.int16) - background.astype(np.int16))
-    return NO_CHANGE if change.max(initial=0) <= ROUNDING_GREY else ""
+    if change.max(initial=0) > ROUNDING_GREY:
+        return burnt
+    return f"no change seen: {burnt}" if burnt else NO_CHANGE
 
 
 def wiped(image: np.ndarray, rest: np.ndarray, share: float) -> np.ndarray:

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from viser import uplot
 
+from ui.desk.desk import Desk
 from ui.page.colours import AMBER, BLUE, GREEN, GREY
+from ui.panels.results.force_box import ForceBox
 from ui.patches.leading import empty_state
 from workbench.core.press.press import Press
 from workbench.core.result.sensing import Contact
+from workbench.view.force_asked import WayIn
 from workbench.view.forces import gross_slip, slip_curve
 from workbench.view.frame_words import finite, number, of_frame, phase
 from workbench.view.press_figures import force_balance, frame_depths_mm
@@ -18,6 +19,16 @@ from workbench.view.press_figures import force_balance, frame_depths_mm
 NO_PRESS = empty_state(
     "No press of this sensor yet: it tells forces, frame by frame.", "Run press (R)", key="r"
 )
+COLUMNS = {
+    "#": "frame",
+    "mm": "depth from first touch",
+    "N": "force along the inward normal",
+    "residual": "of the solver, over the force: 0 is exact equilibrium",
+    "overlap µm": "how far skin and object stand in each other at most",
+    "min J": "least volume of a cell over that at rest: 1 is unpressed, near 0 is crushed",
+    "kinetic": "energy of motion over that of the strain: near 0 is at rest",
+}
+"""Columns of the table and what they mean."""
 MOST_ROWS = 400
 """Frames of the table."""
 
@@ -25,11 +36,14 @@ MOST_ROWS = 400
 class ForcesTab:
     """Widgets of the tab."""
 
-    def __init__(self, gui: Any) -> None:
+    def __init__(self, desk: Desk) -> None:
+        gui = desk.server.gui
         self.empty = gui.add_html(NO_PRESS)
         self.text = gui.add_markdown("", visible=False)
         empty = (np.zeros(2), np.zeros(2), np.zeros(2))
         self._curves = empty
+        self._depth_mm = np.zeros(0)
+        self._way = WayIn(depth_mm=empty[0], force_N=empty[1])
         self._marked = -1
         self.depth = gui.add_uplot(
             (*empty, np.zeros(2)),
@@ -44,6 +58,7 @@ class ForcesTab:
             aspect=1.5,
             visible=False,
         )
+        self.box = ForceBox(desk)
         self.slip = gui.add_uplot(
             empty,
             (
@@ -72,11 +87,18 @@ class ForcesTab:
         zero = np.zeros(2)
         self._curves = zero, zero, zero
         self.text.content = self.table.content = ""
+        self.box.take(None)
         self.depth.data = (zero, zero, zero, zero)
         self.slip.data = (zero, zero, zero)
 
-    def load(self, press: Press, contact: Contact) -> None:
-        """Show all frames of a press."""
+    def load(self, press: Press, contact: Contact, *, wall_mm: float | None) -> None:
+        """Show all frames of a press.
+
+        Args:
+            press: What was asked for.
+            contact: What came of it.
+            wall_mm: Elastomer over the support; None where something else lies behind the skin.
+        """
         self._offer(True)
         depth_mm = finite(np.array(frame_depths_mm(press, contact)))
         # A plot goes to the right: the way in ends where the object first stops going deeper.
@@ -86,6 +108,9 @@ class ForcesTab:
             np.r_[0.0, finite(values)[:count]]
             for values in (depth_mm, contact.normal_N, tangential_force_N(contact))
         )
+        self._way = WayIn(depth_mm=self._curves[0], force_N=self._curves[1], wall_mm=wall_mm)
+        self._depth_mm = depth_mm
+        self.box.take(self._way)
         self._marked = -1
         self.mark(len(depth_mm))
         ratio, share = slip_curve(contact)
@@ -120,6 +145,7 @@ class ForcesTab:
         text = (
             f"**{number(contact.normal_N[k], '.3f')} N** along the normal, frame {k + 1} of "
             f"{len(contact.reaction_N)}: {what}\n\n"
+            f"{self._wall(k)}"
             f"on the object: x {x} · y {y} · z {z} N\n\n"
             f"tangential force {number(across, '.3f')} N · friction of all points "
             f"{number(friction, '.3f')} N, pressing {number(pressing, '.3f')} N\n\n"
@@ -132,6 +158,11 @@ class ForcesTab:
         text = f"{note}\n\n{text}" if note else text
         if self.text.content != text:
             self.text.content = text
+
+    def _wall(self, k: int) -> str:
+        """How much of the wall is left under the object in frame `k`, with an empty line."""
+        words = self._way.wall_words(float(self._depth_mm[k])) if k < len(self._depth_mm) else ""
+        return f"{words}\n\n" if words else ""
 
 
 def slip_words(contact: Contact, k: int) -> str:
@@ -158,13 +189,15 @@ def tangential_force_N(contact: Contact) -> np.ndarray:
 def table_html(press: Press, contact: Contact) -> str:
     """Quality of every frame as an HTML table."""
     head = "".join(
-        f"<th style='text-align:right;padding:0 5px'>{name}</th>"
-        for name in ("#", "N", "residual", "overlap µm", "min J", "kinetic")
+        f"<th style='text-align:right;padding:0 5px' title='{meaning}'>{name}</th>"
+        for name, meaning in COLUMNS.items()
     )
+    depths_mm = frame_depths_mm(press, contact)
     rows = []
     for k in range(min(len(contact.reaction_N), MOST_ROWS)):
         cells = (
             str(k + 1),
+            number(depths_mm[k], ".2f"),
             number(contact.normal_N[k], ".3f"),
             number(of_frame(contact.residual, k), ".0e"),
             number(1e3 * of_frame(contact.penetration_mm, k), ".0f"),

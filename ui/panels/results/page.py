@@ -5,6 +5,8 @@ from __future__ import annotations
 import html
 from typing import Any
 
+import numpy as np
+
 from ui.desk.desk import Desk
 from ui.panels.page import Page
 from ui.panels.results.forces import ForcesTab
@@ -19,6 +21,7 @@ from workbench.core.result.sensing import Contact, Shot
 from workbench.live.image_preview import ImagePreview
 from workbench.live.live_press import PressPreview, live_press
 from workbench.view.frame_words import phase
+from workbench.view.wall_under import wall_under_mm
 
 LOG_ROWS = 60
 LIVE_NOTE = "**live**: one frame, not stored; *Run press* computes the path"
@@ -51,7 +54,7 @@ class ResultsPanel:
         with self.dock.add_tab(TAB):
             self.image = ImageTab(desk, self.dock)
         with self.dock.add_tab("Forces"):
-            self.forces = ForcesTab(gui)
+            self.forces = ForcesTab(desk)
             self.sources = SourcesFolder(desk)
         with self.dock.add_tab("Maps"):
             self.maps = MapsPanel(desk)
@@ -163,7 +166,8 @@ class ResultsPanel:
         self.timeline.show_legend()
         self.timeline.follow(1)
         self._show_image(1)
-        self.forces.load(self.press, preview.contact)
+        wall_mm = self._wall_mm(self.press, preview.contact)
+        self.forces.load(self.press, preview.contact, wall_mm=wall_mm)
         self.sources.take_contact(None)
         self._show_forces(1)
 
@@ -209,11 +213,18 @@ class ResultsPanel:
         self.desk.scene.load_frames(mesh.outer, contact)
         self.contact, self.press, self.note = contact, press, note
         self.key = self.desk.session.calls()["press"].key
-        self.forces.load(press, contact)
+        self.forces.load(press, contact, wall_mm=self._wall_mm(press, contact))
         self.sources.take_contact(contact, mesh.outer)
         self.timeline.follow(len(contact.reaction_N))
         self._show_forces(self.timeline.number)
         self.desk.scene.show_frame(self.timeline.number)
+
+    def _wall_mm(self, press: Press, contact: Contact) -> float | None:
+        """Elastomer over the support where the press goes in; None where that is not known."""
+        solid = self.desk.scene.body.solid
+        if solid is None or press.trajectory is not None:
+            return None
+        return wall_under_mm(solid, np.asarray(press.target_mm), np.asarray(contact.normal))
 
     @property
     def _of_now(self) -> bool:

@@ -13,7 +13,11 @@ from ui.panels.shape.intake import IntakeFolder
 from ui.panels.shape.material import MaterialFolder
 from ui.panels.shape.start_page import StartPage
 from workbench.edit.forms import choices, family, load_design, purpose, sliders
+from workbench.project.state import State
+from workbench.variants.comparison import parameter_differences
 
+MOST_TOLD = 3
+"""Parameters that a step of undo names."""
 OWN = "own design"
 """Shown when the design is no longer one of the list."""
 
@@ -62,9 +66,12 @@ class ShapePanel:
 
     def _step(self, direction: str) -> None:
         session = self.desk.session
+        before = session.state
         moved = session.undo() if direction == "Undo" else session.redo()
         if moved:
-            self.desk.log(direction.lower())
+            words = _stepped(before, session.state)
+            self.desk.log(f"{direction.lower()}: {words}")
+            self.desk.reports.notify(direction, words)
             self.desk.replaced()
 
     def _layers(self) -> None:
@@ -139,3 +146,11 @@ class ShapePanel:
 
 
 PAGE = Page(place=1, label="Shape", build=ShapePanel)
+
+
+def _stepped(before: State, after: State) -> str:
+    """What a step of undo or redo has changed, in words."""
+    found = parameter_differences(before, after)
+    words = [f"{row.label} {row.a} → {row.b} {row.unit}" for row in found]
+    more = f"; {len(words) - MOST_TOLD} more" if len(words) > MOST_TOLD else ""
+    return "; ".join(word.rstrip() for word in words[:MOST_TOLD]) + more
