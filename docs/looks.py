@@ -2,7 +2,8 @@
 
 `make looks`, or `python -m docs.looks` in the root of the repository, starts a server with a coarse
 finger in `out/looks/project` (kept for the next time), and writes into `out/looks`: a PNG for each
-size, theme and tab, once as it opens and once with its folders open, `faults.json`, and the same to
+size, theme and tab, once as it opens and once with its folders open, and of the small laptop as
+colour-blind people see it, `faults.json`, and the same to
 read in `faults.txt`. Needs what `make test` installs. Words narrow it down to
 names that contain one: `python -m docs.looks 1280x720-dark`.
 """
@@ -38,6 +39,9 @@ HTMLCanvasElement.prototype.getContext = function (kind, given) {
 };
 """
 """What was drawn of the 3D view stays while nothing is drawn, for the pictures that follow."""
+COLOUR_BLIND = ("deuteranopia", "protanopia", "tritanopia")
+SEEN_OTHERWISE = "1280x720"
+"""Of this size there are pictures of how colour-blind people see the page."""
 CHOOSE = "localStorage.setItem('viser-user:{key}', '{choice}')"
 
 
@@ -87,6 +91,8 @@ def looks(page: Any, look: str, script: str | None) -> list[tuple[str, Fault]]:
     for name in places(page):
         short = re.sub(r"\W+", "_", name).strip("_").lower() or "help"
         page.screenshot(path=OUT / f"{look}-{short}.png")
+        if look.startswith(SEEN_OTHERWISE):
+            colour_blind(page, f"{look}-{short}")
         unfold(page)
         quiet(page)
         page.screenshot(path=OUT / f"{look}-{short}-open.png")
@@ -95,6 +101,16 @@ def looks(page: Any, look: str, script: str | None) -> list[tuple[str, Fault]]:
             found += [(short, fault) for fault in axe_faults(page, script)]
         print(f"{look} {name}", flush=True)
     return found
+
+
+def colour_blind(page: Any, name: str) -> None:
+    """Photograph a tab as Chromium simulates three kinds of colour-blindness (Machado 2009)."""
+    session = page.context.new_cdp_session(page)
+    for kind in (*COLOUR_BLIND, "none"):
+        session.send("Emulation.setEmulatedVisionDeficiency", {"type": kind})
+        if kind != "none":
+            page.screenshot(path=OUT / f"{name}-{kind}.png")
+    session.detach()
 
 
 def write(shares: dict[str, float], found: dict[Fault, list[str]]) -> None:
