@@ -75,6 +75,13 @@ def test_a_dent_that_no_skin_has_is_none() -> None:
     assert "white" in shown.reason
 
 
+def test_every_figure_says_what_makes_it_better() -> None:
+    """Of one that is good too: a designer may want it twice as large."""
+    shown = next(one for one in headlines({CONTRAST: 0.5}, {}) if one.headline.figure == CONTRAST)
+    assert shown.standing is Standing.GOOD
+    assert shown.headline.remedy in shown.reason
+
+
 def test_makeable_counts_the_checks() -> None:
     """A failed one is poor, one to look at fair, none good; not checked is not known."""
     for bad, look_at, expected in (

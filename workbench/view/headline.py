@@ -179,8 +179,7 @@ def _shown(headline: Headline, figures: Mapping[str, float], own: Mapping[str, B
         return Shown(headline=headline, text=text, standing=Standing.PLAIN, reason=what)
     standing = bounds.standing(value)
     parts = [what, f"{standing.value.capitalize()}: {bounds.words(meant.unit)}."]
-    if standing is not Standing.GOOD:
-        parts.append(f"{headline.remedy}.")
+    parts.append(f"{headline.remedy}.")
     return Shown(headline=headline, text=text, standing=standing, reason=" ".join(parts))
 
 

@@ -56,6 +56,7 @@ SEEN = "what the camera does not see cannot be felt"
 ROUND = "even light uses the whole range of grey levels; 1 is perfectly even"
 NULL = "the score of showing no contact at all: the lower, the clearer the touch"
 STEREO = "three directions of light determine a normal (Woodham 1980, photometric stereo)"
+CONTRAST = "spread of the change about the contact over the brightness there: it outlives noise"
 SENSED = "more grey levels for the same touch stand out more from noise"
 OF_THE_PRESS = (
     Rule(
@@ -138,7 +139,7 @@ OF_THE_PRESS = (
         label="contrast of the touch",
         unit="",
         better=Better.HIGHER,
-        why=SENSED,
+        why=CONTRAST,
         stage="shoot",
         chief=True,
     ),
