@@ -33,6 +33,8 @@ DIMENSIONLESS = set(
     "Shines along,Lies along,"
     # A scale of its own, and numbers in the unit of the parameter that is chosen above them.
     "Shore A,From,To,Lowest,Highest,Value,Good from,Poor from,"
+    # Prices are in the designer's own currency.
+    "Price of an LED,Price of a camera,Price of silicone per g,Price of the rest,"
     # A count.
     "Designs to compute".split(",")
 )
