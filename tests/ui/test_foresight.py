@@ -87,11 +87,11 @@ def test_another_family_takes_the_old_marks_away_at_once(server: Server) -> None
 
 
 def history(tab: Tab) -> list[str]:
-    """Every Markdown in the order in which it came."""
+    """Every Markdown and HTML in the order in which it came."""
     found: list[Any] = []
     for _, message in list(tab.seen):
         updates = message.get("updates", {}) if isinstance(message, dict) else {}
-        text = updates.get("_markdown")
+        text = updates.get("_markdown") or updates.get("content")
         if text:
             found.append(str(text))
     return found

@@ -22,7 +22,7 @@ from workbench.proof.benchmarks.tab import Tab
 
 pytestmark = [pytest.mark.ui, pytest.mark.slow]
 
-UNITS = "mm deg MPa % px e dB".split()
+UNITS = "mm N deg MPa % px e dB".split()
 DIMENSIONLESS = set(
     "LEDs,Frames,Vents,Steps,Frame,Samples,Photons,Light nodes,Light seed,Noise seed,Stroke frames,"
     # Ratios, shares and coefficients.

@@ -56,10 +56,11 @@ SHEET = """<style>
 .whole-image .image-tools label { margin-left: 12px; color: var(--mantine-color-text); }
 .whole-image .image-tools input { vertical-align: middle; width: 200px; }
 .whole-frame { position: relative; margin: 0 auto; overflow: hidden; }
-/* The 3D view while the image has the page; viser sizes it in its own style. */
+/* The 3D view while the image has the page, as high as the timeline beside it (BAR_PX of
+   image_zoom.py); viser sizes it in its own style. */
 .scene-in-the-corner {
   position: fixed !important; right: 12px; bottom: 12px; z-index: 11 !important;
-  width: 26vw !important; height: 26vh !important; border-radius: 6px; overflow: hidden;
+  width: 26vw !important; height: 174px !important; border-radius: 6px; overflow: hidden;
   box-shadow: 0 0 0 1px var(--mantine-color-default-border);
 }
 @media (max-width: 36em) { .scene-in-the-corner { display: none; } }
