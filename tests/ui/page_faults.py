@@ -97,7 +97,7 @@ MEASURE = """
     const words = text.data.replace(/\\s+/g, " ").trim().slice(0, 60);
     for (const line of range.getClientRects()) {
       const seen = clipped(parent, line);
-      if (seen) items.push({node: parent, box: seen, text: words});
+      if (seen && !parent.closest(".view-cube")) items.push({node: parent, box: seen, text: words});
     }
     const lost = Math.max(part.left - whole.left, whole.right - part.right);
     if (lost > 1.5) cut.push([words, `${Math.round(lost)} px`]);
@@ -112,7 +112,8 @@ MEASURE = """
   }
   for (const node of document.querySelectorAll("button, input, textarea, img, [role=slider]")) {
     const box = clipped(node, node.getBoundingClientRect());
-    if (box) items.push({node, box, text: name(node)});
+    // Faces of the cube stand behind each other as faces of a cube do.
+    if (box && !node.closest(".view-cube")) items.push({node, box, text: name(node)});
   }
   const overlaps = [];
   items.forEach((a, i) => items.slice(i + 1).forEach((b) => {

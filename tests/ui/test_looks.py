@@ -148,7 +148,8 @@ def test_nothing_is_reached_by_the_mouse_alone(
     page.locator('[data-title][aria-expanded="false"]').filter(has_text="Layers").wait_for()
     edge = page.locator('[data-dock-region-resize="left"]')
     width = "document.querySelector('[data-dock-region=left]').offsetWidth"
-    page.wait_for_function("window.keptDocks.back")
+    kept = "Boolean(window.keptDocks && window.keptDocks.back)"
+    wait_until(lambda: page.evaluate(kept), 30, "the docks stand")
     before = page.evaluate(width)
     edge.focus()
     page.keyboard.press("ArrowLeft")
@@ -159,7 +160,7 @@ def test_nothing_is_reached_by_the_mouse_alone(
     page.wait_for_timeout(1500)
     page.reload()
     tab(page, "Shape").wait_for()
-    page.wait_for_function("window.keptDocks && window.keptDocks.back")
+    wait_until(lambda: page.evaluate(kept), 30, "the docks stand again")
     page.wait_for_timeout(500)
     assert abs(page.evaluate(width) - now) < 3
     assert tab(page, "Forces").get_attribute("aria-selected") == "true"

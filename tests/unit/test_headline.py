@@ -151,5 +151,5 @@ def test_hue_is_not_the_only_carrier() -> None:
     marks = [mark for mark, _ in MARKS.values()]
     assert len(set(marks)) == len(marks)
     text = headline_html(headlines({CONTRAST: 0.01}, {}))
-    assert 'aria-label="Contrast: 0.01, poor"' in text
+    assert 'title="Contrast: 0.01, poor"' in text and ">, poor</em>" in text
     assert "■" in text

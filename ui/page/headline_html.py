@@ -33,11 +33,12 @@ def _chip(one: Shown) -> str:
     kind = f"{kind} old" if one.old else kind
     word = html.escape(one.headline.word)
     text = html.escape(f"({one.text})" if one.old else one.text)
-    name = f"{word}: {text}, {one.standing.value}"
+    standing = one.standing.value
     return (
         f'<details name="headline" class="{kind}">'
-        f'<summary aria-label="{name}" title="{name}"><span>{word}</span>'
-        f"<b>{text}</b><i>{mark}</i></summary>"
+        f'<summary title="{word}: {text}, {standing}"><span>{word}</span> '
+        f'<b>{text}</b> <i aria-hidden="true">{mark}</i>'
+        f'<em class="unseen">, {standing}</em></summary>'
         f"<div>{html.escape(one.reason)} "
         f"{leading(f'Show {one.headline.tab}', {'goto': one.headline.tab})}</div></details>"
     )

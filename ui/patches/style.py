@@ -80,6 +80,8 @@ SHEET = """<style>
 .headline summary i {
   font-size: 9px; font-style: normal; align-self: center; justify-self: end;
 }
+/* Read aloud, and not seen. */
+.unseen { position: absolute; width: 1px; height: 1px; overflow: hidden; clip-path: inset(50%); }
 .headline details:not([open]) > div { display: none; }
 .headline summary:focus-visible { outline: 2px solid var(--mantine-primary-color-filled); }
 .headline .good summary { border-bottom-color: #30a46c; }
