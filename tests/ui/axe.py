@@ -1,8 +1,8 @@
 """axe-core in the page: rules of WCAG 2.2 that a program can check, as faults of the page.
 
 npm brings it, once, into `out/axe`, which git ignores; without npm or a registry there is none.
-Contrast is left to `page_faults.py`, which knows what viser draws behind its texts. Sizes of targets
-are left out: boxes and their arrows are viser's, and stand closer than 24 px.
+Contrast is left to `page_faults.py`, which knows what viser draws behind its texts. Sizes of
+targets are left out: boxes and their arrows are viser's, and stand closer than 24 px.
 """
 
 from __future__ import annotations
