@@ -224,7 +224,7 @@ class ResultsPanel:
         solid = self.desk.scene.body.solid
         if solid is None or press.trajectory is not None:
             return None
-        return wall_under_mm(solid, np.asarray(press.target_mm), np.asarray(contact.normal))
+        return wall_under_mm(solid, np.asarray(contact.target_mm), np.asarray(contact.normal))
 
     @property
     def _of_now(self) -> bool:
