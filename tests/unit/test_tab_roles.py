@@ -50,6 +50,9 @@ class Client:
             add_modal=self._modal,
             add_html=lambda content: None,
             add_button_group=self._row,
+            add_command=lambda name, **key: SimpleNamespace(
+                on_trigger=lambda act: None, remove=lambda: None
+            ),
             add_markdown=lambda content, **look: SimpleNamespace(remove=lambda: None),
             add_button=lambda *words, **look: SimpleNamespace(
                 on_click=lambda act: None, remove=lambda: None
