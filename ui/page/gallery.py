@@ -27,7 +27,8 @@ CARD = (
     "font:inherit;font-size:11px;line-height:1.25;background:none;color:inherit"
 )
 HIDE = (
-    "<style>.mantine-Modal-content:has([data-name]) div:has(> label){display:none}"
+    "<style>.mantine-Modal-content:has([data-name]) .mantine-Flex-root:is(:has(> div > p > label),"
+    ":has(> div > div > p > label)){display:none}"
     ".mantine-Modal-content:has([data-name])"
     "{flex:0 0 min(860px,calc(100vw - 24px)) !important}</style>"
 )
