@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from ui.desk.desk import Desk
 from ui.page.headline_html import headline_html
 from workbench.core.base.errors import DesignError
+from workbench.core.base.units import ML_PER_MM3
 from workbench.project.limits import read_limits
 from workbench.project.prices import Prices, parts_cost, read_prices
 from workbench.view.headline import COST_RULE, Bounds, headlines
@@ -47,17 +48,17 @@ class HeadlineRow:
 
     def take(self, figures: Mapping[str, float]) -> None:
         """Show figures of the design as it stands; what is not known anew keeps its last value."""
-        self.figures = {**figures, **self._cost()}
+        self.figures = {**figures, **self._cost(figures)}
         self.before |= self.figures
         self.draw()
 
-    def _cost(self) -> dict[str, float]:
-        """What the parts cost, where prices and the body are known."""
-        session = self.desk.session
-        solid = None if self.prices is None else session.result("build")
-        if self.prices is None or solid is None:
+    def _cost(self, figures: Mapping[str, float]) -> dict[str, float]:
+        """What the parts cost, where prices and the volume of the skin are known."""
+        millilitres = figures.get("membrane_ml")
+        if self.prices is None or millilitres is None:
             return {}
-        return {COST_RULE.name: parts_cost(session.design, solid.volume_mm3, self.prices)}
+        design = self.desk.session.design
+        return {COST_RULE.name: parts_cost(design, millilitres / ML_PER_MM3, self.prices)}
 
     def forget(self) -> None:
         """Another sensor: nothing is known of it."""

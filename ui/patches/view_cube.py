@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from ui.patches.image_click import script_in_html
+from workbench.core.base.poses import rotations
 
 HALF_PX = 20.0
 """Half an edge of the cube."""
@@ -144,12 +145,5 @@ def cube_html(wxyz: np.ndarray, keys: Mapping[str, str]) -> str:
 
 def page_axes(wxyz: np.ndarray) -> np.ndarray:
     """Turns vectors of the world into the page's: right, down, toward the reader, shape (3, 3)."""
-    w, x, y, z = wxyz / np.linalg.norm(wxyz)
-    camera = np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-        ]
-    )
+    camera = rotations(wxyz / np.linalg.norm(wxyz))
     return np.diag([1.0, 1.0, -1.0]) @ camera.T

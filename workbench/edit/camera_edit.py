@@ -16,6 +16,7 @@ import math
 import numpy as np
 
 from workbench.core.base.frames import quaternion
+from workbench.core.base.poses import rotations
 from workbench.core.base.units import radians
 from workbench.core.design.camera import Camera, LensModel
 from workbench.core.design.lighting import Vector
@@ -79,11 +80,4 @@ def _about_y(angle: float) -> np.ndarray:
 
 
 def _matrix(wxyz: tuple[float, float, float, float]) -> np.ndarray:
-    w, x, y, z = np.asarray(wxyz) / math.hypot(*wxyz)
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-        ]
-    )
+    return rotations(np.asarray(wxyz) / math.hypot(*wxyz))

@@ -43,11 +43,15 @@ def parts_cost(design: SensorDesign, elastomer_mm3: float, prices: Prices) -> fl
         elastomer_mm3: Volume of the cast elastomer.
         prices: Each in the designer's own currency.
     """
-    optics = design.optics
-    leds = optics.ring.count + len(optics.lamps)
     grams = volume_ml(elastomer_mm3) * design.material.density_g_cm3
-    parts = prices.led * leds + prices.camera * len(optics.all_cameras) + prices.gram * grams
+    cameras = len(design.optics.all_cameras)
+    parts = prices.led * led_count(design) + prices.camera * cameras + prices.gram * grams
     return prices.base + parts
+
+
+def led_count(design: SensorDesign) -> int:
+    """LEDs of the ring and lamps: what is bought and wired."""
+    return design.optics.ring.count + len(design.optics.lamps)
 
 
 def read_prices(folder: Path) -> Prices | None:

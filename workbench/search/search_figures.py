@@ -17,7 +17,7 @@ from workbench.core.result.maps import DesignerMaps
 from workbench.core.result.results import Label, MembraneMesh, Solid
 from workbench.core.result.sensing import Shot
 from workbench.pipeline.store import Store
-from workbench.project.prices import Prices, parts_cost
+from workbench.project.prices import Prices, led_count, parts_cost
 from workbench.project.state import State
 from workbench.variants.score_card import Figures, figures, finite_figures
 from workbench.view.headline import COST_RULE
@@ -96,8 +96,7 @@ def all_figures(found: Found) -> dict[str, float]:
 
 
 def _leds(found: Found) -> float:
-    optics = found.state.design.optics
-    return float(optics.ring.count + len(optics.lamps))
+    return float(led_count(found.state.design))
 
 
 def _height_mm(found: Found) -> float | None:
