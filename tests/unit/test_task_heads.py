@@ -7,7 +7,7 @@ import pytest
 
 from tests.synthetic_touches import HEIGHT, WIDTH, picture
 from workbench.core.base.monitor import silent
-from workbench.tasks.networks.head import PENALTIES, Head, fit_classes, fit_values
+from workbench.tasks.networks.head import PENALTIES, Head, fit_classes, fit_values, ridge
 from workbench.tasks.networks.learn import Part, told_by
 from workbench.tasks.networks.lite import features, installed
 from workbench.tasks.networks.motion import motions
@@ -41,6 +41,17 @@ def test_values_that_are_sums_of_features_are_found() -> None:
     assert learned.curve[learned.epoch - 1]["validation"] == min(
         each["validation"] for each in learned.curve
     )
+
+
+@pytest.mark.parametrize("count", [30, 90])
+def test_ridge_regression_is_least_squares_with_rows_of_the_penalty(count: int) -> None:
+    """Fewer and more examples than features: NumPy's lstsq of the rows and of sqrt(p) times I."""
+    rng = np.random.default_rng(7)
+    known, truth = rng.normal(size=(count, FEATURES)), rng.normal(size=(count, 2))
+    for penalty, found in zip(PENALTIES, ridge(known, truth), strict=True):
+        rows = np.concatenate([known, np.sqrt(penalty) * np.eye(FEATURES)])
+        wanted = np.concatenate([truth, np.zeros((FEATURES, 2))])
+        assert found == pytest.approx(np.linalg.lstsq(rows, wanted, rcond=None)[0], abs=1e-10)
 
 
 def test_where_nothing_can_be_told_the_largest_penalty_is_best() -> None:

@@ -6,6 +6,7 @@ Ridge regression, 1970; Bishop, Pattern recognition and machine learning, 2006, 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -84,11 +85,8 @@ def fit_values(head: Head, parts: tuple[Part, Part]) -> Learned:
     truth = np.tile(train.truth, (copies, 1)).astype(np.float64)
     held_out = _row(head, validation, 0)
     middle = truth.mean(axis=0)
-    values, vectors = np.linalg.eigh(known @ known.T)
     best, curve = (np.inf, 0, np.zeros((known.shape[1], truth.shape[1]))), []
-    for number, penalty in enumerate(PENALTIES):
-        dual = vectors @ ((vectors.T @ (truth - middle)) / (values[:, None] + penalty))
-        weights = known.T @ dual
+    for number, weights in enumerate(ridge(known, truth - middle)):
         errors = [
             float(np.abs(rows @ weights + middle - wanted).mean())
             for rows, wanted in ((known, truth), (held_out, validation.truth))
@@ -99,6 +97,23 @@ def fit_values(head: Head, parts: tuple[Part, Part]) -> Learned:
     head.one.weight.data = torch.as_tensor(best[2].T, dtype=torch.float32)
     head.one.bias.data = torch.as_tensor(middle, dtype=torch.float32)
     return Learned(epoch=best[1], curve=curve)
+
+
+def ridge(known: np.ndarray, truth: np.ndarray) -> Iterator[np.ndarray]:
+    """Weights (F, K) of ridge regression for each of `PENALTIES`.
+
+    With X = `known` (N, F) and Y = `truth` (N, K) they are X^T (X X^T + p)^-1 Y or, the same,
+    (X^T X + p)^-1 X^T Y: the smaller of the two matrices is decomposed, once for all penalties.
+    """
+    count, features = known.shape
+    if count < features:
+        values, vectors = np.linalg.eigh(known @ known.T)
+        before, given = known.T @ vectors, vectors.T @ truth
+    else:
+        values, vectors = np.linalg.eigh(known.T @ known)
+        before, given = vectors, vectors.T @ (known.T @ truth)
+    for penalty in PENALTIES:
+        yield before @ (given / (values[:, None] + penalty))
 
 
 def fit_classes(head: Head, parts: tuple[Part, Part]) -> Learned:
