@@ -94,8 +94,9 @@ def fit_values(head: Head, parts: tuple[Part, Part]) -> Learned:
         curve.append({"train": errors[0], "validation": errors[1]})
         if errors[1] < best[0]:
             best = errors[1], number + 1, weights
-    head.one.weight.data = torch.as_tensor(best[2].T, dtype=torch.float32)
-    head.one.bias.data = torch.as_tensor(middle, dtype=torch.float32)
+    device = head.middle.device
+    head.one.weight.data = torch.as_tensor(best[2].T, dtype=torch.float32, device=device)
+    head.one.bias.data = torch.as_tensor(middle, dtype=torch.float32, device=device)
     return Learned(epoch=best[1], curve=curve)
 
 
