@@ -18,7 +18,7 @@ import numpy as np
 
 from sim.reading.changed import change
 from sim.reading.fit import Prediction
-from sim.reading.layer_law import Layer
+from sim.reading.layer_law import Layer, influence_mm_per_MPa
 from sim.reading.noise import Noise
 from sim.reading.patch import Patch
 from sim.reading.photo_view import PhotoView
@@ -153,9 +153,7 @@ class _Dent:
         self._points_mm = skin.points_mm[chosen[near]]
         self._normals = skin.inward[chosen[near]]
         area_mm2 = skin.shares_mm2[chosen[near]]
-        apart_mm = np.linalg.norm(self._points_mm[:, None] - self._points_mm[None], axis=2)
-        disc_mm = float(np.sqrt(area_mm2.mean() / np.pi))
-        self._moved = layer.response(apart_mm, disc_mm) * area_mm2[None]
+        self._moved = influence_mm_per_MPa(layer, self._points_mm, area_mm2)
         """Displacement by pressure [mm/MPa], shape (n, n)."""
         self._largest_mm = float(away_mm.max())
 

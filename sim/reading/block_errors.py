@@ -10,6 +10,8 @@ turned alike explain a lamp that stands elsewhere.
 
 from __future__ import annotations
 
+import functools
+
 import numpy as np
 
 from sim.reading.deviation import DRAWS
@@ -31,6 +33,8 @@ WIDE = 8.0
 POINT = 0.3
 """Blur below which blocks are independent [blocks]."""
 SEED = 2
+ROUND = 16
+"""To whose multiples fields are enlarged [blocks]: those of the next photograph are there then."""
 
 
 class BlockErrors:
@@ -85,15 +89,22 @@ class BlockErrors:
 
     def _drawn(self, blur: float, number: int) -> np.ndarray:
         """Fields of variance 1 that are alike over a blur [blocks], shape (P, 3, DRAWS)."""
-        import cv2
+        rows, columns = (-(-size // ROUND) * ROUND for size in self._shape)
+        found = _fields(rows, columns, blur, number)[self._rows, self._columns]
+        return found.reshape(len(self._rows), 3, DRAWS)
 
-        # Drawn beyond the blocks, as a blur that ends at them would be mirrored there.
-        reach = int(np.ceil(3.0 * blur)) if blur > POINT else 0
-        rows, columns = (size + 2 * reach for size in self._shape)
-        random = np.random.default_rng((SEED, number))
-        fields = random.standard_normal((rows, columns, 3 * DRAWS), dtype=np.float32)
-        if reach:
-            kernel = cv2.getGaussianKernel(2 * reach + 1, blur).astype(np.float32)
-            fields = cv2.sepFilter2D(fields, -1, kernel, kernel) / float((kernel**2).sum())
-        fields = fields[reach : rows - reach, reach : columns - reach]
-        return fields[self._rows, self._columns].reshape(len(self._rows), 3, DRAWS)
+
+@functools.lru_cache(maxsize=16)
+def _fields(rows: int, columns: int, blur: float, number: int) -> np.ndarray:
+    """Fields of variance 1, shape (rows, columns, 3 DRAWS): the same for the next photograph."""
+    import cv2
+
+    # Drawn beyond the blocks, as a blur that ends at them would be mirrored there.
+    reach = int(np.ceil(3.0 * blur)) if blur > POINT else 0
+    random = np.random.default_rng((SEED, number))
+    shape = rows + 2 * reach, columns + 2 * reach, 3 * DRAWS
+    fields = random.standard_normal(shape, dtype=np.float32)
+    if reach:
+        kernel = cv2.getGaussianKernel(2 * reach + 1, blur).astype(np.float32)
+        fields = cv2.sepFilter2D(fields, -1, kernel, kernel) / float((kernel**2).sum())
+    return fields[reach : rows + reach, reach : columns + reach]

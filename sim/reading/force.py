@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim.reading.layer_law import Layer, pressure_MPa
+from sim.reading.layer_law import Layer, influence_mm_per_MPa, pressure_MPa
 
 MOST_PLACES = 700
 """Vertices under pressure, of which the deepest are taken: beyond them every second would do."""
@@ -44,10 +44,10 @@ def read_force(
     if not len(inward_mm):
         return ReadForce(force_N=np.zeros(3), sigma_N=0.0)
     kept = np.argsort(inward_mm)[::-1][:MOST_PLACES]
+    influence = influence_mm_per_MPa(layer, places_mm[kept], area_mm2[kept])
 
     def total(moved_mm: np.ndarray) -> np.ndarray:
-        pressure = pressure_MPa(layer, places_mm[kept], area_mm2[kept], moved_mm[kept])
-        return (pressure * area_mm2[kept]) @ inward[kept]
+        return (pressure_MPa(influence, moved_mm[kept]) * area_mm2[kept]) @ inward[kept]
 
     force_N = total(inward_mm)
     size_N = float(np.linalg.norm(force_N))

@@ -31,17 +31,20 @@ def seen_by_pixels(reader: Reader, touch: Touch, values: np.ndarray) -> np.ndarr
 
 def pixel_maps(reader: Reader, touch: Touch, normals: np.ndarray) -> PixelMaps:
     """A touch as the camera sees it; unit normals of the moved vertices, (V, 3), are its own."""
-
-    def seen(values: np.ndarray) -> np.ndarray:
-        return seen_by_pixels(reader, touch, values)
-
-    normal = seen(normals)
+    rest, sight, contact = reader.rest, touch.sight, touched(touch)
+    values = np.column_stack([touch.inward_mm, touch.sigma_mm, contact, normals])
+    # Most pixels see what they saw at rest.
+    moved = ((touch.inward_mm != 0.0) | (touch.sigma_mm != 0.0) | contact)[rest.skin.faces]
+    sees = rest.sees & (sight.face >= 0)
+    other = sees & (moved.any(axis=1)[sight.face] | (sight.face != rest.sight.face))
+    found = np.full((len(sees), values.shape[1]), np.nan, dtype=np.float32)
+    found[sees, :3], found[sees, 3:] = 0.0, reader.rest_normals[sees]
+    at = np.flatnonzero(other)
+    found[at] = sight.blended(values, rest.skin.faces, at)
+    found[at, 3:] /= np.linalg.norm(found[at, 3:], axis=1, keepdims=True)
+    maps = found.reshape(*rest.shape, -1)
     with np.errstate(invalid="ignore"):
-        normal /= np.linalg.norm(normal, axis=2, keepdims=True)
-        contact = seen(touched(touch).astype(np.float64))[:, :, 0] > 0.5
+        touches = maps[:, :, 2] > 0.5
     return PixelMaps(
-        depth_mm=seen(touch.inward_mm)[:, :, 0],
-        normal=normal,
-        contact=contact,
-        sigma_mm=seen(touch.sigma_mm)[:, :, 0],
+        depth_mm=maps[:, :, 0], normal=maps[:, :, 3:], contact=touches, sigma_mm=maps[:, :, 1]
     )

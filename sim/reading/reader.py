@@ -8,6 +8,7 @@ First the light of the tilts alone is asked from several guesses, then the rende
 from __future__ import annotations
 
 import dataclasses
+import functools
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -66,10 +67,23 @@ class Reader:
 
     def __init__(self, rest: Untouched) -> None:
         from scipy.sparse import csc_matrix, diags
+        from threadpoolctl import ThreadpoolController
 
         self.rest = rest
+        # Factors of a millisecond: threads that wait for each other on a busy machine took 80.
+        self._libraries = ThreadpoolController()
         self._bent = csc_matrix(diags(np.sqrt(rest.skin.shares_mm2)) @ bending(rest.skin))
         self._neighbours = neighbours(rest.skin)
+
+    @functools.cached_property
+    def rest_normals(self) -> np.ndarray:
+        """Inward unit normals that the pixels see at rest, shape (N, 3); zero where no skin."""
+        rest = self.rest
+        sees = np.flatnonzero(rest.sees)
+        found = np.zeros((len(rest.sees), 3), np.float32)
+        seen = rest.sight.blended(rest.skin.inward, rest.skin.faces, sees)
+        found[sees] = seen / np.linalg.norm(seen, axis=1, keepdims=True)
+        return found
 
     def read(self, photo: np.ndarray, start: Touch | None = None) -> Touch:
         """What a photograph (H, W, 3) [grey] of the touched sensor says.
@@ -82,7 +96,8 @@ class Reader:
         seen = change(self.rest.idle, photo, self.rest.sees.reshape(self.rest.shape))
         free, calm = self._moving(seen, start)
         if np.count_nonzero(seen.certain) >= FEWEST_PIXELS and free.any():
-            found = self._touch(seen, (free, calm), start)
+            with self._libraries.limit(limits=1, user_api="blas"):
+                found = self._touch(seen, (free, calm), start)
         else:
             found = self._untouched(seen)
         return dataclasses.replace(found, seconds=time.perf_counter() - begun)

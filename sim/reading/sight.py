@@ -26,8 +26,11 @@ class Sight:
 
         Without meaning where they see no skin.
         """
-        corners = values[faces[np.maximum(self.face[pixels], 0)]]
-        return np.einsum("pk,pkc->pc", self.weights[pixels], corners)
+        corners, weights = faces[np.maximum(self.face[pixels], 0)], self.weights[pixels]
+        found = weights[:, :1] * values[corners[:, 0]]
+        for corner in (1, 2):
+            found += weights[:, corner, None] * values[corners[:, corner]]
+        return found
 
 
 def at_rest(studio: Studio) -> Sight:

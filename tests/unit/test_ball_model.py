@@ -9,7 +9,7 @@ from sim.optics.proof.specimen import finger
 from sim.optics.raster.display import shown
 from sim.optics.studio.render import Studio
 from sim.reading.ball_model import depth_in_ball_mm, fit_ball, touching_mm
-from sim.reading.layer_law import Layer
+from sim.reading.layer_law import Layer, influence_mm_per_MPa
 from sim.reading.reader import Reader
 from sim.reading.untouched import open_untouched
 from tests.synthetic_light import lit
@@ -39,8 +39,7 @@ def test_contact_of_a_ball_is_that_of_hertz() -> None:
     points_mm = np.stack([x, y, 0.0 * x], axis=1)
     thick = Layer(thickness_mm=60.0, young_MPa=0.1, poisson=0.45)
     area_mm2 = np.full(len(x), 0.01)
-    apart_mm = np.linalg.norm(points_mm[:, None] - points_mm[None], axis=2)
-    moved = thick.response(apart_mm, float(np.sqrt(0.01 / np.pi))) * area_mm2[None]
+    moved = influence_mm_per_MPa(thick, points_mm, area_mm2)
     radius_mm, depth_mm = 5.0, 0.2
     centre = np.array([0.0, 0.0, radius_mm - depth_mm])
     wanted = depth_in_ball_mm(points_mm, np.tile([0.0, 0.0, -1.0], (len(x), 1)), centre, radius_mm)
@@ -79,9 +78,7 @@ def test_a_ball_is_found_in_its_image() -> None:
     from geometry.surface.surface import vertex_areas_mm2
 
     area_mm2 = vertex_areas_mm2(skin.points_mm, skin.faces)[near]
-    apart_mm = np.linalg.norm(points_mm[:, None] - points_mm[None], axis=2)
-    disc_mm = float(np.sqrt(area_mm2.mean() / np.pi))
-    response = LAYER.response(apart_mm, disc_mm) * area_mm2[None]
+    response = influence_mm_per_MPa(LAYER, points_mm, area_mm2)
     moved = np.zeros_like(skin.points_mm)
     depths = touching_mm(response, depth_in_ball_mm(points_mm, inward, centre, radius_mm))
     moved[near] = depths[:, None] * inward

@@ -8,7 +8,7 @@ import pytest
 from sim.contact.studies.closed_forms import hertz_ball_N, press_ball
 from sim.reading.ball import ball_radius_mm
 from sim.reading.force import read_force
-from sim.reading.layer_law import Layer, pressure_MPa
+from sim.reading.layer_law import Layer, influence_mm_per_MPa, pressure_MPa
 from workbench.core.design.design import Elastomer
 
 YOUNG_MPA, POISSON = 0.145, 0.45
@@ -41,7 +41,8 @@ def test_a_thick_layer_needs_the_force_of_hertz() -> None:
     places = disc(1.2, spacing_mm)
     away_mm = np.linalg.norm(places, axis=1)
     area_mm2 = np.full(len(places), spacing_mm**2)
-    found = pressure_MPa(layer, places, area_mm2, hertz(depth_mm, away_mm))
+    influence = influence_mm_per_MPa(layer, places, area_mm2)
+    found = pressure_MPa(influence, hertz(depth_mm, away_mm))
     modulus = YOUNG_MPA / (1.0 - POISSON**2)
     material = Elastomer(young_MPa=YOUNG_MPA, poisson=POISSON)
     force_N = hertz_ball_N(material, radius_mm=RADIUS_MM, depth_mm=depth_mm)

@@ -16,6 +16,7 @@ from workbench.proof.benchmarks import (
     geometry,
     optics,
     pipeline,
+    reading,
     sensor,
     stages,
 )
@@ -39,9 +40,11 @@ def everything() -> list[Row]:
 ROOMS = {
     **PARTS,
     "efficiency": efficiency.rows,
+    "reading": reading.rows,
     "sensor": sensor.rows,
     "stages": stages.rows,
     "all": everything,
 }
-"""`efficiency` measures what others do again, in the paper's sizes, `sensor` needs a design that
-was condensed, and `stages` a cluster and many minutes, so `all` leaves them out."""
+"""`efficiency` measures what others do again, in the paper's sizes, `reading` bakes a design's
+light first, `sensor` needs a design that was condensed, and `stages` a cluster and many minutes, so
+`all` leaves them out."""

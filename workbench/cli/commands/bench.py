@@ -9,7 +9,9 @@ from workbench.cli.command import Command
 from workbench.cli.measured_rows import print_rows
 from workbench.project.project import Project
 
-ROOMS = "geometry, contact, optics, forces, pipeline, browser, efficiency, sensor, stages, all"
+ROOMS = (
+    "geometry, contact, optics, forces, pipeline, browser, efficiency, reading, sensor, stages, all"
+)
 """Named here too, because finding them imports the whole program; a test compares."""
 
 
