@@ -47,11 +47,12 @@ RANKS = """
     workbench.search
     workbench.proof  workbench.proof.validation  workbench.proof.validation.geometry
     workbench.proof.validation.optics  workbench.proof.validation.contact
-    workbench.proof.validation.fem  workbench.proof.benchmarks
+    workbench.proof.validation.fem  workbench.proof.validation.reading
+    workbench.proof.benchmarks
     workbench.learning.evaluation
     workbench.tasks.networks  workbench.tasks  workbench.tasks.kinds
     workbench.proof.validation.learned
-    workbench.proof.validation.published  workbench.proof.validation.reading
+    workbench.proof.validation.published
     workbench.proof.validation.tasks  workbench.proof.validation.sensor
 
     workbench.door  workbench

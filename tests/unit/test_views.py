@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ui.scene.views import RAISED, Views
+from ui.scene.views import RAISED, Mark, Views
 
 LOW, HIGH = np.array([-10.0, -10.0, 0.0]), np.array([10.0, 10.0, 40.0])
 MIDDLE = (LOW + HIGH) / 2
@@ -45,7 +45,7 @@ def test_parts_put_away_give_back_the_view_before_a_flight(page: Page) -> None:
     """A flight to a place of a part does not outlive the parts: the eye is at (200, 0, 0) again."""
     views = Views(page)
     views.step_back(LOW, HIGH)
-    views.fly_to(PLACE, np.array([0.0, 1.0, 0.0]), 20.0, "here")
+    views.fly_to(PLACE, np.array([0.0, 1.0, 0.0]), 20.0, Mark("here"))
     assert views.close
     views.step_forward(LOW, HIGH)
     assert page.clients[0].camera.position == (200.0, 0.0, 0.0)
@@ -57,7 +57,7 @@ def test_a_tab_opened_among_parts_sees_the_sensor_when_they_go(page: Page) -> No
     views = Views(page)
     views.step_back(LOW, HIGH)
     page.clients[1] = client()
-    views.fly_to(PLACE, np.array([0.0, 1.0, 0.0]), 20.0, "here")
+    views.fly_to(PLACE, np.array([0.0, 1.0, 0.0]), 20.0, Mark("here"))
     views.step_forward(LOW, HIGH)
     assert page.clients[1].camera.look_at == pytest.approx(MIDDLE)
     assert page.clients[0].camera.look_at == (0.0, 0.0, 0.0)

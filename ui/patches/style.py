@@ -31,6 +31,9 @@ SHEET = """<style>
 :root[data-mantine-color-scheme="dark"] [role="tab"][aria-selected="true"] {
   color: #8ab4ff !important;
 }
+/* What a button says takes a second line where it is too long for one; viser cuts it off. */
+.mantine-Button-root { height: auto; min-height: var(--button-height); }
+.mantine-Button-label { white-space: normal; line-height: 1.3; padding-block: 2px; }
 /* Text may use the whole width: else the strip of stages takes two rows. */
 [style*="max-width: 95%"] { max-width: 100% !important; }
 /* A narrow window: the sheet at the bottom takes all of its width. */

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import enum
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -28,6 +29,16 @@ POINTER_SHARE = 0.12
 POINTER_UP = np.array([0.0, 0.0, 0.7])
 """Added to the direction of the pointer, which would otherwise be seen end-on."""
 MARK_COLOUR = (255, 45, 85)
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """What stands at a place that is looked at."""
+
+    text: str
+    colour: tuple[int, int, int] = MARK_COLOUR
+    ball: bool = True
+    """Whether a ball stands there; it would hide what is as small."""
 
 
 class Side(enum.StrEnum):
@@ -163,9 +174,7 @@ class Views:
         place_mm: Sequence[float],
         toward: np.ndarray,
         distance_mm: float,
-        text: str,
-        *,
-        ball: bool = True,
+        mark: Mark,
     ) -> None:
         """Look at a place from a side and mark it.
 
@@ -173,21 +182,20 @@ class Views:
             place_mm: The place [mm].
             toward: Unit direction from the place to the eye.
             distance_mm: From the eye to the place.
-            text: Label of the mark.
-            ball: Whether a ball stands at the place; it would hide what is as small.
+            mark: What stands there.
         """
         place = np.asarray(place_mm, dtype=float)
         self.close = True
         pointer = POINTER_SHARE * distance_mm * (np.asarray(toward) + POINTER_UP)
-        self._put_mark(place, place + pointer, text)
-        if ball:
-            self._put_ball(place, MARK_SHARE * distance_mm)
+        self._put_mark(place, place + pointer, mark)
+        if mark.ball:
+            self._put_ball(place, MARK_SHARE * distance_mm, mark.colour)
         for client in self.server.get_clients().values():
             with client.atomic():
                 client.camera.position = place + distance_mm * toward
                 client.camera.look_at = place
 
-    def _put_mark(self, place: np.ndarray, top: np.ndarray, text: str) -> None:
+    def _put_mark(self, place: np.ndarray, top: np.ndarray, mark: Mark) -> None:
         """A pointer that stands on the place, and the text at its top."""
         self.unmark()
         api = self.server.scene
@@ -195,16 +203,16 @@ class Views:
             api.add_line_segments(
                 "/mark/pointer",
                 np.array([[place, top]], dtype=np.float32),
-                colors=MARK_COLOUR,
+                colors=mark.colour,
                 line_width=4.0,
             ),
-            api.add_label("/mark/text", text, position=top, anchor="bottom-center"),
+            api.add_label("/mark/text", mark.text, position=top, anchor="bottom-center"),
         ]
 
-    def _put_ball(self, place: np.ndarray, radius_mm: float) -> None:
+    def _put_ball(self, place: np.ndarray, radius_mm: float, colour: tuple[int, int, int]) -> None:
         api = self.server.scene
         self._mark.append(
-            api.add_icosphere("/mark/ball", radius=radius_mm, color=MARK_COLOUR, position=place)
+            api.add_icosphere("/mark/ball", radius=radius_mm, color=colour, position=place)
         )
 
     def unmark(self) -> None:

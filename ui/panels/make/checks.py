@@ -11,6 +11,7 @@ import numpy as np
 from ui.desk.desk import Desk
 from ui.page.plain import plain
 from ui.panels.make.parts import PartsTree
+from ui.scene.views import Mark
 from workbench.core.result.fabrication import FabricationCheck, Severity
 from workbench.view.part_words import part_words
 from workbench.view.scene_shapes import clear_view
@@ -76,9 +77,8 @@ class ChecksList:
         place = scene.parts.moved(check.part, check.place_mm)
         distance_mm = min(max(NEAR_SHARE * size_mm, NEAR_MM[0]), NEAR_MM[1])
         toward = clear_view(points, surface.faces, np.asarray(check.place_mm), distance_mm)
-        scene.views.fly_to(
-            place, toward, distance_mm, f"{check.name.replace('_', ' ')}: {amount(check)}"
-        )
+        text = f"{check.name.replace('_', ' ')}: {amount(check)}"
+        scene.views.fly_to(place, toward, distance_mm, Mark(text, LOOKS[check.severity][1]))
         x, y, z = check.place_mm
         self.detail.content = f"{plain(said(check))} At {x:.1f}, {y:.1f}, {z:.1f} mm."
         self.desk.log(f"{check.part}: looking at {check.name}, {x:.1f}, {y:.1f}, {z:.1f} mm")

@@ -12,6 +12,7 @@ from ui.desk.desk import Desk
 from ui.page.colours import BLUE, GREEN
 from ui.page.plain import plain
 from ui.panels.page import Page
+from ui.scene.views import Mark
 from workbench.core.base.units import volume_ml
 from workbench.core.result.quality import MeshQuality, QualityReport
 from workbench.system.names import NONE
@@ -144,7 +145,7 @@ class MeshPanel:
         scene.show_frame(0)
         scene.marks.show_cell(corners)
         text = f"worst cell: {quality.measure[0]:.3g}"
-        scene.views.fly_to(middle, toward, distance_mm, text, ball=False)
+        scene.views.fly_to(middle, toward, distance_mm, Mark(text, ball=False))
         x, y, z = middle
         self.desk.log(
             f"looking at the worst cell of {self.choice.value}: {x:.1f}, {y:.1f}, {z:.1f} mm"
