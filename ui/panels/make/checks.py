@@ -13,7 +13,7 @@ from ui.page.plain import plain
 from ui.panels.make.parts import PartsTree
 from ui.scene.views import Mark
 from workbench.core.result.fabrication import FabricationCheck, Severity
-from workbench.view.part_words import part_words
+from workbench.view.part_words import part_label, part_words
 from workbench.view.scene_shapes import clear_view
 
 LOOKS = {
@@ -81,7 +81,8 @@ class ChecksList:
         scene.views.fly_to(place, toward, distance_mm, Mark(text, LOOKS[check.severity][1]))
         x, y, z = check.place_mm
         self.detail.content = f"{plain(said(check))} At {x:.1f}, {y:.1f}, {z:.1f} mm."
-        self.desk.log(f"{check.part}: looking at {check.name}, {x:.1f}, {y:.1f}, {z:.1f} mm")
+        words = f"looking at {check.name.replace('_', ' ')}, {x:.1f}, {y:.1f}, {z:.1f} mm"
+        self.desk.log(f"{part_label(check.part)}: {words}")
 
 
 def verdict(checks: tuple[FabricationCheck, ...]) -> str:
@@ -105,8 +106,10 @@ def amount(check: FabricationCheck) -> str:
 
 
 def said(check: FabricationCheck) -> str:
-    """The message of a check with shares in percent and rounding noise as nought."""
+    """The message of a check in a designer's words: parts, shares in percent, nought for noise."""
     text = NOISE.sub("0", check.message)
+    if text.startswith(f"{check.part}:"):
+        text = part_label(check.part) + text.removeprefix(check.part)
     if check.unit.startswith(SHARE):
         number = rf"([\d.]+(?:e[-+]\d+)?) {re.escape(check.unit)}"
         text = re.sub(number, lambda m: f"{100 * float(m[1]):.3g} % {check.unit}", text)

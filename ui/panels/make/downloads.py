@@ -14,6 +14,7 @@ from workbench.core.result.fabrication import FabricationPart
 from workbench.core.result.results import Bundle
 from workbench.project.design_bundle import zipped
 from workbench.system.names import NONE
+from workbench.view.part_words import part_label
 
 FORMATS = {
     "stl": "Triangles in mm, for slicers",
@@ -28,6 +29,8 @@ class Downloads:
 
     def __init__(self, desk: Desk) -> None:
         self.desk = desk
+        self._names: dict[str, str] = {}
+        """Of files, by what the parts are called on the page."""
         self._waiting: tuple[Any, str] | None = None
         """Tab that waits for all files, and the key of what it asked for: of another design it gets
         none."""
@@ -46,7 +49,8 @@ class Downloads:
     def offer(self, parts: tuple[FabricationPart, ...]) -> None:
         """Offer the files of these parts, and send them all to who waits for them."""
         self.folder.visible = bool(parts)
-        self.part.options = tuple(part.name for part in parts) or (NONE,)
+        self._names = {part_label(part.name): part.name for part in parts}
+        self.part.options = tuple(self._names) or (NONE,)
         waiting, self._waiting = self._waiting, None
         if waiting is not None and waiting[1] == self._key():
             if parts:
@@ -67,7 +71,7 @@ class Downloads:
         return bundle
 
     def _one(self, ending: str, event: Any) -> None:
-        wanted = f"/{self.part.value}.{ending}"
+        wanted = f"/{self._names.get(self.part.value, self.part.value)}.{ending}"
         files = self._bundle().files
         found = next((name for name in files if name.endswith(wanted)), None)
         if found is None:
