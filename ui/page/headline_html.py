@@ -20,6 +20,8 @@ MARKS = {
     Standing.OPEN: ("○", "open"),
 }
 """Shape and class of each standing."""
+BUTTONS = {"Maps": "Measure maps"}
+"""What is pressed in a tab that a figure leads to: there the skin is painted by what it sees."""
 
 
 def headline_html(shown: Sequence[Shown]) -> str:
@@ -33,12 +35,13 @@ def _chip(one: Shown) -> str:
     kind = f"{kind} old" if one.old else kind
     word = html.escape(one.headline.word)
     text = html.escape(f"({one.text})" if one.old else one.text)
-    standing = one.standing.value
+    standing, tab = one.standing.value, one.headline.tab
+    lead = {"goto": tab} | ({"press": BUTTONS[tab]} if tab in BUTTONS else {})
     return (
         f'<details name="headline" class="{kind}">'
         f'<summary title="{word}: {text}, {standing}"><span>{word}</span> '
         f'<b>{text}</b> <i aria-hidden="true">{mark}</i>'
         f'<em class="unseen">, {standing}</em></summary>'
         f"<div>{html.escape(one.reason)} "
-        f"{leading(f'Show {one.headline.tab}', {'goto': one.headline.tab})}</div></details>"
+        f"{leading(f'Show {tab}', lead)}</div></details>"
     )

@@ -5,7 +5,7 @@ of its own cannot stand in a tab twice. One handler of the page serves all that 
 
 - `data-goto`, a tab's label: Enter is pressed on it;
 - `data-fold`, with it: the folder of that label is opened and glows;
-- `data-press`: the button of that text, in a tab that is open, is pressed;
+- `data-press`: the button of that text, in a tab that is open or goes open, is pressed;
 - `data-key`: the command of that letter runs, as if it were typed.
 """
 
@@ -25,13 +25,16 @@ window.leadThere = event => {
     [...document.querySelectorAll(kind)].find(one => one.textContent.trim() === text);
   if (key) document.documentElement.dispatchEvent(new KeyboardEvent('keydown',
     {key, code: 'Key' + key.toUpperCase(), bubbles: true}));
-  const button = press && named('button', press);
-  if (button) button.click();
+  const push = () => {
+    const button = press && named('button', press);
+    if (button) button.click();
+  };
   const tab = goto && named('[role=tab]', goto);
   if (tab) tab.dispatchEvent(new KeyboardEvent('keydown', {key: 'Enter', bubbles: true}));
   const open = from.closest('details');
   if (open) open.open = false;
   /* A tab's widgets are laid out after it is chosen. */
+  if (tab) setTimeout(push, 500); else push();
   if (fold) setTimeout(() => {
     const title = named('.mantine-Paper-root > .mantine-Paper-root', fold);
     if (!title) return;
