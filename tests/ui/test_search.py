@@ -28,12 +28,15 @@ CYLINDER = "Shape: Straight length [mm]"
 
 
 def ask(page: Any) -> None:
-    """The straight part may vary; little silicone, and as high as can be."""
+    """The straight part and the mount may vary; little silicone, and as high as can be."""
     choose(page, "Varied parameter", CYLINDER)
     for label, value in (("Lowest", 20), ("Highest", 32)):
         boxes(page, label).first.fill(str(value))
         boxes(page, label).first.press("Tab")
     press(page, "Let it vary")
+    choose(page, "Varied parameter", "LED ring: mount")
+    press(page, "Let it vary")
+    wait_until(page.get_by_text("LED ring: mount, cavity, shell").count, 20, "choices are told")
     for figure, wanted in (
         ("Mass of the membrane [g]", "as small as can be"),
         ("Height of the body [mm]", "as large as can be"),

@@ -11,11 +11,12 @@ from workbench.core.base.errors import DesignError
 from workbench.planning.plan import plan
 from workbench.project.prices import Prices, write_prices
 from workbench.project.project import Project
-from workbench.search.applying import state_of
+from workbench.search.applying import base_parameters, state_of
+from workbench.search.choice_fields import CHOICES
 from workbench.search.problem import Goal, Limit, Problem, Want
 from workbench.search.problem_file import read_problem
 from workbench.search.search_figures import KNOWN, stages_of
-from workbench.search.varied import known_path
+from workbench.search.varied import known_path, read_vary
 from workbench.search.wishes import WISHES
 
 TILT = "design.optics.ring.tilt_deg"
@@ -50,6 +51,27 @@ def test_a_whole_file_is_read(tmp_path: Path) -> None:
     assert problem.limits == (Limit(figure="tip_seen_percent", at_least=80.0),)
     assert (problem.tolerances.twins, problem.tolerances.led_mm) == (3, 0.3)
     assert problem.even_light and problem.seed == 7
+
+
+def test_choices_may_be_words_or_numbers(tmp_path: Path) -> None:
+    """The base's own, beside which they are told, is written as they are."""
+    choices = 'choices = ["9", "12"]\n'
+    text = f'{WHOLE}[[vary]]\nfield = "optics.ring.count"\n{choices}'
+    text += '[[vary]]\nfield = "shape.outer_radius_mm"\nchoices = [12, 15]\n'
+    problem = read(text, tmp_path)
+    own = base_parameters(problem)
+    assert (own["design.optics.ring.count"], own["design.shape.outer_radius_mm"]) == ("9", "15")
+    assert problem.vary[1].span == "9, 12"
+    few = state_of(problem, {"design.shape.outer_radius_mm": "12"}).design
+    assert few.shape["outer_radius_mm"] == 12
+
+
+def test_fields_of_words_take_all_that_the_page_offers(tmp_path: Path) -> None:
+    """Of the design that stands; a choice that is none is refused."""
+    base = read(WHOLE, tmp_path).base
+    for choice in CHOICES.values():
+        row = {"field": choice.path, "choices": list(choice.values)}
+        assert read_vary(row, base).choices == choice.values
 
 
 def test_the_projects_prices_count_where_the_cost_is_asked_for(tmp_path: Path) -> None:

@@ -12,7 +12,13 @@ from workbench.edit.typed_fields import with_typed
 from workbench.project.design_toml import design_table
 from workbench.project.state import State
 from workbench.search.problem import Link, Problem, Value
-from workbench.variants.sweep_fields import aimed, field_value, find_field, with_value
+from workbench.variants.sweep_fields import (
+    aimed,
+    field_value,
+    find_field,
+    sweep_fields,
+    with_value,
+)
 
 DESIGN, CASE = "design.", "case."
 
@@ -34,13 +40,15 @@ def state_of(problem: Problem, values: Mapping[str, Value], *, draft: bool = Fal
 
 def base_parameters(problem: Problem) -> dict[str, Value]:
     """What the base has in the varied fields; choices as they are typed."""
+    numbers = {field.path for field in sweep_fields(problem.base)}
     found: dict[str, Value] = {}
     for vary in problem.vary:
-        if vary.choices:
+        if vary.path not in numbers:
             table = {"design": design_table(problem.base.design)}
             found[vary.path] = text_of(read_field(table, vary.path))
         else:
-            found[vary.path] = field_value(problem.base, vary.path)
+            value = field_value(problem.base, vary.path)
+            found[vary.path] = f"{value:g}" if vary.choices else value
     return found
 
 

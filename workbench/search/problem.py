@@ -37,6 +37,11 @@ class Vary:
     log: bool = False
     """Whether equal factors, not equal steps, are equally likely."""
 
+    @property
+    def span(self) -> str:
+        """What it may be, in words."""
+        return ", ".join(self.choices) or f"{self.low:g} to {self.high:g}"
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Link:

@@ -92,8 +92,7 @@ def _asked(found: Found) -> list[tuple[str, str]]:
     rows = [("goal", goal_words(goal)) for goal in problem.goals]
     rows += [("limit", f"{title_of(limit.figure)} {limit.words}") for limit in problem.limits]
     for vary in problem.vary:
-        span = ", ".join(vary.choices) or f"{vary.low:g} to {vary.high:g}"
-        rows.append(("varied", f"{vary.title}: {span}"))
+        rows.append(("varied", f"{vary.title}: {vary.span}"))
     for link in problem.links:
         rows.append(("linked", f"{link.path} = {link.factor:g} x {link.follows} {link.offset:+g}"))
     if problem.even_light:

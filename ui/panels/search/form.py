@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import viser
@@ -11,9 +12,11 @@ from ui.desk.desk import Desk
 from ui.page.offer import offer
 from ui.page.plain import plain
 from workbench.core.base.errors import DesignError
+from workbench.search.choice_fields import CHOICES
 from workbench.search.kept_searches import Asked
 from workbench.search.problem import Goal, Limit, Vary, Want
 from workbench.search.search_figures import KNOWN
+from workbench.search.varied import read_vary
 from workbench.search.wishes import WISHES
 from workbench.system.names import NONE
 from workbench.variants.sweep_fields import SweepField, field_value, sweep_fields
@@ -59,9 +62,10 @@ class FormFolder:
         self.field.on_update(self.desk.guarded(self._suggest))
         self.low = gui.add_number("Lowest", 0.0, step=0.1, hint="In the unit of the parameter")
         self.high = gui.add_number("Highest", 1.0, step=0.1, hint="In the unit of the parameter")
-        add = gui.add_button(
-            "Let it vary", hint="Between lowest and highest; again changes the range"
-        )
+        hint = "Apart by commas, for example 6, 8, 9; empty: all between lowest and highest"
+        self.only = gui.add_text("Only these values", "", hint=hint)
+        hint = "Between lowest and highest, or among the values; again changes what it may be"
+        add = gui.add_button("Let it vary", hint=hint)
         add.on_click(self.desk.guarded(self._add_vary))
 
     def _goal_form(self, gui: Any) -> None:
@@ -86,7 +90,7 @@ class FormFolder:
         if family != self.family:
             self.family = family
             self.fields = {field.title: field for field in sweep_fields(self.desk.session.state)}
-            offer(self.field, (NONE, *self.fields))
+            offer(self.field, (NONE, *self.fields, *CHOICES))
 
     def asked(self) -> Asked:
         """What has been put together."""
@@ -100,7 +104,10 @@ class FormFolder:
 
     def _suggest(self, event: Any) -> None:
         """A range about the value that stands, within that of the parameter."""
-        field = self.fields.get(self.field.value)
+        field, choice = self.fields.get(self.field.value), CHOICES.get(self.field.value)
+        self.only.value = "" if choice is None else ", ".join(choice.values)
+        for end in (self.low, self.high):
+            end.disabled = choice is not None
         if field is None:
             return
         now = field_value(self.desk.session.state, field.path)
@@ -110,13 +117,17 @@ class FormFolder:
         self.high.value = round(min(field.high, now + width), digits)
 
     def _add_vary(self, event: Any) -> None:
-        field = self.fields.get(self.field.value)
-        if field is None:
+        title = self.field.value
+        field, choice = self.fields.get(title), CHOICES.get(title)
+        found = field or choice
+        if found is None:
             raise DesignError("no parameter is chosen", hint="choose one, then let it vary")
-        low, high = float(self.low.value), float(self.high.value)
-        self.vary[field.path] = Vary(
-            path=field.path, title=field.title, low=low, high=high, whole=field.whole
-        )
+        asked: dict[str, Any] = {"low": float(self.low.value), "high": float(self.high.value)}
+        values = [text.strip() for text in self.only.value.split(",") if text.strip()]
+        if values or choice is not None:
+            asked = {"choices": values}
+        vary = read_vary({"field": found.path, **asked}, self.desk.session.state)
+        self.vary[found.path] = replace(vary, title=title)
         self._tell()
 
     def _add_goal(self, event: Any) -> None:
@@ -155,7 +166,7 @@ class FormFolder:
             goals.setdefault(each.figure, each)
         for each in () if wish is None else wish.limits:
             limits.setdefault(each.figure, each)
-        lines = [f"varies: {plain(v.title)}, {v.low:g} to {v.high:g}" for v in self.vary.values()]
+        lines = [f"varies: {plain(v.title)}, {plain(v.span)}" for v in self.vary.values()]
         lines += [f"goal: {plain(_titled(g.figure))}, {_wanted(g)}" for g in goals.values()]
         lines += [f"limit: {plain(_titled(each.figure))} {each.words}" for each in limits.values()]
         self.asked_words.content = _listed(lines)
