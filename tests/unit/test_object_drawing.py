@@ -40,7 +40,7 @@ def object_view() -> ObjectView:
     """The view of a server that only remembers, above a flat skin at z = 10."""
 
     def add(name: str, vertices: np.ndarray, faces: np.ndarray, **words: Any) -> SimpleNamespace:
-        return SimpleNamespace(vertices=vertices, faces=faces, **words)
+        return SimpleNamespace(**{"vertices": vertices, "faces": faces, "opacity": None, **words})
 
     server = SimpleNamespace(
         scene=SimpleNamespace(add_mesh_simple=add), atomic=contextlib.nullcontext

@@ -5,12 +5,23 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from geometry.surface.surface_place import SkinPlace
 from ui.panels.make.checks import amount, line, said
 from ui.panels.mesh.page import steps
 from workbench.core.result.fabrication import FabricationCheck, Severity
 from workbench.core.result.results import Label, LabelledSurface, Skin, VolumeMesh
 from workbench.edit.forms import choices, purpose
-from workbench.view.scene_shapes import cell_edges, clear_view, first_hit, mesh_edges, skin_parts
+from workbench.view.scene_shapes import (
+    SLANT_COSINES,
+    cell_edges,
+    clear_view,
+    contact_side,
+    first_hit,
+    mesh_edges,
+    skin_parts,
+)
+
+USUAL = np.array([0.74, 0.55, 0.39])
 
 
 def cube(edge_mm: float = 2.0) -> tuple[np.ndarray, np.ndarray]:
@@ -51,6 +62,35 @@ def test_a_place_inside_is_seen_through_the_thinner_wall() -> None:
     """0.1 mm under the side at +Y of a cube of 20 mm: the eye is at +Y, not in front."""
     toward = clear_view(*cube(20.0), np.array([0.0, 9.9, 0.0]), 100.0)
     assert toward[1] > 0.5
+
+
+@pytest.mark.parametrize(
+    "normal", [(1.0, 0, 0), (-1.0, 0, 0), (0, -1.0, 0), (0, 0, 1.0), (0, 0.6, 0.8)]
+)
+def test_a_contact_is_seen_beside_its_object(normal: tuple[float, float, float]) -> None:
+    """On a ball of 10 mm: the eye is above and aslant, whichever side is pressed."""
+    import trimesh
+
+    ball = trimesh.creation.icosphere(subdivisions=3, radius=10.0)
+    place = SkinPlace(10.0 * np.array(normal), 0.0, 0, np.array(normal))
+    way = contact_side(np.asarray(ball.vertices), np.asarray(ball.faces), place, USUAL)
+    low, high = SLANT_COSINES
+    # Directions are 15 degrees apart.
+    assert low - 0.13 < way @ place.normal < high + 0.13
+    assert way[2] > 0.0
+    assert np.linalg.norm(way) == pytest.approx(1.0, abs=0.01)
+
+
+def test_a_contact_behind_a_wall_is_seen_past_it() -> None:
+    """A wall stands between the usual side and a contact on a floor: the eye goes round it."""
+    import trimesh
+
+    wall = trimesh.creation.box((1.0, 30.0, 40.0))
+    wall.apply_translation((6.0, 10.0, 0.0))
+    place = SkinPlace(np.zeros(3), 0.0, 0, np.array([0.0, 0.0, 1.0]))
+    way = contact_side(np.asarray(wall.vertices), np.asarray(wall.faces), place, USUAL)
+    met = first_hit(np.asarray(wall.vertices), np.asarray(wall.faces), np.zeros(3), way)
+    assert met is None
 
 
 def test_regions_are_drawn_once_each() -> None:

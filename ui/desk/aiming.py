@@ -53,11 +53,12 @@ class Aiming:
         desk, origin = self.desk, self.desk.session.origin()
         desk.scene.show_solid(solid)
         if origin != self._framed:
-            # Another kind of body; within a family the designer's own view is kept.
-            self._framed = origin
-            desk.scene.frame_body()
             self._fit_ring(solid)
         self.keep_aim()
+        if origin != self._framed:
+            # Another kind of body; within a family the designer's own view is kept.
+            self._framed = origin
+            desk.scene.frame_body(desk.session.case.press.target_mm)
         desk.scene.object.place(desk.session.case.press)
 
     def _fit_ring(self, solid: Solid) -> None:

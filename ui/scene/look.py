@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import enum
 
+from ui.scene.object_view import PRESSING
 from ui.scene.scene import Scene
 from ui.scene.sensor import PINS, SKIN, SUPPORT
 
@@ -26,7 +27,7 @@ OPACITY: dict[Seen, float] = {
     Seen.FOOT: 1.0,
     Seen.PINS: float(PINS.get("opacity", 1.0)),
     Seen.LEDS: 1.0,
-    Seen.OBJECT: 1.0,
+    Seen.OBJECT: PRESSING,
 }
 """Opacity at first; viser draws the outlines of cameras, which have none."""
 

@@ -21,8 +21,10 @@ TOUCHING_COLOUR = (255, 222, 70)
 """Of the side that touches."""
 BEFORE_MM = 0.03
 """How far that side is drawn before the object's own surface: in it, the two would flicker [mm]."""
+PRESSING = 0.5
+"""Opacity of an object that presses: the contact shows through it from wherever one looks."""
 SEEN_THROUGH = 0.35
-"""Opacity of an object that is seen through."""
+"""Opacity of an object below which arrows end."""
 
 
 class ObjectView:
@@ -76,7 +78,7 @@ class ObjectView:
             self.node = self.server.scene.add_mesh_simple(
                 "/indenter", vertices, triangles, color=OBJECT_COLOUR, flat_shading=False
             )
-            self.see_through(self._seen_through)
+            self._fade()
             self.follow()
         else:
             with self.server.atomic():
@@ -92,6 +94,7 @@ class ObjectView:
             self.touching = self.server.scene.add_mesh_simple(
                 "/indenter/touching", vertices, triangles, color=TOUCHING_COLOUR, side="double"
             )
+            self._fade()
         elif self.touching is not None:
             with self.server.atomic():
                 replace(self.touching, vertices, triangles)
@@ -99,6 +102,7 @@ class ObjectView:
     def place(self, path: Press) -> None:
         """Stand the object on the skin near the target of a press."""
         self._pressed = None
+        self._fade()
         place = self.body.place_near(path.target_mm)
         if place is not None:
             if self._stale:
@@ -108,6 +112,7 @@ class ObjectView:
     def press(self, contact: Contact, frame: int) -> None:
         """Put it where a frame, counted from 0, has it, in the shape that it has there."""
         self._pressed = contact, frame
+        self._fade()
         self._pose(contact.indenter_pose[frame])
         if self.node is None:
             return
@@ -169,13 +174,20 @@ class ObjectView:
             self.node.visible = self.allowed and self._present and not self._bare
 
     def see_through(self, wanted: bool) -> None:
-        """Let the object be seen through, so that what happens below it shows."""
+        """Let more be seen through the object: arrows end below it."""
         self._seen_through = wanted
-        for node in (self.node, self.touching):
-            if node is not None:
-                node.opacity = SEEN_THROUGH if wanted else self._opacity
+        self._fade()
 
     def fade(self, opacity: float) -> None:
-        """Draw the object with an opacity in [0, 1]."""
+        """Draw the object with an opacity in [0, 1], whether it presses or not."""
         self._opacity = opacity
-        self.see_through(self._seen_through)
+        self._fade()
+
+    def _fade(self) -> None:
+        own = self._opacity
+        if own is None and self._pressed is not None:
+            own = PRESSING
+        wanted = SEEN_THROUGH if self._seen_through else own
+        for node in (self.node, self.touching):
+            if node is not None and node.opacity != wanted:
+                node.opacity = wanted

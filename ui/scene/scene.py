@@ -16,7 +16,7 @@ from ui.scene.pressed import PressedView
 from ui.scene.rig import RigView
 from ui.scene.section import Section
 from ui.scene.sensor import SensorView
-from ui.scene.views import Views
+from ui.scene.views import AWAY, Views
 from workbench.core.result.results import Skin, Solid
 from workbench.core.result.sensing import Contact
 
@@ -96,9 +96,9 @@ class Scene:
             low, _ = self.body.bounds_mm
             self.grid.position = (0.0, 0.0, float(low[2]) - GRID_BELOW_MM)
 
-    def frame_body(self) -> None:
-        """Look at the whole body."""
-        self.views.frame(*self.body.bounds_mm)
+    def frame_body(self, target_mm: tuple[float, float, float]) -> None:
+        """Look at the whole body from where a press at the target is seen beside its object."""
+        self.views.frame(*self.body.bounds_mm, self.body.side_of(target_mm, AWAY))
 
     def fit_view(self) -> None:
         """Look at all that is on show."""

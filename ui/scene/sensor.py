@@ -15,7 +15,7 @@ from ui.scene.nodes import Meshes
 from workbench.core.result.results import Label, Solid
 from workbench.project.aim import SkinPlace, skin_place
 from workbench.view.region_words import region_words
-from workbench.view.scene_shapes import first_hit, outer_faces, skin_parts
+from workbench.view.scene_shapes import contact_side, first_hit, outer_faces, skin_parts
 from workbench.view.section_cut import Plane, clip
 
 SKIN_COLOUR = (196, 206, 220)
@@ -156,6 +156,13 @@ class SensorView:
     def place_near(self, target_mm: tuple[float, float, float]) -> SkinPlace | None:
         """The place of the sensing side nearest to a point; None without a body."""
         return None if self.solid is None else skin_place(self.solid, target_mm)
+
+    def side_of(self, target_mm: tuple[float, float, float], usual: np.ndarray) -> np.ndarray:
+        """Unit direction to an eye that sees a press at the target; `usual` without a body."""
+        place = self.place_near(target_mm)
+        if self.solid is None or place is None:
+            return usual
+        return contact_side(*outer_faces(self.solid.membrane), place, usual)
 
     @property
     def bounds_mm(self) -> tuple[np.ndarray, np.ndarray]:

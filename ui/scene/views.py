@@ -55,6 +55,8 @@ class Side(enum.StrEnum):
 
 
 TOWARD = {
+    # Of a sensor without a body; else the way depends on where it is pressed.
+    Side.CONTACT: tuple(AWAY),
     Side.FRONT: (0.0, -1.0, 0.0),
     Side.RIGHT: (1.0, 0.0, 0.0),
     # Straight down the upright axis a turntable camera has no up.
@@ -79,18 +81,21 @@ class Views:
         self.server = server
         self._before: dict[int, tuple[Any, Any]] = {}
         self._mark: list[Any] = []
+        self._away = AWAY
+        """Unit direction from which the body on show was framed."""
         self.close = False
         """Whether the last thing that moved the eye was a flight to a place."""
         server.initial_camera.fov = FOV_RAD
 
-    def frame(self, low_mm: np.ndarray, high_mm: np.ndarray) -> None:
-        """Look at a box from the front, in tabs that are open and those that come."""
+    def frame(self, low_mm: np.ndarray, high_mm: np.ndarray, away: np.ndarray = AWAY) -> None:
+        """Look at a box from the unit direction `away`, in tabs that are open and those to come."""
         centre = (low_mm + high_mm) / 2
         size_mm = float(np.linalg.norm(high_mm - low_mm))
-        self._welcome(centre, size_mm, AWAY)
+        self._away = away
+        self._welcome(centre, size_mm, away)
         self._before.clear()
         self.close = False
-        self._fit(centre, size_mm, AWAY)
+        self._fit(centre, size_mm, away)
 
     def _welcome(self, centre: np.ndarray, size_mm: float, away: np.ndarray) -> None:
         """Let tabs that open from now on look at a ball from the side `away`."""
@@ -107,7 +112,7 @@ class Views:
         for client in self.server.get_clients().values():
             away = np.asarray(client.camera.position) - np.asarray(client.camera.look_at)
             length = float(np.linalg.norm(away))
-            side = away / length if length > 0 else AWAY
+            side = away / length if length > 0 else self._away
             distance_mm = _distance_mm(size_mm, client.camera.aspect)
             aim = _below(centre, distance_mm, side)
             with client.atomic():
@@ -162,9 +167,9 @@ class Views:
         self.close = False
         centre = (low_mm + high_mm) / 2
         size_mm = float(np.linalg.norm(high_mm - low_mm))
-        self._welcome(centre, size_mm, AWAY)
+        self._welcome(centre, size_mm, self._away)
         for number, client in self.server.get_clients().items():
-            away = _distance_mm(size_mm, client.camera.aspect) * AWAY
+            away = _distance_mm(size_mm, client.camera.aspect) * self._away
             position, look_at = self._before.pop(number, (centre + away, centre))
             with client.atomic():
                 client.camera.position, client.camera.look_at = position, look_at

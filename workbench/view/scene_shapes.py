@@ -23,6 +23,16 @@ UNUSUAL_MM = 0.5
 """Material that one looks through rather than from the opposite side, per unit of 1 - cosine."""
 EDGE_ON_MM = 1.0
 """Material that one looks through rather than at a surface edge-on."""
+SLANT_COSINES = (0.55, 0.75)
+"""Cosine between the normal at a contact and the way to an eye that sees it beside its object."""
+SLANT_SHARE = 3.0
+"""Weight of a slant that is missed, over that of the way from the side one looks from anyway."""
+HEIGHTS = (0.26, 0.39, 0.55, 0.71)
+"""Upright parts of the directions from which a contact is looked at."""
+AROUND = 24
+"""How many directions of each height there are."""
+NEAR_MM = 2.5
+"""How far around a contact the skin is to be seen as well."""
 CELL_SIDES = {
     8: ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)),
     4: ((0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)),
@@ -127,6 +137,40 @@ def clear_view(
         if cost < least:
             best, least = toward, cost
     return best
+
+
+def contact_side(
+    points_mm: np.ndarray, faces: np.ndarray, place: SkinPlace, usual: np.ndarray
+) -> np.ndarray:
+    """Unit direction from a contact toward an eye that sees it beside its object, shape (3,).
+
+    Straight along the normal the object hides the contact, and at grazing angles it is a line: of
+    the directions between, nearest to where one looks from anyway, the first that the body does
+    not hide. Of a contact that is hidden from everywhere above, the one with the best angle.
+
+    Args:
+        points_mm: Vertices of what may stand in the way, shape (N, 3).
+        faces: Triangles counter-clockwise from outside, shape (M, 3).
+        place: The middle of the contact.
+        usual: Unit direction from which the body is looked at anyway, shape (3,).
+    """
+    turns = 2.0 * np.pi * np.arange(AROUND) / AROUND
+    up, turn = (grid.ravel() for grid in np.meshgrid(HEIGHTS, turns))
+    flat = np.sqrt(1.0 - up**2)
+    ways = np.stack([flat * np.cos(turn), flat * np.sin(turn), up], axis=1)
+    ways = np.vstack([usual, ways])
+    slant = ways @ place.normal
+    missed = np.abs(slant - np.clip(slant, *SLANT_COSINES))
+    order = np.argsort(SLANT_SHARE * missed + 1.0 - ways @ usual, kind="stable")
+    side = tangent(place.normal)
+    other = np.cross(place.normal, side)
+    above = place.point_mm + NEAR_MM * place.normal / 2.0
+    around = NEAR_MM * np.array([0.0 * side, side, -side, other, -other])
+    for way in ways[order]:
+        starts = above + around
+        if all(first_hit(points_mm, faces, at, way, both_sides=True) is None for at in starts):
+            return way
+    return ways[order[0]]
 
 
 def cell_edges(corners_mm: np.ndarray) -> np.ndarray:

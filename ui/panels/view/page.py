@@ -8,7 +8,6 @@ from __future__ import annotations
 from functools import partial
 from typing import Any
 
-import numpy as np
 import viser
 
 from ui.desk.desk import Desk
@@ -18,10 +17,12 @@ from ui.patches.view_cube import FACES, ViewCube
 from ui.scene.look import OPACITY, Look, Seen
 from ui.scene.measure import Measure
 from ui.scene.reach import Reach
-from ui.scene.views import USUAL, Side
+from ui.scene.views import AWAY, USUAL, Side
 from workbench.view.section_cut import Axis, Plane
 
 STEP_MM = 0.1
+CLOSE_MM = 9.0
+"""Half an edge of the box around a contact that is looked at."""
 
 
 class ViewPanel:
@@ -44,7 +45,7 @@ class ViewPanel:
 
     def _sides(self) -> None:
         gui, guarded = self.desk.server.gui, self.desk.guarded
-        hint = "Keys 1 to 8; in this tab only. Contact looks onto the place of the press"
+        hint = "Keys 1 to 8; in this tab only. Contact looks at the press from beside its object"
         self.sides = gui.add_button_group("Look from", [side.value for side in USUAL], hint=hint)
         self.sides.on_click(guarded(lambda event: self._turn(Side(self.sides.value), event)))
         for number, side in enumerate(Side, start=1):
@@ -62,11 +63,13 @@ class ViewPanel:
 
     def _turn(self, side: Side, event: Any) -> None:
         scene, press = self.desk.scene, self.desk.session.case.press
-        toward = None
-        if side is Side.CONTACT:
-            place = scene.body.place_near(press.target_mm)
-            toward = np.array([0.0, 0.0, 1.0]) if place is None else place.normal
-        scene.views.look_from(side, *scene.bounds_mm, client=event.client, toward=toward)
+        place = scene.body.place_near(press.target_mm) if side is Side.CONTACT else None
+        if place is None:
+            scene.views.look_from(side, *scene.bounds_mm, client=event.client)
+        else:
+            toward = scene.body.side_of(press.target_mm, AWAY)
+            box = place.point_mm - CLOSE_MM, place.point_mm + CLOSE_MM
+            scene.views.look_from(side, *box, client=event.client, toward=toward)
         self._face(event.client)
 
     def _section(self) -> None:
@@ -167,6 +170,8 @@ class ViewPanel:
                     hint = "0 is invisible, 100 is opaque; a pressed, coloured skin is opaque"
                     if what is not Seen.SKIN:
                         hint = "0 is invisible, 100 is opaque"
+                    if what is Seen.OBJECT:
+                        hint += "; until it is moved, only while the object presses"
                     slider = gui.add_slider(
                         f"{what.value} opacity %", 0, 100, 1, round(100 * OPACITY[what]), hint=hint
                     )
