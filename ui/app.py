@@ -36,7 +36,9 @@ from ui.panels.page import pages
 from ui.panels.results.page import ResultsPanel
 from ui.panels.view.page import ViewPanel
 from ui.patches.everywhere import mend_everywhere
+from ui.patches.materials import finish
 from ui.patches.style import mend
+from ui.scene.finishes import FINISHES
 from ui.tenancy import Tenancy
 from workbench.core.base.errors import DesignError, StoreError
 from workbench.core.base.version import VERSION
@@ -137,6 +139,7 @@ def build_desk(
     with server.atomic():
         mend(gui)
         mend_everywhere(gui)
+        gui.add_html(finish(FINISHES))
         found = pages()
         guide = Help(server, incoming, {label: page.help for label, page in found.items()})
         desk = Desk(server, session, conductor, editor, fast=fast)

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ui.scene.camera_body import add_camera_body
 from ui.scene.lamps import LampsView
 from ui.scene.ring_leds import RingLeds
 from workbench.core.design.camera import Camera, LensModel
@@ -57,7 +58,7 @@ class RigView:
             self.show(self._shown)
 
     def _show_camera(self, number: int, camera: Camera) -> None:
-        """Show a camera as a frustum."""
+        """Show a camera as a barrel with a lens, and what it sees as a frustum."""
         high, aspect, scale_mm = frustum(camera)
         colour = LENS_COLOURS[camera.lens]
         if number == len(self.cameras):
@@ -66,6 +67,7 @@ class RigView:
                 name, fov=high, aspect=aspect, scale=scale_mm, color=colour
             )
             self.cameras.append(node)
+            add_camera_body(self.api, name)
         node = self.cameras[number]
         node.fov = high
         node.aspect = aspect

@@ -22,6 +22,10 @@ from workbench.core.result.sensing import Contact
 
 GRID_FADE_MM = 220.0
 """Distance from the eye at which the floor is lost; most bodies are nearer than 150 mm."""
+GRID_COLOUR = (128, 130, 138)
+"""Of lines that are seen on a dark and on a light page, and on neither first."""
+ROOM, ROOM_SHARE = "studio", 0.6
+"""What surfaces reflect, and how bright it is: as it comes it bleaches the top of a white skin."""
 GRID_BELOW_MM = 0.1
 """How far the floor grid lies below the foot: nearer, the two flicker [mm]."""
 
@@ -72,13 +76,20 @@ class Scene:
             self.api.add_light_hemisphere(
                 "/fill", sky_color=(255, 255, 255), ground_color=(120, 120, 130), intensity=2.0
             )
+        else:
+            self.api.configure_environment_map(ROOM, environment_intensity=ROOM_SHARE)
         self.grid = self.api.add_grid(
             "/grid",
             width=160,
             height=160,
             cell_size=5,
             section_size=20,
+            cell_color=GRID_COLOUR,
+            section_color=GRID_COLOUR,
+            cell_thickness=0.5,
+            section_thickness=0.8,
             fade_distance=GRID_FADE_MM,
+            shadow_opacity=0.3,
             position=(0, 0, -8.1),
         )
 

@@ -25,7 +25,7 @@ FLOAT, UINT32, UINT16, UINT8 = 5126, 5125, 5123, 5121
 """Component types."""
 ARRAY, ELEMENTS = 34962, 34963
 """What a buffer view is bound to: attributes of vertices, indices."""
-MATT = {"pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 0.7}}
+MATT = {"pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 0.5}}
 """Without a material glTF means polished metal, which is black without an environment."""
 MOST_SHORT = 65_535
 """Vertices that 16 bits can name; the last number is kept free by the standard."""
