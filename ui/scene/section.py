@@ -17,14 +17,21 @@ from ui.scene.map_view import MapView
 from ui.scene.nodes import Meshes, drawable
 from ui.scene.parts import PartsView
 from ui.scene.pressed import PressedView
-from ui.scene.sensor import FOOT, SKIN_COLOUR, SUPPORT, SensorView
+from ui.scene.sensor import SKIN_COLOUR, SensorView
 from workbench.core.result.results import MembraneMesh
 from workbench.view.section_cut import Plane, PressedBody, cap, clip
 
 OUTLINE_COLOUR = (250, 250, 250)
 MEMBRANE = "membrane"
+CAP_COLOURS = {
+    MEMBRANE: SKIN_COLOUR,
+    # Deeper than the tint of a clear body: beside the skin it is told apart by lightness alone.
+    "support": (58, 120, 160),
+    "foot": (66, 70, 78),
+}
+"""Colours of caps: in each the material's, light, middle and dark."""
 SHADE = 0.82
-"""A cap is a little darker than the outside of its body."""
+"""Caps of parts are a little darker than their outside."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -113,19 +120,19 @@ class Section:
             for name in sorted(parts.shown):
                 part = parts.parts[name]
                 points = np.asarray(part.points_mm) + parts.moved(name, (0.0, 0.0, 0.0))
-                yield _piece(f"part_{name}", points, part.faces, parts.colour(name))
+                r, g, b = (int(SHADE * c) for c in parts.colour(name))
+                yield _piece(f"part_{name}", points, part.faces, (r, g, b))
         elif solid is not None:
             body = scene.body
             if body.skin.allowed:
                 points, faces = self._membrane_mm(scene.shown_frame), solid.membrane.faces
-                yield _piece(MEMBRANE, points, faces, SKIN_COLOUR)
-            for group, surface, looks in (
-                (body.support, solid.support, SUPPORT),
-                (body.foot, solid.base, FOOT),
+                yield _piece(MEMBRANE, points, faces)
+            for name, group, surface in (
+                ("support", body.support, solid.support),
+                ("foot", body.foot, solid.base),
             ):
                 if group.allowed:
-                    name = "support" if group is body.support else "foot"
-                    yield _piece(name, surface.points_mm, surface.faces, looks["color"])
+                    yield _piece(name, surface.points_mm, surface.faces)
 
     def membrane_cap(self, frame: int) -> tuple[str, np.ndarray, np.ndarray] | None:
         """Name, vertices and triangles of the membrane's cap in a frame; None where none is."""
@@ -150,7 +157,10 @@ class Section:
 
 
 def _piece(
-    name: str, points_mm: np.ndarray, faces: np.ndarray, colour: tuple[int, int, int]
+    name: str,
+    points_mm: np.ndarray,
+    faces: np.ndarray,
+    colour: tuple[int, int, int] | None = None,
 ) -> Piece:
-    r, g, b = (int(SHADE * c) for c in colour)
-    return Piece(name=name, points_mm=points_mm, faces=faces, colour=(r, g, b))
+    """A body to cut; without a colour, in that of its material."""
+    return Piece(name=name, points_mm=points_mm, faces=faces, colour=colour or CAP_COLOURS[name])
