@@ -23,7 +23,8 @@ def node(*_: Any, **values: Any) -> SimpleNamespace:
 
 def test_frusta_forget_images_when_cameras_come_or_go() -> None:
     """Of cameras 1, 2, 3 the second goes: the third is number 2, whose image was another's."""
-    api = SimpleNamespace(add_icosphere=node, add_camera_frustum=node, add_label=node)
+    names = ("add_icosphere", "add_camera_frustum", "add_label", "add_mesh_simple")
+    api = SimpleNamespace(**dict.fromkeys(names, node))
     rig = RigView(SimpleNamespace(scene=api, atomic=contextlib.nullcontext))
     further = (Camera(fov_x_deg=60.0), Camera(fov_x_deg=70.0))
     three = Optics(ring=LedRing(count=1), cameras=further)

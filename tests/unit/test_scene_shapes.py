@@ -75,8 +75,8 @@ def test_a_contact_is_seen_beside_its_object(normal: tuple[float, float, float])
     place = SkinPlace(10.0 * np.array(normal), 0.0, 0, np.array(normal))
     way = contact_side(np.asarray(ball.vertices), np.asarray(ball.faces), place, USUAL)
     low, high = SLANT_COSINES
-    # Directions are 15 degrees apart.
-    assert low - 0.13 < way @ place.normal < high + 0.13
+    # Directions are 22.5 degrees apart.
+    assert low - 0.1 < way @ place.normal < high + 0.1
     assert way[2] > 0.0
     assert np.linalg.norm(way) == pytest.approx(1.0, abs=0.01)
 

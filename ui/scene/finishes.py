@@ -1,4 +1,4 @@
-"""What the surfaces of the 3D view are made of, for the eye: silicone, resin, metal, plastic, glass.
+"""What surfaces of the 3D view are made of, for the eye: silicone, resin, metal, plastic, glass.
 
 Found by eye, not measured: what a coating of the sensor's inside does to light is the business of
 the optics, and is not shown here.
@@ -15,7 +15,7 @@ RESIN = Finish(roughness=0.15, reflection=5.0)
 ANODISED = Finish(roughness=0.45, metalness=0.3)
 PLASTIC = Finish(roughness=0.3)
 LIT = Finish(roughness=0.3, glow=0.85)
-GLASS = Finish(roughness=0.12, reflection=2.0)
+GLASS = Finish(roughness=0.12)
 FINISHES = {
     "/sensor/skin": SILICONE,
     "/sensor/inside": PLASTIC,

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ui.page.background_thread import BackgroundThread
+from ui.scene.contact_shadow import ContactShadow
 from ui.scene.map_view import MapView
 from ui.scene.mesh_marks import MeshMarks
 from ui.scene.object_view import ObjectView
@@ -24,10 +25,13 @@ GRID_FADE_MM = 220.0
 """Distance from the eye at which the floor is lost; most bodies are nearer than 150 mm."""
 GRID_COLOUR = (128, 130, 138)
 """Of lines that are seen on a dark and on a light page, and on neither first."""
-ROOM, ROOM_SHARE = "studio", 0.6
-"""What surfaces reflect, and how bright it is: as it comes it bleaches the top of a white skin."""
-GRID_BELOW_MM = 0.1
-"""How far the floor grid lies below the foot: nearer, the two flicker [mm]."""
+ROOM, ROOM_SHARE = "studio", 0.35
+"""What surfaces reflect, and how bright it is."""
+SUN, SUN_SHARE = (60.0, -30.0, 110.0), 1.3
+"""Where the light comes from [mm], upper left of where bodies are usually seen from, and how bright
+it is: viser's own light, from straight above and of 3, bleaches a white skin."""
+SHADOW_BELOW_MM, GRID_BELOW_MM = 0.1, 0.2
+"""How far shadow and floor grid lie below the foot: nearer, they flicker [mm]."""
 
 
 class Scene:
@@ -65,6 +69,7 @@ class Scene:
         """Names of the handles inside the skin that are on."""
         self.shown_frame = 0
         self.grid: Any = None
+        self.shadow = ContactShadow(self.api)
         self._prepare(fast)
 
     def _prepare(self, fast: bool) -> None:
@@ -78,6 +83,10 @@ class Scene:
             )
         else:
             self.api.configure_environment_map(ROOM, environment_intensity=ROOM_SHARE)
+            self.api.configure_default_lights(False)
+            self.api.add_light_directional(
+                "/sun", intensity=SUN_SHARE, cast_shadow=True, position=SUN
+            )
         self.grid = self.api.add_grid(
             "/grid",
             width=160,
@@ -89,8 +98,8 @@ class Scene:
             cell_thickness=0.5,
             section_thickness=0.8,
             fade_distance=GRID_FADE_MM,
-            shadow_opacity=0.3,
-            position=(0, 0, -8.1),
+            shadow_opacity=0.2,
+            position=(0, 0, -8.2),
         )
 
     def show_solid(self, solid: Solid) -> None:
@@ -106,6 +115,7 @@ class Scene:
             self.section.follow()
             low, _ = self.body.bounds_mm
             self.grid.position = (0.0, 0.0, float(low[2]) - GRID_BELOW_MM)
+            self.shadow.follow(solid.base.points_mm, float(low[2]) - SHADOW_BELOW_MM)
 
     def frame_body(self, target_mm: tuple[float, float, float]) -> None:
         """Look at the whole body from where a press at the target is seen beside its object."""
@@ -230,6 +240,7 @@ class Scene:
             self.rig.show(visible)
             # The core of an exploded mould hangs below the floor, whose lines would cross it.
             self.grid.visible = visible
+            self.shadow.show(visible)
             self.object.attend(visible)
             self.pressed.show(0)
         if visible:

@@ -27,6 +27,8 @@ ARRAY, ELEMENTS = 34962, 34963
 """What a buffer view is bound to: attributes of vertices, indices."""
 MATT = {"pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 0.5}}
 """Without a material glTF means polished metal, which is black without an environment."""
+CLEAR = {"alphaMode": "BLEND", "extensions": {"KHR_materials_unlit": {}}}
+"""What a mesh with opacities has in place of a finish: its colours as they are, whatever lights."""
 MOST_SHORT = 65_535
 """Vertices that 16 bits can name; the last number is kept free by the standard."""
 
@@ -77,23 +79,28 @@ def write_glb(
 
     Args:
         points_mm: Vertices [mm], shape (N, 3), finite, at least one.
-        colours: sRGB of the vertices, shape (N, 3), uint8.
+        colours: sRGB of the vertices, shape (N, 3), uint8; or (N, 4) with opacities, unlit.
         topology: Its triangles, at least one.
         both_sides: Whether the back of a triangle is drawn too, which takes longer.
     """
     points = np.ascontiguousarray(points_mm, dtype="<f4")
     # Attributes begin at multiples of four bytes, so a colour has four.
     colour = np.full((len(points), 4), 255, dtype=np.uint8)
-    colour[:, :3] = _linear()[np.asarray(colours)]
+    given = np.asarray(colours)
+    colour[:, :3] = _linear()[given[:, :3]]
+    clear = given.shape[1] == 4
+    if clear:
+        colour[:, 3] = given[:, 3]
     blocks = [points, topology.normals(points).astype("<f4", copy=False), colour]
     parts = [block.tobytes() for block in (*blocks, topology.indices)]
     sizes = tuple(len(part) for part in parts)
-    text = _description(sizes, points, topology, both_sides=both_sides)
+    material = {**(CLEAR if clear else MATT), "doubleSided": both_sides}
+    text = _description(sizes, points, topology, material)
     return _packed(text, b"".join(parts))
 
 
 def _description(
-    sizes: tuple[int, ...], points: np.ndarray, topology: Topology, *, both_sides: bool
+    sizes: tuple[int, ...], points: np.ndarray, topology: Topology, material: dict[str, Any]
 ) -> bytes:
     """The chunk of JSON: what stands where in the chunk of bytes."""
     vertices, corners = len(points), len(topology.indices)
@@ -116,7 +123,8 @@ def _description(
         "scenes": [{"nodes": [0]}],
         "nodes": [{"mesh": 0}],
         "meshes": [{"primitives": [{"attributes": attributes, "indices": 3, "material": 0}]}],
-        "materials": [{**MATT, "doubleSided": both_sides}],
+        "materials": [material],
+        **({"extensionsUsed": list(material["extensions"])} if "extensions" in material else {}),
         "buffers": [{"byteLength": sum(sizes)}],
         "bufferViews": views,
         "accessors": [{"bufferView": k, **each} for k, each in enumerate(accessors)],
