@@ -38,7 +38,6 @@ from ui.panels.view.page import ViewPanel
 from ui.patches.everywhere import mend_everywhere
 from ui.patches.materials import finish
 from ui.patches.style import mend
-from ui.scene.finishes import FINISHES
 from ui.tenancy import Tenancy
 from workbench.core.base.errors import DesignError, StoreError
 from workbench.core.base.version import VERSION
@@ -139,7 +138,7 @@ def build_desk(
     with server.atomic():
         mend(gui)
         mend_everywhere(gui)
-        gui.add_html(finish(FINISHES))
+        gui.add_html(finish())
         found = pages()
         guide = Help(server, incoming, {label: page.help for label, page in found.items()})
         desk = Desk(server, session, conductor, editor, fast=fast)

@@ -7,9 +7,17 @@ import re
 
 import pytest
 
-from ui.patches.materials import Finish, finish
+from ui.patches.materials import (
+    ANODISED,
+    FINISHES,
+    GLASS,
+    LIT,
+    RESIN,
+    SILICONE,
+    Finish,
+    finish,
+)
 from ui.scene.camera_body import BARREL_MM, turned
-from ui.scene.finishes import ANODISED, FINISHES, GLASS, LIT, RESIN, SILICONE
 from workbench.view.glb import MATT
 
 
@@ -36,7 +44,7 @@ def test_a_pressed_skin_looks_as_at_rest() -> None:
 
 def test_the_script_names_all_finishes() -> None:
     """Placeholders are gone, and what an attribute of HTML would end is escaped."""
-    written = finish(FINISHES)
+    written = finish()
     script = html.unescape(re.findall(r'onload="([^"]*)"', written)[0])
     assert "FINISHES" not in script and "AGAIN" not in script
     for prefix in FINISHES:

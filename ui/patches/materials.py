@@ -34,6 +34,27 @@ class Finish:
     """How bright it shines by itself, in its own colour."""
 
 
+# Found by eye, not measured: what a coating inside does to light is the business of the optics.
+SILICONE = Finish(roughness=0.5)
+"""Matt and soft, with a wide highlight; frames of a press have it in their files (`MATT`)."""
+RESIN = Finish(roughness=0.15, reflection=5.0)
+"""Clear and polished."""
+ANODISED = Finish(roughness=0.45, metalness=0.3)
+PLASTIC = Finish(roughness=0.3)
+LIT = Finish(roughness=0.3, glow=0.85)
+GLASS = Finish(roughness=0.12)
+FINISHES = {
+    "/sensor/skin": SILICONE,
+    "/sensor/inside": PLASTIC,
+    "/sensor/tips": PLASTIC,
+    "/sensor/rigid": RESIN,
+    "/sensor/foot": ANODISED,
+    "/indenter": PLASTIC,
+    "/parts": PLASTIC,
+    "/leds/": LIT,
+    "/lamps/": LIT,
+    "/camera": GLASS,
+}
 APPLY = """
 clearInterval(window.finishTimer);
 window.finishTimer = setInterval(() => {
@@ -62,7 +83,7 @@ window.finishTimer = setInterval(() => {
 """
 
 
-def finish(finishes: Mapping[str, Finish]) -> str:
+def finish(finishes: Mapping[str, Finish] = FINISHES) -> str:
     """HTML that gives nodes whose names begin with a prefix its finish; the first prefix counts."""
     told = json.dumps([[prefix, asdict(each)] for prefix, each in finishes.items()])
     script = APPLY.replace("FINISHES", told).replace("AGAIN", str(AGAIN_MS))
