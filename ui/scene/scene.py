@@ -116,6 +116,11 @@ class Scene:
             low, _ = self.body.bounds_mm
             self.grid.position = (0.0, 0.0, float(low[2]) - GRID_BELOW_MM)
             self.shadow.follow(solid.base.points_mm, float(low[2]) - SHADOW_BELOW_MM)
+            self.follow_shadow()
+
+    def follow_shadow(self) -> None:
+        """Throw the shadow of a foot that is on show and whole."""
+        self.shadow.show(not self.hidden and self.section.plane is None)
 
     def frame_body(self, target_mm: tuple[float, float, float]) -> None:
         """Look at the whole body from where a press at the target is seen beside its object."""
@@ -240,7 +245,7 @@ class Scene:
             self.rig.show(visible)
             # The core of an exploded mould hangs below the floor, whose lines would cross it.
             self.grid.visible = visible
-            self.shadow.show(visible)
+            self.follow_shadow()
             self.object.attend(visible)
             self.pressed.show(0)
         if visible:

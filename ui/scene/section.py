@@ -56,6 +56,10 @@ class CutScene(Protocol):
     hidden: bool
     shown_frame: int
 
+    def follow_shadow(self) -> None:
+        """Throw the shadow of what is whole."""
+        ...
+
 
 class Section:
     """The cut of one scene."""
@@ -78,6 +82,7 @@ class Section:
             for view in (scene.body, scene.map, scene.pressed, scene.parts):
                 view.cut(plane)
             self.follow()
+            scene.follow_shadow()
 
     def take_mesh(self, mesh: MembraneMesh | None) -> None:
         """The mesh whose skins a press moves; None for a body that has none yet."""
