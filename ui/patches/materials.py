@@ -71,11 +71,12 @@ window.finishTimer = setInterval(() => {
       const room = reflection === 1 ? null : seen.scene.environment;
       if (material.roughness === roughness && material.envMap === room
           && (!glow || material.emissive.equals(material.color))) continue;
+      if (material.envMap !== room) material.needsUpdate = true;
       Object.assign(material, {roughness, metalness, envMap: room, envMapIntensity: reflection});
       if (glow) material.emissive.copy(material.color);
       if (glow) material.emissiveIntensity = glow;
       if (room) material.envMapRotation.copy(seen.scene.environmentRotation);
-      changed = material.needsUpdate = true;
+      changed = true;
     }
   }
   if (changed) seen.requestRender();
