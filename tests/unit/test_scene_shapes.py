@@ -170,7 +170,7 @@ def test_edges_of_a_mesh_are_those_of_its_outside() -> None:
 
 
 def test_shares_are_told_in_percent_and_rounding_as_nought() -> None:
-    """0.62 of the bed is 62 %, at most 1 is 100 %; -7e-15 mm is 0 mm."""
+    """0.62 of the bed is 62 %, at most 1 is 100 %; -7e-15 mm is 0 mm; parts have their words."""
     message = "half_a: bed 0.62 of the bed, at most 1 of the bed is good; off by -7.1e-15 mm."
     check = FabricationCheck(
         name="bed",
@@ -184,5 +184,5 @@ def test_shares_are_told_in_percent_and_rounding_as_nought() -> None:
         message=message,
     )
     assert amount(check) == "62 % of the bed (≤ 100 %)"
-    text = "half_a: bed 62 % of the bed, at most 100 % of the bed is good; off by 0 mm."
+    text = "Mould half A: bed 62 % of the bed, at most 100 % of the bed is good; off by 0 mm."
     assert said(check) == text
