@@ -35,6 +35,16 @@ def test_a_round_foot_has_a_round_rim() -> None:
     assert area.sum() == pytest.approx(np.pi * away.max() ** 2, rel=5e-3)
 
 
+def test_a_body_on_its_point_has_the_outline_of_what_is_above() -> None:
+    """A cone on its tip: what is within 1 mm of it; an edge of a box likewise; a line has none."""
+    cone = np.asarray(trimesh.creation.cone(5.0, 10.0, sections=40).vertices) * [1, 1, -1]
+    assert len(sole_outline(cone)) >= 3
+    box = np.asarray(trimesh.creation.box((4.0, 4.0, 4.0)).vertices)
+    turned = box @ np.array([[1, 0, 0], [0, 0.6, -0.8], [0, 0.8, 0.6]])
+    assert len(sole_outline(turned)) >= 3
+    assert not len(sole_outline(np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.0, 1.0]])))
+
+
 def test_it_is_made_anew_only_for_another_foot() -> None:
     """Two shapes with one foot share a shadow, which moves to the height; another foot has its own.
 

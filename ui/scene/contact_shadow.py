@@ -6,6 +6,7 @@ one is a mesh that fades to nothing, made anew only when the foot has another ou
 
 from __future__ import annotations
 
+import contextlib
 from typing import Any
 
 import numpy as np
@@ -16,8 +17,9 @@ REACH_MM = 7.0
 """How far from the foot the shadow ends."""
 STEPS = ((-1.0, 0.55), (0.0, 0.5), (0.15, 0.32), (0.4, 0.14), (0.7, 0.04), (1.0, 0.0))
 """How far out, over the reach, the shadow is how dark."""
-SOLE_MM = 0.05
-"""Faces this near to the lowest point stand on the floor."""
+SOLES_MM = (0.05, 1.0, np.inf)
+"""What is this near to the lowest point stands on the floor; of a body that stands on a point or an
+edge, the next that has an outline."""
 
 
 class ContactShadow:
@@ -32,6 +34,8 @@ class ContactShadow:
     def follow(self, points_mm: np.ndarray, height_mm: float) -> None:
         """Throw the shadow of a foot, vertices (N, 3), on a floor at a height."""
         outline = sole_outline(points_mm)
+        if not len(outline):
+            return
         if self.node is not None and np.array_equal(outline, self._outline):
             self.node.position = (0.0, 0.0, height_mm)
             return
@@ -59,11 +63,15 @@ class ContactShadow:
 
 def sole_outline(points_mm: np.ndarray) -> np.ndarray:
     """Convex outline of the lowest vertices, counter-clockwise, shape (K, 2) [mm]."""
-    from scipy.spatial import ConvexHull
+    from scipy.spatial import ConvexHull, QhullError
 
     points = np.asarray(points_mm, dtype=float)
-    sole = points[points[:, 2] < points[:, 2].min() + SOLE_MM, :2]
-    return sole[ConvexHull(sole).vertices]
+    height_mm = points[:, 2] - points[:, 2].min()
+    for sole_mm in SOLES_MM:
+        sole = points[height_mm < sole_mm, :2]
+        with contextlib.suppress(QhullError, ValueError):
+            return sole[ConvexHull(sole).vertices]
+    return np.zeros((0, 2))
 
 
 def rim(outline_mm: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
