@@ -143,7 +143,10 @@ def test_a_form_is_kept_as_the_file_of_a_command(tmp_path: Path) -> None:
     project = Project(tmp_path)
     state = toy_problem(tmp_path).base
     asked = Asked(
-        vary=(Vary(path=X, title="", low=0.1, high=0.9),),
+        vary=(
+            Vary(path=X, title="", low=0.1, high=0.9),
+            Vary(path="design.optics.ring.mount", title="", choices=("cavity", "shell")),
+        ),
         goals=(Goal(figure=F, want=Want.TARGET, value=5.0),),
         wishes=("robust to .3 mm",),
     )
@@ -154,6 +157,7 @@ def test_a_form_is_kept_as_the_file_of_a_command(tmp_path: Path) -> None:
     assert problem.base == state
     assert problem.goals == asked.goals and problem.tolerances.twins == 8
     assert (problem.vary[0].low, problem.vary[0].high) == (0.1, 0.9)
+    assert problem.vary[1].choices == ("cavity", "shell")
     assert standing(folder).summary == {}
 
 

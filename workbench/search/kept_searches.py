@@ -93,10 +93,16 @@ def asked_table(asked: Asked) -> dict[str, Any]:
         "base": BASE_FILE,
         "wishes": list(asked.wishes),
         "even_light": asked.even_light,
-        "vary": [{"field": v.path, "low": v.low, "high": v.high} for v in asked.vary],
+        "vary": [_vary_table(vary) for vary in asked.vary],
         "goal": [_goal_table(goal) for goal in asked.goals],
         "limit": [_limit_table(limit) for limit in asked.limits],
     }
+
+
+def _vary_table(vary: Vary) -> dict[str, Any]:
+    if vary.choices:
+        return {"field": vary.path, "choices": list(vary.choices)}
+    return {"field": vary.path, "low": vary.low, "high": vary.high}
 
 
 def _goal_table(goal: Goal) -> dict[str, Any]:
