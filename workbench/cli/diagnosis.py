@@ -38,6 +38,7 @@ REQUIRED = (
     "scipy",
     "numpy",
     "shapely",
+    "threadpoolctl",
     "tomli-w",
     "websockets",
 )
