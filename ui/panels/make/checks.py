@@ -77,12 +77,13 @@ class ChecksList:
         place = scene.parts.moved(check.part, check.place_mm)
         distance_mm = min(max(NEAR_SHARE * size_mm, NEAR_MM[0]), NEAR_MM[1])
         toward = clear_view(points, surface.faces, np.asarray(check.place_mm), distance_mm)
-        text = f"{check.name.replace('_', ' ')}: {amount(check)}"
-        scene.views.fly_to(place, toward, distance_mm, Mark(text, LOOKS[check.severity][1]))
+        name = check.name.replace("_", " ")
+        mark = Mark(f"{name}: {amount(check)}", LOOKS[check.severity][1])
+        scene.views.fly_to(place, toward, distance_mm, mark)
         x, y, z = check.place_mm
-        self.detail.content = f"{plain(said(check))} At {x:.1f}, {y:.1f}, {z:.1f} mm."
-        words = f"looking at {check.name.replace('_', ' ')}, {x:.1f}, {y:.1f}, {z:.1f} mm"
-        self.desk.log(f"{part_label(check.part)}: {words}")
+        where = f"{x:.1f}, {y:.1f}, {z:.1f} mm"
+        self.detail.content = f"{plain(said(check))} At {where}."
+        self.desk.log(f"{part_label(check.part)}: looking at {name}, {where}")
 
 
 def verdict(checks: tuple[FabricationCheck, ...]) -> str:
