@@ -36,8 +36,13 @@ def ball_radius_mm(points_mm: np.ndarray, inward: np.ndarray, inward_mm: np.ndar
         centre, radius = unknown[:3], np.exp(unknown[3])
         return np.linalg.norm(places - centre, axis=1) - radius
 
+    def slopes(unknown: np.ndarray) -> np.ndarray:
+        outward = places - unknown[:3]
+        outward /= np.linalg.norm(outward, axis=1, keepdims=True)
+        return np.column_stack([-outward, np.full(len(places), -np.exp(unknown[3]))])
+
     begin = np.append(deepest - 3.0 * axis, np.log(3.0))
-    found = least_squares(away, begin, loss="soft_l1", f_scale=ROBUST_MM)
+    found = least_squares(away, begin, slopes, loss="soft_l1", f_scale=ROBUST_MM)
     radius_mm = float(np.exp(found.x[3]))
     outside = (found.x[:3] - deepest) @ axis < 0.0
     return radius_mm if found.success and outside and radius_mm < LARGEST_MM else float("nan")

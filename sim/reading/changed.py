@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim.reading.noise import Noise, noise_of, quiet_grey, some
+from sim.reading.noise import Noise, noise_of, quiet_grey, some_of
 
 BLUR_PX = 1.5
 """Of the difference, before it is judged: white noise of 1 grey is then .19."""
@@ -68,7 +68,7 @@ def change(idle: np.ndarray, photo: np.ndarray, sees: np.ndarray) -> Change:
     for _ in range(MOST_ROUNDS):
         if not calm.any():
             break
-        offset = np.median(some(difference[calm]), axis=0)
+        offset = np.median(some_of(difference, calm).T.copy(), axis=1)
         sizes = np.maximum.reduce(cv2.split(np.abs(blurred - offset)))
         largest = float(sizes[sees].max(initial=0.0))
         over = sizes > max(LEAST_GREY, LEAST_SHARE * largest, SURE * spread_grey)
@@ -80,8 +80,9 @@ def change(idle: np.ndarray, photo: np.ndarray, sees: np.ndarray) -> Change:
         slow = _slow(difference, calm)
         if (certain == before).all() or not calm.any():
             break
-        left = (blurred - slow)[calm]
-        spread_grey = float(np.sqrt((left**2).mean(axis=0).max()))
+        left = blurred - slow
+        square = cv2.mean(cv2.multiply(left, left), calm.astype(np.uint8))
+        spread_grey = float(np.sqrt(max(square[:3])))
     return Change(
         photo=photo - offset,
         noise=noise_of(difference - slow, calm),

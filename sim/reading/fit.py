@@ -36,6 +36,9 @@ MOVED_MM, CALM_MM, OUTWARD_MM = 1.5, 0.1, 0.03
 """s where the photograph changed, where it did not, and of what goes outward."""
 WORTH, WORTH_LAST = 5e-2, 5e-3
 """A step that gains a smaller share of the cost is the last, of the last level the latter."""
+HOPELESS = 0.3
+"""Share of that which a step must promise: to draw a skin takes longer than to promise. Of 18 dents
+in a finger the mean error of depth is 15.5 um with it and without it."""
 LOST = 5e-2
 """A step that loses a smaller share is the last too: slopes are those of the light by tilt, which
 know no shadows, and shorter steps along them gain little. One that loses more is tried shorter."""
@@ -114,7 +117,7 @@ def fitted(
     patch: Patch,
     priors: Priors,
     predict: Callable[[np.ndarray], Prediction],
-    start_mm: np.ndarray,
+    start: tuple[np.ndarray, Prediction],
     *,
     noise: Noise,
     levels: tuple[tuple[float, float], ...],
@@ -125,11 +128,11 @@ def fitted(
         patch: What may move.
         priors: What is believed of it.
         predict: What the patch moved by (m,) [mm] would show.
-        start_mm: First guess, shape (m,).
+        start: First guess, shape (m,), and what it would show.
         noise: Of the photograph.
         levels: As `LEVELS`.
     """
-    steps, inward_mm, seen = 0, start_mm, predict(start_mm)
+    steps, (inward_mm, seen) = 0, start
     spread_grey = seen.spread_grey
     for curvature, forgiving in levels:
         root = priors.root(curvature)
@@ -143,9 +146,13 @@ def fitted(
         )
         damping, cost = FIRST_DAMPING, level.cost(inward_mm, seen)
         near = level.near(inward_mm, seen)
+        worth = WORTH_LAST if level.robust else WORTH
         for _ in range(MOST_STEPS):
             factors = Banded(near.matrix, damping)
-            tried_mm = _stepped(inward_mm, factors.solved(near.pull))
+            step_mm = factors.solved(near.pull)
+            if step_mm @ near.pull < HOPELESS * worth * cost:
+                break
+            tried_mm = _stepped(inward_mm, step_mm)
             tried = predict(tried_mm)
             steps += 1
             gain = cost - level.cost(tried_mm, tried)
@@ -155,7 +162,7 @@ def fitted(
             if gain <= 0.0:
                 break
             inward_mm, seen, cost = tried_mm, tried, cost - gain
-            if gain < (WORTH_LAST if level.robust else WORTH) * cost:
+            if gain < worth * cost:
                 break
             damping = max(0.2 * damping, LEAST_DAMPING)
             near = level.near(inward_mm, seen)

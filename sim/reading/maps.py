@@ -35,11 +35,11 @@ def pixel_maps(reader: Reader, touch: Touch, normals: np.ndarray) -> PixelMaps:
     values = np.column_stack([touch.inward_mm, touch.sigma_mm, contact, normals])
     # Most pixels see what they saw at rest.
     moved = ((touch.inward_mm != 0.0) | (touch.sigma_mm != 0.0) | contact)[rest.skin.faces]
-    sees = rest.sees & (sight.face >= 0)
-    other = sees & (moved.any(axis=1)[sight.face] | (sight.face != rest.sight.face))
-    found = np.full((len(sees), values.shape[1]), np.nan, dtype=np.float32)
-    found[sees, :3], found[sees, 3:] = 0.0, reader.rest_normals[sees]
-    at = np.flatnonzero(other)
+    other = moved.any(axis=1)[sight.face] | (sight.face != rest.sight.face)
+    at = np.flatnonzero(rest.sees & other)
+    found = reader.rest_maps.copy()
+    found[at] = np.nan
+    at = at[sight.face[at] >= 0]
     found[at] = sight.blended(values, rest.skin.faces, at)
     found[at, 3:] /= np.linalg.norm(found[at, 3:], axis=1, keepdims=True)
     maps = found.reshape(*rest.shape, -1)

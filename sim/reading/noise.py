@@ -59,7 +59,7 @@ def noise_of(difference: np.ndarray, calm: np.ndarray) -> Noise:
     """
     if not calm.any():
         return Noise(grey=LEAST_GREY)
-    grey = max(LEAST_GREY, spread_grey(difference[calm]))
+    grey = max(LEAST_GREY, spread_grey(some_of(difference, calm)))
     whole = tile_means(calm) > WHOLE
     if np.count_nonzero(whole) < FEWEST:
         return Noise(grey=grey)
@@ -84,14 +84,20 @@ def quiet_grey(difference: np.ndarray, sees: np.ndarray) -> float:
     return float(np.sqrt(max(0.0, np.partition(variance, count - 1)[:count].mean())))
 
 
-def some(values: np.ndarray) -> np.ndarray:
-    """Some of many values (n, 3), evenly over them: about `MOST_JUDGED`."""
-    return values[:: max(1, len(values) // MOST_JUDGED)]
+def some_of(image: np.ndarray, chosen: np.ndarray) -> np.ndarray:
+    """Some of the chosen pixels, evenly over them: about `MOST_JUDGED`, shape (n, 3).
+
+    Args:
+        image: Shape (H, W, 3).
+        chosen: Shape (H, W), bool.
+    """
+    at = np.flatnonzero(chosen)
+    return image.reshape(-1, image.shape[2])[at[:: max(1, len(at) // MOST_JUDGED)]]
 
 
 def spread_grey(values: np.ndarray) -> float:
     """Standard deviation of noise (n, 3), in whole grey levels too, with outliers left out."""
-    size = np.abs(some(values))
+    size = np.abs(values)
     plain = size <= OUTLYING * max(float(np.median(size)), 1.0)
     return float(np.sqrt((size[plain] ** 2).mean()))
 

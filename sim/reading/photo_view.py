@@ -75,13 +75,17 @@ class PhotoView:
 
     def rendered(self, inward_mm: np.ndarray) -> Prediction:
         """What the renderer shows of the patch moved by (m,) [mm]."""
-        rest, patch, pixels = self._rest, self._patch, self._pixels
+        rest, patch = self._rest, self._patch
         displacement_mm = np.zeros((rest.skin.count, 3))
         chosen = patch.vertices[: patch.free]
         displacement_mm[chosen] = inward_mm[:, None] * patch.inward[: patch.free]
-        sight = moved(rest.studio, rest.sight, displacement_mm)
-        change = self._exposure * (sight.light[pixels] - rest.sight.light[pixels])
-        return self._prediction(patch.posed(inward_mm), sight, self._mean(change))
+        return self.seen(inward_mm, moved(rest.studio, rest.sight, displacement_mm))
+
+    def seen(self, inward_mm: np.ndarray, sight: Sight) -> Prediction:
+        """The same of a patch that the renderer has drawn: what the pixels see of it is known."""
+        pixels = self._pixels
+        change = self._exposure * (sight.light[pixels] - self._rest.sight.light[pixels])
+        return self._prediction(self._patch.posed(inward_mm), sight, self._mean(change))
 
     def tabled(self, inward_mm: np.ndarray) -> Prediction:
         """What the light by tilt makes of it, where the pixels look at rest."""

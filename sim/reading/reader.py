@@ -21,7 +21,7 @@ from sim.reading.fit import LEVELS, Fitted, Prediction, Priors, fitted
 from sim.reading.noise import Noise
 from sim.reading.patch import Patch
 from sim.reading.photo_view import PhotoView
-from sim.reading.pixel_maps import SUREST, pressed
+from sim.reading.pixel_maps import SUREST, TOUCHED_MM, pressed
 from sim.reading.rest_skin import bending, neighbours
 from sim.reading.sight import Sight
 from sim.reading.untouched import Untouched
@@ -76,13 +76,15 @@ class Reader:
         self._neighbours = neighbours(rest.skin)
 
     @functools.cached_property
-    def rest_normals(self) -> np.ndarray:
-        """Inward unit normals that the pixels see at rest, shape (N, 3); zero where no skin."""
+    def rest_maps(self) -> np.ndarray:
+        """Depth, its deviation, contact and inward unit normal that the pixels see at rest, shape
+        (N, 6), float32; NaN where they see no skin."""
         rest = self.rest
         sees = np.flatnonzero(rest.sees)
-        found = np.zeros((len(rest.sees), 3), np.float32)
+        found = np.full((len(rest.sees), 6), np.nan, np.float32)
         seen = rest.sight.blended(rest.skin.inward, rest.skin.faces, sees)
-        found[sees] = seen / np.linalg.norm(seen, axis=1, keepdims=True)
+        found[sees, :3] = 0.0
+        found[sees, 3:] = seen / np.linalg.norm(seen, axis=1, keepdims=True)
         return found
 
     def read(self, photo: np.ndarray, start: Touch | None = None) -> Touch:
@@ -188,7 +190,8 @@ class Reader:
         free = np.zeros(rest.skin.count, dtype=bool)
         free[corners[rest.sees & seen.near.ravel()]] = True
         if start is not None:
-            free |= start.inward_mm > 0.0
+            # Not all that may have moved then: in a video the patch would grow without end.
+            free |= start.inward_mm > TOUCHED_MM
         free |= (self._neighbours @ free.astype(np.float64)) > 0.0
         wider = cv2.dilate(seen.certain.astype(np.uint8), np.ones((3, 3))) > 0
         calm = free.copy()
@@ -210,7 +213,9 @@ class Reader:
         nothing = fit.view.untouched().misfit(seen.noise)
         enough = max(EXPLAINED * nothing, PLAIN)
         if start is not None:
-            found = fit.fine(start.inward_mm[chosen])
+            # The patch was drawn at the end of the last reading, but for what is let go since.
+            begun_mm = start.inward_mm[chosen]
+            found = fit.from_seen(begun_mm, fit.view.seen(begun_mm, start.sight))
             if found.misfit < enough:
                 return found
         dome = self._dome(seen, chosen)
@@ -251,16 +256,20 @@ class _Fit:
 
     def rough(self, start_mm: np.ndarray) -> Fitted:
         """By the light of the tilts alone: smooth, forgiving, and quick."""
-        return self._by(self.view.tabled, start_mm, LEVELS[:-1])
+        return self._by(self.view.tabled, (start_mm, self.view.tabled(start_mm)), LEVELS[:-1])
 
     def fine(self, start_mm: np.ndarray) -> Fitted:
         """With the renderer in the loop: shadows, and what the camera sees of moved skin."""
-        return self._by(self.view.rendered, start_mm, LEVELS[-1:])
+        return self.from_seen(start_mm, self.view.rendered(start_mm))
+
+    def from_seen(self, start_mm: np.ndarray, seen: Prediction) -> Fitted:
+        """The same from a guess of which it is known what it shows."""
+        return self._by(self.view.rendered, (start_mm, seen), LEVELS[-1:])
 
     def _by(
         self,
         predict: Callable[[np.ndarray], Prediction],
-        start_mm: np.ndarray,
+        start: tuple[np.ndarray, Prediction],
         levels: tuple[tuple[float, float], ...],
     ) -> Fitted:
-        return fitted(self.patch, self.priors, predict, start_mm, noise=self.noise, levels=levels)
+        return fitted(self.patch, self.priors, predict, start, noise=self.noise, levels=levels)

@@ -108,6 +108,18 @@ def test_a_video_goes_on_from_the_image_before(
     assert on.inward_mm.max() == pytest.approx(anew.inward_mm.max(), abs=0.02)
 
 
+def test_a_long_video_reads_no_more_skin_than_its_first_image(
+    mesh: MembraneMesh, studio: Studio, reader: Reader
+) -> None:
+    """Of a contact that stays, eight images on; noise moves the rim of what may move a little."""
+    photos = [photographed(studio, pressed(mesh), NOISE_GREY) for _ in range(8)]
+    first = touch = reader.read(photos[0])
+    for photo in photos[1:]:
+        touch = reader.read(photo, touch)
+    assert np.count_nonzero(touch.inward_mm) <= 1.1 * np.count_nonzero(first.inward_mm)
+    assert touch.inward_mm.max() == pytest.approx(first.inward_mm.max(), abs=0.02)
+
+
 def test_an_untouched_sensor_reads_as_untouched(studio: Studio, reader: Reader) -> None:
     """With noise and in another exposure of 2 grey levels."""
     touch = reader.read(photographed(studio, None, NOISE_GREY) + 2.0)

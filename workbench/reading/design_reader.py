@@ -109,8 +109,10 @@ def expect_light(name: str, photo: np.ndarray, sees: np.ndarray) -> None:
     Raises:
         DesignError: With the share.
     """
-    white = (photo.reshape(-1, 3)[sees] >= SATURATED).any(axis=1)
-    share = float(white.mean()) if white.size else 0.0
+    import cv2
+
+    white = np.maximum.reduce(cv2.split(photo)).ravel() >= SATURATED
+    share = float(np.count_nonzero(white & sees) / max(np.count_nonzero(sees), 1))
     if share > MOST_SATURATED:
         raise DesignError(
             f"{name} is saturated at {100.0 * share:.0f} % of the skin; at most "

@@ -70,36 +70,43 @@ class Predictor:
             return told(maps[:, :, : photos.shape[1]], force, self.reader.scales)
 
     def _tensor(self, images: np.ndarray) -> torch.Tensor:
-        found = torch.from_numpy(np.ascontiguousarray(images, np.float32)).to(self.device)
-        return found.permute(0, 3, 1, 2)
+        # Whole grey levels travel to the device as bytes.
+        found = torch.from_numpy(np.ascontiguousarray(images)).to(self.device)
+        return found.float().permute(0, 3, 1, 2)
 
 
 def told(maps: torch.Tensor, force: torch.Tensor, scales: Scales) -> Told:
     """A network's numbers in units, (B, OUTPUTS, H, W) and (B, 4)."""
 
     def numbers(values: torch.Tensor) -> np.ndarray:
-        return values.float().cpu().numpy()
+        return values.cpu().numpy()
 
-    variance = maps[:, LOG_VARIANCE].float().clamp(*LOG_RANGE)
-    force_sigma = torch.exp(0.5 * force[:, 3].float().clamp(*LOG_RANGE))
+    maps, force = maps.float(), force.float()
+    variance = maps[:, LOG_VARIANCE].clamp(*LOG_RANGE)
+    force_sigma = torch.exp(0.5 * force[:, 3].clamp(*LOG_RANGE))
+    pressure_MPa = scales.pressure_MPa * maps[:, PRESSURE].clamp(min=0.0)
     return Told(
         depth_mm=numbers(maps[:, DEPTH]),
         surface_mm=numbers(maps[:, SURFACE]),
         turn=numbers(maps[:, TURN].permute(0, 2, 3, 1)),
-        contact=numbers(maps[:, TOUCH]) > 0.0,
-        pressure_MPa=scales.pressure_MPa * np.maximum(numbers(maps[:, PRESSURE]), 0.0),
-        sigma_mm=scales.sigma * numbers(torch.exp(0.5 * variance)),
-        force_N=scales.force_N * numbers(force[:, :3]),
-        force_sigma_N=scales.force_N * scales.force_sigma * numbers(force_sigma),
+        contact=numbers(maps[:, TOUCH] > 0.0),
+        pressure_MPa=numbers(pressure_MPa),
+        sigma_mm=numbers(scales.sigma * torch.exp(0.5 * variance)),
+        force_N=numbers(scales.force_N * force[:, :3]),
+        force_sigma_N=numbers(scales.force_N * scales.force_sigma * force_sigma),
     )
 
 
 def in_size(images: Sequence[np.ndarray], columns: int, rows: int) -> np.ndarray:
-    """Photographs (h, w, 3) in a network's size, shape (B, rows, columns, 3), float32."""
+    """Photographs (h, w, 3) in a network's size, shape (B, rows, columns, 3); float32 where their
+    own was another."""
     import cv2
 
     found = []
     for image in images:
+        if image.shape[:2] == (rows, columns):
+            found.append(image)
+            continue
         smaller = image.shape[1] > columns
         how = cv2.INTER_AREA if smaller else cv2.INTER_LINEAR
         found.append(cv2.resize(image.astype(np.float32), (columns, rows), interpolation=how))
