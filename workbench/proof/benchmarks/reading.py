@@ -88,7 +88,7 @@ def batch_per_s() -> float:
     reader = load_reader(SHIPPED / f"{DESIGN}{SUFFIX}")
     predictor = Predictor(reader, torch_device())
     shape = (BATCH, reader.spec.rows, reader.spec.columns, 3)
-    photos = np.random.default_rng(1).integers(0, 256, shape).astype(np.float32)
+    photos = np.random.default_rng(1).integers(0, 256, shape, dtype=np.uint8)
     return BATCH / median_s(lambda: predictor.read(photos[0], photos))
 
 
