@@ -76,6 +76,7 @@ RECORD = Record(
         "sim.contact",
         "sim.fem",
         "sim.forces",
+        "sim.reading.network",
         "workbench.learning",
         "workbench.system",
         "workbench.view",
