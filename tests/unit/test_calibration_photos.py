@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from pathlib import Path
 
 import cv2
@@ -9,9 +10,9 @@ import numpy as np
 import pytest
 
 from workbench.calibration.contact_circle import find_circle, relative_change
-from workbench.calibration.drift import measured_drift
+from workbench.calibration.drift import measured_drift, seen_photos
 from workbench.calibration.light_basis import contact_box
-from workbench.calibration.photo_set import COLUMNS, Circle, read_photo_set
+from workbench.calibration.photo_set import COLUMNS, BallPhoto, Circle, PhotoSet, read_photo_set
 from workbench.core.base.errors import DesignError
 
 WIDTH, HEIGHT = 200, 150
@@ -140,6 +141,65 @@ def test_no_contact_is_refused_by_name() -> None:
         with pytest.raises(DesignError, match=r"flat\.png shows no contact") as caught:
             find_circle(change, "flat.png")
         assert "column_px" in caught.value.hint
+
+
+def ball_photo(number: int, *, dent: bool, circle: Circle | None = None) -> BallPhoto:
+    """A photograph with a dent or with noise alone."""
+    noise = np.random.default_rng(number).normal(0.0, 1.0, (HEIGHT, WIDTH, 3))
+    change = dent_change(100, 75, 16) if dent else 0.0
+    image = np.clip(np.round(120.0 + change + noise), 0, 255).astype(np.uint8)
+    return BallPhoto(
+        name=f"p{number}.png",
+        image=image,
+        ball_mm=4.0,
+        circle=circle,
+        depth_mm=None,
+        force_N=None,
+        held_out=False,
+    )
+
+
+def photo_set(dents: int, weak: int) -> PhotoSet:
+    """Photographs with a dent, then weak ones."""
+    photos = [ball_photo(number, dent=number < dents) for number in range(dents + weak)]
+    idle = np.full((HEIGHT, WIDTH, 3), 120, np.uint8)
+    return PhotoSet(idle=idle, idle_png=b"", photos=tuple(photos))
+
+
+def test_a_weak_photograph_among_good_ones_is_left_out() -> None:
+    """One that shows nothing, and one whose contact is not on the skin, each with its reason."""
+
+    def located(circle: Circle, name: str) -> str:
+        if name == "p0.png":
+            raise DesignError(f"{name} is off the skin", hint="", at="")
+        return name
+
+    seen, left_out = seen_photos(photo_set(dents=7, weak=1), located)
+    assert [each.photo.name for each, _ in seen] == [at for _, at in seen]
+    assert [each.photo for each in left_out] == ["p0.png", "p7.png"]
+    assert "off the skin" in left_out[0].why and "shows no contact" in left_out[1].why
+
+
+@pytest.mark.parametrize(("dents", "weak"), [(4, 1), (6, 4)])
+def test_photographs_of_something_else_are_refused(dents: int, weak: int) -> None:
+    """Fewer than five remain, or fewer than two thirds."""
+    with pytest.raises(DesignError, match=rf"p{dents}\.png shows no contact"):
+        seen_photos(photo_set(dents, weak), lambda circle, name: name)
+
+
+def test_a_contact_that_was_given_is_not_left_out() -> None:
+    """Its circle is wrong, and who wrote it is told."""
+    given = ball_photo(9, dent=True, circle=Circle(column_px=5.0, row_px=5.0, radius_px=4.0))
+    photos = photo_set(dents=7, weak=0)
+    photos = dataclasses.replace(photos, photos=(*photos.photos, given))
+
+    def located(circle: Circle, name: str) -> str:
+        if name == given.name:
+            raise DesignError(f"{name} is off the skin", hint="", at="")
+        return name
+
+    with pytest.raises(DesignError, match=r"p9\.png is off the skin"):
+        seen_photos(photos, located)
 
 
 def test_drift_is_told_by_untouched_skin() -> None:

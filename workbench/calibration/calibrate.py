@@ -22,7 +22,7 @@ from sim.optics.studio.unit_residual import unit_bytes
 from workbench.calibration.ball_presses import BallPress, press_balls
 from workbench.calibration.contacts import Contacts, Light, Work
 from workbench.calibration.derivatives import Fit, Task
-from workbench.calibration.drift import SeenPhoto, seen_photo
+from workbench.calibration.drift import LeftOut, SeenPhoto, seen_photos
 from workbench.calibration.elasticity import Young, fitted_young
 from workbench.calibration.fitted_design import fitted_design, with_unit
 from workbench.calibration.light_basis import LightBasis
@@ -90,6 +90,8 @@ class Calibration:
     """Of `all` but powers; None where these alone were fitted."""
     young: Young | None = None
     """None where no force was measured."""
+    left_out: tuple[LeftOut, ...] = ()
+    """Photographs that show no contact."""
 
 
 def calibrate(
@@ -119,10 +121,11 @@ def calibrate(
     """
     _expect_size(design, photos)
     span = _spans(SHARES[refining], monitor)
-    contacts = [seen_photo(photo, photos.idle) for photo in photos.photos]
     mesh: MembraneMesh = stored(design, PressCase(), "mesh", store, span["mesh"])
     places = SeenPlaces(mesh, design.optics)
-    located = [(each.photo, places.place(each.circle, each.photo.name)) for each in contacts]
+    found, left_out = seen_photos(photos, places.place)
+    contacts, located = [each for each, _ in found], [(each.photo, at) for each, at in found]
+    photos = replace(photos, photos=tuple(each.photo for each in contacts))
     solved = press_balls(design, places, located, store, span["presses"])
     work = Work(design=design, photos=photos, store=store, mesh=mesh, solved=tuple(solved))
     known, light = _whose_lights(work, Contacts(seen=contacts, presses=solved), lights, span)
@@ -140,7 +143,8 @@ def calibrate(
         design, light = fit.scene.of(design), Light(basis=fit.basis, powers=fit.powers)
         away = shifts_of(task, fit)
         moved = work.moved(moved.seen, away, SeenPlaces(mesh, design.optics))
-    return _whole(replace(work, design=design), moved, (known, light, refined), span)
+    whole = _whole(replace(work, design=design), moved, (known, light, refined), span)
+    return replace(whole, left_out=tuple(left_out))
 
 
 def _spans(shares: dict[str, float], monitor: Monitor) -> dict[str, Monitor]:

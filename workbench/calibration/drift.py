@@ -7,13 +7,19 @@ changes is then looked for in the photograph with that taken back, and so is the
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
 from workbench.calibration.contact_circle import MOST_SHIFT, find_circle, relative_change
-from workbench.calibration.photo_set import BallPhoto, Circle
+from workbench.calibration.photo_set import FEWEST, BallPhoto, Circle, PhotoSet
+from workbench.core.base.errors import DesignError
 
+Place = TypeVar("Place")
+FEWEST_SHARE = 2 / 3
+"""Of the photographs to fit to that must show a contact: else they are of something else."""
 BEYOND = 2.3
 """Skin is untouched beyond this many radii of the contact's circle [1]."""
 FEWEST_PX = 500
@@ -98,6 +104,46 @@ class SeenPhoto:
     def at_rest(self) -> np.ndarray:
         """Grey levels at rest's exposure, shape (H, W, 3), float64."""
         return self.drift.taken_back(self.photo.image)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class LeftOut:
+    """A photograph in which no contact was found, or none on the skin."""
+
+    photo: str
+    why: str
+
+
+def seen_photos(
+    photos: PhotoSet, located: Callable[[Circle, str], Place]
+) -> tuple[list[tuple[SeenPhoto, Place]], list[LeftOut]]:
+    """The photographs that show a contact, with its place on the skin, and those that do not.
+
+    A weak photograph among good ones is left out. Contacts that were given are not doubted.
+
+    Args:
+        photos: The set.
+        located: Where on the skin a circle of the photograph of that name is.
+
+    Raises:
+        DesignError: With the photograph's name: if a contact that was given is not on the skin, or
+            the first one without a contact if so many are left out that `FEWEST` or two thirds of
+            those to fit to do not remain.
+    """
+    seen, left_out, first = list[tuple[SeenPhoto, Place]](), list[LeftOut](), None
+    for photo in photos.photos:
+        try:
+            found = seen_photo(photo, photos.idle)
+            seen.append((found, located(found.circle, photo.name)))
+        except DesignError as error:
+            if photo.circle is not None:
+                raise
+            first = first or error
+            left_out.append(LeftOut(photo=photo.name, why=error.message))
+    fitted = sum(not each.photo.held_out for each, _ in seen)
+    if first is not None and fitted < max(FEWEST, FEWEST_SHARE * len(photos.fitted)):
+        raise first
+    return seen, left_out
 
 
 def seen_photo(photo: BallPhoto, idle: np.ndarray) -> SeenPhoto:

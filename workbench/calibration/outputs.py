@@ -50,6 +50,7 @@ def calibration_figures(found: Calibration, scored: Scored) -> dict[str, Any]:
     """The figures of a calibration by name, as JSON holds them."""
     return {
         "photos": [_plain(each) for each in scored.photos],
+        "left_out": [_plain(each) for each in found.left_out],
         "idle": {"psnr_dB": scored.idle_psnr_dB, "ssim": scored.idle_ssim},
         "fitted": {
             "lights_known": found.known,

@@ -34,6 +34,7 @@ def report(found: Calibration, scored: Scored, idle: np.ndarray) -> str:
     body = [
         f"<h1>Calibration of {html.escape(found.design.name)}</h1>",
         _summary(scored),
+        *(f"<p>Left out: {html.escape(each.why)}.</p>" for each in found.left_out),
         WORDS,
         _lights(found),
         _unknowns(found),

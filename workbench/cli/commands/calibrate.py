@@ -66,6 +66,8 @@ def run(options: argparse.Namespace, project: Project) -> int:
             f"{each.photo:20} {each.depth_mm:5.2f} mm  {each.psnr_dB:5.1f} dB  polynomial "
             f"{each.polynomial_psnr_dB:5.1f}  null {each.null_psnr_dB:5.1f}{held}"
         )
+    for each in figures["left_out"]:
+        say(f"left out: {each['why']}")
     _say_known(figures["fitted"])
     say(f"open {options.out / REPORT}")
     return 0
