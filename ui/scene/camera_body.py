@@ -40,21 +40,7 @@ def turned(outline_mm: tuple[tuple[float, float], ...]) -> tuple[np.ndarray, np.
     Args:
         outline_mm: Radius and height of the corners of its outline.
     """
-    angles = 2.0 * np.pi * np.arange(AROUND) / AROUND
-    radius, height = np.array(outline_mm).T
-    points = np.stack(
-        [
-            np.outer(radius, np.cos(angles)),
-            np.outer(radius, np.sin(angles)),
-            np.repeat(height[:, None], AROUND, axis=1),
-        ],
-        axis=-1,
-    ).reshape(-1, 3)
-    ring = np.arange(AROUND)
-    after = (ring + 1) % AROUND
-    faces = []
-    for k in range(len(radius) - 1):
-        low, high = k * AROUND, (k + 1) * AROUND
-        faces.append(np.stack([low + ring, low + after, high + after], axis=1))
-        faces.append(np.stack([low + ring, high + after, high + ring], axis=1))
-    return points.astype(np.float32), np.concatenate(faces).astype(np.uint32)
+    from trimesh.creation import revolve
+
+    body = revolve(np.array(outline_mm), sections=AROUND)
+    return body.vertices.astype(np.float32), body.faces.astype(np.uint32)
