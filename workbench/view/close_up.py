@@ -33,6 +33,13 @@ class CloseUp(NamedTuple):
     """How much it is enlarged [1]."""
 
 
+class Window(NamedTuple):
+    """The place of a contact in the image."""
+
+    rows: slice
+    columns: slice
+
+
 def close_up(frames: TactileFrames, number: int) -> CloseUp | None:
     """The contact of a frame, or of the last one where it has none; None where it is large or none.
 
@@ -40,8 +47,12 @@ def close_up(frames: TactileFrames, number: int) -> CloseUp | None:
         frames: Images and fields of a camera.
         number: Frame.
     """
-    import cv2
+    window = contact_window(frames, number)
+    return None if window is None else enlarged(frames, number, window)
 
+
+def contact_window(frames: TactileFrames, number: int) -> Window | None:
+    """Where `close_up` looks; it takes longer to find than to enlarge."""
     from sim.optics.studio.metrics import contact_box, contact_pixels
 
     for frame in (number, len(frames.rgb) - 1):
@@ -54,7 +65,14 @@ def close_up(frames: TactileFrames, number: int) -> CloseUp | None:
     side = max(LEAST_PX, *(round(WIDER * (span.stop - span.start)) for span in box))
     if side > LARGE * high:
         return None
-    rows, columns = (_about(span, side, size) for span, size in zip(box, (high, wide), strict=True))
+    return Window(*(_about(span, side, size) for span, size in zip(box, (high, wide), strict=True)))
+
+
+def enlarged(frames: TactileFrames, number: int, window: Window) -> CloseUp:
+    """A place of the image at rest and in a frame."""
+    import cv2
+
+    rows, columns = window
     near = [
         cv2.resize(
             np.asarray(frames.rgb[k])[rows, columns],
@@ -64,7 +82,8 @@ def close_up(frames: TactileFrames, number: int) -> CloseUp | None:
         for k in (0, number)
     ]
     gap = np.full((SIDE_PX, BETWEEN_PX, 3), WHITE, np.uint8)
-    return CloseUp(rgb=np.hstack([near[0], gap, near[1]]), times=SIDE_PX / side)
+    times = SIDE_PX / (rows.stop - rows.start)
+    return CloseUp(rgb=np.hstack([near[0], gap, near[1]]), times=times)
 
 
 def _about(span: slice, side: int, size: int) -> slice:

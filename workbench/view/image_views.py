@@ -26,6 +26,7 @@ LEAST_SCALE_GREY = 8
 """Least end of the scale of a change in false colour: rounding and noise stay dark."""
 LINE_GREY = 255
 """Grey level of the line between what was and what is."""
+GREY_LEVELS = 256
 SATURATING = 0.1
 """Share of the whole change in grey levels that may saturate."""
 ARROW_SHARE = 0.08
@@ -136,9 +137,11 @@ def visible_change(
     change = image.astype(np.int16) - background.astype(np.int16)
     if gain is not None:
         return np.clip(128 + gain * change.astype(np.int32), 0, 255).astype(np.uint8), gain
-    largest_first = -np.sort(-np.abs(change), axis=None)
-    together = np.cumsum(largest_first, dtype=np.int64)
-    most = int(largest_first[np.searchsorted(together, SATURATING * together[-1])])
+    # Counted by level, the largest first: sorting a million of them takes ten times as long.
+    levels = np.arange(GREY_LEVELS)[::-1]
+    counts = np.bincount(np.abs(change).ravel(), minlength=GREY_LEVELS)[::-1]
+    together = np.cumsum(levels * counts)
+    most = int(levels[np.searchsorted(together, SATURATING * together[-1])])
     gain = max(1, min(MOST_GAIN, 127 // most)) if most else 1
     return np.clip(128 + gain * change, 0, 255).astype(np.uint8), gain
 

@@ -16,16 +16,16 @@ from ui.page.offer import offer
 from ui.panels.results.camera_row import CameraRow
 from ui.panels.results.image_size import ImageSize
 from ui.panels.results.probe import Probe
+from ui.panels.results.seen_change import SeenChange
 from ui.patches.image_zoom import image_zoom
 from ui.patches.leading import empty_state
 from workbench.core.result.sensing import Shot, TactileFrames
-from workbench.view.close_up import close_up
+from workbench.view.close_up import enlarged
 from workbench.view.image_views import (
     Looked,
     View,
     crossed,
     looked,
-    unseen_words,
     views,
     visible_change,
     wiped,
@@ -57,6 +57,7 @@ class ImageTab:
         gui = desk.server.gui
         self.cameras: tuple[tuple[np.ndarray, TactileFrames | None], ...] = ()
         """Of each camera the background and frames, (1 + K, H, W, 3) uint8, and their fields."""
+        self._seen = SeenChange()
         self.number = 0
         """Frame on show."""
         self.caption = gui.add_markdown(NO_IMAGE)
@@ -137,6 +138,7 @@ class ImageTab:
 
     def _offer(self) -> None:
         """Offer the cameras and views that there are."""
+        self._seen.take(self.cameras)
         self.camera.offer(len(self.cameras))
         offer(self.view, tuple(view.value for view in views(self.cameras[0][1])))
         self.view.visible = True
@@ -165,13 +167,14 @@ class ImageTab:
         if self.wipe.value:
             rest = self._looked(what, 0, beside=number)
             image = wiped(image, rest.rgb, self.wipe.value / 100)
+        seen = self._seen.of(self.camera.number, number)
         change, gain = visible_change(
-            np.asarray(images[number]), np.asarray(images[0]), GAINS[self.gain.value]
+            np.asarray(images[number]), np.asarray(images[0]), self._gain(number)
         )
-        nothing = unseen_words(np.asarray(images[number]), np.asarray(images[0])) if number else ""
-        unseen = f" · **{nothing}**" if nothing else ""
+        unseen = f" · **{seen.unseen}**" if seen.unseen else ""
         bar = found.bar
-        near = None if frames is None else close_up(frames, number)
+        window = seen.window
+        near = None if frames is None or window is None else enlarged(frames, number, window)
         words = f"<div style='font-size:12px;margin:2px 12px'>{found.words}</div>"
         scale = "" if bar is None else scale_bar(bar.low, bar.high, bar.unit)
         with self.desk.server.atomic():
@@ -191,8 +194,12 @@ class ImageTab:
 
     def _looked(self, what: View, number: int, *, beside: int = 0) -> Looked:
         images, frames = self.chosen()
-        gain = GAINS[self.gain.value]
+        gain = self._gain(number)
         return looked(what, images, number, frames, beside=beside, gain=gain)
+
+    def _gain(self, number: int) -> int:
+        """What the difference of a frame is multiplied by."""
+        return GAINS[self.gain.value] or self._seen.of(self.camera.number, number).gain
 
     def _crossed(self, image: np.ndarray) -> np.ndarray:
         """The image with a cross at the chosen pixel, of the camera's or of fewer pixels."""

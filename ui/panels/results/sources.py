@@ -30,6 +30,9 @@ class SourcesFolder:
         self.skin: Skin | None = None
         self.others: dict[Source, ForceField] = {}
         self._frame = 0
+        self._texts: dict[tuple[int, tuple[Source, ...], str], str] = {}
+        """What was said of a frame, with which sources stale and which advice: its peaks take tens
+        of milliseconds, and playing asks for the same frames again and again."""
         gui, fields = desk.server.gui, desk.fields
         with gui.add_folder("Sources of forces", expand_by_default=False):
             hint = "What skin and arrows show; a difference is that of the quantity on show"
@@ -64,6 +67,7 @@ class SourcesFolder:
         """Another press on a skin: what other sources found of the one before is not of this."""
         self.contact, self.skin = contact, skin
         self.others.clear()
+        self._texts.clear()
         self._offer()
         if contact is not None and self.desk.session.calls().keys() & STAGES.keys():
             # Their results may be stored, and were shown before the press came.
@@ -75,6 +79,7 @@ class SourcesFolder:
         if self.contact is None or len(found.reaction_N) != len(self.contact.reaction_N):
             return
         self.others[STAGES[stage]] = found
+        self._texts.clear()
         self._offer(preferred=self.choice.value)
         self._put_on_skin()
         self.tell(self._frame)
@@ -122,6 +127,8 @@ class SourcesFolder:
             return
         stale = [s for stage, s in STAGES.items() if s in found and not self.desk.current(stage)]
         advice = "" if self.doubt.visible else self._advice()
-        text = sources_text(found, frame, skin, stale=stale, advice=advice)
-        if self.table.content != text:
-            self.table.content = text
+        asked = frame, tuple(stale), advice
+        if asked not in self._texts:
+            self._texts[asked] = sources_text(found, frame, skin, stale=stale, advice=advice)
+        if self.table.content != self._texts[asked]:
+            self.table.content = self._texts[asked]
