@@ -22,7 +22,7 @@ from tests.ui.widgets import (
     upload,
     wait_until,
 )
-from workbench.proof.benchmarks.browser import arm, pixels
+from workbench.proof.benchmarks.handle import arm, pixels
 
 pytestmark = [pytest.mark.ui, pytest.mark.slow]
 

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import statistics
-from collections.abc import Callable
 from typing import Any
+
+from workbench.proof.benchmarks.handle import arm, pixels, switch
 
 DRAGS = 5
 DRAG_PX = 24
+SHOWN_MS = 2_000
+"""Until the page shows what was switched on."""
 HOVER_MS = 500
 """Until the page knows that the handle is under the mouse."""
+LONGEST_MS = 20_000
+"""After which a move is given up."""
 REST_MS = 4_000
 """Between two drags: previews of the one before have come."""
 WATCH_IMAGES = """
@@ -22,18 +27,22 @@ WATCH_IMAGES = """
 }
 """
 """Notes when an image of the page has a new picture."""
-FIRST_PICTURE = "() => window.pictures.length ? window.pictures[0] - window.moved : 1e9"
+FIRST_PICTURE = "() => window.pictures.length ? window.pictures[0] - window.moved : 0"
 
 
-def ring_drag_s(page: Any, arm: Callable[[], tuple[int, int]]) -> float:
+def ring_drag_s(page: Any) -> float:
     """Median time from a move of the ring's handle to the changed preview in the page [s].
 
     Args:
         page: At a design whose image is computed.
-        arm: Switches the handle on, and tells the pixel of the tip of its arm.
     """
+    page.locator('[role="tab"]').filter(has_text="Optics").click()
+    page.wait_for_timeout(SHOWN_MS)
+    before = pixels(page)
+    switch(page, "Ring handle")
+    page.wait_for_timeout(SHOWN_MS)
     page.evaluate(WATCH_IMAGES)
-    x, y = arm()
+    x, y = arm(before, pixels(page))
     times = []
     for drag in range(DRAGS + 1):
         # Up first: the ring stands low. Each from where the last one has left it.
@@ -45,9 +54,11 @@ def ring_drag_s(page: Any, arm: Callable[[], tuple[int, int]]) -> float:
         page.evaluate("() => { window.pictures = []; window.moved = performance.now(); }")
         y -= DRAG_PX * (-1) ** drag
         page.mouse.move(x, y, steps=2)
+        found_ms = page.wait_for_function(FIRST_PICTURE, timeout=LONGEST_MS).json_value()
+        times.append(found_ms / 1000)
         page.wait_for_timeout(REST_MS)
-        times.append(page.evaluate(FIRST_PICTURE) / 1000)
         page.mouse.up()
         page.wait_for_timeout(REST_MS)
+    switch(page, "Ring handle")
     # The first one also loads what renders it.
     return statistics.median(times[1:])
