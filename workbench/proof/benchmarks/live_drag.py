@@ -24,10 +24,10 @@ FIRST_DENT = SETTLED_UPLOAD.replace("large[large.length - 1]", "large[0]")
 """The same of the first."""
 ANSWERED = re.compile(r"at once, in (\d+\.\d+) s")
 """What the page says of a touch."""
-SETTLED = "settled in"
+SETTLED = re.compile(r"settled in")
 READY_MS = 20_000
-LONGEST_S = 20.0
-"""After which a move is given up."""
+FIRST_S, LONGEST_S = 90.0, 20.0
+"""After which the first press, which loads what presses, and a move are given up."""
 
 
 def live_drag_s(page: Any, url: str) -> tuple[float, ...]:
@@ -43,13 +43,13 @@ def live_drag_s(page: Any, url: str) -> tuple[float, ...]:
         follower.uuid("Live")
         switch(page, "Live")
         try:
-            _heard(follower, 0, re.compile(SETTLED))
+            _heard(follower, 0, SETTLED, FIRST_S)
             # The lanes load kernels, the page its first skin, and the skin is made ready.
             page.wait_for_timeout(READY_MS)
             times = [_drag_s(page, follower, arm(before, pixels(page)), k) for k in range(DRAGS)]
         finally:
             page.mouse.up()
-            follower.set("Live", False)
+            switch(page, "Live")
     return tuple(statistics.median(found) for found in zip(*times, strict=True))
 
 
@@ -77,11 +77,13 @@ def _drag_s(
     return answered_s, dent_s, settled_ms / 1e3
 
 
-def _heard(follower: Tab, begin: int, words: re.Pattern[str]) -> re.Match[str]:
+def _heard(
+    follower: Tab, begin: int, words: re.Pattern[str], seconds: float = LONGEST_S
+) -> re.Match[str]:
     """Words in a message from number `begin` on, once they have come."""
 
     def found() -> re.Match[str] | None:
         texts = (str(message) for _, message in follower.seen[begin:])
         return next((match for text in texts if (match := words.search(text))), None)
 
-    return follower.wait(found, LONGEST_S, f"the page says: {words.pattern}")
+    return follower.wait(found, seconds, f"the page says: {words.pattern}")
