@@ -6,7 +6,8 @@ page is looked through whenever something has come into it, and given what lacks
 
 - thumbs, boxes, images and buttons of an icon get the name that stands beside them;
 - titles of folders, and whatever is called a button, take the focus; Enter and space click;
-- the edge of a dock is a separator: arrows move it, by a drag of the page's own.
+- the edge of a dock is a separator: arrows move it, by a drag of the page's own;
+- arrows on a slider, a tab or such an edge are theirs: viser turns the eye by them as well.
 """
 
 from __future__ import annotations
@@ -30,6 +31,7 @@ MEND = """
   if (before) {
     before.watch.disconnect();
     document.removeEventListener('keydown', before.key, true);
+    document.body.removeEventListener('keydown', before.arrow);
   }
   const icons = ICONS;
   const put = (node, name, value) => {
@@ -139,7 +141,13 @@ MEND = """
     setTimeout(look, PAUSE);
   };
   document.addEventListener('keydown', key, true);
-  window.namedPage = {watch, key};
+  /* After the widget, before the document, where viser turns the eye by any arrow. */
+  const arrow = event => {
+    if (event.key.startsWith('Arrow') && event.target.closest('[role=slider], [role=tab], '
+      + '[role=separator]')) event.stopPropagation();
+  };
+  document.body.addEventListener('keydown', arrow);
+  window.namedPage = {watch, key, arrow};
   look();
 })();
 """
