@@ -81,7 +81,6 @@ class Followers:
             desk.scene.object.place(session.case.press)
         if desk.live:
             self.live_press.follow()
-        # After the press, which the hand waits for in the same worker.
         self.foresight.follow()
         for panel in desk.panels:
             panel.refresh()

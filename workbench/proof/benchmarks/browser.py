@@ -201,6 +201,7 @@ STEPS: tuple[tuple[tuple[str, ...], Callable[[Any, str], tuple[float, ...]]], ..
     (("ring_drag_to_preview",), lambda page, url: (ring_drag_s(page),)),
     (("slider_to_membrane",), lambda page, url: (_slider_s(page),)),
     (("slider_to_callback",), lambda page, url: (key_to_server_s(page, url),)),
-    (("other_tab_blocked",), lambda page, url: (blocked_s(url),)),
+    # The last one: no page may edit meanwhile.
+    (("other_tab_blocked",), lambda page, url: (page.close(), blocked_s(url))[1:]),
 )
 """What fills in which rows, in turn; each from any tab of the page."""
