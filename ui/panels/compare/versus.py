@@ -221,12 +221,18 @@ class VersusFolder:
     def draw(self) -> None:
         """Draw A and B beside or over the sensor in the view, or take them away."""
         if not self.in_view.value or self.hidden or self.a is None or self.b is None:
-            self.ghosts.clear()
+            self._clear()
             return
+        # Dimensions would stand among the names of the designs.
+        self.desk.tell("compared", True)
         wanted, own = self._wanted(self.a, self.b)
         bounds = self.desk.scene.body.bounds_mm
         then = self.desk.guarded(self._drawn)
         self.ghosts.show(wanted, own=own, bounds_mm=bounds, then=then)
+
+    def _clear(self) -> None:
+        self.ghosts.clear()
+        self.desk.tell("compared", False)
 
     def _wanted(self, a: Side, b: Side) -> tuple[list[Ghost], str]:
         """What is drawn, and the label of the sensor: A where it is that, else what it is."""
@@ -261,7 +267,7 @@ class VersusFolder:
         """Another sensor is in the view: ghosts of the old comparison go."""
         if self.in_view.value:
             self.in_view.value = False
-        self.ghosts.clear()
+        self._clear()
 
     def cover(self, hidden: bool) -> None:
         """Step aside while parts are looked at."""

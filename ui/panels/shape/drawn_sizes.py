@@ -24,6 +24,8 @@ class DrawnSizes:
         self.lines = DimensionLines(desk.scene.api, self._moved, edits=desk.editor.edits)
         self.covered = False
         """Whether parts or the edges of a mesh are looked at."""
+        self.compared = False
+        """Whether other designs stand beside the sensor."""
         self._shown: tuple[Dimension, ...] = ()
         """What was drawn last: the same is not sent again."""
         self._began: tuple[Dimension, float] | None = None
@@ -37,7 +39,7 @@ class DrawnSizes:
     def refresh(self) -> None:
         """Draw the sizes of the design as it stands."""
         desk = self.desk
-        shown = bool(self.box.value) and not self.covered
+        shown = bool(self.box.value) and not self.covered and not self.compared
         found = dimensions(desk.session.design) if shown else ()
         if found == self._shown:
             return
@@ -48,12 +50,14 @@ class DrawnSizes:
             self.lines.show([(line, self._words(line)) for line in found], size_mm)
 
     def show(self, stage: str, result: Any) -> None:
-        """Follow the size of a new body; make room for parts and meshes that are looked at."""
+        """Follow the size of a new body; make room for what else is looked at."""
         if stage == "covered":
             self.covered = bool(result)
+        elif stage == "compared":
+            self.compared = bool(result)
         elif stage == "build":
             self._shown = ()
-        if stage in ("build", "covered"):
+        if stage in ("build", "covered", "compared"):
             self.refresh()
 
     def _words(self, line: Dimension) -> str:
