@@ -178,12 +178,13 @@ def test_who_no_longer_edits_holds_nothing(bench: Bench) -> None:
     assert len(bench.edited) == count
 
 
-def test_parts_take_the_lines_away(bench: Bench) -> None:
-    """And they come back with the sensor."""
+@pytest.mark.parametrize("news", ["covered", "compared"])
+def test_what_else_is_looked_at_takes_the_lines_away(bench: Bench, news: str) -> None:
+    """Parts, and other designs beside the sensor; they come back with it."""
     node = bench.api.nodes["/dimensions/shape_cylinder_mm/line"]
-    bench.sizes.show("covered", True)
+    bench.sizes.show(news, True)
     assert node.removed
-    bench.sizes.show("covered", False)
+    bench.sizes.show(news, False)
     assert not hasattr(bench.api.nodes["/dimensions/shape_cylinder_mm/line"], "removed")
 
 
