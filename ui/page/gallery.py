@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ui.page.editor import Editor
+from workbench.report import thumbnails
 
 PRESS = (
     "const wanted=this.dataset.goto?'Close':this.dataset.name;"
@@ -40,6 +41,8 @@ ICONS = {
 }
 """Lines of what has no thumbnail, in a box of 24 by 24."""
 THUMBNAIL = "width:100%;height:76px;object-fit:contain"
+GROUND = "background:rgb({},{},{});border-radius:5px".format(*thumbnails.GROUND)
+"""Behind all of them the same, whether their own ground is clear or not, as in Compare."""
 IN_A_ROW = 5
 """Buttons of a row below the cards."""
 
@@ -150,7 +153,7 @@ def _card(card: Card) -> str:
     name = html.escape(card.name, quote=True)
     if card.png is not None:
         data = base64.b64encode(card.png).decode()
-        thumbnail = f"<img alt='' style='{THUMBNAIL}' src='data:image/png;base64,{data}'>"
+        thumbnail = f"<img alt='' style='{THUMBNAIL};{GROUND}' src='data:image/png;base64,{data}'>"
     elif card.icon:
         line = "fill='none' stroke='currentColor' stroke-width='1.2' stroke-linejoin='round'"
         path = f"<path {line} d='{ICONS[card.icon]}'/>"

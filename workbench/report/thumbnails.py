@@ -58,6 +58,17 @@ def thumbnail_png(store: Store, keys: Mapping[str, str]) -> bytes | None:
     return png_bytes(np.concatenate([tiles.get(stage, blank) for stage in TILES], axis=1))
 
 
+def first_tile(png: bytes) -> bytes:
+    """What stands first in a thumbnail, as one PNG file: for lists of membranes at rest."""
+    import cv2
+
+    bgr = cv2.imdecode(np.frombuffer(png, dtype=np.uint8), cv2.IMREAD_COLOR)
+    if bgr is None:
+        # Not to be read: a page shows that it is broken.
+        return png
+    return png_bytes(np.asarray(bgr)[:, :TILE_PX, ::-1])
+
+
 def _drawn(png: np.ndarray) -> np.ndarray:
     """A PNG with a clear ground as a tile, shape (T, T, 3), uint8."""
     import cv2

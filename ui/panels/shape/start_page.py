@@ -13,6 +13,7 @@ from ui.page.gallery import Card
 from ui.page.header import HOME_KEY
 from ui.panels.shape.design_files import DesignFiles, shipped_cards
 from workbench.project.saved_designs import SavedDesign, file_stamp
+from workbench.report.thumbnails import first_tile
 from workbench.variants.variant_files import Entry, Shelf
 from workbench.variants.variants import load_variant, variant_path
 
@@ -85,7 +86,8 @@ class StartPage:
             if isinstance(one, SavedDesign):
                 cards += self.files.own_cards([one], OWN)
             elif one.variant is not None:
-                png = one.thumbnail.read_bytes() if one.thumbnail is not None else None
+                # The membrane alone, as of what ships: three side by side would be tiny.
+                png = first_tile(one.thumbnail.read_bytes()) if one.thumbnail is not None else None
                 words = one.variant.state.design.family
                 cards.append(Card(name=f"{one.name}{VARIANT}", words=words, png=png, group=OWN))
         return cards
