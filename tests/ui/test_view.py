@@ -165,3 +165,23 @@ def test_playing_stops_at_the_end_or_loops(page: Any, server: Server) -> None:
     stopped = slider_value(page, "Frame")
     page.locator("body").press("j")
     wait_until(lambda: slider_value(page, "Frame") == max(stopped - 1, 0), 10, "a frame back")
+
+
+def test_arrows_on_a_slider_leave_the_eye(page: Any, server: Server) -> None:
+    """They step through frames; where nothing has the focus they turn the eye, as viser has it."""
+    pressed(page, server)
+    eye = "() => window.__viserMutable.camera.position.toArray()"
+
+    def hold() -> Any:
+        page.keyboard.down("ArrowLeft")
+        page.wait_for_timeout(1_000)
+        page.keyboard.up("ArrowLeft")
+        page.wait_for_timeout(1_000)
+        return page.evaluate(eye)
+
+    before, frame = page.evaluate(eye), slider_value(page, "Frame")
+    control(page, "Frame").locator('[role="slider"]').focus()
+    assert np.allclose(hold(), before)
+    assert slider_value(page, "Frame") == frame - 1
+    page.evaluate("() => document.activeElement.blur()")
+    assert not np.allclose(hold(), before, atol=0.5)
