@@ -25,7 +25,9 @@ PRESS = (
 GRID = "display:grid;grid-template-columns:repeat(auto-fill,minmax(105px,1fr));gap:8px;margin:6px"
 CARD = (
     "border:1px solid #8886;border-radius:8px;padding:6px;cursor:pointer;text-align:center;"
-    "font:inherit;font-size:11px;line-height:1.25;background:none;color:inherit"
+    "font:inherit;font-size:11px;line-height:1.25;background:none;color:inherit;"
+    # Pictures of a row stand at one height, however long the words below them.
+    "display:flex;flex-direction:column;justify-content:flex-start"
 )
 HIDE = (
     "<style>.mantine-Modal-content:has([data-name]) .mantine-Flex-root:is(:has(> div > p > label),"
@@ -162,7 +164,7 @@ def _card(card: Card) -> str:
         )
     else:
         thumbnail = f"<div style='{THUMBNAIL};font-size:48px;opacity:.4'>&#9633;</div>"
-    words = f"<br><span style='opacity:.85'>{html.escape(card.words)}</span>" if card.words else ""
+    words = f"<span style='opacity:.85'>{html.escape(card.words)}</span>" if card.words else ""
     there = {"goto": card.goto, "fold": card.fold}
     lead = "".join(f' data-{k}="{html.escape(v)}"' for k, v in there.items() if v)
     return (
