@@ -6,7 +6,7 @@ import re
 import statistics
 from typing import Any
 
-from workbench.proof.benchmarks.handle import arm, pixels, switch
+from workbench.proof.benchmarks.handle import arm, hold, pixels, switch
 from workbench.proof.benchmarks.tab import Tab
 
 LIVE_ROWS = ("touch_answered", "drag_to_touch", "drag_to_settled")
@@ -59,9 +59,7 @@ def _drag_s(
     """Drag the handle, which is held by the tip of its arm, down or up, and let it go."""
     x, y = tip
     way = (-1) ** number
-    page.mouse.move(x, y)
-    page.wait_for_timeout(500)
-    page.mouse.down()
+    hold(page, x, y)
     # The handle is held from its first move on.
     page.mouse.move(x, y + way, steps=2)
     page.wait_for_timeout(2_000)

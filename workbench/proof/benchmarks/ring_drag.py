@@ -5,14 +5,12 @@ from __future__ import annotations
 import statistics
 from typing import Any
 
-from workbench.proof.benchmarks.handle import arm, pixels, switch
+from workbench.proof.benchmarks.handle import arm, hold, pixels, switch
 
 DRAGS = 5
 DRAG_PX = 24
 SHOWN_MS = 2_000
 """Until the page shows what was switched on."""
-HOVER_MS = 500
-"""Until the page knows that the handle is under the mouse."""
 LONGEST_MS = 20_000
 """After which a move is given up."""
 REST_MS = 4_000
@@ -46,9 +44,7 @@ def ring_drag_s(page: Any) -> float:
     times = []
     for drag in range(DRAGS + 1):
         # Up first: the ring stands low. Each from where the last one has left it.
-        page.mouse.move(x, y)
-        page.wait_for_timeout(HOVER_MS)
-        page.mouse.down()
+        hold(page, x, y)
         page.mouse.move(x, y - (-1) ** drag, steps=2)
         page.wait_for_timeout(REST_MS)
         page.evaluate("() => { window.pictures = []; window.moved = performance.now(); }")
