@@ -42,7 +42,7 @@ def ball_radius_mm(points_mm: np.ndarray, inward: np.ndarray, inward_mm: np.ndar
         return np.column_stack([-outward, np.full(len(places), -np.exp(unknown[3]))])
 
     begin = np.append(deepest - 3.0 * axis, np.log(3.0))
-    found = least_squares(away, begin, slopes, loss="soft_l1", f_scale=ROBUST_MM)
+    found = least_squares(away, begin, slopes, loss="soft_l1", f_scale=ROBUST_MM)  # pyright: ignore[reportArgumentType]
     radius_mm = float(np.exp(found.x[3]))
     outside = (found.x[:3] - deepest) @ axis < 0.0
     return radius_mm if found.success and outside and radius_mm < LARGEST_MM else float("nan")

@@ -112,7 +112,7 @@ def bending(skin: RestSkin):
 
 def normals_of(skin: RestSkin, displacement_mm: np.ndarray) -> np.ndarray:
     """Inward unit normals of the skin displaced by (V, 3) [mm], shape (V, 3)."""
-    faces = skin.faces[displacement_mm.any(axis=1)[skin.faces].any(axis=1)]
+    faces = skin.faces[displacement_mm.any(axis=1)[skin.faces].any(axis=1)]  # pyright: ignore[reportIndexIssue]
     moved_mm2 = sum_area_vectors(skin.points_mm + displacement_mm, faces, skin.count)
     change = moved_mm2 - sum_area_vectors(skin.points_mm, faces, skin.count)
     turned = np.linalg.norm(skin.area_mm2, axis=1, keepdims=True) * skin.inward
