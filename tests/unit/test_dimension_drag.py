@@ -178,6 +178,14 @@ def test_who_no_longer_edits_holds_nothing(bench: Bench) -> None:
     assert len(bench.edited) == count
 
 
+def test_a_family_whose_sliders_are_not_there_yet_has_no_lines(bench: Bench) -> None:
+    """A comparison ends as another family is taken: its sizes wait for their sliders."""
+    bench.sizes.show("compared", True)
+    bench.sizes.desk.fields._fields.clear()
+    bench.sizes.show("compared", False)
+    assert bench.api.nodes["/dimensions/shape_cylinder_mm/line"].removed
+
+
 @pytest.mark.parametrize("news", ["covered", "compared"])
 def test_what_else_is_looked_at_takes_the_lines_away(bench: Bench, news: str) -> None:
     """Parts, and other designs beside the sensor; they come back with it."""

@@ -193,6 +193,10 @@ class Fields:
         """The widget that is bound to a field."""
         return self._fields[path].handle
 
+    def has(self, path: str) -> bool:
+        """Whether a field has a widget now: those of another family come after its design."""
+        return path in self._fields
+
     def reveal(self, path: str, wanted: bool) -> None:
         """Show or hide a widget that means nothing for some designs."""
         handle = self._fields[path].handle

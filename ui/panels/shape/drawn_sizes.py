@@ -40,7 +40,9 @@ class DrawnSizes:
         """Draw the sizes of the design as it stands."""
         desk = self.desk
         shown = bool(self.box.value) and not self.covered and not self.compared
-        found = dimensions(desk.session.design) if shown else ()
+        there = dimensions(desk.session.design) if shown else ()
+        # Sliders of another family come with its body.
+        found = tuple(line for line in there if desk.fields.has(f"design.{line.field}"))
         if found == self._shown:
             return
         self._shown = found
