@@ -43,7 +43,7 @@ demo: setup ## The whole chain without a browser, into out/demo
 test: .venv/dev.stamp browser ## Install what tests need and pass every test
 	@# A server and a browser want more than a core: those tests run after the others.
 	$(ALONE) $(BIN)/python -m pytest $(PARALLEL) -m "not ui" --durations=15; others=$$?; \
-	CHROMIUM="$$(bash .ci/chromium)" $(BIN)/python -m pytest $(PARALLEL) -m ui --durations=15 \
+	CHROMIUM="$$(bash .ci/chromium)" $(ALONE) $(BIN)/python -m pytest $(PARALLEL) -m ui --durations=15 \
 		&& exit $$others
 
 check: .venv/dev.stamp ## Lint, format, types, fast tests

@@ -36,8 +36,9 @@ def family_of(pid: int) -> Iterator[int]:
     """A process and all that it started."""
     yield pid
     for task in Path(f"/proc/{pid}/task").glob("*"):
-        for child in (task / "children").read_text().split():
-            yield from family_of(int(child))
+        with contextlib.suppress(FileNotFoundError):  # A thread that has just ended.
+            for child in (task / "children").read_text().split():
+                yield from family_of(int(child))
 
 
 def resident_mb(pid: int) -> dict[str, float]:

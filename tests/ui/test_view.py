@@ -170,6 +170,9 @@ def test_playing_stops_at_the_end_or_loops(page: Any, server: Server) -> None:
 def test_arrows_on_a_slider_leave_the_eye(page: Any, server: Server) -> None:
     """They step through frames; where nothing has the focus they turn the eye, as viser has it."""
     pressed(page, server)
+    # Where the test before has left it.
+    set_number(page, "Frame", 2)
+    wait_until(lambda: slider_value(page, "Frame") == 2, 20, "the last frame is shown")
     eye = "() => window.__viserMutable.camera.position.toArray()"
 
     def hold() -> Any:

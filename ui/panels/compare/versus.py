@@ -52,6 +52,8 @@ class VersusFolder:
         self.b: Side | None = None
         self.both: Pair | None = None
         self.ghosts = GhostView(desk.server, desk.session.store, on_error=desk.reports.tell)
+        self._compared = False
+        """Whether other designs stand in the view, or are on their way."""
         self.hidden = False
         """Whether parts are looked at, so that no ghost stands among them."""
         self.on_compare: Callable[[Side | None, Side | None], None] = lambda a, b: None
@@ -224,7 +226,7 @@ class VersusFolder:
             self._clear()
             return
         # Dimensions would stand among the names of the designs.
-        self.desk.tell("compared", True)
+        self._tell_compared(True)
         wanted, own = self._wanted(self.a, self.b)
         bounds = self.desk.scene.body.bounds_mm
         then = self.desk.guarded(self._drawn)
@@ -232,7 +234,13 @@ class VersusFolder:
 
     def _clear(self) -> None:
         self.ghosts.clear()
-        self.desk.tell("compared", False)
+        self._tell_compared(False)
+
+    def _tell_compared(self, compared: bool) -> None:
+        """Tell all panels when other designs come to stand in the view, and when they go."""
+        if compared != self._compared:
+            self._compared = compared
+            self.desk.tell("compared", compared)
 
     def _wanted(self, a: Side, b: Side) -> tuple[list[Ghost], str]:
         """What is drawn, and the label of the sensor: A where it is that, else what it is."""
