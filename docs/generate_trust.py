@@ -37,6 +37,7 @@ ROOMS = {
     "reading": ("touch read from renders, from photons, and from twins, by records", "seconds"),
     "tasks": ("objects, slip and safety told by touch, by records", "seconds"),
     "sensor": ("fast contact beside the contact solver, by a record", "seconds"),
+    "search": ("the search beside Sobol, random and TPE on two problems, by a record", "seconds"),
 }
 """What each room of `workbench validate` measures, and about how long that takes undisturbed."""
 EACH = ("hybrid", "mpm_against_fem", "finger_45")

@@ -54,6 +54,7 @@ RANKS = """
     workbench.proof.validation.learned
     workbench.proof.validation.published
     workbench.proof.validation.tasks  workbench.proof.validation.sensor
+    workbench.proof.validation.search
 
     workbench.door  workbench
 

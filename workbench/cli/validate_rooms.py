@@ -22,6 +22,7 @@ from workbench.proof.validation.optics import mitsuba_witness
 from workbench.proof.validation.optics import room as optics
 from workbench.proof.validation.published import room as published
 from workbench.proof.validation.reading import room as reading
+from workbench.proof.validation.search import room as search
 from workbench.proof.validation.sensor import room as sensor
 from workbench.proof.validation.tasks import room as tasks
 
@@ -41,6 +42,7 @@ ROOMS: dict[str, Callable[[], list[Row]]] = {
     "reading": reading.rows,
     "tasks": tasks.rows,
     "sensor": sensor.rows,
+    "search": search.rows,
 }
 
 REFERENCES = (("optics", "mitsuba"), ("fem", "calculix"))

@@ -63,7 +63,7 @@ gain_value fem_matrix_repeated surface_volume hex_volume lattice_volume
 _NONE = """
 release_substeps penetration dent_change fem_matrix fem_matrix_cpu fem_matrix_residual watertight
 hex_scaled_jacobian mould_overlap mould_watertight mould_thinnest_wall memory_growth contact_seen
-reading_batch reading_learned reading_table
+reading_batch reading_learned reading_table search_gain
 """
 JUDGES = {
     **dict.fromkeys(_EXACT.split(), Judge.EXACT),
@@ -81,6 +81,7 @@ BEGINNINGS = {
     "reading_": Judge.ITSELF,
     "task_": Judge.ITSELF,
     "fast_": Judge.ITSELF,
+    "search_": Judge.ITSELF,
     "sensor_": Judge.NONE,
     "hex_": Judge.NONE,
     "mould_": Judge.NONE,

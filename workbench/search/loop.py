@@ -14,7 +14,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from workbench.core.base.errors import Cancelled, WorkbenchError
 from workbench.core.base.monitor import Monitor, part, silent
@@ -28,7 +28,7 @@ from workbench.search.journal import (
 )
 from workbench.search.judged import Evaluator, Judged, Status, from_journal
 from workbench.search.problem import Problem, Value
-from workbench.search.proposing import Proposals
+from workbench.search.proposing import Asking, Proposals
 
 REFUSED = "refused"
 """The constraint that refused and failed trials are beyond."""
@@ -60,6 +60,14 @@ class Told:
     """All trials so far, an `optuna.Study`."""
 
 
+class Proposing(Protocol):
+    """Makes who is asked for values; in the product `Proposals`."""
+
+    def __call__(self, study: Any, problem: Problem, *, grouped: frozenset[str]) -> Asking:
+        """Who proposes to a study; `grouped` are fields that trials share in groups."""
+        ...
+
+
 class SearchError(WorkbenchError):
     """No design of a search can be built."""
 
@@ -72,6 +80,7 @@ def search(
     *,
     monitor: Monitor = silent,
     on_trial: Callable[[Told], None] = lambda told: None,
+    proposing: Proposing = Proposals,
 ) -> Any:
     """Work on a search; returns its study, an `optuna.Study`.
 
@@ -82,6 +91,7 @@ def search(
         budget: When to stop.
         monitor: Told how far it is; cancelling it loses only the running trial.
         on_trial: Told each trial that ends.
+        proposing: Makes who proposes; another than the product's own to compare with.
 
     Raises:
         DesignError: If the journal is that of another search.
@@ -90,7 +100,7 @@ def search(
     """
     study = open_study(problem, journal)
     base = _base(study, evaluator, part(monitor, 0.0, 0.01))
-    proposals = Proposals(study, problem, grouped=_grouped(problem, evaluator))
+    proposals = proposing(study, problem, grouped=_grouped(problem, evaluator))
     latest = time.monotonic() + 60.0 * budget.minutes
     while time.monotonic() < latest:
         ended = [judged for _, judged in ended_trials(study)]

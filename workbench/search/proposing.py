@@ -11,7 +11,7 @@ from __future__ import annotations
 import importlib.util
 import warnings
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Protocol
 
 from workbench.search.journal import BY, SAMPLER, own_mark
 from workbench.search.problem import Problem, Value, Vary
@@ -21,6 +21,18 @@ STARTUP = 10
 """Trials by Sobol before the first that is guided."""
 EVERY = 4
 """Of later trials so many are one by Sobol."""
+
+
+class Asking(Protocol):
+    """Who is asked for the next values by the loop of a search."""
+
+    def ask(self) -> tuple[Any, dict[str, Value]]:
+        """The next trial, an `optuna.Trial`, with its values by path."""
+        ...
+
+    def settled(self, values: Mapping[str, Value], *, pressed: bool) -> None:
+        """Take in how a trial ended."""
+        ...
 
 
 class Proposals:
@@ -55,7 +67,7 @@ class Proposals:
             trial = self.study.ask()
             trial.set_user_attr(BY, own_mark())
             trial.set_user_attr(SAMPLER, name)
-            values = {vary.path: _suggested(trial, vary) for vary in self.vary}
+            values = {vary.path: suggested(trial, vary) for vary in self.vary}
         return trial, values
 
     def settled(self, values: Mapping[str, Value], *, pressed: bool) -> None:
@@ -93,11 +105,11 @@ def _samplers(seed: int, done: int) -> tuple[str, dict[str, Any]]:
     return GUIDED, {SOBOL: sobol, GUIDED: process}
 
 
-def _suggested(trial: Any, vary: Vary) -> Value:
+def suggested(trial: Any, vary: Vary) -> Value:
+    """What a trial's sampler says of a field, rounded as a design file holds it."""
     if vary.choices:
         return trial.suggest_categorical(vary.path, vary.choices)
     if vary.whole:
         return trial.suggest_int(vary.path, round(vary.low), round(vary.high), log=vary.log)
     value = trial.suggest_float(vary.path, vary.low, vary.high, log=vary.log)
-    # Rounded, so that a design file holds what was computed.
     return min(max(float(f"{value:.6g}"), vary.low), vary.high)

@@ -11,7 +11,7 @@ from workbench.project.project import Project
 
 ROOMS = (
     "geometry, parts, contact, optics, fem, fem_fine, fem_calculix, forces, robustness, "
-    "robustness_sample, optics_mitsuba, published, reading, tasks, sensor"
+    "robustness_sample, optics_mitsuba, published, reading, tasks, sensor, search"
 )
 """Named here too, because finding them imports the whole program; a test compares."""
 

@@ -64,10 +64,6 @@ want = "max"
 [[goal]]
 figure = "normal_resolvability_median_per_deg"
 want = "max"
-
-[[limit]]
-figure = "glare_percent"
-at_most = 1.0
 """,
     MIXED: """
 base = "pad"

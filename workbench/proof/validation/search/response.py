@@ -75,9 +75,7 @@ def evaluate_designs(
             continue
         clock = StageClock()
         values = {} if number == BASE else designs[number]
-        judged = (
-            evaluator.judge_base(clock) if number == BASE else evaluator.judge(values, clock)
-        )
+        judged = evaluator.judge_base(clock) if number == BASE else evaluator.judge(values, clock)
         clock(1.0)
         sample = Sample(number=number, values=values, judged=judged, stage_s=clock.stage_s)
         write_sample(path, sample, of)

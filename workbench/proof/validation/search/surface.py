@@ -1,4 +1,4 @@
-"""A smooth surface through measured points: a Gaussian process whose axes have lengths of their own.
+"""A smooth surface through measured points: a Gaussian process with a length for each axis.
 
 With the distance r^2 = sum_d ((x_d - x'_d) / l_d)^2 the covariance is Matern's of order 5/2,
 k = s (1 + sqrt(5) r + 5/3 r^2) exp(-sqrt(5) r), plus a variance of noise n on the diagonal. The
@@ -88,9 +88,7 @@ def fit_surface(points: np.ndarray, values: np.ndarray) -> Surface:
     )
 
 
-def _unlikely(
-    logs: np.ndarray, squares: np.ndarray, unit: np.ndarray
-) -> tuple[float, np.ndarray]:
+def _unlikely(logs: np.ndarray, squares: np.ndarray, unit: np.ndarray) -> tuple[float, np.ndarray]:
     """Negative log likelihood of values (N,), without its constant, and its slope (D + 2,)."""
     lengths, (scale, noise) = np.exp(logs[:-2]), np.exp(logs[-2:])
     square = squares @ lengths**-2.0
