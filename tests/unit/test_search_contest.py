@@ -150,7 +150,7 @@ def test_ours_beats_random_on_a_known_front(tmp_path: Path) -> None:
             steps = searched(with_seed(problem, seed), Toy(), sampler, trials=20, spent_s=0.0)
             assert len(steps) == 20 and all(step.counts for step in steps)
             share[sampler] = scale.share(losses_in(steps))
-        # Measured: .97 and .79, .98 and .84, of the front in steps of a tenth.
+        # Measured: .991 and .933, .988 and .975.
         assert share[OURS] > share[RANDOM]
 
 
@@ -301,16 +301,19 @@ def test_fronts_are_evaluated_for_real_once(tmp_path: Path, monkeypatch: Any) ->
     ]
     assert [step.values[X] for step in front_steps(steps)] == [0.2, 0.8]
     scale = scale_of(np.array(contest.known_losses(model.problem, model.samples)))
-    judge, path = Kept(), tmp_path / "fronts.jsonl"
-    found = confirmed(model, judge, {(OURS, 1): steps}, scale, path)  # pyright: ignore
+    judge: Any = Kept()
+    path = tmp_path / "fronts.jsonl"
+    found = confirmed(model, judge, {(OURS, 1): steps}, scale, path)
     (true,) = found["true"]
     losses = [[closed_forms(x, 0.5)[name] for name in (F, G)] for x in (0.2, 0.8)]
     assert true == {"sampler": OURS, "seed": 1, "designs": 2, "share": scale.share(losses)}
     assert found["front_error"] == pytest.approx(0.5)
     # The base has 1.25 and .25: (.2, .5) has .04 and .64, (.8, .5) has .64 and .04.
-    assert found["gains"] == [{"seed": 1, "draft": pytest.approx(0.488), "own": 0.488}]
+    assert found["gains"] == [
+        {"seed": 1, "draft": pytest.approx(0.488), "own": pytest.approx(0.488)}
+    ]
     asked = len(judge.asked)
-    assert confirmed(model, judge, {(OURS, 1): steps}, scale, path) == found  # pyright: ignore
+    assert confirmed(model, judge, {(OURS, 1): steps}, scale, path) == found
     assert len(judge.asked) == asked == 2
 
 

@@ -95,10 +95,10 @@ def contest(model: Model, trials: int = TRIALS, seeds: Sequence[int] = SEEDS) ->
             found = searched(
                 with_seed(model.problem, seed), model, sampler, trials=trials, spent_s=spent_s
             )
-            runs.append(run_figures(found, scale, trials=trials, spent_s=spent_s))
-            runs[-1] = {"sampler": sampler, "seed": seed, **runs[-1]}
+            own = run_figures(found, scale, trials=trials, spent_s=spent_s)
+            runs.append({"sampler": sampler, "seed": seed, **own})
             steps[sampler, seed] = within_trials(found, trials)
-            complain(f"{sampler} {seed}: {runs[-1]['at_trials']:.3f} of the designs' hypervolume")
+            complain(f"{sampler} {seed}: {own['at_trials']:.3f} of the designs' hypervolume")
     every = [loss for found in steps.values() for loss in losses_in(found)]
     return {
         "designs": len(model.samples),
