@@ -16,7 +16,7 @@ from workbench.core.base.monitor import silent
 from workbench.project.project import Project
 from workbench.proof.judge import Judge, judge
 from workbench.proof.validation.search import contest, room
-from workbench.proof.validation.search.confirmed import best_gain, confirmed, front_steps
+from workbench.proof.validation.search.confirmed import best_gain, chosen, confirmed, front_steps
 from workbench.proof.validation.search.duel import (
     Recorder,
     Step,
@@ -301,6 +301,7 @@ def test_fronts_are_evaluated_for_real_once(tmp_path: Path, monkeypatch: Any) ->
     ]
     assert [step.values[X] for step in front_steps(steps)] == [0.2, 0.8]
     scale = scale_of(np.array(contest.known_losses(model.problem, model.samples)))
+    assert len(chosen(front_steps(steps), scale, 1)) == 1
     judge: Any = Kept()
     path = tmp_path / "fronts.jsonl"
     found = confirmed(model, judge, {(OURS, 1): steps}, scale, path)

@@ -1,9 +1,9 @@
 """Fronts that samplers found on a model, evaluated for real.
 
-An optimiser finds where a model is too kind as well as where designs are good. So the designs of
-each front are evaluated as trials are, and the hypervolume of what they are in truth stands beside
-that of the model. The best of ours is evaluated once more by the base's own settings, and so is the
-base: that is what the search gains over the preset.
+An optimiser finds where a model is too kind as well as where designs are good. So designs of each
+front are evaluated as trials are, of each at most as many, and the hypervolume of what they are in
+truth stands beside that of the model. The best of ours is evaluated once more by the base's own
+settings, and so is the base: that is what the search gains over the preset.
 """
 
 from __future__ import annotations
@@ -26,6 +26,8 @@ from workbench.search.judged import Evaluator, Judged, Status
 from workbench.search.problem import Goal, Problem, Value
 from workbench.system.terminal import complain
 
+MOST = 10
+"""Designs of a front that are evaluated; our choice, as a design takes a processor's seconds."""
 Runs = Mapping[tuple[str, int], Sequence[Step]]
 """Proposals by sampler and seed."""
 
@@ -67,21 +69,18 @@ def confirmed(
         path: File of what is evaluated; the designs by the base's own settings lie beside it.
     """
     problem = model.problem
-    truth, found, off = Truth(problem, judge, path), [], []
+    truth, found, off, gains = Truth(problem, judge, path), [], [], []
+    final = DesignEvaluator(problem, judge.project, draft=False)
+    whole = Truth(problem, final, path.with_name(f"{path.stem}_whole.jsonl"))
     for (sampler, seed), steps in runs.items():
-        front = front_steps(steps)
+        front = chosen(front_steps(steps), scale)
         real = [truth.judge(step.values) for step in front]
         losses = [losses_of(problem, each) for each in real]
         off += [_off(step, own) for step, own in zip(front, losses, strict=True) if own is not None]
         share = scale.share([own for own in losses if own is not None])
         found.append({"sampler": sampler, "seed": seed, "designs": len(front), "share": share})
-    own = DesignEvaluator(problem, judge.project, draft=False)
-    whole = Truth(problem, own, path.with_name(f"{path.stem}_whole.jsonl"))
-    gains = [
-        {"seed": seed, **best_gain(problem, steps, truth, whole)}
-        for (sampler, seed), steps in runs.items()
-        if sampler == OURS
-    ]
+        if sampler == OURS:
+            gains.append({"seed": seed, **best_gain(problem, front, truth, whole)})
     return {"true": found, "front_error": float(np.median(off)) if off else None, "gains": gains}
 
 
@@ -96,8 +95,17 @@ def front_steps(steps: Sequence[Step]) -> list[Step]:
     ]
 
 
+def chosen(front: Sequence[Step], scale: Scale, most: int = MOST) -> list[Step]:
+    """Designs of a front that dominate most together, each added where it adds most."""
+    taken: list[Step] = []
+    while len(taken) < min(most, len(front)):
+        rest = [step for step in front if step not in taken]
+        taken.append(max(rest, key=lambda step: scale.share(losses_in([*taken, step]))))
+    return taken
+
+
 def best_gain(
-    problem: Problem, steps: Sequence[Step], truth: Truth, whole: Truth
+    problem: Problem, front: Sequence[Step], truth: Truth, whole: Truth
 ) -> dict[str, float | None]:
     """By how much the best design of a front beats the base in every goal [1].
 
@@ -105,7 +113,7 @@ def best_gain(
     settings it is then judged once more.
     """
     base = truth.judge({})
-    values = [step.values for step in front_steps(steps)]
+    values = [step.values for step in front]
     found = [(gain(problem, truth.judge(one), base), one) for one in values]
     known = [(share, one) for share, one in found if share is not None]
     if not known:

@@ -15,6 +15,7 @@ from typing import Any
 from workbench.core.base.errors import StoreError
 from workbench.proof.row import Row, bounded, failed, stated
 from workbench.proof.validation.search import contest
+from workbench.proof.validation.search.confirmed import MOST
 from workbench.proof.validation.search.problems import LIGHT, TITLES
 from workbench.proof.validation.search.response import COUNT
 from workbench.proof.validation.search.samplers import OURS, RANDOM, SAMPLERS
@@ -26,7 +27,7 @@ GAIN_LIMIT = 0.2
 MEASURES = {
     "": ("at_trials", "at {trials} trials, on a model"),
     "_minutes": ("at_minutes", "in the minutes that {trials} designs take, on a model"),
-    "_true": ("share", "of its front at {trials} trials, evaluated for real"),
+    "_true": ("share", f"of {MOST} designs of its front at {{trials}} trials, evaluated for real"),
 }
 """Endings of rows, the figure that each shows, and its words."""
 
