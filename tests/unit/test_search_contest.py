@@ -16,7 +16,13 @@ from workbench.core.base.monitor import silent
 from workbench.project.project import Project
 from workbench.proof.judge import Judge, judge
 from workbench.proof.validation.search import contest, room
-from workbench.proof.validation.search.confirmed import best_gain, chosen, confirmed, front_steps
+from workbench.proof.validation.search.confirmed import (
+    Truth,
+    best_gain,
+    chosen,
+    confirmed,
+    front_steps,
+)
 from workbench.proof.validation.search.duel import (
     Recorder,
     Step,
@@ -274,21 +280,9 @@ def test_problems_are_searches_that_the_product_takes(
         problem_of(f"{name}s", Project(tmp_path))
 
 
-class Kept(Toy):
-    """Closed forms as an evaluator of the product, of which `confirmed` makes another."""
-
-    def __init__(self, problem: Any = None, project: Any = None, *, draft: bool = True) -> None:
-        super().__init__()
-        self.project = project
-
-
-def test_fronts_are_evaluated_for_real_once(tmp_path: Path, monkeypatch: Any) -> None:
+def test_fronts_are_evaluated_for_real_once(tmp_path: Path) -> None:
     """A model whose losses are halved promises more than the designs hold."""
-    monkeypatch.setattr(
-        "workbench.proof.validation.search.confirmed.DesignEvaluator", Kept, raising=True
-    )
-    model = toy_model(tmp_path)
-    points = [(0.2, 0.5), (0.8, 0.5), (0.2, 0.9)]
+    problem = toy_problem(tmp_path)
     steps = [
         Step(
             values={X: x, Y: y},
@@ -297,25 +291,40 @@ def test_fronts_are_evaluated_for_real_once(tmp_path: Path, monkeypatch: Any) ->
             thought_s=0.0,
             design_s=10.0,
         )
-        for x, y in points
+        for x, y in [(0.2, 0.5), (0.8, 0.5), (0.2, 0.9)]
     ]
-    assert [step.values[X] for step in front_steps(steps)] == [0.2, 0.8]
-    scale = scale_of(np.array(contest.known_losses(model.problem, model.samples)))
-    assert len(chosen(front_steps(steps), scale, 1)) == 1
-    judge: Any = Kept()
-    path = tmp_path / "fronts.jsonl"
-    found = confirmed(model, judge, {(OURS, 1): steps}, scale, path)
+    front = front_steps(steps)
+    assert [step.values[X] for step in front] == [0.2, 0.8]
+    scale = scale_of(np.array([[0.0, 1.25], [1.25, 0.0], [0.5, 0.5]]))
+    assert len(chosen(front, scale, 1)) == 1
+    runs, toy = {(OURS, 1): steps}, Toy()
+    truth = Truth(problem, toy, tmp_path / "fronts.jsonl")
+    final = Truth(problem, Toy(), tmp_path / "final.jsonl")
+    found = confirmed(problem, runs, scale, truth, final)
     (true,) = found["true"]
     losses = [[closed_forms(x, 0.5)[name] for name in (F, G)] for x in (0.2, 0.8)]
     assert true == {"sampler": OURS, "seed": 1, "designs": 2, "share": scale.share(losses)}
     assert found["front_error"] == pytest.approx(0.5)
     # The base has 1.25 and .25: (.2, .5) has .04 and .64, (.8, .5) has .64 and .04.
-    assert found["gains"] == [
-        {"seed": 1, "draft": pytest.approx(0.488), "own": pytest.approx(0.488)}
-    ]
-    asked = len(judge.asked)
-    assert confirmed(model, judge, {(OURS, 1): steps}, scale, path) == found
-    assert len(judge.asked) == asked == 2
+    (gain,) = found["gains"]
+    assert gain == {"seed": 1, "draft": pytest.approx(0.488), "own": gain["draft"]}
+    assert sorted(one.values[X] for one in truth.asked) == [0.2, 0.8]
+    # Another process finds what was evaluated.
+    again, second = Toy(), tmp_path / "fronts.jsonl"
+    assert confirmed(problem, runs, scale, Truth(problem, again, second), final) == found
+    assert (len(toy.asked), len(again.asked)) == (2, 0)
+
+
+def test_the_contest_is_held_again_on_a_model_that_knows_the_fronts(tmp_path: Path) -> None:
+    """The second model has more designs, nearer to the fronts; those that are counted stay."""
+    model = toy_model(tmp_path)
+    truth = Truth(model.problem, Toy(), tmp_path / "fronts.jsonl")
+    found = contest.refined(model, truth, truth, 12)
+    assert found["designs"] == 64
+    assert 0 < found["added"] < len(truth.asked)
+    assert found["front_error"] < found["first"]["front_error"]
+    assert len(found["runs"]) == len(found["true"]) == len(contest.SEEDS) * len(SAMPLERS)
+    assert json.dumps(found, allow_nan=False)
 
 
 def test_a_front_without_an_allowed_design_gains_nothing(tmp_path: Path) -> None:
@@ -340,6 +349,7 @@ def made(folder: Path, changes: dict[str, Any], designs: int = 400) -> list[Any]
     ]
     problem = {
         "designs": designs,
+        "added": 70,
         "trials": 60,
         "ceiling": 1.1,
         "errors": {F: 0.1},
@@ -348,6 +358,7 @@ def made(folder: Path, changes: dict[str, Any], designs: int = 400) -> list[Any]
         "runs": runs,
         "true": runs,
         "front_error": 0.05,
+        "first": {"front_error": 0.4},
         "gains": [{"seed": 1, "draft": 0.3, "own": 0.25}],
     }
     kept: Record = dataclasses.replace(contest.RECORD, path=folder / "contest.json")

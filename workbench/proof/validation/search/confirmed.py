@@ -17,10 +17,8 @@ import numpy as np
 
 from workbench.core.base.monitor import silent
 from workbench.proof.validation.search.duel import Scale, Step, losses_in, losses_of
-from workbench.proof.validation.search.model import Model
 from workbench.proof.validation.search.samplers import OURS
 from workbench.proof.validation.search.samples import Sample, mend, read_samples, write_sample
-from workbench.search.evaluator import DesignEvaluator
 from workbench.search.journal import problem_digest
 from workbench.search.judged import Evaluator, Judged, Status
 from workbench.search.problem import Goal, Problem, Value
@@ -40,10 +38,12 @@ class Truth:
         self._of = problem_digest(problem)
         mend(path)
         self._known = {_key(one.values): one for one in read_samples(path, self._of).values()}
+        self._asked: set[str] = set()
 
     def judge(self, values: Mapping[str, Value]) -> Judged:
         """What comes of a design in truth; of no values, of the base."""
         key = _key(values)
+        self._asked.add(key)
         if key not in self._known:
             base = not values
             judged = (
@@ -55,23 +55,25 @@ class Truth:
             complain(f"{self.path.stem} {sample.number}: {judged.status} {judged.reason}")
         return self._known[key].judged
 
+    @property
+    def asked(self) -> list[Sample]:
+        """Designs that somebody asked for since this began, the base not among them."""
+        return [self._known[key] for key in sorted(self._asked) if self._known[key].values]
+
 
 def confirmed(
-    model: Model, judge: DesignEvaluator, runs: Runs, scale: Scale, path: Path
+    problem: Problem, runs: Runs, scale: Scale, truth: Truth, final: Truth
 ) -> dict[str, Any]:
     """What the fronts are in truth, as the record holds it.
 
     Args:
-        model: On which they were found.
-        judge: Evaluates designs by the settings of trials.
+        problem: What was looked for.
         runs: What was proposed.
         scale: Of the hypervolume.
-        path: File of what is evaluated; the designs by the base's own settings lie beside it.
+        truth: Evaluates designs by the settings of trials.
+        final: The same by the base's own settings.
     """
-    problem = model.problem
-    truth, found, off, gains = Truth(problem, judge, path), [], [], []
-    final = DesignEvaluator(problem, judge.project, draft=False)
-    whole = Truth(problem, final, path.with_name(f"{path.stem}_whole.jsonl"))
+    found, off, gains = [], [], []
     for (sampler, seed), steps in runs.items():
         front = chosen(front_steps(steps), scale)
         real = [truth.judge(step.values) for step in front]
@@ -80,7 +82,7 @@ def confirmed(
         share = scale.share([own for own in losses if own is not None])
         found.append({"sampler": sampler, "seed": seed, "designs": len(front), "share": share})
         if sampler == OURS:
-            gains.append({"seed": seed, **best_gain(problem, front, truth, whole)})
+            gains.append({"seed": seed, **best_gain(problem, front, truth, final)})
     return {"true": found, "front_error": float(np.median(off)) if off else None, "gains": gains}
 
 
@@ -105,7 +107,7 @@ def chosen(front: Sequence[Step], scale: Scale, most: int = MOST) -> list[Step]:
 
 
 def best_gain(
-    problem: Problem, front: Sequence[Step], truth: Truth, whole: Truth
+    problem: Problem, front: Sequence[Step], truth: Truth, final: Truth
 ) -> dict[str, float | None]:
     """By how much the best design of a front beats the base in every goal [1].
 
@@ -119,7 +121,7 @@ def best_gain(
     if not known:
         return {"draft": None, "own": None}
     draft, best = max(known, key=lambda pair: pair[0])
-    return {"draft": draft, "own": gain(problem, whole.judge(best), whole.judge({}))}
+    return {"draft": draft, "own": gain(problem, final.judge(best), final.judge({}))}
 
 
 def gain(problem: Problem, judged: Judged, base: Judged) -> float | None:

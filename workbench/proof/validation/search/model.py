@@ -11,8 +11,9 @@ every comparison; steps that are finer than the designs lie apart, which a surfa
 noise of photons, that the real response has and this one has not. A Gaussian process is what made
 the surfaces and what proposes in the default search, too, which may favour that. Answering with the
 nearest evaluated design instead would need no model, but has no slope for any sampler to find, and
-400 points in 8 dimensions are the Sobol sequence itself, which then could not lose. So designs on
-the fronts that were found are evaluated for real afterwards (`confirmed`).
+400 points in 8 dimensions are the Sobol sequence itself, which then could not lose. In the corners
+of the box, where optimisers go, a model of spread designs is far too kind; so designs on the fronts
+that were found are evaluated for real (`confirmed`), and the model is made once more with them.
 """
 
 from __future__ import annotations
@@ -79,18 +80,24 @@ class Model:
         problem: What varies, and which figures count.
         samples: What was evaluated, the base among it.
         of_the_press: Varied fields that trials of a group share.
+        added: Designs that only the surfaces know of, beside those spread over the box.
 
     Raises:
         DesignError: If there is no base, or too few designs were judged.
     """
 
     def __init__(
-        self, problem: Problem, samples: Sequence[Sample], of_the_press: frozenset[str]
+        self,
+        problem: Problem,
+        samples: Sequence[Sample],
+        of_the_press: frozenset[str],
+        added: Sequence[Sample] = (),
     ) -> None:
         self.problem, self.of_the_press = problem, of_the_press
         bases = [one for one in samples if one.number == BASE]
         self.samples = [one for one in samples if one.number != BASE]
-        judged = [one for one in self.samples if one.judged.status is Status.JUDGED]
+        self.known = [*self.samples, *added]
+        judged = [one for one in self.known if one.judged.status is Status.JUDGED]
         if not bases or len(judged) < FEWEST:
             raise DesignError(
                 f"{len(bases)} base and {len(judged)} judged designs are too few for a model",
@@ -103,10 +110,10 @@ class Model:
     @functools.cached_property
     def builds(self) -> Surface | None:
         """Above 0 where a design is judged; None where every one was."""
-        told = [1.0 if one.judged.status is Status.JUDGED else -1.0 for one in self.samples]
+        told = [1.0 if one.judged.status is Status.JUDGED else -1.0 for one in self.known]
         if min(told) > 0.0:
             return None
-        return fit_surface(unit_points(self.problem.vary, self.samples), np.array(told))
+        return fit_surface(unit_points(self.problem.vary, self.known), np.array(told))
 
     @property
     def wrong_share(self) -> float:

@@ -50,7 +50,7 @@ def rows(kept: Record = contest.RECORD) -> list[Row]:
 
 def _rows(name: str, found: Mapping[str, Any], kept: Record) -> Iterator[Row]:
     whole = "" if found["designs"] >= COUNT else f" of {COUNT}, too few"
-    begin = f"{TITLES[name]}, {found['designs']} designs{whole}"
+    begin = f"{TITLES[name]}, {found['designs']} designs{whole} and {found['added']} of fronts"
     for ending, (figure, words) in MEASURES.items():
         told = found["true"] if ending == "_true" else found["runs"]
         shares = {(run["sampler"], run["seed"]): run[figure] for run in told}
@@ -65,8 +65,9 @@ def _rows(name: str, found: Mapping[str, Any], kept: Record) -> Iterator[Row]:
         "search_model_refusals", case, found["wrong_share"], unit="1", null=usual, record=kept
     )
     if found["front_error"] is not None:
-        case = f"{begin}: error of the model on the fronts, the median of the worse goal"
-        yield stated("search_front_error", case, found["front_error"], unit="1", record=kept)
+        case = f"{begin}: error on its fronts, median of the worse goal; null: without those known"
+        error, before = found["front_error"], found["first"]["front_error"]
+        yield stated("search_front_error", case, error, unit="1", null=before, record=kept)
     yield from _gains(name, begin, found, kept)
 
 
