@@ -195,12 +195,16 @@ def _shared_ties(domains: list[Domain], first_nodes: list[int]) -> Ties | None:
     shares = _joined([t.shares for t, _ in everything])
     by_leader = np.argsort(leaders, kind="stable")
     counts = _joined([np.diff(t.starts) for t, _ in everything])
-    led = np.bincount(leaders, minlength=first_nodes[-1])
+    leading, led = np.unique(leaders, return_counts=True)
+    apart = np.zeros(first_nodes[-1], bool)
+    apart[tied] = apart[leading] = True
     return Ties(
         tied=integers(tied),
         leader_starts=integers(np.concatenate([[0], np.cumsum(counts)])),
         leaders=integers(leaders),
         leader_shares=floats(shares),
+        apart=integers(apart),
+        leading=integers(leading),
         follower_starts=integers(np.concatenate([[0], np.cumsum(led)])),
         followers=integers(followers[by_leader]),
         follower_shares=floats(shares[by_leader]),

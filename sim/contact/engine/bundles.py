@@ -70,8 +70,12 @@ class Ties(NamedTuple):
     """Nodes, L."""
     leader_shares: Floats
     """Of each leader in its follower, L."""
+    apart: Integers
+    """1 where a node is tied or leads others, N."""
+    leading: Integers
+    """Nodes that lead others, in order, M."""
     follower_starts: Integers
-    """First follower of each node, then L: N + 1."""
+    """First follower of each of these, then L: M + 1."""
     followers: Integers
     """Tied nodes by leader, L."""
     follower_shares: Floats

@@ -106,14 +106,31 @@ def node_pass(nodes: ti.template(), cells: ti.template(), cases: ti.template(), 
 def free_node_pass(
     nodes: ti.template(), cells: ti.template(), cases: ti.template(), ties: ti.template(), count
 ):
-    """Pass 3 where nodes are tied: these are left out, and their leaders take on their forces."""
+    """Pass 3 where nodes are tied: these and their leaders are left out.
+
+    It is `node_pass` but for one condition, so that a compiler sums the cells of a node in the
+    same order in both: a press without ties has the same bits beside one that has some.
+    """
     ti.loop_config(block_dim=ti.static(block_size(NODE_THREADS)))
     for node in range(count):
         case = nodes.node_cases[node]
         mode = cases.choices[CHOICES * case + MODE]
+        if mode != IDLE and ties.apart[node] == 0:
+            _move_node(node, _slot_sum(node, nodes, cells), nodes, cases, case, mode)
+
+
+@ti.func
+def leader_pass(
+    nodes: ti.template(), cells: ti.template(), cases: ti.template(), ties: ti.template(), count
+):
+    """The same of nodes that others follow: they take on these nodes' forces."""
+    for number in range(count):
+        node = ties.leading[number]
+        case = nodes.node_cases[node]
+        mode = cases.choices[CHOICES * case + MODE]
         if mode != IDLE and nodes.fixed[node] != TIED:
             total = _slot_sum(node, nodes, cells)
-            for pair in range(ties.follower_starts[node], ties.follower_starts[node + 1]):
+            for pair in range(ties.follower_starts[number], ties.follower_starts[number + 1]):
                 for c in ti.static(range(3)):
                     follower = nodes.forces[3 * ties.followers[pair] + c]
                     total[c] += ties.follower_shares[pair] * follower
@@ -197,6 +214,7 @@ def tied_substep_of(linear):
         point_forces: Floats, owners: Integers,
         poses: Floats, numbers: Floats, choices: Integers, coefficients: Floats,
         tied: Integers, leader_starts: Integers, leaders: Integers, leader_shares: Floats,
+        apart: Integers, leading: Integers,
         follower_starts: Integers, followers: Integers, follower_shares: Floats,
         case_count: ti.i32, step: ti.i32,
     ):  # fmt: skip
@@ -208,16 +226,17 @@ def tied_substep_of(linear):
         cases = ti.static(Cases(poses, numbers, choices, coefficients))
         ties = ti.static(
             Ties(
-                tied, leader_starts, leaders, leader_shares,
+                tied, leader_starts, leaders, leader_shares, apart, leading,
                 follower_starts, followers, follower_shares,
             )
         )  # fmt: skip
         cell_count, node_count = cell_cases.shape[0], node_cases.shape[0]
-        point_count, tied_count = owners.shape[0], tied.shape[0]
+        point_count, tied_count, leading_count = owners.shape[0], tied.shape[0], leading.shape[0]
         surface_pass(nodes, cells, surface, cases, point_count, case_count, step)
         cell_pass(nodes, cells, surface, cases, cell_count, linear)
         tied_forces_pass(nodes, cells, cases, ties, tied_count)
         free_node_pass(nodes, cells, cases, ties, node_count)
+        leader_pass(nodes, cells, cases, ties, leading_count)
         tied_moves_pass(nodes, cases, ties, tied_count)
 
     return tied_substep
