@@ -83,16 +83,19 @@ def keeps_limits(problem: Problem, figures: Mapping[str, float]) -> bool:
 
 
 def front_of(trials: Sequence[Trial]) -> list[Trial]:
-    """Allowed trials that no other beats: none is as good in all goals and better in one."""
+    """Allowed trials that no other beats; of equal ones the first."""
     allowed = [trial for trial in trials if trial.allowed]
-    kept = []
-    for trial in allowed:
-        own = np.array(trial.losses)
-        others = [np.array(other.losses) for other in allowed if other is not trial]
-        if not any((other <= own).all() and (other < own).any() for other in others):
-            kept.append(trial)
-    # Of equal ones the first.
+    best = unbeaten(np.array([trial.losses for trial in allowed]))
+    kept = [trial for trial, each in zip(allowed, best, strict=True) if each]
     return list({trial.losses: trial for trial in reversed(kept)}.values())
+
+
+def unbeaten(losses: np.ndarray) -> np.ndarray:
+    """Which points (N, K) no other beats, shape (N,): is as good in all goals, better in one."""
+    return np.array(
+        [not ((losses <= own).all(axis=1) & (losses < own).any(axis=1)).any() for own in losses],
+        dtype=bool,
+    )
 
 
 def hypervolume(losses: np.ndarray, reference: np.ndarray) -> float:

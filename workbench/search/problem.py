@@ -42,6 +42,10 @@ class Vary:
         """What it may be, in words."""
         return ", ".join(self.choices) or f"{self.low:g} to {self.high:g}"
 
+    def rounded(self, value: float) -> float:
+        """A number of the range as a design file holds it: to six digits, never beyond an end."""
+        return min(max(float(f"{value:.6g}"), self.low), self.high)
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Link:

@@ -111,5 +111,4 @@ def suggested(trial: Any, vary: Vary) -> Value:
         return trial.suggest_categorical(vary.path, vary.choices)
     if vary.whole:
         return trial.suggest_int(vary.path, round(vary.low), round(vary.high), log=vary.log)
-    value = trial.suggest_float(vary.path, vary.low, vary.high, log=vary.log)
-    return min(max(float(f"{value:.6g}"), vary.low), vary.high)
+    return vary.rounded(trial.suggest_float(vary.path, vary.low, vary.high, log=vary.log))

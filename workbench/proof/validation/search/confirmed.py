@@ -19,6 +19,7 @@ from workbench.core.base.monitor import silent
 from workbench.proof.validation.search.duel import Scale, Step, losses_in, losses_of
 from workbench.proof.validation.search.samplers import OURS
 from workbench.proof.validation.search.samples import Sample, mend, read_samples, write_sample
+from workbench.search.front import unbeaten
 from workbench.search.journal import problem_digest
 from workbench.search.judged import Evaluator, Judged, Status
 from workbench.search.problem import Goal, Problem, Value
@@ -88,13 +89,9 @@ def confirmed(
 
 def front_steps(steps: Sequence[Step]) -> list[Step]:
     """Allowed proposals that no other one beats."""
-    losses = np.array(losses_in(steps))
     allowed = [step for step in steps if step.losses is not None]
-    return [
-        step
-        for step, own in zip(allowed, losses, strict=True)
-        if not ((losses <= own).all(axis=1) & (losses < own).any(axis=1)).any()
-    ]
+    best = unbeaten(np.array(losses_in(steps)))
+    return [step for step, each in zip(allowed, best, strict=True) if each]
 
 
 def chosen(front: Sequence[Step], scale: Scale, most: int = MOST) -> list[Step]:

@@ -63,10 +63,8 @@ def _value(vary: Vary, x: float) -> Value:
         low, high = round(vary.low), round(vary.high)
         return min(low + int(x * (high - low + 1)), high)
     if vary.log:
-        value = vary.low * (vary.high / vary.low) ** x
-    else:
-        value = vary.low + x * (vary.high - vary.low)
-    return min(max(float(f"{value:.6g}"), vary.low), vary.high)
+        return vary.rounded(vary.low * (vary.high / vary.low) ** x)
+    return vary.rounded(vary.low + x * (vary.high - vary.low))
 
 
 def write_sample(path: Path, sample: Sample, of: str) -> None:
