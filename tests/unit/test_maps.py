@@ -9,10 +9,15 @@ import pytest
 
 from geometry.surface.surface import vertex_areas_mm2
 from sim.optics.camera.camera import project, refracted_rays
+from sim.optics.field.bake import bake_light
 from sim.optics.maps import lighting, pixel_glare, seeing, signal
 from sim.optics.maps.judging import weighted_percentiles
+from sim.optics.maps.measure import designer_maps
+from sim.optics.proof.specimen import finger
+from sim.optics.studio.render import Studio
 from workbench.core.design.camera import Camera, ImageSensor
-from workbench.core.design.lighting import Baking
+from workbench.core.design.lighting import Baking, LightModel
+from workbench.core.design.optics import Optics
 from workbench.core.press.press_case import PressCase
 from workbench.core.result.light import LightField
 from workbench.core.result.results import Skin
@@ -173,6 +178,33 @@ def test_an_led_beside_the_camera_is_mirrored_by_the_wall_above() -> None:
     assert abs(row + 0.5 - 40.0) < 4.0
     # Fresnel's reflectance of glass near normal incidence is 4 %, on a disc of radiance 4 / pi^2.
     assert found.max() == pytest.approx(0.04 * 4.0 / np.pi**2, rel=0.02)
+
+
+@pytest.mark.parametrize("brighter", [1.0, 2.0, 40.0])
+def test_skin_is_overexposed_where_its_pixel_is_at_the_ceiling(
+    brighter: float, taichi_device: str
+) -> None:
+    """As many vertices as have a pixel with a colour of 255 in the image at rest, of the exposure
+    that suits the design and of longer ones; the figure is their share of the seen skin."""
+    mesh, optics = finger(), Optics(light_model=LightModel("direct"))
+    light = bake_light(mesh, optics.ring, model=optics.light_model)
+    usual = float(Studio(mesh, light, optics).imager.backdrop.exposure[0])
+    camera = dataclasses.replace(optics.camera, sensor=ImageSensor(exposure=brighter * usual))
+    optics = dataclasses.replace(optics, camera=camera)
+    found = designer_maps(mesh, light, optics, young_MPa=0.1).named("overexposed")
+
+    studio = Studio(mesh, light, optics)
+    column, row = np.nan_to_num(studio.vertex_pixels[:, :2]).astype(int).T
+    image = studio.images(np.zeros((1, *mesh.seen.points_mm.shape), np.float32))[0]
+    white = (image[row % len(image), column % image.shape[1]] == 255).any(axis=1)
+    seen = studio.visible
+    assert np.isnan(found.values[~seen]).all()
+    # Of the brightest colour 254.5 and more rounds to the ceiling.
+    assert np.mean(white[seen] != (found.values[seen] > 0)) < 0.02
+    areas = vertex_areas_mm2(mesh.seen.points_mm, mesh.seen.faces)[seen]
+    share = 100.0 * float(areas[white[seen]].sum() / areas.sum())
+    assert found.score == pytest.approx(share, abs=2.0)
+    assert (found.score > 30.0) == (brighter == 40.0)
 
 
 def test_percentiles_are_weighted_by_area() -> None:

@@ -37,6 +37,7 @@ def look(count: int, grey_per_deg: float, noise_grey: float = 2.0) -> SkinLook:
         jacobian=jacobian,
         noise=np.full((count, 3), noise_grey),
         glare=np.zeros(count),
+        overexposed=np.zeros(count, bool),
     )
 
 

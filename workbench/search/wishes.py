@@ -25,13 +25,14 @@ class Wish:
 
 
 EVEN, LIGHT = "light_evenness_p5_over_p95_1", "light_on_skin_percent"
+WHITE = "overexposed_percent"
 WISHES = {
     wish.words: wish
     for wish in (
         Wish(
             words="brightest and most even",
             goals=(Goal(figure=LIGHT, want=Want.MAX), Goal(figure=EVEN, want=Want.MAX)),
-            limits=(Limit(figure="glare_percent", at_most=1.0),),
+            limits=(Limit(figure="glare_percent", at_most=1.0), Limit(figure=WHITE, at_most=1.0)),
         ),
         Wish(
             words="feels .1 N",

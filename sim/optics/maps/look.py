@@ -39,13 +39,15 @@ def look_of(
     uv = studio.vertex_pixels[:, :2]
 
     shown = display_light(studio, camera)
+    at_rest = shown(inward)
     return SkinLook(
         visible=visible,
         mm_per_pixel=seeing.mm_per_pixel(skin.points_mm, skin.faces, uv, visible),
         incidence_deg=seeing.incidence_deg(inward, studio.to_camera, visible),
         jacobian=signal.tilt_jacobian(shown, inward, sensor),
-        noise=signal.noise_grey(shown(inward), sensor),
+        noise=signal.noise_grey(at_rest, sensor),
         glare=_glare(mesh, light, optics, studio, camera),
+        overexposed=(at_rest >= 1.0).any(axis=1),
     )
 
 

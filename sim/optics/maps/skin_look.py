@@ -20,3 +20,5 @@ class SkinLook:
     noise: np.ndarray
     glare: np.ndarray
     """Over the skin's own radiance."""
+    overexposed: np.ndarray
+    """Shape (V,), bool: whether a colour of its pixel is at the sensor's ceiling."""

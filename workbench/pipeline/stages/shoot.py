@@ -159,7 +159,7 @@ def _radiance(
 STAGE = Stage(
     name="shoot",
     label="Image",
-    version=5,
+    version=6,
     place=12,
     lane="sim",
     run=shoot,

@@ -1,10 +1,10 @@
 """Two real problems for samplers to be compared on, each with two goals that pull apart.
 
-*light*: a finger, 6 optical parameters, light evenness and normal resolvability. *mixed*: a pad,
-8 parameters of shape, gel and optics, a whole number and a choice among them; sensitivity to .1 N
-and the force at the press's depth, castable. Both begin with a preset and are judged by the draft
-settings of a search. Ranges are our choice: what can be bought and printed, and what the design
-takes; most designs of both can be built.
+*light*: a finger, 6 optical parameters, light evenness and normal resolvability, no image blown out,
+LEDs that have room. *mixed*: a pad, 8 parameters of shape, gel and optics, a whole number and a
+choice among them; sensitivity to .1 N and the force at the press's depth, castable. Both begin with
+a preset and are judged by the draft settings of a search. Ranges are our choice: what can be bought
+and printed, and what the design takes.
 """
 
 from __future__ import annotations
@@ -64,6 +64,14 @@ want = "max"
 [[goal]]
 figure = "normal_resolvability_median_per_deg"
 want = "max"
+
+[[limit]]
+figure = "overexposed_percent"
+at_most = 2.0
+
+[[limit]]
+figure = "checks_bad"
+at_most = 0.0
 """,
     MIXED: """
 base = "pad"
