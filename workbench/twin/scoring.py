@@ -150,7 +150,7 @@ class Scorer:
 
     def _jacobian(self) -> np.ndarray:
         """Grey levels per degree of tilt at rest, shape (V, 3, 2)."""
-        from sim.optics.maps.look import display_light
+        from sim.optics.maps.display_light import display_light
         from sim.optics.maps.signal import tilt_jacobian
 
         rest = self.opened.reader.rest

@@ -7,12 +7,13 @@ that has the most pixels there.
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
 from sim.optics.camera.camera import refracted_rays
 from sim.optics.maps import pixel_glare, seeing, signal
+from sim.optics.maps.display_light import display_light, pixels_of
 from sim.optics.maps.skin_look import SkinLook
 from sim.optics.studio.render import Studio
 from workbench.core.base.monitor import Monitor, part
@@ -51,27 +52,6 @@ def look_of(
     )
 
 
-def display_light(studio: Studio, camera: Camera) -> Callable[[np.ndarray], np.ndarray]:
-    """Display light (V, 3) of the undeformed skin at its pixels, by its inward normals (V, 3).
-
-    Wall and lens dim it; of vertices outside the image it is not dimmed.
-    """
-    pixel, seen = _pixels(studio, camera, camera)
-    share = studio.rays.transmittance[pixel]
-    exposure = studio.exposure.reshape(-1, 3)[pixel]
-    dimmed = exposure * np.where(seen, share, 1.0)[:, None]
-    return lambda inward: dimmed * studio.shade_tilted(-inward)
-
-
-def _pixels(studio: Studio, camera: Camera, image: Camera) -> tuple[np.ndarray, np.ndarray]:
-    """Pixel of each vertex in an image of the same camera, and whether it has one, (V,) each."""
-    uv = studio.vertex_pixels[:, :2]
-    place = np.nan_to_num(uv * (image.width_px / camera.width_px)).astype(int)
-    column = np.clip(place[:, 0], 0, image.width_px - 1)
-    row = np.clip(place[:, 1], 0, image.height_px - 1)
-    return row * image.width_px + column, np.isfinite(uv.sum(axis=1))
-
-
 def _glare(
     mesh: MembraneMesh, light: LightField, optics: Optics, studio: Studio, camera: Camera
 ) -> np.ndarray:
@@ -79,7 +59,7 @@ def _glare(
     small = pixel_glare.small(camera)
     rays = refracted_rays(small, mesh.cavity, optics.refractive_index)
     shining = pixel_glare.glare_radiance(small, rays, mesh.cavity, light, optics.refractive_index)
-    pixel, in_image = _pixels(studio, camera, small)
+    pixel, in_image = pixels_of(studio, camera, small)
     found = shining.mean(axis=1)[pixel]
     # Both as they arrive in the air of the cavity: T / n^2 of the radiance in the solid.
     leaving = rays.transmittance[pixel] / optics.refractive_index**2

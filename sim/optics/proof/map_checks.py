@@ -18,7 +18,7 @@ import numpy as np
 
 from sim.optics.field.bake import bake_light
 from sim.optics.maps import signal
-from sim.optics.maps.look import display_light
+from sim.optics.maps.display_light import display_light
 from sim.optics.proof.specimen import finger
 from sim.optics.studio.render import Studio
 from workbench.core.design.lighting import LightModel

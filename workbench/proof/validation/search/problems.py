@@ -1,7 +1,7 @@
 """Two real problems for samplers to be compared on, each with two goals that pull apart.
 
-*light*: a finger, 6 optical parameters, light evenness and normal resolvability, no image blown out,
-LEDs that have room. *mixed*: a pad, 8 parameters of shape, gel and optics, a whole number and a
+*light*: a finger, 6 optical parameters, light evenness and normal resolvability; nothing blown out,
+room for the LEDs. *mixed*: a pad, 8 parameters of shape, gel and optics, a whole number and a
 choice among them; sensitivity to .1 N and the force at the press's depth, castable. Both begin with
 a preset and are judged by the draft settings of a search. Ranges are our choice: what can be bought
 and printed, and what the design takes.
