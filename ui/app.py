@@ -37,6 +37,7 @@ from ui.panels.results.page import ResultsPanel
 from ui.panels.view.page import ViewPanel
 from ui.patches.everywhere import mend_everywhere
 from ui.patches.materials import finish
+from ui.patches.software_drawing import page_with_script
 from ui.patches.style import mend
 from ui.tenancy import Tenancy
 from workbench.core.base.errors import DesignError, StoreError
@@ -86,7 +87,7 @@ def serve(options: argparse.Namespace, project: Project) -> int:
     # From here on: what is refused above leaves the caller's handlers as they were.
     stop = asked_to_stop()
     # viser prints a link of its own, without the token.
-    with guarded(gate), contextlib.redirect_stdout(io.StringIO()):
+    with guarded(gate, page_with_script), contextlib.redirect_stdout(io.StringIO()):
         server = viser.ViserServer(
             host=options.host, port=options.port, label="Sensor workbench", verbose=False
         )

@@ -128,9 +128,23 @@ def _is_address(text: str) -> bool:
     return True
 
 
+def _mended(page: Any, mend: Callable[[bytes, bool], bytes] | None) -> None:
+    """Change the body of an answer that is a page."""
+    if mend is not None and page.headers.get("Content-Type", "").startswith("text/html"):
+        page.body = mend(page.body, page.headers.get("Content-Encoding") == "gzip")
+        if "Content-Length" in page.headers:
+            del page.headers["Content-Length"]
+            page.headers["Content-Length"] = str(len(page.body))
+
+
 @contextlib.contextmanager
-def guarded(gate: Gate) -> Iterator[None]:
-    """While this is open, every websocket server that is built asks the gate first."""
+def guarded(gate: Gate, mend: Callable[[bytes, bool], bytes] | None = None) -> Iterator[None]:
+    """While this is open, every websocket server that is built asks the gate first.
+
+    Args:
+        gate: Who may talk to it.
+        mend: Of the bytes of a page file and whether they are packed by gzip, what is sent instead.
+    """
     import websockets.asyncio.server as asyncio_server
     from websockets import Headers
     from websockets.http11 import Response
@@ -151,6 +165,7 @@ def guarded(gate: Gate) -> Iterator[None]:
             if answer is None:
                 page = process_request(connection, request) if process_request else None
                 if page is not None:
+                    _mended(page, mend)
                     page.headers.update(SAFE_HEADERS)
                 return page
             status, headers, body = answer
