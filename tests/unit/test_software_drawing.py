@@ -49,7 +49,8 @@ def test_an_answer_that_is_a_page_is_mended(kind: str, monkeypatch: pytest.Monke
 
     monkeypatch.setattr(websockets.asyncio.server, "serve", serve)
     with guarded(Gate(port=8080), page_with_script):
-        websockets.asyncio.server.serve(None, None, None, process_request=answered)
+        built: Any = websockets.asyncio.server.serve
+        built(None, None, None, process_request=answered)
 
     class Request:
         path, headers = "/", Headers({"Host": "127.0.0.1:8080"})

@@ -48,7 +48,7 @@ def look_of(
         jacobian=signal.tilt_jacobian(shown, inward, sensor),
         noise=signal.noise_grey(at_rest, sensor),
         glare=_glare(mesh, light, optics, studio, camera),
-        overexposed=(at_rest >= 1.0).any(axis=1),
+        overexposed=(at_rest >= 1.0).any(axis=1),  # pyright: ignore[reportArgumentType]
     )
 
 
