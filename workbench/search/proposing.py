@@ -1,9 +1,9 @@
 """Who proposes the next design: a Gaussian process, and beside it always a Sobol sequence.
 
 The first trials fill the box by Sobol, then every fourth does: what the process reaches beyond
-that line is what it is worth, and the plot shows both. Source of the choice: on a made-up function
-of 8 mixed fields, 2 goals and 2 limits, 80 trials and three seeds, Optuna's Gaussian process left a
-sixth of the hypervolume that TPE left, and TPE was hardly better than Sobol.
+that line is what it is worth, and the plot shows both. Source of the choice: two real problems, 60
+trials and three seeds, in which it dominated more than Sobol, random and TPE did in every seed
+(`workbench validate search`).
 """
 
 from __future__ import annotations
