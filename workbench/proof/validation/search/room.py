@@ -25,11 +25,17 @@ NAME = "search_hypervolume"
 GAIN_LIMIT = 0.2
 """By which the best design for light beats the preset in every goal."""
 MEASURES = {
-    "": ("at_trials", "at {trials} trials, on a model"),
-    "_minutes": ("at_minutes", "in the minutes that {trials} designs take, on a model"),
-    "_true": ("share", f"of {MOST} designs of its front at {{trials}} trials, evaluated for real"),
+    NAME: ("at_trials", "at {trials} trials, on a model"),
+    "search_hypervolume_minutes": (
+        "at_minutes",
+        "in the minutes that {trials} designs take, on a model",
+    ),
+    "search_hypervolume_true": (
+        "share",
+        f"of {MOST} designs of its front at {{trials}} trials, evaluated for real",
+    ),
 }
-"""Endings of rows, the figure that each shows, and its words."""
+"""Rows, the figure that each shows, and its words."""
 
 
 def rows(kept: Record = contest.RECORD) -> list[Row]:
@@ -51,11 +57,11 @@ def rows(kept: Record = contest.RECORD) -> list[Row]:
 def _rows(name: str, found: Mapping[str, Any], kept: Record) -> Iterator[Row]:
     whole = "" if found["designs"] >= COUNT else f" of {COUNT}, too few"
     begin = f"{TITLES[name]}, {found['designs']} designs{whole} and {found['added']} of fronts"
-    for ending, (figure, words) in MEASURES.items():
-        told = found["true"] if ending == "_true" else found["runs"]
+    for row, (figure, words) in MEASURES.items():
+        told = found["true"] if row.endswith("_true") else found["runs"]
         shares = {(run["sampler"], run["seed"]): run[figure] for run in told}
         case = f"{begin}: {words.format(trials=found['trials'])}"
-        yield from _pairs(f"{NAME}{ending}", case, shares, (found["ceiling"], kept))
+        yield from _pairs(row, case, shares, (found["ceiling"], kept))
     for figure, error in found["errors"].items():
         case = f"{begin}: {figure} of a design left out, error over the deviation; null: the mean"
         yield stated("search_model_error", case, error, unit="1", null=1.0, record=kept)
