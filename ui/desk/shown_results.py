@@ -55,6 +55,9 @@ class ShownResults:
         call = calls.get(outcome.stage) if STAGES[outcome.stage].shown else None
         if call is not None and call.key == outcome.key:
             self._show(outcome.stage, outcome.key)
+        if STAGES[outcome.stage].parts:
+            # Nobody tells that its parts are there, of which an image has the maps.
+            self.show_stored()
 
     def forget(self, *stages: str) -> None:
         """Show the stored results of these stages again when the state is next followed."""

@@ -38,35 +38,38 @@ SCRIPT = """
   if (new URLSearchParams(location.search).has('fixedDpr')) return;
 
   let timer = 0, fine = false;
-  const state = () => window.__viserMutable.scene.__r3f.root.getState();
+  const state = () => window.__viserMutable?.scene?.__r3f?.root?.getState();
   const refine = () => {
-    if (document.hidden) return;
-    fine = true;
     const now = state();
+    if (document.hidden || !now) return;
+    fine = true;
     now.gl.setPixelRatio(FINE * window.devicePixelRatio);
     now.invalidate();
   };
   const moves = () => {
     clearTimeout(timer);
     timer = setTimeout(refine, REST_MS);
-    if (!fine) return;
-    fine = false;
     const now = state();
+    if (!fine || !now) return;
+    fine = false;
     now.gl.setPixelRatio(now.viewport.dpr);
   };
   /* Viser makes the view anew once it was out of sight. */
   setInterval(() => {
-    const seen = window.__viserMutable;
-    if (!known || !seen || !seen.scene || !seen.scene.__r3f || !seen.scene.__r3f.root) return;
+    const seen = window.__viserMutable, now = state();
+    if (!known || !now) return;
     const request = seen.requestRender, eye = seen.cameraControl;
     if (!request.told) {
       seen.requestRender = () => { moves(); request(); };
       seen.requestRender.told = true;
+      moves();
     }
     if (eye && !eye.told) {
       eye.addEventListener('update', moves);
       eye.told = true;
     }
+    /* Viser sets a size of its own once it has measured enough drawings, at rest too. */
+    if (fine && now.gl.getPixelRatio() !== FINE * window.devicePixelRatio) refine();
   }, 500);
 })();
 """.replace("FINE", str(FINE)).replace("REST_MS", str(REST_MS))
