@@ -15,10 +15,13 @@ import gzip
 
 FINE = 1.5
 """Pixels of a drawing at rest along an edge of the screen's."""
+MOST = 2.0
+"""Pixels along an edge of the page's, beyond which screens are fine enough themselves."""
 REST_MS = 400
 """How long nothing must have moved."""
 HEAD = b"<head>"
-SCRIPT = """
+SCRIPT = (
+    """
 (() => {
   const real = HTMLCanvasElement.prototype.getContext;
   const byProgram = () => {
@@ -39,11 +42,15 @@ SCRIPT = """
 
   let timer = 0, fine = false;
   const state = () => window.__viserMutable?.scene?.__r3f?.root?.getState();
+  const finest = () => {
+    const own = window.devicePixelRatio;
+    return Math.max(own, Math.min(FINE * own, MOST));
+  };
   const refine = () => {
     const now = state();
     if (document.hidden || !now) return;
     fine = true;
-    now.gl.setPixelRatio(FINE * window.devicePixelRatio);
+    now.gl.setPixelRatio(finest());
     now.invalidate();
   };
   const moves = () => {
@@ -69,10 +76,13 @@ SCRIPT = """
       eye.told = true;
     }
     /* Viser sets a size of its own once it has measured enough drawings, at rest too. */
-    if (fine && now.gl.getPixelRatio() !== FINE * window.devicePixelRatio) refine();
+    if (fine && now.gl.getPixelRatio() !== finest()) refine();
   }, 500);
 })();
-""".replace("FINE", str(FINE)).replace("REST_MS", str(REST_MS))
+""".replace("FINE", str(FINE))
+    .replace("MOST", str(MOST))
+    .replace("REST_MS", str(REST_MS))
+)
 
 
 @functools.lru_cache(maxsize=2)
