@@ -58,6 +58,8 @@ def test_the_image_is_large_beside_the_sensor_and_over_the_page(pressed: Any) ->
     """By keys: half as wide again at least without covering the timeline; then nearly the page."""
     page = pressed
     small = image(page).bounding_box()["width"]
+    scene = page.locator("canvas[data-engine]")
+    width = scene.bounding_box()["width"]
     page.keyboard.press("i")
     wait_until(lambda: image(page).bounding_box()["width"] > 1.5 * small, 20, "a larger image")
     bar = tab(page, "Timeline").locator("xpath=ancestor::*[contains(@style, 'z-index')][1]")
@@ -66,17 +68,17 @@ def test_the_image_is_large_beside_the_sensor_and_over_the_page(pressed: Any) ->
     )
     page.keyboard.press("i")
     wait_until(lambda: image(page).bounding_box()["width"] < 1.1 * small, 20, "small again")
+    # The 3D view takes its new room a moment after the page has given it.
+    wait_until(lambda: scene.bounding_box()["width"] == width, 20, "the 3D view as at first")
 
     whole = page.locator(".whole-image img")
-    scene = page.locator("canvas[data-engine]")
-    width = scene.bounding_box()["width"]
     page.keyboard.press("w")
     whole.wait_for()
     box = whole.bounding_box()
     assert box["height"] > 0.7 * page.viewport_size["height"]
     assert not inside(box, bar.bounding_box())
-    corner = scene.bounding_box()
-    assert 200 < corner["width"] < 400 and not inside(box, corner), "the 3D view beside it"
+    wait_until(lambda: 200 < scene.bounding_box()["width"] < 400, 20, "the 3D view in a corner")
+    assert not inside(box, scene.bounding_box()), "the 3D view beside it"
     assert whole.get_attribute("src") == image(page).get_attribute("src")
     now = whole.get_attribute("src")
     page.keyboard.press("j")
