@@ -6,16 +6,20 @@ a new machine, and is not timed.
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
+from workbench.core.design.optics import MarkerPattern, Markers
 from workbench.pipeline.devices import chosen_device
+from workbench.project.named_designs import load_design
 from workbench.proof.benchmarks import sensor_peers
 from workbench.proof.benchmarks.timing import median_s
 from workbench.proof.row import Row, bounded, stated
+from workbench.sensor.making import make_pack
 from workbench.sensor.sensor import Sensor
 from workbench.sensor.tensor_frame import TensorFelt
 from workbench.sensor.things import Thing
@@ -29,7 +33,11 @@ LEAST_FPS = 60.0
 BATCH = {"cpu": 16, "cuda": 256}
 LEAST_BATCH_FPS: dict[str, dict[str, float]] = {
     "cpu": {},
-    "cuda": {"sensor_batch": 2_500.0, "sensor_batch_forces": 20_000.0},
+    "cuda": {
+        "sensor_batch": 2_500.0,
+        "sensor_batch_forces": 20_000.0,
+        "sensor_batch_markers": 1_000.0,
+    },
 }
 """Asked of a data-centre GPU; of a processor nothing is."""
 HEAD_MM, SHANK_MM, LENGTH_MM = 6.0, 3.0, 4.0
@@ -61,24 +69,37 @@ def rows() -> list[Row]:
             )
         )
     ball = moving["ball of 6 mm"]
-    return [*found, *batch_rows(sensor, ball), *sensor_peers.rows(sensor, poses(ball, FRAMES))]
+    batches = batch_rows(sensor, marked_sensor(), ball)
+    return [*found, *batches, *sensor_peers.rows(sensor, poses(ball, FRAMES))]
 
 
-def batch_rows(sensor: Sensor, ball: Thing) -> list[Row]:
-    """Many sensors side by side, what they feel and see left on the device."""
+def batch_rows(sensor: Sensor, marked: Sensor, ball: Thing) -> list[Row]:
+    """Many sensors side by side, what they feel and see left on the device.
+
+    Args:
+        sensor: One without markers.
+        marked: One with markers, whose places are asked for too.
+        ball: What touches them.
+    """
     device = chosen_device()
-    count, (width_px, _) = BATCH[device], sensor.image_px
-    what = f"{count} sensors side by side on {device}, {width_px} px, tensors left there"
+    count = BATCH[device]
     found = []
-    for name, call, told in (
-        ("sensor_batch", sensor.render_tensors, "force and image"),
-        ("sensor_batch_forces", sensor.feel_tensors, "forces alone"),
+    for name, each, call, told in (
+        ("sensor_batch", sensor, sensor.render_tensors, "force and image"),
+        ("sensor_batch_forces", sensor, sensor.feel_tensors, "forces alone"),
+        (
+            "sensor_batch_markers",
+            marked,
+            functools.partial(_with_markers, marked),
+            "force, image, depth and markers",
+        ),
     ):
         pace = functools.partial(
             _rate, functools.partial(_batch, call, poses(ball, count), ball), count
         )
         least = LEAST_BATCH_FPS[device].get(name)
-        case = f"{what}: {told}"
+        size = " x ".join(str(side) for side in each.image_px)
+        case = f"{count} sensors side by side on {device}, {size} px, tensors left there: {told}"
         found.append(
             stated(name, case, pace, unit="1/s")
             if least is None
@@ -90,6 +111,21 @@ def batch_rows(sensor: Sensor, ball: Thing) -> list[Row]:
 @functools.cache
 def _sensor() -> Sensor:
     return Sensor.load(DESIGN, width_px=WIDTH_PX)
+
+
+def marked_sensor() -> Sensor:
+    """The finger with a grid of dots, seen by its camera's own pixels."""
+    design = load_design(DESIGN)
+    dots = Markers(visible=True, pattern=MarkerPattern.GRID)
+    optics = dataclasses.replace(design.optics, markers=dots)
+    return Sensor(make_pack(dataclasses.replace(design, optics=optics)))
+
+
+def _with_markers(sensor: Sensor, at: np.ndarray, thing: Thing) -> TensorFelt:
+    """A moment of all, and where their dots are."""
+    frame = sensor.render_tensors(at, thing)
+    frame.markers_px.cpu()
+    return frame
 
 
 def poses(thing: Thing, count: int) -> np.ndarray:
