@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
+import os
+import signal
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, cast
@@ -18,7 +21,7 @@ from workbench.cluster.opening import Cluster
 from workbench.core.base.errors import Cancelled, DesignError
 from workbench.learning.dataset.recipe import Solvers
 from workbench.learning.making import collect
-from workbench.learning.making.cluster_workers import cluster_pools
+from workbench.learning.making.cluster_workers import GPU, _Pool, cluster_pools
 from workbench.learning.making.collect import make
 from workbench.learning.making.worker_messages import Setup
 from workbench.pipeline.store import Store
@@ -71,6 +74,34 @@ def test_presses_of_a_task_are_made_where_the_task_looks_for_them(
     there, here = given
     assert there[:2] == here[:2] and there[1] == tmp_path / "out" / "data"
     assert isinstance(there[2], Cluster) and here[2] is None
+
+
+def nothing() -> None:
+    """Opens nothing."""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("gpu", [False, True])
+def test_work_goes_on_by_the_process_that_replaces_a_lost_one(gpu: bool) -> None:
+    """Of either kind, though the new process has another address and no other is of its kind."""
+    distributed = pytest.importorskip("distributed")
+    presses = {"cls": distributed.Nanny, "options": {"nthreads": 1, "resources": {GPU: 1}}}
+    computes = {"cls": distributed.Nanny, "options": {"nthreads": 1}}
+    scheduler = {"cls": distributed.Scheduler, "options": {"dashboard": False}}
+    with (
+        distributed.SpecCluster(
+            workers={"presses": presses, "computes": computes}, scheduler=scheduler
+        ) as processes,
+        distributed.Client(processes) as client,
+    ):
+        client.wait_for_workers(2, timeout=60)
+        pool = _Pool(Cluster(client=client, shared=True, dashboard=""), nothing, gpu=gpu)
+        first = pool.submit(os.getpid).result(timeout=60)
+        waiting = pool.submit(time.sleep, 2.0)
+        time.sleep(0.5)
+        os.kill(first, signal.SIGKILL)
+        waiting.result(timeout=60)
+        assert pool.submit(os.getpid).result(timeout=60) != first
 
 
 @pytest.mark.slow

@@ -1,7 +1,8 @@
 """Workers and pressers of a cluster, as the pools that make samples.
 
 Whoever has the resource `GPU` presses, one process for each (`dask worker ... --resources GPU=1`);
-the others compute on the processor. All of them write into the folder of the data set.
+the others compute on the processor. All of them write into the folder of the data set. Work is
+given to a kind of process, never to one by its address: a lost one comes back with another.
 """
 
 from __future__ import annotations
@@ -18,6 +19,8 @@ from workbench.core.base.errors import DesignError
 from workbench.learning.making import presser, worker
 from workbench.learning.making.worker_messages import Setup
 
+GPU = "GPU"
+"""The resource of those that press."""
 _turn = threading.Lock()
 """A worker with several threads makes one sample at a time: it has one bench."""
 
@@ -47,14 +50,13 @@ def cluster_pools(cluster: Cluster, setup: Setup) -> Iterator[Pools]:
                 hint="put project and data set on a disk that they share",
                 at="--cluster",
             )
-    info = cluster.client.scheduler_info(n_workers=-1)["workers"]
-    with_gpu = [name for name, about in info.items() if about.get("resources", {}).get("GPU")]
-    others = [name for name in info if name not in with_gpu] or with_gpu
-    device = "cpu" if with_gpu and others != with_gpu else ""
+    found = _workers(cluster.client)
+    with_gpu = sum(found.values())
+    others = len(found) - with_gpu
     pools = Pools(
-        workers=_Pool(cluster, others, _Opener(setup=setup, device=device)),
-        width=len(others),
-        pressers=[_Pool(cluster, [name], presser.open_here) for name in with_gpu],
+        workers=_Pool(cluster, _Opener(setup=setup, device="cpu" if with_gpu else ""), gpu=False),
+        width=others or with_gpu,
+        pressers=[_Pool(cluster, presser.open_here, gpu=True) for _ in range(with_gpu)],
     )
     try:
         yield pools
@@ -63,27 +65,46 @@ def cluster_pools(cluster: Cluster, setup: Setup) -> Iterator[Pools]:
             pool.shutdown()
 
 
+def _workers(client: Any) -> dict[str, bool]:
+    """Addresses of the processes there are, and whether they have a GPU."""
+    info = client.scheduler_info(n_workers=-1)["workers"]
+    return {name: bool(about.get("resources", {}).get(GPU)) for name, about in info.items()}
+
+
 @dataclass(frozen=True, kw_only=True)
 class _Opener:
     """Makes a process a worker of one data set."""
 
     setup: Setup
     device: str
+    """Of those that do not press; a process that does keeps its GPU whatever it is given."""
 
     def __call__(self) -> None:
-        worker.open_here(self.setup, self.device)
+        from distributed import get_worker
+
+        presses = get_worker().state.total_resources.get(GPU)
+        worker.open_here(self.setup, "" if presses else self.device)
 
 
 class _Pool(Executor):
     """Processes of a cluster that are opened before they work."""
 
-    def __init__(self, cluster: Cluster, names: list[str], opener: Callable[[], None]) -> None:
-        self._inner = cluster.client.get_executor(workers=names, pure=False)
+    def __init__(self, cluster: Cluster, opener: Callable[[], None], *, gpu: bool) -> None:
+        self._client = cluster.client
+        self._inner = cluster.client.get_executor(pure=False)
         self._opener = opener
+        self._gpu = gpu
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         """As of any executor; of a lost worker Dask tries again on another of the pool."""
-        return self._inner.submit(in_turn, self._opener, fn, *args, **kwargs)
+        return self._inner.submit(in_turn, self._opener, fn, *args, **self._where(), **kwargs)
+
+    def _where(self) -> dict[str, Any]:
+        """Who may do it. Others are allowed too: those that are named may all be lost meanwhile."""
+        if self._gpu:
+            return {"resources": {GPU: 1}}
+        free = [name for name, with_gpu in _workers(self._client).items() if not with_gpu]
+        return {"workers": free, "allow_other_workers": True} if free else {}
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """End it, forgetting what has not begun; the processes stay."""
