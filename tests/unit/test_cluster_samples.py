@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
+import functools
 import os
 import signal
 import time
 from collections.abc import Iterator
+from concurrent.futures import Executor, Future
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any, cast
 
 import numpy as np
@@ -20,8 +23,8 @@ from workbench.cli.commands import task
 from workbench.cluster.opening import Cluster
 from workbench.core.base.errors import Cancelled, DesignError
 from workbench.learning.dataset.recipe import Solvers
-from workbench.learning.making import collect
-from workbench.learning.making.cluster_workers import GPU, _Pool, cluster_pools
+from workbench.learning.making import collect, presser, worker
+from workbench.learning.making.cluster_workers import GPU, Pools, _Pool, cluster_pools, in_turn
 from workbench.learning.making.collect import make
 from workbench.learning.making.worker_messages import Setup
 from workbench.pipeline.store import Store
@@ -82,7 +85,7 @@ def nothing() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("gpu", [False, True])
-def test_work_goes_on_by_the_process_that_replaces_a_lost_one(gpu: bool) -> None:
+def test_work_goes_on_by_the_process_that_replaces_a_lost_one(gpu: bool, tmp_path: Path) -> None:
     """Of either kind, though the new process has another address and no other is of its kind."""
     distributed = pytest.importorskip("distributed")
     presses = {"cls": distributed.Nanny, "options": {"nthreads": 1, "resources": {GPU: 1}}}
@@ -95,13 +98,57 @@ def test_work_goes_on_by_the_process_that_replaces_a_lost_one(gpu: bool) -> None
         distributed.Client(processes) as client,
     ):
         client.wait_for_workers(2, timeout=60)
-        pool = _Pool(Cluster(client=client, shared=True, dashboard=""), nothing, gpu=gpu)
+        pool = _Pool(
+            Cluster(client=client, shared=True, dashboard=""), nothing, tmp_path / "x", gpu=gpu
+        )
         first = pool.submit(os.getpid).result(timeout=60)
         waiting = pool.submit(time.sleep, 2.0)
         time.sleep(0.5)
         os.kill(first, signal.SIGKILL)
         waiting.result(timeout=60)
         assert pool.submit(os.getpid).result(timeout=60) != first
+
+
+class AtOnce(Executor):
+    """Does what a process of a cluster would, here and at once."""
+
+    def __init__(self, opener: Any, stem: Path) -> None:
+        self._work = functools.partial(in_turn, opener, stem)
+        self.came: list[Any] = []
+
+    def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
+        found = Future[Any]()
+        self.came.append(self._work(fn, *args, **kwargs))
+        found.set_result(self.came[-1])
+        return found
+
+
+@pytest.mark.slow
+def test_presses_on_their_way_through_a_cluster_lie_in_files_that_go(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """No process but those of the cluster has them; samples are those of a case at a time."""
+    recipe = dataclasses.replace(pad_recipe(cases=2), solvers=Solvers.MPM, grid_mm=1.0)
+    project = Project(tmp_path / "project")
+    made = list[AtOnce]()
+
+    @contextlib.contextmanager
+    def pools(_: object, setup: Setup) -> Iterator[Pools]:
+        stem = setup.folder / ".part-x"
+        made[:] = AtOnce(lambda: worker.open_here(setup), stem), AtOnce(nothing, stem)
+        yield Pools(workers=made[0], width=1, pressers=[made[1]])
+
+    monkeypatch.setattr(collect, "cluster_pools", pools)
+    monkeypatch.setattr(presser, "_stop", SimpleNamespace(value=0))
+    there = make(recipe, tmp_path / "there", project, cluster=cast(Any, object()))
+    here = make(recipe, tmp_path / "here", project)
+    assert there.counts() == here.counts() and here.counts()["cases_done"] == 2
+    assert sum(isinstance(each, Path) for each in made[0].came) == 2
+    assert all(isinstance(each, Path) for each in made[1].came[0].states)
+    assert not list((tmp_path / "there").glob(".part-*"))
+    for mine, its in zip(here.samples(), there.samples(), strict=True):
+        forces = [cast(Any, pair[1]).mpm.reaction_N for pair in (mine, its)]
+        assert np.allclose(*forces, rtol=1e-9, atol=0.0) and np.linalg.norm(forces[0]) > 0.0
 
 
 @pytest.mark.slow

@@ -21,7 +21,7 @@ from workbench.core.press.press_case import PressCase
 from workbench.edit.item_fields import with_field
 from workbench.live.requests import Request
 from workbench.pipeline.stage import Call
-from workbench.planning.plan import plan
+from workbench.planning.plan import planned
 from workbench.project.design_toml import check_design, design_from_toml
 from workbench.project.named_designs import load_design
 from workbench.project.project import Project
@@ -52,7 +52,6 @@ class Session:
         self._held = ""
         """The field whose handle a hand holds: all of its edits are one step of undo."""
         self.state = fresh_state(load_design(DEFAULT_DESIGN))
-        self._planned: tuple[State | None, dict[str, Call]] = (None, {})
 
     @property
     def design(self) -> SensorDesign:
@@ -205,13 +204,8 @@ class Session:
         return True
 
     def calls(self) -> dict[str, Call]:
-        """Calls and keys of the state as it stands; planned once per state."""
-        state, calls = self._planned
-        if state is not self.state:
-            state = self.state
-            calls = plan(state.design, state.case)
-            self._planned = (state, calls)
-        return calls
+        """Calls and keys of the state as it stands."""
+        return planned(self.state.design, self.state.case)
 
     def fresh(self) -> dict[str, bool]:
         """Whether each stage's result is stored for the state; stages it has not are left out."""
@@ -225,7 +219,7 @@ class Session:
         if not failed:
             return request.design == self.design
         now = self.calls().get(failed)
-        return now is not None and now.key == plan(request.design, request.case)[failed].key
+        return now is not None and now.key == planned(request.design, request.case)[failed].key
 
     def result(self, stage: str) -> Any:
         """The stored result of a stage for the state as it stands; None where none is readable."""

@@ -13,7 +13,7 @@ import numpy as np
 
 from ui.scene.nodes import Meshes
 from workbench.core.result.results import Label, Solid
-from workbench.project.aim import SkinPlace, skin_place
+from workbench.project.aim import SkinPlace, place_near, sensing_skin
 from workbench.view.region_words import region_words
 from workbench.view.scene_shapes import contact_side, first_hit, outer_faces, skin_parts
 from workbench.view.section_cut import Plane, clip
@@ -47,11 +47,14 @@ class SensorView:
         self.points = np.zeros((0, 3))
         """Vertices of the sensing side [mm], shape (N, 3)."""
         self.solid: Solid | None = None
+        self._sensing = np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int32)
+        """Its sensing skin, as `sensing_skin`."""
 
     def show_solid(self, solid: Solid) -> None:
         """Show a body in place of the one before."""
         self.dim(False)
         self.solid = solid
+        self._sensing = sensing_skin(solid)
         self.points, _ = outer_faces(solid.membrane)
         parts = skin_parts(solid.membrane)
         pins = parts.pop("pins", None)
@@ -155,7 +158,7 @@ class SensorView:
 
     def place_near(self, target_mm: tuple[float, float, float]) -> SkinPlace | None:
         """The place of the sensing side nearest to a point; None without a body."""
-        return None if self.solid is None else skin_place(self.solid, target_mm)
+        return None if self.solid is None else place_near(*self._sensing, target_mm)
 
     def side_of(self, target_mm: tuple[float, float, float], usual: np.ndarray) -> np.ndarray:
         """Unit direction to an eye that sees a press at the target; `usual` without a body."""

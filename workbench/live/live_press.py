@@ -28,7 +28,7 @@ from workbench.live.kept_studio import KeptStudio
 from workbench.pipeline.stage import Ref
 from workbench.pipeline.store import Store
 from workbench.pipeline.surface_detail import detailed
-from workbench.planning.plan import plan
+from workbench.planning.plan import planned
 
 if TYPE_CHECKING:
     from sim.contact.live_contact import LiveContact
@@ -125,7 +125,7 @@ def live_call(design: SensorDesign, case: PressCase) -> LiveCall:
         DesignError: As `plan`.
     """
     design = live_design(design)
-    calls = plan(design, case)
+    calls = planned(design, case)
     mesh, points, light = (calls[name].ref for name in NEEDED[:3])
     return LiveCall(
         mesh=mesh,

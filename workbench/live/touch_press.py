@@ -27,7 +27,7 @@ from workbench.live.live_press import PressPreview, live_design, live_press, sma
 from workbench.pipeline.fast.condensed import CondensedInputs
 from workbench.pipeline.stage import Ref
 from workbench.pipeline.store import Store
-from workbench.planning.plan import plan
+from workbench.planning.plan import planned
 from workbench.planning.tile_columns import tile_finder
 
 if TYPE_CHECKING:
@@ -92,7 +92,7 @@ def touch_call(design: SensorDesign, case: PressCase) -> TouchCall | None:
     if case.indenter.soft is not None or case.settings.method is not Method.LATTICE:
         return None
     design = live_design(design)
-    calls = plan(design, case)
+    calls = planned(design, case)
     if "condensed" not in calls or "hardening" not in calls:
         return None
     return TouchCall(

@@ -19,7 +19,7 @@ from workbench.core.press.press_case import PressCase
 from workbench.core.result.results import Solid
 from workbench.pipeline.stage import Ref
 from workbench.pipeline.store import Store
-from workbench.planning.plan import plan
+from workbench.planning.plan import planned
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -58,7 +58,7 @@ class ForesightCall:
 
 def foresight_call(design: SensorDesign, case: PressCase) -> ForesightCall:
     """The question for a state."""
-    build = plan(design, case)["build"]
+    build = planned(design, case)["build"]
     return ForesightCall(
         solid=build.ref, optics=design.optics, indenter=case.indenter, press=case.press
     )

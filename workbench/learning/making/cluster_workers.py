@@ -2,21 +2,28 @@
 
 Whoever has the resource `GPU` presses, one process for each (`dask worker ... --resources GPU=1`);
 the others compute on the processor. All of them write into the folder of the data set. Work is
-given to a kind of process, never to one by its address: a lost one comes back with another.
+given to a kind of process, never to one by its address: a lost one comes back with another. Presses
+and their states stay in the folder on their way: by the one who asks they would all go through a
+single process.
 """
 
 from __future__ import annotations
 
 import contextlib
+import dataclasses
+import functools
+import secrets
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from workbench.cluster.opening import Cluster, all_see
 from workbench.core.base.errors import DesignError
 from workbench.learning.making import presser, worker
+from workbench.learning.making.parcels import drop, laid_down
 from workbench.learning.making.worker_messages import Setup
 
 GPU = "GPU"
@@ -53,16 +60,20 @@ def cluster_pools(cluster: Cluster, setup: Setup) -> Iterator[Pools]:
     found = _workers(cluster.client)
     with_gpu = sum(found.values())
     others = len(found) - with_gpu
+    # What is left where this is killed is cleared when the data set is next gone on with.
+    stem = setup.folder / f".part-{secrets.token_hex(4)}"
+    opener = _Opener(setup=setup, device="cpu" if with_gpu else "")
     pools = Pools(
-        workers=_Pool(cluster, _Opener(setup=setup, device="cpu" if with_gpu else ""), gpu=False),
+        workers=_Pool(cluster, opener, stem, gpu=False),
         width=others or with_gpu,
-        pressers=[_Pool(cluster, presser.open_here, gpu=True) for _ in range(with_gpu)],
+        pressers=[_Pool(cluster, presser.open_here, stem, gpu=True) for _ in range(with_gpu)],
     )
     try:
         yield pools
     finally:
         for pool in (pools.workers, *pools.pressers):
             pool.shutdown()
+        drop(setup.folder.glob(f"{stem.name}-*"))
 
 
 def _workers(client: Any) -> dict[str, bool]:
@@ -89,15 +100,17 @@ class _Opener:
 class _Pool(Executor):
     """Processes of a cluster that are opened before they work."""
 
-    def __init__(self, cluster: Cluster, opener: Callable[[], None], *, gpu: bool) -> None:
+    def __init__(
+        self, cluster: Cluster, opener: Callable[[], None], stem: Path, *, gpu: bool
+    ) -> None:
         self._client = cluster.client
         self._inner = cluster.client.get_executor(pure=False)
-        self._opener = opener
+        self._work = functools.partial(in_turn, opener, stem)
         self._gpu = gpu
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         """As of any executor; of a lost worker Dask tries again on another of the pool."""
-        return self._inner.submit(in_turn, self._opener, fn, *args, **self._where(), **kwargs)
+        return self._inner.submit(self._work, fn, *args, **self._where(), **kwargs)
 
     def _where(self) -> dict[str, Any]:
         """Who may do it. Others are allowed too: those that are named may all be lost meanwhile."""
@@ -111,8 +124,16 @@ class _Pool(Executor):
         self._inner.shutdown(wait=False)
 
 
-def in_turn(opener: Callable[[], None], fn: Callable[..., Any], *args: Any, **kwargs: Any) -> Any:
-    """Runs in a process of the cluster."""
+def in_turn(
+    opener: Callable[[], None], stem: Path, fn: Callable[..., Any], *args: Any, **kwargs: Any
+) -> Any:
+    """Runs in a process of the cluster; parcels that come of it are left in files."""
     with _turn:
         opener()
-        return fn(*args, **kwargs)
+        found = fn(*args, **kwargs)
+    if isinstance(found, bytes):
+        return laid_down(found, stem)
+    if isinstance(found, presser.Pressed):
+        states = [laid_down(each, stem) for each in found.states]
+        return dataclasses.replace(found, states=states)
+    return found

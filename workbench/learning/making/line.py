@@ -12,6 +12,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 
 from workbench.learning.dataset.cases import Case
+from workbench.learning.making.parcels import Parcel, drop
 from workbench.learning.making.presser import Pressed, press_batch
 from workbench.learning.making.watch import Watch
 from workbench.learning.making.worker import finish_case, prepare_case
@@ -22,7 +23,7 @@ LOOK_S = 1.0
 AHEAD = 2
 """Batches that are ready or being read, for each presser."""
 
-Ready = tuple[Case, bytes]
+Ready = tuple[Case, Parcel]
 
 
 class Line:
@@ -37,9 +38,9 @@ class Line:
         self._most = AHEAD * batch * len(pressers)
         self._watch = watch
         self._ready: deque[Ready] = deque()
-        self._preparing: dict[Future[bytes | Report], Case] = {}
+        self._preparing: dict[Future[Parcel | Report], Case] = {}
         self._pressing: dict[Future[Pressed], tuple[Executor, list[Ready]]] = {}
-        self._finishing: dict[Future[Report], Case] = {}
+        self._finishing: dict[Future[Report], tuple[Case, list[Parcel]]] = {}
 
     def run(self, todo: Iterable[Case]) -> None:
         """Make all samples.
@@ -56,7 +57,7 @@ class Line:
                 return
             wait(running, timeout=LOOK_S, return_when=FIRST_COMPLETED)
             self._take()
-            self._watch.look(self._finishing.values())
+            self._watch.look([case for case, _ in self._finishing.values()])
 
     def _prepare(self, waiting: Iterator[Case]) -> None:
         while (
@@ -90,7 +91,9 @@ class Line:
             self._idle.append(presser)
             self._finish(batch, settled.result())
         for written in [future for future in self._finishing if future.done()]:
-            self._watch.ended(self._finishing.pop(written), written.result())
+            case, read = self._finishing.pop(written)
+            self._watch.ended(case, written.result())
+            drop(read)
 
     def _finish(self, batch: list[Ready], pressed: Pressed) -> None:
         frames = sum(case.frames for case, _ in batch)
@@ -100,4 +103,4 @@ class Line:
                 states=states, seconds=pressed.seconds * share, cpu_s=pressed.cpu_s * share
             )
             reading = self._workers.submit(finish_case, case, problem, settled)
-            self._finishing[reading] = case
+            self._finishing[reading] = case, [problem, states]

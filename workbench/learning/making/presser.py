@@ -11,7 +11,7 @@ from types import SimpleNamespace
 from typing import Any
 
 from workbench.core.base.errors import Cancelled, LaneError
-from workbench.learning.making.parcels import packed, unpacked
+from workbench.learning.making.parcels import Parcel, packed, unpacked
 from workbench.pipeline.devices import VARIABLE, open_device
 from workbench.system.processes import follow_parent
 
@@ -25,8 +25,8 @@ _stop: Any = None
 class Pressed:
     """What a batch came to."""
 
-    states: list[bytes]
-    """Parcels of `PressStates`, in order."""
+    states: list[Parcel]
+    """Of `PressStates`, in order."""
     seconds: float
     """Time that the batch took [s]."""
     cpu_s: float
@@ -61,7 +61,7 @@ def open_here() -> None:
         open_device()
 
 
-def press_batch(problems: Sequence[bytes]) -> Pressed:
+def press_batch(problems: Sequence[Parcel]) -> Pressed:
     """Settle presses side by side.
 
     Args:
@@ -83,7 +83,7 @@ def press_batch(problems: Sequence[bytes]) -> Pressed:
             hint="finished samples are kept; make it again with a smaller --batch",
             at="dataset",
         ) from error
-    found = [packed(states) for states in presses.states()]
+    found: list[Parcel] = [packed(states) for states in presses.states()]
     return Pressed(
         states=found, seconds=time.perf_counter() - begun, cpu_s=time.process_time() - cpu
     )

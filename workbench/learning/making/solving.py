@@ -29,7 +29,7 @@ from workbench.learning.dataset.folder import SAMPLES, sample_name
 from workbench.learning.dataset.images import Cameras, Views
 from workbench.learning.dataset.recipe import Solvers
 from workbench.learning.dataset.sample import Sample, Solved, to_bytes
-from workbench.learning.making.parcels import packed, unpacked
+from workbench.learning.making.parcels import Parcel, packed, unpacked
 from workbench.learning.making.worker_messages import Report, SettledPress, Setup
 from workbench.pipeline.store import Store
 from workbench.system.whole_files import write_atomically
@@ -90,7 +90,7 @@ class Bench:
             return packed(problem, self.mesh)
         return report
 
-    def finish(self, case: Case, problem: bytes, pressed: SettledPress) -> Report:
+    def finish(self, case: Case, problem: Parcel, pressed: SettledPress) -> Report:
         """Make the samples of a press that a presser has settled.
 
         Raises:

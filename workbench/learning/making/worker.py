@@ -9,6 +9,7 @@ from typing import Any
 
 from workbench.core.base.errors import WorkbenchError
 from workbench.learning.dataset.cases import Case
+from workbench.learning.making.parcels import Parcel
 from workbench.learning.making.solving import Bench
 from workbench.learning.making.worker_messages import Report, SettledPress, Setup
 from workbench.pipeline.devices import VARIABLE
@@ -62,12 +63,12 @@ def solve_case(case: Case) -> Report:
     return _opened().solve(case)
 
 
-def prepare_case(case: Case) -> bytes | Report:
+def prepare_case(case: Case) -> Parcel | Report:
     """Make a press ready in this worker; as `Bench.prepare`."""
     return _opened().prepare(case)
 
 
-def finish_case(case: Case, problem: bytes, pressed: SettledPress) -> Report:
+def finish_case(case: Case, problem: Parcel, pressed: SettledPress) -> Report:
     """Make the samples of a settled press in this worker; as `Bench.finish`."""
     return _opened().finish(case, problem, pressed)
 

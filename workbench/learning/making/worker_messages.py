@@ -8,6 +8,7 @@ from typing import Any
 
 from workbench.learning.dataset.recipe import Recipe
 from workbench.learning.dataset.sights import Sight
+from workbench.learning.making.parcels import Parcel
 from workbench.pipeline.stage import Call
 
 
@@ -52,8 +53,8 @@ class Report:
 class SettledPress:
     """What a presser says of one press."""
 
-    states: bytes
-    """Parcel of its `PressStates`."""
+    states: Parcel
+    """Of its `PressStates`."""
     seconds: float
     """Its share of the time of its batch, by frames [s]."""
     cpu_s: float
