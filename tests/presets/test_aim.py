@@ -10,7 +10,7 @@ import pytest
 
 from geometry.surface.surface import closest_point, face_areas
 from workbench.core.design.design import SensorDesign
-from workbench.project.aim import place_near, sensing_skin
+from workbench.project.aim import sensing_skin, skin_place
 from workbench.project.named_designs import load_design, presets
 from workbench.view.scene_shapes import outer_faces
 
@@ -38,7 +38,7 @@ def test_the_middle_of_a_long_face_keeps_its_target(
     corner_mm = np.linalg.norm(points[faces[chosen]] - middles[:, None], axis=2).min(axis=1)
     assert corner_mm.max() > 0.5
     for middle in middles:
-        place = place_near(*sensing_skin(solid), middle)
+        place = skin_place(sensing_skin(solid), (middle[0], middle[1], middle[2]))
         assert place.point_mm == pytest.approx(middle, abs=1e-6)
     _, away_mm, _ = closest_point(mesh.outer.points_mm, mesh.outer.faces, middles)
     assert away_mm.max() < KEPT_MM

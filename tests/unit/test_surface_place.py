@@ -19,7 +19,7 @@ from workbench.core.design.design import SensorDesign
 from workbench.core.press.press import Press
 from workbench.core.result.results import Skin, Solid
 from workbench.live.object_drawing import Drawing
-from workbench.project.aim import sensing_skin, target_notice
+from workbench.project.aim import sensing_skin, skin_place, target_notice
 
 BOX = trimesh.creation.box((20.0, 20.0, 60.0))
 
@@ -70,7 +70,7 @@ def test_a_target_typed_on_a_straight_wall_stays(build_finger: Callable[..., Sol
     desk = aiming_at(solid, (0.0, 10.0, 18.0))
     Aiming(desk).keep_aim()
     assert desk.aims == []
-    place = place_near(*sensing_skin(solid), (0.0, 10.0, 18.0))
+    place = skin_place(sensing_skin(solid), (0.0, 10.0, 18.0))
     # The chord of a facet lies below the wall by its sagitta.
     assert place.distance_mm < 0.02
     assert place.normal == pytest.approx([0.0, 1.0, 0.0], abs=0.01)

@@ -13,7 +13,7 @@ import numpy as np
 
 from ui.scene.nodes import Meshes
 from workbench.core.result.results import Label, Solid
-from workbench.project.aim import SkinPlace, place_near, sensing_skin
+from workbench.project.aim import SkinPlace, sensing_skin, skin_place
 from workbench.view.region_words import region_words
 from workbench.view.scene_shapes import contact_side, first_hit, outer_faces, skin_parts
 from workbench.view.section_cut import Plane, clip
@@ -158,7 +158,7 @@ class SensorView:
 
     def place_near(self, target_mm: tuple[float, float, float]) -> SkinPlace | None:
         """The place of the sensing side nearest to a point; None without a body."""
-        return None if self.solid is None else place_near(*self._sensing, target_mm)
+        return None if self.solid is None else skin_place(self._sensing, target_mm)
 
     def side_of(self, target_mm: tuple[float, float, float], usual: np.ndarray) -> np.ndarray:
         """Unit direction to an eye that sees a press at the target; `usual` without a body."""

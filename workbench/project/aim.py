@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from geometry.surface.surface_place import place_near
+from geometry.surface.surface_place import SkinPlace, place_near
 from workbench.core.design.design import SensorDesign
 from workbench.core.design.imported import IMPORTED
 from workbench.core.press.press import Press
@@ -51,13 +51,23 @@ def default_target_mm(
 
 
 def sensing_skin(solid: Solid) -> tuple[np.ndarray, np.ndarray]:
-    """Vertices (N, 3) [mm] and triangles (M, 3) of a body's sensing skin, for `place_near`.
+    """Vertices (N, 3) [mm] and triangles (M, 3) of a body's sensing skin, for `skin_place`.
 
     Copies in memory, float64: of arrays in a file each step of a search would cost anew.
     """
     membrane = solid.membrane
     sensing = np.array(membrane.faces[membrane.has(Label.OUTER)])
     return np.array(membrane.points_mm, dtype=np.float64), sensing
+
+
+def skin_place(
+    skin: tuple[np.ndarray, np.ndarray], place_mm: tuple[float, float, float]
+) -> SkinPlace:
+    """The place of a `sensing_skin` nearest to a point, and how far that is off [mm].
+
+    Distances go to triangles: a straight wall has corners only at its ends.
+    """
+    return place_near(*skin, place_mm)
 
 
 def target_notice(design: SensorDesign, solid: Solid, path: Press, contact: Contact) -> str:
