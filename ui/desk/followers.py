@@ -68,6 +68,9 @@ class Followers:
         desk.saving.edited()
         self.auto_update.edited()
         self._begin()
+        if desk.live:
+            # Fast contact presses while the widgets follow.
+            self.live_press.follow()
         desk.scene.rig.show_optics(session.design.optics)
         desk.shown_results.show_stored()
         if desk.current("build"):
@@ -80,7 +83,7 @@ class Followers:
                 desk.scene.clear_frames()
             desk.scene.object.place(session.case.press)
         if desk.live:
-            self.live_press.follow()
+            self.live_press.place_gizmo()
         self.foresight.follow()
         for panel in desk.panels:
             panel.refresh()

@@ -1,4 +1,4 @@
-"""A browser that draws without a graphics card draws twice as fast, and as smooth once all rests.
+"""A browser without a graphics card draws twice as fast, and at rest finely once, then no more.
 
 Half of such a browser's time goes into smoothing edges, by four samples of each pixel. A script at
 the head of the page asks for drawings without it, where a program draws in a card's place, and once
@@ -6,6 +6,10 @@ nothing has moved for a moment has the view drawn once more with finer pixels, w
 still. While something moves pixels are as large as viser wants them; a page whose address fixes
 their size (`fixedDpr`) keeps it. viser asks for smooth edges before a piece of HTML from us could
 be there, so the script is laid into the page file itself.
+
+viser also draws once a second for changes that asked for no drawing, "cheap" by its own words: by a
+program that took most of a processor for a page at rest, which presses and bakes then lack. A few
+seconds after the last change these drawings are left out.
 """
 
 from __future__ import annotations
@@ -19,6 +23,10 @@ MOST = 2.0
 """Pixels along an edge of the page's, beyond which screens are fine enough themselves."""
 REST_MS = 400
 """How long nothing must have moved."""
+HEARTBEAT_MS = 1000
+"""How often viser draws without being asked (`RENDER_HEARTBEAT_MS` of its `App.tsx`)."""
+CALM_MS = 5000
+"""How long it may after the last change."""
 HEAD = b"<head>"
 SCRIPT = (
     """
@@ -38,8 +46,16 @@ SCRIPT = (
     if (known === null) known = byProgram();
     return real.call(this, kind, known ? {...wanted, antialias: false} : wanted);
   };
-  if (new URLSearchParams(location.search).has('fixedDpr')) return;
+  /* viser's heartbeat is a call of one function without arguments. */
+  let movedAt = 0;
+  const setTimer = window.setInterval;
+  window.setInterval = function (call, ms, ...given) {
+    const beats = ms === HEARTBEAT_MS && /^\\(\\) *=> *[\\w$]+\\(\\)$/.test(String(call));
+    const calm = () => known && performance.now() - movedAt > CALM_MS;
+    return setTimer.call(this, beats ? () => { if (!calm()) call(); } : call, ms, ...given);
+  };
 
+  const sized = new URLSearchParams(location.search).has('fixedDpr');
   let timer = 0, fine = false;
   const state = () => window.__viserMutable?.scene?.__r3f?.root?.getState();
   const finest = () => {
@@ -54,6 +70,8 @@ SCRIPT = (
     now.invalidate();
   };
   const moves = () => {
+    movedAt = performance.now();
+    if (sized) return;
     clearTimeout(timer);
     timer = setTimeout(refine, REST_MS);
     const now = state();
@@ -62,7 +80,7 @@ SCRIPT = (
     now.gl.setPixelRatio(now.viewport.dpr);
   };
   /* Viser makes the view anew once it was out of sight. */
-  setInterval(() => {
+  setTimer(() => {
     const seen = window.__viserMutable, now = state();
     if (!known || !now) return;
     const request = seen.requestRender, eye = seen.cameraControl;
@@ -79,7 +97,9 @@ SCRIPT = (
     if (fine && now.gl.getPixelRatio() !== finest()) refine();
   }, 500);
 })();
-""".replace("FINE", str(FINE))
+""".replace("HEARTBEAT_MS", str(HEARTBEAT_MS))
+    .replace("CALM_MS", str(CALM_MS))
+    .replace("FINE", str(FINE))
     .replace("MOST", str(MOST))
     .replace("REST_MS", str(REST_MS))
 )

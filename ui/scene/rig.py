@@ -42,9 +42,15 @@ class RigView:
         """Whether the designer wants to see LEDs and lamps at all."""
         self.cameras_allowed = True
         self._shown = True
+        self._optics: Optics | None = None
+        """What was shown last."""
 
     def show_optics(self, optics: Optics) -> None:
         """Show all lights and cameras of a design."""
+        if optics is self._optics:
+            # Every edit of a press asks too, many a second while a hand drags.
+            return
+        self._optics = optics
         with self.server.atomic():
             self.leds.show_ring(optics.ring)
             self.lamps.show_lamps(optics.lamps)
