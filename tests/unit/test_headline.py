@@ -52,6 +52,23 @@ def test_our_limits_go_the_way_of_the_score_card() -> None:
             assert (one.bounds.good > one.bounds.poor) == (better is Better.HIGHER)
 
 
+def test_a_design_is_makeable_once_all_its_parts_are_checked() -> None:
+    """A mould whose checks passed says nothing of a housing that is not made; a failed one does."""
+    passed, failed = {"checks_bad": 0.0}, {"checks_bad": 1.0}
+    unmade = ["the housing", "the casting"]
+
+    def makeable(figures: dict[str, float], unmade: list[str]) -> tuple[str, Standing, str]:
+        shown = headlines(figures, {}, unmade=unmade)
+        found = next(one for one in shown if one.headline.figure == "checks_bad")
+        return found.text, found.standing, found.reason
+
+    assert makeable(passed, [])[:2] == ("yes", Standing.GOOD)
+    text, standing, reason = makeable(passed, unmade)
+    assert (text, standing) == ("so far", Standing.OPEN)
+    assert "the housing and the casting not made yet: Make parts" in reason
+    assert makeable(failed, unmade)[:2] == ("no", Standing.POOR)
+
+
 def test_force_has_no_limit_until_the_designer_sets_one() -> None:
     """Stiff or soft is a choice; what is not known says what to run."""
     assert standing(FORCE, {FORCE: 3.0}) is Standing.PLAIN

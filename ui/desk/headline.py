@@ -12,6 +12,9 @@ from workbench.project.limits import read_limits
 from workbench.project.prices import Prices, parts_cost, read_prices
 from workbench.view.headline import COST_RULE, Bounds, headlines
 
+CHECKED = {"mould": "the mould", "housing": "the housing", "recipe": "the casting"}
+"""Stages whose checks say whether a design can be made."""
+
 
 class HeadlineRow:
     """What stands in the row; figures come from the page that compares."""
@@ -67,6 +70,9 @@ class HeadlineRow:
 
     def draw(self) -> None:
         """Write the row, if it says anything else than before."""
-        text = headline_html(headlines(self.figures, self.limits, before=self.before))
+        fresh = self.desk.session.fresh()
+        unmade = [words for stage, words in CHECKED.items() if not fresh.get(stage, True)]
+        shown = headlines(self.figures, self.limits, before=self.before, unmade=unmade)
+        text = headline_html(shown)
         if self.desk.header.headline.content != text:
             self.desk.header.headline.content = text

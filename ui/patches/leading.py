@@ -7,6 +7,8 @@ of its own cannot stand in a tab twice. One handler of the page serves all that 
 - `data-fold`, with it: the folder of that label is opened and glows;
 - `data-press`: the button of that text, in a tab that is open or goes open, is pressed;
 - `data-key`: the command of that letter runs, as if it were typed.
+
+What opens over the page, as the reason of a figure does, closes by Escape or a press elsewhere.
 """
 
 from __future__ import annotations
@@ -46,6 +48,16 @@ window.leadThere = event => {
   }, 500);
 };
 document.addEventListener('click', window.leadThere, true);
+
+for (const kind of ['pointerdown', 'keydown'])
+  document.removeEventListener(kind, window.closeReasons, true);
+window.closeReasons = event => {
+  if (event.type === 'keydown' && event.key !== 'Escape') return;
+  for (const open of document.querySelectorAll('details[name][open]'))
+    if (event.type === 'keydown' || !open.contains(event.target)) open.open = false;
+};
+for (const kind of ['pointerdown', 'keydown'])
+  document.addEventListener(kind, window.closeReasons, true);
 """
 """Installs the handler, in place of that of an earlier page of the same server."""
 SHEET = """

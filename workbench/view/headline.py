@@ -7,7 +7,7 @@ project's `limits.toml` has its own (`workbench.project.limits`).
 from __future__ import annotations
 
 import enum
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from workbench.view.frame_words import MISSING, number
@@ -138,6 +138,7 @@ def headlines(
     own: Mapping[str, Bounds],
     *,
     before: Mapping[str, float] | None = None,
+    unmade: Sequence[str] = (),
 ) -> tuple[Shown, ...]:
     """All of a design.
 
@@ -145,6 +146,7 @@ def headlines(
         figures: What is known of it.
         own: The designer's limits by figure, in place of ours.
         before: What was known of it before the last edits; stands where nothing newer is known.
+        unmade: Parts whose checks are not among the figures, since they are not made.
     """
     found = []
     for headline in HEADLINES:
@@ -152,6 +154,8 @@ def headlines(
             continue
         old = headline.figure not in figures and headline.figure in (before or {})
         shown = _shown(headline, (before or {}) if old else figures, own)
+        if headline.figure == MAKEABLE and shown.standing is Standing.GOOD and unmade:
+            shown = _makeable_so_far(shown, unmade)
         if old:
             reason = f"As it was before the last edits. {shown.reason}"
             shown = replace(shown, old=True, reason=reason)
@@ -200,6 +204,13 @@ def _makeable(headline: Headline, bad: int, look_at: int) -> Shown:
     if standing is not Standing.GOOD:
         reason = f"{reason} {headline.remedy}."
     return Shown(headline=headline, text=text, standing=standing, reason=reason)
+
+
+def _makeable_so_far(shown: Shown, unmade: Sequence[str]) -> Shown:
+    """What passed as far as it is known."""
+    parts = " and ".join(unmade)
+    reason = f"All checks so far passed; {parts} not made yet: {REMEDIES['mould']}."
+    return replace(shown, text="so far", standing=Standing.OPEN, reason=reason)
 
 
 def _checks(count: int) -> str:
