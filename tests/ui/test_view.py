@@ -29,8 +29,8 @@ from tests.ui.widgets import (
 
 pytestmark = [pytest.mark.ui, pytest.mark.slow]
 
-MIDDLE = (640, 420)
-"""A pixel of the page where the finger is."""
+MIDDLE, BESIDE = (640, 420), (420, 160)
+"""Pixels of the page where the finger is, and where it is not."""
 
 
 @pytest.fixture(scope="module")
@@ -69,9 +69,21 @@ def said(page: Any, pattern: str) -> re.Match[str]:
     return match
 
 
+def reasons_close(page: Any) -> None:
+    """The reason of a figure, which opens over the page, goes by Escape or a press elsewhere."""
+    contrast = page.locator("details[name=headline]").filter(has=page.get_by_title("Contrast:"))
+    reason = contrast.locator("> div")
+    for close in (lambda: page.keyboard.press("Escape"), lambda: page.mouse.click(*BESIDE)):
+        contrast.locator("summary").click()
+        reason.wait_for()
+        close()
+        reason.wait_for(state="hidden")
+
+
 def test_section_measure_and_a_file(tmp_path: Path, page: Any, server: Server) -> None:
     """A cut shows its caps and outlives an edit; a wall is measured; the file plays by itself."""
     pressed(page, server)
+    reasons_close(page)
     tab(page, "View").click()
     whole = view(page)
     switch(page, "Section")
