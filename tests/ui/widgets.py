@@ -165,7 +165,8 @@ def stop_first_press(page: Any) -> None:
 def looking(page: Any) -> Iterator[None]:
     """Draws the 3D view of the fixture `page`, which else stays as it was when last looked at."""
     page.evaluate("() => { window.draws = 0; window.looked = true; }")
-    # A whole frame is drawn at once; an idle view draws one a second.
+    # A whole frame is drawn at once; a view at rest draws none unless it is asked.
+    page.evaluate("() => window.__viserMutable.requestRender()")
     wait_until(lambda: page.evaluate("window.draws"), 60, "the view is drawn")
     yield
     page.evaluate("window.looked = false")
