@@ -21,11 +21,12 @@ from tests.synthetic_presses import pad_recipe
 from workbench.cli.command_line import parser
 from workbench.cli.commands import task
 from workbench.cluster.opening import Cluster
-from workbench.core.base.errors import Cancelled, DesignError
+from workbench.core.base.errors import Cancelled, DesignError, StoreError
 from workbench.learning.dataset.recipe import Solvers
 from workbench.learning.making import collect, presser, worker
 from workbench.learning.making.cluster_workers import GPU, Pools, _Pool, cluster_pools, in_turn
 from workbench.learning.making.collect import make
+from workbench.learning.making.parcels import laid_down
 from workbench.learning.making.worker_messages import Setup
 from workbench.pipeline.store import Store
 from workbench.project.project import Project
@@ -107,6 +108,12 @@ def test_work_goes_on_by_the_process_that_replaces_a_lost_one(gpu: bool, tmp_pat
         os.kill(first, signal.SIGKILL)
         waiting.result(timeout=60)
         assert pool.submit(os.getpid).result(timeout=60) != first
+
+
+def test_a_press_that_cannot_be_laid_down_says_why(tmp_path: Path) -> None:
+    """A missing folder stands for a full disk: an error with its remedy, no traceback."""
+    with pytest.raises(StoreError, match="cannot write"):
+        laid_down(b"press", tmp_path / "gone" / ".part-x")
 
 
 class AtOnce(Executor):

@@ -67,6 +67,9 @@ def test_a_design_is_makeable_once_all_its_parts_are_checked() -> None:
     assert (text, standing) == ("so far", Standing.OPEN)
     assert "the housing and the casting not made yet: Make parts" in reason
     assert makeable(failed, unmade)[:2] == ("no", Standing.POOR)
+    # What was known before an edit was known of all its parts.
+    shown = headlines({}, {}, before=passed, unmade=unmade)
+    assert next(one.text for one in shown if one.headline.figure == "checks_bad") == "yes"
 
 
 def test_force_has_no_limit_until_the_designer_sets_one() -> None:

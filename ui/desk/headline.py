@@ -10,7 +10,7 @@ from workbench.core.base.errors import DesignError
 from workbench.core.base.units import ML_PER_MM3
 from workbench.project.limits import read_limits
 from workbench.project.prices import Prices, parts_cost, read_prices
-from workbench.view.headline import COST_RULE, Bounds, headlines
+from workbench.view.headline import COST_RULE, MAKEABLE, Bounds, headlines
 
 CHECKED = {"mould": "the mould", "housing": "the housing", "recipe": "the casting"}
 """Stages whose checks say whether a design can be made."""
@@ -70,9 +70,19 @@ class HeadlineRow:
 
     def draw(self) -> None:
         """Write the row, if it says anything else than before."""
-        fresh = self.desk.session.fresh()
-        unmade = [words for stage, words in CHECKED.items() if not fresh.get(stage, True)]
-        shown = headlines(self.figures, self.limits, before=self.before, unmade=unmade)
+        shown = headlines(self.figures, self.limits, before=self.before, unmade=self._unmade())
         text = headline_html(shown)
         if self.desk.header.headline.content != text:
             self.desk.header.headline.content = text
+
+    def _unmade(self) -> list[str]:
+        """Parts of the design as it stands whose checks its figures lack; asked at every edit."""
+        if MAKEABLE not in self.figures:
+            return []
+        session = self.desk.session
+        calls = session.calls()
+        return [
+            words
+            for stage, words in CHECKED.items()
+            if stage in calls and not session.store.has(stage, calls[stage].key)
+        ]

@@ -159,7 +159,8 @@ def headlines(
             continue
         old = headline.figure not in figures and headline.figure in (before or {})
         shown = _shown(headline, (before or {}) if old else figures, own)
-        if headline.figure == MAKEABLE and shown.standing is Standing.GOOD and unmade:
+        known_good = shown.standing is Standing.GOOD and not old
+        if headline.figure == MAKEABLE and known_good and unmade:
             shown = _makeable_so_far(shown, unmade)
         if old:
             reason = f"As it was before the last edits. {shown.reason}"

@@ -14,6 +14,8 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
+from workbench.core.base.errors import StoreError
+
 SHARED = "membrane"
 Parcel = bytes | Path
 """What is packed, or the file that holds it."""
@@ -53,11 +55,24 @@ def unpacked(parcel: Parcel, shared: object = None) -> Any:
 
 
 def laid_down(parcel: Parcel, stem: Path) -> Path:
-    """The same in a file of its own, whose name begins with `stem`."""
+    """The same in a file of its own, whose name begins with `stem`.
+
+    It is read once and need not outlive a crash, so nobody waits until the disk has it.
+
+    Raises:
+        StoreError: If the disk is full or read-only.
+    """
     if isinstance(parcel, Path):
         return parcel
     path = stem.with_name(f"{stem.name}-{secrets.token_hex(8)}")
-    path.write_bytes(parcel)
+    try:
+        path.write_bytes(parcel)
+    except OSError as error:
+        raise StoreError(
+            f"cannot write {path}: {error.strerror or error}",
+            hint="free some space: finished samples are kept, make it again",
+            at=str(path.parent),
+        ) from error
     return path
 
 
