@@ -21,7 +21,7 @@ from workbench.core.press.press_case import PressCase
 from workbench.edit.item_fields import with_field
 from workbench.live.requests import Request
 from workbench.pipeline.stage import Call
-from workbench.planning.plan import planned
+from workbench.planning.planned import planned
 from workbench.project.design_toml import check_design, design_from_toml
 from workbench.project.named_designs import load_design
 from workbench.project.project import Project

@@ -28,7 +28,7 @@ from workbench.live.kept_studio import KeptStudio
 from workbench.pipeline.stage import Ref
 from workbench.pipeline.store import Store
 from workbench.pipeline.surface_detail import detailed
-from workbench.planning.plan import planned
+from workbench.planning.planned import planned
 
 if TYPE_CHECKING:
     from sim.contact.live_contact import LiveContact

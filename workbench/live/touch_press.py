@@ -27,7 +27,7 @@ from workbench.live.live_press import PressPreview, live_design, live_press, sma
 from workbench.pipeline.fast.condensed import CondensedInputs
 from workbench.pipeline.stage import Ref
 from workbench.pipeline.store import Store
-from workbench.planning.plan import planned
+from workbench.planning.planned import planned
 from workbench.planning.tile_columns import tile_finder
 
 if TYPE_CHECKING:

@@ -19,7 +19,7 @@ from workbench.core.press.press_case import PressCase
 from workbench.core.result.results import Solid
 from workbench.pipeline.stage import Ref
 from workbench.pipeline.store import Store
-from workbench.planning.plan import planned
+from workbench.planning.planned import planned
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -6,8 +6,6 @@ runner (in this process, or in worker lanes) and yields each outcome.
 
 from __future__ import annotations
 
-import functools
-import operator
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Any, Protocol
@@ -93,35 +91,6 @@ def plan(design: SensorDesign, case: PressCase) -> dict[str, Call]:
     for stage in STAGES:
         chain.result(stage)
     return chain.calls
-
-
-def planned(design: SensorDesign, case: PressCase) -> dict[str, Call]:
-    """As `plan`, remembered of the objects that were asked for last; not to be changed.
-
-    A page asks several times for each state that it shows, and designs and cases are never changed.
-
-    Raises:
-        DesignError: As `plan`.
-    """
-    return _remembered(_Same(design, case))
-
-
-class _Same:
-    """Two objects, equal to a pair of the very same: to compare what is in them takes long."""
-
-    def __init__(self, *pair: Any) -> None:
-        self.pair = pair
-
-    def __hash__(self) -> int:
-        return hash(tuple(map(id, self.pair)))
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Same) and all(map(operator.is_, self.pair, other.pair))
-
-
-@functools.lru_cache(maxsize=8)
-def _remembered(same: _Same) -> dict[str, Call]:
-    return plan(*same.pair)
 
 
 def needed(calls: dict[str, Call], wanted: Iterable[str]) -> list[str]:
