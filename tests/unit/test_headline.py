@@ -114,6 +114,16 @@ def test_makeable_counts_the_checks() -> None:
     assert standing("checks_bad", {}) is Standing.OPEN
 
 
+def test_makeable_names_what_failed() -> None:
+    """The first three by name, and how many more; nothing of the design before an edit."""
+    names = ["draft (upper half)", "wall (membrane)", "room (housing)", "vent (mould)"]
+    shown = headlines({"checks_bad": 4.0}, {}, checks=names)
+    reason = next(one.reason for one in shown if one.headline.figure == "checks_bad")
+    assert reason.endswith("draft (upper half), wall (membrane), room (housing) and 1 more.")
+    before = headlines({}, {}, before={"checks_bad": 4.0}, checks=names)
+    assert not any("draft" in one.reason for one in before)
+
+
 def test_a_figure_of_before_an_edit_says_so() -> None:
     """It keeps its value, marked; one that is known anew is not marked."""
     shown = {

@@ -8,9 +8,11 @@ from ui.desk.desk import Desk
 from ui.page.headline_html import headline_html
 from workbench.core.base.errors import DesignError
 from workbench.core.base.units import ML_PER_MM3
+from workbench.core.result.fabrication import Severity
 from workbench.project.limits import read_limits
 from workbench.project.prices import Prices, parts_cost, read_prices
-from workbench.view.headline import COST_RULE, MAKEABLE, Bounds, headlines
+from workbench.view.headline import COST_RULE, LOOK_AT, MAKEABLE, Bounds, headlines
+from workbench.view.part_words import part_words
 
 CHECKED = {"mould": "the mould", "housing": "the housing", "recipe": "the casting"}
 """Stages whose checks say whether a design can be made."""
@@ -70,7 +72,13 @@ class HeadlineRow:
 
     def draw(self) -> None:
         """Write the row, if it says anything else than before."""
-        shown = headlines(self.figures, self.limits, before=self.before, unmade=self._unmade())
+        shown = headlines(
+            self.figures,
+            self.limits,
+            before=self.before,
+            unmade=self._unmade(),
+            checks=self._failing(),
+        )
         text = headline_html(shown)
         if self.desk.header.headline.content != text:
             self.desk.header.headline.content = text
@@ -85,4 +93,17 @@ class HeadlineRow:
             words
             for stage, words in CHECKED.items()
             if stage in calls and not session.store.has(stage, calls[stage].key)
+        ]
+
+    def _failing(self) -> list[str]:
+        """Checks of the design as it stands that did not pass, the worst first, in words."""
+        if not (self.figures.get(MAKEABLE) or self.figures.get(LOOK_AT)):
+            return []
+        results = [self.desk.session.result(stage) for stage in CHECKED]
+        checks = [check for result in results if result is not None for check in result.checks]
+        return [
+            f"{check.name.replace('_', ' ')} ({part_words(check.part)})"
+            for severity in (Severity.BAD, Severity.WARNING)
+            for check in checks
+            if check.severity is severity
         ]

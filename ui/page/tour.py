@@ -68,8 +68,8 @@ STEPS = (
     Step(
         "2 of 4: press it",
         "Click the skin where a ball shall press it, then **Run press** (R): contact, light "
-        "and image are computed for your shape, half a minute or so. Meanwhile, look at the "
-        "objects under **Simulate**, or turn the sensor by a drag.",
+        "and image are computed for your shape, one to two minutes on two cores. Meanwhile, look "
+        "at the objects under **Simulate**, or turn the sensor by a drag.",
         ("Simulate", "Tactile image", "Forces"),
         PRESSED,
     ),

@@ -56,10 +56,14 @@ def open_cluster(words: str | None, store: Store, printer: Progress) -> Iterator
     where = read_where(words)
     from workbench.cluster.opening import opened
 
+    if where.kind == "slurm" and not printer.as_json:
+        complain(f"{where.said['jobs']} jobs go to the queue; work begins with the first that runs")
     with opened(where, store) as cluster:
         if not printer.as_json:
             how = "store shared" if cluster.shared else "results are sent"
-            complain(f"{cluster.width} workers, {how}; Dask's page: {cluster.dashboard}")
+            here, width = cluster.here, cluster.width
+            workers = f"{width} workers" if here == width else f"{here} of {width} workers so far"
+            complain(f"{workers}, {how}; Dask's page: {cluster.dashboard}")
         try:
             yield cluster
         except CancelledError as error:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import logging
 import secrets
 import tempfile
 from collections.abc import Iterator
@@ -24,8 +25,14 @@ ONE_THREAD = {
     "TI_CPU_MAX_NUM_THREADS": "1",
 }
 """Of workers that we start: processes gain more than threads, and share no cores then."""
+PRE_SPAWN = "distributed.nanny.pre-spawn-environ"
+"""Dask's setting of it, which workers started by SSH inherit."""
 WAIT_S = 60.0
 """How long the first worker may take to come [s]."""
+JOBS = "jobs"
+"""Folder beside the store with what jobs of a queue have written."""
+QUEUED_S = 7 * 86400.0
+"""The same of a queue, which the whole institute may stand in [s]."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -38,11 +45,18 @@ class Cluster:
     """Whether its workers read and write the store's folder, so that results need no sending."""
     dashboard: str
     """Link to Dask's own page."""
+    expected: int = 0
+    """Workers that it will have once all that were asked for have come, as far as is known."""
+
+    @property
+    def here(self) -> int:
+        """Workers that have come."""
+        return sum(self.client.nthreads().values())
 
     @property
     def width(self) -> int:
-        """How many calls it computes at once, at least 1."""
-        return max(1, sum(self.client.nthreads().values()))
+        """How many calls it computes at once, at least 1; what comes later is counted in."""
+        return max(1, self.expected, self.here)
 
 
 @contextlib.contextmanager
@@ -54,26 +68,32 @@ def opened(where: Where, store: Store) -> Iterator[Cluster]:
         LaneError: If no worker comes.
     """
     with naming_packages(), contextlib.ExitStack() as open_things:
-        client = _client(where, open_things)
+        client = _client(where, open_things, store.root.parent / JOBS)
+        wait_s = QUEUED_S if where.kind == "slurm" else WAIT_S
         try:
-            client.wait_for_workers(1, timeout=WAIT_S)
+            client.wait_for_workers(1, timeout=wait_s)
         except TimeoutError as error:
             raise LaneError(
-                f"no worker of the cluster came within {WAIT_S:g} s",
+                f"no worker of the cluster came within {wait_s:g} s",
                 hint="start some: dask worker tcp://HOST:8786 --nthreads 1",
                 at=AT,
             ) from error
         yield Cluster(
-            client=client, shared=all_see(client, store.root), dashboard=str(client.dashboard_link)
+            client=client,
+            shared=all_see(client, store.root),
+            dashboard=str(client.dashboard_link),
+            expected=where.expected,
         )
 
 
-def _client(where: Where, open_things: contextlib.ExitStack) -> Any:
+def _client(where: Where, open_things: contextlib.ExitStack, jobs: Path) -> Any:
     import dask.config
     from distributed import Client, LocalCluster
 
+    spawned = dask.config.get(PRE_SPAWN, {}) | ONE_THREAD
     # Stages may start processes, which those of a daemon must not.
-    open_things.enter_context(dask.config.set({"distributed.worker.daemon": False}))
+    settings = {"distributed.worker.daemon": False, PRE_SPAWN: spawned}
+    open_things.enter_context(dask.config.set(settings))
     try:
         if where.kind == "address":
             return open_things.enter_context(
@@ -91,7 +111,7 @@ def _client(where: Where, open_things: contextlib.ExitStack) -> Any:
                 env=ONE_THREAD,
             )
         else:
-            cluster = _started(where)
+            cluster = _started(where, jobs)
         open_things.enter_context(cluster)
         return open_things.enter_context(Client(cluster, set_as_default=False))
     except (OSError, TimeoutError, ValueError, RuntimeError) as error:
@@ -102,12 +122,14 @@ def _client(where: Where, open_things: contextlib.ExitStack) -> Any:
         ) from error
 
 
-def _started(where: Where) -> Any:
-    """A cluster of other machines, started by SSH or by a queue."""
+def _started(where: Where, jobs: Path) -> Any:
+    """A cluster of other machines, started by SSH or by a queue, whose jobs write into a folder."""
     said = where.said
     if where.kind == "ssh":
         from distributed import SSHCluster
 
+        # Every line that a worker writes as it starts is told, as if it were news.
+        logging.getLogger("distributed.deploy.ssh").setLevel(logging.WARNING)
         options = {"nthreads": 1, "n_workers": said.get("workers", 1)}
         hosts = [str(host) for host in said["hosts"]]
         python = said.get("python")
@@ -121,7 +143,16 @@ def _started(where: Where) -> Any:
 
     cores = said["cores"]
     named = {name: said[name] for name in ("queue", "walltime", "account") if name in said}
-    cluster = SLURMCluster(cores=cores, processes=cores, memory=said["memory"], **named)
+    # A job inherits no settings of Dask's.
+    exported = ONE_THREAD | {"DASK_DISTRIBUTED__WORKER__DAEMON": "False"}
+    cluster = SLURMCluster(
+        cores=cores,
+        processes=cores,
+        memory=said["memory"],
+        log_directory=str(jobs),
+        job_script_prologue=[f"export {name}={value}" for name, value in exported.items()],
+        **named,
+    )
     cluster.scale(jobs=said["jobs"])
     return cluster
 

@@ -47,6 +47,15 @@ class Where:
     said: dict[str, Any] = field(default_factory=dict)
     """What the file says beside its kind."""
 
+    @property
+    def expected(self) -> int:
+        """Workers once all have come; 0 where others start them."""
+        if self.kind == "ssh":
+            return len(self.said["hosts"]) * self.said.get("workers", 1)
+        if self.kind == "slurm":
+            return self.said["jobs"] * self.said["cores"]
+        return self.workers
+
 
 def read_where(words: str) -> Where:
     """What `--cluster` was given.

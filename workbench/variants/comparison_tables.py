@@ -20,6 +20,8 @@ CELL = "padding:2px 6px;border-bottom:1px solid #8884;"
 NUMBER = f"{CELL}text-align:right;white-space:nowrap;font-variant-numeric:tabular-nums;"
 HEAD = f"{CELL}text-align:left;vertical-align:bottom;"
 NAME = "display:inline-block;max-width:8em;overflow:hidden;text-overflow:ellipsis;"
+SHORT, WRAPPED = "max-width:5em;", "white-space:normal;"
+"""Where a table has a fourth column, which must not lie beyond the edge of its panel."""
 TABLE = "<table style='font-size:12px;border-collapse:collapse;margin:4px 0'>"
 
 
@@ -28,10 +30,10 @@ def scrolled(table: str) -> str:
     return f"<div style='overflow-x:auto;margin:4px 8px'>{table}</div>"
 
 
-def name_cell(name: str) -> str:
+def name_cell(name: str, width: str = "") -> str:
     """The name of a design as the head of a column; a long one is cut, and whole on hovering."""
     safe = html.escape(name)
-    return f"<th style='{NUMBER}'><span style='{NAME}' title='{safe}'>{safe}</span></th>"
+    return f"<th style='{NUMBER}'><span style='{NAME}{width}' title='{safe}'>{safe}</span></th>"
 
 
 def rule_cell(rule: Rule) -> str:
@@ -105,8 +107,9 @@ def change_table(rows: Sequence[Change], a: str, b: str) -> str:
         f"<td style='{NUMBER}'>{number_text(row.b)}</td>{_change_cell(row)}</tr>"
         for row in rows
     )
-    head = f"<th style='{HEAD}'>figure</th>{name_cell(a)}{name_cell(b)}"
-    return f"{TABLE}<tr>{head}<th style='{NUMBER}'>B against A</th></tr>{lines}</table>"
+    names = f"{name_cell(a, SHORT)}{name_cell(b, SHORT)}"
+    head = f"<th style='{HEAD}'>figure</th>{names}<th style='{NUMBER}{WRAPPED}'>B against A</th>"
+    return f"{TABLE}<tr>{head}</tr>{lines}</table>"
 
 
 def _change_cell(row: Change) -> str:
@@ -118,4 +121,4 @@ def _change_cell(row: Change) -> str:
     size = "" if row.percent is None else f" {abs(row.percent):.3g} %"
     colour = {"better": BETTER_COLOUR, "worse": WORSE_COLOUR}.get(row.verdict, "inherit")
     word = f" {row.verdict}" if row.rule.better is not Better.NEUTRAL else ""
-    return f"<td style='{NUMBER}color:{colour}'>{arrow}{size}{word}</td>"
+    return f"<td style='{NUMBER}{WRAPPED}color:{colour}'>{arrow}{size}{word}</td>"

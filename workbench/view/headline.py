@@ -89,6 +89,8 @@ DENT = "readable_dent_median_mm"
 UNREADABLE_MM = 1000.0
 """A dent deeper than any skin: none is read."""
 MAKEABLE, LOOK_AT = "checks_bad", "checks_warning"
+MOST_NAMED = 3
+"""Checks that the reason names."""
 HEADLINES = (
     Headline(
         figure="peak_normal_force_N",
@@ -144,6 +146,7 @@ def headlines(
     *,
     before: Mapping[str, float] | None = None,
     unmade: Sequence[str] = (),
+    checks: Sequence[str] = (),
 ) -> tuple[Shown, ...]:
     """All of a design.
 
@@ -152,6 +155,7 @@ def headlines(
         own: The designer's limits by figure, in place of ours.
         before: What was known of it before the last edits; stands where nothing newer is known.
         unmade: Parts whose checks are not among the figures, since they are not made.
+        checks: What does not pass, the worst first, in words.
     """
     found = []
     for headline in HEADLINES:
@@ -162,6 +166,8 @@ def headlines(
         known_good = shown.standing is Standing.GOOD and not old
         if headline.figure == MAKEABLE and known_good and unmade:
             shown = _makeable_so_far(shown, unmade)
+        elif headline.figure == MAKEABLE and checks and not old:
+            shown = replace(shown, reason=f"{shown.reason} {_named(checks)}")
         if old:
             reason = f"As it was before the last edits. {shown.reason}"
             shown = replace(shown, old=True, reason=reason)
@@ -217,6 +223,12 @@ def _makeable_so_far(shown: Shown, unmade: Sequence[str]) -> Shown:
     parts = " and ".join(unmade)
     reason = f"All checks so far passed; {parts} not made yet: {REMEDIES['mould']}."
     return replace(shown, text="so far", standing=Standing.OPEN, reason=reason)
+
+
+def _named(checks: Sequence[str]) -> str:
+    """The first of them by name."""
+    more = f" and {len(checks) - MOST_NAMED} more" if len(checks) > MOST_NAMED else ""
+    return f"They are: {', '.join(checks[:MOST_NAMED])}{more}."
 
 
 def _checks(count: int) -> str:

@@ -149,8 +149,12 @@ class VariantsFolder:
         self.question.visible = False
 
     def _load(self, event: Any) -> None:
-        self.desk.session.replace_state(load_variant(self.project, self._name()).state)
+        name = self._name()
+        self.desk.session.replace_state(load_variant(self.project, name).state)
         self.desk.replaced()
+        self.desk.reports.notify(
+            "Loaded", f"{name} is what you work on now; Undo brings back what stood before"
+        )
 
     def _rename(self, event: Any) -> None:
         new = self.name.value.strip()
