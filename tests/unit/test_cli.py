@@ -343,6 +343,25 @@ def test_row_that_cannot_be_measured_fails_alone(
     assert run(tmp_path, "validate", "fem") == 1
 
 
+def test_several_rooms_are_measured_one_after_the_other(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Rows in the order asked, one list; a record is of one room, and a room that is none is told
+    before any is measured."""
+    for room, value in (("fem", 1.0), ("optics", 2.0)):
+        row = bounded("gain", room, value, unit="1", limit=1.5)
+        monkeypatch.setitem(validate.ROOMS, room, lambda row=row: [row])
+    assert run(tmp_path, "validate", "optics", "fem", "--json") == 1
+    said = capsys.readouterr()
+    rows = json.loads(said.out)
+    assert [(row["case"], row["ok"]) for row in rows] == [("optics", False), ("fem", True)]
+    assert all(row["against"] for row in rows)
+    assert "1 of 2: optics: 1 rows, 1 not ok" in said.err
+    assert run(tmp_path, "validate", "fem", "optics", "--record", str(tmp_path / "x")) == 2
+    assert run(tmp_path, "validate", "fem", "optic") == 2
+    assert "optics" in capsys.readouterr().err
+
+
 def test_rows_are_told_as_they_are_measured(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

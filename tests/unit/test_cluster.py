@@ -193,3 +193,23 @@ def test_a_killed_worker_loses_nothing_and_a_cancel_ends_the_task(
     while any(cluster.client.processing().values()) and time.monotonic() < latest:
         time.sleep(0.1)
     assert not any(cluster.client.processing().values())
+
+
+@pytest.mark.slow
+def test_rooms_of_the_validation_are_tasks(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The rows that one process gives, in the order asked, and its status."""
+    pytest.importorskip("distributed")
+    import json
+
+    from workbench.cli import main
+
+    words = ["validate", "--project", str(tmp_path), "search", "published", "--json"]
+    alone = main(words)
+    mine = json.loads(capsys.readouterr().out)
+    assert main([*words, "--cluster", "local:2"]) == alone
+    its = json.loads(capsys.readouterr().out)
+    assert [(row["name"], row["case"], row["ok"]) for row in its] == [
+        (row["name"], row["case"], row["ok"]) for row in mine
+    ]

@@ -217,6 +217,7 @@ def test_rows_of_the_room(tmp_path: Path) -> None:
     """Errors, nulls and limits of a record that is made up."""
     from workbench.proof.judge import judge
     from workbench.proof.validation.sensor import room, sensor_figures
+    from workbench.proof.validation.sensor.spring import spring
 
     depth = [0.1, 0.2, 0.4]
     figures: dict[str, Any] = {
@@ -238,14 +239,14 @@ def test_rows_of_the_room(tmp_path: Path) -> None:
     slid = {"across_N": [[0.05, 0, 0], [-0.1, 0, 0]], "full_across_N": [[0.1, 0, 0], [-0.1, 0, 0]]}
     both = {"fit": {}, "cube": figures, "flower": figures, "slide": slid}
     kept.make(lambda: {"designs": {"geltip": both}})
-    rows = room.rows(kept)
+    rows = room.contact_rows(kept)
     assert all(judge(row.name, row.case) for row in rows)
     force = [row for row in rows if row.name == "fast_force"]
     assert [row.value for row in force] == pytest.approx([0.06, 0.0, 0.06, 0.0])
     assert [row.limit for row in force] == [0.06, 0.06, 0.1, 0.1]
     # The best spring of .02, .05 and .2 N is .37 N/mm or so: half as much as a dent of .4 takes.
     assert force[1].null == pytest.approx(
-        1 - 0.4 * room.spring(np.array(depth), np.array([0.02, 0.05, 0.2])) / 0.2
+        1 - 0.4 * spring(np.array(depth), np.array([0.02, 0.05, 0.2])) / 0.2
     )
     shear = next(row for row in rows if row.name == "fast_shear")
     assert shear.value == pytest.approx(0.1)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from workbench.core.base.errors import DesignError, shown
@@ -32,7 +32,6 @@ def print_rows(
         DesignError: If there is no such room.
         StoreError: If the rows cannot be kept.
     """
-    from workbench.core.base.mapping import suggest
     from workbench.proof.row import as_json, as_text, gathered, listening
 
     started = time.monotonic()
@@ -41,10 +40,7 @@ def print_rows(
         state = "ok" if row.ok else "STALE" if row.stale else "FAIL"
         complain(f"{state:4} {row.name} after {human_seconds(time.monotonic() - started)}")
 
-    if options.room not in rooms:
-        raise DesignError(
-            f"there is no room {shown(options.room)}", hint=suggest(options.room, rooms), at="room"
-        )
+    expect_room(options.room, rooms)
     measure = rooms[options.room]
 
     def measured() -> Sequence[Row]:
@@ -55,6 +51,18 @@ def print_rows(
         rows = measured() if options.record is None else _kept(options, measure, measured)
     say(as_json(rows) if options.json else as_text(rows))
     return 0 if all(row.ok for row in rows) else 1
+
+
+def expect_room(room: str, rooms: Mapping[str, Any]) -> None:
+    """Refuse what is no room.
+
+    Raises:
+        DesignError: Naming the nearest.
+    """
+    from workbench.core.base.mapping import suggest
+
+    if room not in rooms:
+        raise DesignError(f"there is no room {shown(room)}", hint=suggest(room, rooms), at="room")
 
 
 def _kept(options: argparse.Namespace, measure: Any, measured: Rows) -> Sequence[Row]:

@@ -139,7 +139,7 @@ def _started(where: Where, jobs: Path) -> Any:
             worker_options=options,
             **({"remote_python": python} if python else {}),
         )
-    from dask_jobqueue import SLURMCluster  # pyright: ignore[reportMissingImports]
+    from dask_jobqueue.slurm import SLURMCluster  # pyright: ignore[reportMissingImports]
 
     cores = said["cores"]
     named = {name: said[name] for name in ("queue", "walltime", "account") if name in said}

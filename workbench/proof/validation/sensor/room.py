@@ -14,7 +14,8 @@ import numpy as np
 from sim.condensed.lessons import KINDS
 from workbench.core.base.errors import StoreError
 from workbench.proof.row import Row, bounded, failed, stated
-from workbench.proof.validation.sensor import sensor_figures
+from workbench.proof.validation.sensor import fem_rows, sensor_figures
+from workbench.proof.validation.sensor.spring import spring
 from workbench.system.record import Record
 
 FITTED_LIMIT, OTHER_LIMIT = 0.06, 0.10
@@ -30,6 +31,11 @@ FROM_MM = 0.2
 
 def rows(kept: Record = sensor_figures.RECORD) -> list[Row]:
     """All rows of the room."""
+    return [*contact_rows(kept), *fem_rows.rows(played=kept)]
+
+
+def contact_rows(kept: Record) -> list[Row]:
+    """Rows beside the contact solver."""
     try:
         designs = kept.figures()["designs"]
     except StoreError as error:
@@ -146,9 +152,3 @@ def _slid_rows(design: str, figures: dict[str, Any], kept: Record) -> Iterator[R
         null=1.0,
         record=kept,
     )
-
-
-def spring(depth_mm: np.ndarray, force_N: np.ndarray) -> float:
-    """The k [N/mm] whose k times depth has the least relative error, in squares."""
-    share = depth_mm / force_N
-    return float(share.sum() / (share @ share))

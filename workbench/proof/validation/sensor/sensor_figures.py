@@ -169,13 +169,19 @@ def figures_of(played: Played) -> dict[str, Any]:
     }
 
 
+def record_press(design: SensorDesign) -> Press:
+    """Where and how each object is pressed and sheared."""
+    target_mm = default_target_mm(design)
+    return Press(target_mm=target_mm, depth_mm=DEPTH_MM, frames=FRAMES, shear_mm=(SHEAR_MM, 0.0))
+
+
 def measured(name: str, project: Project) -> dict[str, Any]:
     """Figures of all objects on a design."""
     design = load_design(name, project=project)
     sensor = Sensor(make_pack(design, project, width_px=WIDTH_PX))
     found: dict[str, Any] = {"fit": sensor.law.errors or {}}
     target_mm = default_target_mm(design)
-    path = Press(target_mm=target_mm, depth_mm=DEPTH_MM, frames=FRAMES, shear_mm=(SHEAR_MM, 0.0))
+    path = record_press(design)
     for thing in OBJECTS:
         mesh, contact = _pressed(design, thing, path, project.store)
         found[thing] = figures_of(play(sensor, design, mesh, (thing, contact)))
