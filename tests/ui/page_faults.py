@@ -115,6 +115,12 @@ MEASURE = """
     // Faces of the cube stand behind each other as faces of a cube do.
     if (box && !node.closest(".view-cube")) items.push({node, box, text: name(node)});
   }
+  const stays = (node, below) => {
+    const row = node.closest('[role="tablist"]');
+    if (!row || getComputedStyle(row).position !== "sticky") return false;
+    const dock = row.closest(".mantine-ScrollArea-content");
+    return dock !== null && dock.contains(below) && !row.contains(below);
+  };
   const overlaps = [];
   items.forEach((a, i) => items.slice(i + 1).forEach((b) => {
     if (a.node.contains(b.node) || b.node.contains(a.node)) return;
@@ -124,6 +130,8 @@ MEASURE = """
     // The arrows and the cross of a box stand in it.
     const field = a.node.closest(".mantine-Input-wrapper, .mantine-Slider-root");
     if (field && field.contains(b.node)) return;
+    // What has scrolled away below a row of tabs that stays is not seen.
+    if (stays(a.node, b.node) || stays(b.node, a.node)) return;
     overlaps.push([`${a.text} / ${b.text}`, `${Math.round(w)} x ${Math.round(h)} px`]);
   }));
   return {overlap: overlaps, cut, contrast};

@@ -80,10 +80,27 @@ def reasons_close(page: Any) -> None:
         reason.wait_for(state="hidden")
 
 
+def tabs_stay(page: Any) -> None:
+    """The row of tabs is there at the end of a long page too."""
+    tab(page, "Optics").click()
+    last = button(page, "Help: Optics")
+    last.wait_for()
+    before = tab(page, "Optics").bounding_box()
+    last.scroll_into_view_if_needed()
+    box, there = last.bounding_box(), tab(page, "Optics").bounding_box()
+    assert box["y"] < page.viewport_size["height"]
+    # What stands above it scrolls away, and no more.
+    assert 0 <= there["y"] < before["y"]
+    top = f"document.elementFromPoint({there['x'] + 5}, {there['y'] + 5})"
+    assert page.evaluate(f"{top}.closest('[role=tab]') !== null")
+    tab(page, "Shape").click()
+
+
 def test_section_measure_and_a_file(tmp_path: Path, page: Any, server: Server) -> None:
     """A cut shows its caps and outlives an edit; a wall is measured; the file plays by itself."""
     pressed(page, server)
     reasons_close(page)
+    tabs_stay(page)
     tab(page, "View").click()
     whole = view(page)
     switch(page, "Section")

@@ -148,7 +148,7 @@ OF_THE_PRESS = (
         label="change per force",
         unit="grey/N",
         better=Better.HIGHER,
-        why=SENSED,
+        why="of this object and place; the sensitivity of the maps is of a ball all over the skin",
         stage="shoot",
         chief=True,
     ),
