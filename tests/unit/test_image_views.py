@@ -20,7 +20,14 @@ from workbench.view.image_views import (
     visible_change,
     wiped,
 )
-from workbench.view.map_display import map_look, score_rows, scores, value_at, value_words
+from workbench.view.map_display import (
+    heights_words,
+    map_look,
+    score_rows,
+    scores,
+    value_at,
+    value_words,
+)
 
 HIGH, WIDE = 8, 12
 
@@ -186,6 +193,15 @@ def test_blind_places_of_a_yes_and_no_map_are_grey() -> None:
     assert tuple(look.colours[0]) == NOTHING_GREY
     assert tuple(look.colours[1]) == YES
     assert (look.low, look.high) == (0.0, 1.0)
+
+
+def test_where_skin_is_blind_is_told_by_its_height() -> None:
+    """The lowest and the highest vertex that no camera sees; nothing where all are seen."""
+    points = np.array([[0.0, 0.0, -0.01], [1.0, 0.0, 4.0], [0.0, 1.0, 12.6], [0.0, 0.0, 30.0]])
+    found = skin_map([0.0, np.nan, 0.0, 1.0], name="visible", unit="1")
+    words = heights_words(found, points)
+    assert words.endswith("skin at heights z from 0.0 to 12.6 mm")
+    assert not heights_words(skin_map([1.0] * 4, name="visible", unit="1"), points)
 
 
 @pytest.mark.parametrize("level", [0.0, 3.0, -2.0, np.nan])

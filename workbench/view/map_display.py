@@ -110,6 +110,20 @@ def yes_no(found: SkinMap) -> tuple[str, str]:
     return ("yes", "no") if kind is None else kind.yes_no
 
 
+def heights_words(found: SkinMap, points_mm: np.ndarray) -> str:
+    """Between what heights the skin lies of which a map that says yes or no says no; "" of none.
+
+    Args:
+        found: The map.
+        points_mm: Its vertices, shape (V, 3).
+    """
+    z_mm = np.asarray(points_mm)[~(np.asarray(found.values) > 0.0), 2]
+    if not len(z_mm):
+        return ""
+    low, high = (f"{height:.1f}".replace("-0.0", "0.0") for height in (z_mm.min(), z_mm.max()))
+    return f"{yes_no(found)[1]}: skin at heights z from {low} to {high} mm"
+
+
 def of_one_light(found: SkinMap) -> bool:
     """Whether a map is one of many alike: its figure stands on no score card."""
     return found.score_name not in RULES

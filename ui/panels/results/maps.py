@@ -17,6 +17,7 @@ from workbench.system.names import NONE
 from workbench.view.colour_scale import NOTHING_GREY, YES
 from workbench.view.map_display import (
     MapLook,
+    heights_words,
     is_flag,
     map_look,
     ordered,
@@ -29,6 +30,8 @@ from workbench.view.map_display import (
 NO_MAPS = "Where on the skin this design sees, and how well. Not measured yet."
 STALE = "**stale**: the design has changed, measure again"
 JOB = "maps"
+SMALL = "font-size:12px;margin:2px 12px"
+"""Style of a line below a scale."""
 
 
 class MapsPanel:
@@ -92,7 +95,7 @@ class MapsPanel:
             return
         look = map_look(found)
         with self.desk.server.atomic():
-            self.legend.content = map_legend(found, look)
+            self.legend.content = map_legend(found, look, self.skin.points_mm)
             self.meaning.content = f"*{plain(found.meaning)}*"
             if self.wanted.value:
                 self.desk.tell("mapped", "map")
@@ -177,11 +180,12 @@ class MapsPanel:
         self.refresh()
 
 
-def map_legend(found: SkinMap, look: MapLook) -> str:
-    """The colours of a map and what they mean, as HTML."""
+def map_legend(found: SkinMap, look: MapLook, points_mm: np.ndarray) -> str:
+    """The colours of a map of vertices (V, 3) and what they mean, as HTML."""
     if is_flag(found):
         yes, no = yes_no(found)
-        return swatch(YES, yes) + swatch(NOTHING_GREY, no)
+        where = f"<div style='{SMALL}'>{heights_words(found, points_mm)}</div>"
+        return swatch(YES, yes) + swatch(NOTHING_GREY, no) + where
     bar = scale_bar(look.low, look.high, found.unit, middle=look.middle)
-    words = f"<div style='font-size:12px;margin:2px 12px'>{look.words}</div>"
+    words = f"<div style='{SMALL}'>{look.words}</div>"
     return bar + words + swatch(NOTHING_GREY, "no value: blind or unlit")
