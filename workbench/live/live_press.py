@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sim.optics.field.model import baked_model, model_of
+from sim.optics.studio.fitted_photos import fitted_photos
 from workbench.core.base.digest import digest
 from workbench.core.base.monitor import Monitor
 from workbench.core.design.design import Elastomer, SensorDesign
@@ -194,5 +195,4 @@ def small(optics: Optics, widest_px: int = WIDEST_PX) -> Optics:
         max(FEWEST_PX, round(share * count)) for count in (camera.width_px, camera.height_px)
     )
     reduced = dataclasses.replace(camera, width_px=width_px, height_px=height_px)
-    # A photograph fits the camera's own pixels only.
-    return dataclasses.replace(optics, camera=reduced, cameras=(), background=None)
+    return fitted_photos(dataclasses.replace(optics, camera=reduced, cameras=()))
