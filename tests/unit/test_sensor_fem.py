@@ -37,8 +37,10 @@ def record(path: Path, figures: dict[str, object]) -> Record:
 @pytest.fixture
 def found(tmp_path: Path) -> dict[str, list[Row]]:
     """Rows by their names."""
-    truth = record(tmp_path / "fem.json", {"pad": {"cube": TRUTH}, "paw": {"cube": TRUTH}})
-    ours = record(tmp_path / "fast.json", {"pad": {"fit": {}, "cube": OURS}})
+    unsure = {**TRUTH, "error": []}
+    presses = {"pad": {"cube": TRUTH, "flower": unsure}, "paw": {"cube": TRUTH}}
+    truth = record(tmp_path / "fem.json", presses)
+    ours = record(tmp_path / "fast.json", {"pad": {"fit": {}, "cube": OURS, "flower": OURS}})
     sorted_rows: dict[str, list[Row]] = {}
     for row in rows(truth, ours):
         sorted_rows.setdefault(row.name, []).append(row)
@@ -46,12 +48,15 @@ def found(tmp_path: Path) -> dict[str, list[Row]]:
 
 
 def test_errors_are_of_finite_elements(found: dict[str, list[Row]]) -> None:
-    """Force by force, the elements' own error as ceiling; a press that only one has is none."""
+    """Force by force, the elements' own error as ceiling where they know it; a press that only one
+    has is none."""
     forces = found["fast_fem_force"]
-    assert [row.value for row in forces] == pytest.approx([0.05, 0.05, 0.15])
-    assert [row.ceiling for row in forces] == [0.05, 0.02, 0.01]
+    assert [row.value for row in forces] == pytest.approx([0.05, 0.05, 0.15] * 2)
+    assert [row.ceiling for row in forces] == [0.05, 0.02, 0.01, None, None, None]
+    assert [row.limit for row in forces] == [0.1, 0.1, 0.1, None, None, None]
+    assert [row.ok for row in forces] == [True, True, False, True, True, True]
     solver = found["fast_fem_mpm_force"]
-    assert [row.value for row in solver] == pytest.approx([0.05])
+    assert [row.value for row in solver] == pytest.approx([0.05, 0.05])
     assert found["fast_fem_shear"][0].value == pytest.approx(0.2 / 2.0)
 
 

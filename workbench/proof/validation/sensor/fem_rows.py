@@ -8,12 +8,12 @@ with its edge is least certain.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 
 from workbench.core.base.errors import StoreError
-from workbench.proof.row import Row, bounded, failed, stated
+from workbench.proof.row import Bounds, Row, bounded, failed, stated
 from workbench.proof.validation.sensor import fem_presses, sensor_figures
 from workbench.proof.validation.sensor.spring import spring
 from workbench.system.record import Record
@@ -44,19 +44,21 @@ def rows(kept: Record = fem_presses.RECORD, played: Record = sensor_figures.RECO
 
 def _rows(case: str, ours: dict[str, Any], truth: dict[str, Any], kept: Record) -> Iterator[Row]:
     depth, force = np.array(ours["depth_mm"]), np.array(truth["normal_N"])
-    down, ceiling = len(depth), np.abs(truth["error"])
+    down = len(depth)
+    # Without an error of their own, finite elements are of a coarse mesh: compared, no judge.
+    judge = bool(truth["error"])
+    own = [abs(error) for error in truth["error"]] or [None] * len(force)
     shown = [int(np.abs(depth - depth_mm).argmin()) for depth_mm in DEPTHS_MM]
     off = {name: np.abs(np.array(ours[name]) / force - 1.0) for name in ("normal_N", MPM_FORCE)}
     null = np.abs(spring(depth, force[:down]) * depth / force[:down] - 1.0)
     for number in shown:
-        yield bounded(
+        yield _judged(
             "fast_fem_force",
             f"{case}, {depth[number]:g} mm: error of the normal force {BESIDE}",
             float(off["normal_N"][number]),
-            unit="1",
-            limit=FORCE_LIMIT,
+            limit=FORCE_LIMIT if judge else None,
             null=float(null[number]),
-            ceiling=float(ceiling[number]),
+            ceiling=own[number],
             record=kept,
         )
     yield stated(
@@ -64,28 +66,26 @@ def _rows(case: str, ours: dict[str, Any], truth: dict[str, Any], kept: Record) 
         f"{case}, {DEPTHS_MM[0]:g} to {DEPTHS_MM[-1]:g} mm: the contact solver's largest {BESIDE}",
         float(off[MPM_FORCE][shown].max()),
         unit="1",
-        ceiling=float(ceiling[shown].max()),
+        ceiling=max((own[k] for k in shown if own[k] is not None), default=None),
         record=kept,
     )
     across = np.array(truth["across_N"])[down:]
     sheared = np.array(ours["across_N"])[down:]
-    yield bounded(
+    yield _judged(
         "fast_fem_shear",
         f"{case}: largest error of the tangential force over its peak {BESIDE}",
         float(np.abs(sheared - across).max() / across.max()),
-        unit="1",
-        limit=SHEAR_LIMIT,
+        limit=SHEAR_LIMIT if judge else None,
         null=1.0,
         record=kept,
     )
     slip = np.array(truth["slip"])
     far = {name: np.abs(np.array(ours[name]) - slip) for name in ("slip", MPM_SLIP)}
-    yield bounded(
+    yield _judged(
         "fast_fem_slip",
         f"{case}, straight: {APART} {BESIDE}; null: all slides",
         float(far["slip"][:down].max()),
-        unit="1",
-        limit=SLIP_LIMIT,
+        limit=SLIP_LIMIT if judge else None,
         null=float(1.0 - slip[:down].min()),
         record=kept,
     )
@@ -104,3 +104,12 @@ def _rows(case: str, ours: dict[str, Any], truth: dict[str, Any], kept: Record) 
         null=float(np.abs(1.0 - slip[down:]).max()),
         record=kept,
     )
+
+
+def _judged(
+    name: str, case: str, value: float, *, limit: float | None, **bounds: Unpack[Bounds]
+) -> Row:
+    """A row with a limit, or a stated one without."""
+    if limit is None:
+        return stated(name, f"{case}, a coarse mesh", value, unit="1", **bounds)
+    return bounded(name, case, value, unit="1", limit=limit, **bounds)
