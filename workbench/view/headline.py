@@ -102,11 +102,13 @@ HEADLINES = (
         figure="contact_contrast_1",
         word="Contrast",
         tab="Tactile image",
-        # On the finger `geltip`: .25; roughness .1 .32; with half the exposure .50; and LEDs tilted
-        # by 20 degrees instead of -5 .56. Half the exposure alone .29. Wall, modulus: no change.
+        # On the finger `geltip`: .25 with roughness .25 and exposure 7100; .1 and 3500 .35 to .50
+        # by the place of the touch; .07 and 1500 .48; .05 and 1000 .62. Half the exposure alone
+        # .29; LEDs tilted by 20 degrees instead of -5 .05 more. Wall, modulus: no change.
         remedy=(
-            "Less Roughness with less Exposure, so that no pixel is white, shows twice as much on "
-            "a finger; then LEDs that graze the skin, and less Ambient power"
+            "Under Optics, a Roughness (Coating) of .05 to .1 with a third to a seventh of the "
+            "Exposure (Focus and sensor), so that no pixel is white, shows twice as much on a "
+            "finger; then LEDs that graze the skin, and less Ambient power"
         ),
         bounds=Bounds(good=0.1, poor=0.03),
     ),

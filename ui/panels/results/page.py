@@ -25,7 +25,7 @@ from workbench.view.wall_under import wall_under_mm
 
 LOG_ROWS = 60
 LIVE_NOTE = "**live**: one frame, not stored; *Run press* computes the path"
-PREVIEW_NOTE = "**preview**: {model} light, dent by geometry; *Run press* computes the image"
+PREVIEW_NOTE = "**preview**: {model} light, dent by geometry; *Update results* computes the image"
 BEFORE_NOTE = "**outdated preview, of the shape before**: the new shape is being built"
 EARLIER_NOTE = "**preview of an earlier design**: this one cannot be previewed, see the log"
 
