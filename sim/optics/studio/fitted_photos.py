@@ -39,7 +39,7 @@ def fitted_photos(optics: Optics) -> Optics:
     return dataclasses.replace(optics, background=background, unit=built)
 
 
-@functools.lru_cache(maxsize=4)
+@functools.lru_cache(maxsize=16)
 def _photo_in(shown: Photo, size_px: Size) -> Photo:
     rgb = read_rgb(shown, at=FIELD, ground=0.0)
     height_px, width_px = rgb.shape[:2]
@@ -53,7 +53,7 @@ def _photo_in(shown: Photo, size_px: Size) -> Photo:
     return photo(f"{shown.name}.png", png, at=FIELD)
 
 
-@functools.lru_cache(maxsize=4)
+@functools.lru_cache(maxsize=16)
 def _unit_in(built: Unit, size_px: Size) -> Unit:
     held = read_unit(built)
     idle = _photo_in(held.idle, size_px)
