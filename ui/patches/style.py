@@ -33,7 +33,8 @@ SHEET = """<style>
 }
 /* The row of tabs stays while a long page scrolls. viser's boxes around it hide what leaves them,
    which makes each of them a place of its own to stick to; cut off, they are not, but then would
-   be as wide as the widest plot. In a narrow window, where the sheet lies over the 3D view, Chromium left a strip of the view blank. */
+   be as wide as the widest plot. In a narrow window, where the sheet lies over the 3D view,
+   Chromium left a strip of the view blank. */
 @media (min-width: 36em) {
   .mantine-ScrollArea-content div:has([role="tablist"]) {
     overflow: clip !important; min-width: 0 !important;
