@@ -9,25 +9,19 @@ not named keep what was recorded of them by the same code.
 
 from __future__ import annotations
 
-import argparse
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from workbench.core.base.errors import StoreError, WorkbenchError
 from workbench.core.press.press_case import PressCase
 from workbench.edit.indenter_choice import choose_indenter
 from workbench.planning.plan import InlineRunner, evaluate, plan
 from workbench.project.named_designs import load_design
 from workbench.project.project import Project
 from workbench.proof.validation.contact.finger_record import FEM_APART
-from workbench.proof.validation.sensor.sensor_figures import (
-    DESIGNS,
-    OBJECTS,
-    SIZE_MM,
-    record_press,
-)
+from workbench.proof.validation.sensor.by_design import record_by_design
+from workbench.proof.validation.sensor.sensor_figures import OBJECTS, SIZE_MM, record_press
 from workbench.system.record import Record
 
 RECORD = Record(
@@ -58,32 +52,14 @@ def solved(name: str, thing: str, project: Project) -> dict[str, Any]:
     }
 
 
+def solved_design(name: str, project: Project) -> dict[str, Any]:
+    """Figures of all objects on a design."""
+    return {thing: solved(name, thing, project) for thing in OBJECTS}
+
+
 def main(words: Sequence[str] | None = None) -> int:
     """Solve and record; 1 where something failed."""
-    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("folder", type=Path)
-    parser.add_argument("designs", nargs="*", metavar="DESIGN")
-    options = parser.parse_args(words)
-    project = Project(options.folder)
-    try:
-        RECORD.make(lambda: {"designs": dict(_all(options.designs or DESIGNS, project))})
-    except WorkbenchError as error:
-        print(f"error: {error.message}; {error.hint}", file=sys.stderr)
-        return 1
-    return 0
-
-
-def _all(names: Sequence[str], project: Project) -> Iterator[tuple[str, Any]]:
-    """The designs on record, those named solved anew."""
-    try:
-        kept = {} if RECORD.stale() else RECORD.figures()["designs"]
-    except StoreError:
-        kept = {}
-    for name in DESIGNS:
-        if name in names:
-            yield name, {thing: solved(name, thing, project) for thing in OBJECTS}
-        elif name in kept:
-            yield name, kept[name]
+    return record_by_design(RECORD, solved_design, __doc__, words)
 
 
 if __name__ == "__main__":

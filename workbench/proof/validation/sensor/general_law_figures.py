@@ -22,7 +22,7 @@ from workbench.pipeline.devices import open_device
 from workbench.planning.plan import InlineRunner, evaluate, plan
 from workbench.project.named_designs import load_design
 from workbench.project.project import Project
-from workbench.proof.validation.sensor.sensor_figures import DESIGNS
+from workbench.proof.validation.sensor.by_design import DESIGNS
 
 if TYPE_CHECKING:
     from sim.condensed.hardening import PlayedPress

@@ -9,9 +9,8 @@ named keep what was recorded of them by the same code.
 
 from __future__ import annotations
 
-import argparse
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -19,7 +18,6 @@ from typing import Any
 import numpy as np
 
 from sim.condensed.lessons import KINDS
-from workbench.core.base.errors import StoreError, WorkbenchError
 from workbench.core.design.design import SensorDesign
 from workbench.core.press.motion import slide
 from workbench.core.press.press import Press
@@ -32,11 +30,11 @@ from workbench.planning.plan import InlineRunner, evaluate, plan
 from workbench.project.aim import default_target_mm
 from workbench.project.named_designs import load_design
 from workbench.project.project import Project
+from workbench.proof.validation.sensor.by_design import record_by_design
 from workbench.sensor.making import make_pack
 from workbench.sensor.sensor import Sensor
 from workbench.system.record import Record
 
-DESIGNS = ("geltip", "pad", "trunk", "paw")
 BALL, SLIDE = "sphere", "slide"
 OBJECTS = (*(kind.value for kind in KINDS), "flower")
 """Those that are fitted, and one that is not."""
@@ -219,30 +217,7 @@ def _pressed(
 
 def main(words: Sequence[str] | None = None) -> int:
     """Measure and record; 1 where something failed."""
-    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("folder", type=Path)
-    parser.add_argument("designs", nargs="*", metavar="DESIGN")
-    options = parser.parse_args(words)
-    project = Project(options.folder)
-    try:
-        RECORD.make(lambda: {"designs": dict(_all(options.designs or DESIGNS, project))})
-    except WorkbenchError as error:
-        print(f"error: {error.message}; {error.hint}", file=sys.stderr)
-        return 1
-    return 0
-
-
-def _all(names: Sequence[str], project: Project) -> Iterator[tuple[str, Any]]:
-    """The designs on record, those named measured anew."""
-    try:
-        kept = {} if RECORD.stale() else RECORD.figures()["designs"]
-    except StoreError:
-        kept = {}
-    for name in DESIGNS:
-        if name in names:
-            yield name, measured(name, project)
-        elif name in kept:
-            yield name, kept[name]
+    return record_by_design(RECORD, measured, __doc__, words)
 
 
 if __name__ == "__main__":
