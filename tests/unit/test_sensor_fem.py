@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from workbench.proof.row import Row
+from workbench.proof.validation.sensor.fem_presses import PRESSED
 from workbench.proof.validation.sensor.fem_rows import rows
 from workbench.system.record import Record
 
@@ -20,6 +21,7 @@ OURS = {
     "full_slip": [0.0, 0.0, 0.3, 0.2, 0.3, 0.5],
 }
 TRUTH = {
+    "pressed": list(PRESSED),
     "normal_N": [1.0, 2.0, 4.0, 4.0, 4.0, 4.0],
     "across_N": [0.0, 0.0, 0.0, 0.5, 1.0, 2.0],
     "slip": [0.0, 0.0, 0.0, 0.2, 0.3, 0.4],
@@ -38,9 +40,12 @@ def record(path: Path, figures: dict[str, object]) -> Record:
 def found(tmp_path: Path) -> dict[str, list[Row]]:
     """Rows by their names."""
     unsure = {**TRUTH, "error": []}
-    presses = {"pad": {"cube": TRUTH, "flower": unsure}, "paw": {"cube": TRUTH}}
+    deeper = {**TRUTH, "pressed": [6.0, 2.0, 10, 0.5]}
+    presses = {"pad": {"cube": TRUTH, "flower": unsure, "ring": deeper}, "paw": {"cube": TRUTH}}
     truth = record(tmp_path / "fem.json", presses)
-    ours = record(tmp_path / "fast.json", {"pad": {"fit": {}, "cube": OURS, "flower": OURS}})
+    ours = record(
+        tmp_path / "fast.json", {"pad": {"fit": {}, "cube": OURS, "flower": OURS, "ring": OURS}}
+    )
     sorted_rows: dict[str, list[Row]] = {}
     for row in rows(truth, ours):
         sorted_rows.setdefault(row.name, []).append(row)
@@ -49,7 +54,7 @@ def found(tmp_path: Path) -> dict[str, list[Row]]:
 
 def test_errors_are_of_finite_elements(found: dict[str, list[Row]]) -> None:
     """Force by force, the elements' own error as ceiling where they know it; a press that only one
-    has is none."""
+    has, or pressed otherwise, is none."""
     forces = found["fast_fem_force"]
     assert [row.value for row in forces] == pytest.approx([0.05, 0.05, 0.15] * 2)
     assert [row.ceiling for row in forces] == [0.05, 0.02, 0.01, None, None, None]

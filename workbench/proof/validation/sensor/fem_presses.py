@@ -21,7 +21,14 @@ from workbench.project.named_designs import load_design
 from workbench.project.project import Project
 from workbench.proof.validation.contact.finger_record import FEM_APART
 from workbench.proof.validation.sensor.by_design import record_by_design
-from workbench.proof.validation.sensor.sensor_figures import OBJECTS, SIZE_MM, record_press
+from workbench.proof.validation.sensor.sensor_figures import (
+    DEPTH_MM,
+    FRAMES,
+    OBJECTS,
+    SHEAR_MM,
+    SIZE_MM,
+    record_press,
+)
 from workbench.system.record import Record
 
 RECORD = Record(
@@ -35,6 +42,9 @@ RECORD = Record(
     apart=(*FEM_APART, "workbench.core.base.codec"),
 )
 
+PRESSED = (SIZE_MM, DEPTH_MM, FRAMES, SHEAR_MM)
+"""What was pressed, and how: a record of other presses is no reference."""
+
 
 def solved(name: str, thing: str, project: Project) -> dict[str, Any]:
     """Figures of one press, frame by frame."""
@@ -44,6 +54,7 @@ def solved(name: str, thing: str, project: Project) -> dict[str, Any]:
         pass
     found = project.store.load("fem", plan(design, case)["fem"].key)
     return {
+        "pressed": list(PRESSED),
         "normal_N": found.normal_N.tolist(),
         "across_N": found.tangential_N.tolist(),
         "slip": found.sliding_share.tolist(),

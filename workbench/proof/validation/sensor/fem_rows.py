@@ -37,7 +37,7 @@ def rows(kept: Record = fem_presses.RECORD, played: Record = sensor_figures.RECO
         row
         for design, things in solved.items()
         for thing, truth in things.items()
-        if thing in ours.get(design, {})
+        if thing in ours.get(design, {}) and truth["pressed"] == list(fem_presses.PRESSED)
         for row in _rows(f"{design}, {thing}", ours[design][thing], truth, kept)
     ]
 
