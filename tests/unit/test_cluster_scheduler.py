@@ -31,12 +31,15 @@ ROOT = Path(__file__).parents[2]
 
 
 @contextlib.contextmanager
-def running(scratch: Path, *words: str) -> Iterator[subprocess.Popen[bytes]]:
-    """A `dask` process, as a user starts one; killed with this."""
+def running(
+    scratch: Path, *words: str, before: tuple[str, ...] = ()
+) -> Iterator[subprocess.Popen[bytes]]:
+    """A `dask` process, as a user starts one; `before` stands before its words. Killed with
+    this."""
     settings = {"DASK_DISTRIBUTED__WORKER__DAEMON": "False", "PYTHONPATH": str(ROOT)}
     settings |= {"OMP_NUM_THREADS": "1"}
     process = subprocess.Popen(
-        [sys.executable, "-m", "dask", *words],
+        [*before, sys.executable, "-m", "dask", *words],
         env={**os.environ, **settings},
         cwd=scratch,
         stdout=subprocess.DEVNULL,
@@ -81,7 +84,7 @@ def test_a_command_says_that_the_scheduler_was_lost(
 
 @pytest.mark.slow
 def test_a_killed_scheduler_is_told_and_the_next_one_goes_on(tmp_path: Path) -> None:
-    """Kill -9 while a worker meshes: the one who asks hears of it with the remedy; on a new
+    """Kill -9 while a mesh is asked for: the one who asks hears of it with the remedy; on a new
     scheduler at the same address the body is found and the mesh is made."""
     pytest.importorskip("distributed")
     port, store = free_port(), Store(tmp_path / "store")
@@ -92,7 +95,7 @@ def test_a_killed_scheduler_is_told_and_the_next_one_goes_on(tmp_path: Path) -> 
         assert not runner.run(calls["build"], silent).cached
 
         def kill(fraction: float, note: str = "") -> None:
-            if fraction > 0.0 and scheduler.poll() is None:
+            if scheduler.poll() is None:
                 os.kill(scheduler.pid, signal.SIGKILL)
                 scheduler.wait()
 
