@@ -162,6 +162,19 @@ def _tasks(dask_scheduler: Any) -> list[str]:
     return [str(key) for key, *_ in dask_scheduler.transition_log]
 
 
+def killer(cluster: Any) -> tuple[Callable[..., None], list[int]]:
+    """A monitor that kills the first worker that is busy, and its process once it has."""
+    killed: list[int] = []
+
+    def kill(fraction: float, note: str = "") -> None:
+        busy = cluster.client.processing()
+        for worker in [] if killed else [name for name, tasks in busy.items() if tasks]:
+            killed.extend(cluster.client.run(os.getpid, workers=[worker]).values())
+            os.kill(killed[0], signal.SIGKILL)
+
+    return kill, killed
+
+
 @pytest.mark.slow
 def test_a_killed_worker_loses_nothing_and_a_cancel_ends_the_task(
     tmp_path: Path, opened_cluster: Opened
@@ -173,14 +186,7 @@ def test_a_killed_worker_loses_nothing_and_a_cancel_ends_the_task(
     cluster = opened_cluster(store)
     runner = ClusterRunner(cluster, store)
     runner.run(call_of("build"), silent)
-    killed: list[int] = []
-
-    def kill(fraction: float, note: str = "") -> None:
-        busy = cluster.client.processing()
-        for worker in [] if killed else [name for name, tasks in busy.items() if tasks]:
-            killed.extend(cluster.client.run(os.getpid, workers=[worker]).values())
-            os.kill(killed[0], signal.SIGKILL)
-
+    kill, killed = killer(cluster)
     runner.run(call_of("mesh"), kill)
     assert killed and store.has("mesh", call_of("mesh").key)
 

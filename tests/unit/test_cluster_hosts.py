@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-import os
 import shutil
-import signal
 import socket
 import subprocess
 from pathlib import Path
@@ -13,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.unit.test_cluster import call_of
+from tests.unit.test_cluster import call_of, killer
 from tests.unit.test_cluster_scheduler import running
 from workbench.cluster import opening
 from workbench.cluster.cluster_runner import ClusterRunner
@@ -58,14 +56,7 @@ def test_a_host_dies_and_the_other_goes_on(tmp_path: Path) -> None:
         assert cluster.shared
         runner = ClusterRunner(cluster, there)
         runner.run(call_of("build"), silent)
-        killed: list[int] = []
-
-        def kill(fraction: float, note: str = "") -> None:
-            busy = cluster.client.processing()
-            for worker in [] if killed else [name for name, tasks in busy.items() if tasks]:
-                killed.extend(cluster.client.run(os.getpid, workers=[worker]).values())
-                os.kill(killed[0], signal.SIGKILL)
-
+        kill, killed = killer(cluster)
         runner.run(call_of("mesh"), kill)
     assert killed
     for call in (call_of("build"), call_of("mesh")):

@@ -29,6 +29,8 @@ class HeadlineRow:
         """Last known of each figure."""
         self.limits: dict[str, Bounds] = {}
         self.prices: Prices | None = None
+        self._named: tuple[Mapping[str, str], list[str]] = {}, []
+        """Keys of the parts that were looked at last, and what did not pass of them."""
         self.read_limits()
         desk.figured.connect(self.take)
         desk.limited.connect(self.follow_limits)
@@ -99,7 +101,18 @@ class HeadlineRow:
         """Checks of the design as it stands that did not pass, the worst first, in words."""
         if not (self.figures.get(MAKEABLE) or self.figures.get(LOOK_AT)):
             return []
-        results = [self.desk.session.result(stage) for stage in CHECKED]
+        session = self.desk.session
+        calls = session.calls()
+        made = {stage: calls[stage].key for stage in CHECKED if stage in calls}
+        made = {stage: key for stage, key in made.items() if session.store.has(stage, key)}
+        # Figures come at every edit of the press too, and parts are heavy to read.
+        if self._named[0] != made:
+            self._named = made, self._names(made)
+        return self._named[1]
+
+    def _names(self, made: Mapping[str, str]) -> list[str]:
+        """Of the checks that did not pass, of stages that are stored."""
+        results = [self.desk.session.result(stage) for stage in made]
         checks = [check for result in results if result is not None for check in result.checks]
         return [
             f"{check.name.replace('_', ' ')} ({part_words(check.part)})"
