@@ -51,6 +51,8 @@ def two(server: Server) -> Iterator[tuple[Tab, Tab]]:
             follower.wait(
                 lambda: (follower.value(LENGTH), follower.value(RADIUS)) == first, 30, "as at first"
             )
+            # The editor is asked whether it is there: who left meanwhile would be replaced.
+            editor.answer(10.0)
             yield editor, follower
 
 

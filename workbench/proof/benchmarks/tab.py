@@ -67,6 +67,12 @@ class Tab:
         """Leave."""
         self._socket.close()
 
+    def answer(self, limit_s: float) -> None:
+        """Have answered whatever pings the server sent by now: the close after a ping's answer
+        is no answer.
+        """
+        assert self._socket.ping().wait(limit_s), "the server answers"
+
     def send(self, message: dict[str, Any]) -> None:
         """Send one message as it is."""
         import msgspec.msgpack
