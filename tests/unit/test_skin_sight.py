@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import dataclasses
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from sim.optics.proof.specimen import finger
 from workbench.core.design.camera import Camera
+from workbench.core.design.design import SensorDesign
 from workbench.core.design.optics import Optics
 from workbench.learning.dataset.photo_labels import FORCE, TARGET
+from workbench.pipeline.store import Store
 from workbench.tasks.contact_frame import in_contact_frame, in_sensor_frame
 from workbench.tasks.examples import Examples
 from workbench.tasks.seen_images import change, view_of
@@ -81,11 +84,11 @@ def test_without_a_contact_the_middle_is_shown() -> None:
     assert touch.foot_mm == pytest.approx([0.0, 0.0, 20.0], abs=0.1)
 
 
-def test_a_finger_is_seen_whatever_the_photographs_size() -> None:
+def test_a_finger_is_seen_whatever_the_photographs_size(tmp_path: Path) -> None:
     """A photograph twice as large shows the same: foot to a tenth of a millimetre."""
     mesh = finger(edge_mm=1.5)
     optics = Optics(camera=Camera(width_px=160, height_px=120))
-    view = view_of(Net.LITE, mesh, optics)
+    view = view_of(Net.LITE, mesh, SensorDesign(optics=optics), Store(tmp_path))
     idle = np.full((120, 160, 3), 60, np.uint8)
     touched = idle.copy()
     touched[50:62, 90:102] = 160

@@ -102,7 +102,9 @@ def test_motion_of_the_skin_is_told_in_millimetres() -> None:
     rng = np.random.default_rng(6)
     import cv2
 
-    cloud = cv2.GaussianBlur(rng.normal(size=(64, 96)).astype(np.float32), (0, 0), 4.0) * 600.0
+    cloud = (
+        cv2.GaussianBlur(rng.normal(size=(64, 96)).astype(np.float32), (0, 0), 4.0) * 600.0 + 128.0
+    )
     moving = np.stack([cloud[:, 2 * k : 2 * k + 64] for k in range(8)])
     both = np.stack([moving, np.tile(cloud[:, :64], (8, 1, 1))])
     found = motions(np.repeat(both[..., None], 3, axis=4).astype(np.int16), 0.1875, silent)

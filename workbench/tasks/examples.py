@@ -43,7 +43,8 @@ class Examples:
     places: np.ndarray
     """Name of each one's place, shape (N,), str."""
     inputs: np.ndarray
-    """Differences from rest [grey level], shape (N, T, h, w, 3), int16."""
+    """Differences from rest [grey level], or what the view has in their place, shape
+    (N, T, h, w, 3), int16."""
     at: np.ndarray
     """Where and how strong it is, as `Change` has it, shape (N, 8), float32."""
     feet_mm: np.ndarray

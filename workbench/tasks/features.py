@@ -1,7 +1,8 @@
 """What a head is shown in place of images: seen once by what does not learn, and kept.
 
-Which network learns where none is named: a head over EfficientNet-Lite0 where its packages are,
-else a network of our own; of windows a head over the motion of the skin.
+Which network learns where none is named: of objects one that looks at the dent, which needs nothing
+kept; of numbers a head over EfficientNet-Lite0 where its packages are, else a network of our own;
+of windows a head over the motion of the skin.
 """
 
 from __future__ import annotations
@@ -26,6 +27,8 @@ def usual_network(task: Task) -> Net:
     """The network that learns where none is named."""
     if task.look is Look.WINDOW:
         return Net.MOTION
+    if task.told is Told.CLASS:
+        return Net.DENT
     from workbench.tasks.networks.lite import installed
 
     return Net.LITE if installed() else Net.OWN

@@ -198,7 +198,10 @@ class _Work:
     def _view(self, optics: Optics) -> View:
         """What is shown of the design by its own or by other optics."""
         calls = prepare(self.recipe, self.project, [], None)
-        return view_of(self.plan.net, self.project.store.load("mesh", calls["mesh"].key), optics)
+        store = self.project.store
+        mesh = store.load("mesh", calls["mesh"].key)
+        design = dataclasses.replace(self.design, optics=optics)
+        return view_of(self.plan.net, mesh, design, store)
 
     def _photos(self, folder: PhotoFolder, lessons: Lessons, view: View) -> Examples:
         """Photographs as examples with the outputs of the renders."""

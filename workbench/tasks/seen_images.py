@@ -2,7 +2,8 @@
 
 A network that learns from few presses is shown what is around the contact, laid flat, with its
 place told beside it: else it would have to learn the same at every place. The contact is where the
-image differs most from rest.
+image differs most from rest. Shapes are told by the dent that is read there, motion by the images
+as they are: in a difference the dots at rest stay where they were, and seem to hold the skin.
 """
 
 from __future__ import annotations
@@ -13,8 +14,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from workbench.core.design.optics import Optics
+from workbench.core.design.design import SensorDesign
 from workbench.core.result.results import MembraneMesh
+from workbench.pipeline.store import Store
+from workbench.tasks.dent_sight import DentSight
 from workbench.tasks.skin_sight import SkinSight
 from workbench.tasks.task import Net
 
@@ -34,6 +37,10 @@ class View:
     """Images that are wider are made smaller [px]."""
     sight: SkinSight | None = None
     """Lays what is around the contact flat; none: all of the image is seen."""
+    dents: DentSight | None = None
+    """Reads the dent, which is seen in place of the difference."""
+    whole_light: bool = False
+    """Whether the image itself is seen around the contact, not its difference from rest."""
 
     def size_px(self, width_px: int, height_px: int) -> tuple[int, int]:
         """Width and height at which an image is seen; never enlarged but to that of the sight."""
@@ -43,7 +50,7 @@ class View:
         return width, max(1, round(height_px * width / width_px))
 
 
-WIDTHS_PX = {Net.LITE: 160, Net.OWN: 160, Net.MOTION: 160, Net.PAPER: 298}
+WIDTHS_PX = {Net.DENT: 320, Net.LITE: 160, Net.OWN: 160, Net.MOTION: 320, Net.PAPER: 298}
 """Of what each network sees [px]; 298 of 4:3 is 224 high, as in the paper's script."""
 
 
@@ -52,8 +59,14 @@ def whole(net: Net) -> View:
     return View(width_px=WIDTHS_PX[net])
 
 
-def view_of(net: Net, mesh: MembraneMesh, optics: Optics) -> View:
+def view_of(net: Net, mesh: MembraneMesh, design: SensorDesign, store: Store) -> View:
     """What a network is shown of a design's images.
+
+    Args:
+        net: Which one.
+        mesh: Of the design.
+        design: Whose light and camera it is.
+        store: Keeps the light that dents are read by.
 
     Raises:
         DesignError: If the camera is outside the cavity.
@@ -61,7 +74,12 @@ def view_of(net: Net, mesh: MembraneMesh, optics: Optics) -> View:
     if net is Net.PAPER:
         return whole(net)
     width_px = WIDTHS_PX[net]
-    return View(width_px=width_px, sight=SkinSight.of(mesh, optics, width_px))
+    return View(
+        width_px=width_px,
+        sight=SkinSight.of(mesh, design.optics, width_px),
+        dents=DentSight(design, store) if net is Net.DENT else None,
+        whole_light=net is Net.MOTION,
+    )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -69,7 +87,7 @@ class Change:
     """What differs from rest."""
 
     grey: np.ndarray
-    """Differences [grey level], shape (T, h, w, 3), int16."""
+    """Differences [grey level], or what the view has in their place, shape (T, h, w, 3), int16."""
     at: tuple[float, ...]
     """Eight numbers: where its middle is, across and down, from -1 to 1 over the image; how far it
     reaches and where its foot is on the skin, x, y and z, in `PLACE_MM`; root mean square and
@@ -93,7 +111,7 @@ def change(images: Sequence[np.ndarray], idle: np.ndarray, view: View) -> Change
         at = (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, *_strength(grey))
         return Change(grey=grey, at=at, foot_mm=NOWHERE[0], axes=NOWHERE[1])
     touch = view.sight.touch(grey)
-    part = view.sight.laid_flat(grey, touch)
+    part = view.sight.laid_flat(_looked_at(shown, rest, grey, view), touch)
     middle = (2.0 * at / size - 1.0 for at, size in zip(touch.middle_px, size_px, strict=True))
     foot = (touch.foot_mm / PLACE_MM).tolist()
     return Change(
@@ -102,6 +120,15 @@ def change(images: Sequence[np.ndarray], idle: np.ndarray, view: View) -> Change
         foot_mm=touch.foot_mm,
         axes=touch.axes,
     )
+
+
+def _looked_at(
+    shown: Sequence[np.ndarray], rest: np.ndarray, grey: np.ndarray, view: View
+) -> np.ndarray:
+    """What is laid flat of images of one size and the one at rest, shape (T, H, W, 3), int16."""
+    if view.dents is not None:
+        return np.stack([view.dents.dent_grey(image, rest) for image in shown])
+    return np.stack(shown).astype(np.int16) if view.whole_light else grey
 
 
 def _strength(grey: np.ndarray) -> tuple[float, float]:

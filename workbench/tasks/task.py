@@ -39,6 +39,8 @@ class Look(enum.StrEnum):
 class Net(enum.StrEnum):
     """Which network learns."""
 
+    DENT = "dent"
+    """Convolutions on the dent that the design's light reads, taught by drawn dents: of objects."""
     LITE = "lite"
     """EfficientNet-Lite0 with ImageNet weights, of optional packages, and a head that learns."""
     OWN = "own"

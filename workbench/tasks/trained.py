@@ -7,8 +7,6 @@ those before it are read.
 from __future__ import annotations
 
 import dataclasses
-import io
-import pickle
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,7 +15,6 @@ import numpy as np
 
 from workbench.core.base.digest import digest
 from workbench.core.base.monitor import Monitor
-from workbench.system.whole_files import write_atomically
 from workbench.tasks.contact_frame import in_contact_frame, in_sensor_frame
 from workbench.tasks.examples import Examples
 from workbench.tasks.features import HEADS, shown_to, turnable
@@ -106,6 +103,7 @@ class Trainer:
         """
         import torch
 
+        from workbench.tasks.networks.kept_training import read_training, write_training
         from workbench.tasks.networks.learn import Part
 
         torch.manual_seed(seed)
@@ -121,14 +119,15 @@ class Trainer:
         network.to(self.device)
         path = self.folder / f"{name}-seed{seed}.pt"
         key = self._key(found, parts, seed, weights_from)
-        kept = _read(path, key)
+        kept = read_training(path, key)
         if kept is not None:
             network.load_state_dict(kept["state"])
             epoch, curve = kept["epoch"], kept["curve"]
         else:
-            learned = self._learned(network, (train, validation), seed, monitor)
+            learned = self._learned(network, (train, validation), (found.outputs, seed), monitor)
             epoch, curve = learned.epoch, learned.curve
-            _write(path, key, {"state": network.state_dict(), "epoch": epoch, "curve": curve})
+            learning = {"state": network.state_dict(), "epoch": epoch, "curve": curve}
+            write_training(path, key, learning)
         return Trained(
             network=network,
             net=self.net,
@@ -141,14 +140,25 @@ class Trainer:
         )
 
     def _learned(
-        self, network: nn.Module, parts: tuple[Part, Part], seed: int, monitor: Monitor
+        self,
+        network: nn.Module,
+        parts: tuple[Part, Part],
+        drawn: tuple[tuple[str, ...], int],
+        monitor: Monitor,
     ) -> Learned:
-        """Let a network learn; a head is solved for."""
+        """Let a network of some outputs learn by a seed; a head is solved for."""
+        names, seed = drawn
         if self.net in HEADS:
             from workbench.tasks.networks.head import Head, fit_classes, fit_values
 
             assert isinstance(network, Head)
             return (fit_classes if self.task.told is Told.CLASS else fit_values)(network, parts)
+        if self.net is Net.DENT:
+            from workbench.tasks.networks.dent import DentNet, Lesson, learn_dents
+
+            assert isinstance(network, DentNet)
+            lesson = Lesson(names=names, seed=seed, kept=self.folder / "drawn-dents.pt")
+            return learn_dents(network, parts, lesson, monitor)
         from workbench.tasks.networks.learn import learn
 
         return learn(network, parts, self._settings, seed, monitor)
@@ -156,6 +166,10 @@ class Trainer:
     @property
     def learning(self) -> dict[str, Any]:
         """How it learns, as results tell it."""
+        if self.net is Net.DENT:
+            from workbench.tasks.networks.dent import SETTINGS as DENT_SETTINGS
+
+            return dict(DENT_SETTINGS)
         if self.net not in HEADS:
             return dataclasses.asdict(self._settings)
         from workbench.tasks.networks.head import CLASS_PENALTIES, PENALTIES
@@ -203,6 +217,10 @@ def made(net: Net, task: Task, outputs: int, part: Part) -> tuple[nn.Module, str
         from workbench.tasks.networks.own import OwnNet
 
         return OwnNet(outputs), "random weights"
+    if net is Net.DENT:
+        from workbench.tasks.networks.dent import DentNet
+
+        return DentNet(outputs), "drawn dents of the objects, without a press"
     if net in HEADS:
         from workbench.tasks.networks.head import Head
 
@@ -228,22 +246,3 @@ def _wanted(truth: np.ndarray, scale: Scale | None) -> np.ndarray:
         return truth.astype(np.int64)
     count = len(scale.middle)
     return ((truth[:, :count] - scale.middle) / scale.spread).astype(np.float32)
-
-
-def _write(path: Path, key: str, content: dict[str, Any]) -> None:
-    import torch
-
-    buffer = io.BytesIO()
-    torch.save({"key": key, **content}, buffer)
-    write_atomically(path, buffer.getvalue())
-
-
-def _read(path: Path, key: str) -> dict[str, Any] | None:
-    """A kept training; None where there is none, or of something else."""
-    import torch
-
-    try:
-        found = torch.load(path, map_location="cpu", weights_only=True)
-    except (OSError, RuntimeError, EOFError, pickle.UnpicklingError):
-        return None
-    return found if found.get("key") == key else None

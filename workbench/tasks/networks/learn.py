@@ -39,7 +39,7 @@ class Part:
     """Inputs with what is to be told."""
 
     inputs: np.ndarray
-    """Differences [grey level], shape (N, T, h, w, 3), int16; or features and those of varied
+    """What is seen [grey level], shape (N, T, h, w, 3), int16; or features and those of varied
     copies, shape (N, 1 + copies, T, F), float16."""
     at: np.ndarray
     """Where and how strong it is, shape (N, 8), float32."""
