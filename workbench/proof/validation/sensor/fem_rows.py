@@ -33,13 +33,18 @@ def rows(kept: Record = fem_presses.RECORD, played: Record = sensor_figures.RECO
         solved, ours = kept.figures()["designs"], played.figures()["designs"]
     except StoreError as error:
         return [failed("fast_fem_force", "presses", unit="1", why=error.message)]
-    return [
-        row
-        for design, things in solved.items()
-        for thing, truth in things.items()
-        if thing in ours.get(design, {}) and truth["pressed"] == list(fem_presses.PRESSED)
-        for row in _rows(f"{design}, {thing}", ours[design][thing], truth, kept)
-    ]
+    found: list[Row] = []
+    for design, things in solved.items():
+        for thing, truth in things.items():
+            case = f"{design}, {thing}"
+            if thing not in ours.get(design, {}):
+                found.append(failed("fast_fem_force", case, unit="1", why="fast contact has none"))
+            elif truth["pressed"] != list(fem_presses.PRESSED):
+                why = "finite elements solved another press"
+                found.append(failed("fast_fem_force", case, unit="1", why=why))
+            else:
+                found += _rows(case, ours[design][thing], truth, kept)
+    return found
 
 
 def _rows(case: str, ours: dict[str, Any], truth: dict[str, Any], kept: Record) -> Iterator[Row]:
