@@ -78,8 +78,8 @@ class Failure:
     """An example that a network told wrongly."""
 
     name: str
-    difference: np.ndarray
-    """Of its last image from rest [grey level], shape (h, w, 3), int16."""
+    seen: np.ndarray
+    """What it was shown of the last image [grey level], shape (h, w, 3), int16."""
     words: str
 
 
@@ -182,6 +182,6 @@ def _failures(task: Task, run: Run) -> list[Failure]:
         ]
     last = -1 if task.look is Look.WINDOW else 0
     return [
-        Failure(name=test.names[k], difference=test.inputs[k, last], words=text)
+        Failure(name=test.names[k], seen=test.inputs[k, last], words=text)
         for k, text in zip(wrong.tolist(), words, strict=True)
     ]

@@ -12,8 +12,14 @@ from workbench.learning.evaluation.charts import lines
 from workbench.report import html_page
 from workbench.tasks.outcome import WORDS, Failure, Row, Tested
 from workbench.tasks.run import Result
-from workbench.tasks.task import Told, task_of
+from workbench.tasks.task import Net, Told, task_of
 
+CHANGED = "as differences from rest, twice as strong", 128, 2
+SEEN = {
+    Net.DENT: ("as the dents that were read, white for a millimetre", 0, 1),
+    Net.MOTION: ("the last image, laid flat", 0, 1),
+}
+"""What networks are shown, in words, with the grey level of nothing and the gain it is drawn by."""
 CURVE_POINTS = 12
 SHOWN_PX = 220
 
@@ -37,7 +43,7 @@ def report_page(result: Result, table: Mapping[str, Any]) -> str:
     if task.formula:
         body.append(f"<p>{html.escape(f'safety = {task.formula}')}.</p>")
     for test in result.tests:
-        body += _test(test, task.told)
+        body += _test(test, task.told, result.plan.net)
     body.append("<h2>How it was made</h2>")
     body.append(html_page.table(_made(details)))
     return html_page.page(title, "".join(body))
@@ -68,7 +74,7 @@ def _test_of(row: Row) -> Any:
     return next(test for test in WORDS if test.value == row.test)
 
 
-def _test(test: Tested, told: Told) -> list[str]:
+def _test(test: Tested, told: Told, net: Net) -> list[str]:
     """Everything about one test."""
     parts = [f"<h2>{html.escape(WORDS[test.test])}</h2>"]
     details = test.details
@@ -91,7 +97,7 @@ def _test(test: Tested, told: Told) -> list[str]:
         told_of = [(name.replace("_", " "), str(value)) for name, value in delay.items()]
         parts.append(f"<h3>Delay of slip</h3>{html_page.table(told_of)}")
     parts.append(_curves(details["seeds"]))
-    parts.append(_gallery(test.failures))
+    parts.append(_gallery(test.failures, net))
     return parts
 
 
@@ -128,19 +134,19 @@ def _curves(seeds: Sequence[Mapping[str, Any]]) -> str:
     )
 
 
-def _gallery(failures: Sequence[Failure]) -> str:
+def _gallery(failures: Sequence[Failure], net: Net) -> str:
     if not failures:
         return "<p>The first seed told nothing wrong.</p>"
+    words, middle, gain = SEEN.get(net, CHANGED)
     figures = "".join(
         html_page.photograph(
-            np.clip(128 + 2 * each.difference, 0, 255).astype(np.uint8),
+            np.clip(middle + gain * each.seen, 0, 255).astype(np.uint8),
             f"{each.name}: {each.words}",
             width=SHOWN_PX,
         )
         for each in failures
     )
-    told = "Wrong of the first seed, as differences from rest, twice as strong:"
-    return f"<p>{told}</p><div class='images'>{figures}</div>"
+    return f"<p>Wrong of the first seed, {words}:</p><div class='images'>{figures}</div>"
 
 
 def _made(details: Mapping[str, Any]) -> list[tuple[str, Any]]:
