@@ -11,6 +11,8 @@ import torch
 from workbench.core.base.errors import Cancelled
 from workbench.core.base.monitor import silent
 from workbench.tasks.dent_sight import GREY_PER_MM
+from workbench.tasks.examples import Examples
+from workbench.tasks.features import usual_network
 from workbench.tasks.networks import dent
 from workbench.tasks.networks.dent import DentNet, Lesson, drawable, in_the_middle, learn_dents
 from workbench.tasks.networks.dents import (
@@ -25,6 +27,9 @@ from workbench.tasks.networks.dents import (
 )
 from workbench.tasks.networks.learn import Part, told_by
 from workbench.tasks.skin_sight import PATCH_PX
+from workbench.tasks.splits import by_place
+from workbench.tasks.task import Net, task_of
+from workbench.tasks.trained import Trainer
 
 KINDS = ("sphere", "cross", "cylinder_side")
 CLOSE_MM = 1e-6
@@ -174,3 +179,32 @@ def test_only_shapes_that_are_known_are_drawn() -> None:
     assert drawable(KINDS)
     assert not drawable(("sphere", "thumb"))
     assert not drawable(("sphere", "mesh"))
+
+
+def test_a_task_keeps_what_it_learned_of_dents(tmp_path: Path, brief: None) -> None:
+    """By its trainer: read again the same is told; where drawn dents taught is beside it."""
+    part = pressed(40, 8)
+    found = Examples(
+        names=tuple(map(str, range(40))),
+        places=np.array([f"place{k % 8}" for k in range(40)]),
+        inputs=part.inputs,
+        at=part.at,
+        feet_mm=np.zeros((40, 3)),
+        axes=np.tile(np.eye(3), (40, 1, 1)),
+        motion=np.zeros(40),
+        truth=part.truth,
+        outputs=KINDS,
+    )
+    task = task_of("objects")
+    assert usual_network(task) is Net.DENT
+    trainer = Trainer(task=task, net=Net.DENT, folder=tmp_path, safety=None, device="cpu")
+    first = trainer.trained("sim", found, by_place(found.places, 0), 0, silent)
+    assert (first.told(found) == found.truth).mean() > 0.7
+    assert {path.name for path in tmp_path.iterdir()} == {"drawn-dents.pt", "sim-seed0.pt"}
+    assert trainer.learning["taught_steps"] == dent.SETTINGS["taught_steps"]
+
+    def refuse(fraction: float, note: str = "") -> None:
+        raise AssertionError("it learns again")
+
+    again = trainer.trained("sim", found, by_place(found.places, 0), 0, refuse)
+    assert (again.told(found) == first.told(found)).all()

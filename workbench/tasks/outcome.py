@@ -38,7 +38,7 @@ WORDS = {
     Trial.SIM: "renders, split at random",
     Trial.PLACE: "renders at places that training did not show",
     Trial.TWIN: "photographs of a twin, trained on renders of the design",
-    Trial.CALIBRATED: "the same photographs, trained on renders of the calibrated design",
+    Trial.CALIBRATED: "the same photographs, the design calibrated to some of a ball",
     Trial.PHOTOS: "own photographs, trained on renders of the design",
 }
 

@@ -5,7 +5,8 @@
     sim_by_place three seeds, by place
     photos       the user's own, told by the networks of `sim`
     twin         photographs of a sensor with hidden parameters, told by the networks of `sim`
-    calibrated   light and camera fitted to the twin's ball, the presses seen anew, trained anew
+    calibrated   light and camera fitted to the twin's ball, the presses seen anew, trained anew;
+                 where dents are seen, only read by that light
 
 Stopped, it goes on where it was: presses, trainings and photographs that are there are kept.
 """
@@ -257,11 +258,14 @@ class _Work:
                 details["calibration"] = {"why_not": error.message}
                 return tests
             view = self._view(optics)
-            again = self._seen_anew(data, optics, view)
-            runs = again.learned(Trial.CALIBRATED, self._span(Trial.CALIBRATED))
-            learned = [run.trained for run in runs]
+            again = lessons
+            if self.plan.net is not Net.DENT:
+                again = self._seen_anew(data, optics, view)
+                runs = again.learned(Trial.CALIBRATED, self._span(Trial.CALIBRATED))
+                networks = [run.trained for run in runs]
+            # A dent is the same in another light: only that of the photographs is read by it.
             seen = self._photos(photos, again, view)
-            tests.append(again.on_photos(Trial.CALIBRATED, seen, learned))
+            tests.append(again.on_photos(Trial.CALIBRATED, seen, networks))
         return tests
 
     def _seen_anew(self, data: DataSet, optics: Optics, view: View) -> Lessons:

@@ -21,7 +21,7 @@ from workbench.core.base.monitor import Monitor, part
 from workbench.core.press.indenter import OF_TRIANGLES, IndenterKind
 from workbench.tasks.dent_sight import GREY_PER_MM
 from workbench.tasks.networks import dents as drawn
-from workbench.tasks.networks.dents import Dents
+from workbench.tasks.networks.dents import Dents, misread
 from workbench.tasks.networks.kept_training import read_training, write_training
 from workbench.tasks.networks.learn import SMOOTHING, Learned, Part, told_by
 from workbench.tasks.networks.shown import GREY, plain
@@ -153,7 +153,7 @@ def learn_dents(
     for step in range(steps):
         network.train()
         chosen = torch.randint(len(truth), (PRESSED,), generator=order)
-        shown = turned(known[chosen].to(device), generator)
+        shown = misread(turned(known[chosen].to(device), generator), generator)
         told = truth[chosen].to(device)
         if source is not None:
             more, classes = source.draw(DRAWN)

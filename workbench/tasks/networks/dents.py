@@ -45,6 +45,12 @@ BLUR_PX, NOISE, STRIPES, STRIPE_PX = (0.8, 2.2), 0.3, 0.15, (3.0, 8.0)
 """Of readings: blur, noise and stripes over the depth at most, and the period of stripes."""
 CUT, CUT_PX, GAIN = 0.3, (4.0, 30.0), 0.15
 """How often a side is out of sight, how much of it, and by what a depth is off at most."""
+UNEVEN, UNEVEN_CELLS, GRAIN_MM, GRAIN_PX = 0.4, 5, 0.1, 1.2
+"""Of readings in a light that is not known well: by what depths are too large here and too small
+there, over how many cells of the image, and the grain, at most, with its blur."""
+HOLES, HOLE_CELLS, HOLE_LEVEL, HOLE_DEPTH = 0.3, 9, 1.6, 0.7
+"""How often there are holes, over how many cells they are drawn, from how many standard deviations,
+and by how much they are too shallow."""
 LEAST_MM = 0.02
 """Depth below which there is no noise."""
 
@@ -110,7 +116,7 @@ class Dents:
         stripes = torch.sin(2.0 * math.pi * along / period + begun)
         seen = seen * (1.0 + self._between((0.0, STRIPES), count, 1, 1, 1) * stripes)
         gain = 1.0 + GAIN * self._between((-1.0, 1.0), count, 1, 1, 1)
-        return seen * self._in_sight(cells, count) * gain
+        return misread(seen * self._in_sight(cells, count) * gain, self._generator)
 
     def _in_sight(self, cells: Tensor, count: int) -> Tensor:
         """1 where the camera sees, 0 beyond the side that it does not: one of four, or none."""
@@ -127,6 +133,28 @@ class Dents:
     def _between(self, span: tuple[float, float], *shape: int) -> Tensor:
         drawn = torch.rand(shape, generator=self._generator, device=self._device)
         return span[0] + (span[1] - span[0]) * drawn
+
+
+def misread(dents_mm: Tensor, generator: torch.Generator) -> Tensor:
+    """Dents (B, 1, h, w) [mm] as a reading has them whose light is not known well.
+
+    With it in drawn and pressed dents 24 photographs of a finger's twin, whose light was not the
+    design's, were told by .71 instead of .50, and renders as before.
+    """
+    device, count = dents_mm.device, len(dents_mm)
+
+    def share() -> Tensor:
+        return torch.rand((count, 1, 1, 1), generator=generator, device=device)
+
+    def field(cells: int) -> Tensor:
+        drawn = torch.randn((count, 1, cells, cells), generator=generator, device=device)
+        size = list(dents_mm.shape[2:])
+        return nn.functional.interpolate(drawn, size, mode="bicubic", align_corners=True)
+
+    found = dents_mm * (1.0 + UNEVEN * share() * field(UNEVEN_CELLS)).clamp(min=0.0)
+    holes = (field(HOLE_CELLS) > HOLE_LEVEL) & (share() < HOLES)
+    grain = torch.randn(dents_mm.shape, generator=generator, device=device)
+    return found * (1.0 - HOLE_DEPTH * holes) + GRAIN_MM * share() * blurred(grain, GRAIN_PX)
 
 
 def height_mm(kind: str, size_mm: float) -> np.ndarray:

@@ -2,8 +2,9 @@
 
 `python -m workbench.proof.validation.tasks.task_figures FOLDER [SIZE [DESIGN_TASK]]` runs the tasks
 that are on record, one or all, in folders of FOLDER; what lies there already is kept. Small ones
-take minutes each on a free processor; `paper` is for a GPU. Both leave the twin out, whose 140
-photographs are of 57 paths by finite elements, each of some minutes of a processor.
+take minutes each on a free processor; `paper` is for a GPU. The twin is photographed where
+`task_records` says so: its 140 photographs of the paper's size are of 57 paths by finite elements,
+each of some minutes of a processor.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ def figures(one: TaskRecord, folder: Path) -> dict[str, Any]:
         size=size,
         net=usual_network(task_of(one.task)),
         jobs=cores(),
-        twin=False,
+        twin=one.twin,
     )
     out, printer = folder / one.name, Progress(as_json=False)
     result = run_task(

@@ -16,6 +16,7 @@ DONE = {
     "paper": ((FINGER, "objects"), (FINGER, "slip"), (PAD, "safety")),
 }
 """All tasks on the finger; of the paper's size its three, safety on the flat pad as there."""
+TWINS = {("objects", "small")}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -25,6 +26,11 @@ class TaskRecord:
     design: str
     task: str
     size: str
+
+    @property
+    def twin(self) -> bool:
+        """Whether a twin is photographed too."""
+        return (self.task, self.size) in TWINS
 
     @property
     def name(self) -> str:
