@@ -201,3 +201,14 @@ def test_an_even_image_tells_no_shift() -> None:
     """Without slopes there is nothing to move."""
     flat = np.ones((20, 20, 3))
     assert not contact_shift(0.0 * flat, flat, flat > 0.0).any()
+
+
+def test_a_residual_that_no_other_place_knows_is_left_out() -> None:
+    """Each press is off in its own way: learned by heart, it would be wrong everywhere else."""
+    presses = [seen(900, middle, number) for number, middle in enumerate((-0.2, 0.0, 0.2))]
+    usable = [np.ones(900, dtype=bool)] * 3
+    off = [way * bent(each) for way, each in zip((1.0, -1.0, 1.0), presses, strict=True)]
+    centres, weights = fit_residual(presses, off, usable)
+    assert centres.shape == (0, 4) and weights.shape == (0, 3)
+    alike, _ = fit_residual(presses, [bent(each) for each in presses], usable)
+    assert len(alike) > 100

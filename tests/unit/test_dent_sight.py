@@ -16,7 +16,8 @@ from workbench.core.result.results import MembraneMesh
 from workbench.pipeline.store import Store
 from workbench.reading import design_reader
 from workbench.reading.design_reader import DesignReader
-from workbench.tasks.dent_sight import GREY_PER_MM, DentSight
+from workbench.tasks.dent_sight import DentSight
+from workbench.tasks.networks.patch import GREY_PER_MM
 
 __all__ = ["mesh", "reader", "studio"]
 pytestmark = pytest.mark.usefixtures("taichi_device")

@@ -10,7 +10,6 @@ import torch
 
 from workbench.core.base.errors import Cancelled
 from workbench.core.base.monitor import silent
-from workbench.tasks.dent_sight import GREY_PER_MM
 from workbench.tasks.examples import Examples
 from workbench.tasks.features import usual_network
 from workbench.tasks.networks import dent
@@ -26,7 +25,7 @@ from workbench.tasks.networks.dents import (
     sprung,
 )
 from workbench.tasks.networks.learn import Part, told_by
-from workbench.tasks.skin_sight import PATCH_PX
+from workbench.tasks.networks.patch import GREY_PER_MM, PATCH_PX
 from workbench.tasks.splits import by_place
 from workbench.tasks.task import Net, task_of
 from workbench.tasks.trained import Trainer

@@ -43,7 +43,7 @@ class Stand:
         self.mesh.seen = self.mesh.outer
         self.count = len(self.mesh.outer.points_mm)
         monkeypatch.setattr(making, "twin_mesh", lambda *given: self.mesh)
-        monkeypatch.setattr(making, "Photographer", lambda *given: self)
+        monkeypatch.setattr(making, "SteadyPhotographer", lambda *given: self)
         monkeypatch.setattr(making, "pressed", self.press)
         middle = np.full((self.count, 3), 0.5) * (32.0, 24.0, 1.0)
         self.plain = SimpleNamespace(vertex_pixels=middle, visible=np.ones(self.count, bool))

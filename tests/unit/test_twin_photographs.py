@@ -32,11 +32,11 @@ def twin() -> Twin:
 
 def test_a_dent_leaves_the_light_elsewhere_as_it_was() -> None:
     """Two photographs differ by noise where nothing moved, and by more where the dent is."""
-    from workbench.twin.photographer import Photographer
+    from workbench.twin.steady_photographer import SteadyPhotographer
 
     mesh = finger(edge_mm=1.2)
     moved = dent(mesh.seen, at_mm=(13.0, 7.5, 22.0), depth_mm=0.8, radius_mm=3.0)
-    photographer = Photographer(twin(), mesh, PHOTONS, silent)
+    photographer = SteadyPhotographer(twin(), mesh, PHOTONS, silent)
     rest = photographer.at_rest().astype(np.float64)
     untouched = photographer.photograph(np.zeros_like(moved), 1, silent) - rest
     touched = photographer.photograph(moved, 2, silent) - rest

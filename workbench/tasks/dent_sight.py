@@ -15,13 +15,11 @@ from workbench.core.base.monitor import silent
 from workbench.core.design.design import SensorDesign
 from workbench.pipeline.devices import open_device
 from workbench.pipeline.store import Store
+from workbench.tasks.networks.patch import GREY_PER_MM
 
 if TYPE_CHECKING:
     # It needs the device that reading opens.
     from workbench.reading.design_reader import DesignReader
-
-GREY_PER_MM = 255.0
-"""Grey levels that a dent of one millimetre is shown by."""
 
 
 class DentSight:

@@ -36,6 +36,7 @@ from workbench.twin.draw import Twin, draw_twin
 from workbench.twin.mitsuba_photographer import MitsubaPhotographer, check_mitsuba
 from workbench.twin.photographer import Photographer
 from workbench.twin.pressing import press_ahead
+from workbench.twin.steady_photographer import SteadyPhotographer
 from workbench.twin.taking import Taken, label_row, photos_of
 from workbench.twin.truth import FOLDER, truth_of, write_truth
 from workbench.twin.twin_folder import TwinFolder, idle_files, open_folder
@@ -110,7 +111,7 @@ def make_twin(
 
 
 def _photographer(plan: TwinPlan) -> type[Photographer]:
-    return MitsubaPhotographer if plan.light is Light.MITSUBA else Photographer
+    return MitsubaPhotographer if plan.light is Light.MITSUBA else SteadyPhotographer
 
 
 def _sized(design: SensorDesign, plan: TwinPlan) -> SensorDesign:

@@ -43,8 +43,8 @@ DARK = 1e-12
 class MitsubaPhotographer(Photographer):
     """Light and camera of one twin, seen by Mitsuba."""
 
-    def _lit(self, moved: np.ndarray | None, monitor: Monitor) -> Lit:
-        pose = Pose(displacement_mm=moved, photons=self.photons, seed=self._photon_seed)
+    def _lit(self, moved: np.ndarray | None, number: int, monitor: Monitor) -> Lit:
+        pose = Pose(displacement_mm=moved, photons=self.photons, seed=self._seed_of(number))
         return seen_by_mitsuba(self.mesh, self.optics, pose, monitor)
 
     def _shown(self, studio: Studio, lit: Lit, moved: np.ndarray | None) -> np.ndarray:

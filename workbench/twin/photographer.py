@@ -1,10 +1,8 @@
 """Photographs of a twin: photons traced anew through each pose, then its lens and image sensor.
 
 Nothing is looked up and nothing is kept from the image at rest: all of the skin shines with the
-light of the pose, so that a dent also darkens what lies beside it. Each photograph has shot noise
-of its own. All begin with the same photons, so that skin whose light no dent touches looks as at
-rest: with photons of their own, 4 million an image left 7.6 grey levels between two photographs of
-a finger where its camera leaves 2.4, and a small dent was lost.
+light of the pose, so that a dent also darkens what lies beside it. Each photograph has photons and
+shot noise of its own.
 """
 
 from __future__ import annotations
@@ -73,7 +71,7 @@ class Photographer:
             model=optics.light_model,
             monitor=part(monitor, 0.0, 0.1),
         )
-        self._rest = self._lit(None, part(monitor, 0.1, 1.0))
+        self._rest = self._lit(None, REST, part(monitor, 0.1, 1.0))
         self.plain = self._studio(light, optics)
         markers = dataclasses.replace(optics.markers, visible=True)
         self._marked = self._studio(light, dataclasses.replace(optics, markers=markers))
@@ -91,7 +89,7 @@ class Photographer:
 
         Args:
             displacement_mm: Of the vertices of `mesh.seen`, shape (V, 3).
-            number: Of the photograph, from 1: its noise follows from it.
+            number: Of the photograph, from 1: its photons and noise follow from it.
             monitor: Progress and cancellation.
             marked: Whether dots are printed on the skin, also where the design has none.
 
@@ -100,7 +98,7 @@ class Photographer:
         """
         studio = self._marked if marked else self.plain
         moved = np.asarray(displacement_mm, dtype=np.float32)
-        lit = self._lit(moved, monitor)
+        lit = self._lit(moved, number, monitor)
         return self._developed(self._shown(studio, lit, moved), number)
 
     def _shown(self, studio: Studio, lit: Lit, moved: np.ndarray | None) -> np.ndarray:
@@ -125,12 +123,11 @@ class Photographer:
             radiance=self._rest.radiance,
         )
 
-    @property
-    def _photon_seed(self) -> int:
-        """Of the photons of all photographs."""
-        return int(stream(self._seed, Draws.PHOTONS).integers(2**31))
+    def _seed_of(self, number: int) -> int:
+        """Of a photograph's photons."""
+        return int(stream(self._seed, Draws.PHOTONS, number).integers(2**31))
 
-    def _lit(self, moved: np.ndarray | None, monitor: Monitor) -> Lit:
+    def _lit(self, moved: np.ndarray | None, number: int, monitor: Monitor) -> Lit:
         """A pose (V, 3) in the light that is traced through it; None: at rest."""
         from sim.optics.light.lights import place_leds
         from sim.optics.transport.paths import Photons
@@ -142,7 +139,7 @@ class Photographer:
             leds,
             self.optics.camera,
             self.optics.transport,
-            Photons(count=self.photons, seed=self._photon_seed),
+            Photons(count=self.photons, seed=self._seed_of(number)),
             displacement_mm=moved,
             monitor=monitor,
         )

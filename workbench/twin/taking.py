@@ -31,7 +31,7 @@ class Taken:
     case: TwinCase
     frame: int
     number: int
-    """That its noise follows from."""
+    """That its photons and noise follow from."""
     sequence: str = ""
     """Of slides: which one, the frame's number in it, and whether all slides at its end."""
     place_in_sequence: int = 0

@@ -19,11 +19,11 @@ from torch import Tensor, nn
 from workbench.core.base.digest import digest
 from workbench.core.base.monitor import Monitor, part
 from workbench.core.press.indenter import OF_TRIANGLES, IndenterKind
-from workbench.tasks.dent_sight import GREY_PER_MM
 from workbench.tasks.networks import dents as drawn
 from workbench.tasks.networks.dents import Dents, misread
 from workbench.tasks.networks.kept_training import read_training, write_training
 from workbench.tasks.networks.learn import SMOOTHING, Learned, Part, told_by
+from workbench.tasks.networks.patch import GREY_PER_MM
 from workbench.tasks.networks.shown import GREY, plain
 
 CHANNELS = ((16, 2), (32, 2), (32, 1), (64, 2), (64, 1), (96, 2))

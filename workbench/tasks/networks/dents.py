@@ -27,7 +27,7 @@ from workbench.core.press.indenter import (
     IndenterKind,
     widest_edge_mm,
 )
-from workbench.tasks.skin_sight import HALF_MM, PATCH_PX
+from workbench.tasks.networks.patch import HALF_MM, PATCH_PX
 
 SIZES_MM = (3.0, 4.3, 6.1, 8.6, 12.0)
 """Of the objects, a factor of 1.42 apart; `ZOOM` fills what is between."""

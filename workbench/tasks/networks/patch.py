@@ -1,0 +1,8 @@
+"""How large what is around a contact is shown, and how deep a dent; it needs no PyTorch."""
+
+from __future__ import annotations
+
+PATCH_PX, HALF_MM = 64, 6.0
+"""Side of what is shown [px], and half of it on the skin [mm]."""
+GREY_PER_MM = 255.0
+"""Grey levels that a dent of one millimetre is shown by."""
