@@ -8,7 +8,6 @@ eight ways to turn and mirror it.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,7 +23,7 @@ from workbench.tasks.networks.dents import Dents, misread
 from workbench.tasks.networks.kept_training import read_training, write_training
 from workbench.tasks.networks.learn import SMOOTHING, Learned, Part, told_by
 from workbench.tasks.networks.patch import GREY_PER_MM
-from workbench.tasks.networks.shown import GREY, plain
+from workbench.tasks.networks.shown import GREY, plain, turned
 
 CHANNELS = ((16, 2), (32, 2), (32, 1), (64, 2), (64, 1), (96, 2))
 """Of each convolution, with its stride."""
@@ -37,8 +36,8 @@ PRESSED, DRAWN, RATE, DECAY = 48, 24, 1.5e-3, 1e-3
 """Pressed and drawn dents of a batch, largest step and weight decay of the second part."""
 EPOCHS, FEWEST_STEPS = 20, 300
 """How often each pressed dent is seen, and steps at least."""
-TURN_RAD, ZOOM, SHIFT, GAIN = math.pi, 0.15, 0.1, 0.2
-"""By which pressed dents are turned, enlarged, moved and made deeper at most."""
+ZOOM, SHIFT, GAIN = 0.15, 0.1, 0.2
+"""By which pressed dents are enlarged, moved and made deeper at most."""
 TOLD_EVERY = 50
 """Steps after which the validation part is told."""
 SETTINGS = {
@@ -153,7 +152,7 @@ def learn_dents(
     for step in range(steps):
         network.train()
         chosen = torch.randint(len(truth), (PRESSED,), generator=order)
-        shown = misread(turned(known[chosen].to(device), generator), generator)
+        shown = pressed_anew(known[chosen].to(device), generator)
         told = truth[chosen].to(device)
         if source is not None:
             more, classes = source.draw(DRAWN)
@@ -174,24 +173,11 @@ def drawable(names: Sequence[str]) -> bool:
     return set(names) <= kinds
 
 
-def turned(dents_mm: Tensor, generator: torch.Generator) -> Tensor:
-    """Dents (B, 1, h, w) turned, mirrored, enlarged, moved and made deeper or less deep."""
-    count, device = len(dents_mm), dents_mm.device
-
-    def between(low: float, high: float) -> Tensor:
-        return low + (high - low) * torch.rand(count, generator=generator, device=device)
-
-    turn, zoom = between(-TURN_RAD, TURN_RAD), between(1.0 - ZOOM, 1.0 + ZOOM)
-    mirror = torch.sign(between(-1.0, 1.0))
-    along, across = zoom * torch.cos(turn), zoom * torch.sin(turn)
-    rows = [
-        torch.stack([mirror * along, -across, between(-SHIFT, SHIFT)], dim=1),
-        torch.stack([mirror * across, along, between(-SHIFT, SHIFT)], dim=1),
-    ]
-    size = list(dents_mm.shape)
-    grid = nn.functional.affine_grid(torch.stack(rows, dim=1), size, align_corners=False)
-    moved = nn.functional.grid_sample(dents_mm, grid, align_corners=False)
-    return moved * between(1.0 - GAIN, 1.0 + GAIN).view(-1, 1, 1, 1)
+def pressed_anew(dents_mm: Tensor, generator: torch.Generator) -> Tensor:
+    """Dents (B, 1, h, w) turned, mirrored, enlarged, moved, deeper or less deep, and misread."""
+    gain = torch.rand((len(dents_mm), 1, 1, 1), generator=generator, device=dents_mm.device)
+    there = turned(dents_mm[:, None], generator, ZOOM, SHIFT)[:, 0]
+    return misread(there * (1.0 + GAIN * (2.0 * gain - 1.0)), generator)
 
 
 def _teach(network: DentNet, source: Dents, lesson: Lesson, monitor: Monitor) -> None:

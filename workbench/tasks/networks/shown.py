@@ -37,7 +37,7 @@ def varied(shown: Tensor, generator: torch.Generator, *, moved: bool) -> Tensor:
     gain = torch.rand((batch, 1, 3, 1, 1), generator=generator, device=device)
     noise = torch.randn(shown.shape, generator=generator, device=device)
     other = shown * (1.0 + GAIN * (2.0 * gain - 1.0)) + NOISE / GREY * noise
-    return _moved(_recoloured(other, generator), generator) if moved else other
+    return turned(_recoloured(other, generator), generator, ZOOM, SHIFT) if moved else other
 
 
 def _recoloured(shown: Tensor, generator: torch.Generator) -> Tensor:
@@ -47,20 +47,29 @@ def _recoloured(shown: Tensor, generator: torch.Generator) -> Tensor:
     return shown.gather(2, order)
 
 
-def _moved(shown: Tensor, generator: torch.Generator) -> Tensor:
-    """Images of an example turned, moved, enlarged and mirrored alike."""
+def turned(
+    shown: Tensor, generator: torch.Generator, most_zoom: float, most_shift: float
+) -> Tensor:
+    """Images of examples (B, T, C, h, w) turned, moved, enlarged and mirrored, an example's alike.
+
+    Args:
+        shown: What is seen.
+        generator: Of what is drawn.
+        most_zoom: By which they are enlarged or made smaller at most [1].
+        most_shift: By which they are moved at most, over half a side [1].
+    """
     batch, frames, _, height, width = shown.shape
 
     def drawn(most: float) -> Tensor:
         return most * (2.0 * torch.rand(batch, generator=generator, device=shown.device) - 1.0)
 
-    turn, zoom = drawn(TURN_RAD), 1.0 + drawn(ZOOM)
+    turn, zoom = drawn(TURN_RAD), 1.0 + drawn(most_zoom)
     mirror = torch.sign(drawn(1.0))
     ratio = height / width
     cosine, sine = zoom * torch.cos(turn), zoom * torch.sin(turn)
     rows = [
-        torch.stack([mirror * cosine, -ratio * sine, drawn(SHIFT)], dim=1),
-        torch.stack([mirror * sine / ratio, cosine, drawn(SHIFT)], dim=1),
+        torch.stack([mirror * cosine, -ratio * sine, drawn(most_shift)], dim=1),
+        torch.stack([mirror * sine / ratio, cosine, drawn(most_shift)], dim=1),
     ]
     affine = torch.stack(rows, dim=1).repeat_interleave(frames, dim=0)
     flat = shown.flatten(0, 1)
