@@ -23,7 +23,7 @@ from workbench.learning.dataset.photo_export import export_images
 from workbench.report.image_files import png_bytes
 from workbench.tasks.examples import examples
 from workbench.tasks.photo_folder import PhotoFolder
-from workbench.tasks.rendered import Renders, rendered
+from workbench.tasks.rendered import Looker, Renders, rendered
 from workbench.tasks.seen_images import whole
 from workbench.tasks.task import Net, task_of
 
@@ -152,7 +152,8 @@ def test_an_exported_data_set_reads_as_what_it_was(tmp_path: Path) -> None:
     data, task = touched(tmp_path / "data", cases=10), task_of("objects")
     assert export_images(data, tmp_path / "photos", silent) == 20
     own = Renders(data, marked=False)
-    ours = examples(task, rendered(task, whole(Net.OWN), data, (own.shown, own.at_rest), silent))
+    looker = Looker(view=whole(Net.OWN), data=data, images=own)
+    ours = examples(task, rendered(task, looker, silent))
     theirs = examples(task, read(tmp_path / "photos"))
     assert (ours.inputs == theirs.inputs).all() and ours.outputs == theirs.outputs
     assert ours.places.tolist() == theirs.places.tolist()

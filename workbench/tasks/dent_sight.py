@@ -6,7 +6,6 @@ is the same in another light once the light is known. Nothing is learned for it.
 
 from __future__ import annotations
 
-import dataclasses
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,6 +15,7 @@ from workbench.core.design.design import SensorDesign
 from workbench.pipeline.devices import open_device
 from workbench.pipeline.store import Store
 from workbench.tasks.networks.patch import GREY_PER_MM
+from workbench.twin.first_camera import seen_at
 
 if TYPE_CHECKING:
     # It needs the device that reading opens.
@@ -34,6 +34,10 @@ class DentSight:
         """
         self._design, self._store = design, store
         self._readers: dict[bytes, DesignReader] = {}
+
+    def __reduce__(self) -> tuple[type[DentSight], tuple[SensorDesign, Store]]:
+        """As it goes to another process: without the readers that it has opened."""
+        return DentSight, (self._design, self._store)
 
     def dent_grey(self, photo: np.ndarray, idle: np.ndarray) -> np.ndarray:
         """Inward displacement that each pixel sees, `GREY_PER_MM` for a millimetre.
@@ -62,10 +66,6 @@ class DentSight:
         if key not in self._readers:
             open_device()
             height_px, width_px = idle.shape[:2]
-            optics = self._design.optics
-            camera = dataclasses.replace(optics.camera, width_px=width_px, height_px=height_px)
-            sized = dataclasses.replace(
-                self._design, optics=dataclasses.replace(optics, camera=camera, cameras=())
-            )
+            sized = seen_at(self._design, width_px, height_px)
             self._readers[key] = open_reader(sized, idle, self._store, monitor=silent)
         return self._readers[key]

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
-from typing import Any
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -15,16 +16,25 @@ from workbench.learning.dataset.photo_export import windows
 from workbench.learning.dataset.photo_labels import SLIP, labels_of
 from workbench.learning.dataset.sample import Sample, decoded
 from workbench.learning.dataset.sequences import FRAMES, gross_slip
+from workbench.learning.making.side_by_side import side_by_side
 from workbench.tasks.examples import Seen
 from workbench.tasks.seen_images import View, change, motion
 from workbench.tasks.task import Look, Task
 
 MOST_WINDOWS = 2000
 """Of a data set of slides: more do not fit the memory of small machines, and overlap anyway."""
-Shown = Callable[[Case, Sample], np.ndarray]
-"""The image of a sample, shape (H, W, 3), uint8."""
-AtRest = Callable[[Case], np.ndarray]
-"""The image at rest that belongs to those of a case."""
+
+
+class Images(Protocol):
+    """The images of presses: those of `Renders`, or others of the same presses."""
+
+    def shown(self, case: Case, sample: Sample) -> np.ndarray:
+        """The image of a sample, shape (H, W, 3), uint8."""
+        ...
+
+    def at_rest(self, case: Case) -> np.ndarray:
+        """The image at rest that belongs to those of a case."""
+        ...
 
 
 class Renders:
@@ -49,57 +59,86 @@ class Renders:
         return self._rest[look]
 
 
-def rendered(
-    task: Task, view: View, data: DataSet, images: tuple[Shown, AtRest], monitor: Monitor
-) -> Iterator[Seen]:
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Shot:
+    """Which images of a data set are one example."""
+
+    case: Case
+    frames: Sequence[int]
+    more: Mapping[str, Any]
+    """What is known of it besides its labels."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Looker:
+    """Looks at the images of a data set."""
+
+    view: View
+    """Says which part of an image is seen. Of windows, which overlap, all are shown where it lays
+    contacts flat; else those that the data set lists."""
+    data: DataSet
+    images: Images
+
+    def __call__(self, shot: Shot) -> Seen:
+        """What one example shows.
+
+        Raises:
+            StoreError: If a sample is damaged.
+        """
+        samples = [self.data.sample(shot.case, frame) for frame in shot.frames]
+        own = [self.images.shown(shot.case, sample) for sample in samples]
+        return Seen(
+            name=f"{shot.case.id}:{shot.frames[-1]}",
+            place=shot.case.position.name,
+            change=change(own, self.images.at_rest(shot.case), self.view),
+            motion=motion(own),
+            labels={**labels_of(shot.case, samples[-1], self.data.skin), **shot.more},
+        )
+
+    def shots(self, task: Task) -> list[Shot]:
+        """All examples of a task."""
+        if task.look is Look.WINDOW:
+            found = _listed(self.data) if self.view.sight is None else _every(self.data)
+            return list(found)
+        return [
+            Shot(case=case, frames=(frame,), more={})
+            for case in self.data.cases()
+            for frame in self.data.frames(case)
+            if frame >= case.first_new
+        ]
+
+
+def rendered(task: Task, looker: Looker, monitor: Monitor, jobs: int = 1) -> list[Seen]:
     """The examples of a task in a data set.
 
     Args:
         task: Says whether single images or windows are shown.
-        view: Says which part of an image is seen. Of windows, which overlap, all are shown where
-            it lays contacts flat; else those that the data set lists.
-        data: The presses.
-        images: Of a sample, and at rest; those of `Renders`, or others of the same presses.
-        monitor: Progress.
+        looker: Looks at them.
+        monitor: Progress and cancellation.
+        jobs: Processes that look where dents are read, which takes a tenth of a second each.
 
     Raises:
         StoreError: If a sample is damaged.
+        LaneError: If a process ended by itself.
     """
-    shown, at_rest = images
-    found = list(_windows(task, data, listed=view.sight is None))
-    for number, (case, frames, more) in enumerate(found):
-        monitor(number / len(found), case.id)
-        samples = [data.sample(case, frame) for frame in frames]
-        own = [shown(case, sample) for sample in samples]
-        yield Seen(
-            name=f"{case.id}:{frames[-1]}",
-            place=case.position.name,
-            change=change(own, at_rest(case), view),
-            motion=motion(own),
-            labels={**labels_of(case, samples[-1], data.skin), **more},
-        )
+    shots = looker.shots(task)
+    if jobs > 1 and looker.view.dents is not None:
+        return side_by_side(looker, shots, jobs, monitor)
+    found = []
+    for number, shot in enumerate(shots):
+        monitor(number / len(shots), shot.case.id)
+        found.append(looker(shot))
+    return found
 
 
-def _windows(
-    task: Task, data: DataSet, *, listed: bool
-) -> Iterator[tuple[Case, Sequence[int], dict[str, Any]]]:
-    """Case, frames, and what is known of each example besides."""
-    if task.look is Look.WINDOW:
-        yield from _listed(data) if listed else _every(data)
-        return
-    for case in data.cases():
-        for frame in data.frames(case):
-            if frame >= case.first_new:
-                yield case, (frame,), {}
-
-
-def _listed(data: DataSet) -> Iterator[tuple[Case, Sequence[int], dict[str, Any]]]:
+def _listed(data: DataSet) -> Iterator[Shot]:
     """The windows that the data set lists, as many with as without slip, as in the paper."""
     for case, row in windows(data):
-        yield case, range(row["first"], row["first"] + row["frames"]), {SLIP: int(row["slip"])}
+        frames = range(row["first"], row["first"] + row["frames"])
+        yield Shot(case=case, frames=frames, more={SLIP: int(row["slip"])})
 
 
-def _every(data: DataSet) -> Iterator[tuple[Case, Sequence[int], dict[str, Any]]]:
+def _every(data: DataSet) -> Iterator[Shot]:
     """All windows of all slides, or one in so many that there are `MOST_WINDOWS` at most."""
     slides = [case for case in data.cases() if len(data.frames(case)) == case.frames]
     count = sum(max(0, case.frames - FRAMES + 1) for case in slides)
@@ -108,4 +147,4 @@ def _every(data: DataSet) -> Iterator[tuple[Case, Sequence[int], dict[str, Any]]
         onset = gross_slip(data, case)
         for end in range(FRAMES, case.frames + 1, step):
             slips = onset is not None and end - 1 >= onset
-            yield case, range(end - FRAMES, end), {SLIP: int(slips)}
+            yield Shot(case=case, frames=range(end - FRAMES, end), more={SLIP: int(slips)})

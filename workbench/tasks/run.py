@@ -42,7 +42,7 @@ from workbench.tasks.lessons import SEEDS, Lessons
 from workbench.tasks.outcome import Tested, Trial
 from workbench.tasks.photo_folder import PhotoFolder
 from workbench.tasks.photo_training import on_photos
-from workbench.tasks.rendered import AtRest, Renders, Shown, rendered
+from workbench.tasks.rendered import Looker, Renders, rendered
 from workbench.tasks.reshoot import Reshot, sees_outer_skin
 from workbench.tasks.safety_scale import SafetyScale
 from workbench.tasks.seen_images import View, view_of, whole
@@ -53,8 +53,8 @@ from workbench.tasks.twin_test import calibrated, photographed, twin_plan
 
 SPANS = {
     "data": (0.0, 0.45),
-    "images": (0.45, 0.47),
-    "features": (0.47, 0.55),
+    "images": (0.45, 0.53),
+    "features": (0.53, 0.55),
     Trial.SIM: (0.55, 0.61),
     Trial.PLACE: (0.61, 0.67),
     Trial.PHOTOS: (0.67, 0.68),
@@ -146,7 +146,7 @@ class _Work:
         own = Renders(data, marked=self._marked)
         with self._timed("images"):
             view = self._view(self.design.optics)
-            lessons = self._lessons(data, (own.shown, own.at_rest), view)
+            lessons = self._lessons(Looker(view=view, data=data, images=own))
         tests, networks = [], dict[Trial, list[Trained]]()
         for test in (Trial.SIM, Trial.PLACE):
             with self._timed(test):
@@ -212,9 +212,9 @@ class _Work:
         found = seen_once(examples(task, seen, outputs), self.plan.net)
         return found if scale is None else scale.with_safety(found)
 
-    def _lessons(self, data: DataSet, images: tuple[Shown, AtRest], view: View) -> Lessons:
+    def _lessons(self, looker: Looker) -> Lessons:
         """All examples of the renders, and who learns from them."""
-        seen = rendered(self.task, view, data, images, self._span("images"))
+        seen = rendered(self.task, looker, self._span("images"), self.plan.jobs)
         found, scale = examples(self.task, seen), None
         if self.task.safety:
             scale = SafetyScale.of(found)
@@ -272,12 +272,12 @@ class _Work:
         """The same presses in calibrated light; where pins are seen, pressed anew."""
         if sees_outer_skin(self.recipe, self.project):
             anew = Reshot(self.recipe, optics, self.project, None, marked=self._marked)
-            return self._lessons(data, (anew.shown, anew.at_rest), view)
+            return self._lessons(Looker(view=view, data=data, images=anew))
         design = dataclasses.replace(self.design, optics=optics)
         recipe = dataclasses.replace(self.recipe, design=design)
         other = make(recipe, self.out / "data_calibrated", self.project, jobs=self.plan.jobs)
         own = Renders(other, marked=self._marked)
-        return self._lessons(other, (own.shown, own.at_rest), view)
+        return self._lessons(Looker(view=view, data=other, images=own))
 
     def _details(self, lessons: Lessons, network: Trained) -> dict[str, Any]:
         trainer, found = lessons.trainer, lessons.found

@@ -6,7 +6,6 @@ fitted to the twin's photographs of a ball, as a builder would, without a look a
 
 from __future__ import annotations
 
-import dataclasses
 import json
 from pathlib import Path
 from typing import Any
@@ -18,6 +17,7 @@ from workbench.learning.dataset.recipe import Recipe
 from workbench.pipeline.store import Store
 from workbench.tasks.task import Look, Size, Task
 from workbench.twin.cases import Kind
+from workbench.twin.first_camera import seen_at
 from workbench.twin.make import make_twin
 from workbench.twin.twin_folder import FOLDERS
 from workbench.twin.twin_plan import TwinPlan
@@ -88,10 +88,7 @@ def calibrated(
 
     photos = read_photo_set(twin / FOLDERS[Kind.CALIBRATION])
     height_px, width_px = photos.idle.shape[:2]
-    camera = dataclasses.replace(design.optics.camera, width_px=width_px, height_px=height_px)
-    sized = dataclasses.replace(
-        design, optics=dataclasses.replace(design.optics, camera=camera, cameras=())
-    )
+    sized = seen_at(design, width_px, height_px)
     found = calibrate(sized, photos, store, lights="known", monitor=monitor, refining=REFINED[size])
     whole = with_unit(found.design, unit("unit.npz", found.unit_data))
     return whole.optics, {

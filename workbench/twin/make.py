@@ -6,7 +6,6 @@ Tables are written after each path, so that a twin under way can be read.
 
 from __future__ import annotations
 
-import dataclasses
 import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -14,7 +13,6 @@ from pathlib import Path
 
 from workbench.core.base.errors import Cancelled, DesignError, SolveError, StoreError
 from workbench.core.base.monitor import Monitor, part
-from workbench.core.design.camera import Camera
 from workbench.core.design.design import SensorDesign
 from workbench.core.result.force_field import ForceField
 from workbench.core.result.results import MembraneMesh
@@ -33,6 +31,7 @@ from workbench.twin.cases import (
 )
 from workbench.twin.contact import pressed, seen_displacement_mm, twin_mesh
 from workbench.twin.draw import Twin, draw_twin
+from workbench.twin.first_camera import seen_at
 from workbench.twin.mitsuba_photographer import MitsubaPhotographer, check_mitsuba
 from workbench.twin.photographer import Photographer
 from workbench.twin.pressing import press_ahead
@@ -117,15 +116,8 @@ def _photographer(plan: TwinPlan) -> type[Photographer]:
 def _sized(design: SensorDesign, plan: TwinPlan) -> SensorDesign:
     """The design with images of the width that is asked for, seen by its first camera."""
     camera = design.optics.camera
-    if plan.width_px:
-        camera = _resized(camera, plan.width_px)
-    optics = dataclasses.replace(design.optics, camera=camera, cameras=())
-    return dataclasses.replace(design, optics=optics)
-
-
-def _resized(camera: Camera, width_px: int) -> Camera:
-    height_px = round(camera.height_px * width_px / camera.width_px)
-    return dataclasses.replace(camera, width_px=width_px, height_px=height_px)
+    width_px = plan.width_px or camera.width_px
+    return seen_at(design, width_px, round(camera.height_px * width_px / camera.width_px))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

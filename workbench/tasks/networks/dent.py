@@ -182,9 +182,7 @@ def pressed_anew(dents_mm: Tensor, generator: torch.Generator) -> Tensor:
 
 def _teach(network: DentNet, source: Dents, lesson: Lesson, monitor: Monitor) -> None:
     """Train on drawn dents alone, or take what they taught a training before."""
-    settings = {
-        name: value for name, value in vars(drawn).items() if name.isupper() and name != "Dents"
-    }
+    settings = {name: value for name, value in vars(drawn).items() if name.isupper()}
     shape = [str(each.shape) for each in network.parameters()]
     own = [TAUGHT_STEPS, TAUGHT_BATCH, TAUGHT_RATE, DECAY, SMOOTHING]
     key = digest([settings, shape, own, list(lesson.names)])

@@ -52,6 +52,8 @@ from workbench.twin.twin_plan import Light, Solver, TwinPlan
 
 DESIGNS = ("pad", "geltip")
 WIDTH_PX = 320
+OBJECT_MM = 7.5
+"""The middle of what tasks of the paper's size press: their twins are the same presses."""
 OTHER = "other"
 """Behind the name of a design's twin in the other reality."""
 OTHER_PRESSES = 50
@@ -225,6 +227,7 @@ def _runs(options: argparse.Namespace) -> Iterator[TwinRun]:
         contact=Solver(options.contact),
         photons_millions=options.photons,
         width_px=options.width,
+        object_mm=OBJECT_MM,
         jobs=options.jobs,
     )
     # By the contact solver, which knows one law only, the other light is all that is other.
