@@ -9,10 +9,12 @@ import cv2
 import numpy as np
 import pytest
 
+from workbench.calibration.ball_presses import allowed_mm
 from workbench.calibration.contact_circle import find_circle, relative_change
 from workbench.calibration.drift import measured_drift, seen_photos
 from workbench.calibration.light_basis import contact_box
 from workbench.calibration.photo_set import COLUMNS, BallPhoto, Circle, PhotoSet, read_photo_set
+from workbench.calibration.seen_places import ContactPlace
 from workbench.core.base.errors import DesignError
 
 WIDTH, HEIGHT = 200, 150
@@ -114,6 +116,30 @@ def test_a_small_contact_in_strong_noise_is_found(column: int, row: int) -> None
     assert np.hypot(found.column_px - column, found.row_px - row) < 4.0
     with pytest.raises(DesignError, match="as much as elsewhere"):
         find_circle(noise[HEIGHT:], "none.png")
+
+
+def test_a_contact_with_a_highlight_in_strong_noise_is_found() -> None:
+    """Slopes explain half of the change where it is, and hundreds of times that of other places."""
+    noise = np.random.default_rng(3).normal(0.0, 20.0, (4 * HEIGHT, 4 * WIDTH, 3))
+    noise[:HEIGHT, :WIDTH] += dent_change(90, 70, 12)
+    row, column = np.mgrid[: 4 * HEIGHT, : 4 * WIDTH]
+    noise += (80.0 * np.exp(-((column - 90) ** 2 + (row - 70) ** 2) / 50.0))[..., None]
+    found = find_circle(noise, "p.png")
+    assert np.hypot(found.column_px - 90, found.row_px - 70) < 4.0
+
+
+@pytest.mark.parametrize("seen", [0.7, 1.0, 1.3])
+def test_a_circle_that_was_found_allows_for_its_error(seen: float) -> None:
+    """Of a ball of 3 mm that is .8 mm deep, by Hertz; one that was drawn is off by a tenth."""
+    place = ContactPlace(
+        point_mm=np.zeros(3), normal=np.array([0.0, 0.0, 1.0]), radius_mm=seen * np.sqrt(3.0 * 0.8)
+    )
+    found = dataclasses.replace(ball_photo(0, dent=True), ball_mm=6.0)
+    least_mm, most_mm, _ = allowed_mm(found, place, wall_mm=2.0)
+    assert least_mm < 0.5 * 0.8 and most_mm > 1.1 * 0.8
+    drawn = dataclasses.replace(found, circle=Circle(column_px=9.0, row_px=9.0, radius_px=9.0))
+    least_mm, most_mm, _ = allowed_mm(drawn, place, wall_mm=2.0)
+    assert (least_mm < 0.8 < most_mm) == (seen > 0.9)
 
 
 @pytest.mark.parametrize(("column", "row", "radius"), [(140, 75, 16), (150, 60, 20)])

@@ -123,7 +123,11 @@ def rendered(task: Task, looker: Looker, monitor: Monitor, jobs: int = 1) -> lis
     """
     shots = looker.shots(task)
     if jobs > 1 and looker.view.dents is not None:
-        return side_by_side(looker, shots, jobs, monitor)
+        # The first is looked at here, so that the light is in the store before they all ask for it.
+        return [
+            *(looker(shot) for shot in shots[:1]),
+            *side_by_side(looker, shots[1:], jobs, monitor),
+        ]
     found = []
     for number, shot in enumerate(shots):
         monitor(number / len(shots), shot.case.id)

@@ -1,16 +1,20 @@
 """The same work for many items by processes of their own, side by side.
 
 Each process is held to one thread, and to the processor: a GPU is that of who asks. The work goes
-to each process once, the items a few at a time.
+to each process once, in a file: through a pipe, whose reader must start first, processes would
+start one after the other.
 """
 
 from __future__ import annotations
 
 import multiprocessing
+import pickle
 import signal
+import tempfile
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
+from pathlib import Path
 from typing import Any, TypeVar
 
 from workbench.core.base.errors import LaneError
@@ -43,12 +47,17 @@ def side_by_side(
         LaneError: If a process ended by itself.
         Exception: What the work raised, of the first item that did.
     """
-    with environment(dict.fromkeys(ONE_THREAD, "1") | {VARIABLE: "cpu"}):
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        environment(dict.fromkeys(ONE_THREAD, "1") | {VARIABLE: "cpu"}),
+    ):
+        file = Path(folder) / "work.pickle"
+        file.write_bytes(pickle.dumps(work))
         pool = ProcessPoolExecutor(
             jobs,
             mp_context=multiprocessing.get_context("spawn"),
             initializer=_begin,
-            initargs=(work,),
+            initargs=(file,),
         )
         try:
             running = [pool.submit(_work, item) for item in items]
@@ -70,10 +79,10 @@ def side_by_side(
             _end(pool)
 
 
-def _begin(work: Callable[[Any], Any]) -> None:
+def _begin(file: Path) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     follow_parent()
-    _own[:] = [work]
+    _own[:] = [pickle.loads(file.read_bytes())]
 
 
 def _work(item: Any) -> Any:
