@@ -80,6 +80,10 @@ def side_by_side(
 
 
 def _begin(file: Path) -> None:
+    import cv2
+
+    # The one library that no variable holds to a thread.
+    cv2.setNumThreads(1)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     follow_parent()
     _own[:] = [pickle.loads(file.read_bytes())]

@@ -2,9 +2,9 @@
 
 `python -m workbench.proof.validation.tasks.task_figures FOLDER [SIZE [DESIGN_TASK]]` runs the tasks
 that are on record, one or all, in folders of FOLDER; what lies there already is kept. Small ones
-take minutes each on a free processor; `paper` is for a GPU. The twin is photographed where
-`task_records` says so: its 140 photographs of the paper's size are of 57 paths by finite elements,
-each of some minutes of a processor.
+take minutes each on a free processor; `paper` is for a GPU. Those of the paper also photograph a
+twin: its 140 photographs of the paper's size are of 57 paths by finite elements, each of half a
+minute of a processor on the finger, and of two on the pad.
 """
 
 from __future__ import annotations
