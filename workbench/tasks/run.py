@@ -251,7 +251,7 @@ class _Work:
         with self._timed(Trial.CALIBRATED):
             try:
                 optics, details["calibration"] = calibrated(
-                    self.design, folder, store, self._span("calibrate")
+                    self.design, folder, size, store, self._span("calibrate")
                 )
             except DesignError as error:
                 # Photographs that cannot be calibrated to are a result too.

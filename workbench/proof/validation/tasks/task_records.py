@@ -16,8 +16,8 @@ DONE = {
     "paper": ((FINGER, "objects"), (FINGER, "slip"), (PAD, "safety")),
 }
 """All tasks on the finger; of the paper's size its three, safety on the flat pad as there."""
-TWINS = ("objects", "slip", "safety")
-"""Tasks that are tested on a twin too: those that the paper tested on built sensors."""
+TWINS = {("objects", "small"), *((task, "paper") for _, task in DONE["paper"])}
+"""Those that are tested on a twin too: it takes some fifteen minutes of two processors."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -31,7 +31,7 @@ class TaskRecord:
     @property
     def twin(self) -> bool:
         """Whether a twin is photographed too."""
-        return self.task in TWINS
+        return (self.task, self.size) in TWINS
 
     @property
     def name(self) -> str:
