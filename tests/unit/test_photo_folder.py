@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from pathlib import Path
 
 import pytest
@@ -19,8 +20,11 @@ from workbench.cli.command_line import main
 from workbench.core.base.errors import DesignError
 from workbench.core.base.monitor import silent
 from workbench.core.design.camera import Camera
+from workbench.core.design.design import SensorDesign
 from workbench.learning.dataset.photo_export import export_images
+from workbench.pipeline.store import Store
 from workbench.report.image_files import png_bytes
+from workbench.tasks.dent_sight import DentSight
 from workbench.tasks.examples import examples
 from workbench.tasks.photo_folder import PhotoFolder
 from workbench.tasks.rendered import Looker, Renders, rendered
@@ -160,6 +164,19 @@ def test_an_exported_data_set_reads_as_what_it_was(tmp_path: Path) -> None:
     assert ours.truth.tolist() == theirs.truth.tolist()
     with pytest.raises(DesignError, match="is not empty"):
         export_images(data, tmp_path / "photos", silent)
+
+
+def test_two_processes_see_what_one_sees(tmp_path: Path) -> None:
+    """In the same order, where dents are read; a reader stays in the process that opened it."""
+    data, task = touched(tmp_path / "data", cases=6), task_of("objects")
+    plain = Looker(view=whole(Net.OWN), data=data, images=Renders(data, marked=False))
+    dents = DentSight(SensorDesign(), Store(tmp_path / "store"))
+    dents._readers[b"opened"] = lambda: None  # type: ignore[assignment]
+    looker = dataclasses.replace(plain, view=dataclasses.replace(plain.view, dents=dents))
+    one = rendered(task, plain, silent)
+    two = rendered(task, looker, silent, jobs=2)
+    assert [each.name for each in two] == [each.name for each in one]
+    assert all((a.change.grey == b.change.grey).all() for a, b in zip(one, two, strict=True))
 
 
 def test_windows_are_exported_as_sequences(tmp_path: Path) -> None:
