@@ -37,8 +37,8 @@ BEYOND_HERTZ, SHORT_OF_CAP = 1.4, 0.6
 """Depths that are allowed: up to this many times Hertz's, down to this share of the cap's [1]."""
 BEYOND_FOUND, SHORT_OF_FOUND = 2.5, 0.4
 """The same where a circle was found, not drawn: on the wall of a finger, seen aslant, it is found
-too small by as much as a third. Held to the others, 7 of 14 presses of a twin stayed at half to
-two thirds of their depth, and lights and coating made up for it."""
+too small by as much as a third. Held to the others, 6 of 14 presses of a twin stayed at two thirds
+to four fifths of their depth, and lights and coating made up for it."""
 OF_WALL = 0.8
 """Most of the wall that a ball may be pressed into [1]."""
 OF_BALL = 0.95
