@@ -29,8 +29,9 @@ WIDTH_PX = 320
 """Of the twin's photographs [px]."""
 REFINED = {Size.SMALL: "powers", Size.PAPER: "all"}
 """What is fitted: powers and colours of the lights alone, or camera and coating as well, which
-takes minutes: by it a dent is found nearer to its place (a finger's twin is read .059 mm off, with
-powers .095), but eight photographs so fitted told .68 of the objects, as by powers alone."""
+takes minutes: by it a dent is found nearer to its place (presses of .3 mm in a finger's twin are
+read .059 mm off, with powers .095), but eight photographs so fitted told .68 of the objects, and
+by powers alone .72."""
 
 
 def twin_plan(task: Task, size: Size, recipe: Recipe, jobs: int) -> TwinPlan:
