@@ -29,7 +29,11 @@ CYLINDER = "Shape: Straight length [mm]"
 
 def ask(page: Any) -> None:
     """The straight part and the mount may vary; little silicone, and as high as can be."""
+    highest = boxes(page, "Highest").first
+    before = highest.input_value()
     choose(page, "Varied parameter", CYLINDER)
+    # Choosing suggests a range, which must not come over what is typed.
+    wait_until(lambda: highest.input_value() != before, 20, "a range is suggested")
     for label, value in (("Lowest", 20), ("Highest", 32)):
         boxes(page, label).first.fill(str(value))
         boxes(page, label).first.press("Tab")
