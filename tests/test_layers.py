@@ -40,7 +40,8 @@ RANKS = """
     workbench.project  workbench.edit  workbench.live  workbench.robots  workbench.sensor
     workbench.simulators
     workbench.report  workbench.report.exports
-    workbench.variants  workbench.calibration  workbench.photographs  workbench.reading
+    workbench.variants  workbench.calibration.seen  workbench.calibration
+    workbench.photographs  workbench.reading
     workbench.learning  workbench.learning.dataset  workbench.learning.making
     workbench.learning.training  workbench.learning.readers  workbench.learning.lerobot
     workbench.environments  workbench.taxim  workbench.twin

@@ -16,7 +16,7 @@ import pytest
 
 import workbench as wb
 from tests.photographed_pad import photographed_pad
-from workbench.calibration.photo_set import COLUMNS
+from workbench.calibration.seen.photo_set import COLUMNS
 from workbench.cli import main
 from workbench.project.design_toml import design_from_toml, design_to_toml
 

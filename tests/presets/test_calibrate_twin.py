@@ -22,8 +22,8 @@ from tests.photographed_pad import photographed_pad
 from workbench.calibration.calibrate import calibrate
 from workbench.calibration.light_sources import NO_RING, single_lights
 from workbench.calibration.outputs import calibration_figures
-from workbench.calibration.photo_set import COLUMNS, read_photo_set
 from workbench.calibration.scores import score
+from workbench.calibration.seen.photo_set import COLUMNS, read_photo_set
 from workbench.core.base.errors import Cancelled
 from workbench.core.base.units import radians
 from workbench.core.design.leds import colour_sectors

@@ -14,11 +14,11 @@ from sim.optics.studio.unit_residual import (
     slopes,
     unit_bytes,
 )
-from workbench.calibration.contact_circle import contact_shift
 from workbench.calibration.light_basis import LightBasis, PressSamples, sampled
 from workbench.calibration.polynomial import fit_polynomial, terms
 from workbench.calibration.powers import Targets, fit_powers, worth_keeping
 from workbench.calibration.residual import REACH, Slopes, fit_residual
+from workbench.calibration.seen.contact_circle import contact_shift
 from workbench.core.base.errors import DesignError
 from workbench.core.base.monitor import silent
 from workbench.core.design.camera import Camera, ImageSensor

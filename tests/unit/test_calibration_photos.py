@@ -10,11 +10,17 @@ import numpy as np
 import pytest
 
 from workbench.calibration.ball_presses import allowed_mm
-from workbench.calibration.contact_circle import find_circle, relative_change
-from workbench.calibration.drift import measured_drift, seen_photos
 from workbench.calibration.light_basis import contact_box
-from workbench.calibration.photo_set import COLUMNS, BallPhoto, Circle, PhotoSet, read_photo_set
-from workbench.calibration.seen_places import ContactPlace
+from workbench.calibration.seen.contact_circle import find_circle, relative_change
+from workbench.calibration.seen.drift import measured_drift, seen_photos
+from workbench.calibration.seen.photo_set import (
+    COLUMNS,
+    BallPhoto,
+    Circle,
+    PhotoSet,
+    read_photo_set,
+)
+from workbench.calibration.seen.seen_places import ContactPlace
 from workbench.core.base.errors import DesignError
 
 WIDTH, HEIGHT = 200, 150
@@ -53,12 +59,14 @@ GOOD = [f"p{number}.png,6,,,,," for number in range(6)]
 
 def test_a_folder_is_read_as_it_stands(tmp_path: Path) -> None:
     """Empty places are unknown; a name without its ending is held out."""
-    rows = ["p0.png,4.7,60,70,20,0.8,1.5", *GOOD[1:]]
+    rows = ["p0.png,4.7,60,70,20,0.8,1.5,0,-3.5,20", *GOOD[1:]]
     found = read_photo_set(folder(tmp_path, rows), ("p3",))
     assert [each.held_out for each in found.photos] == [False, False, False, True, False, False]
     first, second = found.photos[:2]
     assert first.circle == Circle(column_px=60.0, row_px=70.0, radius_px=20.0)
     assert (first.ball_mm, first.depth_mm, first.force_N) == (4.7, 0.8, 1.5)
+    assert first.place_mm is not None and first.place_mm.tolist() == [0.0, -3.5, 20.0]
+    assert second.place_mm is None
     assert (second.circle, second.depth_mm, second.force_N) == (None, None, None)
     assert len(found.fitted) == 5
 
@@ -191,6 +199,7 @@ def ball_photo(number: int, *, dent: bool, circle: Circle | None = None) -> Ball
         image=image,
         ball_mm=4.0,
         circle=circle,
+        place_mm=None,
         depth_mm=None,
         force_N=None,
         held_out=False,
@@ -207,10 +216,10 @@ def photo_set(dents: int, weak: int) -> PhotoSet:
 def test_a_weak_photograph_among_good_ones_is_left_out() -> None:
     """One that shows nothing, and one whose contact is not on the skin, each with its reason."""
 
-    def located(circle: Circle, name: str) -> str:
-        if name == "p0.png":
-            raise DesignError(f"{name} is off the skin", hint="", at="")
-        return name
+    def located(circle: Circle, photo: BallPhoto) -> str:
+        if photo.name == "p0.png":
+            raise DesignError(f"{photo.name} is off the skin", hint="", at="")
+        return photo.name
 
     seen, left_out = seen_photos(photo_set(dents=7, weak=1), located)
     assert [each.photo.name for each, _ in seen] == [at for _, at in seen]
@@ -222,7 +231,7 @@ def test_a_weak_photograph_among_good_ones_is_left_out() -> None:
 def test_photographs_of_something_else_are_refused(dents: int, weak: int) -> None:
     """Fewer than five remain, or fewer than two thirds."""
     with pytest.raises(DesignError, match=rf"p{dents}\.png shows no contact"):
-        seen_photos(photo_set(dents, weak), lambda circle, name: name)
+        seen_photos(photo_set(dents, weak), lambda circle, photo: photo.name)
 
 
 def test_a_contact_that_was_given_is_not_left_out() -> None:
@@ -231,10 +240,10 @@ def test_a_contact_that_was_given_is_not_left_out() -> None:
     photos = photo_set(dents=7, weak=0)
     photos = dataclasses.replace(photos, photos=(*photos.photos, given))
 
-    def located(circle: Circle, name: str) -> str:
-        if name == given.name:
-            raise DesignError(f"{name} is off the skin", hint="", at="")
-        return name
+    def located(circle: Circle, photo: BallPhoto) -> str:
+        if photo.name == given.name:
+            raise DesignError(f"{photo.name} is off the skin", hint="", at="")
+        return photo.name
 
     with pytest.raises(DesignError, match=r"p9\.png is off the skin"):
         seen_photos(photos, located)

@@ -9,8 +9,8 @@ from sim.optics.light.places import check_lights
 from sim.optics.proof.specimen import dent, finger
 from workbench.calibration.ball_presses import BallPress, carried
 from workbench.calibration.light_sources import NO_RING, candidates, single_lights
-from workbench.calibration.photo_set import BallPhoto, Circle
-from workbench.calibration.seen_places import ContactPlace, SeenPlaces
+from workbench.calibration.seen.photo_set import BallPhoto, Circle
+from workbench.calibration.seen.seen_places import ContactPlace, SeenPlaces
 from workbench.core.base.errors import DesignError
 from workbench.core.design.camera import Camera
 from workbench.core.design.lighting import Lamp, LedRing
@@ -31,6 +31,7 @@ def photo() -> BallPhoto:
         image=np.zeros((120, 160, 3), np.uint8),
         ball_mm=6.0,
         circle=None,
+        place_mm=None,
         depth_mm=None,
         force_N=None,
         held_out=False,

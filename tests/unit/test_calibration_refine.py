@@ -30,10 +30,10 @@ from workbench.calibration.photo_rows import (
     residuals,
     whitening,
 )
-from workbench.calibration.photo_set import BallPhoto, Circle
 from workbench.calibration.powers import Powers
 from workbench.calibration.refine import Refined
-from workbench.calibration.seen_places import ContactPlace
+from workbench.calibration.seen.photo_set import BallPhoto, Circle
+from workbench.calibration.seen.seen_places import ContactPlace
 from workbench.calibration.unknowns import Kind, Scene, Unknown, moved_scene, unknowns
 from workbench.core.design.camera import Camera
 from workbench.core.design.lighting import Lamp, LedRing
@@ -145,7 +145,11 @@ def test_rows_are_the_derivatives_of_the_residuals() -> None:
         error_grey=0.0,
         null_grey=0.0,
     )
-    given = Slopes(rest=random.normal(size=(24, 3)), presses=(random.normal(size=(25, 3)),))
+    given = Slopes(
+        rest=random.normal(size=(24, 3)),
+        presses=(random.normal(size=(25, 3)),),
+        places_mm=np.zeros((1, 3)),
+    )
     shares = tuple(random.uniform(0.1, 1.0, each.light.shape) for each in images)
     over = Whitening(rest=2.0, press=4.0, shares=shares)
     active = active_powers(powers)
@@ -302,6 +306,7 @@ def press(force_N: float | None, stiff: float) -> BallPress:
         image=np.zeros((4, 4, 3), np.uint8),
         ball_mm=6.0,
         circle=CIRCLE,
+        place_mm=None,
         depth_mm=None,
         force_N=force_N,
         held_out=False,

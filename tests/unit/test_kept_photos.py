@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 import pytest
 
-from workbench.calibration.photo_set import Circle, read_photo_set
+from workbench.calibration.seen.photo_set import Circle, read_photo_set
 from workbench.core.base.errors import DesignError
 from workbench.photographs.calls import found_contact
 from workbench.photographs.kept_photos import KeptPhotos, Use
@@ -63,14 +63,30 @@ def test_a_file_of_another_size_leaves_the_set_as_it_was(tmp_path: Path) -> None
 
 def test_a_table_says_what_is_known(tmp_path: Path) -> None:
     """Diameter, circle and depth by name; a word where a number belongs is named."""
-    table = b"photo,ball_mm,column_px,row_px,radius_px,depth_mm\np0.png,4,10,20,5,\np1.png,,,,,.7\n"
+    table = (
+        b"photo,ball_mm,column_px,row_px,radius_px,depth_mm,pose_x_mm,pose_y_mm,pose_z_mm\n"
+        b"p0.png,4,10,20,5,,,,\np1.png,,,,,.7,1.5,0,-2\n"
+    )
     found = KeptPhotos(tmp_path)
     found.take(files() | {"presses.csv": table}, 6.0)
     one, two, *_ = found.photos
     assert (one.ball_mm, one.circle) == (4.0, Circle(column_px=10, row_px=20, radius_px=5))
     assert (two.ball_mm, two.circle, two.depth_mm) == (6.0, None, 0.7)
+    assert (one.place_mm, two.place_mm) == (None, (1.5, 0.0, -2.0))
+    assert KeptPhotos(tmp_path).photos == found.photos
     with pytest.raises(DesignError, match=r"p1\.png: depth_mm is deep, not a number"):
         found.take({"presses.csv": b"photo,depth_mm\np1.png,deep\n"}, 6.0)
+
+
+def test_a_circle_that_was_found_is_not_one_that_was_drawn(tmp_path: Path) -> None:
+    """The table has the drawn one alone: what is found may be too small by more."""
+    found = kept(tmp_path)
+    circle = Circle(column_px=40.0, row_px=30.5, radius_px=8.0)
+    one = found.photos[0]
+    found.put(*(dataclasses.replace(each, circle=circle) for each in found.photos))
+    found.put(dataclasses.replace(one, circle=circle, by_hand=True))
+    read = read_photo_set(found.folder)
+    assert [each.circle for each in read.photos] == [circle, None, None, None, None]
 
 
 def test_what_a_calibration_lacks_is_said(tmp_path: Path) -> None:

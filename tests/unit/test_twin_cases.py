@@ -10,14 +10,15 @@ import numpy as np
 import pytest
 
 from tests.unit.test_dataset_cases import flat_skin
-from workbench.calibration.photo_set import read_photo_set
+from workbench.calibration.seen.photo_set import read_photo_set
 from workbench.core.base.errors import DesignError
 from workbench.core.result.force_field import ForceField, Source
 from workbench.learning.dataset.sequences import FRAMES
 from workbench.project.named_designs import load_design
 from workbench.twin.cases import PRESS_FRAMES, Ground, Kind, case
 from workbench.twin.draw import draw_twin
-from workbench.twin.taking import label_row, onset, photos_of
+from workbench.twin.stage import EACH_MM, TURN_DEG, ZERO_MM, draw_stage
+from workbench.twin.taking import ball_row, label_row, onset, photos_of
 from workbench.twin.truth import Truth, read_truth, write_truth
 from workbench.twin.twin_folder import TwinFolder, open_folder
 from workbench.twin.twin_plan import Solver, TwinPlan
@@ -116,17 +117,38 @@ def test_labels_say_force_on_the_membrane_and_depth_of_the_frame() -> None:
 
 
 def test_a_calibration_folder_is_one_that_calibrate_reads(tmp_path: Path) -> None:
-    """Names and the diameter that the designer typed; depth, circle and force stay unknown."""
+    """Diameter as typed, place as the stage says; depth, circle and force stay unknown."""
     folder = TwinFolder(path=tmp_path)
     image = np.full((24, 32, 3), 90, np.uint8)
     folder.write_photo(Kind.CALIBRATION, "idle.png", image)
-    rows = [{"photo": f"a{number}.png", "object": "sphere"} for number in range(5)]
+    stage, rows = draw_stage(TWIN.seed), []
+    for number in range(5):
+        ball = case(TWIN, PLAN, GROUND, Kind.CALIBRATION, number)
+        rows.append(ball_row(photos_of(TWIN, ball, field(2))[0], field(2), 6.0, stage))
     for row in rows:
         folder.write_photo(Kind.CALIBRATION, row["photo"], image)
-    folder.write_table(Kind.CALIBRATION, rows, 6.0)
+    folder.write_table(Kind.CALIBRATION, rows)
     read = read_photo_set(folder.photos(Kind.CALIBRATION))
     assert [photo.ball_mm for photo in read.photos] == [6.0] * 5
     assert all(photo.depth_mm is None and photo.circle is None for photo in read.photos)
+    for number, photo in enumerate(read.photos):
+        told = stage.told_mm(field(2).target_mm, number)
+        assert photo.place_mm == pytest.approx(told, abs=1e-3)
+
+
+def test_a_stage_is_off_in_all_places_alike() -> None:
+    """By its zero and a turn, and by .03 mm in each; another twin has another."""
+    stage, places = draw_stage(3), np.random.default_rng(0).uniform(-10.0, 30.0, (400, 3))
+    told = np.array([stage.told_mm(place, k) for k, place in enumerate(places)])
+    axis, angle = np.radians(stage.turn_deg), np.linalg.norm(np.radians(stage.turn_deg))
+    cross = np.cross(np.eye(3), axis / angle)
+    rotation = np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * cross @ cross
+    assert rotation @ axis == pytest.approx(axis)
+    # What is turned one way is told as turned the other way.
+    off = told - places @ rotation - stage.zero_mm
+    assert np.abs(off).max() < 5.0 * EACH_MM and off.std() == pytest.approx(EACH_MM, rel=0.1)
+    assert np.abs(stage.zero_mm).max() <= ZERO_MM and np.abs(stage.turn_deg).max() <= TURN_DEG
+    assert draw_stage(4).zero_mm != stage.zero_mm and draw_stage(3) == stage
 
 
 def test_another_twin_is_refused_and_the_same_goes_on(tmp_path: Path) -> None:

@@ -18,8 +18,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from workbench.calibration.photo_set import BallPhoto
-from workbench.calibration.seen_places import ContactPlace, SeenPlaces
+from workbench.calibration.seen.photo_set import BallPhoto
+from workbench.calibration.seen.seen_places import ContactPlace, SeenPlaces
 from workbench.calibration.stored import stored
 from workbench.core.base.errors import DesignError
 from workbench.core.base.frames import tangent

@@ -2,10 +2,11 @@
 
     circles     given, or found in the difference from rest
     drift       of exposure and white balance, from untouched skin
-    places      of the contacts on the skin, by the camera of the design
+    places      of the contacts on the skin, as a stage knows them or by the camera of the design
     presses     of each ball by the contact solver, over the depths that the circle allows
     powers      and colours of the lights, with the depths as unknowns
-    all else    camera, places of known lights, lobe, coating, fall-off, by Gauss-Newton
+    all else    camera, places of known lights, lobe, coating, fall-off, by Gauss-Newton; where a
+                stage knows the places of contacts, the camera must see them there
     residual    of slope and place, over that
     predictions of every photograph; held-out ones from place and depth alone
 
@@ -22,18 +23,18 @@ from sim.optics.studio.unit_residual import unit_bytes
 from workbench.calibration.ball_presses import BallPress, press_balls
 from workbench.calibration.contacts import Contacts, Light, Work
 from workbench.calibration.derivatives import Fit, Task
-from workbench.calibration.drift import LeftOut, SeenPhoto, seen_photos
 from workbench.calibration.elasticity import Young, fitted_young
 from workbench.calibration.fitted_design import fitted_design, with_unit
 from workbench.calibration.light_basis import LightBasis
 from workbench.calibration.light_sources import candidates, single_lights
 from workbench.calibration.photo_rows import images_of
-from workbench.calibration.photo_set import IDLE, PhotoSet
 from workbench.calibration.powers import Powers, shifts_px, worth_keeping
 from workbench.calibration.predictions import Predictions, depths_of, left_of, predict
 from workbench.calibration.refine import Refined, refine, shifts_of
 from workbench.calibration.residual import REACH
-from workbench.calibration.seen_places import SeenPlaces
+from workbench.calibration.seen.drift import LeftOut, SeenPhoto, seen_photos
+from workbench.calibration.seen.photo_set import IDLE, PhotoSet
+from workbench.calibration.seen.seen_places import SeenPlaces
 from workbench.calibration.stored import stored
 from workbench.calibration.unknowns import Scene, unknowns
 from workbench.core.base.errors import DesignError
@@ -123,12 +124,12 @@ def calibrate(
     span = _spans(SHARES[refining], monitor)
     mesh: MembraneMesh = stored(design, PressCase(), "mesh", store, span["mesh"])
     places = SeenPlaces(mesh, design.optics)
-    found, left_out = seen_photos(photos, places.place)
+    found, left_out = seen_photos(photos, places.contact)
     contacts, located = [each for each, _ in found], [(each.photo, at) for each, at in found]
     photos = replace(photos, photos=tuple(each.photo for each in contacts))
     solved = press_balls(design, places, located, store, span["presses"])
     work = Work(design=design, photos=photos, store=store, mesh=mesh, solved=tuple(solved))
-    known, light = _whose_lights(work, Contacts(seen=contacts, presses=solved), lights, span)
+    known, light = _whose_lights(work, work.where_seen(contacts, places), lights, span)
     # Where each contact is in its photograph is known better now than its circle said.
     width, sensor = photos.idle.shape[1], design.optics.camera.sensor
     targets = work.targets(contacts, light.basis)

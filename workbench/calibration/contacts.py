@@ -9,11 +9,11 @@ import numpy as np
 
 from sim.optics.raster.display import light_of, shown
 from workbench.calibration.ball_presses import BallPress, carried
-from workbench.calibration.drift import SeenPhoto, shifted
 from workbench.calibration.light_basis import LightBasis, around, open_basis
-from workbench.calibration.photo_set import PhotoSet
 from workbench.calibration.powers import Powers, Targets, fit_powers
-from workbench.calibration.seen_places import SeenPlaces
+from workbench.calibration.seen.drift import SeenPhoto, shifted
+from workbench.calibration.seen.photo_set import PhotoSet
+from workbench.calibration.seen.seen_places import SeenPlaces
 from workbench.core.base.monitor import Monitor, part
 from workbench.core.design.design import SensorDesign
 from workbench.core.design.lighting import Lamp
@@ -79,6 +79,14 @@ class Work:
             ],
         )
 
+    def where_seen(self, seen: Sequence[SeenPhoto], places: SeenPlaces) -> Contacts:
+        """Contacts where the camera of the design sees them, wherever a stage says they are."""
+        presses = [
+            press if one.photo.place_mm is None else self._carried(press, one, places)
+            for press, one in zip(self.solved, seen, strict=True)
+        ]
+        return Contacts(seen=seen, presses=presses)
+
     def moved(self, seen: Sequence[SeenPhoto], away_px: np.ndarray, places: SeenPlaces) -> Contacts:
         """Contacts moved along columns and rows, (J, 2) of the fitted ones.
 
@@ -88,7 +96,10 @@ class Work:
         shifts.update(zip(self.fitted, away_px, strict=True))
         there = [shifted(each, shifts[k], self.photos.idle) for k, each in enumerate(seen)]
         presses = [
-            carried(press, one.photo, places.place(one.circle, one.photo.name), self.mesh)
-            for press, one in zip(self.solved, there, strict=True)
+            self._carried(press, one, places) for press, one in zip(self.solved, there, strict=True)
         ]
         return Contacts(seen=there, presses=presses)
+
+    def _carried(self, press: BallPress, one: SeenPhoto, places: SeenPlaces) -> BallPress:
+        there = places.place(one.circle, one.photo.name)
+        return carried(press, one.photo, there, self.mesh)

@@ -22,9 +22,9 @@ from workbench.calibration.ball_presses import BallPress, carried
 from workbench.calibration.fitted_design import light_colour
 from workbench.calibration.light_basis import Drawn, LightBasis, drawn, open_basis, plain_optics
 from workbench.calibration.photo_rows import Image, Slopes
-from workbench.calibration.photo_set import Circle
 from workbench.calibration.powers import Powers, Targets
-from workbench.calibration.seen_places import SeenPlaces
+from workbench.calibration.seen.photo_set import Circle
+from workbench.calibration.seen.seen_places import SeenPlaces
 from workbench.calibration.unknowns import Kind, Scene, Unknown, moved_scene
 from workbench.core.base.monitor import Monitor, part
 from workbench.core.design.design import SensorDesign
@@ -82,6 +82,11 @@ def placed(
     return found
 
 
+def points_mm(presses: Sequence[tuple[BallPress, Circle]]) -> np.ndarray:
+    """Where the contacts are, shape (J, 3)."""
+    return np.array([press.place.point_mm for press, _ in presses])
+
+
 def slopes_of(task: Task, fit: Fit, monitor: Monitor) -> list[Slopes]:
     """Derivatives of the light of all images by each unknown, at fixed powers and depths."""
     presses = [
@@ -102,7 +107,9 @@ def slopes_of(task: Task, fit: Fit, monitor: Monitor) -> list[Slopes]:
         seen = still
         if task.among[k].kind.of_camera:
             seen = placed(task, scene, presses, fit.circles)
-        found[k] = _difference(_together(task, scene, fit, seen, span), base, by.get(k, np.inf))
+        now = _together(task, scene, fit, seen, span)
+        moved_mm = points_mm(seen) - points_mm(still)
+        found[k] = _difference((now, base), moved_mm, by.get(k, np.inf))
     if axes:
         ends = np.linspace((len(common) + 1) / works, 1.0, len(axes) + 2)
         spans = [part(monitor, *pair) for pair in itertools.pairwise(ends.tolist())]
@@ -173,9 +180,12 @@ def _together(
     return [rest, *(strongest * each.change[0] for each in found.presses)]
 
 
-def _difference(now: list[np.ndarray], still: list[np.ndarray], by: float) -> Slopes:
-    rest, *presses = [(one - other) / by for one, other in zip(now, still, strict=True)]
-    return Slopes(rest=rest, presses=tuple(presses))
+def _difference(
+    light: tuple[list[np.ndarray], list[np.ndarray]], moved_mm: np.ndarray, by: float
+) -> Slopes:
+    """From light after a step and before, and from where contacts are seen to have moved."""
+    rest, *presses = [(now - before) / by for now, before in zip(*light, strict=True)]
+    return Slopes(rest=rest, presses=tuple(presses), places_mm=moved_mm / by)
 
 
 def _alone(
@@ -204,4 +214,4 @@ def _by_place(
     rest, *changes = [
         np.outer((one[:, light] - other[:, light]) / by, power) for one, other in pairs
     ]
-    return Slopes(rest=rest, presses=tuple(changes))
+    return Slopes(rest=rest, presses=tuple(changes), places_mm=np.zeros((len(changes), 3)))

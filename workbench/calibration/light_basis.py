@@ -15,7 +15,7 @@ import numpy as np
 from sim.optics.raster.image_sensor import kept_light
 from workbench.calibration.ball_presses import BallPress
 from workbench.calibration.light_sources import NO_RING
-from workbench.calibration.photo_set import Circle
+from workbench.calibration.seen.photo_set import Circle
 from workbench.calibration.stored import lit_studio
 from workbench.core.base.monitor import Monitor, part
 from workbench.core.design.design import SensorDesign

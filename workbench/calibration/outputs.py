@@ -12,6 +12,7 @@ import numpy as np
 
 from workbench.calibration.calibrate import Calibration
 from workbench.calibration.determined import directions, parameters
+from workbench.calibration.known_places import apart_mm
 from workbench.calibration.report import report
 from workbench.calibration.scores import Scored, score
 from workbench.core.design.camera import Camera
@@ -64,6 +65,7 @@ def calibration_figures(found: Calibration, scored: Scored) -> dict[str, Any]:
                 name: round(getattr(found.design.optics.coating, name), 4)
                 for name in ("albedo", "specular", "roughness")
             },
+            "stage": _stage(found),
             "young": None if found.young is None else _plain(found.young),
             **_known(found),
         },
@@ -77,6 +79,14 @@ def _camera(camera: Camera) -> dict[str, Any]:
         "fov_x_deg": round(camera.fov_x_deg, 4),
         "falloff": _rounded(np.array(camera.sensor.falloff)),
     }
+
+
+def _stage(found: Calibration) -> dict[str, float] | None:
+    """How many places a stage knew, and how far they are from where contacts are seen [mm]."""
+    apart = apart_mm(found.presses)
+    if not len(apart):
+        return None
+    return {"places": len(apart), "median_mm": round(float(np.median(apart)), 4)}
 
 
 def _known(found: Calibration) -> dict[str, Any]:

@@ -13,10 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim.optics.raster.display import light_of
-from workbench.calibration.drift import CUT_OFF
 from workbench.calibration.gauss_newton import Rows, alike_samples, robust_shares
 from workbench.calibration.light_basis import LightBasis, PressSamples
 from workbench.calibration.powers import Powers, Targets, grey_per_light, photo_change
+from workbench.calibration.seen.drift import CUT_OFF
 from workbench.core.design.camera import ImageSensor
 
 DIM = 10.0
@@ -55,6 +55,8 @@ class Slopes:
     """Shape (N, 3)."""
     presses: tuple[np.ndarray, ...]
     """(N, 3) each."""
+    places_mm: np.ndarray
+    """How the places on the skin where the circles are seen change, shape (J, 3)."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

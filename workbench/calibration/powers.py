@@ -19,9 +19,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim.optics.raster.display import light_of, shown
-from workbench.calibration.contact_circle import contact_shift
-from workbench.calibration.drift import CUT_OFF
 from workbench.calibration.light_basis import LightBasis, PressSamples
+from workbench.calibration.seen.contact_circle import contact_shift
+from workbench.calibration.seen.drift import CUT_OFF
 from workbench.core.base.monitor import Monitor
 from workbench.core.design.camera import ImageSensor
 

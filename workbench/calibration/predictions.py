@@ -12,8 +12,8 @@ import numpy as np
 
 from sim.optics.studio.unit_residual import places, slopes
 from workbench.calibration.ball_presses import BallPress
-from workbench.calibration.drift import CUT_OFF, SeenPhoto, untouched
 from workbench.calibration.residual import Slopes, fit_residual
+from workbench.calibration.seen.drift import CUT_OFF, SeenPhoto, untouched
 from workbench.calibration.stored import lit_studio
 from workbench.core.base.monitor import Monitor, part
 from workbench.core.design.design import SensorDesign

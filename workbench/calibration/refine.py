@@ -18,6 +18,7 @@ import numpy as np
 
 from workbench.calibration.derivatives import Fit, Task, placed, slopes_of
 from workbench.calibration.gauss_newton import Normal, normal_equations
+from workbench.calibration.known_places import place_misfit, place_rows
 from workbench.calibration.light_basis import LightBasis, open_basis
 from workbench.calibration.photo_rows import (
     Slopes,
@@ -29,8 +30,8 @@ from workbench.calibration.photo_rows import (
     residuals,
     whitening,
 )
-from workbench.calibration.photo_set import Circle
 from workbench.calibration.powers import Powers, fit_powers
+from workbench.calibration.seen.photo_set import Circle
 from workbench.calibration.unknowns import Unknown, moved_scene
 from workbench.core.base.monitor import Monitor, part
 
@@ -103,6 +104,7 @@ def _settled(task: Task, before: np.ndarray, now: np.ndarray) -> bool:
 
 def _normal(task: Task, fit: Fit, slopes: Sequence[Slopes], over: Whitening) -> Normal:
     rows = image_rows(task.images, (fit.basis, fit.powers), slopes, over)
+    rows += place_rows(task, fit, slopes)
     spans = [max(each.most_mm - each.least_mm, 1e-6) for each in task.presses]
     count, powers = len(spans), len(active_powers(fit.powers))
     circles = np.array([CIRCLE_SD * each.radius_px for each in task.boxes])
@@ -136,7 +138,7 @@ def _error(task: Task, fit: Fit, over: Whitening) -> float:
     circles = np.array([CIRCLE_SD * each.radius_px for each in task.boxes])
     off = float(((fit.values / sizes) ** 2).sum())
     off += float(((shifts_of(task, fit) / circles[:, None]) ** 2).sum())
-    return misfit(task.images, left, over) + off
+    return misfit(task.images, left, over) + place_misfit(task, fit) + off
 
 
 def _step(task: Task, fit: Fit, normal: Normal, over: Whitening, monitor: Monitor) -> Fit | None:

@@ -9,6 +9,7 @@ import numpy as np
 
 from workbench.calibration.calibrate import Calibration
 from workbench.calibration.determined import directions, parameters
+from workbench.calibration.known_places import apart_mm
 from workbench.calibration.light_basis import contact_box
 from workbench.calibration.scores import PhotoScore, Scored
 from workbench.report.html_page import page, photograph
@@ -97,6 +98,7 @@ def _unknowns(found: Calibration) -> str:
             f"<p>Young's modulus from the force of {presses}: <b>{found.young.young_MPa:.3f} "
             f"&plusmn; {found.young.sd_MPa:.3f} MPa</b>.</p>"
         )
+    young += _stage(found)
     if found.refined is None:
         return young
     rows: list[Sequence[str]] = [("unknown", "fitted", "known to", "before", "determined")]
@@ -116,6 +118,18 @@ def _unknowns(found: Calibration) -> str:
         f"<details><summary>Combinations that the photographs see</summary>{_grid(seen)}<p>Of "
         "unknowns over what was known before: a combination of singular value 1 is told by the "
         "photographs as well as it was known before, one far below 1 not at all.</p></details>"
+    )
+
+
+def _stage(found: Calibration) -> str:
+    """How far contacts are seen from where a stage pressed them."""
+    apart = apart_mm(found.presses)
+    if not len(apart):
+        return ""
+    used = "" if found.refined else "; powers alone were fitted, the camera is the design's"
+    return (
+        f"<p>A stage knew the places of {len(apart)} of {len(found.presses)} contacts. They are "
+        f"seen {np.median(apart):.2f} mm from there (median; {apart.max():.2f} at most){used}.</p>"
     )
 
 

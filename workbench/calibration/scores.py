@@ -12,9 +12,9 @@ import numpy as np
 
 from sim.optics.studio.metrics import psnr_dB, ssim
 from workbench.calibration.calibrate import Calibration
-from workbench.calibration.drift import SeenPhoto, untouched
 from workbench.calibration.light_basis import contact_box
 from workbench.calibration.polynomial import fit_polynomial, terms
+from workbench.calibration.seen.drift import SeenPhoto, untouched
 
 BEST_dB = 100.0
 """Of equal images, whose ratio is infinite: reports hold finite numbers."""

@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from workbench.calibration.drift import NO_DRIFT, Drift, seen_contact
-from workbench.calibration.photo_set import IDLE, Circle
+from workbench.calibration.seen.drift import NO_DRIFT, Drift, seen_contact
+from workbench.calibration.seen.photo_set import IDLE, Circle
 from workbench.core.base.errors import DesignError
 from workbench.core.base.monitor import Monitor, part
 from workbench.core.design.design import SensorDesign
@@ -92,7 +92,7 @@ class Calibrate(OwnCall):
         """Calibrate and write what comes of it; an earlier one stays until then."""
         from workbench.calibration.calibrate import calibrate
         from workbench.calibration.outputs import FILES, write_calibration
-        from workbench.calibration.photo_set import TABLE, read_photo_set
+        from workbench.calibration.seen.photo_set import TABLE, read_photo_set
         from workbench.pipeline.devices import open_device
         from workbench.system.folder import prepare
 

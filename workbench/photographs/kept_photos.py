@@ -20,8 +20,8 @@ from typing import Any
 
 import numpy as np
 
-from workbench.calibration.drift import NO_DRIFT, Drift
-from workbench.calibration.photo_set import COLUMNS, FEWEST, IDLE, TABLE, Circle
+from workbench.calibration.seen.drift import NO_DRIFT, Drift
+from workbench.calibration.seen.photo_set import CIRCLE, COLUMNS, FEWEST, IDLE, POSE, TABLE, Circle
 from workbench.core.base.errors import DesignError
 from workbench.photographs.photo_files import decoded, is_idle, number, table_lines
 from workbench.report.image_files import png_bytes
@@ -50,6 +50,8 @@ class KeptPhoto:
     """Of the contact: typed, or found."""
     by_hand: bool = False
     """Whether the circle was given rather than found."""
+    place_mm: tuple[float, float, float] | None = None
+    """Where on the skin at rest a stage pressed the ball, in the sensor frame."""
     depth_mm: float | None = None
     force_N: float | None = None
     use: Use = Use.FIT
@@ -227,24 +229,27 @@ def _unfound(each: KeptPhoto) -> KeptPhoto:
 def _told(each: KeptPhoto, line: Mapping[str, str]) -> KeptPhoto:
     """A photograph with what the table says of it."""
     values = {name: number(each.photo, name, line.get(name)) for name in COLUMNS[1:]}
-    place = [values[name] for name in COLUMNS[2:5]]
-    circle = None
-    if all(value is not None for value in place):
-        circle = Circle(**{name: float(values[name] or 0.0) for name in COLUMNS[2:5]})
+    drawn, (x, y, z) = [values[name] for name in CIRCLE], (values[name] for name in POSE)
+    circle, place = None, None
+    if None not in drawn:
+        circle = Circle(**{name: float(values[name] or 0.0) for name in CIRCLE})
+    if x is not None and y is not None and z is not None:
+        place = x, y, z
     return dataclasses.replace(
         each,
         ball_mm=values["ball_mm"] or each.ball_mm,
         circle=circle or each.circle,
         by_hand=circle is not None or each.by_hand,
+        place_mm=place,
         **{name: values[name] for name in KNOWN},
     )
 
 
 def _line(each: KeptPhoto) -> list[Any]:
-    circle = each.circle
-    place = ("", "", "") if circle is None else dataclasses.astuple(circle)
-    known = ["" if value is None else value for value in (each.depth_mm, each.force_N)]
-    return [each.photo, each.ball_mm, *place, *known]
+    # A circle that was found is found again, and is then not taken for one that was drawn.
+    drawn = dataclasses.astuple(each.circle) if each.circle and each.by_hand else ("", "", "")
+    known = (each.depth_mm, each.force_N, *(each.place_mm or ("", "", "")))
+    return [each.photo, each.ball_mm, *drawn, *("" if value is None else value for value in known)]
 
 
 def _to_row(each: KeptPhoto) -> dict[str, Any]:
@@ -259,6 +264,7 @@ def _from_row(row: dict[str, Any]) -> KeptPhoto:
     values = {
         "use": Use(row["use"]),
         "circle": None if circle is None else Circle(**circle),
+        "place_mm": None if row.get("place_mm") is None else tuple(row["place_mm"]),
         "drift": Drift(gain=np.array(drift["gain"]), offset=np.array(drift["offset"])),
     }
     return KeptPhoto(**{**row, **values})

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from sim.optics.raster.photo_file import read_rgb
-from workbench.calibration.photo_set import COLUMNS
+from workbench.calibration.seen.photo_set import COLUMNS
 from workbench.core.base.errors import DesignError
 from workbench.core.design.photo import PICTURE_ENDINGS, photo
 from workbench.system.uploads import MOST_BYTES as MOST_UPLOADED

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from workbench.calibration.photo_set import Circle
+from workbench.calibration.seen.photo_set import Circle
 from workbench.report.image_files import difference
 
 MOST_PX = 640

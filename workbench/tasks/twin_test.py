@@ -86,7 +86,7 @@ def calibrated(
     """
     from workbench.calibration.calibrate import calibrate
     from workbench.calibration.fitted_design import with_unit
-    from workbench.calibration.photo_set import read_photo_set
+    from workbench.calibration.seen.photo_set import read_photo_set
     from workbench.core.design.unit import unit
 
     photos = read_photo_set(twin / FOLDERS[Kind.CALIBRATION])

@@ -59,6 +59,7 @@ class Draws(enum.IntEnum):
     PRESSES = 2
     SLIDES = 3
     PHOTONS = 4
+    STAGE = 5
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -35,8 +35,9 @@ from workbench.twin.first_camera import seen_at
 from workbench.twin.mitsuba_photographer import MitsubaPhotographer, check_mitsuba
 from workbench.twin.photographer import Photographer
 from workbench.twin.pressing import press_ahead
+from workbench.twin.stage import draw_stage
 from workbench.twin.steady_photographer import SteadyPhotographer
-from workbench.twin.taking import Taken, label_row, photos_of
+from workbench.twin.taking import Taken, ball_row, label_row, photos_of
 from workbench.twin.truth import FOLDER, truth_of, write_truth
 from workbench.twin.twin_folder import TwinFolder, idle_files, open_folder
 from workbench.twin.twin_plan import Light, TwinPlan
@@ -216,9 +217,15 @@ class _Work:
             for photo in taken:
                 monitor(len(rows) / most, photo.name)
                 self._take(photo, field, span)
-                rows.append(label_row(photo, field))
-            self.folder.write_table(kind, rows, self.plan.ball_mm)
+                rows.append(self._row(photo, field))
+            self.folder.write_table(kind, rows)
         return len(rows)
+
+    def _row(self, photo: Taken, field: ForceField) -> dict[str, str]:
+        """A photograph's line of its table."""
+        if photo.case.kind is not Kind.CALIBRATION:
+            return label_row(photo, field)
+        return ball_row(photo, field, self.plan.ball_mm, draw_stage(self.twin.seed))
 
     def _pressed(self, each: TwinCase, monitor: Monitor) -> ForceField | None:
         """A path from the store or pressed now; None of one that cannot be."""

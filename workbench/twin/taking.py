@@ -7,14 +7,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim.forces.slip import GROSS_SHARE
+from workbench.calibration.seen.photo_set import POSE
 from workbench.core.result.force_field import ForceField
 from workbench.learning.dataset.sequences import FRAMES
 from workbench.twin.cases import BALL_FRAMES, PRESS_FRAMES, Kind, TwinCase
 from workbench.twin.draw import Draws, Twin, stream
+from workbench.twin.stage import Stage
 
 LABELS = (
     *("photo", "object", "place", "sequence", "frame", "slip", "depth_mm", "peak_MPa"),
-    *("force_x_N", "force_y_N", "force_z_N", "pose_x_mm", "pose_y_mm", "pose_z_mm"),
+    *("force_x_N", "force_y_N", "force_z_N", *POSE),
 )
 """Columns of `labels.csv`; the pose is where the object touched first, in the sensor frame."""
 NUMBERS = {Kind.CALIBRATION: 1, Kind.PRESS: 2, Kind.SLIDE: 3}
@@ -59,11 +61,24 @@ def photos_of(twin: Twin, case: TwinCase, field: ForceField) -> list[Taken]:
     ]
 
 
+def ball_row(taken: Taken, field: ForceField, ball_mm: float, stage: Stage) -> dict[str, str]:
+    """A photograph's line of `presses.csv`: what its builder knows of it.
+
+    Args:
+        taken: Of a ball.
+        field: The solved path.
+        ball_mm: Diameter of the ball as its printer was told.
+        stage: What pressed it.
+    """
+    told = stage.told_mm(field.target_mm, taken.case.number)
+    pose = {name: f"{value:.3f}" for name, value in zip(POSE, told, strict=True)}
+    return {"photo": f"{taken.name}.png", "ball_mm": f"{ball_mm:g}", **pose}
+
+
 def label_row(taken: Taken, field: ForceField) -> dict[str, str]:
     """A photograph's line of `labels.csv`."""
     frame, case = taken.frame, taken.case
     force = dict(zip("xyz", -field.reaction_N[frame], strict=True))
-    target = dict(zip("xyz", field.target_mm, strict=True))
     row = {
         "photo": f"{taken.name}.png",
         "object": case.name,
@@ -71,7 +86,7 @@ def label_row(taken: Taken, field: ForceField) -> dict[str, str]:
         "depth_mm": f"{case.depth_at_mm(frame):.4f}",
         "peak_MPa": f"{float(field.pressure_MPa[frame].max(initial=0.0)):.6f}",
         **{f"force_{axis}_N": f"{value:.6f}" for axis, value in force.items()},
-        **{f"pose_{axis}_mm": f"{value:.4f}" for axis, value in target.items()},
+        **{name: f"{value:.4f}" for name, value in zip(POSE, field.target_mm, strict=True)},
     }
     if taken.sequence:
         row |= {

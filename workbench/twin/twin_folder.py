@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from workbench.calibration.photo_set import COLUMNS, IDLE, TABLE
+from workbench.calibration.seen.photo_set import COLUMNS, IDLE, TABLE
 from workbench.core.base.digest import digest
 from workbench.core.base.errors import DesignError
 from workbench.core.base.mapping import to_table
@@ -28,6 +28,7 @@ from workbench.system.whole_files import write_atomically
 from workbench.twin.cases import Kind
 from workbench.twin.draw import Twin, card
 from workbench.twin.gent import LIMIT
+from workbench.twin.stage import draw_stage
 from workbench.twin.taking import LABELS
 from workbench.twin.twin_plan import Light, TwinPlan
 
@@ -63,19 +64,11 @@ class TwinFolder:
         """Write a photograph as `NAME.png`."""
         write_atomically(self.photos(kind) / name, png_bytes(image))
 
-    def write_table(self, kind: Kind, rows: Sequence[Mapping[str, str]], ball_mm: float) -> None:
-        """Write the table of a kind's photographs.
-
-        Args:
-            kind: Of the photographs.
-            rows: As `labels.csv` has them.
-            ball_mm: Diameter of the ball as its builder knows it.
-        """
-        if kind is Kind.CALIBRATION:
-            balls = [{"photo": row["photo"], "ball_mm": f"{ball_mm:g}"} for row in rows]
-            write_atomically(self.photos(kind) / TABLE, _csv_bytes(COLUMNS, balls))
-            return
-        write_atomically(self.photos(kind) / LABEL_TABLE, _csv_bytes(LABELS, rows))
+    def write_table(self, kind: Kind, rows: Sequence[Mapping[str, str]]) -> None:
+        """Write the table of a kind's photographs: `presses.csv` of balls, else `labels.csv`."""
+        balls = kind is Kind.CALIBRATION
+        name, columns = (TABLE, COLUMNS) if balls else (LABEL_TABLE, LABELS)
+        write_atomically(self.photos(kind) / name, _csv_bytes(columns, rows))
 
 
 def open_folder(path: Path, twin: Twin, design: SensorDesign, plan: TwinPlan) -> TwinFolder:
@@ -113,7 +106,7 @@ def open_folder(path: Path, twin: Twin, design: SensorDesign, plan: TwinPlan) ->
         "key": key,
         "design": design.name,
         "plan": held,
-        "hidden": card(twin, design),
+        "hidden": {**card(twin, design), "stage": to_table(draw_stage(twin.seed))},
         "light": {
             "photons": "the tracer and the coating of the workbench",
             "mitsuba": "Mitsuba 3: flakes of aluminium in a matte binder, mirrors in the wall",

@@ -11,7 +11,7 @@ import viser
 from ui.desk.desk import Desk
 from ui.page.colours import AMBER
 from ui.page.imaging import placeholder
-from workbench.calibration.photo_set import IDLE
+from workbench.calibration.seen.photo_set import IDLE
 from workbench.core.base.errors import Cancelled
 from workbench.live.image_preview import ImagePreview, image_preview_call
 from workbench.live.requests import Finished

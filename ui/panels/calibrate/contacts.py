@@ -16,7 +16,7 @@ from ui.page.imaging import placeholder
 from ui.page.offer import offer
 from ui.page.plain import plain
 from ui.patches.image_click import image_clicks
-from workbench.calibration.photo_set import IDLE, Circle
+from workbench.calibration.seen.photo_set import IDLE, Circle
 from workbench.core.base.errors import Cancelled
 from workbench.live.requests import Finished
 from workbench.photographs.calls import CONTACTS, FindContacts, Found

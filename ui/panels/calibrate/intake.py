@@ -13,7 +13,7 @@ import viser
 
 from ui.desk.desk import Desk
 from ui.page.colours import AMBER
-from workbench.calibration.photo_set import FEWEST, LARGEST_BALL_MM, SMALLEST_BALL_MM
+from workbench.calibration.seen.photo_set import FEWEST, LARGEST_BALL_MM, SMALLEST_BALL_MM
 from workbench.photographs.kept_photos import KeptPhotos, Use
 from workbench.photographs.photo_files import folder_files, unpacked_upload
 

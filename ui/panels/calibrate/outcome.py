@@ -11,7 +11,7 @@ from ui.desk.desk import Desk
 from ui.page.colours import AMBER
 from ui.page.imaging import placeholder, table
 from ui.page.offer import offer
-from workbench.calibration.photo_set import TABLE
+from workbench.calibration.seen.photo_set import TABLE
 from workbench.core.base.errors import DesignError
 from workbench.photographs.calls import OF
 from workbench.photographs.kept_photos import KeptPhotos

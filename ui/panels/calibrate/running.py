@@ -9,7 +9,7 @@ import viser
 
 from ui.desk.desk import Desk
 from ui.page.plain import plain
-from workbench.calibration.photo_set import FEWEST, IDLE
+from workbench.calibration.seen.photo_set import FEWEST, IDLE
 from workbench.core.base.errors import Cancelled, DesignError
 from workbench.core.base.units import human_seconds
 from workbench.live.requests import Finished, Progress

@@ -37,7 +37,7 @@ def run(options: argparse.Namespace, project: Project) -> int:
     """Fit a design's light to photographs of balls pressed into the built sensor."""
     from workbench.calibration.calibrate import calibrate
     from workbench.calibration.outputs import FILES, REPORT, write_calibration
-    from workbench.calibration.photo_set import read_photo_set
+    from workbench.calibration.seen.photo_set import read_photo_set
     from workbench.edit.typed_fields import with_typed
     from workbench.project.named_designs import load_design
     from workbench.system.folder import prepare

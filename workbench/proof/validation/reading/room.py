@@ -83,12 +83,18 @@ def _twin_rows(design: str, figures: dict[str, Any], kept: Record) -> Iterator[R
         f"{plan['photons_millions']} million photons{'' if product_s_own else ' of Mitsuba'}, "
         f"{plan['width_px']} px"
     )
-    ways = (twin_figures.UNCALIBRATED, twin_figures.LEARNED, twin_figures.CALIBRATION)
+    fitted = {
+        twin_figures.UNPLACED: "at places that nobody knows",
+        twin_figures.CALIBRATION: "at places that a stage knows",
+    }
+    ways = (twin_figures.UNCALIBRATED, twin_figures.LEARNED, *fitted)
     for what in (way for way in ways if way in figures):
         scores, name = figures[what], f"reading_twin_{what}"
         asked = what == twin_figures.CALIBRATION and product_s_own
-        by = f"{made}, {plan['calibration']} photographs of a ball, refined {plan['refine']}"
-        case = by if what == twin_figures.CALIBRATION else made
+        case = made
+        if what in fitted:
+            case += f", {plan['calibration']} photographs of a ball {fitted[what]}, "
+            case += f"refined {plan['refine']}"
         yield _depth_row(name, case, scores, (TWIN_LIMIT_MM if asked else None, kept))
         limit = NORMAL_LIMIT_DEG if asked else None
         yield _normal_row(f"{name}_normals", case, scores, (limit, kept))

@@ -1,8 +1,9 @@
 """Readings of a twin, before and after its calibration: what a designer has who casts the sensor.
 
-The twin is made, calibrated by its ball photographs, and its presses are read three times: by the
-design as it was drawn, by the reader that was learned for that, and by the calibrated design. Then
-the same of the twin in another reality: a gel by Gent's law, photographed by Mitsuba.
+The twin is made, calibrated by its ball photographs, and its presses are read four times: by the
+design as it was drawn, by the reader that was learned for that, and by the calibrated design, with
+the places that the stage knows and without them. Then the same of the twin in another reality: a
+gel by Gent's law, photographed by Mitsuba.
 
     python -m workbench.proof.validation.reading.twin_figures FOLDER --jobs 8
 
@@ -26,7 +27,7 @@ import numpy as np
 from workbench.calibration.calibrate import calibrate
 from workbench.calibration.outputs import DESIGN as CALIBRATED
 from workbench.calibration.outputs import write_calibration
-from workbench.calibration.photo_set import read_photo_set
+from workbench.calibration.seen.photo_set import read_photo_set
 from workbench.calibration.stored import stored
 from workbench.core.base.errors import DesignError
 from workbench.core.base.monitor import Monitor
@@ -58,6 +59,8 @@ OTHER = "other"
 """Behind the name of a design's twin in the other reality."""
 OTHER_PRESSES = 50
 UNCALIBRATED, CALIBRATION, LEARNED = "uncalibrated", "calibrated", "learned"
+UNPLACED = "calibrated_unplaced"
+"""Calibrated by one who has no stage, or does not know where it was."""
 MADE_BY = "made_by.json"
 """In the folder of a calibration: the code that made it, and how."""
 
@@ -126,25 +129,29 @@ class TwinRun:
             },
             UNCALIBRATED: self.scored(drawn, UNCALIBRATED),
             **self.learned(drawn),
-            CALIBRATION: self.scored(self.calibrated(drawn), CALIBRATION),
+            UNPLACED: self.scored(self.calibrated(drawn, UNPLACED), UNPLACED),
+            CALIBRATION: self.scored(self.calibrated(drawn, CALIBRATION), CALIBRATION),
         }
         text = json.dumps(found, indent=1, allow_nan=False)
         write_atomically(self.folder / "scores.json", f"{text}\n".encode())
         return found
 
-    def calibrated(self, design: SensorDesign) -> SensorDesign:
+    def calibrated(self, design: SensorDesign, what: str) -> SensorDesign:
         """The design fitted to the twin's ball photographs, from the folder or fitted now."""
-        out = self.folder / CALIBRATION
+        out = self.folder / what
         made_by, now = out / MADE_BY, {"code": RECORD.code(), "refine": self.refining}
         if not made_by.exists() or json.loads(made_by.read_bytes()) != now:
             photos = read_photo_set(self.folder / FOLDERS[Kind.CALIBRATION])
+            if what == UNPLACED:
+                bare = tuple(replace(each, place_mm=None) for each in photos.photos)
+                photos = replace(photos, photos=bare)
             fitted = calibrate(
                 design,
                 photos,
                 self.project.store,
                 lights="auto",
                 refining=self.refining,
-                monitor=self._told("calibrate"),
+                monitor=self._told(what),
             )
             write_calibration(out, fitted, photos.idle)
             write_atomically(made_by, json.dumps(now).encode())

@@ -7,11 +7,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim.optics.raster.skin_view import SkinView, open_skin_view
-from workbench.calibration.photo_set import Circle
+from workbench.calibration.seen.photo_set import BallPhoto, Circle
 from workbench.core.base.errors import DesignError
 from workbench.core.design.optics import Optics
 from workbench.core.result.results import MembraneMesh
 
+MOST_APART_MM = 4.0
+"""Along the skin, from where the stage was to where the camera of the design sees the contact: in a
+finger's twin, whose camera is .5 mm and a degree off, it was 1.6 at most. More is another contact,
+or another frame."""
 FLAT = 0.9995
 """Least cosine between normals of skin that counts as flat [1]: 1.8 degrees."""
 
@@ -71,6 +75,30 @@ class SeenPlaces:
         mm_per_px = float(np.median(sizes)) if sizes else 0.0
         return ContactPlace(point_mm=point, normal=normal, radius_mm=mm_per_px * circle.radius_px)
 
+    def contact(self, circle: Circle, photo: BallPhoto) -> ContactPlace:
+        """Where a photograph's contact is: by its stage where that is known, else by its circle.
+
+        Raises:
+            DesignError: With the photograph's name, if the circle's middle sees no skin, or that of
+                the stage is far from it.
+        """
+        seen = self.place(circle, photo.name)
+        if photo.place_mm is None:
+            return seen
+        away = photo.place_mm - seen.point_mm
+        apart_mm = float(np.linalg.norm(away - (away @ seen.normal) * seen.normal))
+        if apart_mm > MOST_APART_MM:
+            pose = ", ".join(f"{value:.1f}" for value in photo.place_mm)
+            there = ", ".join(f"{value:.1f}" for value in seen.point_mm)
+            raise DesignError(
+                f"{photo.name} was pressed at ({pose}) mm by its pose, but its contact is seen at "
+                f"({there}), {apart_mm:.1f} mm along the skin, more than {MOST_APART_MM:g}",
+                hint="poses are where the ball touches the skin at rest, in mm and in the frame of "
+                "the design; correct them or the circle, or leave them empty",
+                at="--photos",
+            )
+        return self._at_point(photo.place_mm, seen)
+
     def flat_to_mm(self, place: ContactPlace) -> float:
         """How far around a place seen and inner skin are flat and parallel [mm]."""
         nearest = np.inf
@@ -89,6 +117,18 @@ class SeenPlaces:
         start = (place.point_mm - 1e-3 * place.normal)[None]
         caster = RayCaster(inner.points_mm, inner.faces)
         return float(caster.hits(start, -place.normal[None])[0][0])
+
+    def _at_point(self, point_mm: np.ndarray, seen: ContactPlace) -> ContactPlace:
+        """The skin that the camera sees nearest to a point, moved along itself to be below it."""
+        view = self._view
+        numbers = np.flatnonzero(self._seen)
+        first_mm = view.layer_mm[view.layer_start[numbers]][:, None]
+        skin = view.origin_mm[numbers] + first_mm * view.direction[numbers]
+        nearest = numbers[np.argmin(np.linalg.norm(skin - point_mm, axis=1))]
+        point, normal = self._at(int(nearest))
+        away = point_mm - point
+        along = away - (away @ normal) * normal
+        return ContactPlace(point_mm=point + along, normal=normal, radius_mm=seen.radius_mm)
 
     def _between(self, circle: Circle, nearest: int) -> tuple[np.ndarray, np.ndarray]:
         """Point and normal at a circle's middle between four pixels, or of the nearest one."""

@@ -1,7 +1,8 @@
 """What a calibration is given: a photograph at rest, photographs of balls, and what is known.
 
 A folder holds `idle.png`, the photographs and `presses.csv` with the columns `COLUMNS`: a name, the
-ball's diameter, and, each of them optional, the circle of the contact, its depth and its force.
+ball's diameter, and, each of them optional, the circle of the contact, its depth and its force, and
+where on the skin at rest a stage pressed the ball, in the sensor frame.
 """
 
 from __future__ import annotations
@@ -21,11 +22,17 @@ from workbench.core.base.mapping import suggest
 from workbench.core.design.photo import photo
 
 IDLE, TABLE = "idle.png", "presses.csv"
-COLUMNS = ("photo", "ball_mm", "column_px", "row_px", "radius_px", "depth_mm", "force_N")
+CIRCLE, POSE = ("column_px", "row_px", "radius_px"), ("pose_x_mm", "pose_y_mm", "pose_z_mm")
+COLUMNS = ("photo", "ball_mm", *CIRCLE, "depth_mm", "force_N", *POSE)
 FEWEST = 5
 """Photographs to fit to: three colours of light from several sides need several slopes each."""
 SMALLEST_BALL_MM, LARGEST_BALL_MM = 0.5, 100.0
-LIMITS = {"radius_px": (1.0, 4096.0), "depth_mm": (0.01, 50.0), "force_N": (1e-4, 1e3)}
+LIMITS = {
+    "radius_px": (1.0, 4096.0),
+    "depth_mm": (0.01, 50.0),
+    "force_N": (1e-4, 1e3),
+    **dict.fromkeys(POSE, (-500.0, 500.0)),
+}
 """Of what may be known of a press; a circle's middle must lie in the photograph."""
 
 
@@ -48,6 +55,8 @@ class BallPhoto:
     ball_mm: float
     """Diameter."""
     circle: Circle | None
+    place_mm: np.ndarray | None
+    """Where on the skin at rest a stage pressed the ball, shape (3,); None: nobody knows."""
     depth_mm: float | None
     force_N: float | None
     held_out: bool
@@ -174,6 +183,7 @@ def _ball_photo(folder: Path, row: dict[str, str], idle: np.ndarray, held_out: b
         image=image,
         ball_mm=ball_mm,
         circle=_circle(row, idle.shape[1], idle.shape[0]),
+        place_mm=_place(row),
         depth_mm=_number(row, "depth_mm", *LIMITS["depth_mm"]),
         force_N=_number(row, "force_N", *LIMITS["force_N"]),
         held_out=held_out,
@@ -182,20 +192,31 @@ def _ball_photo(folder: Path, row: dict[str, str], idle: np.ndarray, held_out: b
 
 def _circle(row: dict[str, str], width: int, height: int) -> Circle | None:
     """The contact's circle; None where nothing is written of it."""
-    names = COLUMNS[2:5]
-    if not any(row[name] for name in names):
-        return None
     limits = ((0.0, width - 1.0), (0.0, height - 1.0), LIMITS["radius_px"])
-    values = [_number(row, name, *limit) for name, limit in zip(names, limits, strict=True)]
-    if None in values:
-        empty = names[values.index(None)]
+    found = _all_or_none(row, dict(zip(CIRCLE, limits, strict=True)), "a circle")
+    return None if found is None else Circle(**dict(zip(CIRCLE, found, strict=True)))
+
+
+def _place(row: dict[str, str]) -> np.ndarray | None:
+    """Where the ball touched, shape (3,); None where nothing is written of it."""
+    found = _all_or_none(row, {name: LIMITS[name] for name in POSE}, "a pose")
+    return None if found is None else np.array(found)
+
+
+def _all_or_none(
+    row: dict[str, str], limits: dict[str, tuple[float, float]], what: str
+) -> list[float] | None:
+    """Values that only say something together; None where all of them are empty."""
+    values = {name: _number(row, name, *limit) for name, limit in limits.items()}
+    given = [value for value in values.values() if value is not None]
+    if given and len(given) < len(values):
+        empty = next(name for name, value in values.items() if value is None)
         raise DesignError(
-            f"{row['photo']} has a circle without {empty}",
-            hint="give column, row and radius, or leave all three empty",
+            f"{row['photo']} has {what} without {empty}",
+            hint=f"give {', '.join(limits)}, or leave all of them empty",
             at="--photos",
         )
-    column_px, row_px, radius_px = (float(value or 0.0) for value in values)
-    return Circle(column_px=column_px, row_px=row_px, radius_px=radius_px)
+    return given or None
 
 
 def _number(row: dict[str, str], name: str, low: float, high: float) -> float | None:

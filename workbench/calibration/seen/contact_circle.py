@@ -24,7 +24,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from workbench.calibration.photo_set import Circle
+from workbench.calibration.seen.photo_set import Circle
 from workbench.core.base.errors import DesignError
 
 SPAN = (0.03, 0.2)

@@ -13,8 +13,8 @@ from typing import TypeVar
 
 import numpy as np
 
-from workbench.calibration.contact_circle import MOST_SHIFT, find_circle, relative_change
-from workbench.calibration.photo_set import FEWEST, BallPhoto, Circle, PhotoSet
+from workbench.calibration.seen.contact_circle import MOST_SHIFT, find_circle, relative_change
+from workbench.calibration.seen.photo_set import FEWEST, BallPhoto, Circle, PhotoSet
 from workbench.core.base.errors import DesignError
 
 Place = TypeVar("Place")
@@ -115,7 +115,7 @@ class LeftOut:
 
 
 def seen_photos(
-    photos: PhotoSet, located: Callable[[Circle, str], Place]
+    photos: PhotoSet, located: Callable[[Circle, BallPhoto], Place]
 ) -> tuple[list[tuple[SeenPhoto, Place]], list[LeftOut]]:
     """The photographs that show a contact, with its place on the skin, and those that do not.
 
@@ -123,7 +123,7 @@ def seen_photos(
 
     Args:
         photos: The set.
-        located: Where on the skin a circle of the photograph of that name is.
+        located: Where on the skin the contact of a photograph is, seen as a circle.
 
     Raises:
         DesignError: With the photograph's name: if a contact that was given is not on the skin, or
@@ -134,7 +134,7 @@ def seen_photos(
     for photo in photos.photos:
         try:
             found = seen_photo(photo, photos.idle)
-            seen.append((found, located(found.circle, photo.name)))
+            seen.append((found, located(found.circle, photo)))
         except DesignError as error:
             if photo.circle is not None:
                 raise
