@@ -139,6 +139,7 @@ def test_a_calibration_folder_is_one_that_calibrate_reads(tmp_path: Path) -> Non
 def test_a_stage_is_off_in_all_places_alike() -> None:
     """By its zero and a turn, and by .03 mm in each; another twin has another."""
     stage, places = draw_stage(3), np.random.default_rng(0).uniform(-10.0, 30.0, (400, 3))
+    places.flags.writeable = False
     told = np.array([stage.told_mm(place, k) for k, place in enumerate(places)])
     axis, angle = np.radians(stage.turn_deg), np.linalg.norm(np.radians(stage.turn_deg))
     cross = np.cross(np.eye(3), axis / angle)

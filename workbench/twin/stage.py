@@ -33,7 +33,9 @@ class Stage:
         """Where it says press `number` was, of a place (3,) in the sensor frame, shape (3,)."""
         from scipy.spatial.transform import Rotation
 
-        turned = Rotation.from_rotvec(self.turn_deg, degrees=True).inv().apply(place_mm)
+        # What is read from the store cannot be written to, which SciPy asks for.
+        place = np.array(place_mm, dtype=np.float64)
+        turned = Rotation.from_rotvec(self.turn_deg, degrees=True).inv().apply(place)
         off_mm = stream(self.seed, Draws.STAGE, 1 + number).normal(0.0, EACH_MM, 3)
         return turned + np.array(self.zero_mm) + off_mm
 

@@ -207,8 +207,11 @@ def said(each: KeptPhoto) -> str:
     how = "set by hand" if each.by_hand else "found"
     gain = ", ".join(f"{round(100.0 * (value - 1.0)):+d} %" for value in each.drift.gain)
     offset = ", ".join(f"{round(value):+d}" for value in each.drift.offset)
+    pose = ""
+    if each.place_mm is not None:
+        pose = f" Pressed at {', '.join(f'{value:g}' for value in each.place_mm)} mm."
     return (
-        f"Contact {how}: {each.circle.radius_px:.1f} px, ball {each.ball_mm:g} mm.<br>"
+        f"Contact {how}: {each.circle.radius_px:.1f} px, ball {each.ball_mm:g} mm.{pose}<br>"
         f"Exposure since the idle photo, red, green, blue: {gain}; {offset} grey levels. "
         "It is taken back before the fit."
     )
