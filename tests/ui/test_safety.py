@@ -82,9 +82,13 @@ def server(warm: WarmStart, tmp_path_factory: pytest.TempPathFactory) -> Iterato
         yield running
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def editor(server: Server) -> Iterator[Tab]:
-    """The tab that edits."""
+    """The tab that edits.
+
+    One for all tests: a tab that comes before the server has noticed that the former left follows
+    for some hundredths of a second, and what it sends then is refused.
+    """
     with Tab(server.url) as tab:
         tab.uuid("Load design (TOML)")
         yield tab
