@@ -76,6 +76,11 @@ def test_a_table_says_what_is_known(tmp_path: Path) -> None:
     assert KeptPhotos(tmp_path).photos == found.photos
     with pytest.raises(DesignError, match=r"p1\.png: depth_mm is deep, not a number"):
         found.take({"presses.csv": b"photo,depth_mm\np1.png,deep\n"}, 6.0)
+    with pytest.raises(DesignError, match=r"p1\.png has a pose without pose_y_mm"):
+        found.take({"presses.csv": b"photo,pose_x_mm,pose_y_mm,pose_z_mm\np1.png,1,,2\n"}, 6.0)
+    with pytest.raises(DesignError, match=r"p1\.png has a circle without radius_px"):
+        found.take({"presses.csv": b"photo,column_px,row_px\np1.png,1,2\n"}, 6.0)
+    assert KeptPhotos(tmp_path).photos == found.photos
 
 
 def test_a_circle_that_was_found_is_not_one_that_was_drawn(tmp_path: Path) -> None:

@@ -227,22 +227,38 @@ def _unfound(each: KeptPhoto) -> KeptPhoto:
 
 
 def _told(each: KeptPhoto, line: Mapping[str, str]) -> KeptPhoto:
-    """A photograph with what the table says of it."""
+    """A photograph with what the table says of it.
+
+    Raises:
+        DesignError: If a value is no number, or says nothing without one that is empty.
+    """
     values = {name: number(each.photo, name, line.get(name)) for name in COLUMNS[1:]}
-    drawn, (x, y, z) = [values[name] for name in CIRCLE], (values[name] for name in POSE)
-    circle, place = None, None
-    if None not in drawn:
-        circle = Circle(**{name: float(values[name] or 0.0) for name in CIRCLE})
-    if x is not None and y is not None and z is not None:
-        place = x, y, z
+    drawn = _together(each.photo, "a circle", {name: values[name] for name in CIRCLE})
+    place = _together(each.photo, "a pose", {name: values[name] for name in POSE})
     return dataclasses.replace(
         each,
         ball_mm=values["ball_mm"] or each.ball_mm,
-        circle=circle or each.circle,
-        by_hand=circle is not None or each.by_hand,
+        circle=each.circle if drawn is None else Circle(**dict(zip(CIRCLE, drawn, strict=True))),
+        by_hand=drawn is not None or each.by_hand,
         place_mm=place,
         **{name: values[name] for name in KNOWN},
     )
+
+
+def _together(
+    photo: str, what: str, values: Mapping[str, float | None]
+) -> tuple[float, float, float] | None:
+    """Three values that only say something together; None where all of them are empty."""
+    if all(value is None for value in values.values()):
+        return None
+    empty = next((name for name, value in values.items() if value is None), "")
+    if empty:
+        raise DesignError(
+            f"{photo} has {what} without {empty}",
+            hint=f"give {', '.join(values)}, or leave all of them empty",
+        )
+    first, second, third = (float(value or 0.0) for value in values.values())
+    return first, second, third
 
 
 def _line(each: KeptPhoto) -> list[Any]:
