@@ -8,12 +8,15 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import torch
 
-from sim.reading.network.spec import Scales
+from sim.reading.network.spec import INPUTS, Scales
+from sim.reading.network.unet import network_of
 from tests.made_readers import COLUMNS, NEWTON_PER_MM, ROWS, rest_view, spec, views
 from workbench.core.base.errors import Cancelled, StoreError
 from workbench.learning.readers import learn as learning
-from workbench.learning.readers.learn import Lesson, learn
+from workbench.learning.readers.learn import learn
+from workbench.learning.readers.lesson import RATE, Lesson
 from workbench.learning.readers.making import Amount, _shares, blocks_of
 from workbench.learning.readers.scoring import honest, judged, scores
 from workbench.learning.readers.showing import BLOCK
@@ -125,12 +128,38 @@ def test_a_stopped_training_goes_on_and_another_is_refused(tmp_path: Path) -> No
         learn(lesson(key="other"), tmp_path, nobody)
 
 
+def test_a_training_that_begins_from_a_reader_is_ahead(tmp_path: Path) -> None:
+    """With nothing learned yet it says what the reader says; what it learned is whole in its file.
+
+    From nothing the same two epochs end worse.
+    """
+    taught = lesson(epochs=6)
+    network, _ = learn(taught, tmp_path / "before", nobody)
+    start = taught.usable(network)
+    asked = dataclasses.replace(lesson(epochs=2), start=start)
+    images = torch.rand(2, INPUTS, 32, 48, generator=torch.Generator().manual_seed(1))
+    with torch.inference_mode():
+        for told, same in zip(asked.network()(images), network(images), strict=True):
+            assert torch.allclose(told, same, atol=1e-4)
+    kept, found = views(16, seed=5), list[float]()
+    for each in (lesson(epochs=2), asked):
+        learned, _ = learn(each, tmp_path / each.key / str(each.start is None), nobody)
+        found.append(
+            scores(judged(learned, kept, SCALES, "cpu", most=16))["depth_mae_mm"],
+        )
+        if each is asked:
+            state = {name: torch.from_numpy(array) for name, array in asked.usable(learned).items()}
+            again = network_of(asked.spec, state)
+            assert torch.allclose(again(images)[0], learned(images)[0], atol=1e-5)
+    assert found[1] < 0.9 * found[0]
+
+
 def test_the_rate_ends_low() -> None:
     """It rises, then falls to its least."""
-    rates = [learning._rate(done) for done in np.linspace(0.0, 1.0, 101)]
+    rates = [learning._rate(RATE, done) for done in np.linspace(0.0, 1.0, 101)]
     assert np.argmax(rates) < 10
     assert rates[-1] == pytest.approx(learning.LAST_RATE)
-    assert max(rates) == pytest.approx(learning.RATE, rel=0.01)
+    assert max(rates) == pytest.approx(RATE, rel=0.01)
 
 
 def test_honest_scales_hold_two_thirds_of_the_errors(tmp_path: Path) -> None:

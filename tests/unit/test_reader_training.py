@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from sim.reading.network.reader_file import load_reader
 from sim.reading.network.spec import SIZES
 from workbench.core.base.errors import StoreError
 from workbench.core.base.monitor import silent
@@ -16,10 +17,12 @@ from workbench.core.design.design import SensorDesign
 from workbench.core.result.results import Skin
 from workbench.learning.dataset.cases import cases_of
 from workbench.learning.readers import making, presses, train_reader
+from workbench.learning.readers.beginning import training_folder
 from workbench.learning.readers.built import plain_design
 from workbench.learning.readers.presses import press_recipe
 from workbench.learning.readers.shipped_readers import shortcomings
 from workbench.learning.readers.train_reader import ReaderPlan
+from workbench.learning.training.checkpoint import CHECKPOINT
 from workbench.project.named_designs import load_design
 from workbench.project.project import Project
 from workbench.reading.find_reader import find_reader, reader_path
@@ -138,6 +141,17 @@ def test_a_reader_is_made_from_nothing(tmp_path: Path, monkeypatch: pytest.Monke
     assert out.with_name("pad-card.json").exists()
     again = train_reader.train_reader(design, out, project, plan, tell=rows.append, monitor=unheard)
     assert again.scores == done.scores
+    # The same views are learned from anew, by one who begins from that reader.
+    (training_folder(out) / CHECKPOINT).unlink()
+    begun = dataclasses.replace(plan, start=reader)
+    taught = train_reader.train_reader(
+        design, out, project, begun, tell=rows.append, monitor=unheard
+    )
+    assert taught.before is not None
+    assert taught.before["depth_mae_mm"] == pytest.approx(done.scores["depth_mae_mm"], rel=0.01)
+    card = load_reader(taught.path).card
+    assert card["scores"]["before"]["depth_mae_mm"] == taught.before["depth_mae_mm"]
+    assert card["training"]["began_from"] == reader.card
 
 
 def test_a_training_that_goes_on_tells_its_share_of_this_run() -> None:

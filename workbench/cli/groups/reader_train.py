@@ -8,12 +8,13 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from sim.reading.network.reader_file import SUFFIX
+from sim.reading.network.reader_file import SUFFIX, ReaderFile
 from sim.reading.network.spec import SIZES
 from workbench.cli.command import Command
 from workbench.cli.options import DESIGN
 from workbench.cli.press_arguments import add_set_option
 from workbench.core.base.check import within
+from workbench.core.design.design import SensorDesign
 from workbench.project.project import Project
 from workbench.system.processes import cores
 from workbench.system.terminal import Progress, complain, say
@@ -26,6 +27,8 @@ COUNTS = {
     "batch": "presses side by side; 0: 1, on each GPU 128",
 }
 """Options that are numbers, 0 where they are left out."""
+NOTHING = "nothing"
+"""What `--from` begins from where no reader is wanted."""
 MOST = 1_000_000
 MOST_LOOKS = 97
 """Two more judge."""
@@ -36,7 +39,12 @@ def options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("design", metavar="NAME|FILE", help=DESIGN)
     text = f"file of the reader, NAME{SUFFIX} (default: in the project, where `read` finds it)"
     sub.add_argument("--out", type=Path, metavar="FILE", help=text)
-    text = "size of the network (default: small, on a GPU full)"
+    text = (
+        "reader to begin from, or `nothing` (default: for a calibrated design the reader of that "
+        "design, else nothing)"
+    )
+    sub.add_argument("--from", dest="start", metavar="FILE", help=text)
+    text = "size of the network (default: that of --from, else small, on a GPU full)"
     sub.add_argument("--size", choices=list(SIZES), default="", help=text)
     text = "time for presses, views and learning together (default 50)"
     sub.add_argument("--minutes", type=float, default=50.0, metavar="M", help=text)
@@ -52,9 +60,9 @@ def options(sub: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace, project: Project) -> int:
     """Train the learned reader of a design, or go on with a training that was stopped."""
     from workbench.edit.typed_fields import with_typed
+    from workbench.learning.readers.beginning import usual_path
     from workbench.learning.readers.train_reader import ReaderPlan, train_reader
     from workbench.project.named_designs import load_design
-    from workbench.reading.find_reader import reader_path
 
     within(options.minutes, 0.05, 1e5, what="time", unit="minutes", at="--minutes")
     within(options.jobs, 1, 1024, what="processes", unit="", at="--jobs")
@@ -66,23 +74,45 @@ def run(options: argparse.Namespace, project: Project) -> int:
     printer = Progress(as_json=options.json)
     done = train_reader(
         design,
-        options.out or reader_path(design, project),
+        options.out or usual_path(design, project),
         project,
         ReaderPlan(
             size=options.size,
             minutes=options.minutes,
             jobs=options.jobs,
             seed=options.seed,
+            start=_start(options, design, project),
             **{name: getattr(options, name) for name in COUNTS},
         ),
         tell=lambda row: _say_row(row, as_json=options.json),
         monitor=printer,
     )
     if options.json:
-        say(json.dumps({"reader": str(done.path), "scores": done.scores}))
+        told = {"reader": str(done.path), "scores": done.scores}
+        say(json.dumps(told if done.before is None else {**told, "before": done.before}))
     else:
+        if done.before is not None:
+            say(f"the reader it began from: {score_words(done.before)}")
         say(f"reader {done.path}: {score_words(done.scores)}")
     return 0
+
+
+def _start(
+    options: argparse.Namespace, design: SensorDesign, project: Project
+) -> ReaderFile | None:
+    """The reader that the training begins from."""
+    from workbench.learning.readers.beginning import named_start, usual_start
+
+    if options.start == NOTHING:
+        return None
+    if options.start is not None:
+        return named_start(Path(options.start), design, options.size)
+    start = usual_start(design, project, options.size)
+    if start is not None and not options.json:
+        complain(
+            f"begins from the reader of {start.design} as it was drawn: --from nothing does not"
+        )
+    return start
 
 
 def score_words(scores: dict[str, Any]) -> str:

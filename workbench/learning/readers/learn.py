@@ -17,9 +17,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sim.reading.network.spec import ReaderSpec, Scales
+from workbench.learning.readers.lesson import Lesson
 from workbench.learning.readers.scoring import judged, scores
-from workbench.learning.readers.view_set import ViewSet
 from workbench.learning.training.checkpoint import read_checkpoint, write_checkpoint
 
 if TYPE_CHECKING:
@@ -27,7 +26,7 @@ if TYPE_CHECKING:
 
     from sim.reading.network.unet import UNet
 
-RATE, LAST_RATE, WARMING = 2e-3, 1e-5, 0.03
+LAST_RATE, WARMING = 1e-5, 0.03
 WEIGHT_DECAY, LARGEST_STEP = 1e-4, 1.0
 AVERAGE = 0.998
 """Share of the old in the running average of weights, after the first steps."""
@@ -45,23 +44,6 @@ AHEAD = 6
 """Batches that threads make ready."""
 
 Row = dict[str, Any]
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Lesson:
-    """What is learned, on what, how long."""
-
-    learned: ViewSet
-    validation: ViewSet
-    spec: ReaderSpec
-    scales: Scales
-    seconds: float
-    epochs: int
-    """At most; 0: as many as there is time for."""
-    seed: int
-    device: str
-    key: str
-    """Of data and settings: a checkpoint of another one is refused."""
 
 
 @dataclass
@@ -121,12 +103,12 @@ def learn(
 def _begun(lesson: Lesson, folder: Path) -> _Course:
     import torch
 
-    from sim.reading.network.unet import UNet, channels_last
+    from sim.reading.network.unet import channels_last
 
     torch.manual_seed(lesson.seed)
-    network = channels_last(UNet(lesson.spec, normed=True).to(lesson.device))
+    network = channels_last(lesson.network().to(lesson.device))
     average = copy.deepcopy(network)
-    optimiser = torch.optim.AdamW(network.parameters(), lr=RATE, weight_decay=WEIGHT_DECAY)
+    optimiser = torch.optim.AdamW(network.parameters(), lr=lesson.rate, weight_decay=WEIGHT_DECAY)
     course = _Course(network=network, average=average, optimiser=optimiser)
     kept = read_checkpoint(folder, lesson.key)
     if kept is not None:
@@ -158,11 +140,11 @@ def _done(lesson: Lesson, course: _Course) -> float:
     return max(by_time, by_views)
 
 
-def _rate(done: float) -> float:
+def _rate(largest: float, done: float) -> float:
     if done < WARMING:
-        return RATE * (0.05 + 0.95 * done / WARMING)
+        return largest * (0.05 + 0.95 * done / WARMING)
     along = (done - WARMING) / (1.0 - WARMING)
-    return LAST_RATE + 0.5 * (RATE - LAST_RATE) * (1.0 + math.cos(math.pi * min(along, 1.0)))
+    return LAST_RATE + 0.5 * (largest - LAST_RATE) * (1.0 + math.cos(math.pi * min(along, 1.0)))
 
 
 Batch = tuple[Sequence[int], Any]
@@ -226,7 +208,7 @@ def _step(
     total.backward()
     torch.nn.utils.clip_grad_norm_(course.network.parameters(), LARGEST_STEP)
     for group in course.optimiser.param_groups:
-        group["lr"] = _rate(done)
+        group["lr"] = _rate(lesson.rate, done)
     course.optimiser.step()
     steps = course.views / len(batch[0])
     _average(course, min(AVERAGE, (1.0 + steps) / (10.0 + steps)))
@@ -256,7 +238,7 @@ def _row(lesson: Lesson, course: _Course, losses: list[float]) -> None:
             "minutes": round(course.seconds / 60.0, 3),
             "views": course.views,
             "epochs": round(course.views / len(lesson.learned), 3),
-            "rate": _rate(_done(lesson, course)),
+            "rate": _rate(lesson.rate, _done(lesson, course)),
             "loss": float(np.mean(losses)),
             "validation_mae_mm": found["depth_mae_mm"],
             "zero_mae_mm": found["zero_mae_mm"],

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from sim.reading.network.reader_file import SUFFIX, ReaderFile, reader_bytes
+from sim.reading.network.reader_file import ReaderFile, reader_bytes
 from sim.reading.network.spec import Scales, spec_for
 from workbench.calibration.stored import stored
 from workbench.core.base.digest import digest
@@ -25,7 +25,9 @@ from workbench.core.design.design import SensorDesign
 from workbench.core.press.press_case import PressCase
 from workbench.learning.dataset.lock import held
 from workbench.learning.readers.at_rest import rest_view
-from workbench.learning.readers.learn import Lesson, Row, learn
+from workbench.learning.readers.beginning import training_folder
+from workbench.learning.readers.learn import Row, learn
+from workbench.learning.readers.lesson import Lesson
 from workbench.learning.readers.making import Amount, Task, make_views
 from workbench.learning.readers.reader_card import card_of, write_beside
 from workbench.learning.readers.scoring import honest, judged, scores
@@ -68,6 +70,8 @@ class ReaderPlan:
     batch: int = 0
     """Presses side by side; 0: what suits the device."""
     seed: int = 0
+    start: ReaderFile | None = None
+    """A reader to begin from; None: from nothing."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -77,6 +81,8 @@ class TrainedReader:
     path: Path
     scores: dict[str, Any]
     """On the built sensor and the places that test."""
+    before: dict[str, Any] | None
+    """The same of the reader that the training began from."""
 
 
 def train_reader(
@@ -103,13 +109,12 @@ def train_reader(
         StoreError: If a file cannot be written, or the folder holds another training.
         WorkbenchError: From the stages, the solver and the renderer.
     """
-    from sim.reading.network.unet import folded_state
-
     begun = time.monotonic()
     making, learning = (stage_monitor(monitor, stage) for stage in ("data", "learn"))
     device = torch_device()
     folder = training_folder(out)
-    spec = spec_for(plan.size or ("full" if device == "cuda" else "small"), *_camera_px(design))
+    usual = spec_for(plan.size or ("full" if device == "cuda" else "small"), *_camera_px(design))
+    spec, start = (usual, None) if plan.start is None else (plan.start.spec, plan.start.arrays)
     with held(folder, doing="training in"):
         mesh = stored(design, PressCase(), "mesh", project.store, part(making, 0.0, 0.01))
         if mesh.seen is not mesh.outer:
@@ -131,8 +136,10 @@ def train_reader(
             epochs=plan.epochs,
             seed=plan.seed,
             device=device,
-            key=digest((reader_digest(design), spec, plan.seed, len(learned))),
+            key=digest((reader_digest(design), spec, plan.seed, len(learned), start)),
+            start=start,
         )
+        before = _before(plan.start, testing, device)
         network, rows = learn(lesson, folder, _teller(tell, part(learning, 0.0, 0.97)))
         learning(0.97, "how far its deviations may be trusted")
         checked = scores(judged(network, validation, scales, device, most=JUDGED_VIEWS))
@@ -141,9 +148,12 @@ def train_reader(
         learning(0.99, "its file")
         card = card_of(learned, folder, rows, device=device, seed=plan.seed)
         card["scores"] = {"validation": checked, "test": tested}
+        if plan.start is not None and before is not None:
+            card["scores"]["before"] = before
+            card["training"]["began_from"] = dict(plan.start.card)
         reader = ReaderFile(
             spec=spec,
-            arrays={name: value.numpy() for name, value in folded_state(network).items()},
+            arrays=lesson.usable(network),
             scales=scales,
             rest=rest_view(mesh, design.optics, spec),
             design=design.name,
@@ -153,12 +163,20 @@ def train_reader(
         )
         write_atomically(out, reader_bytes(reader))
         write_beside(out, card, rows)
-    return TrainedReader(path=out, scores=tested)
+    return TrainedReader(path=out, scores=tested, before=before)
 
 
-def training_folder(out: Path) -> Path:
-    """Where a training keeps what it makes on the way."""
-    return out.with_name(f"{out.name.removesuffix(SUFFIX)}-training")
+def _before(start: ReaderFile | None, testing: ViewSet, device: str) -> dict[str, Any] | None:
+    """Scores of the reader that a training begins from."""
+    if start is None:
+        return None
+    import torch
+
+    from sim.reading.network.unet import network_of
+
+    state = {name: torch.from_numpy(array.copy()) for name, array in start.arrays.items()}
+    network = network_of(start.spec, state).to(device)
+    return scores(judged(network, testing, start.scales, device, most=JUDGED_VIEWS))
 
 
 def _camera_px(design: SensorDesign) -> tuple[int, int]:
