@@ -12,7 +12,8 @@ from workbench.tasks.networks.learn import Part, told_by
 from workbench.tasks.networks.lite import features, installed
 from workbench.tasks.networks.motion import motions
 from workbench.tasks.seen_images import change, whole
-from workbench.tasks.task import Net
+from workbench.tasks.task import Net, task_of
+from workbench.tasks.trained import made
 
 FEATURES = 40
 
@@ -34,13 +35,14 @@ def test_values_that_are_sums_of_features_are_found() -> None:
     """300 examples of 40 features: a tenth or so is left of what the mean leaves."""
     rng = np.random.default_rng(0)
     train, validation, test = (part(rng, count) for count in (300, 60, 60))
-    head = Head(2, train)
+    head = Head(2, train, told_places=True)
     learned = fit_values(head, (train, validation))
     left = np.abs(told_by(head, test.inputs, test.at) - test.truth).mean()
     assert left < 0.15 * np.abs(test.truth).mean()
-    assert learned.curve[learned.epoch - 1]["validation"] == min(
-        each["validation"] for each in learned.curve
-    )
+    # The largest penalty of those that are as good: a standard error is some tenth of the least.
+    errors = [each["validation"] for each in learned.curve]
+    assert errors[learned.epoch - 1] < 1.2 * min(errors)
+    assert all(error > errors[learned.epoch - 1] for error in errors[learned.epoch :])
 
 
 @pytest.mark.parametrize("count", [30, 90])
@@ -59,7 +61,7 @@ def test_where_nothing_can_be_told_the_largest_penalty_is_best() -> None:
     rng = np.random.default_rng(1)
     noise = [rng.normal(size=(count, 1)).astype(np.float32) for count in (60, 200)]
     train, validation = part(rng, 60, noise[0]), part(rng, 200, noise[1])
-    assert fit_values(Head(1, train), (train, validation)).epoch == len(PENALTIES)
+    assert fit_values(Head(1, train, told_places=True), (train, validation)).epoch == len(PENALTIES)
 
 
 def test_classes_of_unequal_number_count_the_same() -> None:
@@ -75,7 +77,7 @@ def test_classes_of_unequal_number_count_the_same() -> None:
         one.inputs[:, :, 0, 7] = (1.7 * truth + rng.normal(size=count))[:, None]
         found.append(one)
     train, validation, test = found
-    head = Head(2, train)
+    head = Head(2, train, told_places=False)
     learned = fit_classes(head, (train, validation))
     told = told_by(head, test.inputs, test.at).argmax(axis=1)
     right = [(told[test.truth == each] == each).mean() for each in (0, 1)]
@@ -84,14 +86,16 @@ def test_classes_of_unequal_number_count_the_same() -> None:
     assert learned.curve[learned.epoch - 1]["validation"] == least
 
 
-def test_a_head_for_classes_is_not_shown_the_place() -> None:
-    """Elsewhere the same is told; a head for numbers hears of it."""
-    rng = np.random.default_rng(5)
-    classes = part(rng, 30, np.arange(30) % 2)
-    for one, same in ((classes, True), (part(rng, 30), False)):
-        head = Head(2, one)
-        here, there = (told_by(head, one.inputs, one.at + off) for off in (0.0, 1.0))
-        assert (here == there).all() == same
+@pytest.mark.parametrize(
+    ("task", "net", "told"),
+    [("slip", Net.MOTION, False), ("safety", Net.MEASURES, False), ("pose", Net.LITE, True)],
+)
+def test_slips_and_pressures_are_told_without_the_place(task: str, net: Net, told: bool) -> None:
+    """Elsewhere the same is told; a head for places hears of it."""
+    one = part(np.random.default_rng(5), 30)
+    head, _ = made(net, task_of(task), 2, one)
+    here, there = (told_by(head, one.inputs, one.at + off) for off in (0.0, 1.0))
+    assert (here == there).all() == (not told)
 
 
 def test_motion_of_the_skin_is_told_in_millimetres() -> None:

@@ -89,8 +89,23 @@ def test_the_coefficient_goes_from_1_at_the_least_pressure_to_0_at_the_largest()
     """Low 1, high 3 MPa: 1 -> 1, 2 -> .5, 3 -> 0, beyond is cut; and back."""
     scale = SafetyScale.of(some([[1.0], [3.0]], ("peak_MPa",)))
     assert scale.safety(np.array([1.0, 2.0, 3.0, 9.0])).tolist() == [1.0, 0.5, 0.0, 0.0]
-    assert scale.both(np.array([[0.5], [1.5]])).tolist() == [[0.5, 2.0], [1.0, 1.0]]
+    level = scale.level(scale.with_safety(some([[1.0], [3.0], [np.sqrt(3.0)]], ("peak_MPa",))))
+    assert level.ravel() == pytest.approx([0.0, 1.0, 0.5])
+    assert scale.both(level)[:, 1] == pytest.approx([1.0, 3.0, np.sqrt(3.0)])
+    assert scale.both(np.array([[-0.5], [99.0]])) == pytest.approx(
+        np.array([[1.0, 1.0], [0.0, 9.0]])
+    )
     assert scale.with_safety(some([[2.0]], ("peak_MPa",))).outputs == ("safety", "peak_MPa")
+
+
+def test_levels_are_finite_where_nothing_was_pressed_or_all_alike() -> None:
+    """Pressures below a fiftieth of the largest count as that; of equal ones each is told so."""
+    scale = SafetyScale.of(some([[0.0], [0.2]], ("peak_MPa",)))
+    found = scale.with_safety(some([[0.0], [0.004], [0.2]], ("peak_MPa",)))
+    assert scale.level(found).ravel() == pytest.approx([0.0, 0.0, 1.0])
+    alike = SafetyScale.of(some([[0.3], [0.3]], ("peak_MPa",)))
+    found = alike.with_safety(some([[0.3]], ("peak_MPa",)))
+    assert alike.both(alike.level(found))[0, 1] == pytest.approx(0.3)
 
 
 def test_ranks_agree_where_order_does() -> None:

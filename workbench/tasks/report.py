@@ -16,7 +16,9 @@ from workbench.tasks.task import Net, Told, task_of
 
 CHANGED = "as differences from rest, twice as strong", 128, 2
 SEEN = {
-    Net.DENT: ("as the dents that were read, white for a millimetre", 0, 1),
+    **dict.fromkeys(
+        (Net.DENT, Net.MEASURES), ("as the dents that were read, white for a millimetre", 0, 1)
+    ),
     Net.MOTION: ("the last image, laid flat", 0, 1),
 }
 """What networks are shown, in words, with the grey level of nothing and the gain it is drawn by."""

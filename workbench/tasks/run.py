@@ -259,7 +259,7 @@ class _Work:
                 return tests
             view = self._view(optics)
             again = lessons
-            if self.plan.net is not Net.DENT:
+            if view.dents is None:
                 again = self._seen_anew(data, optics, view)
                 runs = again.learned(Trial.CALIBRATED, self._span(Trial.CALIBRATED))
                 networks = [run.trained for run in runs]

@@ -50,7 +50,14 @@ class View:
         return width, max(1, round(height_px * width / width_px))
 
 
-WIDTHS_PX = {Net.DENT: 320, Net.LITE: 160, Net.OWN: 160, Net.MOTION: 320, Net.PAPER: 298}
+WIDTHS_PX = {
+    Net.DENT: 320,
+    Net.MEASURES: 320,
+    Net.LITE: 160,
+    Net.OWN: 160,
+    Net.MOTION: 320,
+    Net.PAPER: 298,
+}
 """Of what each network sees [px]; 298 of 4:3 is 224 high, as in the paper's script."""
 
 
@@ -77,7 +84,7 @@ def view_of(net: Net, mesh: MembraneMesh, design: SensorDesign, store: Store) ->
     return View(
         width_px=width_px,
         sight=SkinSight.of(mesh, design.optics, width_px),
-        dents=DentSight(design, store) if net is Net.DENT else None,
+        dents=DentSight(design, store) if net in (Net.DENT, Net.MEASURES) else None,
         whole_light=net is Net.MOTION,
     )
 

@@ -41,6 +41,8 @@ class Net(enum.StrEnum):
 
     DENT = "dent"
     """Convolutions on the dent that the design's light reads, taught by drawn dents: of objects."""
+    MEASURES = "measures"
+    """A head over measures of that dent, how deep, wide and steep it is: of its pressure."""
     LITE = "lite"
     """EfficientNet-Lite0 with ImageNet weights, of optional packages, and a head that learns."""
     OWN = "own"

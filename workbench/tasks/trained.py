@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from workbench.tasks.networks.learn import Learned, Part, Settings
 
-FORMAT = 2
+FORMAT = 3
 
 
 SETTINGS = {
@@ -107,7 +107,7 @@ class Trainer:
         from workbench.tasks.networks.learn import Part
 
         torch.manual_seed(seed)
-        truth = found.truth if found.truth.ndim == 1 else in_contact_frame(found)
+        truth = self._learned_of(found)
         scale = _scale(truth[parts.train], self.safety)
         outputs = 1 if self.safety else len(found.outputs)
         inputs = shown_to(self.net, found)
@@ -138,6 +138,12 @@ class Trainer:
             epoch=epoch,
             curve=curve,
         )
+
+    def _learned_of(self, found: Examples) -> np.ndarray:
+        """What of examples is learned: classes (N,), or values (N, K) before they are scaled."""
+        if found.truth.ndim == 1:
+            return found.truth
+        return in_contact_frame(found) if self.safety is None else self.safety.level(found)
 
     def _learned(
         self,
@@ -224,7 +230,7 @@ def made(net: Net, task: Task, outputs: int, part: Part) -> tuple[nn.Module, str
     if net in HEADS:
         from workbench.tasks.networks.head import Head
 
-        return Head(outputs, part), HEADS[net]
+        return Head(outputs, part, told_places=net is Net.LITE), HEADS[net]
     from workbench.tasks.networks.published import ResNet, VggLstm
 
     published = (VggLstm if task.look is Look.WINDOW else ResNet)(outputs)
@@ -232,7 +238,7 @@ def made(net: Net, task: Task, outputs: int, part: Part) -> tuple[nn.Module, str
 
 
 def _scale(truth: np.ndarray, safety: SafetyScale | None) -> Scale | None:
-    """Middle and spread of the values to learn from; those of the coefficient are 0 and 1."""
+    """Middle and spread of the values to learn from; those of a level are 0 and 1."""
     if truth.ndim == 1:
         return None
     if safety is not None:

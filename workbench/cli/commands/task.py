@@ -32,9 +32,11 @@ def options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--out", required=True, type=Path, metavar="DIR", help=OUT)
     text = "small: minutes on two cores; paper: as many presses as the paper, for a GPU (small)"
     sub.add_argument("--size", choices=SIZES, default=SIZES[0], help=text)
-    text = "small: of objects the dent that is read, of slip the motion of the skin, of numbers \
-EfficientNet-Lite0 where its packages are, else seven convolutions; paper: ResNet50, VGG19 and \
-LSTM (default: small)"
+    text = (
+        "small: of objects and safety the dent that is read, of slip the motion of the skin, of "
+        "places and forces EfficientNet-Lite0 where its packages are, else seven convolutions; "
+        "paper: ResNet50, VGG19 and LSTM (default: small)"
+    )
     sub.add_argument("--network", choices=NETWORKS, default=NETWORKS[0], help=text)
     text = "folder of own photographs with idle.png and labels.csv, which are tested on too"
     sub.add_argument("--photos", type=Path, metavar="DIR", help=text)
