@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from workbench.tasks.networks.learn import Learned, Part, Settings
 
-FORMAT = 3
+FORMAT = 4
 
 
 SETTINGS = {
