@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from workbench.tasks.networks.learn import Learned, Part, Settings
 
-FORMAT = 4
+FORMAT = 5
 
 
 SETTINGS = {
@@ -158,7 +158,9 @@ class Trainer:
             from workbench.tasks.networks.head import Head, fit_classes, fit_values
 
             assert isinstance(network, Head)
-            return (fit_classes if self.task.told is Told.CLASS else fit_values)(network, parts)
+            if self.task.told is Told.CLASS:
+                return fit_classes(network, parts)
+            return fit_values(network, parts, cautious=self.net is Net.MEASURES)
         if self.net is Net.DENT:
             from workbench.tasks.networks.dent import DentNet, Lesson, learn_dents
 

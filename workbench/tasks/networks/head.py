@@ -71,17 +71,18 @@ class Head(nn.Module):
         return self.one(torch.cat([even[:, 0], placed], dim=1))
 
 
-def fit_values(head: Head, parts: tuple[Part, Part]) -> Learned:
+def fit_values(head: Head, parts: tuple[Part, Part], *, cautious: bool = False) -> Learned:
     """Solve a head for values of single images: ridge regression on all that it sees.
 
-    It ends with the largest penalty, of `PENALTIES`, whose error in the validation part is within
-    one standard error of the least: what the smaller ones gain there is chance, and photographs are
-    further from renders than renders are from each other. Source of the rule: Breiman, Friedman,
-    Olshen and Stone, Classification and regression trees, 1984, section 3.4.3.
+    It ends with the penalty, of `PENALTIES`, that leaves the least error in the validation part.
 
     Args:
         head: Made for the first of the parts.
         parts: What it learns from, copies too, and what chooses the penalty.
+        cautious: Whether to end with the largest penalty whose error is within one standard error
+            of the least: what the smaller ones gain there is chance, and photographs are further
+            from renders than renders are from each other. Source of the rule: Breiman, Friedman,
+            Olshen and Stone, Classification and regression trees, 1984, section 3.4.3.
     """
     train, validation = parts
     copies = train.inputs.shape[1]
@@ -95,7 +96,7 @@ def fit_values(head: Head, parts: tuple[Part, Part]) -> Learned:
         learned = float(np.abs(known @ weights + middle - truth).mean())
         curve.append({"train": learned, "validation": float(errors[-1].mean())})
     least = min(errors, key=np.mean)
-    most = least.mean() + least.std() / np.sqrt(len(least))
+    most = least.mean() + (least.std() / np.sqrt(len(least)) if cautious else 0.0)
     chosen = max(number for number, each in enumerate(errors) if each.mean() <= most)
     device = head.middle.device
     head.one.weight.data = torch.as_tensor(found[chosen].T, dtype=torch.float32, device=device)
