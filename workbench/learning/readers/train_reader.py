@@ -139,7 +139,10 @@ def train_reader(
             key=digest((reader_digest(design), spec, plan.seed, len(learned), start)),
             start=start,
         )
-        before = _before(plan.start, testing, device)
+        before = None
+        if plan.start is not None:
+            begins = lesson.network().eval().to(device)
+            before = scores(judged(begins, testing, plan.start.scales, device, most=JUDGED_VIEWS))
         network, rows = learn(lesson, folder, _teller(tell, part(learning, 0.0, 0.97)))
         learning(0.97, "how far its deviations may be trusted")
         checked = scores(judged(network, validation, scales, device, most=JUDGED_VIEWS))
@@ -164,19 +167,6 @@ def train_reader(
         write_atomically(out, reader_bytes(reader))
         write_beside(out, card, rows)
     return TrainedReader(path=out, scores=tested, before=before)
-
-
-def _before(start: ReaderFile | None, testing: ViewSet, device: str) -> dict[str, Any] | None:
-    """Scores of the reader that a training begins from."""
-    if start is None:
-        return None
-    import torch
-
-    from sim.reading.network.unet import network_of
-
-    state = {name: torch.from_numpy(array.copy()) for name, array in start.arrays.items()}
-    network = network_of(start.spec, state).to(device)
-    return scores(judged(network, testing, start.scales, device, most=JUDGED_VIEWS))
 
 
 def _camera_px(design: SensorDesign) -> tuple[int, int]:
