@@ -14,7 +14,7 @@ from sim.reading.network.spec import spec_for
 from workbench.core.base.errors import DesignError, shown
 from workbench.core.design.design import SensorDesign
 from workbench.project.project import Project
-from workbench.reading.find_reader import FOLDER, SHIPPED, reader_path
+from workbench.reading.find_reader import SHIPPED, reader_path
 
 DIGITS = 8
 """Of the digest of a built sensor's file, in the name of its reader."""
@@ -42,9 +42,12 @@ def training_folder(out: Path) -> Path:
 def usual_start(design: SensorDesign, project: Project, size: str) -> ReaderFile | None:
     """The reader that a training begins from unless it is told; None: from nothing.
 
+    It is that of the design as it was drawn, not of another sensor that was built from it: so it
+    stays the same when a training goes on after others have ended.
+
     Args:
         design: The sensor.
-        project: Its readers come before those that ship, the newest first.
+        project: Its reader comes before the one that ships.
         size: A name of `SIZES`; empty: any.
 
     Raises:
@@ -52,13 +55,12 @@ def usual_start(design: SensorDesign, project: Project, size: str) -> ReaderFile
     """
     if not is_calibrated(design):
         return None
-    own = usual_path(design, project)
-    folder = (project.folder / FOLDER).glob(f"*{SUFFIX}")
-    kept = sorted(folder, key=lambda path: -path.stat().st_mtime)
-    for path in [*kept, *sorted(SHIPPED.glob(f"*{SUFFIX}"))]:
-        reader = load_reader(path)
-        if path != own and reader.design == design.name and _fits(reader, design, size):
-            return reader
+    drawn = reader_path(design, project)
+    for path in (drawn, SHIPPED / drawn.name):
+        if path.is_file():
+            reader = load_reader(path)
+            if reader.design == design.name and _fits(reader, design, size):
+                return reader
     return None
 
 
