@@ -57,7 +57,7 @@ def test_a_calibrated_design_begins_from_the_reader_of_its_design(tmp_path: Path
 
 
 def test_each_built_sensor_has_a_file_of_its_own(tmp_path: Path) -> None:
-    """Beside that of the design, which stays; a reader never begins from itself."""
+    """Beside that of the design, which stays; none begins from itself or from another sensor."""
     project, pad = Project(tmp_path), load_design("pad")
     one = calibrated(pad)
     paths = {usual_path(each, project) for each in (pad, one, calibrated(pad, 91))}
@@ -65,9 +65,9 @@ def test_each_built_sensor_has_a_file_of_its_own(tmp_path: Path) -> None:
     assert len({path.parent for path in paths}) == 1
     path = usual_path(one, project)
     path.parent.mkdir(parents=True)
-    path.write_bytes(
-        reader_bytes(reader_file(design="pad", spec=ReaderSpec(widths=(8, 8), rows=240)))
-    )
+    small = reader_file(design="pad", spec=ReaderSpec(widths=(8, 8), rows=240))
+    for each in (path, usual_path(calibrated(pad, 91), project)):
+        each.write_bytes(reader_bytes(small))
     found = usual_start(one, project, "")
     assert found is not None
     assert found.spec.widths == SIZES["full"]
