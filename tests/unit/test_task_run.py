@@ -146,9 +146,10 @@ def test_objects_are_told_from_renders_and_from_photographs(
 def test_safety_is_told_as_coefficient_and_as_pressure(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, quick: None
 ) -> None:
-    """Both beat the median by half; the pressure is the coefficient times the range.
+    """Both beat the median by half; a pressure told is off by no less than its coefficient.
 
-    There are but two depths, so most ranks are shared: .7 was measured.
+    What is told beyond the range is cut in the coefficient alone. There are but two depths, so most
+    ranks are shared: .7 was measured.
     """
     found = outcome(tmp_path, monkeypatch, "safety")
     details = found["details"]
@@ -157,7 +158,9 @@ def test_safety_is_told_as_coefficient_and_as_pressure(
         own = {row["metric"]: row for row in found["rows"] if row["test"] == test}
         safety, peak = own["mae_safety"], own["mae_peak_MPa"]
         assert safety["value"] < 0.5 * safety["null"]
-        assert peak["value"] == pytest.approx(span_MPa * safety["value"], rel=0.02)
+        assert peak["value"] < 0.5 * peak["null"]
+        assert peak["null"] == pytest.approx(span_MPa * safety["null"])
+        assert peak["value"] > 0.999 * span_MPa * safety["value"]
         assert details["tests"][test]["rank_correlation"]["safety"] > 0.5
 
 
