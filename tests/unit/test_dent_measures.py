@@ -10,8 +10,8 @@ import pytest
 from workbench.core.base.monitor import silent
 from workbench.tasks.examples import Examples
 from workbench.tasks.features import shown_to, usual_network, with_features
-from workbench.tasks.networks.measures import COUNT, MM_PER_PX, measures
-from workbench.tasks.networks.patch import GREY_PER_MM, PATCH_PX
+from workbench.tasks.networks.measures import COUNT, measures
+from workbench.tasks.networks.patch import GREY_PER_MM, MM_PER_PX, PATCH_PX
 from workbench.tasks.safety_scale import SafetyScale
 from workbench.tasks.splits import at_random
 from workbench.tasks.task import Net, task_of

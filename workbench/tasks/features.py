@@ -13,7 +13,7 @@ import numpy as np
 
 from workbench.core.base.monitor import Monitor, silent
 from workbench.tasks.examples import Examples
-from workbench.tasks.skin_sight import MM_PER_PX
+from workbench.tasks.networks.patch import MM_PER_PX
 from workbench.tasks.task import Look, Net, Task, Told
 
 HEADS = {

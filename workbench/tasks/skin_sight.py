@@ -22,7 +22,6 @@ from workbench.core.design.optics import Optics
 from workbench.core.result.results import MembraneMesh
 from workbench.tasks.networks.patch import HALF_MM, PATCH_PX
 
-MM_PER_PX = 2.0 * HALF_MM / PATCH_PX
 SMOOTH_PX, OVER_NOISE, NEAR_MM = 1.5, 6.0, 7.0
 """Blur of differences where a contact is looked for [px], what is noise over the median [1], and
 how far from its peak it may reach [mm]."""

@@ -9,9 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from workbench.tasks.networks.patch import GREY_PER_MM, HALF_MM, PATCH_PX
+from workbench.tasks.networks.patch import GREY_PER_MM, MM_PER_PX
 
-MM_PER_PX = 2.0 * HALF_MM / PATCH_PX
 TOP, STEEPEST = (5, 50, 200), 20
 """Pixels that the deepest of a dent are means of, and the steepest."""
 LEVELS_MM, SHARES = (0.05, 0.1), (0.5, 0.8)

@@ -4,5 +4,6 @@ from __future__ import annotations
 
 PATCH_PX, HALF_MM = 64, 6.0
 """Side of what is shown [px], and half of it on the skin [mm]."""
+MM_PER_PX = 2.0 * HALF_MM / PATCH_PX
 GREY_PER_MM = 255.0
 """Grey levels that a dent of one millimetre is shown by."""
