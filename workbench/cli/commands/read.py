@@ -19,6 +19,7 @@ from workbench.system.terminal import Progress, complain, say
 
 if TYPE_CHECKING:
     # They need a device or PyTorch, which other commands need not wait for.
+    from sim.reading.network.reader_file import ReaderFile
     from workbench.core.base.monitor import Monitor
     from workbench.core.design.design import SensorDesign
     from workbench.reading.learned_reader import LearnedReading
@@ -43,6 +44,9 @@ def options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--reader", choices=READERS, default=READERS[0], help=text)
     text = "file of `reader train` (default: the project's for this design, or one that ships)"
     sub.add_argument("--weights", type=Path, metavar="FILE", help=text)
+    text = "of a calibrated design: the one it was drawn as, whose learned reader reads it too "
+    text += "(default: the project's or the preset of its name)"
+    sub.add_argument("--drawn", metavar="NAME|FILE", help=text)
     text = "each photo follows the one before at once: begin where that one ended"
     sub.add_argument("--video", action="store_true", help=text)
     text = "fit a ball to each photo as a model of its image: place, radius, depth; seconds more"
@@ -63,6 +67,10 @@ def run(options: argparse.Namespace, project: Project) -> int:
     if options.weights is not None and options.reader != LEARNED:
         raise DesignError(
             "--weights are for the learned reader", hint="add --reader learned", at="--weights"
+        )
+    if options.drawn is not None and options.reader != LEARNED:
+        raise DesignError(
+            "--drawn is for the learned reader", hint="add --reader learned", at="--drawn"
         )
     if options.ball and options.reader == LEARNED:
         raise DesignError(
@@ -132,16 +140,70 @@ def _opened_learned(
     project: Project,
     printer: Progress,
 ) -> Read:
-    """The reader that was trained; each photo is read on its own."""
+    """The reader that was trained; each photo is read on its own.
+
+    A built sensor for which none was is read by that of its design as it was drawn.
+    """
     from workbench.calibration.stored import stored
     from workbench.core.press.press_case import PressCase
     from workbench.pipeline.devices import torch_device
     from workbench.reading.find_reader import find_reader
     from workbench.reading.learned_reader import LearnedReader
+    from workbench.reading.relit_reader import drawn_design
 
-    weights = find_reader(design, project, options.weights)
+    drawn = _drawn(options, design, project) or drawn_design(design, project)
+    try:
+        weights = find_reader(design, project, options.weights)
+    except DesignError:
+        if drawn is None:
+            raise
+        weights = find_reader(drawn, project, options.weights)
+        return _opened_relit((design, drawn), weights, idle, project, printer)
     mesh = stored(design, PressCase(), "mesh", project.store, _half(printer))
     return LearnedReader(weights, design.optics.camera, mesh, idle, torch_device()).read
+
+
+def _drawn(
+    options: argparse.Namespace, design: SensorDesign, project: Project
+) -> SensorDesign | None:
+    """The design that is named as the one that this sensor was built from.
+
+    Raises:
+        DesignError: If one is, but the sensor is not calibrated.
+    """
+    from workbench.project.named_designs import load_design
+
+    if options.drawn is None:
+        return None
+    if design.optics.unit is None:
+        raise DesignError(
+            f"{design.name} is not calibrated, so it is not known how it differs from a drawn one",
+            hint="calibrate it first: `workbench calibrate`",
+            at="--drawn",
+        )
+    return load_design(options.drawn, project=project)
+
+
+def _opened_relit(
+    pair: tuple[SensorDesign, SensorDesign],
+    weights: ReaderFile,
+    idle: np.ndarray,
+    project: Project,
+    printer: Progress,
+) -> Read:
+    """The reader of a drawn design for the sensor that was built from it."""
+    from workbench.pipeline.devices import open_device, torch_device
+    from workbench.reading.relit_reader import open_relit
+
+    open_device()
+    complain(
+        f"notice: no reader was learned for this built sensor: its photographs are relit as "
+        f"{pair[1].name} was drawn, and read by the reader of that"
+    )
+    opened = open_relit(
+        pair, weights, idle, project.store, monitor=_half(printer), device=torch_device()
+    )
+    return opened.read
 
 
 _OPENED = {"table": _opened_table, LEARNED: _opened_learned}
