@@ -13,7 +13,7 @@ import numpy as np
 from tests.unit.test_dataset_cases import flat_skin
 from workbench.proof.judge import Judge, judge
 from workbench.proof.row import Row
-from workbench.proof.validation.reading import renders, room, twin_figures
+from workbench.proof.validation.reading import relit_figures, renders, room, twin_figures
 from workbench.system.record import Record
 from workbench.twin.twin_plan import Light, Solver
 
@@ -107,6 +107,22 @@ def test_nothing_is_asked_of_another_reality(tmp_path: Path) -> None:
     assert "photographs of a ball" not in rows["reading_twin_learned"].case
 
 
+def test_relit_readings_are_asked_what_a_learned_reader_is(tmp_path: Path) -> None:
+    """Depth, contact and force have limits; what the photographs as they are gave is told."""
+    plain = {**SCORES, "depth_mm": 0.186, "force_error_median": 0.4}
+    relit = {**SCORES, "depth_mm": 0.05, "force_error_median": 0.05}
+    figures = {"designs": {"pad": {"plan": PLAN, "as_it_is": plain, "relit": relit}}}
+    record = kept(relit_figures.RECORD, tmp_path, figures)
+    rows = {row.name: row for row in room.relit_rows(record)}
+    depth = rows["reading_twin_relit"]
+    assert (depth.ok, depth.limit, depth.null) == (False, room.RELIT_LIMIT_MM, 0.3)
+    assert "as they are 0.186 mm" in depth.case
+    assert rows["reading_twin_relit_contact"].ok
+    assert rows["reading_twin_relit_force"].ok
+    assert rows["reading_twin_relit_sigma"].reference == 0.68
+    assert all(judge(name) is Judge.ITSELF for name in rows)
+
+
 def test_one_command_makes_twins_of_both_realities(tmp_path: Path) -> None:
     """Each in its folder; where presses are by the contact solver, only the light is other."""
     words: dict[str, Any] = {
@@ -127,7 +143,11 @@ def test_one_command_makes_twins_of_both_realities(tmp_path: Path) -> None:
 
 def test_without_a_record_rows_fail_and_say_how_to_make_it(tmp_path: Path) -> None:
     """None counts as met."""
-    for record, rows in ((renders.RECORD, room.render_rows), (twin_figures.RECORD, room.twin_rows)):
+    for record, rows in (
+        (renders.RECORD, room.render_rows),
+        (twin_figures.RECORD, room.twin_rows),
+        (relit_figures.RECORD, room.relit_rows),
+    ):
         (row,) = rows(dataclasses.replace(record, path=tmp_path / "none.json"))
         assert not row.ok
         assert row.value is None

@@ -36,6 +36,9 @@ if TYPE_CHECKING:
 
 SAME_MM = 1e-3
 """Between vertices of the same skin: results are kept in single precision."""
+LESS_SURE = 1.5
+"""Factor on the standard deviation of a depth: of what a calibration leaves the reader knows
+nothing. With it 69 % of the errors in a calibrated finger's twin are within one, without it 51."""
 
 
 def drawn_design(design: SensorDesign, project: Project) -> SensorDesign | None:
@@ -143,10 +146,16 @@ def open_relit(
     return RelitReader(
         built=built,
         relight=Relight(built, as_drawn),
-        reader=LearnedReader(weights, drawn.optics.camera, mesh, grey, device),
+        reader=LearnedReader(_less_sure(weights), drawn.optics.camera, mesh, grey, device),
         back=SamePlaces.of(built, as_drawn),
         stiffer=design.material.young_MPa / drawn.material.young_MPa,
     )
+
+
+def _less_sure(weights: ReaderFile) -> ReaderFile:
+    scales = weights.scales
+    less = scales.with_factors(sigma=LESS_SURE * scales.sigma, force_sigma=scales.force_sigma)
+    return dataclasses.replace(weights, scales=less)
 
 
 def _alike(one_mm: np.ndarray, other_mm: np.ndarray) -> bool:

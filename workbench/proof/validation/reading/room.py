@@ -13,13 +13,14 @@ from typing import Any
 
 from workbench.core.base.errors import StoreError
 from workbench.proof.row import Row, bounded, failed, stated
-from workbench.proof.validation.reading import renders, twin_figures
+from workbench.proof.validation.reading import relit_figures, renders, twin_figures
 from workbench.system.record import Record
 from workbench.twin.twin_plan import Light
 
 RENDER_LIMITS_MM = {"pad": 0.02, "geltip": 0.02, "trunk": 0.03, "paw": 0.03}
 NOISE_LIMIT_MM, PHOTON_LIMIT_MM, TWIN_LIMIT_MM = 0.03, 0.05, 0.08
 NORMAL_LIMIT_DEG = 3.0
+RELIT_LIMIT_MM, RELIT_CONTACT, RELIT_FORCE = 0.04, 0.85, 0.1
 ENOUGH_MILLIONS = 64
 """Photons of an image from which their noise is below one grey level, and something is asked."""
 WORDS = {
@@ -33,7 +34,7 @@ WORDS = {
 
 def rows() -> list[Row]:
     """All rows of the room."""
-    return [*render_rows(), *twin_rows()]
+    return [*render_rows(), *twin_rows(), *relit_rows()]
 
 
 def render_rows(kept: Record = renders.RECORD) -> list[Row]:
@@ -56,6 +57,49 @@ def twin_rows(kept: Record = twin_figures.RECORD) -> list[Row]:
     except StoreError as error:
         return [failed("reading_twin_calibrated", "presses", unit="mm", why=error.message)]
     return [row for design, figures in found.items() for row in _twin_rows(design, figures, kept)]
+
+
+def relit_rows(kept: Record = relit_figures.RECORD) -> list[Row]:
+    """Rows of the learned reader on calibrated twins whose photographs are relit."""
+    try:
+        found = kept.figures()["designs"]
+    except StoreError as error:
+        return [failed("reading_twin_relit", "presses", unit="mm", why=error.message)]
+    return [row for design, figures in found.items() for row in _relit_rows(design, figures, kept)]
+
+
+def _relit_rows(design: str, figures: dict[str, Any], kept: Record) -> Iterator[Row]:
+    plan, scores = figures["plan"], figures[relit_figures.RELIT]
+    plain, name = figures[relit_figures.AS_IT_IS], "reading_twin_relit"
+    made = (
+        f"{design}: {plan['presses']} presses by {plan['contact']} and "
+        f"{plan['photons_millions']} million photons, {plan['width_px']} px, calibrated by "
+        f"{plan['calibration']} photographs of a ball, relit as drawn and read by the reader "
+        "learned for that"
+    )
+    as_it_is = f"as they are {plain['depth_mm']:.3f} mm"
+    yield _depth_row(name, f"{made} ({as_it_is})", scores, (RELIT_LIMIT_MM, kept))
+    yield _normal_row(f"{name}_normals", made, scores, (None, kept))
+    yield _share_row(f"{name}_sigma", made, scores, kept)
+    yield bounded(
+        f"{name}_force",
+        f"{made}: median difference of the force over the true one; null: no force",
+        scores[relit_figures.MEDIAN],
+        unit="1",
+        limit=RELIT_FORCE,
+        null=1.0,
+        record=kept,
+    )
+    yield bounded(
+        f"{name}_contact",
+        f"{made}: contact area, intersection over union; null: no contact",
+        scores["contact_iou"],
+        unit="1",
+        limit=RELIT_CONTACT,
+        sense="min",
+        null=0.0,
+        record=kept,
+    )
 
 
 def _render_rows(
