@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from designs.family import families
 from sim.reading.network.reader_file import ReaderFile
 from workbench.calibration.stored import lit_studio, stored
 from workbench.core.base.errors import DesignError, shown
@@ -22,20 +23,22 @@ from workbench.core.design.design import SensorDesign
 from workbench.core.press.press_case import PressCase
 from workbench.core.result.results import MembraneMesh
 from workbench.pipeline.store import Store
-from workbench.project.named_designs import load_design
+from workbench.project.named_designs import load_design, presets
 from workbench.project.project import Project
 from workbench.reading.design_reader import expect_light, expect_size, looked_up, open_reader
 from workbench.reading.learned_reader import LearnedReader, LearnedReading
+from workbench.reading.reader_digest import reader_digest
 from workbench.reading.relight import Relight
 from workbench.reading.same_places import SamePlaces
+from workbench.system.names import is_name
 
 if TYPE_CHECKING:
     # It needs the device that reading opens.
     from sim.reading.pixel_maps import PixelMaps
     from sim.reading.untouched import Untouched
 
-SAME_MM = 1e-3
-"""Between vertices of the same skin: results are kept in single precision."""
+LEAST_SHARED = 0.5
+"""Share of the skin that the drawn camera sees which the built one has to see too."""
 LESS_SURE = 1.5
 """Factor on the standard deviation of a depth: of what a calibration leaves the reader knows
 nothing. With it 69 % of the errors in a calibrated finger's twin are within one, without it 51."""
@@ -44,18 +47,21 @@ nothing. With it 69 % of the errors in a calibrated finger's twin are within one
 def drawn_design(design: SensorDesign, project: Project) -> SensorDesign | None:
     """What a calibrated design was drawn as: of the same name, in the project or a preset.
 
-    None where it is not calibrated, or there is none of that name.
+    None where it is not calibrated, or there is none of that name that is not calibrated itself.
 
     Raises:
         DesignError: If its file in the project is not valid.
     """
     if design.optics.unit is None:
         return None
-    try:
-        kept = project.design_path(design.name)
-        return load_design(kept if kept.is_file() else design.name, project=project)
-    except DesignError:
-        return None
+    if is_name(design.name):
+        path = project.design_path(design.name)
+        kept = load_design(path, project=project) if path.is_file() else None
+        if kept is not None and kept.optics.unit is None:
+            return kept
+    if design.name in (*presets(), *families()):
+        return load_design(design.name)
+    return None
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -81,8 +87,11 @@ class RelitReader:
         expect_light(name, photo, self.built.sees)
         begun = time.perf_counter()
         found = self.reader.read(name, self.relight.photo(photo))
+        visible = self.built.studio.visible
         return dataclasses.replace(
             found,
+            surface_mm=np.where(visible, found.surface_mm, 0.0),
+            surface_sigma_mm=np.where(visible, found.surface_sigma_mm, np.nan),
             maps=self._laid_back(found.maps),
             pressure_MPa=self.stiffer * self._of_seen(found.pressure_MPa),
             force_N=self.stiffer * found.force_N,
@@ -129,23 +138,27 @@ def open_relit(
         device: Where PyTorch computes.
 
     Raises:
-        DesignError: If the photograph has another size than the camera's images, or the skins are
-            not the same.
+        DesignError: If the photograph has another size than the camera's images, or the sensor was
+            not built from the drawn design.
         WorkbenchError: From the stages that mesh and trace.
     """
     design, drawn = pair[0], _seen_as(pair[1], pair[0])
+    _expect_same(design, drawn, weights)
     built = open_reader(design, idle, store, monitor=part(monitor, 0.0, 0.5)).reader.rest
     mesh = stored(drawn, PressCase(), "mesh", store, part(monitor, 0.5, 0.6))
     as_drawn, grey = _as_drawn(drawn, mesh, store, part(monitor, 0.6, 1.0))
-    if not _alike(built.skin.points_mm, as_drawn.skin.points_mm):
+    relight = Relight(built, as_drawn)
+    shared = np.count_nonzero(relight.places.seen) / max(np.count_nonzero(as_drawn.sees), 1)
+    if shared < LEAST_SHARED:
         raise DesignError(
-            f"the skin of {shown(drawn.name)} as it was drawn is another one than this sensor's",
+            f"the built camera sees {100.0 * shared:.0f} % of the skin that the drawn one does; "
+            f"at least {100.0 * LEAST_SHARED:.0f} % is needed",
             hint="train a reader for this one: `workbench reader train`, or use --reader table",
-            at="design",
+            at="optics.cameras",
         )
     return RelitReader(
         built=built,
-        relight=Relight(built, as_drawn),
+        relight=relight,
         reader=LearnedReader(_less_sure(weights), drawn.optics.camera, mesh, grey, device),
         back=SamePlaces.of(built, as_drawn),
         stiffer=design.material.young_MPa / drawn.material.young_MPa,
@@ -158,9 +171,21 @@ def _less_sure(weights: ReaderFile) -> ReaderFile:
     return dataclasses.replace(weights, scales=less)
 
 
-def _alike(one_mm: np.ndarray, other_mm: np.ndarray) -> bool:
-    """Whether two skins have the same vertices."""
-    return one_mm.shape == other_mm.shape and bool(np.allclose(one_mm, other_mm, atol=SAME_MM))
+def _expect_same(design: SensorDesign, drawn: SensorDesign, weights: ReaderFile) -> None:
+    """Refuse a sensor that was not built from a drawn design, or whose images have another shape.
+
+    Raises:
+        DesignError: If it differs in more than light, camera and Young's modulus.
+    """
+    material = dataclasses.replace(design.material, young_MPa=drawn.material.young_MPa)
+    as_drawn = dataclasses.replace(design, optics=drawn.optics, material=material)
+    if not reader_digest(as_drawn) == reader_digest(drawn) == weights.digest:
+        raise DesignError(
+            f"{shown(drawn.name)} as it was drawn has another body, wall, material or shape of "
+            "images than this sensor, or is calibrated itself",
+            hint="name the design that was cast: --drawn FILE; or use --reader table",
+            at="--drawn",
+        )
 
 
 def _seen_as(drawn: SensorDesign, built: SensorDesign) -> SensorDesign:

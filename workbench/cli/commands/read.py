@@ -151,10 +151,14 @@ def _opened_learned(
     from workbench.reading.learned_reader import LearnedReader
     from workbench.reading.relit_reader import drawn_design
 
-    drawn = _drawn(options, design, project) or drawn_design(design, project)
+    named = _drawn(options, design, project)
+    if named is not None:
+        weights = find_reader(named, project, options.weights)
+        return _opened_relit((design, named), weights, idle, project, printer)
     try:
         weights = find_reader(design, project, options.weights)
     except DesignError:
+        drawn = drawn_design(design, project)
         if drawn is None:
             raise
         weights = find_reader(drawn, project, options.weights)
@@ -181,7 +185,14 @@ def _drawn(
             hint="calibrate it first: `workbench calibrate`",
             at="--drawn",
         )
-    return load_design(options.drawn, project=project)
+    drawn = load_design(options.drawn, project=project)
+    if drawn.optics.unit is not None:
+        raise DesignError(
+            f"{options.drawn} is of a built sensor itself",
+            hint="name the design that it was cast from",
+            at="--drawn",
+        )
+    return drawn
 
 
 def _opened_relit(
@@ -197,8 +208,8 @@ def _opened_relit(
 
     open_device()
     complain(
-        f"notice: no reader was learned for this built sensor: its photographs are relit as "
-        f"{pair[1].name} was drawn, and read by the reader of that"
+        f"notice: photographs of this built sensor are relit as {pair[1].name} was drawn, and read "
+        "by the reader of that"
     )
     opened = open_relit(
         pair, weights, idle, project.store, monitor=_half(printer), device=torch_device()

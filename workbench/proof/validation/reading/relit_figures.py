@@ -16,6 +16,7 @@ import argparse
 import json
 import sys
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -25,10 +26,15 @@ from workbench.core.base.mapping import from_table
 from workbench.pipeline.devices import torch_device
 from workbench.project.named_designs import load_design
 from workbench.project.project import Project
-from workbench.proof.validation.reading.twin_figures import CALIBRATION, DESIGNS, TwinRun
+from workbench.proof.validation.reading import twin_figures
+from workbench.proof.validation.reading.twin_figures import (
+    CALIBRATION,
+    DESIGNS,
+    LEARNED,
+    TwinRun,
+)
 from workbench.reading.find_reader import find_reader
 from workbench.reading.relit_reader import open_relit
-from workbench.system.record import Record
 from workbench.system.terminal import Progress
 from workbench.twin.cases import Kind
 from workbench.twin.make import photo_names
@@ -38,24 +44,14 @@ from workbench.twin.twin_plan import GPU_PHOTONS, TwinPlan
 AS_IT_IS, RELIT = "as_it_is", "relit"
 MEDIAN = "force_error_median"
 
-RECORD = Record(
+RECORD = replace(
+    twin_figures.RECORD,
     path=Path(__file__).with_name("relit_figures.json"),
     command="python -m workbench.proof.validation.reading.relit_figures FOLDER",
     sources=(
         "workbench.proof.validation.reading.relit_figures",
         "sim.reading",
         "sim.optics.field.models",
-    ),
-    apart=(
-        "sim.contact",
-        "sim.fem",
-        "sim.forces",
-        "workbench.learning.making",
-        "workbench.learning.training",
-        "workbench.system",
-        "workbench.view",
-        "workbench.report",
-        "workbench.proof.row",
     ),
 )
 """As that of `twin_figures`."""
@@ -90,7 +86,7 @@ class RelitRun(TwinRun):
                 "presses": len(list(photo_names(self.folder, Kind.PRESS))),
                 "refine": self.refining,
             },
-            AS_IT_IS: self.learned(drawn)["learned"] | self._median("learned"),
+            AS_IT_IS: self.learned(drawn)[LEARNED] | self._median(LEARNED),
             RELIT: self._mean(built, opened.read, RELIT) | self._median(RELIT),
         }
 
