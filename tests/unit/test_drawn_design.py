@@ -43,6 +43,13 @@ def test_a_built_sensor_has_the_design_of_its_name(tmp_path: Path) -> None:
     assert found.layers.elastomer_mm == 2.5
 
 
+def test_a_built_sensor_is_not_what_it_was_drawn_as(tmp_path: Path) -> None:
+    """Kept in the project under the name of its design, it is passed over."""
+    project = Project(tmp_path / "p")
+    project.save_design("pad", calibrated("pad"))
+    assert drawn_design(calibrated("pad"), project) == load_design("pad")
+
+
 def test_nothing_is_guessed(tmp_path: Path) -> None:
     """Of a design that is not calibrated, or whose name nobody knows."""
     project = Project(tmp_path / "p")

@@ -127,3 +127,22 @@ def test_a_sensor_built_as_drawn_shows_what_it_shows(drawn: Untouched, moved: np
     changed = np.abs(photo - drawn.idle).max(axis=2) > 3.0
     off, size = (np.abs(each - photo)[changed].mean() for each in (found, drawn.idle))
     assert off < 0.25 * size
+
+
+def test_saturated_colours_say_nothing(
+    built: Untouched, drawn: Untouched, moved: np.ndarray
+) -> None:
+    """One colour clipped all over the dent: the others still tell more than the photograph does."""
+    wanted = photographed(drawn.studio, moved).astype(float) - drawn.idle
+    photo = photographed(built.studio, moved)
+    clipped = photo.copy()
+    clipped[:, :, 1] = 255
+    relight = Relight(built, drawn)
+    found, null = relight.photo(clipped) - drawn.idle, np.zeros_like(wanted)
+    looked_at = relight.places.seen & (np.abs(wanted).max(axis=2) > 3.0)
+
+    def off(change: np.ndarray) -> float:
+        return float(np.sqrt(((change - wanted)[looked_at] ** 2).mean()))
+
+    assert off(found) < off(null)
+    assert np.abs(found[~looked_at]).max() < 20.0
