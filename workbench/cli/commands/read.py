@@ -19,7 +19,6 @@ from workbench.system.terminal import Progress, complain, say
 
 if TYPE_CHECKING:
     # They need a device or PyTorch, which other commands need not wait for.
-    from sim.reading.network.reader_file import ReaderFile
     from workbench.core.base.monitor import Monitor
     from workbench.core.design.design import SensorDesign
     from workbench.reading.learned_reader import LearnedReading
@@ -153,16 +152,14 @@ def _opened_learned(
 
     named = _drawn(options, design, project)
     if named is not None:
-        weights = find_reader(named, project, options.weights)
-        return _opened_relit((design, named), weights, idle, project, printer)
+        return _opened_relit((design, named), idle, options, project, printer)
     try:
         weights = find_reader(design, project, options.weights)
     except DesignError:
         drawn = drawn_design(design, project)
         if drawn is None:
             raise
-        weights = find_reader(drawn, project, options.weights)
-        return _opened_relit((design, drawn), weights, idle, project, printer)
+        return _opened_relit((design, drawn), idle, options, project, printer)
     mesh = stored(design, PressCase(), "mesh", project.store, _half(printer))
     return LearnedReader(weights, design.optics.camera, mesh, idle, torch_device()).read
 
@@ -197,15 +194,17 @@ def _drawn(
 
 def _opened_relit(
     pair: tuple[SensorDesign, SensorDesign],
-    weights: ReaderFile,
     idle: np.ndarray,
+    options: argparse.Namespace,
     project: Project,
     printer: Progress,
 ) -> Read:
     """The reader of a drawn design for the sensor that was built from it."""
     from workbench.pipeline.devices import open_device, torch_device
+    from workbench.reading.find_reader import find_reader
     from workbench.reading.relit_reader import open_relit
 
+    weights = find_reader(pair[1], project, options.weights)
     open_device()
     complain(
         f"notice: photographs of this built sensor are relit as {pair[1].name} was drawn, and read "
