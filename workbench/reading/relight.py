@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from workbench.reading.same_places import SamePlaces
+from workbench.reading.same_places import SURELY, SamePlaces
 
 if TYPE_CHECKING:
     # It needs the device that reading opens.
@@ -41,10 +41,6 @@ SHARE = 0.75
 LEAST_LIGHT, BRIGHTER = 1e-6, (1.0 / 3.0, 3.0)
 """Display light by which brightness is divided at least, and range of g: in a corner that is nearly
 black all is noise."""
-BLACK_GREY, WHITE_GREY = 0.5, 253.5
-"""Grey levels that say nothing more."""
-SURELY = 0.99
-"""Of the pixels around a place, all have to say something."""
 
 
 class Relight:
@@ -107,7 +103,12 @@ class Relight:
         return grey.reshape(*drawn.shape, 3).astype(np.float32)
 
     def _told(self, photo: np.ndarray) -> np.ndarray:
-        """1 where a colour says something, else 0, shape (n, 3), of the pixels that both see."""
+        """1 where a colour says something, else 0, shape (n, 3), of the pixels that both see.
+
+        All of the pixels around a place have to.
+        """
+        from sim.reading.photo_view import BLACK_GREY, WHITE_GREY
+
         dark, bright = (limit(photo, self._built.idle) for limit in (np.minimum, np.maximum))
         tells = (dark > BLACK_GREY) & (bright < WHITE_GREY)
         shares = self.places.brought(tells.astype(np.float32)).reshape(-1, 3)[self._pixels]
