@@ -42,8 +42,8 @@ def look(count: int, grey_per_deg: float, noise_grey: float = 2.0) -> SkinLook:
 
 
 def test_the_beliefs_are_those_of_a_reading() -> None:
-    """k and s of its last level, and the change from which it looks."""
-    assert fit.LEVELS[-1][0] == told.CURVATURE_PER_MM
+    """k and s, and the change from which it looks."""
+    assert fit.CURVATURE == told.CURVATURE_PER_MM
     assert fit.MOVED_MM == told.MOVED_MM
     assert changed.LEAST_GREY == told.LEAST_GREY
 

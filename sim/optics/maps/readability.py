@@ -29,8 +29,8 @@ from sim.optics.maps.signal import DENT_MM, dent_slope_deg, sensitivity_grey
 from sim.optics.maps.skin_look import SkinLook
 from workbench.core.result.results import Skin
 
-CURVATURE_PER_MM, MOVED_MM = 1.0, 1.5
-"""k and s of the last level of a reading."""
+CURVATURE_PER_MM, MOVED_MM = 0.25, 1.5
+"""k and s of a reading."""
 WAVES = 24
 """Along each axis of half the waves of the grid."""
 PHOTOS = 2.0

@@ -159,7 +159,7 @@ def _radiance(
 STAGE = Stage(
     name="shoot",
     label="Image",
-    version=6,
+    version=7,
     place=12,
     lane="sim",
     run=shoot,
