@@ -31,7 +31,8 @@ CURVATURE = 0.25
 """k [1/mm]. A ball of 3 mm has a curvature of .33 per mm, and the edge of a cross of 2 mm is still
 read better with it than with 1. Where skin is in shadow, or the light of a built sensor is not
 quite known, with 1 bumps between vertices explain colours that no smooth skin does: pressed objects
-in calibrated twins of pad and finger are then .072 and .067 mm off, with .1 to .3 .055 to .061."""
+in calibrated twins of pad and finger are then .072 and .067 mm off, with .2 to .3 .055 to .058
+and .060 to .061."""
 MOST_STEPS = 10
 """Of each level."""
 FARTHEST_MM = 0.5
