@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import dataclasses
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
 
 from workbench.core.base.monitor import Monitor, part
 from workbench.tasks.examples import Examples
@@ -51,6 +55,25 @@ class Lessons:
             test_part = self.found.only(parts.test)
             runs.append(self._run(seed, trained, parts, test_part, begun))
         return runs
+
+    def told_of(self, network: Trained) -> dict[str, Any]:
+        """What a result tells of one of the networks, and of what all of them learn from."""
+        trainer, found = self.trainer, self.found
+        scale = {} if trainer.safety is None else dataclasses.asdict(trainer.safety)
+        return {
+            "network": trainer.net.value,
+            "weights_from": network.weights_from,
+            "parameters": sum(each.numel() for each in network.network.parameters()),
+            "learning": trainer.learning,
+            "device": trainer.device,
+            "seeds": list(SEEDS),
+            "examples": len(found),
+            "places": len(np.unique(found.places)),
+            "input_px": list(found.inputs.shape[2:4][::-1]),
+            "look": self.task.look.value,
+            "formula": self.task.formula,
+            **scale,
+        }
 
     def on_renders(self, test: Trial, runs: Sequence[Run]) -> Tested:
         """What the networks of `learned` say of what was held out."""

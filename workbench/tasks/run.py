@@ -8,20 +8,16 @@
     calibrated   light and camera fitted to the twin's ball, the presses seen anew, trained anew;
                  where dents are seen, only read by that light
 
-Stopped, it goes on where it was: presses, trainings and photographs that are there are kept.
+Stopped, it goes on where it was: presses, what was seen of them, trainings and photographs that are
+there are kept.
 """
 
 from __future__ import annotations
 
 import dataclasses
-import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 from workbench.core.base.digest import digest
 from workbench.core.base.errors import DesignError
@@ -38,7 +34,8 @@ from workbench.project.design_toml import design_table
 from workbench.project.project import Project
 from workbench.tasks.examples import Examples, examples
 from workbench.tasks.features import seen_once, with_features
-from workbench.tasks.lessons import SEEDS, Lessons
+from workbench.tasks.kept_examples import kept_examples
+from workbench.tasks.lessons import Lessons
 from workbench.tasks.outcome import Tested, Trial
 from workbench.tasks.photo_folder import PhotoFolder
 from workbench.tasks.photo_training import on_photos
@@ -47,6 +44,7 @@ from workbench.tasks.reshoot import Reshot, sees_outer_skin
 from workbench.tasks.safety_scale import SafetyScale
 from workbench.tasks.seen_images import View, view_of, whole
 from workbench.tasks.slip_delay import tell_slides
+from workbench.tasks.step_times import StepTimes
 from workbench.tasks.task import Look, Net, Size, Task, task_of
 from workbench.tasks.trained import Trained, Trainer
 from workbench.tasks.twin_test import calibrated, photographed, twin_plan
@@ -121,9 +119,14 @@ def run_task(
             out=out,
             project=project,
             monitor=monitor,
-            seconds={},
+            times=_times(task, plan, design, out),
         )
         return work.run(folder)
+
+
+def _times(task: Task, plan: Plan, design: SensorDesign, out: Path) -> StepTimes:
+    key = digest([plan.task, plan.net.value, task.recipe(design, plan.size).key])
+    return StepTimes(out / "times.json", key)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -137,34 +140,38 @@ class _Work:
     out: Path
     project: Project
     monitor: Monitor
-    seconds: dict[str, float]
-    """Time of each step."""
+    times: StepTimes
 
     def run(self, folder: PhotoFolder | None) -> Result:
-        with self._timed("data"):
+        with self.times.of("data"):
             data = self._data()
         own = Renders(data, marked=self._marked)
-        with self._timed("images"):
+        with self.times.of("images"):
             view = self._view(self.design.optics)
-            lessons = self._lessons(Looker(view=view, data=data, images=own))
+            looker = Looker(view=view, data=data, images=own)
+            lessons = self._lessons(Trial.SIM, looker, self.design.optics)
         tests, networks = [], dict[Trial, list[Trained]]()
         for test in (Trial.SIM, Trial.PLACE):
-            with self._timed(test):
+            with self.times.of(test):
                 runs = lessons.learned(test, self._span(test))
             networks[test] = [run.trained for run in runs]
             tests.append(lessons.on_renders(test, runs))
         if view.sight is not None and self.task.look is Look.WINDOW:
             tell_slides(lessons, networks, tests, self.recipe.shear_step_mm)
-        details = self._details(lessons, networks[Trial.SIM][0])
+        details = {
+            **lessons.told_of(networks[Trial.SIM][0]),
+            "design": digest(design_table(self.design)),
+            "recipe": self.recipe.key,
+        }
         if folder is not None:
-            with self._timed(Trial.PHOTOS):
+            with self.times.of(Trial.PHOTOS):
                 photos = self._photos(folder, lessons, view)
                 tests.append(lessons.on_photos(Trial.PHOTOS, photos, networks[Trial.SIM]))
                 own_training = on_photos(lessons, photos, self._span(Trial.PHOTOS))
                 details["trained_on_photos"] = own_training
         if self.plan.twin:
             tests += self._twin(data, (lessons, view), networks[Trial.SIM], details)
-        details["seconds"] = {name: round(value, 1) for name, value in self.seconds.items()}
+        details["seconds"] = self.times.seconds
         return Result(plan=self.plan, design=self.design, tests=tests, details=details)
 
     @property
@@ -173,12 +180,6 @@ class _Work:
 
     def _span(self, name: str) -> Monitor:
         return part(self.monitor, *SPANS[name])
-
-    @contextmanager
-    def _timed(self, name: str) -> Iterator[None]:
-        begun = time.monotonic()
-        yield
-        self.seconds[str(name)] = time.monotonic() - begun
 
     def _data(self) -> DataSet:
         monitor = self._span("data")
@@ -212,10 +213,15 @@ class _Work:
         found = seen_once(examples(task, seen, outputs), self.plan.net)
         return found if scale is None else scale.with_safety(found)
 
-    def _lessons(self, looker: Looker) -> Lessons:
-        """All examples of the renders, and who learns from them."""
-        seen = rendered(self.task, looker, self._span("images"), self.plan.jobs)
-        found, scale = examples(self.task, seen), None
+    def _lessons(self, test: Trial, looker: Looker, optics: Optics) -> Lessons:
+        """All examples of the renders in some light, for a test, and who learns from them."""
+        span, jobs = self._span("images"), self.plan.jobs
+        found = kept_examples(
+            self.out / f"seen_{test}.npz",
+            self._rests_on(looker.data, optics),
+            lambda: examples(self.task, rendered(self.task, looker, span, jobs)),
+        )
+        scale = None
         if self.task.safety:
             scale = SafetyScale.of(found)
             found = scale.with_safety(found)
@@ -241,14 +247,14 @@ class _Work:
         """The tests on a twin, before and after it is calibrated."""
         size, store, folder = self.plan.size, self.project.store, self.out / "twin"
         plan = twin_plan(self.task, size, self.recipe, self.plan.jobs)
-        with self._timed(Trial.TWIN):
+        with self.times.of(Trial.TWIN):
             place, details["twin"] = photographed(
                 self.design, folder, plan, store, self._span(Trial.TWIN)
             )
             photos, lessons = PhotoFolder.open(place), nominal[0]
             seen = self._photos(photos, *nominal)
             tests = [lessons.on_photos(Trial.TWIN, seen, networks)]
-        with self._timed(Trial.CALIBRATED):
+        with self.times.of(Trial.CALIBRATED):
             try:
                 optics, details["calibration"] = calibrated(
                     self.design, folder, size, store, self._span("calibrate")
@@ -272,29 +278,17 @@ class _Work:
         """The same presses in calibrated light; where pins are seen, pressed anew."""
         if sees_outer_skin(self.recipe, self.project):
             anew = Reshot(self.recipe, optics, self.project, None, marked=self._marked)
-            return self._lessons(Looker(view=view, data=data, images=anew))
+            looker = Looker(view=view, data=data, images=anew)
+            return self._lessons(Trial.CALIBRATED, looker, optics)
         design = dataclasses.replace(self.design, optics=optics)
         recipe = dataclasses.replace(self.recipe, design=design)
         other = make(recipe, self.out / "data_calibrated", self.project, jobs=self.plan.jobs)
         own = Renders(other, marked=self._marked)
-        return self._lessons(Looker(view=view, data=other, images=own))
+        looker = Looker(view=view, data=other, images=own)
+        return self._lessons(Trial.CALIBRATED, looker, optics)
 
-    def _details(self, lessons: Lessons, network: Trained) -> dict[str, Any]:
-        trainer, found = lessons.trainer, lessons.found
-        scale = {} if trainer.safety is None else dataclasses.asdict(trainer.safety)
-        return {
-            "network": self.plan.net.value,
-            "weights_from": network.weights_from,
-            "parameters": sum(each.numel() for each in network.network.parameters()),
-            "learning": trainer.learning,
-            "device": trainer.device,
-            "seeds": list(SEEDS),
-            "examples": len(found),
-            "places": len(np.unique(found.places)),
-            "input_px": list(found.inputs.shape[2:4][::-1]),
-            "look": self.task.look.value,
-            "formula": self.task.formula,
-            **scale,
-            "design": digest(design_table(self.design)),
-            "recipe": self.recipe.key,
-        }
+    def _rests_on(self, data: DataSet, optics: Optics) -> list[object]:
+        """What examples of a data set in some light are of."""
+        seen_by = design_table(dataclasses.replace(self.design, optics=optics))
+        frames = sum(len(data.frames(case)) for case in data.cases())
+        return [self.plan.task, self.plan.net.value, data.key, frames, seen_by]
