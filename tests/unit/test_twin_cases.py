@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from geometry.surface.surface import vertex_areas_mm2
 from tests.unit.test_dataset_cases import flat_skin
 from workbench.calibration.seen.photo_set import read_photo_set
 from workbench.core.base.errors import DesignError
@@ -27,6 +28,7 @@ PAD = load_design("pad")
 TWIN = draw_twin(PAD, 7)
 GROUND = Ground(places_mm=flat_skin(8.0, 0.5).points_mm)
 PLAN = TwinPlan(seed=7)
+SQUARE = flat_skin(5.0, 10.0)
 
 
 def field(frames: int, share: np.ndarray | None = None) -> ForceField:
@@ -92,7 +94,7 @@ def test_a_slide_gives_eight_frames_before_gross_slip_and_eight_that_end_in_it()
         assert np.diff([photo.frame for photo in each]).tolist() == [1] * (FRAMES - 1)
     assert hold[-1].frame < 12 <= slip[-1].frame
     assert len({photo.number for photo in taken}) == len({photo.name for photo in taken}) == 16
-    rows = [label_row(photo, field(24, share)) for photo in taken]
+    rows = [label_row(photo, field(24, share), SQUARE) for photo in taken]
     assert {row["slip"] for row in rows} == {"0", "1"}
     assert len({row["sequence"] for row in rows}) == 2
     assert photos_of(TWIN, slide, field(24, np.full(24, 0.3))) == []
@@ -109,11 +111,25 @@ def test_a_pure_press_that_slides_at_first_touch_is_no_slip() -> None:
 def test_labels_say_force_on_the_membrane_and_depth_of_the_frame() -> None:
     """Minus the force on the object; depth grows by thirds."""
     press = case(TWIN, PLAN, GROUND, Kind.PRESS, 3)
-    rows = [label_row(each, field(3)) for each in photos_of(TWIN, press, field(3))]
+    rows = [label_row(each, field(3), SQUARE) for each in photos_of(TWIN, press, field(3))]
     assert [float(row["force_z_N"]) for row in rows] == pytest.approx([-0.1, -0.2, -0.3])
     thirds = press.press.depth_mm * np.array([1.0, 2.0, 3.0]) / 3.0
     assert [float(row["depth_mm"]) for row in rows] == pytest.approx(thirds.tolist(), abs=1e-4)
     assert "slip" not in rows[0]
+
+
+@pytest.mark.parametrize("edge_mm", [0.25, 0.5])
+def test_the_peak_of_a_label_knows_no_mesh(edge_mm: float) -> None:
+    """.1 N on one vertex are .1 / pi MPa on the disc whatever its area, .02 MPa all over .02."""
+    press = case(TWIN, PLAN, GROUND, Kind.PRESS, 3)
+    taken, skin = photos_of(TWIN, press, field(3))[0], flat_skin(8.0, edge_mm)
+    middle = int(np.argmin(np.linalg.norm(skin.points_mm, axis=1)))
+    sharp_N, even_N = np.zeros((2, 3, len(skin.points_mm), 3))
+    sharp_N[:, middle, 2] = -0.1
+    even_N[:, :, 2] = -0.02 * vertex_areas_mm2(skin.points_mm, skin.faces)
+    for forces_N, peak_MPa in ((sharp_N, 0.1 / np.pi), (even_N, 0.02)):
+        row = label_row(taken, dataclasses.replace(field(3), contact_force_N=forces_N), skin)
+        assert float(row["peak_MPa"]) == pytest.approx(peak_MPa, rel=0.05)
 
 
 def test_a_calibration_folder_is_one_that_calibrate_reads(tmp_path: Path) -> None:

@@ -224,7 +224,7 @@ class _Work:
     def _row(self, photo: Taken, field: ForceField) -> dict[str, str]:
         """A photograph's line of its table."""
         if photo.case.kind is not Kind.CALIBRATION:
-            return label_row(photo, field)
+            return label_row(photo, field, self.mesh.outer)
         return ball_row(photo, field, self.plan.ball_mm, draw_stage(self.twin.seed))
 
     def _pressed(self, each: TwinCase, monitor: Monitor) -> ForceField | None:

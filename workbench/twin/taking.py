@@ -6,16 +6,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sim.forces.peaks import largest_disc_N
 from sim.forces.slip import GROSS_SHARE
 from workbench.calibration.seen.photo_set import POSE
 from workbench.core.result.force_field import ForceField
+from workbench.core.result.results import Skin
+from workbench.learning.dataset.photo_labels import DISC_MM2, PEAK
 from workbench.learning.dataset.sequences import FRAMES
 from workbench.twin.cases import BALL_FRAMES, PRESS_FRAMES, Kind, TwinCase
 from workbench.twin.draw import Draws, Twin, stream
 from workbench.twin.stage import Stage
 
 LABELS = (
-    *("photo", "object", "place", "sequence", "frame", "slip", "depth_mm", "peak_MPa"),
+    *("photo", "object", "place", "sequence", "frame", "slip", "depth_mm", PEAK),
     *("force_x_N", "force_y_N", "force_z_N", *POSE),
 )
 """Columns of `labels.csv`; the pose is where the object touched first, in the sensor frame."""
@@ -75,16 +78,23 @@ def ball_row(taken: Taken, field: ForceField, ball_mm: float, stage: Stage) -> d
     return {"photo": f"{taken.name}.png", "ball_mm": f"{ball_mm:g}", **pose}
 
 
-def label_row(taken: Taken, field: ForceField) -> dict[str, str]:
-    """A photograph's line of `labels.csv`."""
+def label_row(taken: Taken, field: ForceField, skin: Skin) -> dict[str, str]:
+    """A photograph's line of `labels.csv`; its peak is that of `photo_labels`.
+
+    Args:
+        taken: The photograph.
+        field: The solved path.
+        skin: The outer one, at rest, that the object's forces act on.
+    """
     frame, case = taken.frame, taken.case
+    peak_N = largest_disc_N(skin, field.contact_force_N[frame].astype(np.float64))
     force = dict(zip("xyz", -field.reaction_N[frame], strict=True))
     row = {
         "photo": f"{taken.name}.png",
         "object": case.name,
         "place": case.place,
         "depth_mm": f"{case.depth_at_mm(frame):.4f}",
-        "peak_MPa": f"{float(field.pressure_MPa[frame].max(initial=0.0)):.6f}",
+        PEAK: f"{peak_N / DISC_MM2:.6f}",
         **{f"force_{axis}_N": f"{value:.6f}" for axis, value in force.items()},
         **{name: f"{value:.4f}" for name, value in zip(POSE, field.target_mm, strict=True)},
     }

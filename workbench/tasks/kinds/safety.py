@@ -1,9 +1,9 @@
 """Judge how safe a contact is for the skin, by the largest pressure in it.
 
-The coefficient is 1 - (p - low) / (high - low), cut to 0 and 1: p is the largest contact pressure,
-low and high its least and largest value in the renders. So 1 is safe and 0 the most dangerous
-press of the set; the paper normalises to 0 and 1 without saying by what, and its p is the largest
-force of a vertex, which grows with the mesh.
+The coefficient is 1 - (p - low) / (high - low), cut to 0 and 1: p is the largest mean pressure on a
+disc of 2 mm (`workbench.learning.dataset.photo_labels`), low and high its least and largest value
+in the renders. So 1 is safe and 0 the most dangerous press of the set; the paper normalises to 0
+and 1 without saying by what, and its p is the largest force of a vertex, which grows with the mesh.
 Source of task and scores: SimTac, *Sim2Real transfer of contact safety assessment*.
 """
 
