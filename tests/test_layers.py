@@ -51,7 +51,8 @@ RANKS = """
     workbench.proof.validation.fem  workbench.proof.validation.reading
     workbench.proof.benchmarks
     workbench.learning.evaluation
-    workbench.tasks.networks  workbench.tasks  workbench.tasks.kinds
+    workbench.tasks.networks  workbench.tasks.kept  workbench.tasks
+    workbench.tasks.kinds
     workbench.proof.validation.learned
     workbench.proof.validation.published
     workbench.proof.validation.tasks  workbench.proof.validation.sensor

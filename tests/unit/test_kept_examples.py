@@ -11,8 +11,8 @@ import pytest
 
 from workbench.tasks import kept_examples as module
 from workbench.tasks.examples import Examples
+from workbench.tasks.kept.step_times import StepTimes
 from workbench.tasks.kept_examples import kept_examples
-from workbench.tasks.step_times import StepTimes
 
 
 def found() -> Examples:
@@ -78,7 +78,7 @@ def test_what_is_of_something_else_is_seen_anew(
 def test_times_of_a_step_add_up_over_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Also of one that was stopped inside; another task begins at nothing."""
     clock = iter([0.0, 2.0, 10.0, 13.0, 20.0, 21.0])
-    monkeypatch.setattr("workbench.tasks.step_times.time.monotonic", lambda: next(clock))
+    monkeypatch.setattr("workbench.tasks.kept.step_times.time.monotonic", lambda: next(clock))
     path = tmp_path / "times.json"
     times = StepTimes(path, "one")
     with times.of("data"):

@@ -34,6 +34,7 @@ from workbench.project.design_toml import design_table
 from workbench.project.project import Project
 from workbench.tasks.examples import Examples, examples
 from workbench.tasks.features import seen_once, with_features
+from workbench.tasks.kept.step_times import StepTimes
 from workbench.tasks.kept_examples import kept_examples
 from workbench.tasks.lessons import Lessons
 from workbench.tasks.outcome import Tested, Trial
@@ -44,7 +45,6 @@ from workbench.tasks.reshoot import Reshot, sees_outer_skin
 from workbench.tasks.safety_scale import SafetyScale
 from workbench.tasks.seen_images import View, view_of, whole
 from workbench.tasks.slip_delay import tell_slides
-from workbench.tasks.step_times import StepTimes
 from workbench.tasks.task import Look, Net, Size, Task, task_of
 from workbench.tasks.trained import Trained, Trainer
 from workbench.tasks.twin_test import calibrated, photographed, twin_plan

@@ -8,13 +8,15 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from workbench.core.base.monitor import Monitor
 from workbench.core.design.design import SensorDesign
 from workbench.core.design.optics import Optics
 from workbench.learning.dataset.recipe import Recipe
 from workbench.pipeline.store import Store
+from workbench.project.design_toml import design_table
+from workbench.tasks.kept.kept_calibration import kept_calibration
 from workbench.tasks.task import Look, Size, Task
 from workbench.twin.cases import Kind
 from workbench.twin.first_camera import seen_at
@@ -22,9 +24,14 @@ from workbench.twin.make import make_twin
 from workbench.twin.twin_folder import FOLDERS
 from workbench.twin.twin_plan import TwinPlan
 
+if TYPE_CHECKING:
+    from workbench.calibration.seen.photo_set import PhotoSet
+
 CALIBRATION = {Size.SMALL: 8, Size.PAPER: 20}
 PRESSES = {Size.SMALL: 24, Size.PAPER: 140}
 SLIDES = {Size.SMALL: 8, Size.PAPER: 100}
+CALIBRATED = "calibrated"
+"""Folder of what was fitted, beside the twin's."""
 WIDTH_PX = 320
 """Of the twin's photographs [px]."""
 REFINED = {Size.SMALL: "powers", Size.PAPER: "all"}
@@ -74,6 +81,8 @@ def calibrated(
 ) -> tuple[Optics, dict[str, Any]]:
     """Light and camera fitted to a twin's photographs of a ball, and how well they explain them.
 
+    Kept in a folder beside the twin's.
+
     Args:
         design: The nominal one.
         twin: Folder of the twin.
@@ -84,18 +93,30 @@ def calibrated(
     Raises:
         WorkbenchError: As `calibrate`.
     """
-    from workbench.calibration.calibrate import calibrate
-    from workbench.calibration.fitted_design import with_unit
     from workbench.calibration.seen.photo_set import read_photo_set
-    from workbench.core.design.unit import unit
 
     photos = read_photo_set(twin / FOLDERS[Kind.CALIBRATION])
     height_px, width_px = photos.idle.shape[:2]
     sized = seen_at(design, width_px, height_px)
-    found = calibrate(sized, photos, store, lights="known", monitor=monitor, refining=REFINED[size])
-    whole = with_unit(found.design, unit("unit.npz", found.unit_data))
-    return whole.optics, {
-        "fitted": REFINED[size],
+
+    def fit() -> tuple[SensorDesign, dict[str, Any]]:
+        return _fitted(sized, photos, REFINED[size], store, monitor)
+
+    rests_on = [design_table(sized), REFINED[size], photos.idle, *photos.photos]
+    whole, told = kept_calibration(twin.with_name(CALIBRATED), rests_on, fit)
+    return whole.optics, told
+
+
+def _fitted(
+    design: SensorDesign, photos: PhotoSet, refining: str, store: Store, monitor: Monitor
+) -> tuple[SensorDesign, dict[str, Any]]:
+    from workbench.calibration.calibrate import calibrate
+    from workbench.calibration.fitted_design import with_unit
+    from workbench.core.design.unit import unit
+
+    found = calibrate(design, photos, store, lights="known", monitor=monitor, refining=refining)
+    return with_unit(found.design, unit("unit.npz", found.unit_data)), {
+        "fitted": refining,
         "photos": len(photos.photos),
         "error_grey": found.powers.error_grey,
         "null_grey": found.powers.null_grey,
