@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -95,6 +96,10 @@ class Looker:
             labels={**labels_of(shot.case, samples[-1], self.data.skin), **shot.more},
         )
 
+    def each(self, shots: Sequence[Shot]) -> list[Seen]:
+        """What examples show, one after the other."""
+        return [self(shot) for shot in shots]
+
     def shots(self, task: Task) -> list[Shot]:
         """All examples of a task."""
         if task.look is Look.WINDOW:
@@ -115,19 +120,20 @@ def rendered(task: Task, looker: Looker, monitor: Monitor, jobs: int = 1) -> lis
         task: Says whether single images or windows are shown.
         looker: Looks at them.
         monitor: Progress and cancellation.
-        jobs: Processes that look where dents are read, which takes a tenth of a second each.
+        jobs: Processes that look side by side, a case each: to read a dent takes a tenth of a
+            second, and windows of a slide share images that are taken anew.
 
     Raises:
         StoreError: If a sample is damaged.
         LaneError: If a process ended by itself.
     """
     shots = looker.shots(task)
-    if jobs > 1 and looker.view.dents is not None:
+    if jobs > 1:
+        cases = itertools.groupby(shots[1:], key=lambda shot: shot.case.id)
+        groups = [list(group) for _, group in cases]
         # The first is looked at here, so that the light is in the store before they all ask for it.
-        return [
-            *(looker(shot) for shot in shots[:1]),
-            *side_by_side(looker, shots[1:], jobs, monitor),
-        ]
+        first = looker.each(shots[:1])
+        return [*first, *itertools.chain(*side_by_side(looker.each, groups, jobs, monitor))]
     found = []
     for number, shot in enumerate(shots):
         monitor(number / len(shots), shot.case.id)

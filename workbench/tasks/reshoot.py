@@ -8,7 +8,7 @@ less than before, since these are known from photographs now.
 from __future__ import annotations
 
 import dataclasses
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from workbench.core.design.optics import Optics
 from workbench.core.result.results import MembraneMesh
 from workbench.learning.dataset.cases import Case
 from workbench.learning.dataset.recipe import Recipe
-from workbench.learning.dataset.sample import Sample, decoded
+from workbench.learning.dataset.sample import Sample
 from workbench.learning.dataset.sights import Sight, sights_of
 from workbench.learning.dataset.variation import Looks
 from workbench.learning.making.collect import prepare
@@ -26,7 +26,7 @@ from workbench.planning.plan import StageMonitor
 from workbench.project.project import Project
 
 if TYPE_CHECKING:
-    from workbench.learning.dataset.images import Cameras, Views
+    from workbench.learning.dataset.images import Cameras
 
 LEFT = 0.3
 """Of what light and camera are off by chance, what a calibration leaves: our choice."""
@@ -78,30 +78,39 @@ class Reshot:
         self._marked = marked
         self._opened: dict[int, Cameras] = {}
         self._rest: dict[int, np.ndarray] = {}
-        open_device()
+        self._taken: dict[int, np.ndarray] = {}
+        self._of = ""
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Cameras stay where they were opened: another process opens its own."""
+        return {**self.__dict__, "_opened": {}, "_rest": {}, "_taken": {}, "_of": ""}
 
     def shown(self, case: Case, sample: Sample) -> np.ndarray:
         """The image of a sample, shape (H, W, 3), uint8."""
-        solved = sample.fem or sample.mpm
-        assert solved is not None, "a sample holds at least one solver's"
-        return self._image(self._cameras(case).seen(solved.displacement_mm))
+        if self._of != case.id:
+            # Windows of a slide overlap: what was taken of it is shown again.
+            self._taken, self._of = {}, case.id
+        if sample.frame not in self._taken:
+            solved = sample.fem or sample.mpm
+            assert solved is not None, "a sample holds at least one solver's"
+            self._taken[sample.frame] = self._image(case, solved.displacement_mm)
+        return self._taken[sample.frame]
 
     def at_rest(self, case: Case) -> np.ndarray:
         """The sensor that sees a case at rest."""
         number = case.drawn.look or 0
         if number not in self._rest:
-            self._rest[number] = self._image(self._cameras(case).at_rest())
+            still_mm = np.zeros_like(self._mesh.seen.points_mm, dtype=np.float32)
+            self._rest[number] = self._image(case, still_mm)
         return self._rest[number]
 
-    def _cameras(self, case: Case) -> Cameras:
+    def _image(self, case: Case, displacement_mm: np.ndarray) -> np.ndarray:
         number = case.drawn.look or 0
         if number not in self._opened:
+            open_device()
             sight: Sight = self._sights[number]
             self._opened[number] = sight.cameras(self._mesh, self._store)
-        return self._opened[number]
-
-    def _image(self, views: Views) -> np.ndarray:
-        return decoded(views.png_markers if self._marked else views.png)
+        return self._opened[number].image(displacement_mm, marked=self._marked)
 
 
 def sees_outer_skin(recipe: Recipe, project: Project) -> bool:

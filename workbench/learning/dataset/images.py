@@ -75,6 +75,15 @@ class Cameras:
         """Images and markers of the undeformed skin."""
         return self.seen(np.zeros((self._vertices, 3), np.float32))
 
+    def image(self, displacement_mm: np.ndarray, *, marked: bool) -> np.ndarray:
+        """One of both images of the skin moved by (V, 3) [mm], shape (H, W, 3), uint8.
+
+        Raises:
+            OpticsError: If a displacement is not finite.
+        """
+        studio = self._marked if marked else self._plain
+        return studio.images(displacement_mm[None])[0]
+
     def seen(self, displacement_mm: np.ndarray) -> Views:
         """Images and markers of the skin that the camera looks at, moved by (V, 3) [mm].
 
