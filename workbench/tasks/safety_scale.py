@@ -64,6 +64,11 @@ class SafetyScale:
         return np.hstack([self.safety(peak_MPa), peak_MPa])
 
     @property
+    def level_per_log(self) -> float:
+        """By how much the level grows where the logarithm of the pressure grows by one."""
+        return 1.0 / self._scale[1]
+
+    @property
     def _scale(self) -> tuple[float, float]:
         """Floor [MPa] and the logarithm of how many times it the largest is."""
         floor_MPa = max(self.low_MPa, FAINTEST * self.high_MPa, 1e-12)

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from workbench.tasks.networks.learn import Learned, Part, Settings
 
-FORMAT = 5
+FORMAT = 6
 
 
 SETTINGS = {
@@ -115,7 +115,7 @@ class Trainer:
             Part(inputs=inputs[rows], at=found.at[rows], truth=_wanted(truth[rows], scale))
             for rows in (parts.train, parts.validation)
         )
-        network, weights_from = made(self.net, self.task, outputs, train)
+        network, weights_from = made(self.net, self.task, outputs, train, self.safety)
         network.to(self.device)
         path = self.folder / f"{name}-seed{seed}.pt"
         key = self._key(found, parts, seed, weights_from)
@@ -212,7 +212,9 @@ class Trainer:
         )
 
 
-def made(net: Net, task: Task, outputs: int, part: Part) -> tuple[nn.Module, str]:
+def made(
+    net: Net, task: Task, outputs: int, part: Part, safety: SafetyScale | None = None
+) -> tuple[nn.Module, str]:
     """A network by name, and where its first weights come from.
 
     Args:
@@ -220,6 +222,7 @@ def made(net: Net, task: Task, outputs: int, part: Part) -> tuple[nn.Module, str
         task: Says whether it sees images or windows.
         outputs: Numbers that it tells.
         part: What it learns from.
+        safety: Scale of the level of pressure, where one is told.
     """
     if net is Net.OWN:
         from workbench.tasks.networks.own import OwnNet
@@ -232,7 +235,12 @@ def made(net: Net, task: Task, outputs: int, part: Part) -> tuple[nn.Module, str
     if net in HEADS:
         from workbench.tasks.networks.head import Head
 
-        return Head(outputs, part, told_places=net is Net.LITE), HEADS[net]
+        known = {}
+        if safety is not None and net is Net.MEASURES:
+            from workbench.tasks.networks.measures import PRESSURE
+
+            known[PRESSURE] = safety.level_per_log
+        return Head(outputs, part, told_places=net is Net.LITE, known=known), HEADS[net]
     from workbench.tasks.networks.published import ResNet, VggLstm
 
     published = (VggLstm if task.look is Look.WINDOW else ResNet)(outputs)

@@ -6,7 +6,7 @@ Ridge regression, 1970; Bishop, Pattern recognition and machine learning, 2006, 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -30,8 +30,16 @@ class Head(nn.Module):
 
     middle: Tensor
     spread: Tensor
+    known: Tensor
 
-    def __init__(self, outputs: int, part: Part, *, told_places: bool) -> None:
+    def __init__(
+        self,
+        outputs: int,
+        part: Part,
+        *,
+        told_places: bool,
+        known: Mapping[int, float] | None = None,
+    ) -> None:
         """Begin at random.
 
         Args:
@@ -39,6 +47,8 @@ class Head(nn.Module):
             part: What it learns from: middle and spread of all it sees become 0 and 1.
             told_places: Whether the place of a contact counts. It leads classes astray where
                 presses are few, and pressures on photographs, whose differences are other ones.
+            known: Weights of features, by their numbers, that no learning is needed for: only what
+                they leave is learned, so that a large penalty ends with them, not with the mean.
         """
         super().__init__()
         self.told_places = told_places
@@ -50,6 +60,10 @@ class Head(nn.Module):
         self.register_buffer("middle", torch.as_tensor(middle, dtype=torch.float32))
         self.register_buffer("spread", torch.as_tensor(spread, dtype=torch.float32))
         features, places = seen.shape[1], placed.shape[1]
+        weights = torch.zeros(features)
+        for feature, weight in (known or {}).items():
+            weights[feature] = weight
+        self.register_buffer("known", weights)
         self.one = nn.Linear(features + places, outputs)
 
     def places(self, at: Tensor) -> Tensor:
@@ -68,7 +82,11 @@ class Head(nn.Module):
     def forward(self, seen: Tensor, at: Tensor) -> Tensor:
         """Numbers, shape (B, K), with where and how strong it is, (B, 8)."""
         even, placed = self.even(seen, at)
-        return self.one(torch.cat([even[:, 0], placed], dim=1))
+        return self.one(torch.cat([even[:, 0], placed], dim=1)) + self.before(seen)
+
+    def before(self, seen: Tensor) -> Tensor:
+        """What is known of features (B, 1, F) without learning, shape (B, 1)."""
+        return seen[:, 0] @ self.known[:, None]
 
 
 def fit_values(head: Head, parts: tuple[Part, Part], *, cautious: bool = False) -> Learned:
@@ -87,12 +105,12 @@ def fit_values(head: Head, parts: tuple[Part, Part], *, cautious: bool = False) 
     train, validation = parts
     copies = train.inputs.shape[1]
     known = np.concatenate([_row(head, train, copy) for copy in range(copies)])
-    truth = np.tile(train.truth, (copies, 1)).astype(np.float64)
-    held_out = _row(head, validation, 0)
+    truth = np.concatenate([_left(head, train, copy) for copy in range(copies)])
+    held_out, wanted = _row(head, validation, 0), _left(head, validation, 0)
     middle = truth.mean(axis=0)
     found, errors, curve = list(ridge(known, truth - middle)), [], []
     for weights in found:
-        errors.append(np.abs(held_out @ weights + middle - validation.truth).mean(axis=1))
+        errors.append(np.abs(held_out @ weights + middle - wanted).mean(axis=1))
         learned = float(np.abs(known @ weights + middle - truth).mean())
         curve.append({"train": learned, "validation": float(errors[-1].mean())})
     least = min(errors, key=np.mean)
@@ -170,6 +188,12 @@ def fit_classes(head: Head, parts: tuple[Part, Part]) -> Learned:
     head.one.weight.data = best[2][:, :-1].to(head.one.weight.device)
     head.one.bias.data = best[2][:, -1].to(head.one.weight.device)
     return Learned(epoch=best[1], curve=curve)
+
+
+def _left(head: Head, part: Part, copy: int) -> np.ndarray:
+    """Values of a part less what a head knows before it learns, shape (N, K)."""
+    seen = torch.as_tensor(part.inputs[:, copy], device=head.middle.device).float()
+    return part.truth.astype(np.float64) - head.before(seen).cpu().numpy().astype(np.float64)
 
 
 def _row(head: Head, part: Part, copy: int) -> np.ndarray:

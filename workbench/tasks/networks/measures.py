@@ -1,51 +1,60 @@
-"""Measures of a dent that was read, for a head that learns: how deep, wide, full and steep it is.
+"""Measures of a dent that was read, for a head that learns: what pressure an elastic layer would
+have under it, and how deep, wide, full and steep it is.
 
-What presses the skin leaves its pressure in the dent: deep where it pushes far, steep where it has
-edges, wide where it is blunt. A sensor in another light that is known reads nearly the same dent,
-so what is learned from renders holds on photographs.
+What presses the skin leaves its pressure in the dent. Elasticity tells most of it, in any light and
+of any object; a large or sharp object that presses deep is read too shallow and told too soft, and
+what its dent looks like tells by how much. A sensor in another light that is known reads nearly the
+same dent, so what is learned from renders holds on photographs.
+
+Each is told as it is and as its logarithm: what changes a pressure multiplies it.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+from sim.forces.peaks import DISC_MM
+from workbench.tasks.networks.layer_pressure import disc_pressure
 from workbench.tasks.networks.patch import GREY_PER_MM, MM_PER_PX
 
 TOP, STEEPEST = (5, 50, 200), 20
 """Pixels that the deepest of a dent are means of, and the steepest."""
 LEVELS_MM, SHARES = (0.05, 0.1), (0.5, 0.8)
 """Depths, and shares of the deepest, beyond which its area counts."""
-COUNT = 14
-LEAST_MM2 = 1.0
-"""Added to the area that a volume is divided by: of no dent the mean depth is none."""
+LEAST = np.array([1e-3, *[0.01] * 3, *[0.1] * 4, 0.1, 0.01, 0.1])
+"""Added to each before its logarithm: of no dent it is finite."""
+COUNT = 2 * len(LEAST)
+PRESSURE = 0
+"""Which is the logarithm of the pressure over E*."""
 
 
 def measures(inputs: np.ndarray) -> np.ndarray:
-    """Measures of dents, shape (N, 1, T, `COUNT`), float32.
+    """Measures of dents, logarithms before the rest, shape (N, 1, T, `COUNT`), float32.
 
     Args:
         inputs: As `DentSight` reads them and `SkinSight` lays them flat, `GREY_PER_MM` for a
             millimetre, shape (N, T, h, w, 3), int16.
     """
     rows = [[_of_one(image[..., 0] / GREY_PER_MM) for image in each] for each in inputs]
-    return np.array(rows, np.float32)[:, None]
+    found = np.array(rows)
+    return np.concatenate([np.log(found + LEAST), found], axis=2, dtype=np.float32)[:, None]
 
 
 def _of_one(inward_mm: np.ndarray) -> list[float]:
-    """Of a dent (h, w) [mm]: lengths in mm, areas in mm2, slopes in mm per mm."""
+    """Of a dent (h, w) [mm]: pressure over E*, lengths [mm], areas [mm2], volume [mm3], slopes."""
     dent_mm = np.maximum(inward_mm, 0.0)
     pixel_mm2 = MM_PER_PX**2
     down, across = np.gradient(dent_mm, MM_PER_PX)
     slope = np.hypot(across, down)
     deepest, deep, wide = (_top(dent_mm, count) for count in TOP)
-    steep, volume_mm3 = _top(slope, STEEPEST), float(dent_mm.sum()) * pixel_mm2
     levels_mm = (*LEVELS_MM, *(share * deepest + 1e-9 for share in SHARES))
-    areas_mm2 = [float((dent_mm > level).sum()) * pixel_mm2 for level in levels_mm]
     return [
-        *(deepest, deepest**1.5, deepest**2, deep, wide),
-        *areas_mm2,
-        *(volume_mm3, volume_mm3 / (areas_mm2[0] + LEAST_MM2)),
-        *(steep, deepest * steep, float((slope**2).sum()) * pixel_mm2),
+        max(float(disc_pressure(dent_mm, DISC_MM).max()), 0.0),
+        *(deepest, deep, wide),
+        *(float((dent_mm > level).sum()) * pixel_mm2 for level in levels_mm),
+        float(dent_mm.sum()) * pixel_mm2,
+        _top(slope, STEEPEST),
+        float((slope**2).sum()) * pixel_mm2,
     ]
 
 
