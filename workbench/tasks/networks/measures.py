@@ -1,10 +1,10 @@
-"""Measures of a dent that was read, for a head that learns: what pressure an elastic layer would
-have under it, and how deep, wide, full and steep it is.
+"""Measures of a dent that was read, for a head that learns pressures.
 
-What presses the skin leaves its pressure in the dent. Elasticity tells most of it, in any light and
-of any object; a large or sharp object that presses deep is read too shallow and told too soft, and
-what its dent looks like tells by how much. A sensor in another light that is known reads nearly the
-same dent, so what is learned from renders holds on photographs.
+What presses the skin leaves its pressure in the dent. What an elastic layer would have under it
+tells most of that, in any light and of any object. A large or sharp object that presses deep is
+read too shallow and told too soft; how deep, wide, full and steep its dent is tells by how much.
+A sensor in another light that is known reads nearly the same dent, so what is learned from renders
+holds on photographs.
 
 Each is told as it is and as its logarithm: what changes a pressure multiplies it.
 """
