@@ -10,9 +10,10 @@ import pytest
 
 from workbench.core.base.errors import SolveError
 from workbench.core.design.design import SensorDesign
+from workbench.planning.stage_table import STAGES
 from workbench.project.design_toml import design_table
 from workbench.project.named_designs import load_design
-from workbench.tasks.kept import kept_calibration as module
+from workbench.tasks.kept import kept_key
 from workbench.tasks.kept.kept_calibration import kept_calibration
 
 POWERS = (2.0 / 3.0, 0.1 + 0.2, *(1.0,) * 10)
@@ -52,7 +53,7 @@ def test_what_was_fitted_is_read_again(tmp_path: Path) -> None:
     assert design_table(other) == design_table(first[0])
 
 
-@pytest.mark.parametrize("what", ["photos", "code", "design", "told", "unit"])
+@pytest.mark.parametrize("what", ["photos", "code", "stage", "design", "told", "unit"])
 def test_what_is_of_something_else_or_damaged_is_fitted_anew(
     what: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -60,8 +61,11 @@ def test_what_is_of_something_else_or_damaged_is_fitted_anew(
     fit = Fitter()
     kept_calibration(tmp_path, ["photos"], fit)
     rests_on: list[object] = ["others"] if what == "photos" else ["photos"]
+    if what == "stage":
+        raised = dataclasses.replace(STAGES["bake"], version=99)
+        monkeypatch.setitem(kept_key.STAGES, "bake", raised)
     if what == "code":
-        monkeypatch.setattr(module, "code_digest", lambda sources: "of another day")
+        monkeypatch.setattr(kept_key, "code_digest", lambda sources: "of another day")
     if what in ("design", "told"):
         for path in tmp_path.glob(f"{what}.*"):
             path.write_bytes(path.read_bytes()[:40])

@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from workbench.tasks import kept_examples as module
+from workbench.planning.stage_table import STAGES
 from workbench.tasks.examples import Examples
+from workbench.tasks.kept import kept_key
 from workbench.tasks.kept.step_times import StepTimes
 from workbench.tasks.kept_examples import kept_examples
 
@@ -56,7 +57,7 @@ def test_what_was_seen_is_read_again(tmp_path: Path) -> None:
     assert again.outputs == first.outputs
 
 
-@pytest.mark.parametrize("what", ["recipe", "code", "truncated", "rubbish"])
+@pytest.mark.parametrize("what", ["recipe", "code", "stage", "truncated", "rubbish"])
 def test_what_is_of_something_else_is_seen_anew(
     what: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -64,8 +65,11 @@ def test_what_is_of_something_else_is_seen_anew(
     path, see = tmp_path / "seen.npz", Eyes()
     kept_examples(path, ["recipe"], see)
     rests_on: list[object] = ["another"] if what == "recipe" else ["recipe"]
+    if what == "stage":
+        raised = dataclasses.replace(STAGES["bake"], version=99)
+        monkeypatch.setitem(kept_key.STAGES, "bake", raised)
     if what == "code":
-        monkeypatch.setattr(module, "code_digest", lambda sources: "of another day")
+        monkeypatch.setattr(kept_key, "code_digest", lambda sources: "of another day")
     if what == "truncated":
         path.write_bytes(path.read_bytes()[:-200])
     if what == "rubbish":

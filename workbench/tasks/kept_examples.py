@@ -10,12 +10,16 @@ from typing import Any
 
 import numpy as np
 
-from workbench.core.base.digest import digest
-from workbench.system.record import code_digest
 from workbench.system.whole_files import write_atomically
 from workbench.tasks.examples import Examples
+from workbench.tasks.kept.kept_key import kept_key
 
-SOURCES = ("workbench.tasks.rendered", "workbench.tasks.examples")
+SOURCES = (
+    "workbench.tasks.rendered",
+    "workbench.tasks.examples",
+    "workbench.tasks.reshoot",
+    "workbench.tasks.kinds",
+)
 """Code that they rest on, with what it imports."""
 ARRAYS = ("places", "inputs", "at", "feet_mm", "axes", "motion", "truth")
 WORDS = ("names", "outputs")
@@ -33,7 +37,7 @@ def kept_examples(path: Path, rests_on: list[object], see: Callable[[], Examples
     Raises:
         StoreError: If the file cannot be written.
     """
-    key = digest([rests_on, code_digest(SOURCES)])
+    key = kept_key(rests_on, SOURCES)
     found = _read(path, key)
     if found is None:
         found = see()

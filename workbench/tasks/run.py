@@ -290,5 +290,5 @@ class _Work:
     def _rests_on(self, data: DataSet, optics: Optics) -> list[object]:
         """What examples of a data set in some light are of."""
         seen_by = design_table(dataclasses.replace(self.design, optics=optics))
-        frames = sum(len(data.frames(case)) for case in data.cases())
+        frames = [[case.id, data.frames(case)] for case in data.cases()]
         return [self.plan.task, self.plan.net.value, data.key, frames, seen_by]

@@ -206,7 +206,13 @@ class Trainer:
             [
                 {**held_fixed, **held, "grey": shown.GREY, "gain": shown.GAIN},
                 self.learning,
-                [found.inputs, found.at, found.truth.astype(np.float64), found.axes, *parts],
+                [
+                    shown_to(self.net, found),
+                    found.at,
+                    found.truth.astype(np.float64),
+                    found.axes,
+                    *parts,
+                ],
                 list(found.outputs),
             ]
         )

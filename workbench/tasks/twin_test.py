@@ -34,6 +34,8 @@ CALIBRATED = "calibrated"
 """Folder of what was fitted, beside the twin's."""
 WIDTH_PX = 320
 """Of the twin's photographs [px]."""
+LIGHTS = "known"
+"""What of them a builder knows: how many there are and where they were meant to be."""
 REFINED = {Size.SMALL: "powers", Size.PAPER: "all"}
 """What is fitted: powers and colours of the lights alone, or camera and coating as well, which
 takes minutes: by it a dent is found nearer to its place (presses of .3 mm in a finger's twin are
@@ -102,7 +104,7 @@ def calibrated(
     def fit() -> tuple[SensorDesign, dict[str, Any]]:
         return _fitted(sized, photos, REFINED[size], store, monitor)
 
-    rests_on = [design_table(sized), REFINED[size], photos.idle, *photos.photos]
+    rests_on = [design_table(sized), LIGHTS, REFINED[size], photos.idle, *photos.photos]
     whole, told = kept_calibration(twin.with_name(CALIBRATED), rests_on, fit)
     return whole.optics, told
 
@@ -114,7 +116,7 @@ def _fitted(
     from workbench.calibration.fitted_design import with_unit
     from workbench.core.design.unit import unit
 
-    found = calibrate(design, photos, store, lights="known", monitor=monitor, refining=refining)
+    found = calibrate(design, photos, store, lights=LIGHTS, monitor=monitor, refining=refining)
     return with_unit(found.design, unit("unit.npz", found.unit_data)), {
         "fitted": refining,
         "photos": len(photos.photos),

@@ -20,8 +20,8 @@ from workbench.core.base.errors import DesignError
 from workbench.core.design.design import SensorDesign
 from workbench.project.design_toml import design_files, design_table, design_to_toml
 from workbench.project.named_designs import load_design
-from workbench.system.record import code_digest
 from workbench.system.whole_files import write_atomically
+from workbench.tasks.kept.kept_key import kept_key
 
 SOURCES = ("workbench.calibration.calibrate", "workbench.calibration.fitted_design")
 """Code that it rests on, with what it imports."""
@@ -41,7 +41,7 @@ def kept_calibration(folder: Path, rests_on: list[object], fit: Callable[[], Fit
         StoreError: If the folder cannot be written.
         WorkbenchError: As `fit`; nothing is kept then.
     """
-    key = digest([rests_on, code_digest(SOURCES)])
+    key = kept_key(rests_on, SOURCES)
     found = _read(folder, key)
     if found is None:
         found = fit()
