@@ -85,8 +85,8 @@ def test_dents_are_drawn_alike_by_the_same_seed() -> None:
     assert torch.equal(first[0], second[0]) and torch.equal(first[1], second[1])
     assert not torch.equal(first[0], other[0])
     assert set(first[1].tolist()) == {0, 1, 2}
-    assert first[0].shape == (200, 1, PATCH_PX, PATCH_PX)
-    assert 0.2 < float(first[0].max()) < 2.0
+    assert first[0].shape == (200, 2, PATCH_PX, PATCH_PX)
+    assert 0.2 < float(first[0][:, 0].max()) < 2.0
 
 
 def test_a_dent_is_moved_to_the_middle() -> None:
@@ -94,7 +94,8 @@ def test_a_dent_is_moved_to_the_middle() -> None:
     places = torch.arange(PATCH_PX, dtype=torch.float32)
     down, across = torch.meshgrid(places, places, indexing="ij")
     one = torch.exp(-((down - 22.0) ** 2 + (across - 40.0) ** 2) / 18.0)[None, None]
-    found = in_the_middle(one)[0, 0]
+    found, skin = in_the_middle(torch.cat([one, one], dim=1))[0]
+    assert torch.equal(found, skin)
     middle = 0.5 * (PATCH_PX - 1)
     for axis in (0, 1):
         weight = found.sum(dim=1 - axis)
@@ -118,7 +119,7 @@ def pressed(count: int, seed: int) -> Part:
     dents_mm, classes = Dents(KINDS, seed, "cpu").draw(count)
     grey = np.rint(GREY_PER_MM * dents_mm.numpy()).astype(np.int16)
     return Part(
-        inputs=np.repeat(grey.transpose(0, 2, 3, 1)[:, None], 3, axis=4),
+        inputs=grey.transpose(0, 2, 3, 1)[:, None][..., [0, 0, 1]],
         at=np.zeros((count, 8), np.float32),
         truth=classes.numpy(),
     )

@@ -58,7 +58,9 @@ def test_a_round_spot_is_round_and_of_its_size_wherever_it_is(
     normal = np.array([-slope, 0.0, 1.0]) / np.hypot(slope, 1.0)
     assert touch.axes[2] == pytest.approx(normal, abs=0.02)
     assert touch.axes @ touch.axes.T == pytest.approx(np.eye(3), abs=1e-9)
-    flat = sight.laid_flat(grey, touch)[0, ..., 0].astype(np.float64)
+    square = sight.flat(touch)
+    flat = square.laid(grey)[0, ..., 0].astype(np.float64)
+    assert np.abs(square.drop_mm).max() < 0.05
     places_mm = ((np.arange(PATCH_PX) + 0.5) / PATCH_PX * 2.0 - 1.0) * HALF_MM
     for weight in (flat.sum(axis=0), flat.sum(axis=1)):
         middle = (weight * places_mm).sum() / weight.sum()
@@ -67,13 +69,32 @@ def test_a_round_spot_is_round_and_of_its_size_wherever_it_is(
         assert moment == pytest.approx(RADIUS_MM**2 / 4.0, rel=1.0 / 6.0)
 
 
+def test_how_curved_skin_lay_before_is_told() -> None:
+    """A wall of 15 mm radius seen from inside: R - sqrt(R2 - x2) below the plane at the foot."""
+    radius_mm, (columns, rows) = 15.0, np.meshgrid(np.arange(WIDTH), np.arange(HEIGHT))
+    turn = (columns - 0.5 * (WIDTH - 1)) / 70.0
+    along_mm = 0.2 * (rows - 0.5 * (HEIGHT - 1))
+    hit = np.stack([radius_mm * np.sin(turn), along_mm, radius_mm * np.cos(turn)], axis=-1)
+    sight = SkinSight(hit, np.zeros(3), 0)
+    middle_mm = hit[HEIGHT // 2, WIDTH // 2 + 8]
+    touch = sight.touch(disc(hit, middle_mm))
+    drop_mm = sight.flat(touch).drop_mm
+    places_mm = ((np.arange(PATCH_PX) + 0.5) / PATCH_PX * 2.0 - 1.0) * HALF_MM
+    there = np.einsum("k,ij->ijk", touch.axes[0, [0, 2]], places_mm[None] + 0.0 * drop_mm)
+    there += np.einsum("k,ij->ijk", touch.axes[1, [0, 2]], places_mm[:, None] + 0.0 * drop_mm)
+    around_mm = np.linalg.norm(there, axis=2)
+    wanted_mm = radius_mm - np.sqrt(radius_mm**2 - around_mm**2)
+    inside = np.s_[8:-8, 8:-8]
+    assert drop_mm[inside] == pytest.approx(wanted_mm[inside], abs=0.06)
+    assert drop_mm[inside].max() > 0.5
+
+
 def test_what_the_camera_does_not_see_counts_as_unchanged() -> None:
     """At the edge of the image half of the patch is out of sight."""
     sight, hit = seen(0.0)
     middle_mm = hit[HEIGHT // 2, -4]
-    flat = sight.laid_flat(
-        np.full((1, HEIGHT, WIDTH, 3), 50, np.int16), sight.touch(disc(hit, middle_mm))
-    )
+    square = sight.flat(sight.touch(disc(hit, middle_mm)))
+    flat = square.laid(np.full((1, HEIGHT, WIDTH, 3), 50, np.int16))
     assert (flat == 0).mean() > 0.3 and (flat == 50).mean() > 0.4
 
 

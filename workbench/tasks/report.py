@@ -10,15 +10,15 @@ import numpy as np
 
 from workbench.learning.evaluation.charts import lines
 from workbench.report import html_page
+from workbench.tasks.networks.patch import DENT
 from workbench.tasks.outcome import WORDS, Failure, Row, Tested
 from workbench.tasks.run import Result
 from workbench.tasks.task import Net, Told, task_of
 
 CHANGED = "as differences from rest, twice as strong", 128, 2
+DENTS = (Net.DENT, Net.MEASURES)
 SEEN = {
-    **dict.fromkeys(
-        (Net.DENT, Net.MEASURES), ("as the dents that were read, white for a millimetre", 0, 1)
-    ),
+    **dict.fromkeys(DENTS, ("as the dents that were read, white for a millimetre", 0, 1)),
     Net.MOTION: ("the last image, laid flat", 0, 1),
 }
 """What networks are shown, in words, with the grey level of nothing and the gain it is drawn by."""
@@ -142,13 +142,18 @@ def _gallery(failures: Sequence[Failure], net: Net) -> str:
     words, middle, gain = SEEN.get(net, CHANGED)
     figures = "".join(
         html_page.photograph(
-            np.clip(middle + gain * each.seen, 0, 255).astype(np.uint8),
+            np.clip(middle + gain * _drawn(each.seen, net), 0, 255).astype(np.uint8),
             f"{each.name}: {each.words}",
             width=SHOWN_PX,
         )
         for each in failures
     )
     return f"<p>Wrong of the first seed, {words}:</p><div class='images'>{figures}</div>"
+
+
+def _drawn(seen: np.ndarray, net: Net) -> np.ndarray:
+    """What is drawn of what a network saw, shape (h, w, 3): of a dent itself, not the skin."""
+    return np.repeat(seen[..., [DENT]], 3, axis=2) if net in DENTS else seen
 
 
 def _made(details: Mapping[str, Any]) -> list[tuple[str, Any]]:

@@ -18,6 +18,7 @@ from workbench.core.design.design import SensorDesign
 from workbench.core.result.results import MembraneMesh
 from workbench.pipeline.store import Store
 from workbench.tasks.dent_sight import DentSight
+from workbench.tasks.networks.patch import DROP, GREY_PER_MM
 from workbench.tasks.skin_sight import SkinSight
 from workbench.tasks.task import Net
 
@@ -94,7 +95,9 @@ class Change:
     """What differs from rest."""
 
     grey: np.ndarray
-    """Differences [grey level], or what the view has in their place, shape (T, h, w, 3), int16."""
+    """Differences [grey level], or what the view has in their place, shape (T, h, w, 3), int16. Of
+    a dent the first channel is how far the skin went inward, `DROP` how far it lay inward before,
+    both `GREY_PER_MM` for a millimetre."""
     at: tuple[float, ...]
     """Eight numbers: where its middle is, across and down, from -1 to 1 over the image; how far it
     reaches and where its foot is on the skin, x, y and z, in `PLACE_MM`; root mean square and
@@ -118,12 +121,17 @@ def change(images: Sequence[np.ndarray], idle: np.ndarray, view: View) -> Change
         at = (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, *_strength(grey))
         return Change(grey=grey, at=at, foot_mm=NOWHERE[0], axes=NOWHERE[1])
     touch = view.sight.touch(grey)
-    part = view.sight.laid_flat(_looked_at(shown, rest, grey, view), touch)
+    flat = view.sight.flat(touch)
+    part = flat.laid(_looked_at(shown, rest, grey, view))
+    strength = _strength(part)
+    if view.dents is not None:
+        # How the skin lay before belongs to it: in a cylinder's skin a ball leaves an ellipse.
+        part[..., DROP] = np.rint(GREY_PER_MM * flat.drop_mm)
     middle = (2.0 * at / size - 1.0 for at, size in zip(touch.middle_px, size_px, strict=True))
     foot = (touch.foot_mm / PLACE_MM).tolist()
     return Change(
         grey=part,
-        at=(*middle, touch.spread_mm / PLACE_MM, *foot, *_strength(part)),
+        at=(*middle, touch.spread_mm / PLACE_MM, *foot, *strength),
         foot_mm=touch.foot_mm,
         axes=touch.axes,
     )

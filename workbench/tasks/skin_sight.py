@@ -144,20 +144,42 @@ class SkinSight:
             spread_mm=spread_mm,
         )
 
-    def laid_flat(self, grey: np.ndarray, touch: Touch) -> np.ndarray:
-        """Differences (T, H, W, 3) around a contact, shape (T, `PATCH_PX`, `PATCH_PX`, 3)."""
-        import cv2
+    def flat(self, touch: Touch) -> Flat:
+        """What is around a contact as one sees it who looks straight at the skin there."""
         from scipy.interpolate import LinearNDInterpolator
 
         near = np.sort(self._tree.query_ball_point(touch.foot_mm, AROUND * HALF_MM))
         near = near[self._outward[near] @ touch.axes[2] > FACING]
         near = near[:: max(1, math.ceil(len(near) / MOST_PIXELS))]
-        off_mm = (self._points_mm[near] - touch.foot_mm) @ touch.axes[:2].T
+        off_mm = (self._points_mm[near] - touch.foot_mm) @ touch.axes.T
         steps_mm = ((np.arange(PATCH_PX) + 0.5) / PATCH_PX * 2.0 - 1.0) * HALF_MM
-        found = LinearNDInterpolator(off_mm, self._pixels[near])(*np.meshgrid(steps_mm, steps_mm))
+        known = np.column_stack([self._pixels[near], -off_mm[:, 2]])
+        found = LinearNDInterpolator(off_mm[:, :2], known)(*np.meshgrid(steps_mm, steps_mm))
         # What no pixel sees lies far outside of the image, where nothing differs.
-        columns, rows = np.moveaxis(np.nan_to_num(found, nan=-9.0).astype(np.float32), 2, 0)
-        return np.stack([cv2.remap(one, columns, rows, cv2.INTER_LINEAR) for one in grey])
+        columns, rows = np.moveaxis(np.nan_to_num(found[..., :2], nan=-9.0), 2, 0)
+        return Flat(
+            columns=columns.astype(np.float32),
+            rows=rows.astype(np.float32),
+            drop_mm=np.nan_to_num(found[..., 2]),
+        )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Flat:
+    """A square of the skin around a contact, `PATCH_PX` a side."""
+
+    columns: np.ndarray
+    """Of the image's pixels that see it, shape (S, S), float32."""
+    rows: np.ndarray
+    drop_mm: np.ndarray
+    """How far the skin at rest lies inward of the plane that touches it at the foot [mm], shape
+    (S, S); 0 where none is seen."""
+
+    def laid(self, grey: np.ndarray) -> np.ndarray:
+        """Images (T, H, W, 3) of the sight's size, laid flat, shape (T, S, S, 3)."""
+        import cv2
+
+        return np.stack([cv2.remap(one, self.columns, self.rows, cv2.INTER_LINEAR) for one in grey])
 
 
 def _unit(vector: np.ndarray) -> np.ndarray:

@@ -2,8 +2,9 @@
 
 What it learns first, dents of the objects' own shapes (`dents`), costs no press; with it a hundred
 presses are enough to learn what a real dent, and a reading of it, has besides. Each dent is moved
-to the middle and shown twice, over its depth and in millimetres. What is told is the mean over
-eight ways to turn and mirror it.
+to the middle and shown twice, over its depth and in millimetres, with how the skin lay before: a
+ball dents the wall of a finger in an ellipse, as an ellipsoid dents a plane. What is told is the
+mean over eight ways to turn and mirror it.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from workbench.tasks.networks import dents as drawn
 from workbench.tasks.networks.dents import Dents, misread
 from workbench.tasks.networks.kept_training import read_training, write_training
 from workbench.tasks.networks.learn import SMOOTHING, Learned, Part, told_by
-from workbench.tasks.networks.patch import GREY_PER_MM
+from workbench.tasks.networks.patch import DENT, DROP, GREY_PER_MM
 from workbench.tasks.networks.shown import GREY, plain, turned
 
 CHANNELS = ((16, 2), (32, 2), (32, 1), (64, 2), (64, 1), (96, 2))
@@ -60,7 +61,7 @@ class DentNet(nn.Module):
     def __init__(self, outputs: int) -> None:
         super().__init__()
         layers: list[nn.Module] = []
-        before = 2
+        before = 3
         for after, stride in CHANNELS:
             layers.append(nn.Conv2d(before, after, 3, stride=stride, padding=1, bias=False))
             layers += [nn.BatchNorm2d(after), nn.ReLU()]
@@ -81,22 +82,24 @@ class DentNet(nn.Module):
         return torch.stack([self.told(way).log_softmax(dim=1) for way in ways]).mean(dim=0)
 
     def told(self, dents_mm: Tensor) -> Tensor:
-        """Numbers of dents (B, 1, h, w) as they lie, shape (B, K)."""
+        """Numbers of dents and skin at rest (B, 2, h, w) as they lie, shape (B, K)."""
         middle = in_the_middle(dents_mm)
-        depth = middle.amax(dim=(2, 3), keepdim=True).clamp(min=SHALLOW_MM)
-        found = self.eye(torch.cat([middle / depth, middle / USUAL_MM], dim=1))
+        dent = middle[:, :1]
+        depth = dent.amax(dim=(2, 3), keepdim=True).clamp(min=SHALLOW_MM)
+        found = self.eye(torch.cat([dent / depth, middle / USUAL_MM], dim=1))
         flat = found.flatten(2)
         return self.head(torch.cat([flat.amax(2), flat.mean(2), flat.std(2)], dim=1))
 
 
 def in_mm(images: Tensor) -> Tensor:
-    """Dents (B, 1, h, w) [mm] of what `plain` gives of them, (B, 1, 3, h, w)."""
-    return images[:, 0].mean(dim=1, keepdim=True) * (GREY / GREY_PER_MM)
+    """Dents and skin at rest (B, 2, h, w) [mm] of what `plain` gives of them, (B, 1, 3, h, w)."""
+    return images[:, 0, [DENT, DROP]] * (GREY / GREY_PER_MM)
 
 
 def in_the_middle(dents_mm: Tensor) -> Tensor:
-    """Dents (B, 1, h, w) moved so that the middle of what is pressed in is that of the image."""
-    weight = dents_mm.clamp(min=0.0)
+    """Dents and skin at rest (B, 2, h, w), moved so that the middle of what is pressed in is that
+    of the image."""
+    weight = dents_mm[:, :1].clamp(min=0.0)
     weight = weight / (weight.sum(dim=(2, 3), keepdim=True) + 1e-6)
     count, _, height, width = dents_mm.shape
     affine = torch.zeros((count, 2, 3), device=dents_mm.device)
@@ -174,10 +177,14 @@ def drawable(names: Sequence[str]) -> bool:
 
 
 def pressed_anew(dents_mm: Tensor, generator: torch.Generator) -> Tensor:
-    """Dents (B, 1, h, w) turned, mirrored, enlarged, moved, deeper or less deep, and misread."""
+    """Dents with the skin at rest (B, 2, h, w) turned, mirrored, enlarged and moved.
+
+    The dents are also deeper or less deep, and misread.
+    """
     gain = torch.rand((len(dents_mm), 1, 1, 1), generator=generator, device=dents_mm.device)
     there = turned(dents_mm[:, None], generator, ZOOM, SHIFT)[:, 0]
-    return misread(there * (1.0 + GAIN * (2.0 * gain - 1.0)), generator)
+    dents = misread(there[:, :1] * (1.0 + GAIN * (2.0 * gain - 1.0)), generator)
+    return torch.cat([dents, there[:, 1:]], dim=1)
 
 
 def _teach(network: DentNet, source: Dents, lesson: Lesson, monitor: Monitor) -> None:

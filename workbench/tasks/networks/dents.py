@@ -72,15 +72,31 @@ class Dents:
         self._device = device
 
     def draw(self, count: int) -> tuple[Tensor, Tensor]:
-        """Dents [mm], shape (count, 1, `PATCH_PX`, `PATCH_PX`), and the class of each, (count,)."""
+        """Dents and how the skin lay before, and the class of each, (count,).
+
+        The first are inward displacements and, behind them, how far the skin at rest lies inward
+        of the plane that touches it in the middle [mm], shape (count, 2, `PATCH_PX`, `PATCH_PX`).
+        """
         kinds = self._whole(len(self._heights), count)
-        gap = self._gap(kinds, count)
+        drop = self._drop(count)
+        gap = self._height(kinds, count) + drop
+        gap = gap - gap.amin(dim=(2, 3), keepdim=True)
         depth = self._between(DEPTH_MM, count, 1, 1, 1)
         spread = sprung((depth - gap).clamp(min=0.0), float(self._between(HELD, 1)))
-        return self._as_read(blurred(spread, float(self._between(BLUR_PX, 1))), count), kinds
+        dents = self._as_read(blurred(spread, float(self._between(BLUR_PX, 1))), count)
+        sight = self._in_sight(count)
+        return torch.cat([misread(dents * sight, self._generator), drop * sight], dim=1), kinds
 
-    def _gap(self, kinds: Tensor, count: int) -> Tensor:
-        """Height of objects over the skin [mm], turned, mirrored, moved and enlarged; least 0."""
+    def _drop(self, count: int) -> Tensor:
+        """How far curved skin lies inward of the plane in the middle [mm]."""
+        square = _places(self._device) ** 2
+        once = 0.5 / self._between(CURVED_MM, count, 1, 1, 1)
+        again = 0.5 / self._between(CURVED_MM, count, 1, 1, 1)
+        again = again * (self._between((0.0, 1.0), count, 1, 1, 1) > FLAT)
+        return once * square + again * square.transpose(2, 3)
+
+    def _height(self, kinds: Tensor, count: int) -> Tensor:
+        """Height of objects over a plane [mm], turned, mirrored, moved and enlarged."""
         zoom = ZOOM ** self._between((-1.0, 1.0), count)
         turn = self._between((-math.pi, math.pi), count)
         mirror = torch.sign(self._between((-1.0, 1.0), count))
@@ -94,17 +110,11 @@ class Dents:
         size = [count, 1, PATCH_PX, PATCH_PX]
         grid = nn.functional.affine_grid(torch.stack(rows, dim=1), size, align_corners=False)
         heights = self._heights[kinds, self._whole(len(SIZES_MM), count)][:, None]
-        gap = nn.functional.grid_sample(heights, grid, padding_mode="border", align_corners=False)
-        gap = gap * zoom.view(-1, 1, 1, 1)
-        square = _places(self._device) ** 2
-        once = 0.5 / self._between(CURVED_MM, count, 1, 1, 1)
-        again = 0.5 / self._between(CURVED_MM, count, 1, 1, 1)
-        again = again * (self._between((0.0, 1.0), count, 1, 1, 1) > FLAT)
-        gap = gap + once * square + again * square.transpose(2, 3)
-        return gap - gap.amin(dim=(2, 3), keepdim=True)
+        over = nn.functional.grid_sample(heights, grid, padding_mode="border", align_corners=False)
+        return over * zoom.view(-1, 1, 1, 1)
 
     def _as_read(self, dents: Tensor, count: int) -> Tensor:
-        """Dents as a reading has them."""
+        """Dents as a reading in a known light has them."""
         noise = torch.randn(dents.shape, generator=self._generator, device=self._device)
         noise = blurred(noise, 1.5) * dents.amax(dim=(2, 3), keepdim=True) * (dents > LEAST_MM)
         seen = dents + self._between((0.0, NOISE), count, 1, 1, 1) * noise
@@ -116,10 +126,11 @@ class Dents:
         stripes = torch.sin(2.0 * math.pi * along / period + begun)
         seen = seen * (1.0 + self._between((0.0, STRIPES), count, 1, 1, 1) * stripes)
         gain = 1.0 + GAIN * self._between((-1.0, 1.0), count, 1, 1, 1)
-        return misread(seen * self._in_sight(cells, count) * gain, self._generator)
+        return seen * gain
 
-    def _in_sight(self, cells: Tensor, count: int) -> Tensor:
+    def _in_sight(self, count: int) -> Tensor:
         """1 where the camera sees, 0 beyond the side that it does not: one of four, or none."""
+        cells = torch.arange(PATCH_PX, device=self._device, dtype=torch.float32).view(1, 1, 1, -1)
         beyond = self._between(CUT_PX, count, 1, 1, 1)
         beyond = beyond * (self._between((0.0, 1.0), count, 1, 1, 1) < CUT)
         side = self._whole(4, count).view(-1, 1, 1, 1)

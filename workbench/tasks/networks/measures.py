@@ -15,7 +15,7 @@ import numpy as np
 
 from sim.forces.peaks import DISC_MM
 from workbench.tasks.networks.layer_pressure import disc_pressure
-from workbench.tasks.networks.patch import GREY_PER_MM, MM_PER_PX
+from workbench.tasks.networks.patch import DENT, GREY_PER_MM, MM_PER_PX
 
 TOP, STEEPEST = (5, 50, 200), 20
 """Pixels that the deepest of a dent are means of, and the steepest."""
@@ -35,7 +35,7 @@ def measures(inputs: np.ndarray) -> np.ndarray:
         inputs: As `DentSight` reads them and `SkinSight` lays them flat, `GREY_PER_MM` for a
             millimetre, shape (N, T, h, w, 3), int16.
     """
-    rows = [[_of_one(image[..., 0] / GREY_PER_MM) for image in each] for each in inputs]
+    rows = [[_of_one(image[..., DENT] / GREY_PER_MM) for image in each] for each in inputs]
     found = np.array(rows)
     return np.concatenate([np.log(found + LEAST), found], axis=2, dtype=np.float32)[:, None]
 
