@@ -35,7 +35,7 @@ CALIBRATED = "calibrated"
 WIDTH_PX = 320
 """Of the twin's photographs [px]."""
 LIGHTS = "known"
-"""What of them a builder knows: how many there are and where they were meant to be."""
+"""A builder knows how many lights there are, and where they were meant to be."""
 REFINED = {Size.SMALL: "powers", Size.PAPER: "all"}
 """What is fitted: powers and colours of the lights alone, or camera and coating as well, which
 takes minutes: by it a dent is found nearer to its place (presses of .3 mm in a finger's twin are
