@@ -7,10 +7,9 @@ import pytest
 
 from tests.synthetic_touches import HEIGHT, WIDTH, picture
 from workbench.core.base.monitor import silent
-from workbench.tasks.networks.head import PENALTIES, Head, fit_classes, fit_values, ridge
+from workbench.tasks.networks.head import PENALTIES, Head, fit_values, ridge
 from workbench.tasks.networks.learn import Part, told_by
 from workbench.tasks.networks.lite import features, installed
-from workbench.tasks.networks.motion import motions
 from workbench.tasks.seen_images import change, whole
 from workbench.tasks.task import Net, task_of
 from workbench.tasks.trained import made
@@ -82,28 +81,6 @@ def test_where_nothing_can_be_told_the_largest_penalty_is_best() -> None:
     assert fit_values(Head(1, train, told_places=True), (train, validation)).epoch == len(PENALTIES)
 
 
-def test_classes_of_unequal_number_count_the_same() -> None:
-    """One in six is of class 1, told by a feature with noise: both are told right as often.
-
-    Of 600 that were not learned from four in five are, as a threshold at the middle tells.
-    """
-    rng = np.random.default_rng(4)
-    found = []
-    for count in (600, 200, 600):
-        truth = (np.arange(count) % 6 == 0).astype(np.int64)
-        one = part(rng, count, truth)
-        one.inputs[:, :, 0, 7] = (1.7 * truth + rng.normal(size=count))[:, None]
-        found.append(one)
-    train, validation, test = found
-    head = Head(2, train, told_places=False)
-    learned = fit_classes(head, (train, validation))
-    told = told_by(head, test.inputs, test.at).argmax(axis=1)
-    right = [(told[test.truth == each] == each).mean() for each in (0, 1)]
-    assert min(right) > 0.7
-    least = min(each["validation"] for each in learned.curve)
-    assert learned.curve[learned.epoch - 1]["validation"] == least
-
-
 @pytest.mark.parametrize(
     ("task", "net", "told"),
     [("slip", Net.MOTION, False), ("safety", Net.MEASURES, False), ("pose", Net.LITE, True)],
@@ -114,26 +91,6 @@ def test_slips_and_pressures_are_told_without_the_place(task: str, net: Net, tol
     head, _ = made(net, task_of(task), 2, one)
     here, there = (told_by(head, one.inputs, one.at + off) for off in (0.0, 1.0))
     assert (here == there).all() == (not told)
-
-
-def test_motion_of_the_skin_is_told_in_millimetres() -> None:
-    """A cloud that moves by two pixels of .1875 mm from image to image, and one that stays.
-
-    The flow is that of smooth patterns: a fifth.
-    """
-    rng = np.random.default_rng(6)
-    import cv2
-
-    cloud = (
-        cv2.GaussianBlur(rng.normal(size=(64, 96)).astype(np.float32), (0, 0), 4.0) * 600.0 + 128.0
-    )
-    moving = np.stack([cloud[:, 2 * k : 2 * k + 64] for k in range(8)])
-    both = np.stack([moving, np.tile(cloud[:, :64], (8, 1, 1))])
-    found = motions(np.repeat(both[..., None], 3, axis=4).astype(np.int16), 0.1875, silent)
-    assert found.shape == (2, 1, 1, 21)
-    in_the_middle = np.exp(found[:, 0, 0, :7])
-    assert in_the_middle[0] == pytest.approx(0.375, rel=0.2)
-    assert (in_the_middle[1] < 0.01).all()
 
 
 @pytest.mark.skipif(not installed(), reason="needs the extra `tasks`")

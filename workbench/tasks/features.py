@@ -22,7 +22,9 @@ ON_FEATURES = {
     Net.MOTION: "no weights: how skin and dent move from image to image",
     Net.MEASURES: "no weights: measures of the dent",
 }
-"""Networks that learn from features, which do not change as they learn, and where these come from."""
+"""Networks that learn from features that stay as they are, and where these come from."""
+IN_ANY_LIGHT = (Net.DENT, Net.MEASURES, Net.MOTION)
+"""Networks shown what is nearly the same in another light: dents, ways, and how shading grows."""
 
 
 def usual_network(task: Task) -> Net:

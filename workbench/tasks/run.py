@@ -6,7 +6,7 @@
     photos       the user's own, told by the networks of `sim`
     twin         photographs of a sensor with hidden parameters, told by the networks of `sim`
     calibrated   light and camera fitted to the twin's ball, the presses seen anew, trained anew;
-                 where dents are seen, only read by that light
+                 where dents or windows are seen, only the photographs, by that light and camera
 
 Stopped, it goes on where it was: presses, what was seen of them, trainings and photographs that are
 there are kept.
@@ -33,7 +33,7 @@ from workbench.pipeline.devices import torch_device
 from workbench.project.design_toml import design_table
 from workbench.project.project import Project
 from workbench.tasks.examples import Examples, examples
-from workbench.tasks.features import seen_once, with_features
+from workbench.tasks.features import IN_ANY_LIGHT, seen_once, with_features
 from workbench.tasks.kept.step_times import StepTimes
 from workbench.tasks.kept_examples import kept_examples
 from workbench.tasks.lessons import Lessons
@@ -265,11 +265,11 @@ class _Work:
                 return tests
             view = self._view(optics)
             again = lessons
-            if view.dents is None:
+            if self.plan.net not in IN_ANY_LIGHT:
                 again = self._seen_anew(data, optics, view)
                 runs = again.learned(Trial.CALIBRATED, self._span(Trial.CALIBRATED))
                 networks = [run.trained for run in runs]
-            # A dent is the same in another light: only that of the photographs is read by it.
+            # What is the same in any light is learned once: photographs alone are read by theirs.
             seen = self._photos(photos, again, view)
             tests.append(again.on_photos(Trial.CALIBRATED, seen, networks))
         return tests

@@ -39,7 +39,7 @@ def recipe(design: SensorDesign, size: Size) -> Recipe:
         sequences=WINDOWS[size],
     )
     about = design.material.friction
-    friction = max(LEAST_FRICTION, about - FRICTION), about + FRICTION
+    friction = max(LEAST_FRICTION, round(about - FRICTION, 6)), round(about + FRICTION, 6)
     vary = dataclasses.replace(made.vary, friction=friction)
     return dataclasses.replace(made, cases=CASES[size], vary=vary)
 

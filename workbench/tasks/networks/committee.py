@@ -6,6 +6,8 @@ in a few hundred slides. Source: Hansen and Salamon, Neural network ensembles, 1
 
 from __future__ import annotations
 
+import itertools
+
 import torch
 from torch import Tensor, nn
 
@@ -51,7 +53,7 @@ class Committee(nn.Module):
         self.register_buffer("spread", torch.where(spread > 0.0, spread, 1.0))
         sizes = (seen.shape[1], HIDDEN, HIDDEN, outputs)
         self.layers = nn.ModuleList(
-            _Layer(before, after) for before, after in zip(sizes[:-1], sizes[1:], strict=True)
+            _Layer(before, after) for before, after in itertools.pairwise(sizes)
         )
         self.dropout = nn.Dropout(DROPOUT)
 
